@@ -1,7 +1,8 @@
 //! How much time do single edits and edit workloads take on each structure as the mesh grows?
 //!
-//! A time in `edit/` is that of one edit: the time of a run over many places, divided by their
-//! number. A structure that scans is measured at few places, and not on the largest meshes.
+//! A time in `edit/` is the time of one edit: the time of a run at many places, divided by the
+//! number of places. A structure that scans is measured at few places, and not on the largest
+//! meshes.
 
 use std::time::Duration;
 

@@ -18,7 +18,8 @@ pub(crate) struct Input {
     pub(crate) mesh: PolygonMesh,
 }
 
-/// Returns closed triangle meshes of three sizes: regular in order, irregular, and in random order.
+/// Returns closed triangle meshes of three sizes: regular meshes, irregular meshes, and the regular
+/// meshes in random order.
 pub(crate) fn inputs() -> Vec<Input> {
     let mut inputs = Vec::new();
     for frequency in FREQUENCIES {

@@ -1,5 +1,5 @@
 //! Instruction counts of the operations of a study on the four local structures. Callgrind counts
-//! them, without the noise of a clock.
+//! the instructions, so the results have no noise of a clock.
 //!
 //! ```text
 //! apt-get install valgrind
@@ -9,7 +9,7 @@
 //!
 //! The benchmarks are the lines of `instructions.txt`: a structure and an operation. Each runs the
 //! operation on 2,000 triangles in random order, so that no loop profits from a regular order.
-//! Subdivisions run once, others twice.
+//! Subdivisions run once, other operations twice.
 //!
 //! The program builds on every platform and runs on those that valgrind supports. A plain `cargo
 //! bench` leaves it out (`bench = false`), because it does not understand the options of criterion.
@@ -34,8 +34,8 @@ fn prepare(line: String) -> Prepared {
     let operation: Operation = operation.parse().expect("an operation");
     let sphere = shapes::geodesic(10).expect("a small frequency");
     let polygons = Box::leak(Box::new(shapes::shuffled(&sphere, 1)));
-    // Only the thread of the benchmark is counted. With a pool of one thread, subdivisions run on
-    // the thread that calls them.
+    // Callgrind counts only the thread of the benchmark. With a pool of one thread, subdivisions
+    // run on the calling thread.
     let pool = ThreadPoolBuilder::new().num_threads(1).build_global();
     pool.expect("the only pool");
     if let Some(job) = operation.subdivision_job() {

@@ -17,8 +17,8 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use sixfold_study::{Policy, pages};
 
 /// Configures criterion. Freed pages stay in the process, as in a study, so that allocations cause
-/// no page faults. Measurements are short: there are hundreds of benchmarks, and the ratios within
-/// a group become stable early.
+/// no page faults. Measurements are short, because there are hundreds of benchmarks and the ratios
+/// within a group become stable early.
 fn short_runs() -> Criterion {
     pages::set_policy(Policy::Kept);
     Criterion::default()

@@ -50,8 +50,8 @@ pub(crate) fn define(criterion: &mut Criterion) {
     }
 }
 
-/// Returns whether the way makes queries for which the structure scans all faces. A run would take
-/// seconds; the report of a study shows it on a smaller mesh.
+/// Returns whether the way makes queries for which the structure scans all faces. Such a run would
+/// take seconds; the report of a study shows its time on a smaller mesh.
 fn scans_faces(backend: &Backend, way: Way) -> bool {
     let cost = backend.info.costs[Relation::VertexFaces as usize];
     way == Way::Gather && cost == QueryCost::Scan

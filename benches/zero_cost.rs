@@ -284,8 +284,8 @@ where
     );
 }
 
-/// Measures both with criterion. Then runs both alternately, for a ratio that is robust against
-/// noise.
+/// Measures both versions with criterion. Then runs both alternately, so that noise changes their
+/// ratio little.
 fn compare_alternating(
     group: &mut BenchmarkGroup<'_, WallTime>,
     mut generic: impl FnMut(),

@@ -1,5 +1,5 @@
-//! Data that follows edits: algorithms run on meshes with data, with the same result on every
-//! structure, and the law of such data detects faults.
+//! Checks that algorithms on meshes with data give the same result on every structure, and that the
+//! law of data that follows edits detects faults.
 
 use std::marker::PhantomData;
 use std::panic::catch_unwind;
@@ -18,8 +18,8 @@ use crate::remeshing::{Delaunay, Operator, surfaces};
 /// Each face of a mesh: the coordinates and the value of each corner, and the value of the face.
 type ValuedFaces = Vec<(Vec<[u32; 4]>, u32)>;
 
-/// Applies `operator` to `polygons`, with a value that is linear in x at the start at each vertex,
-/// and the number of the original face at each face.
+/// Applies `operator` to `polygons` with data. At the start, the value of a vertex is linear in x,
+/// and the value of a face is its number.
 fn run<M: MeshEdit + Representation>(
     operator: &impl Operator,
     polygons: &PolygonMesh,

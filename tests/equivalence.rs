@@ -1,16 +1,16 @@
-//! Checks that all structures represent the same mesh: those that hold it give the same answers,
-//! and the others refuse it with the reason that the contract defines.
+//! Checks that all structures that hold a mesh give the same answers. The other structures must
+//! refuse the mesh with the error that the contract defines.
 
 use proptest::prelude::*;
 use sixfold::{MeshQuery, PolygonMesh, Representation, for_each_representation};
 use sixfold_conformance::strategy::{any_mesh, faulty_mesh, manifold_mesh};
 use sixfold_conformance::{answers, expected_check, gallery, one_line, welded};
 
-/// Checks that every refusal is the one that brute force finds, and that the structures that hold
-/// the mesh give the same answer to every query.
+/// Checks that every error equals the error that brute force finds, and that the structures that
+/// hold the mesh give the same answer to every query.
 ///
 /// Structures that keep coincident vertices apart are compared on the mesh itself. All structures
-/// are compared on the welded mesh, whose vertices are numbered in the order that the soup uses.
+/// are compared on the welded mesh. Its vertices are numbered in the order that the soup uses.
 pub(crate) fn compare_structures(polygons: &PolygonMesh) {
     for_each_representation!(M => {
         let expected = expected_check(&M::CAPABILITIES, polygons).err();

@@ -1,5 +1,4 @@
-//! Checks that the memory that a structure reports equals the memory that the allocator counts: to
-//! the byte, on every shape.
+//! Checks on every shape that a structure reports exactly the bytes that the allocator counts.
 //!
 //! This is a separate program, because its allocator counts every byte. It runs on one thread.
 
@@ -47,7 +46,7 @@ impl Heap for Counters {
 }
 
 fn main() {
-    // One thread, because the counters are of the whole program.
+    // One thread, because the counters count the whole program.
     let arguments = Arguments {
         test_threads: Some(1),
         ..Arguments::from_args()
@@ -122,8 +121,9 @@ fn check_audit(name: &str, polygons: &PolygonMesh) -> usize {
         };
         structures += 1;
         assert!(peak >= counted, "{backend} on {name}: {peak} < {counted}");
-        // While building, there may also be a copy of the positions, marks, and the sides of all
-        // corners, but never a second mesh. For small meshes a scratch list may be larger.
+        // Building may also need a copy of the positions, a mark for each vertex, and the sides of
+        // all corners, but never a second mesh. For small meshes, a scratch list may be larger than
+        // this.
         let copy = 13 * polygons.vertex_count() + 4 * polygons.corner_count();
         assert!(
             polygons.vertex_count() < 300 || peak <= counted + copy,
@@ -252,7 +252,8 @@ fn words_per_vertex_equal_the_literature() {
     }
 }
 
-/// Checks a seventh structure, and that bytes which its layout formula leaves out are reported.
+/// Checks that the audit of a seventh structure reports the bytes that its layout formula leaves
+/// out.
 fn bytes_outside_the_formula_are_found() {
     let torus = || StudyMesh::new("torus", shapes::triangle_torus(20, 15).expect("a torus"));
     let seventh = Backend::new::<FaceAndEdgeLists>();

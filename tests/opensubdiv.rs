@@ -7,12 +7,12 @@
 //!
 //! Not compared:
 //!
-//! - Chaikin steps in which OpenSubdiv extrapolates, or the result depends on rounding:
+//! - Chaikin steps in which OpenSubdiv extrapolates or the result depends on rounding: see
 //!   `Level::is_incomparable`.
 //! - The limit of a smooth vertex of valence 2: OpenSubdiv returns the vertex itself, but the
 //!   levels converge to another point.
 //! - Loop on two triangles with the same corners: the halves of their edges have the same ends, and
-//!   OpenSubdiv keeps them as two edges.
+//!   OpenSubdiv keeps these halves as two edges.
 //! - Normals on creases: OpenSubdiv uses the tangents of Biermann, Levin & Zorin (2000), which
 //!   belong to modified rules near creases. `tangent.rs` derives the tangents of the original
 //!   rules.
@@ -42,7 +42,7 @@ use reference::{Answer, Case, Level, Reference};
 /// Maximum distance of two points that count as equal, relative to the size of the control mesh.
 const TOLERANCE: f32 = 1e-5;
 
-/// Checks that one level of ours equals that of OpenSubdiv.
+/// Checks that one of our levels equals the level of OpenSubdiv.
 fn check_level(
     level: &Level,
     numbers: &NumberMap,
@@ -66,7 +66,7 @@ fn check_level(
     }
     let uses = polygons.edge_uses();
     for edge in uses.iter().filter(|edge| edge.faces != 2) {
-        // These are always sharp; no stored sharpness is needed.
+        // Boundary and non-manifold edges are always sharp, even without a stored sharpness.
         ours.insert(edge.ends.map(|v| v.index()), f32::INFINITY);
     }
     let theirs = level.edges.iter().map(|&([a, b], sharpness)| {
@@ -105,7 +105,8 @@ fn check_sharpness<K: Ord + std::fmt::Debug>(
     }
 }
 
-/// Checks that defined limits equal those of OpenSubdiv. Returns the number of compared limits.
+/// Checks that our limits, where they are defined, equal the limits of OpenSubdiv. Returns the
+/// number of compared limits.
 fn check_limits<M: Representation>(
     case: &Case,
     answer: &Answer,
@@ -273,7 +274,7 @@ fn add(count: &Cell<usize>, more: usize) {
     count.set(count.get() + more);
 }
 
-/// Runs `case` in OpenSubdiv, and compares all our ways to run it with the answer.
+/// Runs `case` in OpenSubdiv, and compares the answer with the results of all our methods.
 fn compare_case(reference: &Reference, case: &Case, counts: &Counts) {
     if case.subdivision.scheme == Scheme::Loop && has_duplicate_triangles(&case.polygons) {
         return;

@@ -26,8 +26,8 @@ fn size(polygons: &PolygonMesh) -> f32 {
     polygons.positions().iter().map(largest).fold(0.0, f32::max)
 }
 
-/// Returns the results on `M`, first by vertices and then by faces of `polygons`; `None` if `M`
-/// refuses the mesh.
+/// Returns the results on `M`: first those of the vertices of `polygons`, then those of the faces.
+/// Returns `None` if `M` refuses the mesh.
 fn results<M: Representation>(
     polygons: &PolygonMesh,
     operator: impl Fn(&M) -> Option<Results<M>>,
@@ -45,8 +45,8 @@ fn results<M: Representation>(
 
 type Results<M> = (sixfold::VertexMap<M, Point>, sixfold::FaceMap<M, Point>);
 
-/// Compares the result of `operator` on each structure that holds `polygons` with that on the first
-/// one.
+/// Compares the results of `operator` on all structures that hold `polygons` with the result on the
+/// first of these structures.
 macro_rules! compare_structures {
     ($polygons:expr, $size:expr, $operator:expr) => {{
         let polygons: &PolygonMesh = $polygons;
@@ -86,8 +86,8 @@ fn smoothing() -> impl Strategy<Value = Smoothing> {
     )
 }
 
-/// Checks that all structures that hold `polygons` give the same dual, or the same refusal, and
-/// returns it.
+/// Checks that all structures that hold `polygons` give the same dual or the same error, and
+/// returns this result.
 ///
 /// `polygons` must be welded, because the soup numbers vertices in the order in which faces first
 /// use them.

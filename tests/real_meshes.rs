@@ -1,5 +1,5 @@
 //! Checks on real meshes that `check` and building agree, and that all structures give the same
-//! answers on the small ones.
+//! answers on the small meshes.
 //!
 //! The environment variable `SIXFOLD_MESHES` names the folder. If it is not set, these tests do
 //! nothing.
@@ -46,7 +46,7 @@ fn building_fails_with_the_error_of_the_check() {
     }
 }
 
-/// Only small meshes: scanning all faces for every element takes quadratic time.
+/// Tests only small meshes, because scanning all faces for every element takes quadratic time.
 #[test]
 fn all_give_the_same_answers_on_small_meshes() {
     for (_, polygons) in meshes() {

@@ -7,7 +7,7 @@ use sixfold::remeshing::{
 use sixfold::{for_each_editable, shapes};
 use sixfold_core::{MeshEdit, Point, PolygonMesh, Representation};
 
-/// Returns closed and open surfaces. One is a rough surface with corners, where collapses near the
+/// Returns closed and open surfaces. One of them is rough and has corners; collapses near its
 /// boundary are among the cheapest.
 pub(crate) fn surfaces() -> [PolygonMesh; 4] {
     let message = "a small shape";
@@ -25,10 +25,11 @@ pub(crate) fn surfaces() -> [PolygonMesh; 4] {
     ]
 }
 
-/// Returns the faces as the bits of their corners, each starting at its least corner, sorted.
+/// Returns the sorted faces. A face consists of the bits of its corners and starts at its least
+/// corner.
 fn faces(polygons: &PolygonMesh) -> Vec<Vec<[u32; 3]>> {
     let faces = polygons.faces().iter().map(|(_, face)| {
-        // Adding zero turns −0 into 0, as structures do whose vertices are coordinates.
+        // Adding zero turns −0 into 0. Structures whose vertices are coordinates do this too.
         let at = |v| {
             (polygons.position(v) + Point::ZERO)
                 .to_array()

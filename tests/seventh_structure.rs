@@ -1,5 +1,6 @@
-//! Checks that a seventh structure, written in one file of tests, takes part in studies, `pick`,
-//! subdivisions and edits without a change in any crate, with the results of the six.
+//! Checks that a seventh structure takes part in studies, `pick`, subdivisions and edits, and that
+//! its results equal those of the six. The structure is one file of tests and needs no change in
+//! any crate.
 
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -15,7 +16,7 @@ use sixfold_study::{
     SubdivisionJob, Way, built_in, inspect, pick, study,
 };
 
-// The file in which the conformance suite tests itself with faults; ARCHITECTURE.md explains it.
+// This file belongs to the tests of the conformance suite itself; ARCHITECTURE.md explains it.
 #[path = "../crates/conformance/tests/all/face_and_edge_lists.rs"]
 mod face_and_edge_lists;
 
@@ -26,9 +27,9 @@ fn lists() -> Backend {
     Backend::new::<FaceAndEdgeLists>()
 }
 
-/// Returns the seventh structure with edits and refinement of its own tables. It implements
-/// neither, so types of two other structures are registered for it: this shows that the registered
-/// types are used, not a list of names.
+/// Returns the seventh structure with edits and with native refinement. The structure implements
+/// neither of them, so the types of two other structures are registered for it. This shows that the
+/// program uses the registered types, not a list of names.
 fn lists_with_all() -> Backend {
     let backend = lists().with_edits::<EditableIndexedFaceSet>();
     backend.with_refinement::<FaceVertexMesh>()
@@ -38,8 +39,8 @@ fn torus() -> PolygonMesh {
     shapes::triangle_torus(30, 20).expect("a small torus")
 }
 
-/// Checks that a study measures every operation on `seventh` except `refused` of them, with the
-/// results of the others.
+/// Checks that a study measures all operations on `seventh`, except the operations that it refuses;
+/// `refused` is their number. The results must equal those of the other structures.
 fn check_study(seventh: Backend, refused: usize) {
     let small = shapes::triangle_torus(6, 4).expect("a small torus");
     let settings = Settings {
@@ -71,7 +72,7 @@ fn check_study(seventh: Backend, refused: usize) {
 
 #[test]
 fn a_study_measures_a_seventh_structure() {
-    // It refuses only native subdivisions (2) and passes of edits (4).
+    // The structure refuses only native subdivisions (2) and passes of edits (4).
     check_study(lists(), 2 + 4);
 }
 
@@ -280,8 +281,8 @@ fn a_seventh_structure_runs_alone() {
     assert_eq!(run.elements, polygons.face_count() as u64);
 }
 
-/// A line of the list of structures without `edit` or `refine` is left out only where these are
-/// needed.
+/// If a line of the list of structures lacks `edit` or `refine`, the structure is left out only if
+/// that capability is required.
 #[test]
 fn a_line_of_the_list_can_lack_capabilities() {
     macro_rules! names {

@@ -153,8 +153,8 @@ fn compare_methods(
     let (mut polygons, mut creases) = (polygons.clone(), creases.clone());
     let mut compared = 0;
     for level in 0..levels {
-        // A soup numbers vertices in the order of the faces; after the first step it may merge
-        // some.
+        // A soup numbers vertices in the order of the faces. After the first step, it may merge
+        // vertices.
         let Ok(mesh) = welded(&polygons) else { break };
         if mesh != polygons && level > 0 {
             break;
@@ -169,7 +169,8 @@ fn compare_methods(
             );
             match (done, &first) {
                 (None, _) => {}
-                // Native edge tables cannot hold two edges with the same ends; polygons can.
+                // Native edge tables cannot hold two edges with the same ends, but polygons can
+                // have them.
                 (Some(Err(why)), Some(_)) if method == Method::Native => {
                     assert!(why.contains("share two edges"), "{what}: {why}");
                 }

@@ -163,7 +163,8 @@ fn expected_counts(scheme: Scheme, polygons: &PolygonMesh, level: u32) -> [usize
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, cases: 96, ..ProptestConfig::default() })]
 
-    /// Without `Boundary::None`, which removes faces at the boundary and so changes the counts.
+    /// Does not use `Boundary::None`, because it removes faces at the boundary and changes the
+    /// counts.
     #[test]
     fn topology_is_kept_and_counts_follow_the_formulas(
         start in cases_with(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
@@ -198,8 +199,8 @@ proptest! {
         }
     }
 
-    /// Old vertices keep their valence. New vertices, except face points, have that of a regular
-    /// mesh.
+    /// Old vertices keep their valence. New vertices, except face points, have the valence of a
+    /// regular mesh.
     #[test]
     fn valences_are_kept(
         start in cases_with(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
@@ -223,11 +224,13 @@ proptest! {
                 prop_assert!(kept.clone().all(|(old, new)| old == new));
                 prop_assert!(regular(vertices, 6, 4));
             }
-            // One edge to each face at the vertex: at the boundary that is one more than before.
+            // The new edges lead to the faces at the vertex. At the boundary, two old edges remain,
+            // so the valence increases by one.
             Scheme::Sqrt3 => {
                 let expected_valence = |&(valence, is_open): &(usize, bool)| (valence + usize::from(is_open), is_open);
                 prop_assert!(kept.clone().all(|(old, new)| expected_valence(old) == *new));
-                // Three corners, and one face point across each side that is not a boundary edge.
+                // A face point is adjacent to three corners, and to one face point across each
+                // inner side.
                 prop_assert!(new[vertices..].iter().all(|&(valence, _)| (3..=6).contains(&valence)));
             }
             Scheme::DooSabin => {
@@ -324,8 +327,8 @@ proptest! {
     }
 }
 
-/// Returns a mesh and its mirror image, joined along the boundary, which lies in x = 0, and for
-/// each vertex its mirror vertex. `None` if the result is not a manifold.
+/// Joins a mesh and its mirror image along the boundary, which lies in x = 0. Also returns the
+/// mirror vertex of each vertex. Returns `None` if the result is not a manifold.
 ///
 /// ```text
 ///       boundary

@@ -3,13 +3,14 @@
 
 Usage: alone.py [--sixfold PATH] [--peer PATH] [--times 10] [--sizes 2000,20000,200000] [--json FILE]
 
-Builds nothing: run `cargo build --release -p sixfold-cli -p sixfold-study --bin sixfold --example peer` first.
+Before this script, run `cargo build --release -p sixfold-cli -p sixfold-study --bin sixfold --example peer`.
 
 For each size, the script studies a geodesic sphere on the four structures that answer locally. Before and
-after each study, `peer` runs every operation alone, in processes of one structure. The ratio of a cell (an
-operation on a structure) is study / alone; the script prints the medians of the paired ratios. At 200,000
-faces it compares the nine relations, the sweeps, `vv_smooth` and `build`; at smaller sizes all operations.
-The exit code is 1 if fewer than 95 % of the cells are within 5 %, or one differs by more than 15 %.
+after each study, `peer` runs every operation alone, in processes of one structure. A cell is an operation
+on a structure. Its ratio is the time in the study divided by the time alone. The script prints the medians of
+the paired ratios. At 200,000 faces, the script compares the nine relations, the sweeps, `vv_smooth` and
+`build`; at smaller sizes, it compares all operations. The exit code is 1 if fewer than 95 % of the cells are
+within 5 %, or if a cell differs by more than 15 %.
 """
 
 import argparse
@@ -25,8 +26,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 STRUCTURES = ["face-vertex", "winged-edge", "half-edge", "corner-table"]
 # Seconds of a study, by number of faces.
 BUDGETS = {2_000: 10, 20_000: 20, 200_000: 60}
-# Rounds of processes before each study, and as many after it. A single round of a second could lie
-# completely in a phase in which the processor runs slower or faster.
+# Rounds of processes before each study, and the same number after it. A single round of one second
+# could lie completely in a phase in which the processor runs slower or faster.
 PASSES = 3
 RELATIONS = [f"{a}_{b}" for a in ("vertex", "edge", "face") for b in ("vertices", "edges", "faces")]
 SWEEPS = ["circulate", "face_barycenter", "vertex_normal", "vv_smooth", "edge_length", "boundary",

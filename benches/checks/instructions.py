@@ -7,15 +7,17 @@ Builds the benchmarks of `benches/instructions.rs` with the profile `release`, w
 Sixfold use, and runs them under callgrind. Needs valgrind and gungraun-runner. The exit code is 1 if
 
 - a count is more than 0.5 % above the baseline, or has no baseline;
-- a count is more than 10 % above that of the profile `dist`, which has link-time optimisation; or the
-  geometric mean of these ratios is above 1.02. So the structures do not rely on link-time optimisation.
+- a count is more than 10 % above the count with the profile `dist`, which has link-time optimisation; or
+- the geometric mean of these ratios is above 1.02.
 
-`--write` counts with both profiles, replaces the baseline and prints the ratios. Otherwise the counts of
-`dist` are those of the baseline.
+The last two limits ensure that the structures do not rely on link-time optimisation.
 
-Counts depend on the compiler. With another rustc than that of the baseline, they are printed and not
-compared. The C library chooses its copying functions by processor; the script makes it choose those that
-every x86-64 processor has.
+`--write` counts with both profiles, replaces the baseline and prints the ratios. Without `--write`, the
+counts of `dist` come from the baseline.
+
+Counts depend on the compiler. If rustc differs from the rustc of the baseline, the script only prints the
+counts and does not compare them. The C library chooses its copying functions by processor. The script makes
+it choose functions that run on every x86-64 processor.
 """
 
 import argparse
@@ -29,9 +31,9 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BASELINE = ROOT / "benches/checks/instructions.json"
 LINES = ROOT / "benches/instructions.txt"
-# The largest count, relative to the baseline.
+# The largest allowed count, relative to the baseline.
 LIMIT = 1.005
-# The largest count and geometric mean with the profile `release`, relative to `dist`.
+# The largest allowed count and geometric mean with the profile `release`, relative to `dist`.
 LIMIT_TO_DIST, MEAN_LIMIT_TO_DIST = 1.10, 1.02
 PLAIN_FUNCTIONS = "glibc.cpu.hwcaps=-AVX_Fast_Unaligned_Load,-AVX2,-AVX512F,-AVX512VL,-SSSE3,-ERMS,-FSRM"
 
@@ -59,7 +61,7 @@ def instructions(summary):
 
 
 def faults_of_ratios(release, dist):
-    """Prints how much more instructions `release` has than `dist`; returns what exceeds the limits."""
+    """Prints the instructions of `release` relative to `dist`; returns the ratios that exceed the limits."""
     ratios = {name: count / dist[name] for name, count in release.items() if name in dist}
     mean = math.exp(sum(map(math.log, ratios.values())) / len(ratios))
     worst = max(ratios, key=ratios.get)

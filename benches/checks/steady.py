@@ -4,9 +4,12 @@
 Usage: steady.py [--sixfold PATH] [--times 16] [--budget 8s] [--heap kept]
 
 Repeatedly studies a geodesic sphere of 20,480 triangles, on the four structures that answer locally, with
-the same settings. The exit code is 1 if the control leaves its limits in more than one study (a ratio of
-1.10 for operations that make a mesh, 1.05 for the others), if the largest median of a row is more than 1.25
-times its smallest, or if kept samples have page faults with `--heap kept`.
+the same settings. The exit code is 1 if
+
+- the control leaves its limits in more than one study (a ratio of 1.10 or its inverse for operations that make
+  a mesh, 1.05 or its inverse for other operations);
+- the largest median of a row is more than 1.25 times its smallest median; or
+- kept samples have page faults with `--heap kept`.
 """
 
 import argparse

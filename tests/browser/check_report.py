@@ -2,8 +2,8 @@
 
     python3 tests/browser/check_report.py DIR [FOLDER FOR SCREENSHOTS]
 
-DIR is the output folder of `sixfold study --report DIR`. Needs only chromium and chromedriver (Debian:
-chromium, chromium-driver), because it uses WebDriver over HTTP.
+DIR is the output folder of `sixfold study --report DIR`. The script uses WebDriver over HTTP and
+needs only chromium and chromedriver (Debian: chromium, chromium-driver).
 """
 
 import base64

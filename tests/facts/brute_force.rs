@@ -74,7 +74,7 @@ pub(crate) fn facts(polygons: &PolygonMesh) -> Facts {
 /// The faces at the edges and vertices of a mesh, found by nested loops.
 struct Incidence<'a> {
     oracle: &'a Oracle,
-    /// By vertex: the faces there, in classes. Faces that share an edge at the vertex are in one
+    /// The faces at each vertex, in classes. Faces that share an edge at the vertex are in one
     /// class.
     fans: BTreeMap<VertexId, Vec<Vec<FaceId>>>,
 }
@@ -143,7 +143,8 @@ impl<'a> Incidence<'a> {
             .collect();
         let mut is_reversed: BTreeMap<FaceId, bool> = BTreeMap::new();
         for &start in components.iter().flatten() {
-            // A face that was not reached before is not flipped. Propagate until nothing changes.
+            // If no step has reached this face, do not flip it. Then propagate until nothing
+            // changes.
             is_reversed.entry(start).or_insert(false);
             let mut changed = true;
             while changed {
@@ -165,7 +166,7 @@ impl<'a> Incidence<'a> {
             .all(|&([f, g], differ)| is_reversed[&f] ^ is_reversed[&g] == differ)
     }
 
-    /// Returns the boundary edges in classes; two edges are adjacent if they meet in one fan.
+    /// Returns the boundary edges in classes. Edges that meet in one fan are in one class.
     fn loops(&self, boundary: &[Element]) -> Vec<Vec<Element>> {
         classes(boundary, |e, g| {
             let (Element::Edge(a, b), Element::Edge(c, d)) = (e, g) else {

@@ -21,8 +21,8 @@ pub(crate) fn manifold() -> impl Strategy<Value = Case> {
     cases_on(manifold_mesh())
 }
 
-/// Generates meshes with edges of three faces, vertices with several fans, flipped faces, and
-/// arbitrary meshes.
+/// Generates meshes that have edges of three faces, vertices with several fans or flipped faces,
+/// and arbitrary meshes.
 pub(crate) fn non_manifold() -> impl Strategy<Value = Case> {
     let meshes = prop_oneof![
         (3..6_u32, 2..4_u32).prop_map(|(pages, length)| book(pages, length)),
@@ -71,8 +71,8 @@ fn for_scheme(scheme: Scheme, polygons: PolygonMesh) -> PolygonMesh {
 }
 
 /// Returns cases with different creases that meet at the hub of a closed or open wheel, and cases
-/// with inner vertices of two faces. Each has three levels, so that sharpness ends at different
-/// levels.
+/// with inner vertices of two faces. Each case has three levels, so that sharpness ends at
+/// different levels.
 pub(crate) fn fixed() -> Vec<Case> {
     let inf = f32::INFINITY;
     let hubs: [(f32, &[f32]); 12] = [
@@ -139,7 +139,7 @@ fn on_circle(i: u32, n: u32, z: f32) -> Point {
     Point::new(cos, sin, z)
 }
 
-/// Builds triangles around vertex 0; if `is_closed` is false, one of them is missing.
+/// Builds triangles around vertex 0; if `is_closed` is false, one triangle is missing.
 fn wheel(n: u32, is_closed: bool) -> PolygonMesh {
     let rim = (0..n).map(|i| on_circle(i, n, (i % 3) as f32 * 0.25));
     let points: Vec<Point> = std::iter::once(Point::Z).chain(rim).collect();

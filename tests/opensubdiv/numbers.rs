@@ -14,7 +14,7 @@ pub(crate) struct NumberMap {
 }
 
 impl NumberMap {
-    /// Makes the map of the control mesh, where both use the same numbers.
+    /// Makes the map of the control mesh, for which both programs use the same numbers.
     pub(crate) fn identity(polygons: &PolygonMesh) -> Self {
         Self {
             vertices: (0..polygons.vertex_count()).collect(),
@@ -22,7 +22,8 @@ impl NumberMap {
         }
     }
 
-    /// Makes the map of the next level, whose mesh is `child`, from the origin of each vertex.
+    /// Makes the map of the next level from the origin of each vertex. `child` is the mesh of that
+    /// level.
     pub(crate) fn next_level(&self, scheme: Scheme, level: &Level, child: &PolygonMesh) -> Self {
         let (old, faces) = (self.vertices.len(), self.faces.len());
         let first_edge = match scheme {
@@ -72,8 +73,8 @@ pub(crate) fn sorted_pair([a, b]: [usize; 2]) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// Returns the edge points, by the two old vertices adjacent to each. Old vertices are those before
-/// `old`.
+/// Returns the edge points. The key of a point is the two old vertices adjacent to it. Old vertices
+/// have numbers below `old`.
 fn edge_points(child: &PolygonMesh, old: usize, first_edge: usize) -> BTreeMap<[usize; 2], usize> {
     let mut ends = vec![Vec::new(); child.vertex_count()];
     for edge in child.edge_uses() {

@@ -56,7 +56,7 @@ impl fmt::Debug for Case {
 pub(crate) struct Answer {
     /// The levels, starting with the control mesh.
     pub(crate) levels: Vec<Level>,
-    /// By vertex of the last level: the limit position and two tangents.
+    /// The limit position and two tangents of each vertex of the last level.
     pub(crate) limits: Vec<[Point; 3]>,
 }
 
@@ -181,8 +181,8 @@ impl Level {
     /// - An edge of sharpness above 1 has a half that is not sharp any more. OpenSubdiv then
     ///   extrapolates beyond the midpoint, but its own masks and those of Sixfold make a full
     ///   crease.
-    /// - The sharpness of a half is so near to zero that rounding determines whether it is sharp:
-    ///   both programs add in 32 bits, but in different orders.
+    /// - The sharpness of a half is close to zero. Then rounding determines whether the half is
+    ///   sharp, because both programs add in 32 bits, but in different orders.
     pub(crate) fn is_incomparable(&self, creasing: Creasing) -> bool {
         creasing == Creasing::Chaikin
             && self.semi_sharp().any(|(ends, s)| {
@@ -197,8 +197,8 @@ impl Level {
         edges.map(|&(ends, s)| (ends, f64::from(s)))
     }
 
-    /// Returns the sharpness of the half of an edge at `v`. It is negative if the rule sets it to
-    /// zero.
+    /// Returns the sharpness of the half of an edge at `v`. A negative result stands for a
+    /// sharpness that the rule sets to zero.
     fn half(&self, v: usize, edge: [usize; 2], sharpness: f64) -> f64 {
         let at = self.semi_sharp().filter(|(ends, _)| ends.contains(&v));
         let others: Vec<f64> = at

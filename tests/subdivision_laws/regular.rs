@@ -25,9 +25,10 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, cases: 24, ..ProptestConfig::default() })]
 
     /// If no coordinate is above 1, the distance of a vertex to its limit is at most a sixth of the
-    /// second difference along rows, plus a sixth of that along columns, plus a 36th of the mixed
-    /// second difference. The first two are at most 4, the mixed one at most 16. A step divides the
-    /// first two by 4, and the mixed one by 16. So after k steps
+    /// second difference along rows, plus a sixth of the second difference along columns, plus a
+    /// 36th of the mixed second difference. The differences along rows and columns are at most 4,
+    /// and the mixed difference is at most 16. A step divides the differences along rows and
+    /// columns by 4, and the mixed difference by 16. So after k steps
     ///
     /// ```text
     ///   |vertex − limit| ≤ 4/3 · 4⁻ᵏ + 4/9 · 16⁻ᵏ
@@ -73,7 +74,7 @@ fn a_regular_torus_keeps_its_symmetry() {
     let facts = Facts::from_polygons(&step.polygons);
     assert_eq!([facts.vertices, facts.faces], [480, 480]);
     assert_eq!(facts.genus, Some(1));
-    // A rotation by a sixth of a turn maps it to itself.
+    // A rotation by a sixth of a turn maps the torus to itself.
     let turn = std::f32::consts::TAU / 6.0;
     let (sin, cos) = turn.sin_cos();
     let points = step.polygons.positions();

@@ -1,4 +1,4 @@
-//! All answers of a mesh, in a form in which two structures can be compared.
+//! All answers of a mesh, in a form that is the same for every structure.
 
 use std::collections::BTreeMap;
 
@@ -7,13 +7,14 @@ use sixfold_core::{PolygonMesh, Relation, Representation};
 use crate::element::Element;
 use crate::subject::Subject;
 
-/// Returns every relation of every element, every one-ring and every boundary loop, as `M` answers
-/// them; `None` if `M` cannot hold `polygons`.
+/// Returns the answers of `M` for every relation of every element, every one-ring and every
+/// boundary loop. Returns `None` if `M` cannot hold `polygons`.
 ///
 /// Elements have the numbers of the input. Sets are sorted, and cycles start at their lowest
 /// element, so that equal meshes have equal answers. The ring of a vertex has a key such as
-/// `one_ring v7`; the key is missing if the vertex has no ring. Boundary loops are lists of vertices
-/// with keys such as `boundary_loop 0`; the key of an open chain is `boundary_chain 0`.
+/// `one_ring v7`; the key is missing if the vertex has no ring. Boundary loops are lists of
+/// vertices. A closed loop has a key such as `boundary_loop 0`, and an open chain has a key such as
+/// `boundary_chain 0`.
 pub fn answers<M: Representation>(
     polygons: &PolygonMesh,
 ) -> Option<BTreeMap<String, Vec<Element>>> {

@@ -8,7 +8,7 @@ use sixfold_core::{BoundaryLoop, MeshQuery};
 ///
 /// # Panics
 ///
-/// Panics if one differs.
+/// Panics if an answer differs.
 pub(crate) fn check_boundary<M: MeshQuery>(mesh: &M, name: &str) {
     let lists = Lists::new(mesh);
     let has_one_face = |e: &M::Edge| lists.sides[&sorted(mesh.edge_vertices(*e))].len() == 1;
@@ -36,7 +36,8 @@ type Chain<V> = (VecDeque<V>, VecDeque<[V; 2]>);
 /// The corners of each face, and the faces along each edge.
 struct Lists<V> {
     corners: Vec<Vec<V>>,
-    /// By the sorted ends: the face and the direction of each side.
+    /// The sides of each edge, by its sorted ends. A side is a face and the direction along the
+    /// edge.
     sides: BTreeMap<[V; 2], Vec<(usize, [V; 2])>>,
 }
 
@@ -93,8 +94,8 @@ impl<V: Copy + Ord> Lists<V> {
         (vertices, edges)
     }
 
-    /// Crosses the faces at `at` from `edge` to the next edge that does not have two faces. Returns
-    /// this edge if it has one face.
+    /// Starts at `edge` and crosses the faces around `at`, up to an edge that does not have two
+    /// faces. Returns that edge if it has one face.
     fn next(&self, mut edge: [V; 2], at: V) -> Option<[V; 2]> {
         let mut crossed = BTreeSet::new();
         loop {

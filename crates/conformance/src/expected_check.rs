@@ -7,9 +7,9 @@ use sixfold_core::{BuildError, Capabilities, FaceId, PolygonMesh, VertexId};
 use crate::oracle::sides_of;
 use crate::weld::position_key;
 
-/// Computes the expected result of [`Capabilities::check`] for `polygons` in another way.
+/// Computes the expected result of [`Capabilities::check`] for `polygons` with independent code.
 ///
-/// Errors of size are not covered: no mesh in a test has too many elements.
+/// Does not compute errors of size, because no mesh in a test has too many elements.
 ///
 /// # Errors
 ///

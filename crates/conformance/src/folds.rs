@@ -5,15 +5,15 @@ use std::iter;
 
 use sixfold_core::MeshQuery;
 
-/// Checks that every iterator of `mesh` yields the same items by `next` and by `fold`, also if the
-/// first items were taken by `next`.
+/// Checks that every iterator of `mesh` yields the same items by `next` and by `fold`. Also checks
+/// `fold` after some calls of `next`.
 ///
-/// A structure may override `fold`, so that whole walks are faster. Most adaptors and `for_each` use
-/// `fold`, and a loop uses `next`: the two must agree.
+/// A structure may override `fold` to make complete iterations faster. `for_each` and most adaptors
+/// use `fold`, but a loop uses `next`. So both must yield the same items.
 ///
 /// # Panics
 ///
-/// Panics if they differ. The message names the query and the element.
+/// Panics if the items differ. The message names the query and the element.
 pub(crate) fn check_folds<M: MeshQuery>(mesh: &M, name: &str) {
     check(name, "vertices", "the mesh", || mesh.vertices());
     check(name, "edges", "the mesh", || mesh.edges());
@@ -43,7 +43,8 @@ where
 {
     let mut steps = items();
     let expected: Vec<I::Item> = iter::from_fn(|| steps.next()).collect();
-    // All numbers of steps up to 16 items, and about eight numbers for more.
+    // Tries every number of calls of `next` if there are fewer than 16 items, otherwise about eight
+    // numbers.
     let step = (expected.len() / 8).max(1);
     for taken in (0..=expected.len()).step_by(step) {
         let mut rest = items();

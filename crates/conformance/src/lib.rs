@@ -3,10 +3,10 @@
 //! - [`Oracle`]: the expected answers, computed by brute force from the input faces only.
 //! - [`law`]: the requirements on every structure, one function per law.
 //! - [`gallery`]: small meshes made by hand, one for each corner case.
-//! - [`strategy`]: random meshes that shrink: manifolds of any topology, known faults, random
-//!   faces.
-//! - [`edit`]: the model, the random scripts, and the model test, which compares a structure with the
-//!   model.
+//! - [`strategy`]: random meshes that shrink when a law fails: manifolds of any topology, meshes
+//!   with known faults, and meshes of random faces.
+//! - [`edit`]: a model of edits, random scripts of edits, and a test that compares a structure with
+//!   the model.
 //! - [`suite!`]: a macro that makes one `#[test]` from each law.
 //!
 //! A structure is tested with one line in its `tests/conformance.rs`:
@@ -15,7 +15,8 @@
 //! sixfold_conformance::suite!(half_edge::HalfEdgeMesh);
 //! ```
 //!
-//! This crate does not use the incidence code of `sixfold-core`, because that code is tested too.
+//! This crate does not use the incidence code of `sixfold-core`, because the laws also test that
+//! code.
 
 mod answers;
 mod boundary;

@@ -8,9 +8,9 @@ use crate::element::Element;
 
 /// The expected answer of each query, computed by brute force from lists of corners.
 ///
-/// The code is slow and simple on purpose. FV is copied from the input, the sides follow from FV,
-/// and the other seven relations are collected from sides and corners into ordered sets. It uses no
-/// structure and no incidence code of `sixfold-core`.
+/// The code is slow and simple on purpose. The oracle copies FV from the input and derives FE from
+/// FV. It collects the other seven relations from sides and corners into ordered sets. The oracle
+/// uses no structure and no incidence code of `sixfold-core`.
 #[derive(Clone, Debug)]
 pub struct Oracle {
     vertices: usize,
@@ -111,8 +111,8 @@ impl Oracle {
         }
     }
 
-    /// Returns the answer of `relation` for `element`: FV and FE in the order of the input, the
-    /// others sorted.
+    /// Returns the answer of `relation` for `element`. FV and FE have the order of the input; the
+    /// other relations are sorted.
     pub fn answer(&self, relation: Relation, element: Element) -> &[Element] {
         let answer = self.answers.get(&(relation, element));
         answer.map_or(&[], Vec::as_slice)

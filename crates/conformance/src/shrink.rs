@@ -2,10 +2,11 @@
 
 use sixfold_core::{Point, PolygonMesh, VertexId};
 
-/// Shrinks `polygons` to a mesh that still `fails`, but does not if any single face is removed.
+/// Shrinks `polygons` to a mesh that still `fails`. If any one face of the result is removed, the
+/// result no longer `fails`.
 ///
-/// Proptest shrinks the way in which a mesh was made, and can stop at a large mesh. This function
-/// continues from there.
+/// Proptest shrinks the random choices that made a mesh, and can stop at a large mesh. This
+/// function continues with that mesh.
 pub(crate) fn shrink(polygons: PolygonMesh, fails: impl Fn(&PolygonMesh) -> bool) -> PolygonMesh {
     let mut smallest = polygons;
     let mut at = 0;

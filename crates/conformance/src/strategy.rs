@@ -1,7 +1,8 @@
 //! Random meshes that shrink towards a single triangle.
 //!
-//! Manifolds are constructed, not filtered. Shapes are placed side by side, then operations change
-//! them and keep them manifold (`operation`), then all elements are renumbered (`builder`).
+//! Manifolds are constructed; random meshes are not filtered. First, shapes are placed side by
+//! side. Then operations change them and keep them manifold (`operation`). Finally, all elements
+//! are renumbered (`builder`).
 
 mod builder;
 mod faults;
@@ -54,8 +55,8 @@ pub fn faulty_mesh() -> impl Strategy<Value = Faulty> {
     })
 }
 
-/// Generates random faces over a few vertices, which are rarely a manifold; sometimes vertices
-/// share their positions.
+/// Generates random faces over a few vertices. The result is rarely a manifold. In some of the
+/// meshes, several vertices share a position.
 pub fn any_mesh() -> impl Strategy<Value = PolygonMesh> {
     let size = (3..9_u32, 0..10_usize, any::<[bool; 2]>());
     let faces = size.prop_flat_map(|(vertices, faces, shared)| {
@@ -85,8 +86,7 @@ fn build_mesh(places: Vec<u32>, faces: Vec<Vec<u32>>) -> PolygonMesh {
 fn builder(pieces: RangeInclusive<usize>) -> impl Strategy<Value = MeshBuilder> {
     let pieces = collection::vec(piece(), pieces);
     let operations = collection::vec(operation::operation(), 0..12);
-    // Proptest shrinks the first part first, so pieces are removed only after the operations on
-    // them.
+    // Proptest shrinks the parts in this order, so it removes operations before it removes pieces.
     let parts = (prop::bool::weighted(0.25), operations, pieces);
     parts.prop_map(|(triangulated, operations, pieces)| {
         let mut builder = MeshBuilder::from_meshes(&pieces);

@@ -19,9 +19,9 @@ pub(crate) struct Subject<M: Representation> {
 }
 
 impl<M: Representation> Subject<M> {
-    /// Builds `M` from `polygons`; `None` if its capabilities exclude them.
+    /// Builds `M` from `polygons`. Returns `None` if the capabilities of `M` exclude this mesh.
     ///
-    /// An error for a mesh that the capabilities include is a failure of the test.
+    /// If the capabilities include the mesh but `M` returns an error, the test fails.
     pub(crate) fn from_polygons(polygons: &PolygonMesh) -> Option<Self> {
         M::CAPABILITIES.check(polygons).ok()?;
         let mesh = M::from_polygons(polygons);
@@ -46,8 +46,8 @@ impl<M: Representation> Subject<M> {
     }
 }
 
-/// Returns the mesh that `M` holds after it was built from `polygons`. The capabilities of `M` must
-/// include `polygons`.
+/// Returns the mesh that a structure `M` holds after `M` was built from `polygons`. The
+/// capabilities of `M` must include `polygons`.
 pub(crate) fn stored_mesh<M: Representation>(polygons: &PolygonMesh) -> PolygonMesh {
     if M::CAPABILITIES.coincident_vertices {
         return polygons.clone();
@@ -128,8 +128,8 @@ impl<M: Representation> HandleMap<M> {
         lookup(self.face_ids.get(&handle), M::NAME, handle)
     }
 
-    /// Queries `relation` of `element`, and converts the answer to input numbers, in the order of
-    /// the structure.
+    /// Queries `relation` of `element`, and converts the answer to input numbers. The answer keeps
+    /// the order of the structure.
     ///
     /// The answer is empty if `relation` does not apply to this kind of element.
     pub(crate) fn query<Q>(&self, mesh: &Q, relation: Relation, element: Element) -> Vec<Element>

@@ -85,10 +85,11 @@ macro_rules! edit_suite {
     };
 }
 
-/// Makes the tests of structures that step from side to side, with and without edits:
+/// Makes the tests of structures that step from side to side:
 /// `sixfold_conformance::walk_suite!(half_edge::HalfEdgeMesh, half_edge::EditableHalfEdgeMesh);`
 ///
-/// The second type may be left out. Then there is no test that the steps are local.
+/// The second type is the editable form of the structure. Without this type, the macro leaves out
+/// the tests after edits and the test that the steps are local.
 #[macro_export]
 macro_rules! walk_suite {
     ($mesh:ty) => {
@@ -120,7 +121,8 @@ const CASES: u32 = 192;
 ///
 /// # Panics
 ///
-/// Panics if the law is broken. The message shows the mesh; a random mesh is shrunk first.
+/// Panics if the law is broken. The message shows the mesh. A random mesh is shrunk before it is
+/// shown.
 pub fn check_law<M: Representation>(name: &str, law: impl Fn(&PolygonMesh)) {
     let name = format!("{}: {name}", M::NAME);
     for entry in gallery() {

@@ -2,12 +2,13 @@
 
 use crate::query::{EdgeMap, MeshQuery};
 
-/// A chain of boundary edges, closed unless a non-manifold edge ends it.
+/// A chain of boundary edges. It is closed, unless it ends at a non-manifold edge.
 ///
-/// [`MeshQuery::boundary_loops`] defines where it runs.
+/// [`MeshQuery::boundary_loops`] defines which edge follows which.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BoundaryLoop<V, E> {
-    /// The vertices, in order: as many as edges if the chain is closed, otherwise one more.
+    /// The vertices, in order. A closed chain has as many vertices as edges; an open chain has one
+    /// more.
     pub vertices: Vec<V>,
     /// The edges, in order: edge `i` joins vertices `i` and `i + 1`. The last edge of a closed loop
     /// joins the last vertex and the first.
@@ -59,7 +60,7 @@ pub(crate) fn boundary_loops<M: MeshQuery + ?Sized>(
     loops
 }
 
-/// A boundary edge, directed so that the hole is on its left: against its face.
+/// A boundary edge, in the direction opposite to its face, so that the hole is on its left.
 #[derive(Clone, Copy)]
 struct Side<V, E> {
     ends: [V; 2],
@@ -152,13 +153,13 @@ impl<M: MeshQuery + ?Sized> Boundary<'_, M> {
         let mut whole = self.walk(side.edge, [to, from]);
         whole.vertices.reverse();
         whole.edges.reverse();
-        // Both walks have `side`.
+        // Both walks contain `side`.
         whole.vertices.extend(&after.vertices[2..]);
         whole.edges.extend(&after.edges[1..]);
         whole
     }
 
-    /// Walks along `first` and on, until the chain closes or ends.
+    /// Walks along `first` and the edges after it, until the chain closes or ends.
     fn walk(&self, first: M::Edge, [from, to]: [M::Vertex; 2]) -> BoundaryLoop<M::Vertex, M::Edge> {
         let mut chain = BoundaryLoop {
             vertices: vec![from],

@@ -27,8 +27,8 @@ pub struct Capabilities {
     /// Vertices without a face.
     pub isolated_vertices: bool,
     /// Vertices with equal coordinates stay separate. If false, such vertices become one vertex,
-    /// and a face with two corners at one point is refused. There is no tolerance: the handles of the
-    /// polygon soup explain why.
+    /// and a face with two corners at one point is refused. Coordinates are compared without a
+    /// tolerance; the documentation of the polygon soup's handles explains why.
     pub coincident_vertices: bool,
 }
 
@@ -95,9 +95,9 @@ impl Capabilities {
         Ok(())
     }
 
-    /// Returns the fault of `polygons`, in which a constructor has found one.
+    /// Returns the fault of `polygons` after a constructor has found one.
     ///
-    /// Constructors call this, so that their error is always the one of [`check`](Self::check).
+    /// Constructors call this, so that they always return the same error as [`check`](Self::check).
     ///
     /// # Panics
     ///
@@ -197,8 +197,8 @@ fn check_coincident_corners(polygons: &PolygonMesh) -> Result<(), BuildError> {
     Ok(())
 }
 
-/// Returns the bits of a point's coordinates, with −0 as 0: the identity of a vertex that is its
-/// coordinates.
+/// Returns the bits of a point's coordinates, with −0 replaced by 0. These bits are compared if
+/// vertices are identified by coordinates.
 fn coordinates(point: Point) -> [u32; 3] {
     point.to_array().map(|x| (x + 0.0).to_bits())
 }

@@ -13,8 +13,8 @@ impl<M: Representation> From<&M> for PolygonMesh {
 /// Implements `TryFrom<PolygonMesh>`, `TryFrom<&PolygonMesh>` and `Default` for a structure whose
 /// parameters are `E: Editing` and a probe with a default.
 ///
-/// A blanket implementation in this crate is not possible: it would overlap with the one of the
-/// standard library for types with `From`.
+/// A blanket implementation in this crate is not possible: it would overlap with the implementation
+/// in the standard library for types with `From`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! polygon_conversions {

@@ -7,19 +7,20 @@ use crate::handle::Pair;
 use crate::polygon_mesh::PolygonMesh;
 use crate::row_id::VertexId;
 
-/// The smallest sharpness that counts as infinite: it does not decrease from level to level.
+/// The smallest sharpness that counts as infinite: such a sharpness does not decrease from level to
+/// level.
 pub const SHARPNESS_INFINITE: f32 = 10.0;
 
-/// The sharpness of edges and vertices of a [`PolygonMesh`]; 0 for those without an entry.
+/// The sharpness of edges and vertices of a [`PolygonMesh`]. Without an entry, the sharpness is 0.
 ///
 /// Sharpness is the number of levels for which an edge or a vertex stays sharp; it may be
-/// fractional. From [`SHARPNESS_INFINITE`] on, infinity included, it stays sharp at every level
-/// (DeRose, Kass & Truong 1998).
+/// fractional. If the sharpness is [`SHARPNESS_INFINITE`] or more, the edge or vertex stays sharp
+/// at every level (DeRose, Kass & Truong 1998).
 ///
 /// # Invariants
 ///
-/// Edges (lower end first) and vertices are sorted, each at most once. Sharpness is above 0, and
-/// not NaN.
+/// Edges (lower end first) and vertices are sorted, and each occurs at most once. Every sharpness
+/// is above 0 and not NaN.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Creases {
     edges: Vec<(Pair<VertexId>, f32)>,
@@ -27,9 +28,9 @@ pub struct Creases {
 }
 
 impl Creases {
-    /// Builds the creases of `polygons` from sharp edges, given by their two ends in either order,
-    /// and sharp vertices; O(corners) expected. A later entry replaces an earlier one of the same
-    /// edge or vertex; sharpness 0 removes it.
+    /// Builds the creases of `polygons` from sharp edges and sharp vertices; O(corners) expected.
+    /// An edge is given by its two ends in either order. A later entry replaces an earlier entry of
+    /// the same edge or vertex; sharpness 0 removes the entry.
     ///
     /// # Errors
     ///
@@ -74,8 +75,8 @@ impl Creases {
         Ok(Self::from_entries(creases.edges, creases.corners))
     }
 
-    /// Builds creases from entries in any order, which must be edges and vertices of a mesh. The
-    /// last entry of each edge or vertex counts; entries of sharpness 0 are dropped.
+    /// Builds creases from entries in any order. The entries must be edges and vertices of a mesh.
+    /// The last entry of each edge or vertex counts; entries of sharpness 0 are dropped.
     pub fn from_entries(
         mut edges: Vec<(Pair<VertexId>, f32)>,
         mut corners: Vec<(VertexId, f32)>,
@@ -85,8 +86,8 @@ impl Creases {
         Self { edges, corners }
     }
 
-    /// Returns these creases combined with `later`, whose entries replace those of the same edge or
-    /// vertex.
+    /// Returns these creases combined with `later`. An entry of `later` replaces the entry of the
+    /// same edge or vertex.
     pub fn updated_with(&self, later: &Self) -> Self {
         let edges = [&self.edges[..], &later.edges].concat();
         Self::from_entries(edges, [&self.corners[..], &later.corners].concat())
@@ -130,7 +131,8 @@ fn all_edges(polygons: &PolygonMesh) -> FxHashSet<Pair<VertexId>> {
 
 /// Sorts entries by key, keeps the last entry of each key, and drops entries of sharpness 0.
 fn last_of_each<K: Ord + Copy>(entries: &mut Vec<(K, f32)>) {
-    // Reversed before a stable sort: the last entry of each key comes first, and is kept.
+    // The entries are reversed before a stable sort, so the last entry of each key comes first and
+    // is kept.
     entries.reverse();
     entries.sort_by_key(|&(key, _)| key);
     entries.dedup_by_key(|&mut (key, _)| key);

@@ -1,4 +1,4 @@
-//! Iterators over distinct items, without hashing while there are few.
+//! Iterators over distinct items, without hashing if there are only a few.
 
 use std::hash::Hash;
 
@@ -83,11 +83,11 @@ const SET_STEPS: usize = 32;
 /// The distinct items of a walk that can be repeated, each at its first occurrence; empty slots are
 /// skipped.
 ///
-/// It is used for the faces across the sides of a face. Two faces may share several sides, so each
-/// item is compared with the earlier ones. The last three items are stored, which is enough for
-/// triangles and quads. For larger faces the walk is repeated, and from 32 steps on a hash set
-/// keeps the total time linear. So the iterator stays in registers, while [`Distinct`] fills an
-/// array in memory. O(1) expected per step.
+/// This iterator yields the faces across the sides of a face. Two faces may share several sides, so
+/// each item is compared with the earlier items. The last three items are stored, which is enough
+/// for triangles and quads. For larger faces, the walk is repeated to find the earlier items; from
+/// 32 steps on, a hash set keeps the total time linear. So this iterator stays in registers, but
+/// [`Distinct`] fills an array in memory. O(1) expected per step.
 ///
 /// ```
 /// use sixfold_core::{DistinctWalk, FaceId, Slot};
@@ -128,7 +128,8 @@ impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> DistinctWalk<W, H> {
             return false;
         }
         if steps > self.last.len() {
-            // All but the set is passed by value, so that the walk itself can stay in registers.
+            // All arguments except the set are passed by value, so that the walk itself can stay in
+            // registers.
             if !is_new_among_many(self.start.clone(), steps, item, &mut self.set) {
                 return false;
             }
@@ -179,10 +180,10 @@ impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> Iterator for DistinctWalk<W,
         }
     }
 
-    /// Folds all items at once, which for triangles needs three comparisons and no state.
+    /// Folds all items at once. For triangles, this needs three comparisons and no state.
     ///
-    /// All functions on this path are always inlined, and the fields are in variables: if the walk
-    /// is passed to a function in memory, it can take three times the time, depending on the
+    /// All functions on this path are always inlined, and the fields are in variables. If the walk
+    /// is passed to a function in memory, the fold can take three times the time, depending on the
     /// position of the stack.
     #[inline(always)]
     fn fold<B, F: FnMut(B, H) -> B>(self, init: B, mut f: F) -> B {

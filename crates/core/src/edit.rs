@@ -38,30 +38,31 @@ macro_rules! edits {
 ///
 /// # Contract
 ///
-/// - **All or nothing.** A refused edit leaves every table unchanged. An invalid handle is refused
-///   too; unlike a query, an edit does not panic.
-/// - **Legality.** An edit is legal if its own rule below holds and the structure can hold the
+/// - **All or nothing.** A refused edit leaves every table unchanged. An edit also refuses an
+///   invalid handle; it never panics as a query does.
+/// - **Legality.** An edit is legal if it satisfies its rule below and the structure can hold the
 ///   resulting mesh ([`Capabilities`](crate::Capabilities)). So all structures that hold only
 ///   manifolds accept and refuse the same edits; the other structures also accept edits that make a
 ///   mesh non-manifold.
-/// - **Handles.** Elements that an edit does not touch keep their handles. If handles are made of
-///   other data (a pair of ends, coordinates, the corner opposite an edge), an edit may rename
-///   elements: it changes their handles. It reports every element that it created, removed or
-///   renamed to the [`EditLog`].
-/// - **Holes.** A removed element is in no count, iteration, relation, conversion or file from then
-///   on, and querying its handle panics. Its row stays a hole until [`compact`](Self::compact)
-///   closes it; until then no row is reused. A handle made of other data (a pair, coordinates) may
-///   read as an element without faces instead, and may later name another element.
+/// - **Handles.** Elements that an edit does not touch keep their handles. Some handles are made of
+///   other data: a pair of ends, coordinates, or the corner opposite an edge. An edit may rename
+///   such elements, which means that their handles change. The edit reports every created, removed
+///   or renamed element to the [`EditLog`].
+/// - **Holes.** Counts, iterations, relations, conversions and files no longer contain a removed
+///   element, and a query with its handle panics. The row of the element stays a hole until
+///   [`compact`](Self::compact) closes the hole; before that, no row is reused. A handle made of
+///   other data (a pair, coordinates) behaves differently: it may read as an element without faces,
+///   and may later name another element.
 /// - **In place.** An edit does not convert or rebuild the mesh. [`EDITS`](Self::EDITS) states how
 ///   much of the mesh an edit reads.
 ///
 /// # Two forms
 ///
 /// Every edit has a short form, such as [`flip_edge`](Self::flip_edge), and a form that reports its
-/// changes of handles to a log, such as [`flip_edge_logged`](Self::flip_edge_logged). The log `()`
-/// ignores the reports and costs nothing: the short form uses it. [`EditLog`] describes when to use
-/// which. Data by vertex, edge or face follows all edits of a
-/// [`MeshWithData`](crate::MeshWithData), in both forms.
+/// changes of handles to a log, such as [`flip_edge_logged`](Self::flip_edge_logged). The short
+/// form uses the log `()`, which ignores the reports and costs nothing. [`EditLog`] describes when
+/// to use which form. In a [`MeshWithData`](crate::MeshWithData), data by vertex, edge or face
+/// follows all edits, in both forms.
 ///
 /// ```
 /// # use sixfold_core::{MeshEdit, Point, Refusal};
@@ -76,13 +77,13 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// refuses the edit on every mesh.
     const EDITS: [Option<QueryCost>; Edit::ALL.len()];
 
-    /// The same structure without deleted rows, whose queries need no check for them: its type
-    /// parameter is [`Compact`](crate::Compact).
+    /// The same structure without deleted rows: its type parameter is [`Compact`](crate::Compact).
+    /// Its queries need no check for deleted rows.
     type Compact: MeshQuery<Vertex = Self::Vertex, Edge = Self::Edge, Face = Self::Face>;
 
-    /// Closes all holes and converts to a mesh that cannot have any; O(mesh) if there are holes.
-    /// Handles change as in [`compact`](Self::compact), but are not reported: to keep handles, call
-    /// [`compact_with_map`](Self::compact_with_map) first.
+    /// Closes all holes and converts to a mesh that cannot have holes; O(mesh) if there are holes.
+    /// Handles change as in [`compact`](Self::compact), but the changes are not reported. If you
+    /// need the new handles, call [`compact_with_map`](Self::compact_with_map) first.
     fn into_compact(self) -> Self::Compact;
 
     /// Converts a compact mesh to one that can be edited; O(1). Handles stay the same.
@@ -93,7 +94,8 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// # Errors
         ///
-        /// [`EditError::Occupied`] if a vertex is its coordinates and another one is at `to`.
+        /// [`EditError::Occupied`] if vertices are identified by coordinates and another vertex is
+        /// at `to`.
         fn set_position, set_position_logged(
             v: Self::Vertex, to: Point,
         ) -> Result<Self::Vertex, Refusal<Self>>;
@@ -105,31 +107,34 @@ pub trait MeshEdit: MeshQuery + Sized {
         /// [`EditError::Unsupported`] if the structure cannot hold a vertex without a face.
         fn add_vertex, add_vertex_logged(at: Point) -> Result<Self::Vertex, Refusal<Self>>;
 
-        /// Adds a face with these `corners`. They must be vertices already, unless a vertex is its
-        /// coordinates.
+        /// Adds a face with these `corners`. The corners must be existing vertices, unless vertices
+        /// are identified by coordinates.
         ///
         /// # Errors
         ///
         /// Refuses fewer than three corners, a repeated corner, and a polygon if only triangles are
-        /// allowed. If only manifolds are allowed, also refuses a side that a face already runs
-        /// along in this direction, an edge that has two faces, and a corner whose faces would form
-        /// more than one fan.
+        /// allowed. If only manifolds are allowed, also refuses these cases: a face already runs
+        /// along a side in the same direction; an edge already has two faces; the faces at a corner
+        /// would form more than one fan.
         fn add_face, add_face_logged(corners: &[Self::Vertex]) -> Result<Self::Face, Refusal<Self>>;
 
-        /// Removes `f`, and the edges that no other face has. Its corners stay, even if they are
-        /// isolated then; if a vertex is its coordinates, corners without a face are removed.
+        /// Removes `f`, and the edges that no other face has. The corners of `f` stay, even if they
+        /// become isolated. If vertices are identified by coordinates, corners that lose their last
+        /// face are removed instead.
         ///
         /// # Errors
         ///
-        /// [`EditError::SeveralFans`] if the faces left at a corner would form more than one fan.
+        /// [`EditError::SeveralFans`] if the remaining faces at a corner would form more than one
+        /// fan.
         fn remove_face, remove_face_logged(f: Self::Face) -> Result<(), Refusal<Self>>;
 
-        /// Removes `v` and its faces, as [`remove_face`](Self::remove_face) does, in one edit.
+        /// Removes `v` and all its faces in one edit. The faces are removed as by
+        /// [`remove_face`](Self::remove_face).
         ///
         /// # Errors
         ///
-        /// [`EditError::SeveralFans`] if the faces left at another vertex would form more than one
-        /// fan.
+        /// [`EditError::SeveralFans`] if the remaining faces at another vertex would form more than
+        /// one fan.
         fn remove_vertex, remove_vertex_logged(v: Self::Vertex) -> Result<(), Refusal<Self>>;
     }
 
@@ -144,19 +149,18 @@ pub trait MeshEdit: MeshQuery + Sized {
     fn remove_isolated_vertices_logged(&mut self, log: &mut impl EditLog<Self>) -> usize;
 
     edits! {
-        /// Inserts a vertex at `at` into `e`, and so into each of its faces, whose degrees grow by
-        /// one.
+        /// Inserts a vertex at `at` into `e`. The degree of each face of `e` grows by one.
         ///
         /// # Errors
         ///
-        /// [`EditError::Unsupported`] if only triangles are allowed; [`EditError::Occupied`] if a
-        /// vertex is its coordinates and another one is at `at`.
+        /// [`EditError::Unsupported`] if only triangles are allowed; [`EditError::Occupied`] if
+        /// vertices are identified by coordinates and another vertex is at `at`.
         fn split_edge, split_edge_logged(
             e: Self::Edge, at: Point,
         ) -> Result<Self::Vertex, Refusal<Self>>;
 
-        /// Inserts a vertex at `at` into `e` and cuts the triangles of `e` in two there: the edge
-        /// split of remeshing and of longest-edge bisection (Rivara 1984).
+        /// Inserts a vertex at `at` into `e`, and cuts each triangle of `e` in two at this vertex.
+        /// This is the edge split of remeshing and of longest-edge bisection (Rivara 1984).
         ///
         /// ```text
         ///      c            c
@@ -170,45 +174,47 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// [`EditError::NotATriangle`] if a face of `e` is not a triangle; [`EditError::SameApex`]
         /// if only manifold edges are allowed and both triangles have the same third corner;
-        /// [`EditError::Occupied`].
+        /// [`EditError::Occupied`] if vertices are identified by coordinates and another vertex is
+        /// at `at`.
         fn bisect_edge, bisect_edge_logged(
             e: Self::Edge, at: Point,
         ) -> Result<Self::Vertex, Refusal<Self>>;
 
-        /// Cuts `f` into one triangle per side, around a new vertex at `at`; one of the triangles
-        /// is `f`.
+        /// Cuts `f` into one triangle per side, around a new vertex at `at`; `f` becomes one of the
+        /// triangles.
         ///
         /// # Errors
         ///
-        /// [`EditError::Occupied`].
+        /// [`EditError::Occupied`] if vertices are identified by coordinates and another vertex is
+        /// at `at`.
         fn poke_face, poke_face_logged(
             f: Self::Face, at: Point,
         ) -> Result<Self::Vertex, Refusal<Self>>;
 
-        /// Cuts `f` in two by an edge between two of its corners; one of the parts is `f`.
+        /// Cuts `f` in two by an edge between two of its corners; `f` becomes one of the parts.
         ///
         /// # Errors
         ///
-        /// Refuses vertices that are not corners of `f`, or are equal or adjacent in `f`;
-        /// [`EditError::EdgeExists`] if only manifold edges are allowed and the two vertices have
-        /// an edge already; [`EditError::Unsupported`] if only triangles are allowed.
+        /// Refuses two vertices that are not corners of `f`, that are equal, or that are adjacent
+        /// in `f`. [`EditError::EdgeExists`] if only manifold edges are allowed and the two
+        /// vertices already have an edge; [`EditError::Unsupported`] if only triangles are allowed.
         fn split_face, split_face_logged(
             f: Self::Face, ends: [Self::Vertex; 2],
         ) -> Result<Self::Edge, Refusal<Self>>;
 
-        /// Removes `e` and merges its two faces; returns the face that stays. Undoes
-        /// [`split_face`](Self::split_face).
+        /// Removes `e` and merges its two faces; returns the face that stays. This is the inverse
+        /// of [`split_face`](Self::split_face).
         ///
         /// # Errors
         ///
-        /// Refuses an edge that does not have exactly two faces, or whose faces run along it in the
-        /// same direction or share a vertex that is not an end of `e`; [`EditError::Unsupported`]
-        /// if only triangles are allowed.
+        /// Refuses an edge that does not have exactly two faces. Also refuses faces that run along
+        /// `e` in the same direction, or that share a vertex other than the ends of `e`.
+        /// [`EditError::Unsupported`] if only triangles are allowed.
         fn dissolve_edge, dissolve_edge_logged(e: Self::Edge) -> Result<Self::Face, Refusal<Self>>;
 
         /// Flips `e` within the quad of its two triangles; returns the handle of the edge
-        /// afterwards. Each face keeps its handle, and keeps the end of `e` at which its side along
-        /// `e` started.
+        /// afterwards. Each face keeps its handle. Each face also keeps one old end of `e`: the
+        /// start of its side along `e`.
         ///
         /// ```text
         ///      c            c
@@ -220,15 +226,16 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// # Errors
         ///
-        /// Refuses an edge that does not have exactly two faces, or whose faces run along it in the
-        /// same direction, a face that is not a triangle, two triangles with the same third corner,
-        /// and third corners that have an edge already; [`EditError::LowValence`] if an end has
-        /// just three edges and three faces.
+        /// Refuses these cases: `e` does not have exactly two faces; the faces run along `e` in the
+        /// same direction; a face is not a triangle; the two triangles have the same third corner;
+        /// the third corners already have an edge. [`EditError::LowValence`] if an end of `e` has
+        /// only three edges and three faces.
         fn flip_edge, flip_edge_logged(e: Self::Edge) -> Result<Self::Edge, Refusal<Self>>;
 
-        /// Merges the two ends of `e` into `keep`, at `to`; returns the handle of that vertex
-        /// afterwards. Triangles along `e` are removed, and other faces along `e` lose a corner.
-        /// Two edges of a removed triangle become one: the edge at `keep` stays.
+        /// Merges the two ends of `e` into `keep`, and moves `keep` to `to`. Returns the handle of
+        /// this vertex after the edit. Triangles along `e` are removed, and other faces along `e`
+        /// lose a corner. The other two edges of a removed triangle become one edge: the edge at
+        /// `keep` stays.
         ///
         /// ```text
         ///      c            c
@@ -240,24 +247,28 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// # Errors
         ///
-        /// Refuses a `keep` that is not an end of `e`, a face that has both ends but not as
-        /// adjacent corners, and a vertex that would lose its last face; [`EditError::Occupied`].
+        /// Refuses a `keep` that is not an end of `e`, a face that has both ends as corners that
+        /// are not adjacent, and a vertex that would lose its last face. [`EditError::Occupied`] if
+        /// vertices are identified by coordinates and another vertex is at `to`.
+        ///
         /// If only manifolds are allowed, also refuses violations of the link condition (Dey et al.
-        /// 1999): [`EditError::CommonNeighbour`], a vertex adjacent to both ends that is not the
-        /// third corner of a triangle along `e`; [`EditError::AcrossBoundary`], an inner edge
-        /// between two boundary vertices; [`EditError::Pillow`], two triangles that would have the
-        /// same corners.
+        /// 1999):
+        ///
+        /// - [`EditError::CommonNeighbour`]: a vertex is adjacent to both ends, but is not the
+        ///   third corner of a triangle along `e`.
+        /// - [`EditError::AcrossBoundary`]: an inner edge joins two boundary vertices.
+        /// - [`EditError::Pillow`]: two triangles would have the same corners.
         fn collapse_edge, collapse_edge_logged(
             e: Self::Edge, keep: Self::Vertex, to: Point,
         ) -> Result<Self::Vertex, Refusal<Self>>;
 
-        /// Splits `v` in two, with a triangle on each side of the new edge; returns the new vertex.
-        /// The inverse of [`collapse_edge`](Self::collapse_edge) (Hoppe 1996).
+        /// Splits `v` in two, and adds a triangle on each side of the new edge; returns the new
+        /// vertex. This is the inverse of [`collapse_edge`](Self::collapse_edge) (Hoppe 1996).
         ///
-        /// The new vertex gets the faces counter-clockwise around `v` from the edge to `right` to
-        /// the edge to `left`. Without `left`, the new edge is on the boundary, with its one
-        /// triangle on the right, and the new vertex gets the faces up to the boundary. Without
-        /// `right`, it gets those from the boundary to `left`.
+        /// The new vertex gets the faces counter-clockwise around `v`, from the edge `v`–`right` to
+        /// the edge `v`–`left`. If `left` is `None`, the new edge is on the boundary and has one
+        /// triangle, on its right; the new vertex gets the faces up to the boundary. If `right` is
+        /// `None`, the new vertex gets the faces from the boundary to the edge `v`–`left`.
         ///
         /// ```text
         ///     left             left
@@ -269,16 +280,17 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// # Errors
         ///
-        /// Refuses a vertex whose faces are not one oriented fan, a `left` or `right` that is not
-        /// adjacent to `v`, equal or missing `left` and `right`, and only one of them if `v` is not
-        /// on a boundary; [`EditError::Occupied`].
+        /// Refuses these cases: the faces at `v` do not form one oriented fan; `left` or `right` is
+        /// not adjacent to `v`; `left` and `right` are equal, or both are `None`; one of them is
+        /// `None`, but `v` is not on a boundary. [`EditError::Occupied`] if vertices are identified
+        /// by coordinates and another vertex is at `at`.
         fn split_vertex, split_vertex_logged(
             v: Self::Vertex, left: Option<Self::Vertex>, right: Option<Self::Vertex>, at: Point,
         ) -> Result<Self::Vertex, Refusal<Self>>;
     }
 
-    /// Closes all holes; O(mesh). The remaining elements keep their order, in rows without gaps,
-    /// and every changed handle is reported. A table that is less than half used frees its spare
+    /// Closes all holes; O(mesh). The remaining elements keep their order and get rows without
+    /// gaps. Every changed handle is reported. A table that is less than half used frees its spare
     /// memory.
     #[inline]
     fn compact(&mut self) {

@@ -7,8 +7,8 @@ use crate::handle::Handle;
 use crate::polygon_mesh::repeated;
 use crate::row_id::FaceId;
 
-/// Checks that a table does not grow beyond the rows that handles can name. `rows` is their number
-/// after the edit.
+/// Checks that a table does not grow beyond the rows that handles can name. `rows` is the number of
+/// rows after the edit.
 ///
 /// # Errors
 ///

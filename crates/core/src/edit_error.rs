@@ -4,8 +4,8 @@ use std::fmt::Debug;
 
 use crate::edit_kind::Edit;
 
-/// The reason why an edit was refused; the mesh is unchanged then. Elements are given by the
-/// handles of the structure.
+/// The reason why an edit was refused; the mesh is unchanged. Elements are given by the handles of
+/// the structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
@@ -22,7 +22,7 @@ pub enum EditError<V: Debug, E: Debug, F: Debug> {
     /// A handle of a face that does not exist.
     #[error("face {face:?} does not exist: it was removed, renamed, or never part of the mesh")]
     NoSuchFace { face: F },
-    /// A position that another vertex has, in a structure where a vertex is its coordinates.
+    /// A position that another vertex has, in a structure that identifies vertices by coordinates.
     #[error(
         "vertex {vertex:?} has the same position, and in this structure a vertex is its coordinates: choose another position, or collapse the edge between the two"
     )]
@@ -100,7 +100,7 @@ pub enum EditError<V: Debug, E: Debug, F: Debug> {
         "two triangles at edge {edge:?} would have the same corners: the edge is part of a tetrahedron"
     )]
     Pillow { edge: E },
-    /// A vertex whose faces are not one oriented fan.
+    /// A vertex whose faces do not form one oriented fan.
     #[error(
         "the faces at vertex {vertex:?} are not one oriented fan, so they have no order for a split"
     )]

@@ -53,9 +53,9 @@ impl Edit {
         Self::Compact,
     ];
 
-    /// The costs of the edits in a structure that stores adjacency: O(1) for a position or a new
-    /// vertex, the whole mesh for removing isolated vertices and compacting, otherwise the faces
-    /// around.
+    /// The costs of the edits in a structure that stores adjacency. Moving or adding a vertex costs
+    /// O(1). Removing isolated vertices and compacting read the whole mesh. All other edits read
+    /// the faces around the element.
     pub const LOCAL_COSTS: [Option<QueryCost>; Self::ALL.len()] = {
         let mut costs = [Some(QueryCost::Local); Self::ALL.len()];
         costs[Self::SetPosition as usize] = Some(QueryCost::Constant);
@@ -65,8 +65,9 @@ impl Edit {
         costs
     };
 
-    /// The costs of the edits in a structure that searches all faces, if a log uses no reports: O(1)
-    /// for a new face, the face itself for an edit of one face, otherwise the whole mesh.
+    /// The costs of the edits in a structure that searches all faces, if the log uses no reports.
+    /// Adding a face costs O(1). An edit of one face reads only that face. All other edits read the
+    /// whole mesh.
     pub const SCAN_COSTS: [Option<QueryCost>; Self::ALL.len()] = {
         let mut costs = [Some(QueryCost::Scan); Self::ALL.len()];
         costs[Self::AddFace as usize] = Some(QueryCost::Constant);

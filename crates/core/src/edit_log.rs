@@ -33,23 +33,23 @@ impl<M: MeshQuery> EditLog<M> for OldToNew<M> {
 
 /// A receiver of the changes that an edit makes to elements and their handles.
 ///
-/// An edit reports every change, and nothing else. Handles in use change in three steps: first all
-/// removed ones disappear, then all renamings happen at once (elements may exchange handles), then
-/// the created ones are added. The order of the calls within one edit is not specified. A refused
-/// edit reports nothing.
+/// An edit reports every change, and nothing else. A refused edit reports nothing. The order of the
+/// calls within one edit is not specified. A log that stores handles must apply the changes of an
+/// edit in three steps: first it drops all removed handles, then it renames all renamed handles at
+/// once (elements may exchange handles), then it adds the created handles.
 ///
 /// # When to use which
 ///
 /// - Data by vertex, edge or face that must stay correct: put it into a
-///   [`MeshWithData`](crate::MeshWithData). It follows all edits, also those of algorithms that
-///   have no parameter for a log.
-/// - The list of what an edit changed, for instance to undo it or to redraw a part: pass an
+///   [`MeshWithData`](crate::MeshWithData). The data then follows all edits, including the edits of
+///   algorithms that have no parameter for a log.
+/// - A list of the changes by an edit, for instance to undo the edit or to redraw a part: pass an
 ///   [`EditRecord`].
 /// - A reaction to one kind of change, such as collecting removed faces: implement this trait.
-/// - Nothing of this: use the short form of the edit. It passes the log `()`, for which the
+/// - None of these: use the short form of the edit. It passes the log `()`, for which the
 ///   structures compute no reports.
 pub trait EditLog<M: MeshQuery> {
-    /// Whether the log uses the reports; if false, structures need not compute what to report.
+    /// Whether the log uses the reports; if false, structures need not compute reports.
     const USES_REPORTS: bool = true;
 
     /// Reports that `v` was created.
@@ -175,9 +175,9 @@ impl<H: Handle> Changes<H> {
         self.created.is_empty() && self.removed.is_empty() && self.renamed.is_empty()
     }
 
-    /// Updates `map` after one edit; O(changes). Removed elements lose their data (in a map by row
-    /// it stays until the row is reused), renamed elements keep theirs under the new handle, and
-    /// new elements get `initial`.
+    /// Updates `map` after one edit; O(changes). Removed elements lose their values; in a map by
+    /// row, the value stays until the row is reused. Renamed elements keep their values under the
+    /// new handles. New elements get `initial`.
     ///
     /// The record must hold the changes of one edit; after several edits, apply their records one
     /// by one.
@@ -185,9 +185,9 @@ impl<H: Handle> Changes<H> {
         self.apply_with(map, |_, _| initial.clone());
     }
 
-    /// Does [`apply_to`](Self::apply_to) with a value computed for each new element, from the map
-    /// and the handle of the element. The map then holds the values of all old elements under their
-    /// current handles; it may have no values for new elements.
+    /// Does [`apply_to`](Self::apply_to), but calls `initial` with the map and the handle of each
+    /// new element to compute its value. In these calls, the map holds the values of all old
+    /// elements under their current handles. It may lack values of new elements.
     pub fn apply_with<T: Clone>(
         &self,
         map: &mut H::Map<T>,

@@ -10,13 +10,13 @@ use crate::memory::TableBytes;
 use crate::probe::Probe;
 use crate::row_id::{RowId, row};
 
-/// Whether elements of a mesh can be deleted: [`Editable`] if so, otherwise [`Compact`]. The trait
-/// is sealed: there are no other implementations.
+/// The type parameter that states whether elements of a mesh can be deleted: [`Editable`] if they
+/// can, otherwise [`Compact`]. The trait is sealed: there are no other implementations.
 ///
-/// A query that checks whether elements were deleted costs a comparison for each element visited,
-/// and takes up registers in the loops around it. Measured, this took some 10 % more time in the sweeps of a
-/// half-edge mesh, and up to 100 % more if the work per element was very small. As a type
-/// parameter, compact meshes need no check.
+/// A check for deleted elements costs a comparison for each visited element, and occupies registers
+/// in the loops around the query. In measurements with this check, the sweeps of a half-edge mesh
+/// took some 10 % more time, and up to 100 % more if the work per element was very small. Because
+/// of the type parameter, compact meshes need no check.
 pub trait Editing: sealed::Sealed + Clone + Copy + Debug + Send + Sync + 'static {
     /// Whether there can be holes.
     const CAN_DELETE: bool;
@@ -149,7 +149,7 @@ pub trait HoleSet<P: Probe>: Clone + Debug + Send + Sync {
     /// Returns the name and the bytes of the table of bits, if there is one.
     fn bytes(&self) -> Option<TableBytes>;
 
-    /// Checks that the number of holes is right, and that all are rows below `end`.
+    /// Checks that the number of holes is right, and that all holes are rows below `end`.
     ///
     /// # Errors
     ///
@@ -157,7 +157,7 @@ pub trait HoleSet<P: Probe>: Clone + Debug + Send + Sync {
     fn check(&self, end: usize) -> Result<(), String>;
 }
 
-/// The holes of a [`Compact`] mesh: none, which is known at compile time.
+/// The holes of a [`Compact`] mesh: an empty set, known at compile time.
 #[derive(Clone, Copy, Debug)]
 pub struct NoHoles;
 

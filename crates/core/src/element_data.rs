@@ -10,17 +10,21 @@ use crate::handle::Handle;
 use crate::query::MeshQuery;
 use crate::short_vec::ShortVec;
 
-/// A value for each vertex of `M`, which follows the edits of a [`MeshWithData`](crate::MeshWithData).
+/// A value for each vertex of `M`; the values follow the edits of a
+/// [`MeshWithData`](crate::MeshWithData).
 pub type VertexData<M, T> = ElementData<M, Vertices, T>;
-/// A value for each edge of `M`, which follows the edits of a [`MeshWithData`](crate::MeshWithData).
+/// A value for each edge of `M`; the values follow the edits of a
+/// [`MeshWithData`](crate::MeshWithData).
 pub type EdgeData<M, T> = ElementData<M, Edges, T>;
-/// A value for each face of `M`, which follows the edits of a [`MeshWithData`](crate::MeshWithData).
+/// A value for each face of `M`; the values follow the edits of a
+/// [`MeshWithData`](crate::MeshWithData).
 pub type FaceData<M, T> = ElementData<M, Faces, T>;
 
-/// A map together with the value of new elements: [`VertexData`], [`EdgeData`] or [`FaceData`].
+/// A map together with the initial value of new elements: [`VertexData`], [`EdgeData`] or
+/// [`FaceData`].
 ///
-/// After an edit, the values of removed elements are dropped, renamed elements have their values
-/// under the new handles, and new elements have a fixed value or the value that a rule computes.
+/// After an edit, the values of removed elements are dropped, and renamed elements have their
+/// values under the new handles. New elements get a fixed value, or the value that a rule computes.
 /// `data[handle]` reads and writes the value of an element.
 ///
 /// A rule receives the map and a [`Created`] element with its parents:
@@ -53,8 +57,8 @@ pub type FaceData<M, T> = ElementData<M, Faces, T>;
 /// }
 /// ```
 ///
-/// A rule costs the queries for the parents at each edit that splits an element: EV, EF and, for
-/// edges, VE; or FV. Data with a fixed value costs O(changes) for each edit.
+/// With a rule, each edit that splits an element also queries the parents: EV and EF (and VE for
+/// edge data), or FV. Data with a fixed value costs O(changes) for each edit.
 pub struct ElementData<M: MeshQuery, K: ElementKind<M>, T: Clone> {
     values: Map<M, K, T>,
     initial: Initial<M, K, T>,
@@ -77,7 +81,8 @@ pub struct Created<'a, M, H> {
     pub mesh: &'a M,
     /// The new element; the map has no value for it yet.
     pub element: H,
-    /// The old elements of the same kind from which it was made, under their current handles.
+    /// The old elements of the same kind from which the new element was made, under their current
+    /// handles.
     pub parents: &'a [H],
 }
 
@@ -87,7 +92,7 @@ impl<M: MeshQuery, K: ElementKind<M>, T: Clone> ElementData<M, K, T> {
         Self::from_map(K::map(mesh, value.clone()), value)
     }
 
-    /// Returns data with the values of a map, in which new elements have the value `initial`.
+    /// Returns data with the values of the map `values`; new elements get the value `initial`.
     pub fn from_map(values: Map<M, K, T>, initial: T) -> Self {
         Self {
             values,
@@ -95,7 +100,7 @@ impl<M: MeshQuery, K: ElementKind<M>, T: Clone> ElementData<M, K, T> {
         }
     }
 
-    /// Computes the values of new elements by `rule` from now on, and no longer uses a fixed value.
+    /// Sets the rule that computes the values of new elements, instead of a fixed value.
     ///
     /// The rule receives the map, with the values of all old elements under their current handles.
     #[must_use]
@@ -172,7 +177,7 @@ impl<M: MeshQuery, K: ElementKind<M>, T: Clone> Clone for ElementData<M, K, T> {
     }
 }
 
-/// Prints the value of new elements only: a map cannot list its handles.
+/// Prints only the value of new elements, because a map cannot list its handles.
 impl<M: MeshQuery, K: ElementKind<M>, T: Clone + fmt::Debug> fmt::Debug for ElementData<M, K, T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut data = f.debug_struct("ElementData");

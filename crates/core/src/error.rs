@@ -33,9 +33,9 @@ pub enum PolygonError {
 
 /// The reason why a structure cannot hold a polygon mesh.
 ///
-/// Only the first fault is reported, in a fixed order: degree, size, edges with three faces,
-/// orientation, vertices, isolated vertices, coincident corners; for each of these the lowest
-/// element.
+/// Only the first fault is reported. The checks have a fixed order: degree, size, edges with three
+/// faces, orientation, vertices, isolated vertices, coincident corners. Each check reports the
+/// lowest element.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
@@ -76,7 +76,8 @@ pub enum BuildError {
     /// A vertex without a face.
     #[error("vertex {vertex} has no face ({count} in total): remove isolated vertices")]
     IsolatedVertex { vertex: VertexId, count: usize },
-    /// Two corners of one face at one point, in a structure where a vertex is its coordinates.
+    /// Two corners of one face at one point, in a structure that identifies vertices by
+    /// coordinates.
     #[error("corners {0} and {1} of face {face} have the same coordinates: remove the face, or move a vertex", .vertices[0], .vertices[1])]
     CoincidentCorners {
         face: FaceId,
@@ -84,12 +85,13 @@ pub enum BuildError {
     },
 }
 
-/// The reason why vertices cannot be moved; no vertex has moved then.
+/// The reason why vertices cannot be moved; every vertex keeps its position.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum MoveError {
-    /// Two corners of one face at one point, in a structure where a vertex is its coordinates.
+    /// Two corners of one face at one point, in a structure that identifies vertices by
+    /// coordinates.
     #[error(
         "two corners of face {face} would be at one point, and in this structure a vertex is its coordinates: keep them apart, or choose a structure that shares vertices"
     )]
@@ -99,7 +101,7 @@ pub enum MoveError {
     OtherMesh { given: usize, vertices: usize },
 }
 
-/// The reason why a structure cannot refine itself; nothing has changed then.
+/// The reason why a structure cannot refine itself; the mesh is unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
@@ -117,8 +119,8 @@ pub enum RefineError {
         "face {face} has {degree} corners, and this split requires triangles: triangulate the mesh"
     )]
     NotATriangle { face: FaceId, degree: usize },
-    /// Two triangles with two common edges, whose midpoints or face points the split would join
-    /// twice.
+    /// Two triangles with two common edges. The split would join the midpoints of these edges, or
+    /// the two face points, twice.
     #[error(
         "faces {first} and {second} share two edges, so the refined mesh would have two edges with the same ends: cut one of the two faces first, or choose a structure that holds edges with more than two faces"
     )]
@@ -134,8 +136,8 @@ pub enum RefineError {
     },
 }
 
-/// The reason why creases do not fit a mesh; `entry` is the number of the edge, or of the vertex,
-/// in the input, from 0.
+/// The reason why creases do not fit a mesh; `entry` is the number of the edge or vertex in the
+/// input, counted from 0.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
@@ -162,7 +164,7 @@ fn format_faces(faces: &[FaceId]) -> String {
     shown.join(", ") + more
 }
 
-/// The invariant of a structure that fails, and where: a bug in Sixfold, found by `validate()`.
+/// An invariant of a structure that does not hold. This is a bug in Sixfold; `validate()` finds it.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{invariant} fails: {detail}")]
 pub struct InvariantError {

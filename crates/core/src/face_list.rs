@@ -7,16 +7,17 @@ use crate::face_spans::FaceSpans;
 use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
 use crate::table::Table;
 
-/// Lists of vertices as in a file: any number of corners, any vertex, unchecked.
+/// Faces as lists of vertices, unchecked as in a file: a face may have any number of corners and
+/// name any vertex.
 ///
-/// While all faces have one degree, there are no offsets; the first face of another degree adds a
-/// table of them.
+/// As long as all faces have one degree, no offsets are stored. The first face of another degree
+/// adds a table of offsets.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FaceList {
     corners: Vec<VertexId>,
     faces: usize,
-    /// By face: its start, and at the end of the table the end of the last face. Empty while all
-    /// faces have one degree.
+    /// The start of each face, followed by the end of the last face. Empty as long as all faces
+    /// have one degree.
     offsets: Vec<u32>,
 }
 
@@ -33,8 +34,8 @@ impl FaceList {
     ///
     /// # Errors
     ///
-    /// [`PolygonError::TooMany`] beyond [`MAX_ROWS`] corners; [`PolygonError::TooFewCorners`] if
-    /// the last face is incomplete or `degree` is zero.
+    /// [`PolygonError::TooMany`] if there are more than [`MAX_ROWS`] corners;
+    /// [`PolygonError::TooFewCorners`] if the last face is incomplete or `degree` is zero.
     pub fn uniform(degree: usize, corners: Vec<VertexId>) -> Result<Self, PolygonError> {
         check_corners(corners.len())?;
         let faces = corners.len().checked_div(degree).unwrap_or(0);
@@ -54,7 +55,7 @@ impl FaceList {
     ///
     /// # Errors
     ///
-    /// [`PolygonError::TooMany`] beyond [`MAX_ROWS`] corners or faces.
+    /// [`PolygonError::TooMany`] if there would be more than [`MAX_ROWS`] corners or faces.
     pub fn push(&mut self, face: impl IntoIterator<Item = VertexId>) -> Result<(), PolygonError> {
         let start = self.corners.len();
         self.corners.extend(face);
@@ -153,7 +154,7 @@ fn check_corners(corners: usize) -> Result<(), PolygonError> {
     Ok(())
 }
 
-/// Builds a list of faces of these degrees, whose corners are numbered from 0 in each face.
+/// Builds a list of faces of these degrees. In each face, the corners are numbered from 0.
 #[cfg(test)]
 pub(crate) fn faces_of_degrees(degrees: &[u32]) -> FaceList {
     let mut faces = FaceList::default();

@@ -41,7 +41,8 @@ impl<P: Probe, E: Editing> Clone for FaceSpans<P, E> {
         }
     }
 
-    /// Copies into the existing tables if both are of one kind, and allocates nothing if they fit.
+    /// Copies into the existing tables if both values are of the same variant. Allocates nothing if
+    /// the rows fit.
     fn clone_from(&mut self, source: &Self) {
         match (self, source) {
             (Self::Mixed(offsets), Self::Mixed(others)) => offsets.clone_from(others),
@@ -90,8 +91,8 @@ impl<P: Probe> ScatteredFaces<P> {
         owner.expect("scans skip the blank corners between faces")
     }
 
-    /// Checks that each face owns its corners, three or more, and that no other corner has an
-    /// owner.
+    /// Checks that each face owns its corners and has at least three, and that no other corner has
+    /// an owner.
     fn check(&self, corners: usize) -> Result<(), String> {
         let owners = self.owners.rows();
         if owners.len() != corners {
@@ -177,9 +178,9 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
         }
     }
 
-    /// Returns the face of a corner: by a division, by a binary search if degrees are mixed, or by
-    /// a look-up once degrees have been edited. The result for a corner that does not exist is
-    /// arbitrary.
+    /// Returns the face of a corner. This takes a division, or a binary search if degrees are
+    /// mixed, or a look-up if degrees have been edited. The result for a corner that does not exist
+    /// is arbitrary.
     ///
     /// # Panics
     ///
@@ -218,13 +219,13 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
         (face, [before, corner, after])
     }
 
-    /// Checks that the spans divide `corners` corners into faces of three or more, deleted ones
-    /// included.
+    /// Checks that the spans divide `corners` corners into faces of three or more corners,
+    /// including deleted faces.
     ///
     /// # Errors
     ///
-    /// Describes the first face whose corners are missing or too few, or the corners that no face
-    /// has.
+    /// Returns a description of the first face whose corners are missing or too few, or of the
+    /// corners that belong to no face.
     pub fn check(&self, corners: usize) -> Result<(), String> {
         if let Self::Mixed(offsets) = self
             && offsets.is_empty()

@@ -14,11 +14,12 @@ use crate::polygon_mesh::{PolygonMesh, repeated};
 ///
 /// A face that names a vertex twice is degenerate: it counts in `degenerate_faces`, `faces`,
 /// `face_degree` and `isolated_vertices` only. A list of fewer than three corners counts only in
-/// `degenerate_faces`. All other faces, and their vertices, are *used*. A field is `None` if it is
-/// not defined for the mesh.
+/// `degenerate_faces`. All other faces are *used*, and so are their vertices. A field is `None` if
+/// it is not defined for the mesh.
 ///
-/// With vertices cut apart into one per fan, v − e + f = 2(c − g) − h for c components, h boundary
-/// loops and genus g (Euler–Poincaré); `genus` is computed from it.
+/// `genus` is computed from the Euler–Poincaré formula v − e + f = 2(c − g) − h, for c components,
+/// h boundary loops and genus g. For this formula, a vertex with several fans is first cut into one
+/// vertex per fan.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Facts {
@@ -34,15 +35,15 @@ pub struct Facts {
     pub components: usize,
     /// Edges with one face.
     pub boundary_edges: usize,
-    /// Closed boundary curves, with vertices cut apart into one per fan; `None` if there is a
-    /// non-manifold edge. [`MeshQuery::boundary_loops`](crate::MeshQuery::boundary_loops) lists
-    /// them.
+    /// Closed boundary curves, after vertices with several fans are cut into one vertex per fan;
+    /// `None` if there is a non-manifold edge.
+    /// [`MeshQuery::boundary_loops`](crate::MeshQuery::boundary_loops) lists the curves.
     pub boundary_loops: Option<usize>,
     /// Edges with three faces or more.
     pub non_manifold_edges: usize,
     /// Used vertices with more than one fan, or at the end of a non-manifold edge.
     pub non_manifold_vertices: usize,
-    /// Edges with two faces that both run along it in the same direction.
+    /// Edges with two faces that run along the edge in the same direction.
     pub inconsistent_edges: usize,
     /// Whether every edge with two faces is consistent; `None` without faces.
     pub consistently_oriented: Option<bool>,
@@ -50,8 +51,8 @@ pub struct Facts {
     pub orientable: Option<bool>,
     /// Whether there are faces, and no boundary edge.
     pub closed: bool,
-    /// The sum over the components; `None` unless all are orientable and without non-manifold
-    /// edges.
+    /// The sum over the components; `None` if a component is not orientable or has a non-manifold
+    /// edge.
     pub genus: Option<i64>,
     /// Vertices that no face names.
     pub isolated_vertices: usize,
@@ -75,12 +76,12 @@ pub struct Distribution {
     pub max: usize,
     /// The arithmetic mean.
     pub mean: f64,
-    /// How often each value occurs; `None` if there are more than 64 values.
+    /// How often each value occurs; `None` if there are more than 64 different values.
     #[cfg_attr(feature = "serde", serde(default, with = "Histogram"))]
     pub hist: Option<BTreeMap<usize, usize>>,
 }
 
-/// The form of a histogram in files: the values are texts, because keys in JSON must be.
+/// The form of a histogram in files: the values are texts, because JSON requires texts as keys.
 #[cfg(feature = "serde")]
 type Histogram = serde_with::As<Option<BTreeMap<serde_with::DisplayFromStr, serde_with::Same>>>;
 
@@ -116,7 +117,8 @@ impl Facts {
         EdgePass::new(vertices, faces, &vec![true; faces.len()]).facts(&named)
     }
 
-    /// Returns the facts of faces as in a file, degenerate ones included; O(corners) expected.
+    /// Returns the facts of a list of faces, which may be degenerate as in a file; O(corners)
+    /// expected.
     ///
     /// # Errors
     ///

@@ -8,15 +8,15 @@ use crate::short_vec::ShortVec;
 /// Data that is updated after each edit of a [`MeshWithData`](crate::MeshWithData).
 ///
 /// [`VertexData`](crate::VertexData), [`EdgeData`](crate::EdgeData) and
-/// [`FaceData`](crate::FaceData) follow edits. So do tuples and vectors of such data, mutable
-/// references to it, and `()`, which is no data and costs nothing. Implement this trait for data of
-/// another form, such as a set of selected faces.
+/// [`FaceData`](crate::FaceData) implement this trait. Tuples and vectors of such data and mutable
+/// references to such data implement it too. The type `()` stands for no data and costs nothing.
+/// Implement this trait for data of another form, such as a set of selected faces.
 pub trait FollowEdits<M: MeshQuery> {
-    /// Whether the data uses the changes; if false, edits need not compute them.
+    /// Whether the data uses the changes; if false, edits need not compute the changes.
     const USES_CHANGES: bool = true;
 
-    /// Returns whether [`follow`](Self::follow) needs the parents of new elements; if not, edits
-    /// need not note them.
+    /// Returns whether [`follow`](Self::follow) needs the parents of new elements; if false, edits
+    /// need not record the parents.
     fn uses_parents(&self) -> bool {
         false
     }
@@ -25,7 +25,8 @@ pub trait FollowEdits<M: MeshQuery> {
     fn follow(&mut self, edit: &AcceptedEdit<'_, M>);
 }
 
-/// An edit that was done: the mesh, the changes of handles, and the parents of new elements.
+/// An edit that was accepted and done: the mesh, the changes of handles, and the parents of new
+/// elements.
 pub struct AcceptedEdit<'a, M: MeshQuery> {
     /// The mesh after the edit.
     pub mesh: &'a M,
@@ -38,7 +39,7 @@ impl<M: MeshQuery> AcceptedEdit<'_, M> {
     /// Returns the old vertices from which a new vertex was made: the ends of the split edge, the
     /// corners of the poked face, or the vertex that was split. Empty if the vertex was added.
     ///
-    /// All parents are empty if [`uses_parents`](FollowEdits::uses_parents) returns false.
+    /// If [`uses_parents`](FollowEdits::uses_parents) returns false, no element has parents.
     pub fn vertex_parents(&self) -> ShortVec<M::Vertex> {
         let parents: &[M::Vertex] = match &self.source {
             Source::Nothing => &[],
@@ -50,8 +51,8 @@ impl<M: MeshQuery> AcceptedEdit<'_, M> {
         parents.iter().map(renamed).collect()
     }
 
-    /// Returns the other half of the edge from which the new edge `e` was split, under its current
-    /// handle; `None` if `e` is not a half of an edge. The cost of VE.
+    /// Returns the other half of a split edge if the new edge `e` is one half of that edge;
+    /// otherwise `None`. The result is a current handle. Costs as much as VE.
     pub fn edge_parent(&self, e: M::Edge) -> Option<M::Edge> {
         let Source::Edge { ends, .. } = &self.source else {
             return None;
@@ -73,13 +74,13 @@ impl<M: MeshQuery> AcceptedEdit<'_, M> {
         (!self.changes.edges.created.contains(&half)).then_some(half)
     }
 
-    /// Returns the face from which the new face `f` was cut; `None` if it was not part of a face.
-    /// The cost of FV.
+    /// Returns the face from which the new face `f` was cut; `None` if `f` was not cut from a face.
+    /// Costs as much as FV.
     pub fn face_parent(&self, f: M::Face) -> Option<M::Face> {
         let parent = match &self.source {
             Source::Nothing | Source::Vertex(_) => None,
             Source::Face { face, .. } => Some(*face),
-            // Both halves of a triangle have its third corner.
+            // Both halves of a cut triangle have the third corner of the triangle.
             Source::Edge { ends, faces } => {
                 let middle = *self.changes.vertices.created.first()?;
                 let ends = ends.map(|v| self.changes.vertices.current(v));
@@ -102,7 +103,8 @@ impl<M: MeshQuery> AcceptedEdit<'_, M> {
 }
 
 impl<H: Handle> Changes<H> {
-    /// Returns the handle after the edit of an element that was not removed; O(changes).
+    /// Returns the current handle of the element whose handle was `old` before the edit;
+    /// O(changes). The element must still exist.
     fn current(&self, old: H) -> H {
         let mut renamed = self.renamed.iter();
         renamed
@@ -111,7 +113,7 @@ impl<H: Handle> Changes<H> {
     }
 }
 
-/// The element that an edit splits, noted before the edit.
+/// The element that an edit splits, recorded before the edit.
 pub(crate) enum Source<M: MeshQuery> {
     /// The edit splits nothing, or the data does not use parents.
     Nothing,
@@ -192,7 +194,7 @@ impl<M: MeshQuery, D: FollowEdits<M>> FollowEdits<M> for Vec<D> {
     }
 }
 
-/// Implements [`FollowEdits`] for tuples; longer ones can be nested.
+/// Implements [`FollowEdits`] for tuples; longer tuples can be nested.
 macro_rules! tuples {
     ($(($($data:ident $index:tt),+))+) => {$(
         impl<M: MeshQuery, $($data: FollowEdits<M>),+> FollowEdits<M> for ($($data,)+) {

@@ -32,10 +32,10 @@ pub trait HandleMap<H: Copy, T: Clone>: Index<H, Output = T> + IndexMut<H> + Clo
     }
 
     /// Stores `value` for `handle`, which may be new; O(1) amortised. A map by row grows up to the
-    /// row; rows in between, which are not elements yet, also get `value`.
+    /// row; the new rows before it, which are not elements yet, also get `value`.
     fn insert(&mut self, handle: H, value: T);
 
-    /// Removes the value of `handle`, whose element was removed; O(1).
+    /// Removes the value of `handle` after its element was removed; O(1).
     fn remove(&mut self, handle: H);
 
     /// Moves the value of `old` to `new`; O(1) amortised.
@@ -129,7 +129,8 @@ impl<H: RowId, T: Clone> HandleMap<H, T> for RowMap<H, T> {
         }
     }
 
-    /// Does nothing: no other element has the row, and its value stays until it is written.
+    /// Does nothing: no other element has the row, so the old value can stay until the row is
+    /// written.
     #[inline]
     fn remove(&mut self, _: H) {}
 }
@@ -157,14 +158,16 @@ impl<H: RowId, T> IndexMut<H> for RowMap<H, T> {
     }
 }
 
-/// Takes the handle by value: a reference would keep it in memory on the path that does not panic.
+/// Panics because the map has no row for `handle`. A handle passed by reference would have to be in
+/// memory, even if nothing panics.
 #[cold]
 #[inline(never)]
 fn no_such_row<H: Debug>(handle: H, rows: usize) -> ! {
     panic!("no {handle:?} in this map: it has {rows} rows")
 }
 
-/// A [`HandleMap`] for handles that are not rows: a hash map, and one value for all other handles.
+/// A [`HandleMap`] for handles that are not rows: a hash map, and a default value for all handles
+/// that are not in it.
 #[derive(Clone, Debug)]
 pub struct HashHandleMap<H, T> {
     written: FxHashMap<H, T>,
@@ -232,8 +235,8 @@ impl<H: Handle, T: Clone> IndexMut<H> for HashHandleMap<H, T> {
     }
 }
 
-/// An edge as the pair of its ends, the lower first: the handle in structures without a table of
-/// edges. It prints as its ends, `v3–v7`.
+/// An edge as the pair of its ends, the lower end first: the handle of an edge in structures
+/// without a table of edges. It prints as `v3–v7`.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Pair<V>([V; 2]);
 

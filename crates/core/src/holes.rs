@@ -63,8 +63,9 @@ impl<P: Probe> Holes<P> {
         self.count += 1;
     }
 
-    /// Makes every row below `end` a hole that `is_unused` and is not a hole yet. Calls `report` with
-    /// each of them, ascending, and returns their number; O(end).
+    /// Makes holes of the rows below `end` that `is_unused` selects, except rows that are already
+    /// holes. Calls `report` with each new hole, ascending, and returns the number of new holes;
+    /// O(end).
     pub fn insert_unused<H: RowId>(
         &mut self,
         end: usize,
@@ -140,9 +141,9 @@ impl<P: Probe> HoleSet<P> for Holes<P> {
 }
 
 impl<P: Probe> Holes<P> {
-    /// Removes the rows that are holes from `table`, the table of this set: the other rows move
-    /// down in order. A table that is less than half used frees its spare memory. O(rows), not
-    /// observed.
+    /// Removes the rows that are holes from `table`; the other rows move down and keep their order.
+    /// The set must describe the rows of this table. A table that is less than half used frees its
+    /// spare memory. O(rows), not observed.
     pub fn compact_table<T: Copy>(&self, table: &mut Table<T, P>) {
         let mut to = 0;
         let end = table.len();

@@ -33,7 +33,7 @@ pub struct EdgeUse {
     pub ends: [VertexId; 2],
     /// The number of faces that run along it; one on a boundary.
     pub faces: usize,
-    /// Whether no two of them run in the same direction.
+    /// Whether no two of these faces run along the edge in the same direction.
     pub opposed: bool,
 }
 
@@ -59,17 +59,17 @@ impl EdgeUse {
     }
 }
 
-/// The sides of all faces by edge; built in O(corners), and O(n log n) for the n sides of one
+/// The sides of all faces by edge; built in O(corners), plus O(n log n) for the n sides of each
 /// vertex.
 pub(crate) struct Incidence {
     sides: Vec<Side>,
-    /// By vertex: where the sides stored under it end.
+    /// By vertex: the end of the sides that are stored under this vertex.
     ends: Vec<u32>,
 }
 
 impl Incidence {
-    /// Collects the sides of the faces that `used` selects, which must name each vertex at most
-    /// once.
+    /// Collects the sides of the faces that `used` selects. These faces must name each vertex at
+    /// most once.
     pub(crate) fn new(vertices: usize, faces: &FaceList, used: impl Fn(FaceId) -> bool) -> Self {
         let sides = || {
             let used = faces.iter().filter(|&(f, _)| used(f));
@@ -135,8 +135,9 @@ impl Incidence {
         fans
     }
 
-    /// Returns the vertices whose faces form more than one fan, each with a face of its first fan
-    /// and the first face of another fan; in the order of these other faces.
+    /// Returns the vertices whose faces form more than one fan. Each vertex comes with a face of
+    /// its first fan and the first face of another fan. The vertices are in the order of these
+    /// second faces.
     pub(crate) fn several_fans(&self, faces: &FaceList) -> Vec<(VertexId, [FaceId; 2])> {
         let mut fans = self.fans(faces);
         // By vertex: its first face, the fan of that face, and whether another fan was found.

@@ -1,22 +1,23 @@
-//! Shared vocabulary of Sixfold: the traits and types that all structures, algorithms and tools
-//! use. This crate does not depend on any of the six structures.
+//! Traits and types that all structures, algorithms and tools of Sixfold share. This crate does not
+//! depend on any of the six structures.
 //!
 //! # For programs
 //!
-//! The crate `sixfold` exports these.
+//! The crate `sixfold` exports the following items.
 //!
 //! - [`PolygonMesh`]: the neutral input and output; positions, and faces as index lists.
 //! - [`MeshQuery`]: the nine relations of Weiler (1985) and their contract.
 //! - [`OrientedWalk`]: steps from side to side, along faces and around vertices.
-//! - [`Representation`]: one structure; its construction and its memory.
-//! - [`LocalQueries`]: the bound of algorithms that refuse structures whose queries scan.
+//! - [`Representation`]: the trait of all structures, with their construction and memory.
+//! - [`LocalQueries`]: the bound of algorithms that require structures whose queries never scan.
 //! - [`Handle`] and [`HandleMap`]: handles of elements, and data stored by handle; [`Numbers`]:
 //!   numbers of elements from 0.
 //! - [`BoundaryLoop`]: a chain of boundary edges.
-//! - [`BuildError`]: why a structure refuses a mesh; [`Capabilities`] checks it in one place.
+//! - [`BuildError`]: the reason why a structure refuses a mesh; [`Capabilities`]: the check that
+//!   finds it.
 //! - [`Refine`] and [`Split`]: structures that split every face in their own tables.
 //! - [`MeshEdit`], [`EditRecord`] and [`EditError`]: edits in place, the record of created, removed
-//!   and renamed elements, and why an edit is refused.
+//!   and renamed elements, and the reason why an edit is refused.
 //! - [`MeshWithData`]: a mesh together with data by vertex, edge or face that follows its edits.
 //! - [`Creases`]: the sharpness of edges and vertices under subdivision.
 //! - [`Facts`]: the exact topology of a face list, independent of any structure.
@@ -24,25 +25,27 @@
 //! # For authors of structures
 //!
 //! - [`Table`], [`Slot`], [`row_id!`] and [`RowId`]: rows, and handles that are rows.
-//! - [`Compact`] and [`Editable`], the two types that are [`Editing`]: type parameters of meshes
-//!   without and with deletion; [`Holes`]: the rows of deleted elements; [`NewRows`]: their
-//!   rows after the holes are closed.
+//! - [`Editing`]: the type parameter of meshes without deletion ([`Compact`]) and with deletion
+//!   ([`Editable`]).
+//! - [`Holes`]: the rows of deleted elements; [`NewRows`]: the rows of the remaining elements after
+//!   the holes are closed.
 //! - [`check_rows`], [`check_corners`], [`check_cut`]: checks of edits.
-//! - [`FaceSpans`]: which corners belong to a face.
+//! - [`FaceSpans`]: the division of corners into faces.
 //! - [`TwinPairs`]: pairs of sides, for building without hashing.
 //! - [`ScannedFaces`]: queries and edits of structures that find the faces at a vertex by a scan.
-//! - [`Distinct`], [`ShortVec`], [`Lookup`]: each element once, and short lists.
+//! - [`Distinct`], [`ShortVec`], [`Lookup`]: distinct elements, short lists, and search in lists.
 //! - [`Ranks`], [`for_each_chunk`], [`map_chunks`], [`check_split`]: refinement on several threads.
 //!
 //! # For measurements
 //!
-//! - [`Measured`] and [`Counts`]: bytes by formula.
+//! - [`Measured`] and [`Counts`]: the memory of a structure, computed by formula.
 //! - [`Probe`], [`Traced`] and [`Access`]: reads and writes of tables.
 //!
 //! # Features
 //!
-//! None is on by default. `rayon`: refinement on all threads. `serde`: reading and writing of facts,
-//! capabilities, costs and memory tables. `mint`: positions as points and vectors of that crate.
+//! No feature is on by default. `rayon`: refinement on all threads. `serde`: reading and writing of
+//! facts, capabilities, costs and memory tables. `mint`: positions as points and vectors of that
+//! crate.
 
 mod boundary;
 mod capability;

@@ -6,8 +6,8 @@ use crate::representation::{QueryCost, Representation};
 /// [`QueryCost::Scan`].
 ///
 /// An algorithm that queries each of n elements takes O(n) time on such a structure, and O(n²) on a
-/// structure that scans. With this bound, the compiler refuses the second. At run time,
-/// [`Representation::is_local`] and [`Representation::cost`] return the same facts.
+/// structure that scans. With this bound, the compiler refuses structures that scan. At run time,
+/// [`Representation::is_local`] and [`Representation::cost`] return the same information.
 ///
 /// ```
 /// use sixfold_core::LocalQueries;
@@ -18,7 +18,7 @@ use crate::representation::{QueryCost, Representation};
 /// }
 /// ```
 ///
-/// Implement it with [`local_queries!`](crate::local_queries), which compares it with the costs. The
+/// Implement this trait with [`local_queries!`](crate::local_queries), which checks the costs. The
 /// law `costs` of the conformance suite compares the costs with the reads of the structure.
 #[diagnostic::on_unimplemented(
     message = "queries of `{Self}` may scan all faces of the mesh",
@@ -26,22 +26,22 @@ use crate::representation::{QueryCost, Representation};
     note = "these never scan: FaceVertexMesh, WingedEdgeMesh, HalfEdgeMesh, CornerTable"
 )]
 pub trait LocalQueries: Representation {
-    /// Shows that the costs were compared; only [`local_queries!`](crate::local_queries) makes it.
+    /// Proof that the costs were checked; only [`local_queries!`](crate::local_queries) creates it.
     #[doc(hidden)]
     const COSTS_ARE_LOCAL: CostsAreLocal;
 }
 
-/// The result of comparing the costs of a structure.
+/// Proof that none of the costs of a structure is a scan.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub struct CostsAreLocal(());
 
 impl CostsAreLocal {
-    /// Compares the costs of `M`.
+    /// Checks that none of the costs of `M` is a scan.
     ///
     /// # Panics
     ///
-    /// Panics if one of them is a scan. In a constant, the build fails.
+    /// Panics if one of the costs is a scan. If the call is in a constant, the build fails instead.
     pub const fn check<M: Representation>() -> Self {
         assert!(
             QueryCost::are_local(&M::COSTS),
@@ -62,7 +62,8 @@ impl CostsAreLocal {
 #[macro_export]
 macro_rules! local_queries {
     ($($mesh:ty),+ $(,)?) => {$(
-        // The compiler evaluates this constant even if nothing uses it, unlike that of the trait.
+        // The compiler evaluates this constant even if nothing uses it, unlike the constant of the
+        // trait.
         const _: $crate::CostsAreLocal = $crate::CostsAreLocal::check::<$mesh>();
 
         impl $crate::LocalQueries for $mesh {

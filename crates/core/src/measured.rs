@@ -1,4 +1,4 @@
-//! What measurements need from a structure, apart from the API for programs.
+//! The part of a structure's API that only measurements use.
 
 use crate::probe::Probe;
 use crate::query::MeshQuery;
@@ -20,7 +20,7 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Returns the bytes of a table of face offsets, which only mixed degrees need.
+    /// Returns the bytes of the table of face offsets; 0 if all faces have one degree.
     pub const fn offset_bytes(&self) -> usize {
         if self.uniform {
             0
@@ -32,12 +32,12 @@ impl Counts {
 
 /// A structure whose memory can be predicted and whose reads can be counted.
 ///
-/// Sixfold's studies need it; programs that use a mesh do not.
+/// Sixfold's studies need this trait; programs that use a mesh do not.
 pub trait Measured: Representation {
-    /// The same structure with every access to its tables reported to a probe.
+    /// The same structure, in which every access to a table is reported to a probe.
     type Probed<P: Probe>: MeshQuery<Vertex = Self::Vertex, Edge = Self::Edge, Face = Self::Face>;
 
-    /// Returns the bytes of the layout for a mesh of these sizes, by formula.
+    /// Returns the bytes of the layout for a mesh of these sizes, computed by formula.
     fn layout_bytes(counts: &Counts) -> usize;
 
     /// Returns the same mesh with `probe` observing every table.

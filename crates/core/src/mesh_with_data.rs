@@ -14,13 +14,13 @@ use crate::representation::QueryCost;
 
 /// A mesh together with data by vertex, edge or face that follows its edits.
 ///
-/// It implements [`MeshQuery`] and [`MeshEdit`] with the handles of the mesh `M`, so it can be
-/// passed to every algorithm that edits meshes, such as decimation and remeshing. After each edit,
-/// the data `D` is updated ([`FollowEdits`]): usually [`VertexData`](crate::VertexData),
-/// [`EdgeData`](crate::EdgeData), [`FaceData`](crate::FaceData), or a tuple or vector of them. The
-/// data `()` costs nothing.
+/// This type implements [`MeshQuery`] and [`MeshEdit`] with the handles of the mesh `M`. So it can
+/// be passed to every algorithm that edits meshes, such as decimation and remeshing. After each
+/// edit, the data `D` is updated through [`FollowEdits`]. `D` is usually
+/// [`VertexData`](crate::VertexData), [`EdgeData`](crate::EdgeData), [`FaceData`](crate::FaceData),
+/// or a tuple or vector of these types. The data `()` costs nothing.
 ///
-/// The mesh cannot be changed except by edits of this type.
+/// Only the edits of this type can change the mesh.
 ///
 /// ```
 /// use sixfold_core::{EdgeData, FaceData, MeshEdit, MeshQuery, MeshWithData, Point, Refusal};
@@ -50,7 +50,7 @@ use crate::representation::QueryCost;
 pub struct MeshWithData<M: MeshQuery, D> {
     mesh: M,
     data: D,
-    /// The changes by the last edit, kept for its memory.
+    /// The changes by the last edit; kept so that the memory is reused.
     changes: EditRecord<M>,
 }
 
@@ -138,7 +138,8 @@ impl<M: MeshQuery + fmt::Debug, D: fmt::Debug> fmt::Debug for MeshWithData<M, D>
     }
 }
 
-/// Passes the reports of an edit to the record of changes, if the data uses it, and to a log.
+/// A log that passes the reports of an edit to another log, and to the record of changes if the
+/// data uses the record.
 struct Reports<'a, M: MeshQuery, D, L> {
     changes: &'a mut EditRecord<M>,
     log: &'a mut L,
@@ -179,7 +180,7 @@ where
     }
 }
 
-/// Implements queries by those of the mesh.
+/// Implements each query by a call of the same query of the mesh.
 macro_rules! queries {
     ($($query:ident($($argument:ident: $kind:ty),*) -> $answer:ty;)+) => {$(
         #[inline]
@@ -230,8 +231,8 @@ impl<M: MeshQuery, D> MeshQuery for MeshWithData<M, D> {
     }
 }
 
-/// Implements edits by those of the mesh; each names the kind of element that it splits, and the
-/// argument that is this element.
+/// Implements each edit by a call of the same edit of the mesh. An entry names the kind of element
+/// that the edit splits, and the argument that is this element.
 macro_rules! edits {
     ($($edit:ident($($argument:ident: $kind:ty),*) -> $outcome:ty, splits $split:ident($($element:ident)?);)+) => {$(
         #[inline]
@@ -250,7 +251,7 @@ impl<M: MeshEdit, D: FollowEdits<M>> MeshEdit for MeshWithData<M, D> {
 
     type Compact = MeshWithData<M::Compact, D>;
 
-    /// Closes all holes, which the data follows, and converts to a mesh that cannot have any.
+    /// Closes all holes, updates the data, and converts to a mesh that cannot have holes.
     fn into_compact(mut self) -> Self::Compact {
         self.compact();
         MeshWithData::new(self.mesh.into_compact(), self.data)

@@ -40,10 +40,11 @@ impl NewRows {
         self.rows.is_empty()
     }
 
-    /// Returns the new handle of `old`, which is not a hole.
+    /// Returns the new handle of `old`, which must not be a hole.
     #[inline]
     pub fn new_handle<H: RowId>(&self, old: H) -> H {
-        // One comparison for both: whether the row is in the list, and whether there is a list.
+        // One comparison answers two questions: whether the row is in the list, and whether there
+        // is a list.
         let new = self.rows.get(old.row() as usize);
         new.map_or(old, |&new| H::from_row(new))
     }
@@ -59,7 +60,8 @@ impl NewRows {
         }
     }
 
-    /// Does the same for elements whose handles are pairs.
+    /// Does the same as [`for_each_renamed`](Self::for_each_renamed), for elements whose handles
+    /// are pairs.
     pub fn for_each_renamed_pair<H: RowId>(
         &self,
         elements: impl Iterator<Item = Pair<H>>,
@@ -74,12 +76,12 @@ impl NewRows {
         }
     }
 
-    /// Returns the polygons of `mesh`, whose vertices get these rows. `positions` has the old rows;
-    /// `corners` is an estimate of the number of corners, for reserving memory.
+    /// Returns the polygons of `mesh`, with vertices numbered by their new rows. `positions` has
+    /// the old rows; `corners` is an estimate of the number of corners, for reserving memory.
     ///
     /// # Panics
     ///
-    /// Panics if the faces of `mesh` are not valid polygons, which its invariants exclude.
+    /// Panics if the faces of `mesh` are not valid polygons; the invariants of `mesh` exclude this.
     pub fn polygons<M: MeshQuery<Vertex = VertexId>>(
         &self,
         mesh: &M,

@@ -6,7 +6,7 @@ use std::ops::Index;
 use crate::handle::{Handle, HandleMap};
 use crate::row_id::row;
 
-/// Marks a handle without a number. [`row`] never returns it for an index of a list.
+/// The entry of a handle without a number. [`row`] never returns this value for an index of a list.
 const NO_NUMBER: u32 = u32::MAX;
 
 /// Elements of one kind, numbered from 0 without gaps.
@@ -14,11 +14,11 @@ const NO_NUMBER: u32 = u32::MAX;
 /// Matrices and index buffers need such numbers. A handle is not always such a number: it may be
 /// coordinates, a pair of vertices, or a row in a table with deleted rows.
 /// [`MeshQuery::vertex_numbers`], [`edge_numbers`] and [`face_numbers`] number all elements in the
-/// order in which the mesh lists them. [`Numbers::new`] numbers some of them: for example only the
-/// free vertices of a system with a fixed boundary.
+/// order in which the mesh lists them. [`Numbers::new`] numbers a selection of elements, for
+/// example only the free vertices of a system with a fixed boundary.
 ///
-/// The numbers are those of the mesh when they were built; edits do not change them. They take one
-/// map by handle and one list of handles.
+/// The numbers describe the mesh at the time when they were built; edits do not change the numbers.
+/// They are stored as one map by handle and one list of handles.
 ///
 /// [`MeshQuery::vertex_numbers`]: crate::MeshQuery::vertex_numbers
 /// [`edge_numbers`]: crate::MeshQuery::edge_numbers

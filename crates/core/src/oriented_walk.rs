@@ -6,7 +6,8 @@ use crate::query::MeshQuery;
 /// Data by side of `M`.
 pub type SideMap<M, T> = <<M as OrientedWalk>::Side as Handle>::Map<T>;
 
-/// Steps from side to side. A side is an edge as one face runs along it.
+/// Steps from side to side. A side is an edge together with one face that runs along it; the side
+/// has the direction of the face.
 ///
 /// ```text
 ///      ◄── next_side(s) ── ● target
@@ -17,22 +18,21 @@ pub type SideMap<M, T> = <<M as OrientedWalk>::Side as Handle>::Map<T>;
 ///      ─── prev_side(s) ─► ● origin
 /// ```
 ///
-/// Most answers of [`MeshQuery`] are sets. This trait adds their order: [`next_side`] and
+/// Most relations of [`MeshQuery`] yield sets. This trait adds an order: [`next_side`] and
 /// [`prev_side`] step along a face, [`ccw_side`] and [`cw_side`] around a vertex. The half-edge
-/// mesh, the winged-edge mesh, the corner table and the face-vertex mesh implement it. The other
-/// two structures would have to scan all faces for every step around a vertex.
+/// mesh, the winged-edge mesh, the corner table and the face-vertex mesh implement this trait. The
+/// other two structures would have to scan all faces for every step around a vertex.
 ///
 /// # Contract
 ///
-/// - **Sides.** A face of degree n has n sides. So a face has as many sides as corners, and an edge
-///   as many sides as faces. An edge on a boundary has one side: nothing runs along its outside.
+/// - **Sides.** A face of degree n has n sides. An edge has one side for each of its faces, so a
+///   boundary edge has one side.
 /// - **Order.** `face_sides(f)` has the order of FV and FE: side `i` starts at corner `i` and runs
-///   along edge `i`. The sides of an edge and those that leave a vertex are sets, in no guaranteed
-///   order.
+///   along edge `i`. `edge_sides` and `outgoing_sides` yield sets; their order is not guaranteed.
 /// - **Twin.** Two sides are twins if they are the only sides of their edge and run in opposite
-///   directions. So the twin of the twin is the side itself. There is no twin on a boundary, at an
-///   edge with three or more faces, and between two faces that run along their edge in the same
-///   direction.
+///   directions. So the twin of the twin is the side itself. A side has no twin in three cases: its
+///   edge is on a boundary, the edge has three or more faces, or its two faces run along the edge
+///   in the same direction.
 /// - **No cache.** As in [`MeshQuery`], each result is computed from the stored tables alone.
 /// - **Handles.** A side is valid until the next edit; an [`EditLog`](crate::EditLog) does not report
 ///   changes of sides. If a side is out of range, or its face was deleted, every method panics or
@@ -51,15 +51,16 @@ pub type SideMap<M, T> = <<M as OrientedWalk>::Side as Handle>::Map<T>;
 /// | `face_sides`, for each side | O(1) | O(1) | O(1) | O(1) |
 /// | `outgoing_sides`, for each side | O(1) | O(1) | O(1) | O(degree) |
 ///
-/// The end is the one with fewer faces.
+/// In the last column, "an end" is the end of the edge that has fewer faces.
 ///
 /// # Panics
 ///
-/// A method that takes a vertex, an edge or a face panics as a query of [`MeshQuery`] does.
+/// A method that takes a vertex, an edge or a face panics in the same cases as a query of
+/// [`MeshQuery`].
 ///
 /// # Examples
 ///
-/// The faces around a vertex in order, from a side that starts there.
+/// This function returns the faces around a vertex in order, from a side that starts at the vertex.
 ///
 /// ```
 /// use sixfold_core::OrientedWalk;
@@ -87,17 +88,17 @@ pub trait OrientedWalk: MeshQuery {
 
     /// Yields the sides of `f`, counter-clockwise in the order of FV.
     fn face_sides(&self, f: Self::Face) -> impl Iterator<Item = Self::Side>;
-    /// Yields the sides of `e`, one for each of its faces.
+    /// Yields the sides of `e`, one for each face of `e`.
     fn edge_sides(&self, e: Self::Edge) -> impl Iterator<Item = Self::Side>;
-    /// Yields the sides that start at `v`, one for each of its faces.
+    /// Yields the sides that start at `v`, one for each face at `v`.
     fn outgoing_sides(&self, v: Self::Vertex) -> impl Iterator<Item = Self::Side>;
 
-    /// Returns the side after `s` along its face; it starts at the target of `s`.
+    /// Returns the side after `s` along its face. That side starts at the target of `s`.
     fn next_side(&self, s: Self::Side) -> Self::Side;
-    /// Returns the side before `s` along its face; it ends at the origin of `s`.
+    /// Returns the side before `s` along its face. That side ends at the origin of `s`.
     fn prev_side(&self, s: Self::Side) -> Self::Side;
-    /// Returns the side that runs along the same edge in the opposite direction. `None` unless the
-    /// edge has exactly one other side and that side runs the other way.
+    /// Returns the twin of `s`: the only other side of its edge, if that side runs in the opposite
+    /// direction. Otherwise returns `None`.
     fn twin_side(&self, s: Self::Side) -> Option<Self::Side>;
 
     /// Returns the vertex where `s` starts.
@@ -106,18 +107,18 @@ pub trait OrientedWalk: MeshQuery {
     fn side_target(&self, s: Self::Side) -> Self::Vertex {
         self.side_origin(self.next_side(s))
     }
-    /// Returns the face that runs along `s`; it is on the left.
+    /// Returns the face that runs along `s`. The face is on the left of `s`.
     fn side_face(&self, s: Self::Side) -> Self::Face;
     /// Returns the edge of `s`.
     fn side_edge(&self, s: Self::Side) -> Self::Edge;
 
     /// Returns the next side around the origin of `s`, counter-clockwise: the twin of the side
-    /// before `s`. `None` if there is no such twin, as at the end of a fan.
+    /// before `s`. Returns `None` if that side has no twin, for example at the end of a fan.
     fn ccw_side(&self, s: Self::Side) -> Option<Self::Side> {
         self.twin_side(self.prev_side(s))
     }
     /// Returns the next side around the origin of `s`, clockwise: the side after the twin of `s`.
-    /// `None` if there is no twin, as at the start of a fan.
+    /// Returns `None` if `s` has no twin, for example at the start of a fan.
     fn cw_side(&self, s: Self::Side) -> Option<Self::Side> {
         self.twin_side(s).map(|twin| self.next_side(twin))
     }

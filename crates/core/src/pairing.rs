@@ -12,9 +12,9 @@ pub(crate) const MAX_EDGES: usize = (u32::MAX / 4) as usize;
 
 /// The half-edge of every corner.
 ///
-/// Edge `e` has the half-edges `2e`, from its lower to its higher end, and `2e + 1` in the other
-/// direction. Edges are numbered by their lower end, so that the edges of one vertex are adjacent
-/// in memory.
+/// Half-edge `2e` runs from the lower to the higher end of edge `e`, and half-edge `2e + 1` in the
+/// other direction. Edges are numbered in the order of their lower ends, so that the edges of one
+/// vertex are adjacent in memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TwinPairs {
     /// By corner: the half-edge that starts there and runs along the corner's face.
@@ -26,11 +26,12 @@ pub struct TwinPairs {
 impl TwinPairs {
     /// Pairs the sides of `faces`; O(corners + vertices).
     ///
-    /// Sides are put into buckets by their lower end (a counting sort); within a bucket, a scratch
-    /// row for each higher end finds the partner. Returns `None` if two sides run along one edge
-    /// in the same direction (always the case if an edge has three faces), or if there are too
-    /// many corners or edges; [`Capabilities::check`](crate::Capabilities::check) returns the
-    /// reason.
+    /// Sides are put into buckets by their lower end (a counting sort). Within a bucket, a scratch
+    /// row for each higher end finds the partner of a side.
+    ///
+    /// Returns `None` if two sides run along one edge in the same direction, or if there are too
+    /// many corners or edges. An edge with three faces always has two such sides.
+    /// [`Capabilities::check`](crate::Capabilities::check) returns the reason.
     ///
     /// Scratch: 8 bytes per corner and 8 bytes per vertex; [`with_rows`](Self::with_rows) needs
     /// less.
@@ -40,8 +41,8 @@ impl TwinPairs {
     }
 
     /// Pairs sides like [`new`](Self::new), but stores the sorted sides in `rows`, with one place
-    /// per corner: a table of the result that is not filled yet. The rows are not meaningful
-    /// afterwards.
+    /// per corner. A constructor can pass a table of its result that is not filled yet. Afterwards,
+    /// the content of `rows` is arbitrary.
     ///
     /// # Panics
     ///
@@ -97,7 +98,7 @@ impl TwinPairs {
     /// Links every face of `faces`, in order.
     ///
     /// If all faces have three corners, or all have four, the loop over the corners of a face is
-    /// unrolled: an implementation of [`LinkFaces`] that is inlined sees slices of known length.
+    /// unrolled. An inlined implementation of [`LinkFaces`] then gets slices of known length.
     // Always inlined: otherwise the loop loads the addresses of the tables for every corner.
     #[inline(always)]
     pub fn link_faces(&self, faces: &FaceList, tables: &mut impl LinkFaces) {
@@ -136,10 +137,10 @@ pub trait LinkFaces {
 
 /// Places for the sorted sides of faces, one per corner.
 ///
-/// A constructor implements it for rows of its result that are not filled yet, so that the sides
-/// need no memory of their own.
+/// A constructor implements this trait for rows of its result that are not filled yet, so that the
+/// sides need no memory of their own.
 pub trait SideRows {
-    /// Writes the higher end of a side and a tag, which is never `u32::MAX`, to place `at`.
+    /// Writes the higher end of a side and its tag to place `at`. The tag is never `u32::MAX`.
     fn write(&mut self, at: usize, high: VertexId, tag: u32);
 
     /// Returns the higher end and the tag at place `at`.
@@ -162,11 +163,12 @@ impl SideRows for [(u32, u32)] {
 /// Pairs the sides of triangles without numbering their edges; O(corners + vertices).
 ///
 /// A side is identified by its opposite corner. Calls `pair` once for each side, with the side and
-/// its partner: the partner of the first side of an edge is the side itself, so a boundary side is
-/// paired only with itself; the partner of the second side is the first. `highs` is scratch with a
-/// row per corner: a table of the result that is not filled yet. Returns scratch of 4 bytes per
-/// corner, which the caller can reuse, and the number of edges; `None` in the cases of
-/// [`TwinPairs::new`].
+/// its partner. The partner of the first side of an edge is the side itself; the partner of the
+/// second side is the first side. So a boundary side is paired only with itself.
+///
+/// `highs` is scratch memory with one row per corner; a constructor can pass a table of its result
+/// that is not filled yet. Returns scratch memory of 4 bytes per corner, which the caller can
+/// reuse, and the number of edges. Returns `None` in the same cases as [`TwinPairs::new`].
 ///
 /// # Panics
 ///

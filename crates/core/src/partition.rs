@@ -54,8 +54,8 @@ impl Partition {
         self.relate(a, b, false);
     }
 
-    /// Merges the classes of `a` and `b`, which differ if `differ`; returns false if this
-    /// contradicts earlier relations.
+    /// Merges the classes of `a` and `b`, and records whether the two items differ. Returns false
+    /// if this contradicts earlier relations.
     pub(crate) fn relate(&mut self, a: usize, b: usize, differ: bool) -> bool {
         let ((mut a, odd_a), (mut b, odd_b)) = (self.root(a), self.root(b));
         let differ = differ ^ odd_a ^ odd_b;

@@ -146,8 +146,8 @@ impl PolygonMesh {
         &self.faces
     }
 
-    /// Returns the first face that is not a triangle, and its degree; O(faces), O(1) if all faces
-    /// have one degree.
+    /// Returns the first face that is not a triangle, and its degree; O(faces), or O(1) if all
+    /// faces have one degree.
     pub fn first_polygon(&self) -> Option<(FaceId, usize)> {
         if self.faces.uniform_degree() == Some(3) {
             return None;
@@ -242,7 +242,7 @@ impl fmt::Display for PolygonMesh {
     }
 }
 
-/// Returns whether all faces satisfy I1; their degree is known to the compiler.
+/// Returns whether all faces satisfy I1; their degree is a constant.
 fn all_valid<const DEGREE: usize>(corners: &[VertexId], vertices: usize) -> bool {
     corners.as_chunks::<DEGREE>().0.iter().all(|face| {
         // No early exit: it would almost never be taken.

@@ -26,24 +26,26 @@ pub type FaceMap<M, T> = <<M as MeshQuery>::Face as Handle>::Map<T>;
 ///
 /// - **Elements.** An edge is an unordered pair of vertices that follow each other in some face; no
 ///   two edges have the same ends. A face names at least three vertices, each once.
-/// - **Once.** A relation yields each element once, and never the element that is queried: two
-///   faces that share two edges are one neighbour of each other, and so are two faces with the same
-///   corners. An isolated vertex has empty relations.
+/// - **Once.** A relation yields each element once, and never the element that is queried. For
+///   example, two faces that share two edges yield each other only once. This also holds for two
+///   faces with the same corners. An isolated vertex has empty relations.
 /// - **Symmetry.** `f ∈ VF(v)` exactly if `v ∈ FV(f)`; likewise VE/EV, EF/FE, VV, EE and FF.
-/// - **Order.** FV and FE run counter-clockwise in the order of the input, from any start; side `i`
-///   joins corners `i` and `i + 1`. The other seven are sets, in no guaranteed order.
-/// - **Iteration.** An iterator yields the same items by `next` and by `fold`, also if the first
-///   items were taken by `next`.
+/// - **Order.** FV and FE run counter-clockwise in the order of the input, from an arbitrary start.
+///   Side `i` joins corners `i` and `i + 1`. The other seven relations are sets; their order is not
+///   guaranteed.
+/// - **Iteration.** `next` and `fold` yield the same items. This also holds if `next` takes the
+///   first items and `fold` the rest.
 /// - **No cache.** Each result is computed from the stored tables alone; nothing is kept between
 ///   calls. If this requires a scan of all faces, the query scans.
-/// - **Handles.** A handle is valid until the next edit. A handle that is out of range, or of a
-///   deleted element, panics, and the message names it. A handle of another mesh may panic or give
-///   a wrong result; it is always memory-safe.
+/// - **Handles.** A handle is valid until the next edit. A query panics if its handle is out of
+///   range or belongs to a deleted element; the message names the handle. A handle of another mesh
+///   may panic or give a wrong result; it is always memory-safe.
 ///
 /// # Panics
 ///
-/// Every method that takes a handle panics if the mesh has no such element. If a vertex *is* its
-/// coordinates or an edge *is* its ends, a handle without an element has empty relations instead.
+/// Every method that takes a handle panics if the mesh has no such element. Some handles are
+/// coordinates (of a vertex) or a pair of ends (of an edge). If such a handle has no element, its
+/// relations are empty instead.
 pub trait MeshQuery {
     /// The handle of a vertex: a row, or the coordinates.
     type Vertex: Handle;
@@ -52,8 +54,8 @@ pub trait MeshQuery {
     /// The handle of a face.
     type Face: Handle;
 
-    /// The meshes that this type can hold; all meshes if it is not known. An algorithm can omit
-    /// checks for what the type cannot hold, such as non-manifold edges.
+    /// The meshes that this type can hold; the default is all meshes. An algorithm can omit checks
+    /// for cases that the type excludes, such as non-manifold edges.
     const CAPABILITIES: Capabilities = Capabilities::ALL;
 
     /// Yields every vertex once.
@@ -96,22 +98,22 @@ pub trait MeshQuery {
     /// FF: yields the faces that share an edge with `f`.
     fn face_faces(&self, f: Self::Face) -> impl Iterator<Item = Self::Face>;
 
-    /// Returns the edge between `a` and `b`, if there is one; the cost of VE and EV.
+    /// Returns the edge between `a` and `b`, if there is one; costs as much as VE and EV.
     fn edge_between(&self, a: Self::Vertex, b: Self::Vertex) -> Option<Self::Edge> {
         self.vertex_edges(a)
             .find(|&e| self.edge_vertices(e).contains(&b) && a != b)
     }
 
-    /// Returns a face with corners at both `a` and `b`, if there is one; the cost of VF and FV. If
-    /// there are several, returns any of them. The face need not have an edge between the two
-    /// vertices.
+    /// Returns a face with corners at both `a` and `b`, if there is one; costs as much as VF and
+    /// FV. If there are several, returns any of them. The face need not have an edge between the
+    /// two vertices.
     fn common_face(&self, a: Self::Vertex, b: Self::Vertex) -> Option<Self::Face> {
         self.vertex_faces(a)
             .find(|&f| self.face_vertices(f).any(|v| v == b))
     }
 
-    /// Returns the vertex of triangle `f` that is not an end of `e`; the cost of EV and FV. `None`
-    /// if `f` is not a triangle, or `e` is not one of its sides.
+    /// Returns the vertex of triangle `f` that is not an end of `e`; costs as much as EV and FV.
+    /// Returns `None` if `f` is not a triangle, or if `e` is not a side of `f`.
     fn opposite_vertex(&self, f: Self::Face, e: Self::Edge) -> Option<Self::Vertex> {
         let ends = self.edge_vertices(e);
         let mut corners = self.face_vertices(f);
@@ -120,40 +122,40 @@ pub trait MeshQuery {
         is_triangle.then(|| three.into_iter().find(|v| !ends.contains(v)))?
     }
 
-    /// Returns the number of edges at `v`; the cost of VE.
+    /// Returns the number of edges at `v`; costs as much as VE.
     fn valence(&self, v: Self::Vertex) -> usize {
         self.vertex_edges(v).count()
     }
 
-    /// Returns the number of corners of `f`; the cost of FV.
+    /// Returns the number of corners of `f`; costs as much as FV.
     fn degree(&self, f: Self::Face) -> usize {
         self.face_vertices(f).count()
     }
 
-    /// Returns whether exactly one face lies along `e`; the cost of EF.
+    /// Returns whether exactly one face lies along `e`; costs as much as EF.
     fn is_boundary_edge(&self, e: Self::Edge) -> bool {
         let mut faces = self.edge_faces(e);
         faces.next().is_some() && faces.next().is_none()
     }
 
-    /// Returns whether a boundary edge ends at `v`; the cost of VE, and of EF for each edge.
+    /// Returns whether a boundary edge ends at `v`; costs as much as VE, plus EF for each edge.
     fn is_boundary_vertex(&self, v: Self::Vertex) -> bool {
         self.vertex_edges(v).any(|e| self.is_boundary_edge(e))
     }
 
     /// Returns whether `v` is a vertex of this mesh: false after it was deleted or renamed.
     ///
-    /// O(1) if vertices are rows; the cost of VF if a vertex is its coordinates.
+    /// O(1) if vertices are rows; costs as much as VF if vertices are identified by coordinates.
     fn contains_vertex(&self, v: Self::Vertex) -> bool {
         self.vertices().any(|vertex| vertex == v)
     }
 
     /// Returns whether `e` is an edge of this mesh: false after it was deleted or renamed.
     ///
-    /// This can check lists of edges that were made before edits. If the row of a deleted edge is
-    /// reused for a new edge, this returns true.
+    /// A list of edges that was made before edits can be checked with this method. If the row of a
+    /// deleted edge is reused for a new edge, this returns true.
     ///
-    /// O(1) if edges are rows or corners; the cost of VE if an edge is the pair of its ends.
+    /// O(1) if edges are rows or corners; costs as much as VE if an edge is the pair of its ends.
     fn contains_edge(&self, e: Self::Edge) -> bool {
         self.edges().any(|edge| edge == e)
     }
@@ -199,14 +201,14 @@ pub trait MeshQuery {
 
     /// Returns the number of faces along each edge; 255 stands for 255 or more.
     ///
-    /// This is one pass over FE. On a structure that scans for EF, it takes O(corners) time, where
-    /// one query per edge takes O(edges · corners).
+    /// This is one pass over FE. On a structure that scans for EF, the pass takes O(corners) time,
+    /// but one EF query per edge would take O(edges · corners).
     fn edge_face_counts(&self) -> EdgeMap<Self, u8> {
         boundary::edge_face_counts(self)
     }
 
-    /// Returns the edges with exactly one face, in the order of [`edges`](Self::edges); the cost of
-    /// [`edge_face_counts`](Self::edge_face_counts).
+    /// Returns the edges with exactly one face, in the order of [`edges`](Self::edges); costs as
+    /// much as [`edge_face_counts`](Self::edge_face_counts).
     fn boundary_edges(&self) -> Vec<Self::Edge> {
         let counts = self.edge_face_counts();
         self.edges().filter(|&e| counts[e] == 1).collect()
@@ -225,18 +227,19 @@ pub trait MeshQuery {
     /// ```
     ///
     /// - Every boundary edge is in exactly one loop, once.
-    /// - At a vertex, a loop continues to the other boundary edge of the same fan of faces. If loops
-    ///   touch at a vertex, each continues in its own fan; if two holes touch there, one loop runs
-    ///   around both and visits the vertex twice.
-    /// - A fan that reaches an edge with three or more faces ends there, and so does the chain. Only
-    ///   such a chain is not [closed](BoundaryLoop::is_closed).
-    /// - Each edge runs against its face. If the faces of a loop disagree in orientation, the loop
-    ///   has the direction of the edge that is first: the one whose start, and then whose end, comes
-    ///   first in [`vertices`](Self::vertices).
-    /// - A closed loop starts with this edge, and the loops are sorted by it. So structures that
-    ///   list the vertices in the same order return the same loops.
+    /// - At a vertex, a loop continues to the other boundary edge of the same fan of faces. If
+    ///   several loops meet at a vertex, each loop stays in its own fan. If two holes meet at a
+    ///   vertex, one loop runs around both holes and visits the vertex twice.
+    /// - A chain ends where its fan reaches an edge with three or more faces. All other chains are
+    ///   [closed](BoundaryLoop::is_closed).
+    /// - Each edge runs in the direction opposite to its face. Edges are ordered by the place of
+    ///   their start in [`vertices`](Self::vertices), then by the place of their end. If the faces
+    ///   of a loop disagree in orientation, the first of its edges in this order determines the
+    ///   direction.
+    /// - A closed loop starts with its first edge in this order, and the loops are sorted by their
+    ///   first edges. So structures that list the vertices in the same order return the same loops.
     ///
-    /// O(corners) expected, on every structure whose FV and FE are local; plus O(n log n) for the n
+    /// If FV and FE are local, this takes O(corners) time expected, plus O(n log n) for the n
     /// corners at boundary vertices.
     fn boundary_loops(&self) -> Vec<BoundaryLoop<Self::Vertex, Self::Edge>> {
         boundary::boundary_loops(self)
@@ -245,9 +248,9 @@ pub trait MeshQuery {
     /// Returns the neighbours of a manifold vertex, counter-clockwise: from one boundary edge to
     /// the other if there is a boundary, otherwise from any start.
     ///
-    /// `None` if the faces at `v` are not one consistently oriented fan. The ring of an isolated
-    /// vertex is empty. O(valence log valence) in addition to the cost of VF and FV; structures
-    /// that store the order override this.
+    /// Returns `None` if the faces at `v` do not form one consistently oriented fan. The ring of an
+    /// isolated vertex is empty. The time is O(valence log valence) in addition to VF and FV.
+    /// Structures that store the order override this method.
     ///
     /// ```text
     ///      c ───── b        faces (v, a, b), (v, b, c):  a, b, c

@@ -15,8 +15,8 @@ const BLOCK: usize = u64::BITS as usize;
 /// ```
 ///
 /// It stores one bit per item and one count per block of 64 (Jacobson 1989): 16 bytes for 64 items.
-/// If every item is a member, as are the half-edges with a face of a closed mesh, it stores
-/// nothing: the rank of an item is the item itself.
+/// If every item is a member, it stores nothing, because the rank of an item is the item itself. An
+/// example is the set of half-edges with a face in a closed mesh.
 #[derive(Clone, Debug, Default)]
 pub struct Ranks {
     blocks: Vec<Block>,
@@ -32,14 +32,14 @@ struct Block {
 }
 
 impl Ranks {
-    /// Replaces the set by the items that `is_member` selects, `N` for each row: item `N * i + j`
-    /// is the `j`-th of row `i`. O(items), on the threads of the current rayon pool; allocated
-    /// memory is reused.
+    /// Replaces the set by the items that `is_member` selects. Each row has `N` items: the `j`-th
+    /// item of row `i` is `N * i + j`. O(items), on the threads of the current rayon pool;
+    /// allocated memory is reused.
     ///
     /// # Panics
     ///
     /// Panics if there are more items than [`MAX_ROWS`](crate::MAX_ROWS). If `N` does not divide
-    /// 64, it does not compile.
+    /// 64, the call does not compile.
     pub fn fill<const N: usize, T: Sync>(
         &mut self,
         rows: &[T],
@@ -60,7 +60,7 @@ impl Ranks {
     /// # Panics
     ///
     /// Panics if there are more items than [`MAX_ROWS`](crate::MAX_ROWS). If `N` does not divide
-    /// 64, it does not compile.
+    /// 64, the call does not compile.
     pub fn fill_by_row<const N: usize, T: Sync>(
         &mut self,
         rows: &[T],
@@ -117,7 +117,8 @@ impl Ranks {
         }
     }
 
-    /// Returns the number of members before `item`, which is the rank of a member; O(1).
+    /// Returns the number of members before `item`; O(1). If `item` is a member, this number is its
+    /// rank.
     #[inline]
     pub fn rank(&self, item: usize) -> usize {
         match self.blocks.get(item / BLOCK) {
@@ -145,15 +146,16 @@ impl Ranks {
         BLOCK * block + nth_bit(members, rank - before as usize)
     }
 
-    /// Returns the item that is not a member and has `rank` such items before it; O(log items).
+    /// Returns the missing item that has `rank` missing items before it; O(log items). An item is
+    /// missing if it is not a member.
     ///
     /// # Panics
     ///
-    /// Panics if `rank` or fewer items are missing.
+    /// Panics if `rank` is not less than the number of missing items.
     pub fn select_missing(&self, rank: usize) -> usize {
         assert!(rank < self.missing(), "no gap {rank} of {}", self.missing());
-        // Items before a block that are not members; the binary search finds the block by this
-        // number.
+        // The number of items before a block that are not members; the binary search finds the
+        // block by this number.
         let gaps = |block: usize| BLOCK * block - self.blocks[block].before as usize;
         let (mut low, mut high) = (0, self.blocks.len());
         while high - low > 1 {

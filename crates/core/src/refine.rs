@@ -20,10 +20,12 @@ use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
 ///   a────m────b              a──m──b                  a───────b       a───────b
 /// ```
 ///
-/// The vertices of the refined mesh have a fixed order: the old vertices in their order, then a
-/// face point for each face in the order of `faces()` (not for [`Triangles`](Self::Triangles)),
-/// then the points of edges in the order of `edges()`: one for each edge, except for
-/// [`Sqrt3`](Self::Sqrt3).
+/// The vertices of the refined mesh have a fixed order:
+///
+/// 1. the old vertices, in their order;
+/// 2. one face point for each face, in the order of `faces()`, except for
+///    [`Triangles`](Self::Triangles);
+/// 3. one edge point for each edge, in the order of `edges()`, except for [`Sqrt3`](Self::Sqrt3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -31,15 +33,16 @@ use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
     serde(rename_all = "snake_case")
 )]
 pub enum Split {
-    /// Splits every face of degree n into n quads, by a face point and edge points (Catmull & Clark
-    /// 1978).
+    /// Splits every face of degree n into n quads, with a face point and edge points (Catmull &
+    /// Clark 1978).
     Quads,
-    /// Splits every triangle into four, by edge points (Loop 1987).
+    /// Splits every triangle into four, with edge points (Loop 1987).
     Triangles,
-    /// Splits every triangle into three, by a face point; then flips every old inner edge (Kobbelt
-    /// 2000). Boundary edges are unchanged, or are cut in three if `trisect` is set. Then the two
-    /// points of each boundary edge come last, in the order of `edges()`; the first is the one
-    /// nearer to the origin of the face's side.
+    /// Splits every triangle into three, with a face point; then flips every old inner edge
+    /// (Kobbelt 2000). If `trisect` is set, every boundary edge is cut in three; otherwise boundary
+    /// edges are unchanged. The two points of each boundary edge come last among the vertices, in
+    /// the order of `edges()`. The first of the two is nearer to the start of the face's side along
+    /// the edge.
     Sqrt3 {
         /// Whether boundary edges are cut in three.
         trisect: bool,
@@ -56,13 +59,14 @@ impl Split {
         }
     }
 
-    /// Returns whether it splits only triangles.
+    /// Returns whether the split requires that all faces are triangles.
     pub const fn needs_triangles(self) -> bool {
         !matches!(self, Self::Quads)
     }
 
     /// Returns the sizes of the refined mesh, in closed form. `boundary` is the number of edges
-    /// with one face; only the √3 split with `trisect` uses it. Sizes beyond `usize` saturate.
+    /// with one face; only the √3 split with `trisect` uses this number. Sizes beyond `usize`
+    /// saturate.
     ///
     /// For quads and triangles, the sizes are correct even if edges have three or more faces.
     pub const fn refined_counts(self, counts: &Counts, boundary: usize) -> Counts {
@@ -123,15 +127,16 @@ impl fmt::Display for Split {
 ///
 /// # Contract
 ///
-/// - The child is the mesh that [`Split`] defines: same faces, same orientation, vertices in that
-///   fixed order. It satisfies every invariant of the structure. Each structure defines the order
-///   of its faces and edges; [`parent`](Self::parent) returns the parent of a face.
-/// - The tables of the child are overwritten in place if they are large enough: repeated refinement
-///   into one mesh allocates nothing.
-/// - With the feature `rayon` the work runs on the threads of the current rayon pool, and otherwise
-///   on one thread. It gives the same bytes on any number of threads.
-/// - In addition to the two meshes it needs at most a tenth of their bytes. It uses no hash table,
-///   no [`from_polygons`](Representation::from_polygons) and no intermediate `PolygonMesh`.
+/// - The child is the mesh that [`Split`] defines, with the same faces, orientation and order of
+///   vertices. It satisfies every invariant of the structure. Each structure defines the order of
+///   its faces and edges; [`parent`](Self::parent) returns the parent of a face.
+/// - The tables of the child are overwritten in place if they are large enough. So repeated
+///   refinement into the same mesh allocates nothing.
+/// - With the feature `rayon` the work runs on the threads of the current rayon pool; otherwise it
+///   runs on one thread. The child has the same bytes for any number of threads.
+/// - Refinement needs at most a tenth of the bytes of the two meshes as additional memory. It uses
+///   no hash table, no [`from_polygons`](Representation::from_polygons) and no intermediate
+///   `PolygonMesh`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot split its own tables",
     note = "face-vertex, winged-edge, half-edge meshes and corner tables can, in their compact form: \
@@ -141,18 +146,20 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
     /// The splits that the structure supports. `Sqrt3` stands for both values of `trisect`.
     const SPLITS: &'static [Split];
 
-    /// The numbers of the edges, computed once per mesh; the memory is reused for the next mesh. A
-    /// table by corner, or, if edges are rows, only what `split_into` and `parent` look up.
+    /// The numbers of the edges, computed once per mesh; the memory is reused for the next mesh.
+    ///
+    /// If edges are rows, this type holds only the data that `split_into` and `parent` look up.
+    /// Otherwise it is a table by corner.
     type EdgeNumbers: Default + Send + Sync;
 
-    /// Returns a mesh without elements, to be refined into.
+    /// Returns a mesh without elements, as a target for refinement.
     fn empty() -> Self;
 
     /// Numbers the edges in the order of `edges()`; O(corners) or less.
     fn number_edges(&self, numbers: &mut Self::EdgeNumbers);
 
-    /// Returns the division of the numbered edges into chunks of a few thousand, for parallel
-    /// passes: the first number of each chunk, and at the end the number of edges. `[0]` for a mesh
+    /// Divides the numbered edges into chunks of a few thousand, for parallel passes. Returns the
+    /// first number of each chunk, followed by the number of edges. Returns `[0]` for a mesh
     /// without edges.
     fn edge_chunks(&self, numbers: &Self::EdgeNumbers) -> Vec<usize>;
 
@@ -169,14 +176,17 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
 
     /// Overwrites `child` with the split mesh; the caller must write the positions of the child.
     ///
-    /// `numbers` are those of this mesh.
+    /// `numbers` are the edge numbers of this mesh.
     ///
     /// # Errors
     ///
-    /// Returns [`RefineError`] and leaves `child` unchanged if the split is not in
-    /// [`SPLITS`](Self::SPLITS), if a face is not a triangle but must be, if two triangles share
-    /// two edges and edges can have at most two faces, or if the child would have too many elements
-    /// for its handles. The last is checked before anything is allocated.
+    /// Returns [`RefineError`] and leaves `child` unchanged in these cases:
+    ///
+    /// - the split is not in [`SPLITS`](Self::SPLITS);
+    /// - a face is not a triangle, but the split requires triangles;
+    /// - two triangles share two edges, and the structure allows at most two faces per edge;
+    /// - the child would have too many elements for its handles. This is checked before any
+    ///   allocation.
     fn split_into(
         &self,
         split: Split,
@@ -184,10 +194,12 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
         child: &mut Self,
     ) -> Result<(), RefineError>;
 
-    /// Returns the face of this mesh of which `child`, a face of the mesh after `split`, is a part;
-    /// O(1), or O(log faces) if degrees are mixed or there is a boundary. A triangle of the √3
-    /// split across an old inner edge belongs to the face whose side along that edge starts at the
-    /// triangle's old vertex. `numbers` are those of this mesh.
+    /// Returns the face of this mesh that contains `child`, a face of the mesh after `split`; O(1),
+    /// or O(log faces) if degrees are mixed or there is a boundary. `numbers` are the edge numbers
+    /// of this mesh.
+    ///
+    /// In the √3 split, a triangle can lie across an old inner edge. Its parent is the face whose
+    /// side along that edge starts at the triangle's old vertex.
     fn parent(&self, numbers: &Self::EdgeNumbers, split: Split, child: FaceId) -> FaceId;
 
     /// Returns all positions by vertex, for writing.
@@ -197,12 +209,12 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
     fn position_rows(&self) -> &[Point];
 }
 
-/// Checks the split and the size of the child, as the first step of every [`Refine::split_into`];
-/// returns the sizes of the child.
+/// Checks the split and the size of the child; returns the sizes of the child. This is the first
+/// step of every [`Refine::split_into`].
 ///
 /// # Errors
 ///
-/// Returns an unsupported split, or too many elements.
+/// Returns an error if the split is not supported, or if the child would have too many elements.
 pub fn check_split<M: Refine>(
     split: Split,
     counts: &Counts,
@@ -214,7 +226,8 @@ pub fn check_split<M: Refine>(
         return Err(RefineError::Unsupported { structure, split });
     }
     let refined = split.refined_counts(counts, boundary);
-    // Half-edges and corners are rows, so twice the edges and all corners must fit handles too.
+    // Half-edges and corners are rows too, so twice the number of edges and the number of corners
+    // must also be within the limit.
     for (elements, number) in [
         ("vertices", refined.vertices),
         ("half-edges", refined.edges.saturating_mul(2)),
@@ -231,12 +244,12 @@ pub fn check_split<M: Refine>(
     Ok(refined)
 }
 
-/// The number of rows that a thread takes at a time: few enough to share evenly, enough to outweigh
-/// the overhead.
+/// The number of rows that a thread takes at a time. It is small enough to divide the work evenly,
+/// and large enough to outweigh the overhead.
 pub const CHUNK_ROWS: usize = 4096;
 
-/// Returns the starts of chunks of [`CHUNK_ROWS`] rows, and at the end the number of rows: the
-/// [`edge_chunks`](Refine::edge_chunks) of structures whose edges are rows.
+/// Returns the first row of each chunk of [`CHUNK_ROWS`] rows, followed by the number of rows.
+/// Structures whose edges are rows return this as their [`edge_chunks`](Refine::edge_chunks).
 pub fn chunk_starts(rows: usize) -> Vec<usize> {
     (0..rows).step_by(CHUNK_ROWS).chain([rows]).collect()
 }
@@ -247,12 +260,12 @@ pub fn rows_of_chunk(rows: usize, chunk: usize) -> Range<u32> {
     row(start)..row((start + CHUNK_ROWS).min(rows))
 }
 
-/// Calls `work` with every chunk of `rows` and the number of its first row; chunks have `len` rows,
-/// the last may have fewer. With the feature `rayon`, the threads of the current rayon pool share
-/// the chunks.
+/// Calls `work` with every chunk of `rows` and the number of its first row. Chunks have `len` rows;
+/// the last chunk may have fewer. With the feature `rayon`, the threads of the current rayon pool
+/// share the chunks.
 ///
-/// On one thread it is a plain loop. What `work` writes must depend only on the rows, not on their
-/// chunk: then the result is the same on any number of threads.
+/// On one thread, this is a plain loop. The values that `work` writes must depend only on the rows,
+/// not on their chunk. Then the result is the same on any number of threads.
 pub fn for_each_chunk<T: Send>(rows: &mut [T], len: usize, work: impl Fn(usize, &mut [T]) + Sync) {
     #[cfg(feature = "rayon")]
     if rows.len() > len && rayon::current_num_threads() > 1 {
@@ -266,8 +279,8 @@ pub fn for_each_chunk<T: Send>(rows: &mut [T], len: usize, work: impl Fn(usize, 
 }
 
 /// Calls `work` like [`for_each_chunk`], for chunks of different lengths: chunk `i` has the rows
-/// `starts[i]..starts[i + 1]`. `work` gets the number of the chunk; its results are returned in the
-/// order of the chunks.
+/// `starts[i]..starts[i + 1]`. `work` gets the number of the chunk. The results of `work` are
+/// returned in the order of the chunks.
 ///
 /// # Panics
 ///
@@ -299,7 +312,7 @@ pub fn map_chunks<T: Send, R: Send>(
 }
 
 /// Returns whether `holds` is true for all `rows`. With the feature `rayon`, the threads of the
-/// current rayon pool share them.
+/// current rayon pool share the rows.
 ///
 /// There is no early exit inside a chunk of [`CHUNK_ROWS`] rows, so that the loop can be
 /// vectorised.

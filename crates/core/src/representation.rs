@@ -76,11 +76,12 @@ impl fmt::Display for Relation {
     serde(rename_all = "snake_case")
 )]
 pub enum QueryCost {
-    /// O(1) for each element that it yields.
+    /// The query reads O(1) for each element that it yields.
     Constant,
-    /// The faces around the element; independent of the size of the mesh.
+    /// The query reads the faces around the element. The cost does not depend on the size of the
+    /// mesh.
     Local,
-    /// All faces.
+    /// The query reads all faces.
     Scan,
 }
 
@@ -102,14 +103,16 @@ impl QueryCost {
 ///
 /// # Contract
 ///
-/// - `from_polygons` succeeds exactly if [`CAPABILITIES`](MeshQuery::CAPABILITIES)`.check` does, and
-///   returns the same error, except for a mesh with too many elements for its handles.
-/// - `faces()` and `vertices()` keep the order of the input; if a vertex is its coordinates,
-///   vertices come in the order in which faces first name them.
-/// - `to_polygons(from_polygons(m))` is `m` up to the start of each face. If a vertex is its
-///   coordinates, vertices with equal coordinates become one, in the order of `vertices()`.
+/// - `from_polygons` succeeds exactly if [`CAPABILITIES`](MeshQuery::CAPABILITIES)`.check`
+///   succeeds; otherwise both return the same error. The only exception is a mesh with too many
+///   elements for the handles of the structure.
+/// - `faces()` and `vertices()` keep the order of the input. If vertices are identified by
+///   coordinates, the vertices come instead in the order in which the faces first name them.
+/// - `to_polygons(from_polygons(m))` equals `m`, except that a face may start at another corner. If
+///   vertices are identified by coordinates, vertices with equal coordinates become one vertex, and
+///   the result has the order of `vertices()`.
 pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
-    /// The name for users: `half-edge`.
+    /// The name that users see: `half-edge`.
     const NAME: &'static str;
 
     /// How much of the mesh each relation reads, in the order of [`Relation::ALL`].
@@ -127,8 +130,8 @@ pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
         QueryCost::are_local(&Self::COSTS)
     }
 
-    /// Returns the path of the type for users: `sixfold_half_edge::HalfEdgeMesh`. The crate is the
-    /// first part.
+    /// Returns the path of the type that users see: `sixfold_half_edge::HalfEdgeMesh`. The first
+    /// part is the crate.
     fn type_path() -> &'static str {
         std::any::type_name::<Self>()
     }
@@ -152,22 +155,23 @@ pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
     /// Moves every vertex to its position in `positions`; O(vertices), or O(corners) if corners do
     /// not share vertices.
     ///
-    /// If a vertex is its coordinates, this changes its handle, and vertices that move to one
-    /// position become one.
+    /// If vertices are identified by coordinates, their handles change, and vertices that move to
+    /// one position become one vertex.
     ///
     /// # Errors
     ///
-    /// [`MoveError`] if the map belongs to another mesh, or if a vertex is its coordinates and two
-    /// corners of a face would be at one position. No vertex has moved then.
+    /// Returns [`MoveError`] if the map belongs to another mesh. If vertices are identified by
+    /// coordinates, also returns this error if two corners of a face would be at one position.
+    /// After an error, every vertex has its old position.
     fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError>;
 
-    /// Returns the bytes held on the heap, table by table.
+    /// Returns the bytes that each table holds on the heap.
     fn memory(&self) -> MemoryFootprint;
 
     /// Checks every invariant that the structure's documentation numbers; O(corners) expected.
     ///
     /// # Errors
     ///
-    /// Returns the number of the first invariant that fails, and where.
+    /// Returns the number of the first invariant that fails, and the place where it fails.
     fn validate(&self) -> Result<(), InvariantError>;
 }

@@ -5,16 +5,15 @@ use std::marker::PhantomData;
 
 use crate::handle::Handle;
 
-/// The largest number of rows of a table: every row fits a `u32`, and one value is left for an
-/// empty slot.
+/// The largest number of rows of a table. With this limit, every row number fits a `u32`, and one
+/// value is left for an empty slot.
 pub const MAX_ROWS: usize = u32::MAX as usize;
 
-/// Converts `index`, which must be valid as a row number, to one.
+/// Converts `index` to a row number.
 ///
 /// # Panics
 ///
-/// Panics if `index` is larger than [`MAX_ROWS`]: the code that made the table should have refused
-/// it.
+/// Panics if `index` is larger than [`MAX_ROWS`]; code that builds a table must refuse such sizes.
 #[inline]
 pub fn row(index: usize) -> u32 {
     assert!(
@@ -35,7 +34,7 @@ pub trait RowId: Handle {
 
 /// Defines a [`RowId`] newtype: `row_id!(/// docs… pub struct FaceId, "f");`
 ///
-/// It prints as its letter, then the row (`f7`).
+/// A handle prints as the letter and the row: `f7`.
 #[macro_export]
 macro_rules! row_id {
     ($(#[$doc:meta])* $vis:vis struct $name:ident, $letter:literal) => {
@@ -116,9 +115,9 @@ row_id! {
 
 /// `Option<H>` in the four bytes of a table cell.
 ///
-/// The niche of `NonZeroU32` (row + 1) was measured: it took 8 to 15 % more time in a one-ring
-/// sweep. So the cell holds the row itself, and the one value that [`MAX_ROWS`] leaves free means
-/// empty; it is not visible outside this type.
+/// An alternative with the niche of `NonZeroU32` (row + 1) was measured: a one-ring sweep took 8 to
+/// 15 % more time. So the cell holds the row itself, and the one value that [`MAX_ROWS`] leaves
+/// free means empty. This value is not visible outside this type.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Slot<H> {
     row: u32,

@@ -1,11 +1,11 @@
 //! The edits of structures that scan: their legality, their effect on the faces, and their reports.
 //!
-//! Each edit gets the handle of a new vertex as an argument, checks everything, and then changes
-//! only the faces; the structure updates its table of vertices, if it has one. The hits of a scan
-//! are kept for that one edit, on the stack if they are few.
+//! If an edit adds a vertex, it gets the new handle as an argument. Each edit checks everything,
+//! and then changes only the faces; the structure updates its table of vertices, if it has one. The
+//! hits of a scan are kept only during the edit, on the stack if there are few.
 //!
-//! If the log ignores reports, an edit of one face reads only that face: whether other faces have
-//! its sides and corners is then not computed, because these structures do not need it.
+//! If the log ignores reports, an edit of one face reads only that face. These structures then need
+//! not compute whether other faces have the same sides and corners.
 
 mod collapse;
 mod edges;
@@ -45,8 +45,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         self.spans.range(f).len()
     }
 
-    /// Checks that handles can name this many more faces and corners. A face that grows moves, and
-    /// takes new rows for all its corners.
+    /// Checks that handles can name this many more faces and corners. A face that gets more corners
+    /// moves, and needs new rows for all its corners.
     fn check_capacity(&self, faces: usize, corners: usize) -> Result<(), Refusal<V>> {
         check_rows("faces", self.spans.len() + faces, MAX_ROWS)?;
         check_rows("corners", self.corners.len() + corners, MAX_ROWS)
@@ -57,8 +57,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         self.scan(SearchSet::One(v)).next().is_some()
     }
 
-    /// Returns the corners at `v`. If a vertex is its coordinates, the same scan checks that the
-    /// position `m` is free.
+    /// Returns the corners at `v`. If vertices are identified by coordinates, the same scan checks
+    /// that the position `m` is free.
     fn hits_at(&self, v: V, m: V) -> Result<ShortVec<Hit<V>>, Refusal<V>> {
         let set = if V::IS_POSITION {
             SearchSet::Two([v, m])

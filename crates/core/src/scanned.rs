@@ -20,10 +20,11 @@ pub trait ScannedVertex: Handle {
     type Corner: Copy;
     /// A set of vertices, to test whether a corner is at one of them.
     type Set;
-    /// A handle that no vertex has: corners of deleted faces have it, and no scan searches for it.
+    /// A handle that no vertex has. Corners of deleted faces have this handle, and no scan searches
+    /// for it.
     const BLANK: Self;
-    /// Whether a vertex is its coordinates: then it exists as long as a face has it, and no two
-    /// vertices are at one position.
+    /// Whether vertices are identified by coordinates. If so, a vertex exists as long as a face has
+    /// it, and no two vertices are at one position.
     const IS_POSITION: bool;
 
     /// Returns the vertex of a corner.
@@ -166,8 +167,8 @@ impl<V: Handle> Hit<V> {
 /// The faces of a structure that stores no other connectivity: lists of corners, one after another.
 ///
 /// Every query and every edit scans all corners to find the faces at a vertex or along an edge.
-/// Corners without a face, because it was deleted or moved to another place in the table, are
-/// blank: no scan finds them.
+/// When a face is deleted or moved to another place in the table, its old corners become blank. No
+/// scan finds blank corners.
 #[derive(Debug)]
 pub struct ScannedFaces<V: ScannedVertex, P: Probe = Untraced, E: Editing = Compact> {
     /// The corners, face by face.
@@ -257,8 +258,8 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
     #[inline]
     pub fn face(&self, f: FaceId) -> &[V::Corner] {
         let corners = self.corners.read_range(self.spans.range(f));
-        // Checks the holes and not whether the first corner is blank: a loop over faces reads the
-        // number of holes only once.
+        // This checks the holes, not whether the first corner is blank, because a loop over faces
+        // reads the number of holes only once.
         if self.holes.has(f.index()) {
             deleted(f);
         }

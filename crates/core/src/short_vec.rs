@@ -5,8 +5,8 @@ use smallvec::SmallVec;
 /// The number of items that are stored on the stack and compared one by one.
 const INLINE_LEN: usize = 16;
 
-/// A list of a neighbourhood: up to 16 items on the stack, which is more than the valence of nearly
-/// every vertex; more items on the heap.
+/// A list of the elements in a neighbourhood. Up to 16 items are stored on the stack, which is
+/// enough for nearly every vertex; a longer list is stored on the heap.
 pub type ShortVec<T> = SmallVec<[T; INLINE_LEN]>;
 
 /// Search for items in a list: one by one if there are few, by bisection if there are many.

@@ -72,7 +72,8 @@ fn sides_of_each<'a>(
     }
 }
 
-/// Visits sides like `sides_of_each`, with a degree known to the compiler, which unrolls the face.
+/// Visits sides like `sides_of_each`. The degree is a constant, so the compiler unrolls the loop
+/// over a face.
 #[inline(always)]
 fn sides_of_uniform<const DEGREE: usize>(
     corners: &[VertexId],
@@ -95,8 +96,8 @@ pub(crate) struct Buckets<T> {
 }
 
 impl<T: Copy + Default> Buckets<T> {
-    /// Visits the sides twice: to count them, and to place the result of `entry` for the two ends
-    /// and the corner of each side; O(corners + vertices).
+    /// Builds the buckets in two passes; O(corners + vertices). The first pass counts the sides.
+    /// The second stores the result of `entry` for the two ends and the corner of each side.
     #[inline(always)]
     pub(crate) fn new(
         vertices: usize,
@@ -141,12 +142,12 @@ pub(crate) fn fill_buckets(
 }
 
 impl<P: Probe, E: Editing> FaceSpans<P, E> {
-    /// Returns every edge of the faces that have these corners and are not holes, once, by the
-    /// lower end.
+    /// Returns every edge of the faces once, ordered by the lower end. Faces that are holes are
+    /// skipped.
     ///
     /// The higher ends are put into one bucket for each lower end (a counting sort over all sides);
-    /// in a bucket, each is yielded when it first occurs. O(corners + vertices). No face is
-    /// searched, so a face with very many corners costs no more than its corners.
+    /// within a bucket, each higher end is yielded at its first occurrence. O(corners + vertices).
+    /// The cost of a face is linear in its corners, because no face is searched.
     ///
     /// # Panics
     ///
@@ -159,8 +160,8 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
     ) -> impl Iterator<Item = Pair<VertexId>> + use<P, E> {
         let higher_end = |a: VertexId, b: VertexId, _| a.max(b).index() as u32;
         let Buckets { entries, ends } = Buckets::new(vertices, &(self, corners, holes), higher_end);
-        // By vertex: the lower end of the last edge with this higher end; at first the vertex
-        // itself, which is never its own lower end.
+        // By vertex: the lower end of the last edge with this higher end; initially the vertex
+        // itself, because a vertex is never its own lower end.
         let mut last_low: Vec<u32> = (0..row(vertices)).collect();
         let (mut low, mut at) = (0_u32, 0);
         std::iter::from_fn(move || {

@@ -10,7 +10,8 @@ use crate::memory::TableBytes;
 use crate::probe::{Probe, Untraced};
 use crate::row_id::VertexId;
 
-/// The rows of one column of a structure; every access in query and edit code uses it.
+/// The rows of one column of a structure; query and edit code accesses the rows only through this
+/// type.
 ///
 /// With the probe [`Untraced`] a read is only a bounds-checked index (the benchmark group
 /// `zero_cost` compares it with bare slices). Each table stores its name and the kind of its rows,
@@ -194,8 +195,8 @@ impl<T, P: Probe> Table<T, P> {
         &mut self.rows
     }
 
-    /// Changes the number of rows to `len`, to be overwritten: their content is arbitrary. Does not
-    /// move a table that is large enough. Not observed.
+    /// Changes the number of rows to `len`. The content of the rows is arbitrary, so the caller
+    /// must overwrite it. The table is not moved if its capacity is large enough. Not observed.
     pub fn resize(&mut self, len: usize, blank: T)
     where
         T: Copy,
@@ -230,9 +231,9 @@ impl<T, P: Probe> Table<T, P> {
 }
 
 impl<P: Probe> Table<Point, P> {
-    /// Moves every vertex to its position in `positions`: the implementation of
-    /// [`set_positions`](crate::Representation::set_positions) for structures with a table of
-    /// positions. O(vertices), not observed.
+    /// Moves every vertex to its position in `positions`; O(vertices), not observed. This
+    /// implements [`set_positions`](crate::Representation::set_positions) for structures with a
+    /// table of positions.
     ///
     /// # Errors
     ///
@@ -257,8 +258,8 @@ impl<T: Clone, P: Probe> Clone for Table<T, P> {
         }
     }
 
-    /// Copies the rows into the memory of this table: allocates only if they do not fit, and keeps
-    /// spare capacity.
+    /// Copies the rows into the memory of this table. Allocates only if the rows do not fit, and
+    /// keeps spare capacity.
     fn clone_from(&mut self, source: &Self) {
         self.rows.clone_from(&source.rows);
         self.name = source.name;

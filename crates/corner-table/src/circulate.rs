@@ -370,7 +370,7 @@ impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
     }
 }
 
-/// Returns the corner `at`, unless the walk ends there: at `far` or at a boundary.
+/// Returns the corner `at`, or `None` if the walk ends there: at `far` or at a boundary.
 #[inline(always)]
 fn before(at: Option<CornerId>, far: Slot<CornerId>) -> Option<CornerId> {
     at.filter(|&at| Slot::some(at) != far)

@@ -28,7 +28,7 @@ impl<E: Editing> Representation for CornerTable<E> {
         if !faces.is_empty() && faces.uniform_degree() != Some(3) {
             return Err(refusal());
         }
-        // Scratch memory for the pairing first; then filled with the vertices.
+        // First the scratch memory of the pairing, later the table of vertices.
         let mut vertex = vec![VertexId::new(0); faces.corners().len()];
         let links = Links::from_faces(vertices, faces, &mut vertex).ok_or_else(refusal)?;
         vertex.copy_from_slice(faces.corners());
@@ -131,7 +131,7 @@ struct Links {
 }
 
 impl Links {
-    /// Finds for each corner the one that faces the same edge from the other side; O(corners +
+    /// Finds for each corner the corner that faces the same edge from the other side; O(corners +
     /// vertices). Returns `None` if the sides cannot be paired. `scratch` has one row per corner.
     fn from_faces(vertices: usize, faces: &FaceList, scratch: &mut [VertexId]) -> Option<Self> {
         let mut opposite = vec![Slot::some(CornerId::new(0)); faces.corners().len()];
@@ -143,8 +143,9 @@ impl Links {
         let closed = opposite.len() == 2 * edges;
         let mut first = 0;
         let triangles = opposite.as_chunks_mut::<3>().0.iter_mut();
-        // The scratch memory of the pairing has one row per corner and is free again: it stores the
-        // swings. With stored swings the walks around all vertices take half the time.
+        // The pairing no longer needs its scratch memory, which has one row per corner. So this
+        // memory stores the swings. With stored swings the walks around all vertices take half the
+        // time.
         for (triangle, swing) in triangles.zip(swing.as_chunks_mut::<3>().0) {
             if !closed {
                 // The pairing has paired a corner that faces a boundary edge with itself.
@@ -168,7 +169,7 @@ impl Links {
         })
     }
 
-    /// Returns a corner for each vertex; on a boundary, the one that has no `unswing`.
+    /// Returns a corner for each vertex; on a boundary, the corner that has no `unswing`.
     fn first_corners(&self, vertices: usize, vertex: &[VertexId]) -> Vec<Slot<CornerId>> {
         let mut first = vec![Slot::NONE; vertices];
         for (c, v) in (0..).zip(vertex) {

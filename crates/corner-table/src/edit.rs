@@ -1,7 +1,7 @@
 //! Edits in place.
 //!
-//! Every edit changes one triangle, the two triangles at an edge, or the fan of a vertex, named
-//! thus:
+//! Every edit changes one triangle, the two triangles at an edge, or the fan of a vertex. The
+//! figure names their corners and edges:
 //!
 //! ```text
 //!            C
@@ -20,8 +20,9 @@
 //!            D
 //! ```
 //!
-//! The handle of an edge is the lower of the two corners that face it. If another corner comes to
-//! face an edge, the handle may change. New triangles have the highest rows and change no handle.
+//! The handle of an edge is the lower of the two corners that face it. If an edit changes the
+//! corners that face an edge, the handle may change. New triangles have the highest rows and change
+//! no handle.
 
 mod collapse;
 mod compact;
@@ -309,7 +310,8 @@ impl<P: Probe> CornerTable<Editable, P> {
         self.opposite.extend(opposites);
     }
 
-    /// Sets the opposite of `across` to `c`, if `across` is not empty. The caller links `c`.
+    /// Sets the opposite of `across` to `c`, if `across` is not empty. The caller sets the opposite
+    /// of `c`.
     #[inline]
     fn set_opposite(&mut self, across: Slot<CornerId>, c: Slot<CornerId>) {
         if let Some(across) = across.get() {
@@ -325,7 +327,8 @@ impl<P: Probe> CornerTable<Editable, P> {
         }
     }
 
-    /// Marks `f` as deleted (I8). No other corner may be opposite to its corners any more.
+    /// Marks `f` as deleted (I8). The caller has unlinked its corners: no other corner may be
+    /// opposite to them.
     #[inline]
     fn delete_triangle(&mut self, f: FaceId) {
         let first = 3 * f.row();

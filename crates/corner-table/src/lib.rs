@@ -3,8 +3,9 @@
 //! Use it for large triangle meshes with neighbour queries. It is the smallest structure that
 //! answers every query without a search of the whole mesh. Its `vertex` table is an index list that
 //! a renderer accepts unchanged. It does not hold polygons or edges with three faces: building from
-//! them returns an error. Start at [`generic::CornerTable`]; its numbered invariants define the tables.
-//! After Rossignac, Safonova & Szymczak, *3D compression made simple* (2001).
+//! them returns an error. Start at [`generic::CornerTable`]; its numbered invariants define the
+//! tables. The structure follows Rossignac, Safonova & Szymczak, *3D compression made simple*
+//! (2001).
 //!
 //! | holds | |
 //! |---|---|
@@ -46,25 +47,25 @@
 //! | `split_edge`, `split_face`, `dissolve_edge` | | not supported: they make polygons |
 //! | `compact` | O(corners + vertices) | every row |
 //!
-//! An edit can change which corner has the lower row of the two that face an edge. The edge then
-//! has a new handle, which the edit reports to the [`EditLog`](sixfold_core::EditLog).
+//! An edit can change which of the two corners that face an edge has the lower row. The edge then
+//! has a new handle, and the edit reports it to the [`EditLog`](sixfold_core::EditLog).
 //!
-//! Corner `c` belongs to triangle `c / 3`. `next` and `prev` are computed; a half-edge mesh stores
-//! them. An edge is named by the lower of the corners that face it. Data by edge is a vector with
-//! one row per corner, without hashing; half of the rows are unused.
+//! Corner `c` belongs to triangle `c / 3`. `next` and `prev` are computed, not stored. An edge is
+//! named by the lower of the corners that face it. Data by edge is a vector with one row per
+//! corner, without hashing; half of the rows are unused.
 //!
 //! # What limits the speed of the sweeps
 //!
 //! Around a vertex, each step needs the row that the step before it read. A step is a load and the
 //! computation of `prev`: a multiplication for `c % 3`, a comparison and a selection. It takes
 //! about ten cycles if the tables are in the nearest cache. This chain of dependent steps is the
-//! cost of not storing `next`. It limits VV, VE, VF and EE if the vertices are visited in order;
-//! the number of bytes does not. Smoothing took 18 ns per vertex on 2,562 vertices and 27 ns on
-//! 40,962, and moved 76 bytes per vertex (icospheres, one core of a shared AMD EPYC). In random
-//! order, the limit is the latency of the cache or memory at each step: 58 ns per vertex on 82,000
-//! triangles, and 390 ns on 1.3 million, which is one memory access per neighbour. FV, FE and FF
-//! read three rows in sequence; their limit is the work done with the result. The same holds for
-//! listing the edges and for EF, at 1.5 ns per edge.
+//! cost of not storing `next`. If the vertices are visited in order, the chain limits VV, VE, VF
+//! and EE; the number of bytes has no effect. Smoothing took 18 ns per vertex on 2,562 vertices and
+//! 27 ns on 40,962, and moved 76 bytes per vertex (icospheres, one core of a shared AMD EPYC). In
+//! random order, the limit is the latency of the cache or memory at each step. A vertex takes 58 ns
+//! on 82,000 triangles. On 1.3 million triangles it takes 390 ns, which is one memory access per
+//! neighbour. FV, FE and FF read three rows in sequence. Their limit is the work done with the
+//! result. This is also the limit of EF and of listing the edges, at 1.5 ns per edge.
 //!
 //! # Examples
 //!

@@ -11,7 +11,7 @@ row_id! {
 }
 
 row_id! {
-    /// The handle of one edge, `e7`: the corner that faces it, the lower of the two.
+    /// The handle of one edge, `e7`: the lower of the two corners that face the edge.
     ///
     /// Data by edge is a vector with one row per corner; a closed mesh uses half of the rows.
     pub struct EdgeCorner, "e"
@@ -20,8 +20,8 @@ row_id! {
 impl CornerId {
     /// Returns the next corner in its triangle, counter-clockwise.
     ///
-    /// Uses a comparison: `3 * (c / 3) + (c + 1) % 3` has two divisions, this code one
-    /// multiplication. Every step around a vertex depends on the result.
+    /// Uses a comparison and one multiplication; `3 * (c / 3) + (c + 1) % 3` would need two
+    /// divisions. The speed matters because every step around a vertex waits for the result.
     #[inline]
     pub const fn next(self) -> Self {
         let c = self.index() as u32;
@@ -43,7 +43,7 @@ impl CornerId {
 }
 
 impl EdgeCorner {
-    /// Returns the corner that faces the edge, the lower of the two.
+    /// Returns the lower of the two corners that face the edge.
     #[inline]
     pub const fn corner(self) -> CornerId {
         CornerId::new(self.index() as u32)
@@ -78,16 +78,17 @@ impl EdgeCorner {
 /// - I7  No two edges have the same ends.
 /// - I8  The corners of a deleted triangle have the vertex row `u32::MAX`, and each is its own
 ///   opposite. No other corner is its own opposite. A deleted vertex has no corner. `face_holes`
-///   and `vertex_holes` contain exactly these rows.
+///   and `vertex_holes` contain exactly the deleted rows.
 ///
-/// I1 to I7 are about elements that are not deleted. I8 makes the test for an edge handle simple: a
-/// corner names an edge if and only if its opposite has a higher row or is `None`. So a corner of
-/// a deleted triangle names no edge, and the test need not read `face_holes`.
+/// I1 to I7 apply to elements that are not deleted. I8 makes the test for an edge handle simple: a
+/// corner names an edge if and only if its opposite has a higher row or is `None`. So a corner of a
+/// deleted triangle names no edge, and the test need not read `face_holes`.
 ///
 /// # Memory
 ///
-/// 12 bytes per vertex for its position and 4 for `corner`, 24 per triangle: 64 bytes, or 16 words,
-/// per vertex of a large closed mesh. After the first deletion, also one bit per row.
+/// The tables use 12 bytes per vertex for its position and 4 for `corner`, and 24 bytes per
+/// triangle. A large closed mesh uses 64 bytes, or 16 words, per vertex. After the first deletion,
+/// the tables also use one bit per row.
 #[derive(Debug)]
 pub struct CornerTable<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,
@@ -119,8 +120,8 @@ impl<P: Probe> From<CornerTable<Compact, P>> for CornerTable<Editable, P> {
 pub(crate) const NO_VERTEX: VertexId = VertexId::new(u32::MAX);
 
 /// The operators of the corner table (Rossignac et al.), each O(1). An operator that reads a table
-/// panics with the row if the row does not exist. The operators do not check for deleted triangles:
-/// for their corners they return what I8 states.
+/// panics if the row does not exist; the message names the row. The operators do not check for
+/// deleted triangles. For a corner of a deleted triangle, they return the values that I8 states.
 impl<P: Probe, E: Editing> CornerTable<E, P> {
     /// Returns the vertex at the corner `c`.
     #[inline]
@@ -178,10 +179,11 @@ impl<P: Probe, E: Editing> CornerTable<E, P> {
     }
 }
 
-/// Conversions between vertices, triangles, edges and corners. Each panics as the operators do.
+/// Conversions between vertices, triangles, edges and corners. Like the operators, each panics if a
+/// row does not exist.
 impl<P: Probe, E: Editing> CornerTable<E, P> {
-    /// Returns a corner at `v`, the first of the fan on a boundary; `None` if `v` is isolated.
-    /// O(1).
+    /// Returns a corner at `v`, or `None` if `v` is isolated; O(1). If `v` is on a boundary, the
+    /// corner is the first of the fan.
     #[inline]
     pub fn corner_at(&self, v: VertexId) -> Option<CornerId> {
         let corner = self.corner.read(v.index()).get();
@@ -336,20 +338,20 @@ pub(crate) fn edge_between(c: CornerId, across: Slot<CornerId>) -> EdgeCorner {
     EdgeCorner::new(lower.index() as u32)
 }
 
-/// Returns the edge that `c` faces, if `c` names it; `across` is opposite to `c`. Also for a deleted
-/// triangle.
+/// Returns the edge that `c` faces, if `c` names it; `across` is opposite to `c`. A corner of a
+/// deleted triangle also gives an edge.
 ///
-/// The lower corner is chosen first, and compared with `c` afterwards. The compiler can then use the
-/// result without a branch, which it does not with [`names_edge`]: a count of boundary edges in
-/// random order takes 1.4 ns instead of 4 ns for each edge (20,480 triangles).
+/// The lower corner is chosen first, and compared with `c` afterwards. The compiler can then use
+/// the result without a branch; with [`names_edge`] it adds a branch. A count of boundary edges in
+/// random order takes 1.4 ns per edge instead of 4 ns (20,480 triangles).
 #[inline(always)]
 pub(crate) fn named_edge(c: CornerId, across: Slot<CornerId>) -> Option<EdgeCorner> {
     let edge = edge_between(c, across);
     (edge.corner() == c).then_some(edge)
 }
 
-/// Returns whether `c`, with `across` opposite to it, is the corner that names the edge. False for
-/// a deleted triangle, whose corners are their own opposites.
+/// Returns whether `c` names the edge that it faces; `across` is opposite to `c`. Returns false for
+/// a corner of a deleted triangle, because such a corner is its own opposite.
 #[inline(always)]
 pub(crate) fn names_edge(c: CornerId, across: Slot<CornerId>) -> bool {
     // An empty slot is greater than every corner.

@@ -147,7 +147,7 @@ impl<P: Probe, E: Editing> MeshQuery for CornerTable<E, P> {
         self.vertex.len() / 3
     }
 
-    /// Returns `vertex_vertices`, which are in order: counter-clockwise, from the boundary.
+    /// Returns `vertex_vertices`, because its order is counter-clockwise from the boundary.
     fn one_ring(&self, v: VertexId) -> Option<impl Iterator<Item = VertexId>> {
         Some(self.vertex_vertices(v))
     }

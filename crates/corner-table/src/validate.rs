@@ -227,15 +227,16 @@ mod tests {
         // I3: the pair faces two different edges; the pair runs one edge in the same direction.
         assert_eq!(broken(|m| m.vertex.rows_mut()[3] = v(1)), "I3");
         assert_eq!(broken(|m| m.vertex.rows_mut().swap(3, 4)), "I3");
-        // I4: a corner that does not exist, one elsewhere, none, and one for an isolated vertex.
+        // I4: a corner that does not exist, a corner at another vertex, no corner, and a corner for
+        // an isolated vertex.
         assert_eq!(broken(|m| m.corner.rows_mut()[0] = c(99)), "I4");
         assert_eq!(broken(|m| m.corner.rows_mut()[0] = c(1)), "I4");
         assert_eq!(broken(|m| m.corner.rows_mut()[0] = Slot::NONE), "I4");
         assert_eq!(broken(|m| m.corner.rows_mut()[4] = c(0)), "I4");
         // I5: corner(v0) is the second corner of its fan.
         assert_eq!(broken(|m| m.corner.rows_mut()[0] = c(3)), "I5");
-        // I8: holes without marks, marks without a hole, a deleted vertex with a corner, one in a
-        // face.
+        // I8: holes without marks, marks without a hole, a deleted vertex with a corner, a deleted
+        // vertex in a face.
         assert_eq!(broken(|m| m.face_holes.insert(0)), "I8");
         assert_eq!(broken(|m| m.face_holes.insert(2)), "I8");
         assert_eq!(broken(|m| m.vertex.rows_mut()[2] = NO_VERTEX), "I8");
@@ -250,7 +251,7 @@ mod tests {
 
     #[test]
     fn a_vertex_with_two_fans_is_reported() {
-        // Two separate triangles; then one vertex of each is made the same.
+        // Two separate triangles; then a vertex of one replaces a vertex of the other.
         let mut mesh = table(6, [[0, 1, 2], [3, 4, 5]]);
         mesh.vertex.rows_mut()[5] = VertexId::new(0);
         mesh.corner.rows_mut()[5] = Slot::NONE;

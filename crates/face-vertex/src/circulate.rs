@@ -11,7 +11,8 @@ use crate::mesh::FaceVertexMesh;
 /// Maximum number of handles that a result stores inline.
 const FEW: usize = 32;
 
-/// Maximum number of sides for which comparisons find repeated neighbours; above, a hash set does.
+/// Maximum number of sides for which comparisons find repeated neighbours. For more sides, a hash
+/// set finds them.
 const FEW_SIDES: usize = 8;
 
 /// Returns the vertices before and after `v` in a face that contains `v`.
@@ -22,7 +23,7 @@ const FEW_SIDES: usize = 8;
 #[inline]
 pub(crate) fn neighbours_in(face: &[VertexId], v: VertexId) -> [VertexId; 2] {
     if let &[a, b, c] = face {
-        // Two selections each and no branch, because the place of `v` is unpredictable.
+        // Uses two selections for each and no branch, because the place of `v` is unpredictable.
         let before = if v == b {
             a
         } else if v == a {
@@ -59,8 +60,9 @@ pub(crate) fn has_side_between(face: &[VertexId], v: VertexId, other: VertexId) 
 
 /// Moves the first of each group of equal items to the front; returns the number of distinct items.
 ///
-/// Compares each item with all distinct items before it, without a branch. Which items are new is
-/// unpredictable, and a branch misprediction costs more than the comparison with a whole ring.
+/// Compares each item with all distinct items before it, without a branch. It is unpredictable
+/// which items are new, and a branch misprediction costs more than the comparison with a whole
+/// ring.
 #[inline]
 fn keep_distinct<T: Copy + PartialEq>(items: &mut [T]) -> usize {
     let mut kept = 0;
@@ -152,7 +154,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
             ring.many = self.many_neighbours(fan, v).into_iter();
             return ring;
         }
-        // Filled in place, `ring.few` takes 1.2 times the time.
+        // Filling `ring.few` in place takes 1.2 times the time.
         let mut few = Few([v; FEW]);
         for (pair, &f) in few.0.as_chunks_mut().0.iter_mut().zip(fan) {
             *pair = neighbours_in(self.known_face(f), v);
@@ -171,7 +173,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         self.ring(v, move |other| Pair::new(v, other))
     }
 
-    /// Returns the vertices adjacent to `v` in any number of faces, its fan, each once.
+    /// Returns the vertices adjacent to `v`, each once; `fan` is the fan of `v`, of any length.
     #[inline(never)]
     fn many_neighbours(&self, fan: &[FaceId], v: VertexId) -> Vec<VertexId> {
         let neighbours = fan
@@ -230,7 +232,8 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         around
     }
 
-    /// Returns the same for any number of sides; a face that was found is not searched again.
+    /// Returns the faces that share a side with `f`, for any number of sides. Searches no face
+    /// again that was already found.
     #[inline(never)]
     fn many_faces_around(&self, f: FaceId) -> Vec<FaceId> {
         let mut known = FxHashSet::from_iter([f]);

@@ -7,8 +7,8 @@ use sixfold_core::{CHUNK_ROWS, FaceId, FaceSpans, Pair, VertexId, row};
 
 use crate::FaceVertexMesh;
 
-/// The numbers of the edges, by corner: the edge along the side that starts at the corner. The
-/// number of an edge is its position in `edges()`.
+/// The numbers of the edges, stored by corner: a corner has the number of the edge along the side
+/// that starts there. The number of an edge is its position in `edges()`.
 ///
 /// ```text
 ///    c ──3── b     corners   a b c │ a d b      edges  0 ab, 1 ac, 2 ad  by the lower end, then
@@ -18,18 +18,19 @@ use crate::FaceVertexMesh;
 ///    a ──2── d
 /// ```
 ///
-/// Uses four bytes per corner, and four per vertex of scratch memory that the next mesh reuses.
+/// Uses four bytes per corner, and scratch memory of four bytes per vertex. The next mesh reuses
+/// this scratch memory.
 #[derive(Clone, Debug, Default)]
 pub struct EdgeNumbers {
     pub(crate) by_corner: Vec<u32>,
     /// The starts of the chunks, and the end of the last chunk.
     pub(crate) chunks: Vec<EdgeChunk>,
-    /// By vertex: 1 + the highest number of an edge with this higher end. Used only while edges are
-    /// numbered.
+    /// By vertex: 1 + the highest number of the edges that have this vertex as higher end. Used
+    /// only while edges are numbered.
     bounds: Vec<u32>,
 }
 
-/// The start of some thousand edges: all those with lower ends in a range of vertices.
+/// The start of a chunk of some thousand edges: all edges with lower ends in a range of vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct EdgeChunk {
     /// The first vertex of the range.
@@ -74,13 +75,14 @@ impl EdgeNumbers {
             }
             let mut fan = mesh.fan(v);
             if !fan.is_sorted() {
-                // I3 does not fix an order, but `edges()` uses that of the faces.
+                // I3 does not fix an order, but `edges()` uses the order of the faces.
                 in_order.clear();
                 in_order.extend_from_slice(fan);
                 in_order.sort_unstable();
                 fan = &in_order;
             }
-            // Numbers increase: a higher end already found in this fan has an entry above `known`.
+            // Numbers increase. So if a higher end was already found in this fan, its entry is
+            // above `known`.
             let known = edges;
             for faces in fan.chunks(FEW) {
                 let found = mesh.sides_upward::<DEGREE>(v, faces, &mut upward);
@@ -138,8 +140,9 @@ impl FaceVertexMesh {
         [before, i, after].map(|i| (range.start + i) as u32)
     }
 
-    /// Writes the sides between `v` and a higher vertex in these faces of its fan into `sides`: for
-    /// each, the corner where it starts and the higher vertex. Returns their number.
+    /// Writes the sides between `v` and a higher vertex in these faces of its fan into `sides`. An
+    /// entry has the corner where the side starts, and the higher vertex. Returns the number of
+    /// sides.
     #[inline(always)]
     fn sides_upward<const DEGREE: usize>(
         &self,

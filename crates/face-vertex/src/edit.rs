@@ -1,9 +1,9 @@
 //! Edits in place: they rewrite corners and repair the fans at these corners.
 //!
-//! The structure holds every polygon mesh, so only an edit's own rule restricts it: an edge can
-//! have any number of faces, a vertex any number of fans, and a collapse may leave edges with many
-//! faces and faces with the same corners. [`EditableFaceVertexMesh`] documents the costs and what
-//! each edit writes.
+//! The structure holds every polygon mesh, so an edit is refused only if its own rule is broken. An
+//! edge can have any number of faces, and a vertex any number of fans. A collapse may leave edges
+//! with many faces, and faces with the same corners. [`EditableFaceVertexMesh`] documents the costs
+//! and what each edit writes.
 
 mod collapse;
 mod compact;
@@ -271,7 +271,7 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
         Ok(e)
     }
 
-    /// Keeps the face that runs `e` from its lower end.
+    /// Keeps the face that runs along `e` from the lower end.
     fn dissolve_edge_logged(
         &mut self,
         e: Edge,
@@ -362,7 +362,7 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
 }
 
 impl<P: Probe> FaceVertexMesh<Editable, P> {
-    /// Reports each of `sides`, which were edges before, that is not an edge any more.
+    /// Reports those of `sides` that are no longer edges. All of them were edges before.
     fn report_removed(&self, sides: impl IntoIterator<Item = Edge>, log: &mut impl EditLog<Self>) {
         for e in sides.into_iter().filter(|&e| !self.has_edge(e)) {
             log.removed_edge(e);

@@ -1,11 +1,11 @@
 //! Face-vertex mesh: shared vertices, a vertex list for each face, a face list for each vertex.
 //!
 //! Use it if the main query is the faces around a vertex (normals, gathering in a smoothing step,
-//! faces for a renderer), or if the input is unrestricted: it holds every polygon mesh. Edges are
-//! not stored; an edge is the [pair](sixfold_core::Pair) of its ends. FV, FE, EV and VF take O(1)
-//! per item; the other five search the faces around the element. All edits of
-//! [`MeshEdit`](sixfold_core::MeshEdit) are supported and local; only their own rules restrict
-//! them. Start at [`generic::FaceVertexMesh`]; its four invariants define the tables.
+//! faces for a renderer). Use it also if the input is unrestricted: it holds every polygon mesh.
+//! Edges are not stored; an edge is the [pair](sixfold_core::Pair) of its ends. FV, FE, EV and VF
+//! take O(1) per item; the other five search the faces around the element. All edits of
+//! [`MeshEdit`](sixfold_core::MeshEdit) are supported and local. An edit is refused only if its own
+//! rule is broken. Start at [`generic::FaceVertexMesh`]; its four invariants define the tables.
 
 mod circulate;
 mod construct;

@@ -22,21 +22,22 @@ use sixfold_core::{
 ///   vertices; they all exist and are distinct.
 /// - I2  The fans of two vertices do not overlap in the pool.
 /// - I3  The fan of `v` contains exactly the faces with a corner at `v`, each once.
-/// - I4  Deleted and unused entries are blank. A corner of a deleted face or of no face contains
-///   vertex `u32::MAX`, which no mesh has. A place of no fan contains face `u32::MAX`. The fan of a
-///   deleted vertex is [`Fan::DELETED`]. The holes are exactly the deleted vertices and faces.
+/// - I4  Deleted and unused entries are blank. A corner contains vertex `u32::MAX` if it belongs to
+///   a deleted face or to no face; no mesh has this vertex. A place outside all fans contains face
+///   `u32::MAX`. The fan of a deleted vertex is [`Fan::DELETED`]. The holes are exactly the deleted
+///   vertices and faces.
 ///
 /// A large closed triangle mesh uses 17 words per vertex: 3 for positions, 6 for corners, 2 for
-/// fans and 6 for the pool. With mixed degrees, the offsets add one word per face. With one offset
-/// per vertex instead of start and length it would be 16 words. But the lists would then fill the
-/// pool without gaps, and a list that grows by one face would move all later lists. With start and
-/// length, only the list itself moves, to the end of the pool. After a deletion, holes add one bit
-/// per row of vertices or of faces. After an edit of degrees, two words per face and one per corner
-/// are added.
+/// fans and 6 for the pool. With mixed degrees, the offsets add one word per face. One offset per
+/// vertex, instead of start and length, would need 16 words. But the fans would then fill the pool
+/// without gaps, and a fan that grows by one face would move all later fans. With start and length,
+/// only the fan itself moves, to the end of the pool. A deletion adds one bit per row of vertices
+/// or of faces. An edit of degrees adds two words per face and one per corner.
 ///
 /// # Complexity
 ///
-/// The length of a fan is its number of faces, one per corner at the vertex; `d` is their degree.
+/// The length of a fan is its number of faces. A fan has one face for each corner at the vertex;
+/// `d` is the degree of these faces.
 ///
 /// | query | reads | time |
 /// |---|---|---|
@@ -50,22 +51,24 @@ use sixfold_core::{
 /// | `vertices`, `faces` | the holes, if there are any | O(1) per item |
 /// | `edges`, `edge_count` | all corners | O(corners + vertices), without hashing |
 ///
-/// Sweeps over VF and FV read tables from start to end. In cache, their limit is the loop over six
-/// and three items; in larger meshes it is the number of bytes: 32 per vertex (8 of fans, 24 of
-/// pool) and 12 per triangle. The other sweeps jump from the pool to the corners of faces, six
-/// independent loads per vertex, and then compare what they found. VV is limited by these
-/// comparisons in a well ordered mesh, and by the latency of the jumps in a shuffled one.
+/// Sweeps over VF and FV read tables from start to end. In cache, the limit is the loop over six
+/// items (VF) or three items (FV). In larger meshes, the limit is the number of bytes: 32 per
+/// vertex (8 of fans, 24 of pool) for VF, and 12 per triangle for FV. The other sweeps jump from
+/// the pool to the corners of faces, with six independent loads per vertex. Then they compare the
+/// vertices at these corners. In a well ordered mesh, the comparisons limit VV; in a shuffled mesh,
+/// the latency of the jumps limits VV.
 ///
 /// Splitting every face ([`Refine`](sixfold_core::Refine)) takes O(corners · d + vertices), and
-/// numbering the edges as much again: both search each face of a fan for the vertex of the fan.
+/// numbering the edges takes the same time. Both search each face of a fan for the vertex of the
+/// fan.
 ///
 /// Edits ([`MeshEdit`](sixfold_core::MeshEdit)) rewrite corners and repair fans. A fan that shrinks
-/// stays in place and leaves blanks behind it. A fan that grows uses a blank behind it; if there is
-/// none, it moves to the end of the pool, with blanks for as many faces again. So a fan that grows
-/// face by face moves O(log length) times, and the pool has at most a few times the places that
-/// the input and the edits have filled. [`compact`](sixfold_core::MeshEdit::compact) removes the
-/// blanks. Every edit except the last two is local. `n` is the length of a fan, `d` the degree of
-/// a face at the edited element.
+/// stays in place and leaves blanks behind it. A fan that grows uses a blank behind it. If there is
+/// no blank, the fan moves to the end of the pool, with blanks for as many faces again. So a fan
+/// that grows face by face moves O(log length) times. The pool has at most a few times as many
+/// places as the input and the edits have filled. [`compact`](sixfold_core::MeshEdit::compact)
+/// removes the blanks. Every edit except the last two is local. `n` is the length of a fan, `d` the
+/// degree of a face at the edited element.
 ///
 /// | edit | time | writes |
 /// |---|---|---|
@@ -85,10 +88,11 @@ use sixfold_core::{
 /// | `remove_isolated_vertices` | O(vertices) | their fans |
 /// | `compact` | O(corners + vertices) | all tables |
 ///
-/// The first edit that changes the degree of a face, or adds a face of another degree to a uniform
-/// mesh, builds a table of spans and one of owners ([`FaceSpans::Scattered`]): O(corners), once
-/// until the next `compact`. `split_edge`, `split_face` and `dissolve_edge` always change degrees;
-/// `add_face`, `poke_face` and `collapse_edge` do so only for polygons.
+/// The first edit of degrees builds a table of spans and a table of owners
+/// ([`FaceSpans::Scattered`]); O(corners), once until the next `compact`. An edit of degrees
+/// changes the degree of a face, or adds a face of another degree to a uniform mesh. `split_edge`,
+/// `split_face` and `dissolve_edge` always change degrees; `add_face`, `poke_face` and
+/// `collapse_edge` do so only for polygons.
 ///
 /// # Examples
 ///
@@ -148,8 +152,8 @@ pub struct Fan {
 }
 
 impl Fan {
-    /// The fan of a deleted vertex: it is beyond every pool, so the bounds check of a read detects
-    /// it.
+    /// The fan of a deleted vertex. Its range is beyond every pool, so the bounds check of a read
+    /// detects the deletion.
     pub const DELETED: Self = Self {
         start: u32::MAX,
         len: u32::MAX,

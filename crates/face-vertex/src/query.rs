@@ -69,8 +69,8 @@ impl<P: Probe, E: Editing> MeshQuery for FaceVertexMesh<E, P> {
         e.ends()
     }
 
-    /// Lists no edge twice, because only `e` has both of its ends. If `e` is not an edge, its ends
-    /// are not adjacent, and the result is empty.
+    /// Lists the other edges at both ends. No edge is listed twice, because only `e` has both of
+    /// these ends. If `e` is not an edge, the result is empty.
     #[inline]
     fn edge_edges(&self, e: Pair<VertexId>) -> impl Iterator<Item = Pair<VertexId>> {
         let [a, b] = e.ends();

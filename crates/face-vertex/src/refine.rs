@@ -20,7 +20,7 @@
 //!   side, and for triangles the middle.
 //!
 //! The sides of an edge are found in the old fan of its lower end. All edges with the same lower
-//! end have consecutive numbers, so a range of vertices writes a range of rows.
+//! end have consecutive numbers, so the rows for a range of vertices are a range of rows.
 
 use sixfold_core::{
     Counts, FaceId, FaceSpans, MeshQuery, NoHoles, Pair, Point, Refine, RefineError, Split, Table,

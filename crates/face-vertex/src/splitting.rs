@@ -8,8 +8,8 @@ use crate::FaceVertexMesh;
 use crate::edge_numbers::{EdgeChunk, EdgeNumbers};
 use crate::mesh::Fan;
 
-/// Maximum number of sides that are found before they are added to the fans. Large batches make the
-/// loops end rarely; each loop end costs a branch misprediction.
+/// Maximum number of sides that are found before they are added to the fans. Each end of a loop
+/// costs a branch misprediction, so a large batch is faster.
 const BATCH: usize = 512;
 
 /// A mesh during its split; `DEGREE` is the degree of all its faces, or 0 if degrees differ.
@@ -239,8 +239,8 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
         }
     }
 
-    /// Finds the sides of `v` in these faces of its fan whose edge has at least the number `known`,
-    /// and writes them into `sides`. Writes the part of each face at `v` into `around`.
+    /// Finds the sides of `v` in these faces of its fan, if the number of their edge is at least
+    /// `known`. Writes these sides into `sides`. Writes the part of each face at `v` into `around`.
     #[inline(always)]
     fn find_sides(
         self,

@@ -18,7 +18,8 @@ row_id! {
 /// The handle of one side, `f3c10`: its face, and the corner where it starts, as a row of
 /// [`corners`](FaceVertexMesh::corners).
 ///
-/// The corner alone would name the side, but if degrees differ, its face is found by a search.
+/// The corner alone would identify the side. The face is stored too, because a search for it would
+/// be needed if degrees differ.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FaceSide {
     face: FaceId,
@@ -92,9 +93,9 @@ impl<T> IndexMut<FaceSide> for CornerMap<T> {
     }
 }
 
-/// The steps along a face are O(1): they read the range of the face, if degrees differ, and no
-/// corner. Twins are not stored: `twin_side`, `cw_side`, `ccw_side` and `edge_sides` search the
-/// faces around the end of the edge that has fewer of them, as EF does; O(length · degree).
+/// The steps along a face are O(1). They read no corner; they read the range of the face if degrees
+/// differ. Twins are not stored. Therefore `twin_side`, `cw_side`, `ccw_side` and `edge_sides` take
+/// O(length · degree): like EF, they search the faces around the end of the edge with fewer faces.
 /// `outgoing_sides` takes O(degree) for each side.
 impl<P: Probe, E: Editing> OrientedWalk for FaceVertexMesh<E, P> {
     type Side = FaceSide;
@@ -191,7 +192,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         range
     }
 
-    /// Returns the side of `f` that starts at `v`, whose fan has `f`.
+    /// Returns the side of `f` that starts at `v`; the fan of `v` contains `f`.
     #[inline]
     fn side_from(&self, f: FaceId, v: VertexId) -> FaceSide {
         let range = self.spans.range(f);

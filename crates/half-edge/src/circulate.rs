@@ -78,8 +78,8 @@ impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
     }
 }
 
-/// The half-edges that leave a vertex (its spokes), each with the record of its twin: the only row
-/// that a step reads.
+/// The half-edges that leave a vertex (its spokes), each with the record of its twin. A step reads
+/// only this record.
 ///
 /// The twin starts at the neighbour, has the next face on its left, and its `next` is the next
 /// spoke.

@@ -117,7 +117,7 @@ const BLANK: Half = Half {
     face: Slot::NONE,
 };
 
-/// Half-edges that are not linked yet, used as scratch rows in which the pairing sorts the sides:
+/// Half-edges that are not linked yet. The pairing uses them as scratch rows to sort the sides:
 /// `origin` and `next` of a row hold one side, and `face` stays empty.
 struct Unlinked<'a>(&'a mut [Half]);
 
@@ -172,8 +172,9 @@ impl Builder {
         };
         let half_count = 2 * pairs.edge_count;
         if half_count > builder.halves.len() {
-            // There is a boundary, so some half-edges have no corner. The old rows are freed first:
-            // a growing block may be copied, and the table would be in memory twice.
+            // There is a boundary, so some half-edges have no corner. The old rows are freed first.
+            // If the block grew instead, it could be copied, and the table would be in memory
+            // twice.
             builder.halves = Vec::new();
             builder.halves = vec![BLANK; half_count];
         }

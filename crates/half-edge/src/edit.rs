@@ -24,12 +24,12 @@ type Refusal = sixfold_core::Refusal<EditableHalfEdgeMesh>;
 /// Each edit relinks a few half-edges (the operators of Mäntylä 1988, adapted to meshes that do not
 /// store `prev`).
 ///
-/// An edit reads each row on which its check depends once. What it then writes follows from these
-/// rows. The half-edge before another one is known from a walk, or is searched along the face or
-/// around the vertex.
+/// An edit reads each row on which its check depends once, and computes from these rows what it
+/// writes. If an edit needs the half-edge before another, it knows this half-edge from a walk, or
+/// it searches for it along the face or around the vertex.
 ///
-/// Every edit that touches a vertex maintains `leaving` (I5): if another half-edge replaces the
-/// boundary half-edge on the boundary loop, it also replaces it in `leaving`.
+/// Every edit keeps `leaving` correct at each vertex that it touches (I5). If the boundary
+/// half-edge that leaves the vertex changes, the edit stores the new one in `leaving`.
 impl<P: Probe> MeshEdit for HalfEdgeMesh<Editable, P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
 
@@ -274,7 +274,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         self.replace_first(face, old, new);
     }
 
-    /// Sets `first` of the face, if there is a face, to `new` if it was `old`.
+    /// Sets `first` of the face to `new` if it was `old`. Does nothing if `face` is empty.
     #[inline]
     fn replace_first(&mut self, face: Slot<FaceId>, old: HalfEdgeId, new: HalfEdgeId) {
         if let Some(f) = face.get()

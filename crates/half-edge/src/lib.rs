@@ -2,8 +2,8 @@
 //!
 //! Use it to walk around vertices and to change connectivity. It does not hold edges with three
 //! faces: building a mesh with such edges returns an error. Start at [`generic::HalfEdgeMesh`]; its
-//! numbered invariants define the tables. After Weiler (1985) and Mäntylä (1988); twin pairs after
-//! Campagna, Kobbelt & Seidel (1998).
+//! numbered invariants define the tables. The structure follows Weiler (1985) and Mäntylä (1988).
+//! Its twin pairs follow Campagna, Kobbelt & Seidel (1998).
 //!
 //! | holds | |
 //! |---|---|
@@ -39,24 +39,24 @@
 //! | `split_vertex` | O(valence) | the half-edges that leave the new vertex, up to three new edges |
 //! | `compact` | O(mesh) | all |
 //!
-//! Degrees and valences are those of the faces and vertices at the edit. Vertices, edges and faces
+//! A degree or valence is that of a face or vertex at the edited element. Vertices, edges and faces
 //! keep their handles until `compact`. Until then, the rows of deleted elements are holes.
 //!
-//! Vertices, edges and faces are rows. Counting and listing them reads only the bits of the holes,
-//! if there are any. `prev` is not stored: finding it costs O(degree) along a face and O(valence)
-//! along a boundary. Storing it made every sweep slower (one-rings by 6 to 20 %, because the record
-//! is wider) and nothing in this crate faster: the edits pass most of the half-edges that they need
-//! anyway.
+//! Vertices, edges and faces are rows. Counting or listing them reads no table; if there are holes,
+//! it reads their bits. `prev` is not stored: finding it costs O(degree) along a face and
+//! O(valence) along a boundary. A stored `prev` makes the record wider, and it slowed every sweep
+//! (one-rings by 6 to 20 %). It made nothing in this crate faster, because the edits already visit
+//! most of the half-edges that they need.
 //!
 //! # What limits the speed of the sweeps
 //!
-//! A step around a vertex is about nine instructions and one load, for which the next step waits.
-//! On 82,000 triangles in a good order, a one-ring sweep takes 12 ns per vertex, 2 ns per step. The
-//! records come from the nearer caches and several walks run at once, so the number of instructions
-//! is the limit. In random order it takes 26 ns per vertex: each vertex touches about ten cache
-//! lines, of half-edges and of positions, that are not in the nearer caches. FF reads two records
-//! per side and tests whether the face was visited before. That is about 110 instructions per face
-//! in a breadth-first search, and they are its limit.
+//! A step around a vertex is about nine instructions and one load. The next step waits for this
+//! load. On 82,000 triangles in a good order, a one-ring sweep takes 12 ns per vertex, 2 ns per
+//! step. The records come from the nearer caches and several walks run at once, so the number of
+//! instructions is the limit. In random order, the sweep takes 26 ns per vertex. Each vertex then
+//! touches about ten cache lines of half-edges and positions that are not in the nearer caches. FF
+//! reads two records per side and tests whether the face was visited before. In a breadth-first
+//! search, this takes about 110 instructions per face, and their number is the limit.
 //!
 //! # Examples
 //!
@@ -106,8 +106,7 @@ pub type EditableHalfEdgeMesh = generic::HalfEdgeMesh<sixfold_core::Editable>;
 /// errors.
 pub use sixfold_core;
 
-/// Imports for a program that uses this structure: its types, and the traits of its queries and
-/// edits.
+/// Imports for a program: the types of this structure, and the traits of its queries and edits.
 ///
 /// ```
 /// use sixfold_half_edge::prelude::*;

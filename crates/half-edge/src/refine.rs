@@ -18,14 +18,15 @@ use crate::mesh::{Half, HalfEdgeId};
 /// The row of every half-edge of the child is computed from rows of the parent.
 ///
 /// A half-edge with a face stands for the corner where it starts. `#h` is the number of the corner
-/// of `h`, in the order of the half-edges: on a closed mesh `#h` is `h`; on an open mesh, [`Ranks`]
-/// counts. Boundary half-edges have children like all others, but no corner.
+/// of `h`, in the order of the half-edges. On a closed mesh, `#h` is `h`; on an open mesh,
+/// [`Ranks`] counts. Boundary half-edges have no corner, but they have children like all other
+/// half-edges.
 ///
 /// # Complexity
 ///
-/// O(half-edges) to number the edges and to split. Each row of the child is written once, and at
-/// most eight other half-edges of a face are read for each of its corners. `parent` is O(1), or
-/// O(log half-edges) on an open mesh.
+/// Numbering the edges and splitting take O(half-edges). Each row of the child is written once. For
+/// each corner of a face, at most eight other half-edges of that face are read. `parent` is O(1),
+/// or O(log half-edges) on an open mesh.
 impl Refine for HalfEdgeMesh {
     const SPLITS: &'static [Split] = &[
         Split::Quads,
@@ -206,8 +207,7 @@ fn half(next: u32, origin: u32, face: Slot<FaceId>) -> Half {
     }
 }
 
-/// The rows of the child that come from some edges of the parent and from the corners of their
-/// half-edges.
+/// The rows of the child for some edges of the parent and for the corners of their half-edges.
 struct Chunk<'a> {
     /// The edges of the parent.
     edges: Range<u32>,

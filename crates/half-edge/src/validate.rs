@@ -330,8 +330,9 @@ mod tests {
 
     #[test]
     fn edges_with_the_same_ends_are_found() {
-        // Merging two opposite corners of a quad would break I7 first. Merging the third corners of
-        // two triangles along one edge does not, and their other edges then have the same ends.
+        // Merging two opposite corners of a quad would break I7 first. So this test merges the
+        // third corners of two triangles along one edge. The other edges of these triangles then
+        // have the same ends.
         let corners = [0.0, 1.0, 2.0, 3.0].map(Point::splat);
         let faces = [[0, 1, 2], [1, 0, 3]];
         let polygons = PolygonMesh::new(corners, faces).expect("valid");

@@ -8,11 +8,12 @@ use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
 /// A side is the half-edge with its face on the left.
 ///
-/// Every method is O(1) and reads one or two half-edges, except `prev_side` and `ccw_side`: `prev`
-/// is not stored, and they take O(degree). `next_side` and `twin_side` are one load each.
+/// `prev_side` and `ccw_side` take O(degree), because `prev` is not stored. Every other method is
+/// O(1) and reads one or two half-edges. `next_side` and `twin_side` are one load each.
 ///
-/// A half-edge on a boundary loop is not a side. No method yields one: at a boundary `twin_side`
-/// is `None`, but [`twin`](HalfEdgeMesh::twin) returns the half-edge on the loop.
+/// A half-edge on a boundary loop is not a side, and no method here returns such a half-edge. At a
+/// boundary, `twin_side` returns `None`, but [`twin`](HalfEdgeMesh::twin) returns the half-edge on
+/// the loop.
 impl<P: Probe, E: Editing> OrientedWalk for HalfEdgeMesh<E, P> {
     type Side = HalfEdgeId;
 
@@ -81,8 +82,8 @@ impl<P: Probe, E: Editing> OrientedWalk for HalfEdgeMesh<E, P> {
 }
 
 impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
-    /// Returns the record of `s`. If elements can be deleted, panics if `s` has no face: it may have
-    /// lost it.
+    /// Returns the record of `s`. If elements can be deleted, panics if `s` has no face, because
+    /// its face may have been deleted.
     #[inline]
     fn side(&self, s: HalfEdgeId) -> &Half {
         let half = self.halves.read(s.index());
@@ -92,7 +93,7 @@ impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
         half
     }
 
-    /// Does the same check; reads nothing if elements cannot be deleted.
+    /// Panics in the same case as `side`. Reads nothing if elements cannot be deleted.
     #[inline]
     fn check_side(&self, s: HalfEdgeId) {
         if E::CAN_DELETE {

@@ -1,32 +1,32 @@
 //! Indexed face set: shared vertices, a vertex list for each face, and no other tables.
 //!
-//! Files and renderers use this form. Use it if faces are read in order, or to keep a mesh in
-//! memory without queries: no structure with shared vertices is smaller, and it holds every polygon
-//! mesh. FV, FE and EV take O(1) per item. Every query of a neighbourhood scans all corners,
-//! because no table stores neighbours. Start at [`generic::IndexedFaceSet`]; its three invariants define
-//! the tables.
+//! Files and renderers use this form. Use it to read faces in order, or to keep a mesh in memory
+//! without queries. No structure with shared vertices is smaller. An indexed face set holds every
+//! polygon mesh. FV, FE and EV take O(1) per item. Every query of a neighbourhood scans all
+//! corners, because no table stores neighbours. Start at [`generic::IndexedFaceSet`]; its three
+//! invariants define the tables.
 //!
 //! Edges are not stored; an edge is the [pair](sixfold_core::Pair) of its ends.
 //!
 //! # What limits the speed of a scan
 //!
-//! A scan reads 4 bytes per corner, once and in order. It compares them with the vertex that it
-//! searches for, many at a time and without a branch. In cache, the comparisons are the limit
-//! (0.08 ns per corner on 82,000 triangles, 50 GB/s); in larger meshes it is the memory bandwidth
-//! (0.16 ns per corner on 1.3 million triangles, 0.6 ms per query). Hits are few, and only they
-//! are examined further. A scan of a polygon soup moves three times as many bytes and compares
-//! three times as many words.
+//! A scan reads 4 bytes per corner, once and in order. It compares many corners at a time with the
+//! given vertex, without a branch. In cache, the comparisons are the limit (0.08 ns per corner on
+//! 82,000 triangles, 50 GB/s). In larger meshes, the memory bandwidth is the limit (0.16 ns per
+//! corner on 1.3 million triangles, 0.6 ms per query). There are few hits, and only hits are
+//! examined further. A scan of a polygon soup moves three times as many bytes and compares three
+//! times as many words.
 //!
 //! `edges` is limited by the scattered writes of its counting sort: 3.4 ns per corner in cache, 13
 //! ns in larger meshes.
 //!
 //! # Editing
 //!
-//! All edits are supported. All except those of one face or one vertex begin with a scan; a flip of
-//! an edge needs two. Use the structure to edit a few places, or to add and remove faces, which
-//! takes O(1) per corner. For many edits of edges, use a structure that stores neighbours.
-//! [`ScannedFaces`](sixfold_core::ScannedFaces) implements the scan and the edits of faces; the
-//! polygon soup uses it too.
+//! All edits are supported. Edits of one face, and moving or adding a vertex, need no scan. Every
+//! other edit begins with a scan; an edge flip needs two scans. Use the structure to edit a few
+//! places, or to add and remove faces, which takes O(1) per corner. For many edits of edges, use a
+//! structure that stores neighbours. [`ScannedFaces`](sixfold_core::ScannedFaces) implements the
+//! scan and the edits of faces; the polygon soup uses it too.
 //!
 //! # Examples
 //!

@@ -18,19 +18,19 @@ use sixfold_core::{
 /// # Invariants
 ///
 /// - I1  Face `f` has the corners `spans.range(f)`, at least three. These ranges are consecutive
-///   and cover the whole table, until an edit changes a degree; after that, unused corners can be
-///   between them.
+///   and cover the whole table. After an edit has changed a degree, unused corners can be between
+///   them.
 /// - I2  The vertices at the corners of a face exist and are distinct.
-/// - I3  Holes are rows of vertices and of faces. The corners of deleted faces and the unused
-///   corners between faces are blank, and no others. A blank corner has no vertex, so no scan finds
-///   it. A deleted vertex keeps its last position, which is not used.
+/// - I3  Holes are rows of vertices and of faces. Exactly two kinds of corners are blank: the
+///   corners of deleted faces, and the unused corners between faces. A blank corner has no vertex,
+///   so no scan finds it. A deleted vertex keeps its last position, which is not used.
 ///
 /// # Memory
 ///
 /// A large closed triangle mesh uses 9 words per vertex: 3 for positions and 6 for corners. With
 /// mixed degrees, the offsets add one word per face. Edits that change a degree replace the offsets
 /// by two words per face and one per corner. Deletions add one bit per row.
-/// [`compact`](sixfold_core::MeshEdit::compact) removes both.
+/// [`compact`](sixfold_core::MeshEdit::compact) removes both additions.
 ///
 /// # Complexity
 ///
@@ -43,8 +43,8 @@ use sixfold_core::{
 /// | `vertices`, `faces` | the holes, if there are any | O(1) per item |
 /// | `edges`, `edge_count` | all corners | O(corners + vertices), without hashing |
 ///
-/// A hit of a scan costs O(1), or O(log faces) with mixed degrees, because the face of the corner
-/// must be searched. After an edit of degrees, a table stores the face of each corner.
+/// A hit of a scan costs O(1). With mixed degrees it costs O(log faces), because the face of the
+/// corner must be searched. After an edit of degrees, a table stores the face of each corner.
 ///
 /// # Edits
 ///
@@ -64,8 +64,8 @@ use sixfold_core::{
 /// | `compact` | everything | everything |
 ///
 /// If a log records the edits, `add_face`, `remove_face`, `remove_vertex` and `split_face` need one
-/// more scan, to find the sides that other faces also have. The structure holds every polygon mesh,
-/// so an edit has no restrictions besides its own rule and valid handles.
+/// more scan, to find the sides that other faces also have. The structure holds every polygon mesh.
+/// So an edit is refused only if its own rule is broken or a handle is not valid.
 #[derive(Debug)]
 pub struct IndexedFaceSet<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,
@@ -88,7 +88,7 @@ impl<P: Probe> From<IndexedFaceSet<Compact, P>> for IndexedFaceSet<Editable, P> 
 }
 
 impl<P: Probe, E: Editing> IndexedFaceSet<E, P> {
-    /// Returns the position of each vertex, as stored, including deleted ones.
+    /// Returns the position of each vertex, as stored, including deleted vertices.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
     }
@@ -98,7 +98,7 @@ impl<P: Probe, E: Editing> IndexedFaceSet<E, P> {
         self.faces.corners.rows()
     }
 
-    /// Returns the ranges of corners of the faces, including deleted ones.
+    /// Returns the ranges of corners of the faces, including deleted faces.
     pub fn spans(&self) -> &FaceSpans<P, E> {
         &self.faces.spans
     }
@@ -119,7 +119,8 @@ impl<P: Probe, E: Editing> IndexedFaceSet<E, P> {
         v.index() < self.positions.len() && !self.vertex_holes.has(v.index())
     }
 
-    /// Returns `v` if it exists. Without this check, a scan for a missing vertex would be empty.
+    /// Returns `v` if it exists. Without this check, a scan for a missing vertex would find nothing
+    /// and not panic.
     ///
     /// # Panics
     ///

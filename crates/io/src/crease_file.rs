@@ -148,7 +148,7 @@ pub fn parse_creases(
 /// Writes `creases` as a crease file; O(creases). Reading the file gives the same creases, bit for
 /// bit.
 ///
-/// The output is buffered here.
+/// This function buffers the output.
 ///
 /// # Errors
 ///

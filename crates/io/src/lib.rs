@@ -7,11 +7,12 @@
 //!
 //! # What is read
 //!
-//! `v` and `f` (also under its old name `fo`). A vertex may have a weight or a colour. A corner may
-//! have texture and normal numbers (`7/1/3`). An index may count backwards, and a face may precede
-//! its vertices. Lines end in LF, CRLF or CR; `\` at the end continues a line; `#` starts a
-//! comment, which is never continued. The tags `t crease` and `t corner` of OpenSubdiv's shapes are
-//! read too. Their vertices count from 0, although faces count from 1:
+//! The reader uses the statements `v` and `f`; `fo` is an old name of `f`. A vertex may have a
+//! weight or a colour. A corner may have texture and normal numbers (`7/1/3`). An index may count
+//! backwards, and a face may precede its vertices. Lines end in LF, CRLF or CR; `\` at the end
+//! continues a line. `#` starts a comment; a comment is never continued. The reader also uses the
+//! tags `t crease` and `t corner` of OpenSubdiv's shapes. Their vertices count from 0, although
+//! faces count from 1:
 //!
 //! ```text
 //! t crease 2/1/0 5 9 4.7          the edge between vertices 5 and 9; 2 vertices, 1 sharpness, 0 words
@@ -25,10 +26,10 @@
 //!
 //! # Crease files
 //!
-//! One entry per line, `edge a b sharpness` or `corner v sharpness`; vertices count from 0.
-//! Sharpness is the number of levels for which the edge or vertex is kept sharp: a number from 0,
-//! possibly with a fraction, or `inf` for all levels. [`parse_creases`] documents the rules. A
-//! fault is returned as a [`CreaseFileError`] with file and line.
+//! A crease file has one entry per line, `edge a b sharpness` or `corner v sharpness`; vertices
+//! count from 0. Sharpness is the number of levels for which the edge or vertex is kept sharp: a
+//! number from 0, possibly with a fraction, or `inf` for all levels. [`parse_creases`] documents
+//! the rules. A fault is returned as a [`CreaseFileError`] with file and line.
 //!
 //! # Why there is a normaliser in front of `tobj`
 //!
@@ -38,19 +39,19 @@
 //!           `\`, `#`      `f i j k` at a time     index checks    check for finite values
 //! ```
 //!
-//! `tobj` parses its dialect of OBJ well. But used alone, it drops vertices without a face, and
-//! with them the numbering of the file. It splits a mesh at every `o`, `g` and `usemtl`, and each
-//! part gets its own copy of a shared vertex. It divides by a fourth value of a vertex and rejects
-//! a fifth. It misreads lone CR, continued lines and byte order marks. Its errors contain no line
-//! number.
+//! `tobj` parses its dialect of OBJ well. But if it is used alone, it drops vertices without a
+//! face, and the numbering of the file is lost. It splits a mesh at every `o`, `g` and `usemtl`,
+//! and each part gets its own copy of a shared vertex. It divides the coordinates of a vertex by a
+//! fourth value and rejects a fifth value. It misreads lone CR, continued lines and byte order
+//! marks. Its errors contain no line number.
 //!
 //! Therefore the normaliser is a `BufRead` that passes one object in plain statements to `tobj`,
 //! one statement at a time. If `tobj` returns an error, its cause is the last statement that was
 //! passed, and the line of that statement is known. The final statement is a polygon through all
-//! vertices in file order. Its corners show which number `tobj` gave to each vertex of the file,
-//! used or not. The whole text is never in memory. The alternative, a separate scanner beside
-//! `tobj`, would read every file twice and would need the same rules for lines, and the two could
-//! disagree on the numbering.
+//! vertices in file order. The corners of this polygon show which number `tobj` gave to each vertex
+//! of the file, even to unused vertices. The whole text is never in memory. The alternative is a
+//! separate scanner beside `tobj`. It would read every file twice and would need the same rules for
+//! lines. The scanner and `tobj` could disagree on the numbering.
 
 mod crease_file;
 mod error;

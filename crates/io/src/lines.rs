@@ -6,7 +6,7 @@ use std::io::{self, BufRead, Read};
 /// blank.
 ///
 /// A line ends in LF, CRLF or a lone CR. `\` at its end continues it on the next line; blanks after
-/// the `\` are allowed. In a comment, `\` does not continue the line, because there it is more
+/// the `\` are allowed. In a comment, `\` does not continue the line, because a `\` there is more
 /// likely the end of a path. Names may be in any encoding, so nothing is decoded here.
 pub(crate) struct Lines<R> {
     source: R,

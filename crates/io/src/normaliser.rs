@@ -16,7 +16,8 @@ use crate::tags::{Tag, Tags};
 ///
 /// - N1  The text is `v x y z` for every vertex and `f i j k …` for every face of three corners or
 ///   more, in file order, with indices from 1. After them comes one polygon through all vertices.
-/// - N2  `fill_buf` returns one statement at a time, so a parser that stops has stopped at it.
+/// - N2  `fill_buf` returns one statement at a time, so the parser always stops at the last
+///   statement that was returned.
 /// - N3  `vertex_lines` and `face_lines` have one entry for each vertex and face passed on.
 /// - N4  When the last polygon is passed on, every index of every face is in range.
 /// - N5  There are at most `limit` lines, vertices, and corners of faces.
@@ -78,7 +79,7 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
         }
     }
 
-    /// Finds out why the parser stopped at the last statement.
+    /// Returns the fault at which the parser stopped, in the last statement.
     pub(crate) fn diagnose(&self, refusal: &tobj::LoadError) -> ObjError {
         let at = self.location(self.line);
         let text = String::from_utf8_lossy(&self.text);
@@ -187,7 +188,7 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
     fn read_vertex(&mut self, values: &str) -> Result<(), ObjError> {
         self.vertex_lines.push(self.line);
         self.check_limit("vertices", self.vertex_lines.len())?;
-        // Split in the same way as the parser, which also splits at white space outside ASCII.
+        // Splits the values in the same way as the parser, also at white space outside ASCII.
         let mut words = values.split_whitespace();
         self.text.push(b'v');
         for word in words.by_ref().take(3) {

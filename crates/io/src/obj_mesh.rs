@@ -21,8 +21,8 @@ pub struct ObjMesh {
     pub face_lines: Vec<u32>,
     /// Faces of fewer than three corners.
     pub short_faces: Vec<ShortFace>,
-    /// Edges that `t crease` tags make sharp, in file order. Each is a side of a face, possibly of
-    /// a degenerate or short one.
+    /// Edges that `t crease` tags make sharp, in file order. Each edge is a side of a face,
+    /// possibly of a degenerate or short face.
     pub crease_tags: Vec<CreaseTag>,
     /// Vertices that `t corner` tags make sharp, in file order.
     pub corner_tags: Vec<CornerTag>,

@@ -81,7 +81,7 @@ pub(crate) fn open_file(path: &Path) -> Result<BufReader<File>, OpenError> {
 /// ```
 pub fn parse_obj(name: &str, source: impl BufRead) -> Result<ObjMesh, ObjError> {
     let mut text = Normaliser::new(name, source);
-    // The text for the parser never contains a material library, so this is not called.
+    // The text for the parser never contains a material library, so this function is not called.
     let no_library = |_: &Path| Err(tobj::LoadError::OpenFileFailed);
     let loaded = tobj::load_obj_buf(&mut text, &LOAD_OPTIONS, no_library);
     if let Some(fault) = text.fault.take() {
@@ -133,7 +133,8 @@ fn restore_numbering(models: Vec<tobj::Model>, vertices: usize) -> (Vec<Point>, 
         .iter()
         .map(|&tobj_number| numbers[tobj_number as usize])
         .collect();
-    // The list of degrees is empty if all degrees are three, including the last polygon's.
+    // The list of degrees is empty if all degrees are three, including the degree of the last
+    // polygon.
     face_arities.pop();
     let degree = face_arities.first().map_or(3, |&degree| degree as usize);
     let faces = if face_arities.iter().all(|&other| other as usize == degree) {

@@ -7,7 +7,7 @@ use sixfold_core::{Point, PolygonMesh, VertexId};
 
 /// Writes `polygons` as OBJ text; O(corners). Reading the text gives the same mesh, bit for bit.
 ///
-/// The output is buffered here. If OBJ cannot represent the mesh, nothing is written.
+/// This function buffers the output. If OBJ cannot represent the mesh, nothing is written.
 ///
 /// # Errors
 ///

@@ -20,10 +20,10 @@ use crate::error::DualError;
 ///      ● ─────┼───── ●         dodecahedron ↔ icosahedron
 /// ```
 ///
-/// The vertices are numbered in the order of `faces()`, the faces in the order of `vertices()`. The
-/// dual of the dual therefore has the faces of the mesh again, but a face may start at another
-/// corner. If two faces share several edges, the dual has several edges with the same two ends.
-/// Structures for manifolds then reject the dual, although they accept the mesh.
+/// The vertices of the dual are numbered in the order of `faces()`, and its faces in the order of
+/// `vertices()`. The dual of the dual therefore has the same faces as the mesh, but a face may
+/// start at another corner. If two faces share several edges, the dual has several edges with the
+/// same two ends. Structures for manifolds then reject the dual, although they accept the mesh.
 ///
 /// # Errors
 ///
@@ -87,7 +87,7 @@ impl IndexedMesh {
             .expect("a manifold vertex has at least three different faces")
     }
 
-    /// Returns the reason why this is not an oriented manifold; call it only if that is the case.
+    /// Returns the reason why this mesh is not an oriented manifold. Call it only for such a mesh.
     fn non_manifold_error(&self) -> DualError {
         let positions = self.positions.iter().map(|p| p.as_vec3()).collect();
         let polygons = PolygonMesh::from_faces(positions, self.faces.clone())

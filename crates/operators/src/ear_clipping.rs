@@ -21,11 +21,11 @@ use crate::normals::Newell;
 /// b changes only the ears at a and c.
 ///
 /// Corners are projected along the axis nearest to the Newell normal. For a planar polygon this
-/// projection is affine, so ears stay ears. It copies coordinates bit by bit, so collinear corners
-/// stay collinear. The sign of an area is computed in doubles.
+/// projection is affine, so ears stay ears. The projection copies coordinates bit by bit, so
+/// collinear corners stay collinear. The sign of an area is computed in doubles.
 ///
-/// The ear with the best shape is cut first: its area divided by the square of its longest side is
-/// largest. Ears whose diagonal is already an edge of the mesh are cut last.
+/// The ear with the best shape is cut first. This ear has the largest area relative to the square
+/// of its longest side. Ears whose diagonal is already an edge of the mesh are cut last.
 #[derive(Default)]
 pub(crate) struct EarClipping {
     points: Vec<DVec3>,
@@ -75,9 +75,9 @@ impl EarClipping {
     /// already an edge of the mesh.
     ///
     /// A polygon that crosses itself or lies on a line may run out of ears. Then all corners are
-    /// tested again, at most once each time their number has halved. If there is still no ear, the
-    /// best convex corner is cut, or the best of all corners if no corner is convex. The result is
-    /// always n − 2 triangles, in O(n²) time.
+    /// tested again, but only if their number has halved since the last such test. If there is
+    /// still no ear, the best convex corner is cut, or the best of all corners if no corner is
+    /// convex. The result is always n − 2 triangles, in O(n²) time.
     pub(crate) fn clip(
         &mut self,
         corners: impl Iterator<Item = DVec3>,
@@ -88,7 +88,8 @@ impl EarClipping {
         let mut remaining = self.projected.len();
         let mut last_full_test = usize::MAX;
         while remaining > 3 {
-            // The last cut makes two triangles, and the worse one counts: test all four corners.
+            // The last cut makes two triangles, and its quality is that of the worse triangle. So
+            // this tests all four corners.
             if remaining == 4 || last_full_test == usize::MAX {
                 self.find_ears(remaining, &is_edge);
                 last_full_test = remaining;

@@ -1,7 +1,7 @@
 //! Errors of the operators: a mesh or an option that an operator rejects.
 //!
-//! In every structure, an error identifies a vertex by its position in `vertices()` and a face by
-//! its position in `faces()`. `to_polygons()` uses the same numbers.
+//! In every structure, an error identifies a vertex by its index in `vertices()` and a face by its
+//! index in `faces()`. `to_polygons()` uses the same numbers.
 
 use sixfold_core::{BuildError, FaceId, VertexId};
 
@@ -18,7 +18,7 @@ pub enum SmoothingError {
     /// A step outside 0 to 1.
     #[error("step {step} is not between 0 and 1: beyond 1 a vertex moves past its neighbours")]
     Step { step: f64 },
-    /// A step back that is not longer than the step, or so long that roughness would grow.
+    /// A step back that is not longer than the step, or that is so long that roughness would grow.
     #[error(
         "step back {back} does not fit step {step}: it must be negative, longer than the step, and (1 − 2·step)·(1 − 2·back) between −1 and 1"
     )]

@@ -60,8 +60,8 @@ impl<V: Handle> Laplacian<V> {
         })
     }
 
-    /// Computes the sum over the neighbours of each vertex, with the vertices at `at`. All `sums`
-    /// must be zero before.
+    /// Computes the sum over the neighbours of each vertex, with the vertices at `at`. Before the
+    /// call, all `sums` must be zero.
     pub(crate) fn apply(&self, at: &V::Map<DVec3>, sums: &mut V::Map<WeightedSum>) {
         match &self.elements {
             Elements::Edges(edges) => add_uniform(edges, at, sums),
@@ -159,7 +159,7 @@ fn triangles<M: MeshQuery>(mesh: &M) -> Result<Vec<[M::Vertex; 3]>, SmoothingErr
     Ok(triangles)
 }
 
-/// The boundary of a mesh. Its vertices do not depend on interior vertices.
+/// The boundary of a mesh. Boundary vertices do not depend on interior vertices.
 ///
 /// ```text
 ///    ──── a ════ v ════ b ────     a curve:  L(v) = (a + b) / 2 − v

@@ -11,12 +11,12 @@
 //!
 //! An operator on a structure queries each face once (FV and FE), or each edge once, and sums its
 //! results in maps by handle. Therefore no structure scans the mesh for each vertex, and the time
-//! is O(corners) on every structure. New positions are returned as a [`VertexMap`], which
-//! [`set_positions`] accepts. Two operators repair polygons that most structures reject; they work
-//! on a [`PolygonMesh`], before a structure is built.
+//! is O(corners) on every structure. New positions are returned as a [`VertexMap`] for
+//! [`set_positions`]. Two operators, [`triangulated`] and [`oriented`], repair polygons that most
+//! structures reject. They work on a [`PolygonMesh`], before a structure is built.
 //!
-//! Sums are in double precision: a product of three coordinates neither overflows nor underflows,
-//! and structures that add in different orders agree up to the last bits of a coordinate.
+//! Sums are computed in double precision, so a product of three coordinates neither overflows nor
+//! underflows. Structures that add in different orders agree up to the last bits of a coordinate.
 //!
 //! ```
 //! use sixfold_half_edge::HalfEdgeMesh;

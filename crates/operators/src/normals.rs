@@ -6,11 +6,12 @@ use sixfold_core::{FaceMap, MeshQuery, Point, VertexMap};
 /// The weight of each face around a vertex in the vertex normal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NormalWeights {
-    /// By its area. Needs no extra work: Newell's vector is already proportional to the area.
+    /// The area of the face. Needs no extra work, because the length of Newell's vector is twice
+    /// the area.
     #[default]
     Area,
-    /// By its angle at the vertex (Thürmer & Wüthrich 1998). Does not depend on how the surface is
-    /// cut into faces.
+    /// The angle of the face at the vertex (Thürmer & Wüthrich 1998). The vertex normal then does
+    /// not depend on how the surface is cut into faces.
     Angle,
 }
 
@@ -37,7 +38,8 @@ pub fn face_normals<M: MeshQuery>(mesh: &M) -> FaceMap<M, Point> {
     normals
 }
 
-/// Returns the unit normal of every vertex: the mean of its face normals by `weights`; O(corners).
+/// Returns the unit normal of every vertex: the mean of its face normals, weighted by `weights`;
+/// O(corners).
 ///
 /// ```text
 ///           n                 area    n ∝ Σ A(f) n(f)
@@ -48,9 +50,9 @@ pub fn face_normals<M: MeshQuery>(mesh: &M) -> FaceMap<M, Point> {
 ///       f0  v
 /// ```
 ///
-/// A vertex without faces, or whose face normals cancel, has the normal zero. One pass over the
-/// faces adds the share of each face at its corners: no structure searches for the faces of a
-/// vertex.
+/// The normal is zero if the vertex has no faces or if its face normals cancel. One pass over the
+/// faces adds the share of each face at its corners, so no structure has to search for the faces of
+/// a vertex.
 pub fn vertex_normals<M: MeshQuery>(mesh: &M, weights: NormalWeights) -> VertexMap<M, Point> {
     let mut sums = mesh.vertex_map(DVec3::ZERO);
     let mut corners = Vec::new();
@@ -166,8 +168,8 @@ mod tests {
     }
 
     /// The corner of a cube whose three squares are cut in two. The lower square is cut through
-    /// this corner, so its whole area is incident to the corner; of the other squares only one half
-    /// is.
+    /// this corner, so its whole area is incident to the corner. Only one half of each other square
+    /// is incident to it.
     #[test]
     fn angle_weights_do_not_depend_on_how_a_surface_is_cut() {
         let points = [

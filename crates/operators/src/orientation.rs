@@ -5,13 +5,15 @@ use sixfold_core::{FaceId, FaceList, PolygonMesh, VertexId};
 
 use crate::error::OrientationError;
 
-/// The side that the faces of a component face in the result.
+/// The rule that chooses one of the two orientations of each component.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Facing {
-    /// As the majority did, so that the fewest faces are reversed. In a tie, as the first face did.
+    /// The orientation of the majority of faces, so that the fewest faces are reversed. In a tie,
+    /// the orientation of the first face.
     #[default]
     Majority,
-    /// Outward if the component is closed and encloses a volume; otherwise as the majority did.
+    /// Outward if the component is closed and encloses a volume; otherwise as with
+    /// [`Majority`](Self::Majority).
     Outward,
 }
 
@@ -40,7 +42,8 @@ pub struct Oriented {
 ///
 /// # Errors
 ///
-/// Returns [`OrientationError::NotOrientable`] with an edge at which a component cannot agree.
+/// Returns [`OrientationError::NotOrientable`] with an edge at which the faces of a component
+/// cannot agree.
 ///
 /// # Complexity
 ///

@@ -9,11 +9,11 @@ use crate::laplacian::{Laplacian, WeightedSum};
 /// The weight of each neighbour of a vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Weights {
-    /// All equal (Field 1988). Also evens out the shapes of faces.
+    /// All weights are equal (Field 1988). This also evens out the shapes of faces.
     #[default]
     Uniform,
-    /// By the two angles opposite to the edge (Pinkall & Polthier 1993). Depends on the surface
-    /// only and leaves a plane unchanged. Triangles only.
+    /// The two angles opposite to the edge determine the weight (Pinkall & Polthier 1993). The
+    /// weight depends on the surface only and leaves a plane unchanged. Needs triangles.
     Cotangent,
 }
 
@@ -37,10 +37,10 @@ pub struct Smoothing {
     pub weights: Weights,
     /// The treatment of the boundary.
     pub boundary: Boundary,
-    /// λ: the part of the way to the mean of its neighbours that each vertex moves; from 0 to 1.
+    /// λ, from 0 to 1: each vertex moves this part of the way to the mean of its neighbours.
     pub step: f64,
-    /// μ < −λ: a step in the opposite direction after each step, which keeps the volume (Taubin
-    /// 1995). Taubin's values are λ = 0.33 and μ = −0.34.
+    /// μ < −λ: after each step, a step in the opposite direction keeps the volume (Taubin 1995).
+    /// Taubin's values are λ = 0.33 and μ = −0.34.
     pub step_back: Option<f64>,
     /// The number of iterations.
     pub iterations: usize,
@@ -65,7 +65,7 @@ impl Smoothing {
         if !(0.0..=1.0).contains(&step) {
             return Err(SmoothingError::Step { step });
         }
-        // The factor of one iteration on the roughest wave, for which L(p) = −2p.
+        // The factor by which one iteration scales the roughest wave. For this wave, L(p) = −2p.
         let roughest = |back: f64| (1.0 - 2.0 * step) * (1.0 - 2.0 * back);
         match self.step_back {
             Some(back) if !(back < -step && roughest(back).abs() <= 1.0) => {
@@ -90,15 +90,15 @@ impl Smoothing {
 /// opposite angles. Cotangents are computed again at every step. With obtuse triangles a weight can
 /// be negative, and then steps above 0.5 can overshoot.
 ///
-/// The mesh and its handles do not change. In a structure that identifies a vertex by its
-/// coordinates, a later call of [`set_positions`] changes the handle, welds vertices that have the
-/// same position now, and returns an error if two corners of one face would be welded.
+/// The mesh and its handles do not change. If a structure identifies a vertex by its coordinates, a
+/// later call of [`set_positions`] changes its handle. That call welds vertices that now have the
+/// same position. It returns an error if two corners of one face would be welded.
 ///
 /// # Errors
 ///
 /// Returns [`SmoothingError::Step`] or [`SmoothingError::StepBack`] for steps that would not
-/// smooth, and [`SmoothingError::NotATriangle`] for the first face of larger degree with cotangent
-/// weights.
+/// smooth. With cotangent weights, returns [`SmoothingError::NotATriangle`] for the first face with
+/// more than three corners.
 ///
 /// # Complexity
 ///

@@ -17,15 +17,15 @@ use crate::error::SphereError;
 ///
 /// # Errors
 ///
-/// Returns [`SphereError::InvalidSphere`] for a radius that is not above 0, or a radius or centre
-/// that is not finite, and [`SphereError::NoDirection`] for the first vertex at the centre or not
-/// finite.
+/// Returns [`SphereError::InvalidSphere`] if the radius is not above 0, or if the radius or the
+/// centre is not finite. Returns [`SphereError::NoDirection`] for the first vertex that is at the
+/// centre or not finite.
 ///
 /// # Examples
 ///
-/// An icosahedron divided with frequency 6 (every edge into 6, every triangle into 36) and
-/// projected to its sphere, as domes are built. The points of the division are stored by their
-/// corners and weights, so that faces share the points on their common edges.
+/// This example divides an icosahedron with frequency 6 (every edge into 6, every triangle into 36)
+/// and projects it to its sphere, as for a geodesic dome. The points of the division are stored by
+/// their corners and weights, so that faces share the points on their common edges.
 ///
 /// ```
 /// use std::collections::BTreeMap;

@@ -29,12 +29,13 @@ pub enum Triangulation {
 ///
 /// - The triangles of a simple planar polygon do not overlap and are not flat, even if corners are
 ///   collinear. A bent polygon is projected along the axis nearest to its Newell normal.
-/// - A polygon that is not simple gets `n − 2` triangles too, which may overlap or be flat.
+/// - A polygon that is not simple also gets `n − 2` triangles. These triangles may overlap or be
+///   flat.
 /// - The ear with the best shape is cut first.
-/// - A diagonal that is already an edge elsewhere in the mesh would get three or more faces. An ear
-///   with such a diagonal is cut only if the polygon has no other ear at that moment. Structures
-///   for manifolds then reject the mesh and name the edge. Earlier polygons choose their diagonals
-///   first.
+/// - If a diagonal is already an edge elsewhere in the mesh, this edge would get three or more
+///   faces. An ear with such a diagonal is cut only if the polygon has no other ear at that moment.
+///   Structures for manifolds then reject the mesh and name the edge. Earlier polygons choose their
+///   diagonals first.
 ///
 /// # Errors
 ///
@@ -266,7 +267,8 @@ mod tests {
             assert_covered(&one_face(points.collect()), false);
         }
 
-        /// Any polygon: one that crosses itself, lies on one line or in one point.
+        /// Any polygon, including a polygon that crosses itself, lies on one line or lies in one
+        /// point.
         #[test]
         fn any_polygon_is_partitioned(
             points in collection::vec(prop::array::uniform3(-2..3_i8), 4..30),

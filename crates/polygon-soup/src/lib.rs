@@ -2,8 +2,8 @@
 //!
 //! STL files have this form, and a renderer can use it unchanged. Use it to transfer all faces at
 //! once. Every query of a neighbourhood scans all corners, because no table stores neighbours. FV,
-//! FE and EV take O(1) per item, the other six O(corners). Start at [`generic::PolygonSoup`]; its four
-//! invariants define the tables.
+//! FE and EV take O(1) per item; the other six relations take O(corners). Start at
+//! [`generic::PolygonSoup`]; its four invariants define the tables.
 //!
 //! A vertex *is* its coordinates here ([`SoupVertex`]). Vertices with the same coordinates
 //! therefore become one vertex, and moving a vertex changes its handle. [`SoupVertex`] explains why

@@ -17,19 +17,20 @@ use crate::vertex::SoupVertex;
 /// ```
 ///
 /// - I1  Each corner belongs to one face: face `f` has the corners `spans.range(f)`, at least
-///   three. These ranges are consecutive and cover the whole table, until an edit changes a degree;
-///   after that, unused corners can be between them.
+///   three. These ranges are consecutive and cover the whole table. After an edit has changed a
+///   degree, unused corners can be between them.
 /// - I2  No coordinate is −0; construction, [`set_positions`] and edits write 0 instead.
 /// - I3  The corners of one face are at different positions. [`set_positions`] returns an error if
-///   two of them would coincide, and every edit does if the position of a new vertex is occupied.
-/// - I4  Holes are rows of faces. The corners of deleted faces and the unused corners between faces
-///   are blank, and no others. A blank corner is a NaN that no [`SoupVertex`] has, so no scan finds
-///   it.
+///   two of them would coincide. Every edit returns an error if the position of a new vertex is
+///   occupied.
+/// - I4  Holes are rows of faces. Exactly two kinds of corners are blank: the corners of deleted
+///   faces, and the unused corners between faces. A blank corner is a NaN that no [`SoupVertex`]
+///   has, so no scan finds it.
 ///
 /// A large closed triangle mesh uses 18 words per vertex, three points per face. With mixed
 /// degrees, the offsets add one word per face. Edits that change a degree replace the offsets by
 /// two words per face and one per corner. Deletions add one bit per face.
-/// [`compact`](sixfold_core::MeshEdit::compact) removes both.
+/// [`compact`](sixfold_core::MeshEdit::compact) removes both additions.
 ///
 /// # Complexity
 ///
@@ -42,10 +43,10 @@ use crate::vertex::SoupVertex;
 /// | `vertices`, `edges` | all corners | O(corners) expected, with a hash set |
 /// | `vertex_count`, `edge_count` | as above: they are not stored | O(corners) expected |
 ///
-/// A hit of a scan costs O(1), or O(log faces) with mixed degrees, because the face of the corner
-/// must be searched. A scan reads 12 bytes per corner, once and in order. If the table fits the
-/// cache, the limit is the three comparisons per corner; in larger meshes it is the memory
-/// bandwidth.
+/// A hit of a scan costs O(1). With mixed degrees it costs O(log faces), because the face of the
+/// corner must be searched. A scan reads 12 bytes per corner, once and in order. If the table fits
+/// the cache, the limit is the three comparisons per corner. In larger meshes, the limit is the
+/// memory bandwidth.
 ///
 /// # Edits
 ///
@@ -59,7 +60,7 @@ use crate::vertex::SoupVertex;
 /// | `split_edge`, `dissolve_edge` | all corners, in one scan | the faces at the edge, which may move to the end of the table |
 /// | `bisect_edge` | all corners, in one scan | a corner of each face, and a new face for each |
 /// | `flip_edge` | all corners, in two scans | one corner of each face |
-/// | `collapse_edge` | all corners, in one scan, rarely two | the corners at the removed vertex; at both ends, if they move |
+/// | `collapse_edge` | all corners, in one scan, rarely two | the corners at the removed vertex; also those at the kept end, if it moves |
 /// | `split_vertex` | all corners, in one scan | the corners that the new vertex gets, and two new faces |
 /// | `remove_vertex` | all corners, in one scan | the corners of its faces |
 /// | `remove_isolated_vertices` | nothing | nothing: no vertex is isolated |
@@ -107,7 +108,7 @@ impl<P: Probe, E: Editing> PolygonSoup<E, P> {
         self.faces.corners.rows()
     }
 
-    /// Returns the ranges of corners of the faces, including deleted ones.
+    /// Returns the ranges of corners of the faces, including deleted faces.
     pub fn spans(&self) -> &FaceSpans<P, E> {
         &self.faces.spans
     }

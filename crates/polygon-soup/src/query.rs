@@ -124,8 +124,8 @@ mod tests {
     use super::*;
     use crate::PolygonSoup;
 
-    /// Returns a pentagon and its mirror image, and a triangle and a quad at one of their sides
-    /// each.
+    /// Returns a pentagon and its mirror image, a triangle at one of their sides, and a quad at
+    /// another side.
     fn pillow() -> (PolygonMesh, PolygonSoup) {
         let at = [
             (0, 0),

@@ -15,14 +15,14 @@ use sixfold_core::{Handle, HashHandleMap, Point, ScannedVertex};
 /// # Points that are nearly equal
 ///
 /// Vertices that differ only by rounding errors stay different vertices. A tolerance cannot be part
-/// of a handle: with a tolerance of 1, the points 0 and 0.8 are equal, and so are 0.8 and 1.6, but 0
-/// and 1.6 are not. This relation is not transitive, so it cannot be [`Eq`]; and a [`Hash`] that is
-/// the same for all pairs of equal points would be the same for all points. Handles need both, because
-/// they are keys of maps.
+/// of a handle: with a tolerance of 1, the points 0 and 0.8 are equal and the points 0.8 and 1.6
+/// are equal, but 0 and 1.6 are not. This relation is not transitive, so it cannot be [`Eq`]. A
+/// [`Hash`] that is the same for all pairs of equal points would be the same for all points.
+/// Handles need [`Eq`] and [`Hash`], because they are keys of maps.
 ///
 /// Therefore merge such points before you build the soup. If you round positions to a grid, points
-/// with the same rounded position are merged, and this relation is transitive. Two close points on
-/// different sides of a boundary between grid cells stay different.
+/// with the same rounded position are merged. Equality of rounded positions is transitive. Two
+/// close points on different sides of a boundary between grid cells stay different.
 ///
 /// ```
 /// use sixfold_polygon_soup::prelude::*;
@@ -82,7 +82,8 @@ impl ScannedVertex for SoupVertex {
         self.position()
     }
 
-    /// Compares all three: a branch after the first costs more than the two comparisons it avoids.
+    /// Compares all three coordinates: a branch after the first comparison would cost more than the
+    /// two comparisons that it avoids.
     #[inline]
     fn is_at(self, corner: &Point) -> bool {
         let [x, y, z] = self.0;
@@ -100,7 +101,8 @@ impl ScannedVertex for SoupVertex {
 }
 
 impl Ord for SoupVertex {
-    /// Compares the three words as one number: no branch, and no call of a comparison of slices.
+    /// Compares the three words as one number. This needs no branch and no call of a slice
+    /// comparison.
     #[inline]
     fn cmp(&self, other: &Self) -> Ordering {
         let number = |[x, y, z]: [u32; 3]| {

@@ -8,8 +8,8 @@ use crate::table::{RelationTable, TabulationError};
 
 /// The elements of a mesh, numbered in the order in which the structure lists them.
 ///
-/// If handles are rows and nothing was removed, the number is the row. The elements of a kind are
-/// numbered when the first number of that kind is needed.
+/// If handles are rows and nothing was removed, the number of an element is its row. The elements
+/// of a kind are numbered when the first number of that kind is needed.
 pub struct Numbering<'m, M: MeshQuery> {
     mesh: &'m M,
     vertices: OnceCell<Numbers<M::Vertex>>,

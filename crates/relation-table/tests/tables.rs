@@ -84,7 +84,8 @@ fn removed_elements_get_no_numbers() {
     );
 }
 
-/// Rows of one length need no offsets. Other tables store one offset per row, and one at the end.
+/// A table needs no offsets if all its rows have one length. Other tables store one offset per row,
+/// and one at the end.
 #[test]
 fn tables_store_no_offsets_if_all_rows_have_one_length() {
     let ball = sixfold_shapes::icosahedron();

@@ -21,7 +21,7 @@ const WATCH_INTERVAL: usize = 1024;
 /// The target of a decimation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// This number of faces, or one fewer: a collapse can remove two.
+    /// This number of faces, or one face fewer, because a collapse can remove two faces.
     Faces(usize),
     /// This fraction of the faces of the mesh, from 0 to 1.
     Ratio(f64),
@@ -47,8 +47,8 @@ impl Target {
 /// The treatment of vertices on boundary edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Boundary {
-    /// The boundary is simplified like the surface. Planes perpendicular to the surface keep its
-    /// shape.
+    /// The boundary is simplified like the surface. Planes perpendicular to the surface keep the
+    /// shape of the boundary.
     #[default]
     Follow,
     /// Boundary vertices stay where they are.
@@ -81,12 +81,13 @@ pub struct Decimated {
     pub faces: usize,
     /// The number of collapsed edges.
     pub collapses: usize,
-    /// The number of refused collapses: illegal, or turning a face over.
+    /// The number of collapses that were refused, because they were illegal or would turn a face
+    /// over.
     pub refused: usize,
-    /// The largest quadric error of a collapse: squared distances to the planes of the faces, each
-    /// weighted by the area of the face.
+    /// The largest quadric error of a collapse. This error is a sum of squared distances to the
+    /// planes of faces, each weighted by the area of the face.
     pub max_error: f64,
-    /// The reason why it ended.
+    /// The reason why the decimation ended.
     pub stop: Stop,
 }
 
@@ -95,14 +96,16 @@ pub struct Decimated {
 ///
 /// The error of a vertex is the sum of the squared distances to the planes of the faces that it
 /// represents, each weighted by the area of the face. The merged vertex is placed where the sum of
-/// both errors is least. If there is no single such place, it is placed at the best of the two ends
-/// and their midpoint. Boundary edges add planes perpendicular to the surface, so that outlines
-/// stay. A collapse is refused if it would turn a face over or break the link condition. It is
-/// tried again after one of its ends has changed.
+/// both errors is least. If there is no single such place, the vertex is placed at the best of
+/// three points: the two ends and their midpoint. Boundary edges add planes perpendicular to the
+/// surface, so that outlines keep their shape. A collapse is refused if it would turn a face over
+/// or break the link condition. A refused collapse is tried again after one of its ends has
+/// changed.
 ///
-/// Errors are rounded: those in one bucket differ by at most an eighth. Edges with the same rounded
-/// error are collapsed in rounds, in the order of the mesh. The queue is updated lazily: an entry
-/// whose ends have changed is dropped when it is taken out.
+/// Errors are rounded into buckets; the errors in one bucket differ by at most an eighth. All edges
+/// of the lowest bucket form a round. A round collapses its edges in the order of the mesh. The
+/// queue is updated lazily: if an end of an edge has changed, the entry is dropped when it is taken
+/// out.
 ///
 /// # Errors
 ///
@@ -112,8 +115,8 @@ pub struct Decimated {
 /// # Complexity
 ///
 /// O(edges log edges), plus the structure's cost of VF, VV and `collapse_edge` for each collapse.
-/// On structures that scan, this is O(faces) each. Every collapse removes a face, so the number of
-/// collapses is limited.
+/// On structures that scan all faces, this cost is O(faces) for each collapse. Every collapse
+/// removes at least one face, so there are fewer collapses than faces.
 pub fn decimate<M: MeshEdit>(
     mesh: &mut M,
     decimation: &Decimation,
@@ -173,7 +176,7 @@ pub fn decimate_watched<M: MeshEdit>(
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 struct Vertex {
-    /// Its origin is the vertex itself, in the unit box.
+    /// The quadric in the unit box; its origin is the vertex itself.
     quadric: Packed,
     at: Point,
     /// Changes whenever the vertex changes.
@@ -186,7 +189,8 @@ struct Work<M: MeshEdit> {
     numbering: Numbering<M>,
     vertices: Vec<Vertex>,
     queue: Queue,
-    /// The size of the mesh: divided by it, the mesh fits in a unit box.
+    /// The size of the mesh. Positions are divided by this size, so that the mesh fits in a unit
+    /// box.
     size: f64,
 }
 
@@ -215,8 +219,9 @@ impl<M: MeshEdit> Work<M> {
         Ok(work)
     }
 
-    /// Adds the planes of its faces to each vertex and, at a boundary, the planes perpendicular to
-    /// the surface. All of them contain the vertex, which is the origin of its quadric.
+    /// Adds to each vertex the planes of its faces and, at a boundary, the planes perpendicular to
+    /// the surface. All these planes contain the vertex, and the vertex is the origin of its
+    /// quadric.
     fn add_planes(&mut self, mesh: &M, boundary: Boundary) {
         let face_counts = mesh.edge_face_counts();
         let mut quadrics = vec![Quadric::default(); self.vertices.len()];
@@ -250,7 +255,7 @@ impl<M: MeshEdit> Work<M> {
                 }
             }
         }
-        // The order of the edges of a face depends on the structure.
+        // Sorted, because the order of the edges of a face depends on the structure.
         boundary_planes.sort_by_key(|&(ends, _)| ends);
         for (ends, plane) in boundary_planes {
             for n in ends {
@@ -321,7 +326,7 @@ impl<M: MeshEdit> Work<M> {
             [false, false] => {}
         }
         let middle = edge / 2.0;
-        // A place far from the edge comes from rounding, not from the shape.
+        // A place far from the edge is an effect of rounding, not of the shape.
         let max_distance_squared = 4.0 * edge.length_squared();
         let minimizer = sum
             .minimizer()
@@ -329,8 +334,8 @@ impl<M: MeshEdit> Work<M> {
         if let Some(x) = minimizer {
             return Some(at(x));
         }
-        // Only the offset is chosen here: copies of `sum` would be written and read again in pieces
-        // of other sizes, and processors wait for such reads.
+        // Chooses only the offset and makes no copies of `sum`. Copies would be written in pieces
+        // of one size and read in pieces of another size, and processors stall on such reads.
         let mut best = (sum.value(middle), middle);
         for offset in [DVec3::ZERO, edge] {
             let error = sum.value(offset);

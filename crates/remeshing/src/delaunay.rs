@@ -9,12 +9,12 @@ use crate::error::RemeshError;
 use crate::numbering::{Numbering, corners};
 use crate::rules::at;
 
-/// The maximum number of flips per edge. A plane needs far fewer. On a surface, flipping might
-/// never end without this limit.
+/// The maximum number of flips per edge. A mesh in a plane needs far fewer flips. On a surface,
+/// flipping might never end without this limit.
 const FLIPS_PER_EDGE: usize = 16;
 
-/// Edges are flipped if the cotangents add up to less than minus this, so that rounding alone flips
-/// nothing.
+/// An edge is flipped if its sum of cotangents is below `-TOLERANCE`, so that rounding errors alone
+/// cause no flips.
 const TOLERANCE: f64 = 1e-7;
 
 /// The result of [`flip_to_delaunay`].
@@ -23,14 +23,14 @@ const TOLERANCE: f64 = 1e-7;
 pub struct Flipped {
     /// The number of flipped edges.
     pub flips: usize,
-    /// The number of refused flips: illegal, or folding the surface.
+    /// The number of flips that were refused, because they were illegal or would fold the surface.
     pub refused: usize,
-    /// The reason why it ended; [`Stop::Done`] if every edge is Delaunay or was refused.
+    /// The reason why flipping ended; [`Stop::Done`] if every edge is Delaunay or its flip was
+    /// refused.
     pub stop: Stop,
 }
 
-/// Flips edges whose two opposite angles add up to more than π, until none is left that can be
-/// flipped.
+/// Flips edges whose two opposite angles add up to more than π, until no such edge can be flipped.
 ///
 /// ```text
 ///       c                 cot ∠c + cot ∠d < 0:  the circle around a b c contains d,
@@ -41,8 +41,8 @@ pub struct Flipped {
 /// ```
 ///
 /// In a plane, the result is the Delaunay triangulation (Lawson 1977). On a surface, a flip changes
-/// the shape. So a flip is refused if a new triangle would face away from the two old ones, and
-/// there are at most 16 flips per edge of the mesh.
+/// the shape. So a flip is refused if a new triangle would face away from the two old triangles.
+/// There are at most 16 flips per edge of the mesh.
 ///
 /// # Errors
 ///

@@ -16,7 +16,8 @@ use crate::rules::{at, is_boundary, keeps_orientation, meets_link_condition};
 const LONG: f64 = 4.0 / 3.0;
 const SHORT: f64 = 4.0 / 5.0;
 
-/// The boundary is straight at a vertex if it turns by less than this there, as a cosine.
+/// The boundary is straight at a vertex if the cosine of its turning angle there is at least this
+/// value.
 const STRAIGHT: f64 = 0.9962; // 5 degrees
 
 /// The minimum edge length, in steps between neighbouring f32 coordinates.
@@ -33,7 +34,8 @@ pub struct Remeshing {
     pub edge_length: f64,
     /// The maximum number of iterations; each splits, collapses, flips and smooths.
     pub iterations: usize,
-    /// The maximum number of faces for splitting. A length that would need more is refused.
+    /// The maximum number of faces that splits may reach. An edge length that would need more faces
+    /// is an error.
     pub max_faces: usize,
 }
 
@@ -62,7 +64,7 @@ pub struct Remeshed {
     pub flips: usize,
     /// The number of finished iterations.
     pub iterations: usize,
-    /// The reason why it ended.
+    /// The reason why remeshing ended.
     pub stop: Stop,
 }
 
@@ -82,16 +84,16 @@ pub struct Remeshed {
 ///
 /// # Errors
 ///
-/// Returns [`RemeshError`] if a face is not a triangle or a position is not finite. Also if the
-/// length is not a finite positive number, is too short for the precision of the positions, or
-/// would need more faces than allowed (estimated from the area and from the edges to be split). The
-/// mesh is then unchanged.
+/// Returns [`RemeshError`] if a face is not a triangle or a position is not finite. Also returns it
+/// if the edge length is not a finite positive number, is too short for the precision of the
+/// positions, or would need more faces than allowed. The number of faces is estimated from the area
+/// and from the edges to be split. If there is an error, the mesh is unchanged.
 ///
 /// # Complexity
 ///
 /// O(edges log edges) for each iteration, plus the structure's cost of the queries and the edit for
-/// each edge. The maximum number of faces limits the splits. Each of the other passes visits once
-/// the edges that exist when it begins.
+/// each edge. The maximum number of faces limits the splits. Each of the other passes visits the
+/// edges that exist when the pass begins, each edge once.
 pub fn remesh<M: MeshEdit>(mesh: &mut M, remeshing: &Remeshing) -> Result<Remeshed, RemeshError> {
     remesh_watched(mesh, remeshing, &mut |_| ControlFlow::Continue(()))
 }
@@ -116,8 +118,9 @@ pub fn remesh_watched<M: MeshEdit>(
         long: (LONG * length) * (LONG * length),
         short: (SHORT * length) * (SHORT * length),
     };
-    // The larger of two estimates: equilateral triangles over the area, and triangles along the
-    // long edges (for faces with almost no area).
+    // Uses the larger of two estimates of the number of faces. The first fills the area with
+    // equilateral triangles. The second puts triangles along the long edges, for faces with almost
+    // no area.
     let area: f64 = mesh.faces().map(|f| cross(mesh, f).length() / 2.0).sum();
     let lengths = mesh.edges().map(|e| {
         let [a, b] = mesh.edge_vertices(e).map(|v| at(mesh, v));
@@ -192,7 +195,7 @@ fn check_precision<M: MeshEdit>(mesh: &M, length: f64) -> Result<(), RemeshError
 
 struct Work<M: MeshEdit> {
     numbering: Numbering<M>,
-    /// The squared lengths between which edges stay.
+    /// Edges with a squared length from `short` to `long` are not changed.
     long: f64,
     short: f64,
 }
@@ -207,7 +210,7 @@ impl<M: MeshEdit> Work<M> {
         a.distance_squared(b)
     }
 
-    /// Splits long edges, including new ones, up to `max_faces` faces. Returns the number of
+    /// Splits long edges, including new long edges, up to `max_faces` faces. Returns the number of
     /// splits, and false if the maximum was reached.
     fn split_long(&mut self, mesh: &mut M, max_faces: usize) -> (usize, bool) {
         let mut queue = self.numbering.edges(mesh);
@@ -360,7 +363,7 @@ impl<M: MeshEdit> Work<M> {
     }
 
     /// Moves inner vertices within their tangent planes, all computed from the old positions.
-    /// Returns the longest distance.
+    /// Returns the longest distance that a vertex moved.
     fn smooth(&mut self, mesh: &mut M) -> f64 {
         let mut moves: Vec<(u32, DVec3)> = Vec::new();
         let mut vertices: Vec<u32> = mesh.vertices().map(|v| self.numbering.number(v)).collect();
@@ -371,7 +374,7 @@ impl<M: MeshEdit> Work<M> {
                 continue;
             }
             let from = at(mesh, v);
-            // In the order of the numbers, so that rounding is the same on every structure.
+            // In the order of the vertex numbers, so that rounding is the same on every structure.
             let mut fan: Vec<([u32; 2], DVec3, DVec3)> = mesh
                 .vertex_faces(v)
                 .map(|f| {

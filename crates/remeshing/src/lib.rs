@@ -1,4 +1,4 @@
-//! Operators that use edits: coarser meshes, even edge lengths and better triangles.
+//! Operators that edit a mesh to get fewer faces, even edge lengths or better triangles.
 //!
 //! | operator | does | cost | source |
 //! |---|---|---|---|
@@ -7,16 +7,17 @@
 //! | [`flip_to_delaunay`] | flips edges whose two opposite angles add up to more than π | O(edges log edges + flips) | Lawson 1977 |
 //!
 //! Each operator is written once, with [`MeshEdit`] and the queries, and runs on every structure.
-//! On a structure that scans for neighbours, every step scans. All decisions depend on vertex
-//! numbers, which follow the order in which the faces list the vertices, and sums are computed in
-//! that order. So **every structure makes the same mesh, to the bit**, from the same manifold. The
-//! order of its faces depends on the structure. So an operator that runs on the result of another
-//! one can make different meshes, unless all structures are first built from one [`PolygonMesh`].
+//! If a structure scans all faces to find neighbours, every step has the cost of such a scan. All
+//! decisions depend on vertex numbers. The numbers follow the order in which the faces list the
+//! vertices, and sums are computed in that order. Therefore **every structure makes the same mesh,
+//! to the bit**, from the same manifold. Only the order of the faces in the result depends on the
+//! structure. A second operator that runs on these results can therefore make different meshes. To
+//! avoid this, first build all structures again from one [`PolygonMesh`].
 //!
 //! [`PolygonMesh`]: sixfold_core::PolygonMesh
 //!
 //! Only meshes of triangles are accepted. Boundaries keep their shape. Removed elements leave
-//! holes: see [`MeshEdit::compact`].
+//! unused rows in the tables; [`MeshEdit::compact`] removes these rows.
 //!
 //! ```
 //! use sixfold_half_edge::EditableHalfEdgeMesh;
@@ -32,7 +33,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Data by vertex, edge or face follows if the mesh is a [`MeshWithData`]:
+//! If the mesh is a [`MeshWithData`], data stored by vertex, edge or face follows the edits:
 //!
 //! ```
 //! use sixfold_core::{FaceData, MeshQuery, MeshWithData, Representation, VertexData};
@@ -84,12 +85,12 @@ pub use isotropic::{Remeshed, Remeshing, remesh, remesh_watched};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stop {
-    /// It did everything that was requested.
+    /// The operator did everything that was requested.
     Done,
-    /// No edit was left that is legal and turns no face over.
+    /// Every remaining edit is illegal or would turn a face over.
     NoLegalEdit,
-    /// It reached the limit of its work.
+    /// The operator reached its maximum number of faces or flips.
     LimitReached,
-    /// The `watch` function ended it.
+    /// The `watch` function ended the operator.
     Requested,
 }

@@ -8,11 +8,11 @@ use crate::error::RemeshError;
 ///
 /// Structures list vertices, and walk around them, in different orders. Decisions that depend on
 /// these orders would differ between structures; decisions that depend on the numbers do not. The
-/// numbers follow the order in which the faces list the vertices, each face from its least corner
-/// (by coordinates).
+/// numbers follow the order in which the faces list the vertices. Each face is read from the corner
+/// with the least coordinates.
 pub(crate) struct Numbering<M: MeshEdit> {
     handles: Vec<M::Vertex>,
-    /// Whether the vertex of a number has been removed, so that its handle must not be used any
+    /// By number: whether the vertex has been removed, so that its handle must not be used any
     /// more.
     removed: Vec<bool>,
     numbers: VertexMap<M, u32>,
@@ -93,7 +93,8 @@ impl<M: MeshEdit> Numbering<M> {
         }
     }
 
-    /// Moves a vertex. If a vertex is its coordinates and another one is at `to`, it stays.
+    /// Moves a vertex to `to`. If the structure identifies vertices by coordinates and another
+    /// vertex is at `to`, the vertex does not move.
     pub(crate) fn set_position(&mut self, mesh: &mut M, number: u32, to: Point) {
         if let Ok(v) = mesh.set_position(self.handle(number), to) {
             self.set_handle(number, v);

@@ -87,7 +87,7 @@ impl Quadric {
         )
     }
 
-    /// Returns the sum of both.
+    /// Returns the sum of two quadrics with the same origin.
     #[inline]
     pub(crate) fn plus(mut self, other: &Self) -> Self {
         self += *other;

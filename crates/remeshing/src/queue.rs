@@ -20,31 +20,31 @@ impl Entry {
     }
 }
 
-/// The number of low bits of a cost, a non-negative f32, that are ignored. Three bits of the
-/// fraction remain, so costs in one bucket differ by at most an eighth.
+/// The number of low bits that are ignored in a cost. A cost is a non-negative f32. Three bits of
+/// the fraction remain, so costs in one bucket differ by at most an eighth.
 const ROUNDED: u32 = 20;
 
 /// One bucket for each rounded cost, for all floats up to infinity.
 const BUCKETS: usize = 1 << (31 - ROUNDED);
 
-/// A queue of edges in rounds. A round has all edges of the cheapest bucket, in the order of their
-/// ends; the next round has the bucket that is then the cheapest.
+/// A queue that returns edges in rounds. A round has all edges of the cheapest bucket, sorted by
+/// their ends. The next round has the bucket that is then the cheapest.
 ///
 /// ```text
 /// costs     1 ── 1⅛ ── 1¼ ── …      a round: one bucket, sorted by the ends
 /// buckets  [ab cf] [ ] [bc] …       new entries wait for the next round
 /// ```
 ///
-/// With a heap of exact costs, consecutive edges are far apart in the mesh, and each edge waits for
-/// memory. In a round, the edges come in the order in which their vertices are in memory. A
-/// collapse also makes the other entries at its ends stale, so a round collapses edges that are
-/// apart, and no vertex absorbs all of its neighbours.
+/// A heap of exact costs would return edges that are far apart in the mesh, and each edge would
+/// wait for memory. In a round, the edges have the order of their vertices in memory. A collapse
+/// also makes the other entries at its ends stale. Therefore a round collapses no two adjacent
+/// edges, and no vertex absorbs all of its neighbours.
 #[derive(Debug)]
 pub(crate) struct Queue {
     buckets: Vec<Vec<Entry>>,
-    /// All lower buckets are empty.
+    /// The bucket at which the search starts; all lower buckets are empty.
     lowest: usize,
-    /// The rest of this round, the next entry last.
+    /// The remaining entries of this round; the next entry is last.
     round: Vec<Entry>,
 }
 

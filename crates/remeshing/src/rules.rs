@@ -1,4 +1,4 @@
-//! Rules for edits beyond those of the structures.
+//! Rules for edits, in addition to the rules of the structures.
 
 use glam::DVec3;
 use sixfold_core::MeshEdit;
@@ -59,8 +59,7 @@ pub(crate) fn meets_link_condition<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
         return false;
     }
     if apexes.len() == 2 {
-        // Four triangles that close: a tetrahedron would become two triangles with the same
-        // corners.
+        // A tetrahedron would become two triangles with the same corners.
         let closed = |v| mesh.vertex_faces(v).count() == 3;
         if at_a.len() == 3 && at_b.len() == 3 && closed(a) && closed(b) {
             return false;

@@ -11,7 +11,7 @@ use crate::rasterise::{Corner, Rasteriser};
 /// Number of samples after which further faces are ordered by mean depth alone.
 const MAX_SAMPLES: usize = 1 << 24;
 
-/// Minimum difference in depth, in pixels, for which the nearer face must come later.
+/// Minimum difference in depth, in pixels, at which the nearer face must come later.
 const MIN_DEPTH_DIFFERENCE: f32 = 0.25;
 
 /// The surface of a face at a pixel.
@@ -24,14 +24,14 @@ struct Layer {
 /// Returns the faces marked `visible`, from back to front; O(samples · log samples).
 ///
 /// Sorting by one depth per face is wrong for long faces next to short ones. Instead, faces are
-/// compared at each pixel that they share: the farther one must come first. The order follows these
-/// rules by the algorithm of Kahn (1962); among several candidates, the farthest comes first. Faces
-/// that intersect each other can have no valid order; then the farthest of the remaining faces
-/// comes next.
+/// compared at each pixel that they share: the farther one must come first. The algorithm of Kahn
+/// (1962) finds an order that follows these rules. If several faces can come next, the farthest of
+/// them comes first. Faces that intersect each other may have no valid order. In this case too, the
+/// farthest remaining face comes next.
 pub(crate) fn back_to_front(mesh: &PolygonMesh, panel: &Panel, visible: &[bool]) -> Vec<FaceId> {
     let mut layers: Vec<Layer> = Vec::new();
     let mut rasteriser = Rasteriser::new(panel.width, panel.height);
-    // Sorted by mean depth: the order if no rule applies.
+    // The faces by mean depth. This is their order if no rule applies.
     let mut ranked: Vec<(f64, FaceId)> = Vec::new();
     for (f, face) in mesh.faces().iter().filter(|(f, _)| visible[f.index()]) {
         let depths = face.iter().map(|&v| panel.position(v).z);
@@ -69,8 +69,8 @@ pub(crate) fn back_to_front(mesh: &PolygonMesh, panel: &Panel, visible: &[bool])
     order.into_iter().map(|rank| ranked[rank].1).collect()
 }
 
-/// Returns the numbers below `count` in an order in which the first of each rule comes before the
-/// second. Among several candidates, the lowest comes first.
+/// Returns the numbers below `count` in an order in which the first number of each rule comes
+/// before the second. If several numbers can come next, the lowest of them comes first.
 fn topological_order(count: usize, mut rules: Vec<(u32, u32)>) -> Vec<usize> {
     rules.sort_unstable();
     rules.dedup();

@@ -13,7 +13,7 @@ pub enum RenderError {
     /// There is no mesh.
     #[error("no mesh to draw: give at least one")]
     NoMesh,
-    /// A side is too long, or there are too many pixels.
+    /// The picture is too wide or too high, or has too many pixels.
     #[error(
         "a picture of {width} × {height} pixels is too large: at most {MAX_SIDE} per side and {MAX_PIXELS} in total"
     )]

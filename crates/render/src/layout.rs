@@ -13,9 +13,9 @@ const MARGIN: f64 = 0.07;
 pub(crate) struct Panel {
     /// The first column of the panel in the picture.
     pub(crate) left: usize,
-    /// In pixels.
+    /// Width in pixels.
     pub(crate) width: usize,
-    /// In pixels.
+    /// Height in pixels.
     pub(crate) height: usize,
     /// Coordinates by vertex, in pixels: to the right and down from the upper left corner of the
     /// panel, and towards the viewer. Vertices without faces can have any coordinates.
@@ -23,7 +23,7 @@ pub(crate) struct Panel {
 }
 
 impl Panel {
-    /// Returns the unit of line widths in pixels, which grows with the panel.
+    /// Returns the unit of line widths, in pixels. It grows with the size of the panel.
     pub(crate) fn unit(&self) -> f64 {
         (self.width.min(self.height) as f64 / 480.0).max(0.5)
     }
@@ -80,7 +80,7 @@ pub(crate) fn layout(
     };
     let bounds = render_meshes.iter().enumerate().map(mesh_bounds);
     let bounds = bounds.collect::<Result<Vec<Bounds>, RenderError>>()?;
-    // All panels count as wide as the narrowest; rounding makes a difference of one pixel.
+    // Uses the width of the narrowest panel for all. Rounding makes some panels one pixel wider.
     let usable = |side: usize| side as f64 * (1.0 - 2.0 * MARGIN);
     let scales = bounds.iter().map(|bounds| {
         let size = bounds.size();

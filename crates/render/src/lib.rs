@@ -1,7 +1,7 @@
 //! A software renderer for meshes with their edges and creases, in parallel projection.
 //!
-//! Start at [`draw`] for pixels, which [`Picture::write_png`] writes, or at [`draw_svg`] for lines
-//! and polygons. Several [`RenderMesh`]s are drawn in a row, each in its own panel and all at one
+//! [`draw`] makes pixels, and [`Picture::write_png`] writes them. [`draw_svg`] makes lines and
+//! polygons. Several [`RenderMesh`]s are drawn in a row, each in its own panel and all at one
 //! scale, for example to compare the levels of a subdivision.
 //!
 //! ```text
@@ -11,8 +11,8 @@
 //! ```
 //!
 //! A depth buffer with several samples per pixel determines which lines and surfaces are hidden,
-//! after Catmull (1974). Lines are tested along their middle, so that the faces at a thick line do
-//! not hide half of it. The same input gives the same bytes.
+//! after Catmull (1974). The test of a line uses its centre, so that the faces beside a thick line
+//! do not hide half of its width. The same input gives the same bytes.
 
 mod depth_order;
 mod edges;

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-/// A colour in linear amounts of red, green and blue, not sRGB codes: sums and means are valid.
+/// A colour in linear amounts of red, green and blue. Unlike sRGB codes, these amounts can be added
+/// and averaged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Colour(pub(crate) DVec3);
 
@@ -43,12 +44,12 @@ impl Colour {
     }
 }
 
-/// Returns the colour of a surface with this normal, in the axes of the picture; if `inside`, the
-/// colour of its inner side.
+/// Returns the colour of a surface with this normal, in the axes of the picture. If `inside` is
+/// true, returns the colour of the inner side.
 ///
-/// Uses Lambert's law (1760) for a key light from the upper left and a weak light from the right,
-/// light from the sky above, a soft highlight after Blinn (1977), and light along the rim, where
-/// the surface turns away from the viewer.
+/// Uses Lambert's law (1760) for a key light from the upper left and for a weak light from the
+/// right. Adds light from the sky above, a soft highlight after Blinn (1977), and light along the
+/// rim, where the surface turns away from the viewer.
 pub(crate) fn shade(normal: DVec3, inside: bool) -> Colour {
     let normal = normal.normalize_or(DVec3::Z);
     let (normal, base) = if inside {
@@ -74,7 +75,8 @@ mod tests {
     #[test]
     fn linear_light_is_converted_to_srgb() {
         let grey = |light| Colour(DVec3::splat(light)).srgb_codes()[0];
-        // By the standard, half the light has code 188. Values out of range are clamped.
+        // In the sRGB standard, half of the full light has code 188. Values out of range are
+        // clamped.
         let codes = [-1.0, 0.0, 0.002, 0.215_861, 0.5, 1.0, 7.0].map(grey);
         assert_eq!(codes, [0, 0, 7, 128, 188, 255, 255]);
         assert_eq!(Colour(DVec3::X).to_hex(), "#ff0000");

@@ -9,7 +9,8 @@ use crate::settings::{Shading, View};
 /// The cosine of 40°: faces at a larger angle are not one smooth surface.
 const MIN_SMOOTH_COSINE: f64 = 0.766_044_443_118_978;
 
-/// Minimum sharpness that breaks smooth shading: a lower one is rounded off in the next level.
+/// Minimum sharpness of an edge across which shading is not smooth. A less sharp edge is rounded
+/// off in the next level.
 const MIN_CREASE_SHARPNESS: f32 = 1.0;
 
 /// Unit normals in the axes of the picture; zero for a face without area.
@@ -23,8 +24,8 @@ pub(crate) struct Normals {
 impl Normals {
     /// Computes the normals of `mesh`; O(corners · α), with the inverse Ackermann function α.
     ///
-    /// Corners joined by smooth edges are one surface, whose normal is the mean of its face
-    /// normals, weighted by area.
+    /// Corners joined by smooth edges are one surface. Its normal is the mean of its face normals,
+    /// weighted by area.
     pub(crate) fn new(
         mesh: &PolygonMesh,
         creases: &Creases,
@@ -78,7 +79,7 @@ impl Normals {
     }
 }
 
-/// Returns the normal of a face, with twice its area as length (Newell's method).
+/// Returns the normal of a face (Newell's method). Its length is twice the area of the face.
 ///
 /// Products of the 32-bit coordinates do not overflow 64-bit floats.
 fn area_vector(mesh: &PolygonMesh, face: &[VertexId]) -> DVec3 {
@@ -110,7 +111,8 @@ impl Surfaces {
 
     fn union(&mut self, a: u32, b: u32) {
         let [a, b] = [self.find(a), self.find(b)];
-        // The lowest corner represents the set, for any order in which sets are joined.
+        // The lowest corner represents the set, so the order in which sets are joined has no
+        // effect.
         self.0[a.max(b) as usize] = a.min(b);
     }
 }

@@ -56,7 +56,7 @@ impl Picture {
 ///
 /// # Errors
 ///
-/// Returns an error for a size or a mesh that cannot be drawn: see [`RenderError`].
+/// Returns a [`RenderError`] if the picture cannot be drawn.
 ///
 /// # Examples
 ///
@@ -136,8 +136,8 @@ impl VisibleParts {
     }
 }
 
-/// The share of each pixel of a panel that lines of one colour cover. If lines meet, the larger
-/// share counts, so that joints are invisible.
+/// For each pixel of a panel, the share that lines of one colour cover. If several lines cover a
+/// pixel, the largest share counts, so that joints are invisible.
 struct LineCoverage {
     width: usize,
     shares: Vec<u8>,
@@ -189,7 +189,8 @@ impl LineCoverage {
         }
     }
 
-    /// Returns the columns of `row` that a sloping line can reach, not its whole bounding box.
+    /// Returns the columns of `row` that a sloping line can reach. These are fewer than the columns
+    /// of its bounding box.
     fn columns_near_line(
         &self,
         row: usize,

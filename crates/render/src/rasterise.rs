@@ -32,8 +32,9 @@ struct Crossing {
 /// Fills polygons on a grid; reuses its scratch memory from one polygon to the next.
 ///
 /// A point is inside a polygon of any shape if a line from the left to the point crosses an odd
-/// number of sides. Coordinates and normals are interpolated along sides and then between them
-/// (Bouknight 1970), so polygons that share a side leave no gap, even if they are not planar.
+/// number of sides. Coordinates and normals are interpolated along sides and then between sides
+/// (Bouknight 1970). So polygons that share a side leave no gap, even if the polygons are not
+/// planar.
 ///
 /// ```text
 ///       ╱╲          ╱╲
@@ -58,7 +59,7 @@ impl Rasteriser {
 
     /// Calls `emit` with every sample inside the polygon; O(crossings · log + samples).
     pub(crate) fn rasterise(&mut self, corners: &[Corner], mut emit: impl FnMut(Sample)) {
-        /// Maximum number of crossings in memory at once, plus at most those of one row.
+        /// Maximum number of crossings in memory at once, unless one row has more.
         const MAX_CROSSINGS: usize = 1 << 16;
         let heights = corners.iter().map(|corner| corner.position.y);
         let lowest = heights.clone().fold(f64::INFINITY, f64::min);
@@ -72,12 +73,14 @@ impl Rasteriser {
         }
     }
 
-    /// Stores the points where the sides cross these rows, by row and then from left to right.
+    /// Stores the points where the sides cross these rows, sorted by row and then from left to
+    /// right.
     fn find_crossings(&mut self, corners: &[Corner], rows: &Range<usize>) {
         self.crossings.clear();
         let next = corners.iter().cycle().skip(1);
         for (&a, &b) in corners.iter().zip(next) {
-            // Both faces at a side use it from the same end, and so round in the same way.
+            // Both faces at a side start at the same end of the side, so that their rounding is the
+            // same.
             let (low, high) = if (a.position.y, a.position.x) <= (b.position.y, b.position.x) {
                 (a, b)
             } else {

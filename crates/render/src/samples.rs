@@ -19,7 +19,8 @@ pub(crate) struct Samples {
     pub(crate) per_side: usize,
     pub(crate) columns: usize,
     pub(crate) rows: usize,
-    /// The depth of the nearest surface towards the viewer, in samples; −∞ if there is no surface.
+    /// The depth of the nearest surface, as a coordinate towards the viewer, in samples; −∞ if
+    /// there is no surface.
     depths: Vec<f32>,
     /// The face of this surface.
     faces: Vec<Slot<FaceId>>,
@@ -61,7 +62,7 @@ impl Samples {
     }
 
     fn empty(panel: &Panel) -> Result<Self, RenderError> {
-        // More samples per pixel for small pictures, which are viewed closely.
+        // Small pictures have more samples per pixel, because they are viewed closely.
         let per_side = match panel.width * panel.height {
             ..=1_000_000 => 4,
             1_000_001..=3_000_000 => 3,
@@ -90,8 +91,9 @@ impl Samples {
         }
     }
 
-    /// Returns whether, at one of the nine samples around `position`, there is no surface, or
-    /// `predicate` is true for the depth and the face row of the nearest surface.
+    /// Returns whether at least one of the nine samples around `position` has no surface, or has a
+    /// surface for which `predicate` is true. Calls `predicate` with the depth and the face row of
+    /// the nearest surface.
     pub(crate) fn any_around(&self, position: DVec3, predicate: impl Fn(f32, u32) -> bool) -> bool {
         let neighbours = |at: f64, count: usize| {
             let at = (at.max(0.0) as usize).min(count - 1);

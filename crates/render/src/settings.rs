@@ -19,8 +19,8 @@ pub const MIN_PANEL: u32 = 16;
 pub struct RenderMesh<'a> {
     /// The mesh.
     pub mesh: &'a PolygonMesh,
-    /// The sharp edges and corners, drawn in colour; smooth shading breaks at a sharpness of 1 or
-    /// more.
+    /// The sharp edges and corners, drawn in colour. Shading is not smooth across an edge with a
+    /// sharpness of 1 or more.
     pub creases: &'a Creases,
 }
 
@@ -67,10 +67,10 @@ impl Size {
 /// The axis that points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Up {
-    /// As in most OBJ files.
+    /// The y axis, as in most OBJ files.
     #[default]
     Y,
-    /// As often in scans and CAD models.
+    /// The z axis, as in many scans and CAD models.
     Z,
 }
 
@@ -97,7 +97,7 @@ impl View {
     ///
     /// # Errors
     ///
-    /// Returns [`RenderError::View`] if an angle is not finite or the elevation not within ±90°.
+    /// Returns [`RenderError::View`] if an angle is not finite or the elevation is not within ±90°.
     pub fn new(azimuth: f64, elevation: f64, up: Up) -> Result<Self, RenderError> {
         if !azimuth.is_finite() || !(-90.0..=90.0).contains(&elevation) {
             return Err(RenderError::View { azimuth, elevation });
@@ -119,7 +119,7 @@ impl View {
         self.rotate(p.as_dvec3())
     }
 
-    /// Returns a direction in the same axes.
+    /// Returns `direction` in the axes of the picture.
     pub(crate) fn rotate(&self, direction: DVec3) -> DVec3 {
         let [right, up, viewer] = self.axes.map(|axis| axis.dot(direction));
         DVec3::new(right, up, viewer)

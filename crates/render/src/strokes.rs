@@ -24,7 +24,7 @@ const FULL_OPACITY_LENGTH: f64 = 14.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stroke {
     pub(crate) ends: [DVec2; 2],
-    /// Lower for distant strokes in a wireframe.
+    /// Opacity; lower for distant strokes in a wireframe.
     pub(crate) opacity: f64,
 }
 
@@ -39,8 +39,8 @@ pub(crate) struct Strokes {
 }
 
 impl Strokes {
-    /// Collects the visible parts of edges and corners; all of them without `samples`, as in a
-    /// wireframe. O(corners + pixels along edges).
+    /// Collects the visible parts of edges and corners. Without `samples`, as in a wireframe, all
+    /// parts are visible. O(corners + pixels along edges).
     pub(crate) fn new(
         render_mesh: &RenderMesh<'_>,
         panel: &Panel,
@@ -81,7 +81,7 @@ impl Strokes {
             stroke.opacity *= opacity;
         }
         for &(v, _) in render_mesh.creases.corners() {
-            // The vertex may be a corner of no face; its coordinates are then arbitrary.
+            // A vertex without faces can have any coordinates, even infinite ones.
             let position = panel.position(v);
             if position.is_finite() && visibility.is_corner_visible(position) {
                 strokes.corners.push(Stroke {
@@ -111,10 +111,11 @@ impl<'a> VisibilityTest<'a> {
         Self { samples, depths }
     }
 
-    /// Adds the visible parts of the line between `ends`, an edge with these sides.
+    /// Adds the visible parts of the edge between `ends`. `sides` are the sides of this edge.
     ///
-    /// The line is tested along its middle, in steps of at most half a pixel. A point is visible if
-    /// one of the samples around it has no surface, a surface behind it, or a face at this edge.
+    /// The centre of the line is tested in steps of at most half a pixel. A point is visible if one
+    /// of the samples around the point has no surface, a surface behind the point, or a face at
+    /// this edge.
     fn add_visible_parts(&self, ends: [DVec3; 2], sides: &[Side], into: &mut Vec<Stroke>) {
         let at = |t: f64| ends[0].lerp(ends[1], t);
         let mut add = |from: f64, to: f64| {
@@ -127,7 +128,7 @@ impl<'a> VisibilityTest<'a> {
         let Some(samples) = self.samples else {
             return add(0.0, 1.0);
         };
-        /// Maximum length in pixels of visible or hidden parts that are ignored as sampling errors.
+        /// Visible or hidden parts up to this length in pixels are ignored as sampling errors.
         const MIN_LENGTH: f64 = 1.0;
         let pixels = ends[0].truncate().distance(ends[1].truncate());
         let steps = (pixels * samples.per_side as f64).ceil().max(1.0);
@@ -166,11 +167,11 @@ impl<'a> VisibilityTest<'a> {
     }
 }
 
-/// Returns whether no face hides `position`, which is in pixels. Faces for which `is_own` returns
-/// true do not count.
+/// Returns whether `position`, in pixels, is visible. Faces for which `is_own` returns true hide
+/// nothing.
 fn is_visible(samples: &Samples, position: DVec3, is_own: impl Fn(u32) -> bool) -> bool {
-    /// Minimum distance, in pixels, by which a face must be nearer to hide an edge. A smaller
-    /// distance can come from the slope of the face.
+    /// A face hides an edge only if the face is nearer by at least this distance, in pixels. A
+    /// smaller distance can come from the slope of the face.
     const DEPTH_TOLERANCE: f64 = 1.0;
     let scale = samples.per_side as f64;
     let hiding_depth = ((position.z + DEPTH_TOLERANCE) * scale) as f32;

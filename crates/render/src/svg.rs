@@ -12,14 +12,14 @@ use crate::picture::VisibleParts;
 use crate::settings::{RenderMesh, Settings, Size};
 use crate::strokes::Stroke;
 
-/// Maximum number of visible faces per mesh: viewers fail with more, and a PNG is smaller.
+/// Maximum number of visible faces per mesh. With more faces, viewers fail, and a PNG is smaller.
 pub const MAX_SVG_FACES: usize = 50_000;
 
 /// Draws the meshes in a row, as the text of an SVG file; same cost as [`draw`](crate::draw).
 ///
 /// Visible faces are polygons, each in one colour, painted from back to front. Lines are the
-/// visible parts of edges, hidden as in [`draw`](crate::draw). Faces that intersect each other
-/// cannot be painted correctly: one of them appears in front of the other.
+/// visible parts of edges, with the visibility test of [`draw`](crate::draw). Faces that intersect
+/// each other cannot be painted correctly: one of them appears in front of the other.
 ///
 /// # Errors
 ///
@@ -111,7 +111,8 @@ fn draw_lines(strokes: &[Stroke], width: f64, colour: &str, svg: &mut String) {
     }
 }
 
-/// Returns `M1 2L3 4`, or `M1 2L1 2` for equal points, which round line ends make a dot.
+/// Returns a path such as `M1 2L3 4`. For equal points, the path is `M1 2L1 2`. Round line ends
+/// draw it as a dot.
 fn path(points: impl IntoIterator<Item = DVec2>) -> String {
     let mut text = String::new();
     for (i, point) in points.into_iter().enumerate() {

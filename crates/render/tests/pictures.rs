@@ -1,4 +1,4 @@
-//! Tests of what pictures show, and that they are the same each time.
+//! Tests the content of pictures, and that the same input gives the same picture.
 
 use sixfold_core::{Creases, Point, PolygonMesh, VertexId};
 use sixfold_render::{
@@ -22,7 +22,8 @@ fn cube(half: f32) -> PolygonMesh {
     PolygonMesh::new((0..8).map(position).collect::<Vec<_>>(), CUBE).expect("valid")
 }
 
-/// The view from the front, the right and above; it hides only vertex 0 and what is at it.
+/// The view from the front, the right and above; it hides only vertex 0 and the edges and faces
+/// there.
 fn settings() -> Settings {
     Settings {
         size: Size {
@@ -194,8 +195,8 @@ fn visible_creases_are_red() {
 
 #[test]
 fn a_line_ends_where_a_face_hides_it() {
-    // A square in front of the middle of a larger one: in the view from the front, it hides the
-    // middle third of the diagonal of the larger one.
+    // A small square in front of the middle of a large square. In the view from the front, the
+    // small square hides the middle third of the diagonal of the large square.
     let positions = [
         [-3.0, -3.0, 0.0],
         [3.0, -3.0, 0.0],
@@ -348,8 +349,8 @@ fn shading_is_smooth_unless_an_angle_or_a_crease_breaks_it() {
 
 #[test]
 fn polygons_are_painted_from_back_to_front() {
-    // A long strip that extends away from the viewer, and a small square just in front of its far
-    // end: by mean depth, the strip is nearer.
+    // A long strip that extends away from the viewer, and a small square just in front of the far
+    // end of the strip. By mean depth, the strip is nearer.
     let positions = [
         [0.0, -0.5, 10.0],
         [1.0, -0.5, 10.0],
@@ -404,7 +405,7 @@ fn extreme_meshes_can_be_drawn() {
         assert!(count(&picture, PixelContent::Crease) > 20, "{scale}");
         assert!(count(&picture, PixelContent::Outside) > 500, "{scale}");
     }
-    // Seen from its edge, from its end, and a mesh without area.
+    // A triangle, also seen from its edge, and a mesh without area.
     let line = [Point::ZERO, Point::X, Point::X * 2.0];
     let line = PolygonMesh::new(line, [[0, 1, 2]]).expect("valid");
     for mesh in [triangle(1.0), line] {
@@ -423,7 +424,7 @@ fn extreme_meshes_can_be_drawn() {
             svg(&mesh, &Creases::default(), &all);
         }
     }
-    // A vertex of no face may have any coordinates, even if it is a sharp corner.
+    // A vertex without faces may have any coordinates, even if it is a sharp corner.
     let corners = [Point::ZERO, Point::X, Point::Y, Point::NAN, Point::MAX];
     let mesh = PolygonMesh::new(corners, [[0, 1, 2]]).expect("valid");
     let creases = Creases::new(&mesh, [], [(3, 1.0), (4, 1.0)]).expect("vertices");

@@ -2,8 +2,9 @@
 //!
 //! `cargo run --release -p sixfold-report --example editing_report -- reports/editing [ROUNDS]`
 //!
-//! Every round runs each edit at many places of each mesh, and each workload, once on each
-//! structure, on a fresh copy. The tables show medians of thread-CPU time over the rounds.
+//! Every round runs each edit and each workload once on each structure and mesh, on a fresh copy.
+//! An edit is done at many places of the mesh. The tables show medians of thread-CPU time over the
+//! rounds.
 
 mod common;
 
@@ -99,7 +100,7 @@ fn measure(
                 Some(QueryCost::Scan) => PLACES_SCANNED,
                 Some(_) => PLACES,
             };
-            // The soup and the face set have to search even for the places.
+            // The soup and the face set need a search even to find the places.
             let places = if scans(&backend.info) {
                 PLACES_SCANNED
             } else {
@@ -121,8 +122,8 @@ fn measure(
     let clock = MachineClock::start();
     for _ in 0..rounds {
         for (line, editor) in &mut jobs {
-            // A small mesh has few places: use more runs, so that reading the clock takes no
-            // visible time.
+            // A small mesh has few places: use more runs, so that reading the clock takes a
+            // negligible part of the time.
             let copies = (MIN_TOTAL_FACES / faces).max(1);
             let series = Series::with_runs(copies as u32, &clock).with_untimed(1);
             let time = editor.time(&series).scaled(1.0 / copies as f64);
@@ -137,7 +138,7 @@ fn measure(
     Ok(())
 }
 
-/// Returns number of faces and median time of a line, ascending.
+/// Returns the points of a line, ascending: the number of faces and the median time.
 fn points(samples: &Samples, line: Line) -> Vec<(f64, f64)> {
     let sizes = samples.iter().filter(|((other, _), _)| *other == line);
     sizes

@@ -25,7 +25,7 @@ use sixfold_study::{
     Backend, Clock, Environment, MachineClock, Policy, Refiner, SubdivisionJob, Way, pages,
 };
 
-/// The schemes of the report; both take the control mesh, of triangles.
+/// The schemes of the report. Both accept the control mesh, which consists of triangles.
 const SCHEMES: [Scheme; 2] = [Scheme::CatmullClark, Scheme::Loop];
 
 /// Largest level.

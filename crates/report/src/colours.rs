@@ -1,7 +1,7 @@
 //! Colours that are distinguishable on white and on black, and with colour blindness.
 //!
-//! Figures are drawn once, in fixed colours. On dark pages a style sheet replaces them: style rules
-//! override presentation attributes of SVG, so a rule for `[fill="#17181a"]` is enough.
+//! Figures are drawn once, in fixed colours. On dark pages, a style sheet replaces these colours.
+//! Style rules override presentation attributes of SVG, so a rule for `[fill="#17181a"]` is enough.
 
 /// Colour of text and axes.
 pub(crate) const TEXT_COLOUR: &str = "#17181a";
@@ -12,8 +12,8 @@ pub(crate) const GRID_COLOUR: &str = "#dcdcda";
 /// Colour of intervals over bars.
 pub(crate) const INTERVAL_COLOUR: &str = "#33353a";
 
-/// Name, colour on light pages and colour on dark pages of each column; after Okabe and Ito (2008),
-/// for all types of colour vision.
+/// The name of each column, its colour on light pages and its colour on dark pages. The colours
+/// follow Okabe and Ito (2008) and suit all types of colour vision.
 const COLUMNS: [(&str, &str, &str); 7] = [
     ("polygon-soup", "#7f7f84", "#a3a3a8"),
     ("indexed-face-set", "#d98e04", "#f0b13c"),

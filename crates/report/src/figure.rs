@@ -50,7 +50,8 @@ impl Table {
     }
 }
 
-/// Length of the shortest bar, as a part of the longest: the logarithm of the ratio 1 is 0.
+/// Length of the shortest bar, as a part of the axis. Without this minimum, the bar of the ratio 1
+/// would have the length log 1 = 0.
 pub(crate) const MIN_BAR_LENGTH: f64 = 0.02;
 
 /// Returns a format that shows logarithms as ratios, for an axis up to `max_log`.
@@ -90,8 +91,8 @@ pub(crate) fn render_svg(title: &str, plots: Vec<Plot>, layout: Layout) -> Strin
     scene_svg(title, &render_multiple(plots, layout))
 }
 
-/// Renders `scene` as SVG that scales to the page, follows its dark mode, and has `title` as a
-/// label for screen readers.
+/// Renders `scene` as an SVG that scales to the page and follows the dark mode of the page. `title`
+/// is the label for screen readers.
 pub(crate) fn scene_svg(title: &str, scene: &Scene) -> String {
     let svg = SvgBackend::new().render_scene(scene);
     let Some((head, body)) = svg.split_once('>') else {

@@ -21,7 +21,7 @@ pub(crate) struct Row<'a> {
     pub(crate) interval: Option<[f64; 2]>,
     /// Time per element in nanoseconds, if known.
     pub(crate) ns: Option<f64>,
-    /// Time per element of the first run, on fresh pages, if known and different.
+    /// Time per element of the first run, on fresh memory pages, if known and different from `ns`.
     pub(crate) first_ns: Option<f64>,
     /// A remark, such as `best` or `tied for best`.
     pub(crate) note: String,
@@ -108,7 +108,7 @@ fn environments(collection: &Collection) -> impl Iterator<Item = &Environment> {
     studies.chain(collection.labs.environments())
 }
 
-/// Returns the recorded command of these results, or else that of the page.
+/// Returns the recorded command of these results, or the command of the page if none was recorded.
 fn recorded_command<'a>(environment: &'a Environment, command: &'a str) -> &'a str {
     environment.command.as_deref().unwrap_or(command)
 }
@@ -199,7 +199,8 @@ fn study_figures(study: &Report, command: &str) -> Vec<Figure> {
     figures
 }
 
-/// Draws the figures of one of many studies: fewer, to keep the page short.
+/// Draws the figures of one of many studies. These are fewer than the figures of a single study, to
+/// keep the page short.
 fn section_figures(study: &Report, place: usize, command: &str) -> Vec<Figure> {
     // Different names can have the same slug, so add the place.
     let id_prefix = format!("mesh-{place}-{}-", slug(&study.mesh.name));

@@ -82,7 +82,8 @@ fn list(sentences: &[String]) -> Markup {
     }
 }
 
-/// Returns the section of one mesh, collapsed at first so that a page with many of them opens fast.
+/// Returns the section of one mesh. It is collapsed at first, so that a page with many meshes opens
+/// fast.
 fn mesh_section(section: &Section) -> Markup {
     html! {
         details {
@@ -93,7 +94,7 @@ fn mesh_section(section: &Section) -> Markup {
     }
 }
 
-/// Returns a figure under a heading; `mesh` is the name of its mesh if the page has several.
+/// Returns a figure under a heading; `mesh` is the name of its mesh if the page has several meshes.
 fn figure_section(figure: &Figure, heading: &str, mesh: Option<&str>) -> Markup {
     html! {
         section id=(figure.id) {

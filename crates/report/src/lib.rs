@@ -1,11 +1,11 @@
 //! Reports on studies: one self-contained HTML page, or Markdown with figures.
 //!
-//! [`ReportPage::new`] draws the figures of a [`Collection`] and of its labs. Each figure has a table
-//! of its numbers, and the command that reproduces it. [`ReportPage::html`] returns one file that
-//! needs no network; it supports light and dark mode, printing and small screens.
-//! [`ReportPage::markdown`] returns a text for a repository, with the figures as SVG files beside it.
-//! Each mark of a figure has its name and value as a title, which is shown when pointing at it and
-//! can be read by programs.
+//! [`ReportPage::new`] draws the figures of a [`Collection`] and of its labs. Each figure has a
+//! table of its numbers, and the command that reproduces it. [`ReportPage::html`] returns one file
+//! that needs no network. The page supports light and dark mode, printing and small screens.
+//! [`ReportPage::markdown`] returns a text for a repository; the figures are SVG files beside the
+//! text. Each mark of a figure has a title with its name and value. A browser shows the title under
+//! the pointer, and programs can read it.
 
 mod colours;
 mod figure;
@@ -49,7 +49,7 @@ pub struct ReportPage {
 pub struct Section {
     /// Title.
     pub title: String,
-    /// Facts about its subject, in one line.
+    /// Facts about the mesh or the lab, in one line.
     pub facts: String,
     /// Sentences on the figures.
     pub sentences: Vec<String>,

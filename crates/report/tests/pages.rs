@@ -1,4 +1,5 @@
-//! Pages of small studies: their marks show the data, and they load no external resources.
+//! Tests that the marks on pages of small studies show the data, and that these pages load no
+//! external resources.
 
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -68,7 +69,7 @@ fn every_figure_has_as_many_marks_as_numbers() {
         // The table is ranked, the fastest first.
         let ratios = ranking.table.rows.iter().map(|row| row[1].parse::<f64>());
         let ratios: Vec<f64> = ratios.map(|ratio| ratio.expect("a number")).collect();
-        // A tied backend can be below 1, because ratios are formed within rounds.
+        // The ratio of a tied backend can be below 1, because ratios are computed within rounds.
         assert!(
             ratios[0] <= 1.0 && ratios.contains(&1.0),
             "{id}: {ratios:?}"

@@ -35,7 +35,7 @@ const PARAMETERS: &[(&str, &[(&str, f64)])] = &[
     ("smooth-union", &[("faces", 1_500.0)]),
 ];
 
-/// Maximum number of faces with drawn edges; a cell is too small for the edges of more.
+/// Maximum number of faces with drawn edges. A cell is too small for the edges of more faces.
 const MAX_FACES_WITH_EDGES: usize = 2_000;
 
 const COLUMNS: usize = 6;
@@ -270,8 +270,8 @@ fn cell(name: &str, settings: &str, mesh: &PolygonMesh, colouring: Colouring) ->
     svg
 }
 
-/// Projects the faces and sorts them from far to near. Of a closed mesh, only the faces that look
-/// towards the viewer are returned.
+/// Projects the faces and sorts them from far to near. For a closed mesh, returns only the faces
+/// that look towards the viewer.
 fn project_faces(mesh: &PolygonMesh, closed: bool, colouring: Colouring) -> Vec<ProjectedFace> {
     let view = View::new(mesh);
     let points: Vec<Vector> = mesh

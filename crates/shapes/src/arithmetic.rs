@@ -8,8 +8,8 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, LN_2, LOG2_E};
 
 /// Returns cosine and sine of `k / n` of a full turn; exact at quarter turns. `n` must not be 0.
 ///
-/// Integer arithmetic reduces the turn to one of eight mirrored octants. So points that mirror each
-/// other do so to the last bit.
+/// Integer arithmetic reduces the turn to one of eight mirrored octants. So points that are mirror
+/// images of each other have the same bits, except for sign and order.
 pub(crate) fn unit_circle(k: usize, n: usize) -> [f64; 2] {
     let eighths = 8 * (k % n);
     let (octant, rest) = (eighths / n, eighths % n);

@@ -27,7 +27,7 @@ pub(crate) fn check_faces(faces: usize) -> Result<(), ShapeError> {
 ///
 /// The number of faces is inversely proportional to the square of the spacing, so each lattice
 /// gives an estimate for the spacing of the next one. If a surface is parallel to the lattice, the
-/// number jumps. Therefore each lattice also has another shift.
+/// number of faces changes in jumps. Therefore each lattice also has a different shift.
 pub(crate) fn polygonised(
     solid: &impl Solid,
     bounds: Bounds,

@@ -137,8 +137,8 @@ const TORUS: &[Parameter] = &[
 
 const STEPS_M: Parameter = Parameter::count("m", "cells from left to right", 20, 1, MAX_SEGMENTS);
 const STEPS_N: Parameter = Parameter::count("n", "cells from bottom to top", 20, 1, MAX_SEGMENTS);
-/// The parameter for the number of triangles. With fewer than `min`, the lattice would be too
-/// coarse for the thin parts of the shape.
+/// The parameter for the number of triangles. With fewer than `min` triangles, the lattice would be
+/// too coarse for the thin parts of the shape.
 const fn faces(min: usize) -> Parameter {
     let meaning = "triangles, within 5 % or 20";
     Parameter::count("faces", meaning, 5_000, min, MAX_FACES)

@@ -12,8 +12,8 @@
 //! | blobs | level − Σ a·exp(−b·\|p − c\|²) |
 //!
 //! The smooth union (Rvachev's R-function) is zero on the surface of the union and smooth
-//! everywhere else. Its blend is visible on other levels only: [inflate](Field::inflated) the field
-//! a little.
+//! everywhere else. Its blend is visible only on other levels, so [inflate](Field::inflated) the
+//! field a little.
 //!
 //! ```
 //! use sixfold_shapes::implicit::Field;
@@ -159,8 +159,8 @@ impl Field {
         self.combined(other, Node::Difference)
     }
 
-    /// Returns the union with smooth levels around it: smoothest for `alpha` = 0, not smoothed for
-    /// `alpha` = 1.
+    /// Returns the union with smooth levels around it. The levels are smoothest for `alpha` = 0,
+    /// and not smoothed for `alpha` = 1.
     ///
     /// # Errors
     ///
@@ -208,16 +208,16 @@ impl Field {
 
     /// Builds the surface from about `faces` triangles: closed, manifold, oriented outward.
     ///
-    /// The number of faces is met within 5 %, or within 20 faces if that is more. It determines how
-    /// fine the lattice of the marching tetrahedra is (Doi and Koide 1991). Parts that are thinner
-    /// than the lattice may be missing, and such gaps may be closed. No two vertices share a
-    /// position. The field is evaluated near the surface only.
+    /// The surface has `faces` triangles within 5 %, or within 20 triangles if that is more. The
+    /// number determines how fine the lattice of the marching tetrahedra is (Doi and Koide 1991).
+    /// Parts that are thinner than the lattice may be missing, and gaps that are thinner may be
+    /// closed. No two vertices share a position. The field is evaluated near the surface only.
     ///
     /// # Errors
     ///
-    /// Fails if `faces` is outside 100 to 4,000,000, if the solid is unbounded or contains no
-    /// lattice point, if no lattice gives that number of faces, or if the lattice is too fine for
-    /// memory or for `f32` at these coordinates.
+    /// Fails if `faces` is outside 100 to 4,000,000, or if the solid is unbounded or contains no
+    /// lattice point. Also fails if no lattice gives that number of faces, or if the lattice is too
+    /// fine for memory or for `f32` at these coordinates.
     pub fn polygonised(&self, faces: usize) -> Result<PolygonMesh, ShapeError> {
         fitting::check_faces(faces)?;
         let bounds = self.node.bounds()?.ok_or(ShapeError::Empty)?;

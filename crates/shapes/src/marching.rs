@@ -65,10 +65,10 @@ const PATHS: [[usize; 4]; 6] = [
 ///
 /// Every cube is divided into six tetrahedra around its diagonal (Kuhn), in the same way in all
 /// cubes, so that adjacent cubes match. In each crossed tetrahedron, the surface is one triangle or
-/// two (Doi and Koide 1991). Each lattice edge with one end inside has one vertex. Outermost points
-/// count as outside. So the surface is a closed, consistently oriented manifold for any values.
-/// Time: O(lattice points). The solid is evaluated near the surface only, and two layers of values
-/// are kept.
+/// two (Doi and Koide 1991). Each lattice edge with exactly one end inside has one vertex of the
+/// surface. Outermost points count as outside. So the surface is a closed, consistently oriented
+/// manifold for any values. Time: O(lattice points). The solid is evaluated near the surface only,
+/// and two layers of values are kept.
 pub(crate) fn polygonised<S: Solid>(solid: &S, lattice: &Lattice) -> MeshBuilder {
     let [nx, ny, nz] = lattice.cells;
     let mut sweep = Sweep {
@@ -140,8 +140,8 @@ impl<S: Solid> Sweep<'_, S> {
     }
 
     /// Tests the sign of each block of slab `z`, together with the points next to the block. If all
-    /// have one sign, no lattice edge that ends in the block is crossed, so its values are not
-    /// needed.
+    /// these values have one sign, no lattice edge that ends in the block is crossed. The values in
+    /// the block are then not needed.
     fn sign_blocks(&mut self, z: usize) {
         let [nx, ny, _] = self.lattice.cells;
         let spacing = self.lattice.spacing;
@@ -237,8 +237,8 @@ impl<S: Solid> Sweep<'_, S> {
 
     /// Returns the vertex on the lattice edge between two corners of a cube; one of them is inside.
     fn crossing_vertex(&mut self, cube: [usize; 3], (p, q): (usize, usize)) -> u32 {
-        // Along a path, bits are only added. So the bits of one end are a subset of the other's
-        // bits.
+        // Along a path, bits are only added. So the bits of one end are a subset of the bits of the
+        // other end.
         let (low, high) = (p & q, p | q);
         let (layer, column) = (low >> 2, self.column(cube, low));
         if let Some(vertex) = self.crossings[layer][column][high ^ low] {
@@ -261,7 +261,7 @@ impl<S: Solid> Sweep<'_, S> {
         let (mut low, mut high) = (0.0, 1.0);
         let crossing = |low: f64, high: f64, start: f64, end: f64| {
             let part = start / (start - end);
-            // If the values are too large to divide, the middle is used.
+            // Uses the middle if the values are too large to divide.
             let part = if part.is_finite() { part } else { 0.5 };
             low + part * (high - low)
         };

@@ -175,8 +175,8 @@ impl Node {
             ),
             Self::Difference(parts) => parts[0].sublevel_bounds(level)?,
             Self::SmoothUnion { parts, alpha } => {
-                // It grows with f and with g. Relative to min(f, g), it is smallest if f and g are
-                // equal.
+                // The smooth union grows with f and with g. Relative to min(f, g), it is smallest
+                // if f and g are equal.
                 let share = (2.0 - (2.0 - 2.0 * alpha).sqrt()) / (1.0 + alpha);
                 let level = level.max(0.0) / share;
                 Bounds::union(

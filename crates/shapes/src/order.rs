@@ -157,8 +157,9 @@ fn sort_by_morton_code(mesh: &PolygonMesh) -> Reordered {
 
 /// Returns the mesh in the order of a breadth-first walk over its faces from vertex 0; O(corners).
 ///
-/// For each vertex in turn, the walk visits the faces around it and appends their vertices that are
-/// new. When no vertex is waiting, it continues at the lowest vertex not reached so far.
+/// For each vertex in turn, the walk visits the faces around this vertex and appends the new
+/// vertices of these faces. When no vertex is waiting, it continues at the lowest vertex not
+/// reached so far.
 pub fn breadth_first(mesh: &PolygonMesh) -> PolygonMesh {
     sort_breadth_first(mesh).mesh
 }

@@ -5,8 +5,8 @@ use sixfold_core::PolygonMesh;
 use crate::error::ShapeError;
 use crate::implicit::Field;
 
-/// Three directions at right angles, all oblique to the lattice: the rotation by the quaternion
-/// (4, 1, 2, 2) / 5.
+/// Three directions at right angles, all oblique to the lattice: the coordinate axes, rotated by
+/// the quaternion (4, 1, 2, 2) / 5.
 const AXES: [[f64; 3]; 3] = [
     [9.0 / 25.0, -12.0 / 25.0, 20.0 / 25.0],
     [20.0 / 25.0, 15.0 / 25.0, 0.0],
@@ -46,6 +46,6 @@ fn rings_and_balls() -> Result<Field, ShapeError> {
     }
     let parts = parts.into_iter().map(Ok);
     let blended = parts.reduce(|a, b| a?.smooth_union(b?, 0.0));
-    // The blend is visible on a level other than zero only.
+    // The blend is visible only on levels other than zero.
     blended.unwrap_or(Err(ShapeError::Empty))?.inflated(0.03)
 }

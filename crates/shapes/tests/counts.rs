@@ -34,7 +34,8 @@ impl Expected {
     }
 }
 
-/// Compares `mesh` with what is expected, and checks what holds for all shapes. Returns its facts.
+/// Compares `mesh` with `expected`, and checks the properties that all shapes have. Returns the
+/// facts of the mesh.
 fn check(name: &str, mesh: &PolygonMesh, expected: &Expected) -> Facts {
     let facts = Facts::from_polygons(mesh);
     assert_eq!(facts.vertices, expected.vertices, "vertices of {name}");

@@ -52,7 +52,7 @@ fn word(cost: QueryCost) -> &'static str {
     }
 }
 
-/// Explains the words in the table, and which structures also refuse edits.
+/// Explains the words in the table, and lists the structures that hold only oriented manifolds.
 fn legend() -> String {
     let backends = structure_infos();
     let manifold = backends

@@ -108,7 +108,8 @@ fn mesh_defects(facts: &Facts) -> Vec<String> {
         .collect()
 }
 
-/// Returns the list of backends: which can hold the mesh, and why the others cannot.
+/// Returns the list of backends. For each backend it states that the backend can hold the mesh, or
+/// why it cannot.
 pub(crate) fn verdicts_text(mesh: &MeshReport, backends: &[BackendReport]) -> String {
     let name = backends.iter().map(|b| b.name.chars().count()).max();
     let width = name.unwrap_or(0);

@@ -7,7 +7,7 @@ use std::fmt::Display;
 pub(crate) struct Failure {
     /// The exit code.
     pub(crate) code: u8,
-    /// The message, with a hint what to do next.
+    /// The message, with a hint about what to do next.
     pub(crate) message: String,
 }
 
@@ -20,7 +20,8 @@ impl Failure {
         }
     }
 
-    /// Returns a failure for a mesh that the selected backend cannot hold but another may.
+    /// Returns a failure for a mesh that the selected backend cannot hold, but that another backend
+    /// may hold.
     pub(crate) fn cannot_hold(refusal: impl Display) -> Self {
         Self::unsupported(format!(
             "{refusal}; or choose another --backend: `sixfold inspect` shows which can hold the mesh"

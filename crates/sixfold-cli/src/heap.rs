@@ -48,7 +48,7 @@ mod tests {
 
     const BYTES: usize = 256 << 20;
 
-    /// Held by each test: the counters are those of the whole process.
+    /// Each test holds this lock, because the counters count the whole process.
     static COUNTERS: Mutex<()> = Mutex::new(());
 
     /// Compares with a tolerance so large that small allocations of other tests do not matter.

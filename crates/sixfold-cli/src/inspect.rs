@@ -1,4 +1,4 @@
-//! `sixfold inspect`: shows facts about a mesh, and which backends can hold it.
+//! `sixfold inspect`: shows facts about a mesh, and the backends that can hold it.
 
 use std::process::ExitCode;
 

@@ -35,8 +35,8 @@ use meshes::{Mesh, find_meshes};
 /// The reason text of [`FailureKind::NoneHolds`].
 const NONE_HOLDS: &str = "none of the selected backends can hold it";
 
-/// Studies the selected meshes, except those that are finished already. Lists meshes that do not
-/// load, and continues with the rest.
+/// Studies the selected meshes, except those that are finished already. If a mesh cannot be loaded,
+/// lists it and continues with the next mesh.
 pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Failure> {
     let meshes = find_meshes(&arguments.meshes)?;
     let single = meshes.len() == 1;
@@ -151,7 +151,7 @@ fn shared_settings(arguments: &Study, settings: &Settings) -> SharedSettings {
 struct Run<'a> {
     arguments: &'a Study,
     settings: &'a Settings,
-    /// Whether one mesh is studied: then no progress line is printed.
+    /// Whether only one mesh is studied. If so, no progress line is printed.
     single: bool,
     /// Each study is saved here as soon as it is finished.
     folder: Option<&'a Folder>,
@@ -180,7 +180,8 @@ impl Run<'_> {
             }
             let record = StudyRecord::new(mesh, &collection.settings, result);
             if let Some(folder) = self.folder {
-                // Between two studies, so that writing does not disturb the measurements.
+                // The record is saved between two studies, so that writing does not disturb the
+                // measurements.
                 folder.save_study(&record)?;
             }
             record.add_to(collection);
@@ -188,7 +189,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Returns the study of one mesh or why it failed; `None` if interrupted.
+    /// Returns the study of one mesh, or the reason why it failed; `None` if interrupted.
     fn measure_mesh(&self, mesh: &Mesh, position: &str) -> Option<Result<Report, Failed>> {
         let failed = |kind, reason| {
             let mesh = mesh.name.clone();

@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &Memory) -> Result<ExitCode, Failure> {
         Some(output) => output.finish(|writer| audit.write_json(writer)),
         None => Ok(()),
     };
-    // This is also a result: the selected backends, and why each refuses the mesh.
+    // The list of the selected backends with the reasons why they refuse the mesh is also a result.
     if let Some(none) = audit.refusal_error() {
         write(json)?;
         return Err(Failure::unsupported(none));
@@ -101,7 +101,8 @@ fn print(audit: &Audit, text: &mut TextOutput) {
     }
 }
 
-/// Returns the three counts for each backend that holds the mesh, with its tables below it.
+/// Returns the three counts for each backend that holds the mesh; the rows below a backend are its
+/// tables.
 fn bytes_table(audit: &Audit) -> String {
     let header = [
         "bytes",
@@ -116,7 +117,7 @@ fn bytes_table(audit: &Audit) -> String {
     for entry in &audit.backends {
         let backend = &entry.backend;
         let bytes = |bytes: Option<usize>| bytes.map_or(String::new(), grouped);
-        // A figure that differs from the one before it is marked `!`.
+        // The mark `!` follows a figure that differs from the figure before it.
         let marked_bytes = |figure: Option<usize>, before: Option<usize>| {
             let sign = if figure == before { " " } else { "!" };
             format!("{}{sign}", bytes(figure))
@@ -179,7 +180,8 @@ fn words_table(audit: &Audit) -> String {
 }
 
 /// Returns the table of bytes that operations allocate per byte of their result: a row for each
-/// operation that some structure can run, a column per structure. `None` if nothing was counted.
+/// operation that at least one structure can run, and a column for each structure. Returns `None`
+/// if nothing was counted.
 fn operations_table(audit: &Audit) -> Option<String> {
     let counted = |entry: &&BackendAudit| !entry.operations.is_empty();
     let columns: Vec<&BackendAudit> = audit.backends.iter().filter(counted).collect();

@@ -9,11 +9,12 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::failure::Failure;
 
-/// Drafts that are neither renamed to their files nor deleted yet. Renaming and deleting need the
-/// lock.
+/// Drafts that are neither renamed to their files nor deleted yet. A thread must hold the lock to
+/// rename or delete a draft.
 static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// A place for data. It is opened before the work begins, so that a wrong place fails at once.
+/// A place for data. It is opened before the work begins, so that an unusable place gives an error
+/// at once.
 ///
 /// A file is written under a temporary name beside it (the draft) and renamed when it is complete.
 /// If the program ends earlier, an old file at that place is unchanged.
@@ -123,7 +124,7 @@ impl Output {
             });
         }
         let failed = |cause: io::Error| cannot_write(&shown, &cause);
-        // A link stays a link: the file that it points to is replaced.
+        // If `path` is a link, the link stays, and the file that it points to is replaced.
         let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let target = match fs::metadata(&path) {
             Ok(metadata) if metadata.is_dir() => {
@@ -146,8 +147,8 @@ impl Output {
                 let target = Target::File { file, draft, path };
                 let output = Self { shown, target };
                 if let (Ok(old), Target::File { file, .. }) = (old, &output.target) {
-                    // Set before writing, so that users without access to the old file never get
-                    // access to the new one.
+                    // The permissions are set before writing, so that users without access to the
+                    // old file never get access to the new file.
                     let set = file.set_permissions(old.permissions());
                     set.map_err(|cause| output.failure(&cause))?;
                 }
@@ -178,8 +179,8 @@ impl Output {
         match done {
             // The reader of standard output closed it early: that is not an error.
             Err(cause) if cause.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-            // The mesh is the cause, not the place: an error of the system would have an error
-            // number.
+            // An error of the system would have an error number. Without one, the mesh is the
+            // cause, not the place.
             Err(cause)
                 if cause.kind() == io::ErrorKind::InvalidInput
                     && cause.raw_os_error().is_none() =>

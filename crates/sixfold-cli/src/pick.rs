@@ -26,7 +26,8 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
         check_outputs(Some(mesh), &[("--json", arguments.json.as_ref())])?;
     }
     let workload = workload(&arguments.workload)?;
-    // Before the draft of the output is opened, so that Ctrl-C cannot leave a draft behind.
+    // The handler is set before the draft of the output is opened, so that Ctrl-C cannot leave a
+    // draft behind.
     let stop = interrupt_flag(arguments.heap);
     let json = Output::open_if(arguments.json.as_ref())?;
     let study_meshes = study_meshes(arguments)?;
@@ -125,8 +126,8 @@ fn print(report: &PickReport, study_meshes: &[StudyMesh], text: &mut TextOutput)
     }
 }
 
-/// Returns the table of backends, best first: times, memory, and after how many operations each
-/// pays off.
+/// Returns the table of backends, best first: times, memory, and the number of operations after
+/// which building each backend has paid off.
 fn ranking(report: &PickReport) -> String {
     let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
     let header = [

@@ -139,8 +139,8 @@ impl Spinner {
     }
 }
 
-/// A line that shows the present step, on standard error if that is a terminal. It has no thread of
-/// its own, because allocations of that thread would be counted.
+/// A line that shows the present step, on standard error if that is a terminal. It does not start a
+/// thread, because the allocations of that thread would be counted.
 pub(crate) struct StatusLine(Option<ProgressBar>);
 
 impl StatusLine {
@@ -180,8 +180,8 @@ pub(crate) fn exit_on_interrupt() {
 
 /// Returns a flag that the first Ctrl-C sets; the second ends the program at once.
 ///
-/// Applies `heap` first: the handler starts a thread, and the number of heaps is fixed when the
-/// first thread starts.
+/// Applies the policy `heap` first, because the handler starts a thread, and the number of heaps is
+/// fixed when the first thread starts.
 pub(crate) fn interrupt_flag(heap: Policy) -> Arc<AtomicBool> {
     pages::set_policy(heap);
     /// The exit code that shells use for an interrupted program.

@@ -50,10 +50,10 @@ fn edit_file([from, to]: [&Path; 2], backend: &str, work: &impl Work) -> Result<
     check_outputs(Some(from), &[("--output", Some(&to.to_owned()))])?;
     exit_on_interrupt();
     let polygons = load::without_creases(from)?;
-    // Checked here, because the error of a structure for triangles would not name the command that
-    // helps.
+    // This check is here, because the error of a structure that holds only triangles would not name
+    // the command that helps.
     check_triangles(&polygons)?;
-    // Opened before the work, so that a wrong place fails at once.
+    // The output is opened before the work, so that an unusable place gives an error at once.
     let output = Output::open(to)?;
     let mut job = EditJob {
         polygons: &polygons,

@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     let render_mesh = |(mesh, creases)| RenderMesh { mesh, creases };
     let render_meshes: Vec<RenderMesh<'_>> =
         loaded.iter().map(|(m, c)| render_mesh((m, c))).collect();
-    // Opened before the work, so that a wrong place fails at once.
+    // The output is opened before the work, so that an unusable place gives an error at once.
     let output = Output::open(&arguments.output)?;
     let faces: usize = loaded.iter().map(|(mesh, _)| mesh.face_count()).sum();
     let spinner = Spinner::start(format!("drawing {}", counted(faces, "face", "faces")));

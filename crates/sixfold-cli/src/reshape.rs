@@ -63,7 +63,7 @@ fn reshape_file(
     check_outputs(Some(from), &[("--output", Some(&to.to_owned()))])?;
     exit_on_interrupt();
     let polygons = load::without_creases(from)?;
-    // Opened before the work, so that a wrong place fails at once.
+    // The output is opened before the work, so that an unusable place gives an error at once.
     let output = Output::open(to)?;
     let faces = counted(polygons.face_count(), "face", "faces");
     let spinner = Spinner::start(format!("working on {faces}"));

@@ -1,4 +1,4 @@
-//! `sixfold schemes`: lists the subdivision schemes, and which backends support them.
+//! `sixfold schemes`: lists the subdivision schemes, and the backends that support them.
 
 use std::process::ExitCode;
 

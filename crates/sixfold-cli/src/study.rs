@@ -44,7 +44,8 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
             ("--csv", arguments.csv.as_ref()),
         ],
     )?;
-    // Before the drafts of the outputs are opened, so that Ctrl-C cannot leave a draft behind.
+    // The handler is set before the drafts of the outputs are opened, so that Ctrl-C cannot leave a
+    // draft behind.
     let stop = interrupt_flag(settings.heap);
     let json = Output::open_if(arguments.json.as_ref())?;
     let csv = Output::open_if(arguments.csv.as_ref())?;
@@ -61,7 +62,8 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
             report.environment.command = Some(command_line());
             report
         }
-        // This is also a result: the selected backends, and why each refuses the mesh.
+        // The list of the selected backends with the reasons why they refuse the mesh is also a
+        // result.
         Err(error @ StudyError::NoneHolds { .. }) => {
             let refusals = refusals(&study_mesh, &settings)?;
             write_files(&refusals, json, csv)?;
@@ -94,7 +96,7 @@ pub(crate) fn name_lists() -> String {
     format!("{backends}\n{operations}")
 }
 
-/// Writes the selected files; tries the second even if the first fails.
+/// Writes the selected files. If the first file fails, writes the second one anyway.
 pub(crate) fn write_files(
     report: &Report,
     json: Option<Output>,

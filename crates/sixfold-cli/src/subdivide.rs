@@ -61,7 +61,7 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         arguments.limit.is_some(),
     )?;
     forecast.check(arguments.force)?;
-    // Opened before the work, so that a wrong place fails at once.
+    // The output is opened before the work, so that an unusable place gives an error at once.
     let output = Output::open(&arguments.output)?;
     let limit = Output::open_if(arguments.limit.as_ref())?;
     let left = Output::open_if(arguments.creases_left.as_ref())?;
@@ -79,7 +79,8 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     for level in &job.finished {
         text.print_line(&level.describe());
     }
-    // Computed before the first file is written: all files are written, or none.
+    // The limits are computed before the first file is written, so that either all files are
+    // written or none.
     let limits = match limit {
         Some(output) => Some((output, Limits::new(&subdivision, &step, arguments.levels)?)),
         None => None,

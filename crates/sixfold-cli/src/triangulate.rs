@@ -7,7 +7,8 @@ use crate::failure::Failure;
 use crate::text::print_stderr;
 use sixfold_study::numbers::{counted, grouped};
 
-/// Returns the mesh with every polygon cut into a fan. Records and prints what else changes.
+/// Returns the mesh with every polygon cut into a fan. Records and prints all other changes of the
+/// mesh.
 pub(crate) fn triangulated(study_mesh: StudyMesh) -> Result<StudyMesh, Failure> {
     let old = &study_mesh.polygons;
     let polygons = old
@@ -38,7 +39,7 @@ pub(crate) fn triangulated(study_mesh: StudyMesh) -> Result<StudyMesh, Failure> 
     changes.extend(side_effects);
     Ok(StudyMesh {
         name: study_mesh.name,
-        // The facts are those of the studied mesh; the count of omitted faces is kept.
+        // The facts describe the cut mesh, except for the number of degenerate faces.
         facts: Facts {
             degenerate_faces: study_mesh.facts.degenerate_faces,
             ..facts
@@ -48,7 +49,8 @@ pub(crate) fn triangulated(study_mesh: StudyMesh) -> Result<StudyMesh, Failure> 
     })
 }
 
-/// Lists the counts that the cut changed although it should not: a diagonal may already be an edge.
+/// Lists the counts that the cut should not change but did. The reason can be a diagonal that was
+/// an edge already.
 fn differences(old: &Facts, new: &Facts) -> Vec<String> {
     let counts = [
         (

@@ -25,7 +25,8 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
         arguments.mesh.as_deref(),
         &[("--json", arguments.json.as_ref())],
     )?;
-    // Before the draft of the output is opened, so that Ctrl-C cannot leave a draft behind.
+    // The handler is set before the draft of the output is opened, so that Ctrl-C cannot leave a
+    // draft behind.
     let stop = interrupt_flag(Policy::Kept);
     let json = Output::open_if(arguments.json.as_ref())?;
     let study_mesh = match &arguments.mesh {

@@ -172,7 +172,8 @@ pub(crate) fn sentence(row: &WhyRow) -> String {
     }
 }
 
-/// Describes the times for the bytes and for the jumps, the measured time, and what bounds it.
+/// Describes the times for the bytes and for the jumps, the measured time, and the bound of this
+/// time.
 fn describe_times(timed: &Timed) -> String {
     let Timed {
         ns_per_element,

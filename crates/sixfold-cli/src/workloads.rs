@@ -1,4 +1,4 @@
-//! `sixfold workloads`: lists the built-in workloads, and what a mix may contain.
+//! `sixfold workloads`: lists the built-in workloads, and the operations that a mix may contain.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -14,7 +14,7 @@ use crate::text::{TextOutput, hanging_indent};
 /// Maximum size of a workload file in bytes; larger files are refused without reading them.
 const MAX_FILE_BYTES: u64 = 1 << 20;
 
-/// Lists the workloads, shows the file of one, or lists operations.
+/// Lists the workloads, shows the file of one workload, or lists operations.
 pub(crate) fn run(arguments: &Workloads) -> Result<ExitCode, Failure> {
     if let Some(name) = &arguments.show {
         let file = built_ins().find(|(known, _)| known == name);

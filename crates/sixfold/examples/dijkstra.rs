@@ -17,7 +17,7 @@ mod common;
 pub fn distances<M: MeshQuery>(mesh: &M, source: M::Vertex) -> VertexMap<M, f64> {
     let mut distances = mesh.vertex_map(f64::INFINITY);
     distances[source] = 0.0;
-    // The bits of non-negative numbers have the order of the numbers.
+    // Non-negative floats have the same order as their bits, and bits can be compared with `Ord`.
     let mut queue = BinaryHeap::from([Reverse((0.0_f64.to_bits(), source))]);
     while let Some(Reverse((bits, v))) = queue.pop() {
         let distance = f64::from_bits(bits);

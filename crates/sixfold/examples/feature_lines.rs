@@ -12,9 +12,9 @@ use sixfold::prelude::*;
 
 mod common;
 
-/// Returns the polylines of all feature edges, as lists of vertices; a closed polyline ends with its
-/// first vertex. An edge is a feature if it does not have exactly two faces, or if the normals of
-/// its faces differ by more than `degrees`.
+/// Returns the polylines of all feature edges, as lists of vertices. A closed polyline ends with
+/// its first vertex. An edge is a feature if it does not have exactly two faces, or if the normals
+/// of its faces differ by more than `degrees`.
 pub fn feature_lines<M: MeshQuery>(mesh: &M, degrees: f32) -> Vec<Vec<M::Vertex>> {
     let features = feature_edges(mesh, degrees);
     let mut lines = Lines {
@@ -31,7 +31,7 @@ pub fn feature_lines<M: MeshQuery>(mesh: &M, degrees: f32) -> Vec<Vec<M::Vertex>
     let ends: Vec<_> = ends.collect();
     let from_ends = ends.into_iter().flat_map(|v| lines.lines_from(v));
     let mut found: Vec<_> = from_ends.collect();
-    // The edges that are left form closed lines without branches.
+    // The remaining edges form closed lines without branches.
     for e in features {
         let [start, _] = mesh.edge_vertices(e);
         found.extend(lines.line_from(start, e));
@@ -52,7 +52,7 @@ fn feature_edges<M: MeshQuery>(mesh: &M, degrees: f32) -> Vec<M::Edge> {
     mesh.edges().filter(is_feature).collect()
 }
 
-/// The feature edges at each vertex, and those that are part of a line already.
+/// The feature edges at each vertex, and the edges that are already part of a line.
 struct Lines<'m, M: MeshQuery> {
     mesh: &'m M,
     features_at: VertexMap<M, Vec<M::Edge>>,

@@ -12,7 +12,8 @@ use sixfold::prelude::*;
 
 mod common;
 
-/// An entry of a sparse matrix: row, column and value. Values of equal places are added.
+/// An entry of a sparse matrix: row, column and value. Values with the same row and column are
+/// added.
 pub type Triplet = (u32, u32, f64);
 
 /// A matrix, and the numbers of the vertices: its rows and columns.
@@ -23,9 +24,9 @@ pub struct Laplacian<M: MeshQuery> {
     pub triplets: Vec<Triplet>,
 }
 
-/// Returns the matrix L. The row of vertex i has (cot α + cot β) / 2 in the column of a neighbour j,
-/// where α and β are the angles opposite the edge between them. The diagonal has the negative sum of
-/// these values.
+/// Returns the matrix L. The row of vertex i has (cot α + cot β) / 2 in the column of each
+/// neighbour j. Here α and β are the angles opposite the edge i–j. The diagonal has the negative
+/// sum of these values.
 ///
 /// # Errors
 ///

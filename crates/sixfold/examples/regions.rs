@@ -1,5 +1,5 @@
-//! Regions of nearly equal normals: starts at a face and adds neighbours while their normals differ
-//! by less than an angle from the normal of the first face.
+//! Regions of nearly equal normals. A region starts at one face. It grows by neighbours whose
+//! normals differ from the normal of the first face by less than an angle.
 //!
 //! ```sh
 //! cargo run --example regions -- mesh.obj
@@ -13,7 +13,7 @@ use sixfold::prelude::*;
 mod common;
 
 /// Returns the number of the region of each face, from 0, and the number of regions. The normals of
-/// a region differ by at most `degrees` from that of its first face.
+/// a region differ by at most `degrees` from the normal of its first face.
 pub fn regions<M: MeshQuery>(mesh: &M, degrees: f32) -> (FaceMap<M, Option<usize>>, usize) {
     let normals = face_normals(mesh);
     let least_cosine = degrees.to_radians().cos();

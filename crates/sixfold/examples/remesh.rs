@@ -1,5 +1,5 @@
-//! Incremental remeshing with edits, and data that follows: long edges are cut in the middle, short
-//! ones are collapsed, and each face keeps its material.
+//! Incremental remeshing with edits. Long edges are cut in the middle, and short edges are
+//! collapsed. Each face keeps its material.
 //!
 //! ```sh
 //! cargo run --example remesh -- mesh.obj > remeshed.obj
@@ -15,7 +15,8 @@ mod common;
 /// Cuts edges that are longer than 4/3 of `length`, then collapses edges that are shorter than 4/5
 /// of it (Botsch and Kobbelt 2004). Returns the numbers of cut and of collapsed edges.
 ///
-/// The lists of edges are made before the edits, which remove edges: `contains_edge` skips these.
+/// Each list of edges is made before the edits begin. `contains_edge` skips edges that an edit has
+/// removed since then.
 pub fn remesh<M: MeshEdit>(mesh: &mut M, length: f32) -> [usize; 2] {
     let mut cut = 0;
     let edges: Vec<_> = mesh.edges().collect();

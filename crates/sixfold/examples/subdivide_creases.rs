@@ -14,9 +14,9 @@ use sixfold::{CreaseError, Creases};
 
 mod common;
 
-/// Returns `levels` levels of Catmull–Clark subdivision of `polygons`; calls `watch` with each level
-/// and its creases. The sharpness of a crease decreases by 1 with each level, until the edge is
-/// smooth.
+/// Returns `polygons` after `levels` steps of Catmull–Clark subdivision. Calls `watch` with each
+/// level and its creases. The sharpness of a crease decreases by 1 with each level, until the edge
+/// is smooth.
 ///
 /// # Errors
 ///
@@ -36,7 +36,7 @@ pub fn subdivide<M: Representation>(
         let mesh = M::from_polygons(&step.polygons)?;
         let creases = match level {
             0 => scheme.control_creases(&mesh, &step.polygons, &step.creases)?,
-            // A structure whose vertices are coordinates has its own order of vertices.
+            // A structure that identifies vertices by coordinates has its own order of vertices.
             _ => renumbered(&mesh, &step.polygons, &step.creases),
         };
         step = scheme.gather(&mesh, &creases, level)?;

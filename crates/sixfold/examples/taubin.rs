@@ -1,5 +1,5 @@
-//! Smoothing without shrinking (Taubin 1995): each step moves every vertex towards the mean of its
-//! neighbours, and then by a slightly larger factor away from it.
+//! Smoothing without shrinking (Taubin 1995): each step first moves every vertex towards the mean
+//! of its neighbours, then away from that mean by a slightly larger factor.
 //!
 //! ```sh
 //! cargo run --example taubin -- mesh.obj > smooth.obj
@@ -20,7 +20,8 @@ const FACTORS: [f32; 2] = [0.33, -0.34];
 ///
 /// # Errors
 ///
-/// [`MoveError`] if a vertex is its coordinates, and two corners of a face would be at one position.
+/// Returns [`MoveError`] if the structure identifies vertices by coordinates and two corners of a
+/// face would get the same position.
 pub fn smooth<M: Representation>(mesh: &mut M, steps: usize) -> Result<(), MoveError> {
     for factor in FACTORS.repeat(steps) {
         let mut moved = mesh.vertex_map(Point::ZERO);

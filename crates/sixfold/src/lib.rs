@@ -16,7 +16,7 @@
 //! | store data at vertices, edges and faces | [`MeshQuery::vertex_map`], [`MeshWithData`] |
 //! | number elements from 0, for matrices | [`MeshQuery::vertex_numbers`] |
 //! | find the boundary | [`MeshQuery::boundary_loops`] |
-//! | [refuse structures that search](#require-local-queries) | [`LocalQueries`] |
+//! | [accept only structures with local queries](#require-local-queries) | [`LocalQueries`] |
 //! | [walk from side to side](#walk-in-order) | [`OrientedWalk`] |
 //! | read the topology of a mesh | [`Facts`] |
 //!
@@ -102,18 +102,19 @@
 //! | [`CornerTable`] | oriented manifolds of triangles | 64 | walk over triangles in little memory |
 //! | [`FaceVertexMesh`] | any polygons | 68 | collect the faces at vertices: normals, matrix assembly |
 //! | [`WingedEdgeMesh`] | oriented manifolds | 120 | work on edges themselves |
-//! | [`IndexedFaceSet`] | any polygons | 36 | store, convert, visit all faces; searches for neighbours |
-//! | [`PolygonSoup`] | any polygons, vertices by coordinates | 72 | transfer faces, as STL does; searches for neighbours |
+//! | [`IndexedFaceSet`] | any polygons | 36 | store, convert, visit all faces |
+//! | [`PolygonSoup`] | any polygons, vertices by coordinates | 72 | transfer faces, as STL does |
 //!
-//! The bytes are those of large closed triangle meshes. If you do not know which one to choose,
-//! use [`HalfEdgeMesh`] for manifolds and [`FaceVertexMesh`] for others. The command
-//! `sixfold pick` measures a workload on your mesh. [`structures!`] lists all structures, and
-//! [`visit`] selects one at run time.
+//! The last two structures scan all faces to find neighbours. The bytes per vertex apply to large
+//! closed triangle meshes. If you do not know which structure to choose, use [`HalfEdgeMesh`] for
+//! manifolds and [`FaceVertexMesh`] for other meshes. The command `sixfold pick` measures a
+//! workload on your mesh. [`structures!`] lists all structures, and [`visit`] selects one at run
+//! time.
 //!
 //! # Require local queries
 //!
-//! Polygon soups and indexed face sets answer most queries by a scan of all faces. An algorithm can
-//! refuse them with the bound [`LocalQueries`]:
+//! Polygon soups and indexed face sets answer most queries by a scan of all faces. An algorithm
+//! rejects these structures if it has the bound [`LocalQueries`]:
 //!
 //! ```
 //! use sixfold::prelude::*;
@@ -140,8 +141,9 @@
 //!
 //! # Walk in order
 //!
-//! Most queries yield sets. [`OrientedWalk`] steps from side to side in order, on four of the
-//! structures: along a face, around a vertex, or straight across quads as here.
+//! Most queries yield sets, without an order. [`OrientedWalk`] steps from side to side in order:
+//! along a face, around a vertex, or straight across quads as in this example. Four of the
+//! structures have it.
 //!
 //! ```
 //! use sixfold::prelude::*;
@@ -168,14 +170,15 @@
 //! # Features
 //!
 //! - `rayon` (default): native subdivision steps use all threads.
-//! - `serde`: [`Facts`], [`Capabilities`], [`MemoryFootprint`], schemes and orders can be written.
+//! - `serde`: [`Facts`], [`Capabilities`], [`MemoryFootprint`], schemes and orders can be
+//!   serialised.
 //! - `mint`: [`PolygonMesh::new`] takes points and vectors of the crate `mint`, and a [`Point`]
 //!   converts to them.
 
 // The exports are a list instead of `*`, because `sixfold_core` also has items that only authors
 // of structures and measurements need.
 
-// Traits: queries, walks, edits, refinement; and what a structure can hold and costs.
+// Traits for queries, walks, edits and refinement; capabilities and costs of a structure.
 #[doc(inline)]
 pub use sixfold_core::{
     Capabilities, Edit, LocalQueries, MeshEdit, MeshQuery, OrientedWalk, QueryCost, Refine,
@@ -187,10 +190,10 @@ pub use sixfold_core::{
     BoundaryLoop, Creases, Distribution, EdgeUse, FaceList, Facts, MemoryFootprint, Point,
     PolygonMesh, SHARPNESS_INFINITE, TableBytes,
 };
-// The crate of `Point`, in the version that belongs to this one.
+// The crate that defines `Point`, in the version that Sixfold uses.
 #[doc(no_inline)]
 pub use sixfold_core::glam;
-// Handles of elements, data by handle, and how both follow edits.
+// Handles of elements, data stored by handle, and types to update both after edits.
 #[doc(inline)]
 pub use sixfold_core::{
     AcceptedEdit, Changes, Created, EdgeData, EdgeId, EdgeMap, EditLog, EditRecord, ElementData,

@@ -6,15 +6,15 @@ use sixfold_core::{
 
 /// Calls a macro with the list of all structures: `structures!([callback] arguments…)`.
 ///
-/// This list is the only one. A seventh structure is added with one line here. The line has the
-/// type for queries, then the types for two optional capabilities: `edit`, the type that can be
-/// edited, and `refine`, the type that splits its own tables. All types of a line have the same
-/// name ([`Representation::NAME`](sixfold_core::Representation::NAME)).
+/// All structures are registered in this list only. A seventh structure needs one more line here. A
+/// line starts with the type for queries. Two types for optional capabilities may follow: `edit` is
+/// the type that can be edited, and `refine` is the type that splits its own tables. All types of a
+/// line have the same name ([`Representation::NAME`](sixfold_core::Representation::NAME)).
 ///
-/// The callback gets its arguments, followed by the lines. Use one of the macros
-/// [`for_each_representation!`](crate::for_each_representation),
-/// [`for_each_editable!`](crate::for_each_editable) and
-/// [`for_each_refinable!`](crate::for_each_refinable) if one capability is enough.
+/// The callback gets its arguments, followed by the lines. If you need only one type of each line,
+/// use [`for_each_representation!`](crate::for_each_representation),
+/// [`for_each_editable!`](crate::for_each_editable) or
+/// [`for_each_refinable!`](crate::for_each_refinable) instead.
 #[macro_export]
 macro_rules! structures {
     ([$($callback:tt)+] $($arguments:tt)*) => {
@@ -29,7 +29,8 @@ macro_rules! structures {
     };
 }
 
-/// The callback of the `for_each_…` macros: repeats a body for one type of each line that has it.
+/// The callback of the `for_each_…` macros: repeats a body for each line that has the requested
+/// type.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! repeat_for_structures {
@@ -126,7 +127,8 @@ pub struct StructureInfo {
     /// How much of the mesh each edit reads, in the order of [`Edit::ALL`]; `None` if the edit is
     /// not available.
     pub edits: [Option<QueryCost>; Edit::ALL.len()],
-    /// The splits of its own tables ([`Refine::SPLITS`]); empty if it does not refine them.
+    /// The splits that it can apply to its own tables ([`Refine::SPLITS`]); empty if there are
+    /// none.
     pub splits: &'static [Split],
 }
 
@@ -142,7 +144,7 @@ impl StructureInfo {
         }
     }
 
-    /// Adds the edits of `M`, the type of the same structure that can be edited.
+    /// Adds the edits of `M`, the editable type of the same structure.
     #[must_use]
     pub const fn with_edits<M: MeshEdit>(self) -> Self {
         Self {

@@ -13,11 +13,12 @@ pub struct Support {
     pub backend: &'static str,
     /// The scheme.
     pub scheme: Scheme,
-    /// Available methods; [`Method::Native`] is one of them if the structure can split its own
-    /// tables as the scheme requires.
+    /// Available methods. They include [`Method::Native`] if the structure can split its own tables
+    /// as the scheme requires.
     pub methods: Vec<Method>,
-    /// Whether the structure can hold the result of a step. If not, one step can be made, with
-    /// polygons as the result. A second step would have to hold these polygons.
+    /// Whether the structure can hold the result of a step. If it cannot, one step is still
+    /// possible, and its result is polygons. A second step is not possible, because the structure
+    /// would have to hold these polygons.
     pub holds_result: bool,
 }
 

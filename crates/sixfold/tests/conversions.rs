@@ -43,7 +43,7 @@ fn a_refused_mesh_returns_the_error_of_the_structure() {
     });
 }
 
-/// Compiler messages omit parameters with their default values, as the names of types do.
+/// Compiler messages and type names omit parameters that have their default values.
 #[test]
 fn the_names_of_mesh_types_show_no_parameters() {
     for_each_representation!(M => {

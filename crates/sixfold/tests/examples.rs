@@ -52,7 +52,8 @@ fn distances_along_edges_are_those_of_the_tetrahedron_and_equal_on_all_structure
         let found = dijkstra::distances(&mesh, M::vertex_handle(&polygons, VertexId::new(0)));
         let lengths = polygons.vertices().map(|v| found[M::vertex_handle(&polygons, v)]);
         let lengths: Vec<f64> = lengths.collect();
-        // Half the circumference along edges: between the chords and twice the arc.
+        // A path along edges to the opposite pole is longer than the chords and shorter than twice
+        // the arc.
         let farthest = lengths.iter().copied().fold(0.0, f64::max);
         assert!((2.9..6.3).contains(&farthest), "{farthest}");
         assert_eq!(*expected.get_or_insert(lengths.clone()), lengths, "{}", M::NAME);

@@ -1,5 +1,5 @@
-//! Repeats one study: how often each backend is best, and how often the intervals contain the
-//! median.
+//! Repeats one study, and reports how often each backend is best and how often the intervals
+//! contain the median of all studies.
 //!
 //! ```sh
 //! cargo run --release -p sixfold-study --example repeatability_report -- \
@@ -262,8 +262,8 @@ fn coverage(reports: &[Report]) -> String {
     text
 }
 
-/// Returns how far a figure varies between studies, which an interval within one study cannot
-/// include.
+/// Returns how far a figure varies between studies. The interval of one study cannot include this
+/// variation.
 fn drift(reports: &[Report]) -> String {
     let ratios = |operation: Operation, backend: &str| -> Vec<f64> {
         let rows = reports.iter().filter_map(|report| {

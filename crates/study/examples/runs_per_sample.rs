@@ -7,9 +7,9 @@
 //!
 //! Argument: the number of rounds. In each round, every operation that changes the mesh, and the
 //! mix of a workload with edits, is run in samples of 1 and of 50 runs. The rounds are in five
-//! passes; each pass builds the structures again, because addresses and the speed of the machine can
-//! stay the same for seconds. The program prints the medians of the ratios; the exit code is 1 if
-//! one differs from 1 by more than 5 %.
+//! passes. Each pass builds the structures again, because addresses and the speed of the machine
+//! can stay the same for seconds. The program prints the medians of the ratios. The exit code is 1
+//! if a median differs from 1 by more than 5 %.
 
 use std::collections::BTreeMap;
 use std::process::ExitCode;

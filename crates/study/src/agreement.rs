@@ -17,9 +17,9 @@ const TOLERANCE: f64 = 1e-4;
 /// Compares the checksum of every entry with that of a reference: a backend of Sixfold that merges
 /// no vertices.
 ///
-/// If the jobs of the two differ, the smaller one also runs on the other backend, untimed. A full
-/// run counts as larger than any sample, so a sampled operation is never run in full. Nothing more
-/// is run after `stop` is set.
+/// If the jobs of the two entries differ, the smaller job is also run, untimed, on the other
+/// backend. A full run counts as larger than any sample, so a sampled operation is never run in
+/// full. Nothing more is run after `stop` is set.
 pub(crate) fn compare_checksums(
     entries: &[Entry],
     subjects: &mut [Box<dyn TimedBackend + '_>],

@@ -22,7 +22,7 @@ use crate::study::StudyError;
 /// Bytes of a word (an index or a coordinate), the unit of the lectures.
 const WORD: f64 = 4.0;
 
-/// Largest number of times the bytes of a backend are counted; two equal counts in a row end it
+/// Largest number of counts of the bytes of a backend. Two equal counts in a row end the counting
 /// earlier.
 const MAX_COUNTS: usize = 8;
 
@@ -54,7 +54,7 @@ pub struct BackendAudit {
     pub counted_bytes: Option<usize>,
     /// Counted bytes per vertex of the mesh.
     pub counted_bytes_per_vertex: Option<f64>,
-    /// Most bytes in use at any moment of building, without the input polygons.
+    /// Maximum number of bytes in use during building, without the input polygons.
     pub peak_bytes: Option<usize>,
     /// Peak bytes divided by counted bytes.
     pub peak_to_counted: Option<f64>,
@@ -84,7 +84,8 @@ pub struct OperationBytes {
 /// Builds each of `backends` from the mesh, one at a time, and counts its bytes with `heap`.
 ///
 /// The bytes of each backend are counted until two counts in a row are equal, because other threads
-/// may allocate at the same time. `counting` is called with each backend before.
+/// may allocate at the same time. `counting` is called with each backend before its bytes are
+/// counted.
 pub fn audit(
     study_mesh: &StudyMesh,
     backends: &[Backend],
@@ -208,7 +209,7 @@ impl Audit {
     ///
     /// # Errors
     ///
-    /// Errors of `writer`.
+    /// Returns the errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }

@@ -1,8 +1,8 @@
 //! Studies of many meshes: one by one, and pooled.
 //!
-//! Meshes differ far more than rounds do. Pooled figures therefore rest on meshes: the geometric
-//! mean of the ratios to the fastest backend on each mesh, with an interval by resampling the
-//! meshes (bootstrap).
+//! Results differ far more between meshes than between rounds. A pooled figure is therefore the
+//! geometric mean of one ratio for each mesh: the ratio to the fastest backend on that mesh. Its
+//! interval is found by resampling the meshes (bootstrap).
 
 use std::io;
 
@@ -93,14 +93,14 @@ pub enum FailureKind {
     NoneHolds,
 }
 
-/// One operation on one backend, over all meshes it was measured on.
+/// One operation on one backend, over all meshes on which it was measured.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Pooled {
     /// The backend.
     pub backend: String,
     /// The operation.
     pub operation: Operation,
-    /// Number of meshes it was measured on.
+    /// Number of meshes on which it was measured.
     pub meshes: usize,
     /// Number of meshes on which this backend alone is the fastest.
     pub best: usize,
@@ -108,7 +108,7 @@ pub struct Pooled {
     pub tied: usize,
     /// Geometric mean of the ratios to the fastest backend on each mesh.
     pub ratio_to_best: f64,
-    /// Lower end of the 95 % bootstrap interval of that mean; `None` below three meshes.
+    /// Lower end of the 95 % bootstrap interval of that mean; `None` with fewer than three meshes.
     pub ci_low: Option<f64>,
     /// Upper end of that interval.
     pub ci_high: Option<f64>,
@@ -116,7 +116,7 @@ pub struct Pooled {
     pub ns_per_element: Option<f64>,
 }
 
-/// A second study was added to a page, which can show only one.
+/// The error for adding a second study to a page. A page can show only one study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "is a second study, but a page shows one study: to study several meshes, use `sixfold study` with --report DIR"
@@ -166,7 +166,7 @@ impl Collection {
     ///
     /// # Errors
     ///
-    /// [`SecondStudy`] if this collection already has meshes and `results` is a study or a
+    /// Returns [`SecondStudy`] if this collection already has meshes and `results` is a study or a
     /// collection.
     pub fn add(&mut self, results: Results) -> Result<(), SecondStudy> {
         let study = match results {
@@ -214,7 +214,7 @@ impl Collection {
     ///
     /// # Errors
     ///
-    /// The meshes or the settings differ, so the figures cannot be compared.
+    /// Returns an error if the meshes or the settings differ. The figures can then not be compared.
     pub fn merge(&mut self, other: Self) -> Result<(), MergeError> {
         if other.meshes != self.meshes {
             let unknown = |mesh: &&String| !self.meshes.contains(mesh);
@@ -289,7 +289,7 @@ impl Collection {
     ///
     /// # Errors
     ///
-    /// Errors of `writer`.
+    /// Returns the errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
@@ -299,7 +299,7 @@ impl Collection {
     ///
     /// # Errors
     ///
-    /// Errors of `writer`.
+    /// Returns the errors of `writer`.
     pub fn write_csv(&self, writer: impl io::Write) -> io::Result<()> {
         let mut lines = csv::Writer::from_writer(writer);
         let names = [
@@ -329,7 +329,8 @@ impl Collection {
     ///
     /// # Errors
     ///
-    /// The text is truncated or not JSON, or holds results of another program, schema or command.
+    /// Returns an error if the text is truncated, is not JSON, or has results of another program,
+    /// schema or command.
     pub fn read_json(text: &str) -> Result<Self, ReadError> {
         check_schema(text)?;
         let collection: Self = parse_json(text)?;

@@ -1,8 +1,8 @@
 //! Comparison of two studies of one mesh: what changed between machines, compilers or commits.
 //!
-//! Samples of two studies share no rounds, so ratios are of medians, with intervals by resampling
-//! both (bootstrap). The samples of one study cannot show how far a machine drifts from one study
-//! to the next; [`DRIFT`] is the default limit for that.
+//! Samples of two studies share no rounds. Each ratio is therefore a ratio of two medians, and its
+//! interval is found by resampling both studies (bootstrap). The samples of one study cannot show
+//! how far a machine drifts from one study to the next; [`DRIFT`] is the default limit for that.
 
 use std::io;
 
@@ -22,10 +22,10 @@ pub const DRIFT: f64 = 1.2;
 /// Options of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompareSettings {
-    /// Whether ratios are divided by the median ratio of all rows before rows are judged: for two
-    /// machines of different speed.
+    /// Whether each ratio is divided by the median ratio of all rows before its row is judged. This
+    /// is useful for two machines of different speed.
     pub relative: bool,
-    /// Ignore ratios up to this, even if the samples show a difference.
+    /// Ratios up to this are ignored, even if the samples show a difference.
     pub drift: f64,
 }
 
@@ -92,7 +92,8 @@ pub struct Change {
     pub after_ns: f64,
     /// The second median divided by the first.
     pub ratio: f64,
-    /// Lower end of the 95 % interval of the ratio; `None` below three samples in either study.
+    /// Lower end of the 95 % interval of the ratio; `None` if either study has fewer than three
+    /// samples.
     pub ci_low: Option<f64>,
     /// Upper end of that interval.
     pub ci_high: Option<f64>,
@@ -100,7 +101,7 @@ pub struct Change {
     pub noise: f64,
     /// The conclusion.
     pub verdict: Verdict,
-    /// Whether the checksums differ: the two studies did different work.
+    /// Whether the checksums differ. If they do, the two studies did different work.
     pub other_checksum: bool,
 }
 
@@ -108,9 +109,9 @@ pub struct Change {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// The second is faster beyond the noise.
+    /// The second study is faster by more than the noise.
     Faster,
-    /// The second is slower beyond the noise.
+    /// The second study is slower by more than the noise.
     Slower,
     /// The difference is within the noise.
     Same,
@@ -147,7 +148,7 @@ pub enum CompareError {
 ///
 /// # Errors
 ///
-/// The heap policies or the cache states of the studies differ.
+/// Returns an error if the heap policies or the cache states of the studies differ.
 pub fn compare(
     before: &Report,
     after: &Report,
@@ -359,7 +360,7 @@ impl Changes {
     ///
     /// # Errors
     ///
-    /// Errors of `writer`.
+    /// Returns the errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }

@@ -1,10 +1,11 @@
 //! Detects whether other programs slow the machine down at this moment.
 //!
 //! On a shared machine another program may run on the same core at any time. A sample then takes up
-//! to twice as long, in phases of milliseconds to seconds. A small fixed piece of work, timed
-//! before and after each sample, then takes longer, too. Such a sample is *disturbed*: it is taken
-//! again, within limits, and does not count if enough others are undisturbed. The time of the fixed
-//! work does not depend on the sample, so this prefers no backend and no result.
+//! to twice as long, in phases of milliseconds to seconds. To detect this, a small fixed piece of
+//! work is timed before and after each sample. If that work takes longer than usual, the sample is
+//! *disturbed*. A disturbed sample is taken again, within limits, and does not count if enough
+//! other samples are undisturbed. The time of the fixed work does not depend on the sample, so this
+//! method prefers no backend and no result.
 
 use std::hint::black_box;
 
@@ -17,9 +18,9 @@ const WORDS: usize = 2048;
 /// Passes over the table in one reference run, a timing of the fixed work: about 10 µs.
 const PASSES: usize = 12;
 /// The machine is disturbed if the fixed work takes more than this multiple of its undisturbed
-/// time. A lower limit would mostly find phases of another processor frequency. These last longer
-/// than a round and affect all backends equally, and each retaken sample leaves time for fewer
-/// rounds.
+/// time. A lower limit would mostly find phases of another processor frequency. Such phases last
+/// longer than a round and affect all backends equally. Each retaken sample also leaves time for
+/// fewer rounds.
 const DISTURBED: f64 = 1.3;
 /// The undisturbed time is this quantile of the times of all reference runs.
 const UNDISTURBED: f64 = 0.05;
@@ -56,8 +57,8 @@ impl DisturbanceDetector {
     }
 
     /// Takes a sample by calling `sample`. Takes it again if `verdict` is [`Verdict::Again`], or if
-    /// the machine was disturbed before or after it: at most three times, and only while the time
-    /// for that reason lasts.
+    /// the machine was disturbed before or after it. Repeats this at most three times, and only
+    /// while there is time left for that reason.
     pub(crate) fn take_sample<T>(
         &mut self,
         clock: &dyn Clock,
@@ -105,8 +106,8 @@ impl DisturbanceDetector {
             let disturbed = self.slowdown_at(ns) > DISTURBED;
             if !disturbed || waited > LONGEST_WAIT_NS || !self.has_time_left() {
                 self.disturbed_left_ns -= waited;
-                // Keep only one reference run of a wait: hundreds of disturbed ones would count as
-                // undisturbed.
+                // Keeps only one reference run of a wait. If a wait recorded hundreds of disturbed
+                // runs, their times would pass for undisturbed.
                 return self.record(ns);
             }
         }
@@ -259,7 +260,7 @@ mod tests {
             1.0
         );
 
-        // If no time is left, a disturbed moment is not waited for.
+        // If no time is left, the detector does not wait for an undisturbed moment.
         detector.disturbed_left_ns = 0.0;
         let slow = Ticking::default();
         assert!(detector.wait(&slow) > 1.9);

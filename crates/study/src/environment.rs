@@ -59,7 +59,8 @@ pub struct Environment {
     /// system's heap.
     #[serde(default)]
     pub heap: Option<HeapReport>,
-    /// Preparation of the caches before each sample; `None` in results of older versions: nothing.
+    /// Preparation of the caches before each sample; `None` in results of older versions, which
+    /// prepared nothing.
     #[serde(default)]
     pub cache_state: Option<CachesReport>,
     /// Start of the study, in seconds since 1970.

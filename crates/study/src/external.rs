@@ -59,8 +59,8 @@ pub struct ExternalReport {
     pub command: Vec<String>,
     /// Library and version that the program reports.
     pub library: Option<String>,
-    /// Whether freed pages are kept for Sixfold's backends but not for this program. Its
-    /// allocations may then cause page faults that those of the backends do not.
+    /// Whether freed pages are kept for Sixfold's backends but not for this program. Allocations of
+    /// the program may then cause page faults, unlike those of the backends.
     #[serde(default)]
     pub own_heap: bool,
 }
@@ -89,7 +89,8 @@ pub enum ExternalError {
 impl FromStr for External {
     type Err = ExternalError;
 
-    /// Parses `NAME=COMMAND`. The command is split into words as by a shell, but runs without one.
+    /// Parses `NAME=COMMAND`. The command is split into words as a shell would do, but it is run
+    /// without a shell.
     fn from_str(given: &str) -> Result<Self, ExternalError> {
         let no_name = || ExternalError::NoName {
             given: given.into(),

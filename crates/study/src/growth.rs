@@ -4,8 +4,8 @@
 //! each size all structures are measured in interleaved rounds, as in a study. A straight line
 //! through the logarithms gives the exponent of the total time. Exponent 1 means a constant time
 //! per element, exponent 2 a scan of all faces per element. The time per element also depends on
-//! the caches, so separate lines are fitted to the sizes that fit into the last cache and to those
-//! that do not.
+//! the caches, so one line is fitted to the sizes that fit into the last cache, and another line to
+//! the larger sizes.
 
 mod budgets;
 mod fits;
@@ -128,7 +128,7 @@ impl GrowthReport {
     ///
     /// # Errors
     ///
-    /// Errors of `writer`.
+    /// Returns the errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
@@ -142,7 +142,7 @@ impl GrowthReport {
 ///
 /// # Errors
 ///
-/// The settings are invalid, or no requested backend can hold the shape.
+/// Returns an error if the settings are invalid, or no requested backend can hold the shape.
 pub fn growth(
     settings: &GrowthSettings,
     stop: &AtomicBool,

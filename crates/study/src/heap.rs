@@ -9,10 +9,10 @@ use crate::numbers::bytes;
 
 /// Part of all memory that must stay free.
 const MIN_FREE: f64 = 0.05;
-/// Largest factor by which keeping pages increases the memory of a study: freed blocks of one size
-/// do not always fit another.
+/// Largest factor by which keeping pages increases the memory of a study. The memory grows because
+/// a freed block does not always fit a later request.
 const KEPT_FACTOR: u64 = 2;
-/// One part in this many of the resident memory is touched in advance: later blocks may lie
+/// The resident memory divided by this number is touched in advance, because later blocks may lie
 /// elsewhere.
 const RESERVE_PART: u64 = 4;
 
@@ -53,7 +53,7 @@ pub struct CachesReport {
 
 /// The memory of the measurements, from the first sample to the last.
 pub(crate) struct Memory {
-    /// The policy in force.
+    /// The active policy.
     pub(crate) heap: HeapReport,
     flusher: Option<CacheFlusher>,
 }

@@ -2,10 +2,10 @@
 //!
 //! In every round each operation runs on every structure, one right after the other, in random
 //! order. Slow changes (frequency, heat, other programs) therefore affect all structures alike, and
-//! ratios formed within a round are nearly free of them. A sample repeats a short operation until
-//! the clock can resolve it, after about as much untimed work, so that the caches hold the data of
-//! this structure. Between rounds, if time allows, all structures are built again elsewhere in
-//! memory, so that the addresses of their tables vary. Operations that allocate are measured again
+//! hardly affect ratios within a round. A sample repeats a short operation until the clock can
+//! resolve the time. About as much untimed work comes before it, so that the caches hold the data
+//! of this structure. If time allows, all structures are built again elsewhere in memory between
+//! rounds, so that the addresses of their tables vary. Operations that allocate are measured again
 //! at the end, on fresh pages.
 
 use std::hint::black_box;
@@ -56,7 +56,7 @@ pub(crate) struct Entry {
     pub(crate) untimed: u32,
     /// Number of timed runs in one sample.
     pub(crate) runs: u32,
-    /// It takes part in every n-th round; never if 0.
+    /// The entry takes part in every n-th round; never if 0.
     pub(crate) every: u32,
     /// Expected wall time of one sample, in nanoseconds.
     pub(crate) cost_ns: f64,
@@ -64,18 +64,19 @@ pub(crate) struct Entry {
     pub(crate) warm_up: Option<Time>,
     /// The results of the operation.
     pub(crate) outcome: Option<Outcome>,
-    /// Estimated time if a run would take too long; it is then not measured.
+    /// Estimated time if a run would take too long. The operation is then not measured.
     pub(crate) estimate: Option<Time>,
-    /// Whether it is only estimated because it was not requested by name; there would be time for
-    /// it.
+    /// Whether the time is only estimated because the operation was not requested by name. The
+    /// budget has room for a run.
     pub(crate) by_name_only: bool,
     /// Why it cannot be done on this structure or mesh.
     pub(crate) refusal: Option<String>,
     /// Round and time of one run, for each sample.
     pub(crate) samples: Vec<(u32, Time)>,
-    /// For each sample the larger slowdown of the [`DisturbanceDetector`] before and after it.
+    /// For each sample, the slowdown that the [`DisturbanceDetector`] measured before or after it,
+    /// whichever is larger.
     pub(crate) slowdowns: Vec<f64>,
-    /// Whether its last sample was disturbed; it then takes part in the next round, too.
+    /// Whether the last sample was disturbed. The entry then takes part in the next round, too.
     pub(crate) repeat_next: bool,
     /// Number of samples taken again because of page faults or disturbance.
     pub(crate) retaken: u32,
@@ -122,7 +123,7 @@ impl Entry {
         3.0 * self.cost_ns / f64::from(self.runs + self.untimed)
     }
 
-    /// Returns whether first runs can be measured: it allocates, and was measured without sampling.
+    /// Returns whether first runs can be measured: the operation allocates, and was run in full.
     fn has_first_time(&self) -> bool {
         let measured = !self.samples.is_empty() && self.job.sample.is_none();
         measured && self.job.operation.allocates()
@@ -151,12 +152,13 @@ impl Entry {
 }
 
 /// Returns the number of untimed runs of `operation` before a sample, if one run takes `ns`. There
-/// is at least one, and they take up to `most_ns`. They fill caches, branch predictors and tables
-/// as in a program that does nothing else. Runs longer than 10 ms do this by themselves; they get
-/// one untimed run if tables grow, else none.
+/// is at least one, and together they take up to `most_ns`. They fill caches, branch predictors and
+/// tables as in a program that does nothing else. A run longer than 10 ms does this by itself. It
+/// gets one untimed run if tables grow, else none.
 ///
-/// If the structure is `large`, more than the second-level cache, there are up to four: the
-/// third-level cache keeps data only after it was read several times.
+/// If the structure is `large`, that is, larger than the second-level cache, there may be up to
+/// four runs even if they take longer than `most_ns`. The third-level cache keeps data only after
+/// it was read several times.
 pub(crate) fn untimed_runs(operation: Operation, ns: f64, most_ns: f64, large: bool) -> u32 {
     if ns > LONG_RUN_NS {
         return u32::from(operation.grows_tables());
@@ -198,7 +200,7 @@ pub(crate) struct Measurement<'b, 's> {
     /// Whether the operations were requested by name.
     pub(crate) named: bool,
     pub(crate) random: ChaCha8Rng,
-    /// Ends the study when set.
+    /// Ends the measurement when set.
     pub(crate) stop: &'b AtomicBool,
     pub(crate) progress: &'b mut dyn FnMut(Progress<'_>),
 }
@@ -225,7 +227,8 @@ impl Measurement<'_, '_> {
             false => 0.0,
         };
         self.rounds(&mut entries, start, deadline - for_first_times);
-        // Last, because it returns pages to the kernel that samples would otherwise reuse.
+        // This comes last, because it returns pages to the kernel that samples would otherwise
+        // reuse.
         if for_first_times > 0.0 {
             self.first_times(&mut entries, deadline);
         }
@@ -282,7 +285,8 @@ impl Measurement<'_, '_> {
             groups.shuffle(&mut self.random);
             for group in &mut groups {
                 group.shuffle(&mut self.random);
-                // All entries of an operation together: ratios are formed within rounds.
+                // Repeats all entries of an operation together, because ratios are formed within
+                // rounds.
                 let repeat_next = group.iter().any(|&entry| entries[entry].repeat_next);
                 for &entry in &*group {
                     let entry = &mut entries[entry];
@@ -313,9 +317,10 @@ impl Measurement<'_, '_> {
         self.memory.has_room_for(2 * largest.unwrap_or(0) as u64)
     }
 
-    /// Builds all structures again, each elsewhere in memory. If pages are kept, it first returns
-    /// them, so that the kernel chooses new ones; for large structures in random order. The addresses
-    /// and the pages of the tables affect times and do not change between two rebuilds.
+    /// Builds all structures again, each elsewhere in memory. If pages are kept, returns them to
+    /// the kernel first, so that the kernel chooses new ones. For large structures it chooses them
+    /// in random order. The addresses and the pages of the tables affect times and do not change
+    /// between two rebuilds.
     fn rebuild(&mut self) {
         let mut order: Vec<usize> = (0..self.subjects.len()).collect();
         order.shuffle(&mut self.random);
@@ -335,7 +340,8 @@ impl Measurement<'_, '_> {
         self.memory.reserve();
     }
 
-    /// Takes a sample and records it, or the refusal: an external program may refuse at any time.
+    /// Takes a sample and records it, or records a refusal: an external program may refuse at any
+    /// time.
     fn sample(&mut self, detector: &mut DisturbanceDetector, entry: &mut Entry, round: u32) {
         let (stop, kept) = (self.stop, self.memory.keeps_pages());
         let runs = [entry.untimed, entry.runs];
@@ -361,9 +367,9 @@ impl Measurement<'_, '_> {
         }
     }
 
-    /// Measures operations that allocate on fresh pages, one run per sample, in rounds, while there
-    /// is time. A normal run follows each of them: the ratio of the two does not depend on the
-    /// current speed of the machine.
+    /// Measures on fresh pages the operations that allocate: one run per sample, in rounds, while
+    /// there is time. A normal run follows each such run. The ratio of the two does not depend on
+    /// the current speed of the machine.
     fn first_times(&mut self, entries: &mut [Entry], deadline: f64) {
         let control = self.control;
         let mut entries: Vec<&mut Entry> = entries

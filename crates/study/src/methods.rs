@@ -5,7 +5,7 @@ use sixfold::subdivision::Method;
 use crate::report::{BackendReport, ResultRow};
 use sixfold_workload::Operation;
 
-/// Smaller ratios of two methods are not reported.
+/// The smallest ratio of two methods that is reported.
 const MIN_RATIO: f64 = 1.1;
 /// Assumed error factor of a figure without an interval: an estimate, or one with few samples.
 const ASSUMED_ERROR: f64 = 1.5;
@@ -28,7 +28,7 @@ impl MeasuredTime {
         })
     }
 
-    /// Returns the ratio of this time to `other`, if this is clearly longer.
+    /// Returns the ratio of this time to `other`, if this time is clearly longer.
     fn ratio_if_longer(self, other: Self) -> Option<f64> {
         let ratio = self.ns / other.ns;
         (self.low > other.high && ratio > MIN_RATIO).then_some(ratio)

@@ -99,7 +99,7 @@ pub struct OrdersReport {
 pub struct OrderRow {
     /// The order.
     pub order: Order,
-    /// Its times; `standing` and the ratio to the best compare the orders of this structure.
+    /// The times. `standing` and the ratio to the best compare the orders of this structure.
     #[serde(flatten)]
     pub row: ResultRow,
 }
@@ -121,7 +121,7 @@ impl OrdersReport {
     ///
     /// # Errors
     ///
-    /// Errors of `writer`.
+    /// Returns the errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
@@ -136,15 +136,15 @@ pub(crate) fn chosen_operations(settings: &Settings) -> Vec<Operation> {
     Operation::ALL.into_iter().filter(requested).collect()
 }
 
-/// Measures the mesh in every order on every requested backend. `settings` are as for a study, but
-/// if the operations are empty, [`DEFAULT_OPERATIONS`] are measured.
+/// Measures the mesh in every order on every requested backend. `settings` are those of a study. If
+/// they name no operations, [`DEFAULT_OPERATIONS`] are measured.
 ///
 /// Setting `stop` ends the run between two samples; the report contains the finished part.
 ///
 /// # Errors
 ///
-/// A backend is unknown, the mesh has no faces, no requested backend can hold it, or the budget is
-/// too short.
+/// Returns an error if a backend is unknown, the mesh has no faces, no requested backend can hold
+/// the mesh, or the budget is too short.
 pub fn orders(
     study_mesh: &StudyMesh,
     settings: &Settings,
@@ -273,9 +273,9 @@ fn depends_on_order(operation: Operation) -> bool {
     matches!(operation, Operation::FfBfs | Operation::EditPass(_))
 }
 
-/// Returns the agreement of every entry according to `compare`. All orders are compared with each
-/// other, except for operations whose results depend on the order: these are compared within each
-/// order.
+/// Returns the agreement of every entry according to `compare`. The results of all orders are
+/// compared with each other. If the result of an operation depends on the order, the comparison is
+/// made only within each order.
 fn agreements(
     entries: &[Entry],
     columns: &[Column],
@@ -350,7 +350,7 @@ fn deduplicated(refusals: Vec<Refusal>) -> Vec<Refusal> {
 ///
 /// # Errors
 ///
-/// A backend is unknown.
+/// Returns an error if a backend is unknown.
 pub fn orders_bytes(study_mesh: &StudyMesh, settings: &Settings) -> Result<u64, StudyError> {
     let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
     let chosen = settings.chosen_backends()?;

@@ -2,8 +2,8 @@
 //!
 //! Every backend that qualifies runs the mix of the workload, in its access order, in interleaved
 //! rounds as in a study. After the rounds each part of the mix is timed alone, to explain the
-//! result. If the mix does not change connectivity, tables of only the relations that it queries
-//! take part as one more backend.
+//! result. If the mix does not change connectivity, relation tables take part as one more backend.
+//! They contain only the relations that the mix queries.
 
 mod backend;
 mod break_even;
@@ -53,7 +53,7 @@ pub struct PickSettings {
     pub budget: Duration,
     /// Seed of the routes and of the random order in which backends are measured.
     pub seed: u64,
-    /// What happens to pages that operations free.
+    /// The policy for pages that operations free.
     pub heap: Policy,
 }
 
@@ -106,8 +106,8 @@ pub enum PickError {
 ///
 /// # Errors
 ///
-/// [`PickError`]: unknown names, a mesh without faces, a workload that cannot be run on a mesh, or
-/// a budget that is too small.
+/// Returns [`PickError`] for unknown names, a mesh without faces, a workload that cannot be run on
+/// a mesh, or a budget that is too small.
 pub fn pick(
     study_meshes: &[StudyMesh],
     settings: &PickSettings,
@@ -158,7 +158,7 @@ fn needed(study_mesh: &StudyMesh, settings: &PickSettings) -> u64 {
     let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
     // Unknown names are refused later.
     let backends = settings.chosen_backends().unwrap_or_default();
-    // Twice: for the relation tables, and for what edits and subdivision allocate.
+    // Doubled to include the relation tables and the allocations of edits and subdivision.
     2 * needed_bytes(&backends, &Operation::ALL, &counts)
 }
 
@@ -185,7 +185,7 @@ fn for_all_meshes(error: PickError, settings: &PickSettings, meshes: usize) -> P
     }
 }
 
-/// Returns the backends that qualify, and the others with their reasons.
+/// Returns the backends that qualify, and the excluded backends with the reasons.
 fn qualified(
     study_mesh: &StudyMesh,
     settings: &PickSettings,

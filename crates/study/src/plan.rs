@@ -12,30 +12,32 @@ pub(crate) const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
 /// The longest sample of several runs. More samples are better than longer ones.
 const LONGEST_SAMPLE_NS: f64 = 2_000_000.0;
 /// An entry whose sample costs up to this many slots takes part in every third round. A slot is the
-/// time of one entry in one round, if all entries get the same.
+/// time of one entry in one round, if all entries get equal time.
 const MEDIUM_COST_SLOTS: f64 = 6.0;
 const MEDIUM_COST_EVERY: u32 = 3;
-/// An entry whose sample costs more than that takes part in every sixth round.
+/// An entry whose sample costs more than [`MEDIUM_COST_SLOTS`] takes part in every sixth round.
 const HIGH_COST_EVERY: u32 = 6;
-/// The longest run in rounds, as a part of the time left, for an operation that was named.
+/// The longest run in rounds of an operation that was named in the settings, as a part of the time
+/// left.
 const LONGEST_IN_ROUNDS: f64 = 0.1;
-/// The part of the time left that is for backends that scan, if others do not. They are hundreds
-/// of times slower, so wide intervals are enough to rank them.
+/// The part of the time left for backends that scan, if other backends do not scan. Backends that
+/// scan are hundreds of times slower, so wide intervals are enough to rank them.
 const SCANS_PART: f64 = 0.25;
 /// The smallest number of elements in a sample, for any budget.
 pub(crate) const MIN_ELEMENTS: usize = 16;
-/// The longest single run outside the rounds, as a part of the time left, for an operation that
-/// cannot be sampled.
+/// The longest single run outside the rounds of an operation that cannot be sampled, as a part of
+/// the time left.
 const LONGEST_ONCE: f64 = 0.5;
-/// The same for an operation that makes or edits a mesh and was not named in the settings.
+/// The longest such run of an operation that makes or edits a mesh and was not named in the
+/// settings.
 const LONGEST_UNNAMED: f64 = 0.02;
 /// Faces in the first patch of the mesh on which subdividing or editing is timed.
 const FIRST_PATCH: usize = 1024;
 
 impl Measurement<'_, '_> {
-    /// Runs everything once and plans samples that fit the budget: first for the operations that
-    /// do not scan; then, in the time left, for those that scan, or may scan on a skewed mesh. At
-    /// the end, if there is time, the operations that were only estimated are run once.
+    /// Runs everything once and plans samples that fit the budget. Operations that do not scan come
+    /// first. The time left is for operations that scan, or that may scan on a skewed mesh. At the
+    /// end, operations that were only estimated are run once if there is time.
     pub(crate) fn warm_up(&mut self, entries: &mut [Entry], deadline: f64) {
         let scans: Vec<[bool; 3]> = entries.iter().map(|entry| self.scans(entry)).collect();
         let count = entries.len() as f64;
@@ -72,9 +74,9 @@ impl Measurement<'_, '_> {
         self.run_estimated(entries, deadline);
     }
 
-    /// Runs each operation that was only estimated and fits into the time left, once, the shortest
-    /// first. The limit is lower for an operation that makes a mesh and was not named in the
-    /// settings.
+    /// Runs once each operation that was only estimated, if it fits into the time left; the
+    /// shortest first. The limit is lower for an operation that makes a mesh and was not named in
+    /// the settings.
     fn run_estimated(&mut self, entries: &mut [Entry], deadline: f64) {
         let budget = self.budget.as_nanos() as f64;
         let mut estimated: Vec<(f64, &mut Entry)> = entries
@@ -104,7 +106,8 @@ impl Measurement<'_, '_> {
         }
     }
 
-    /// Returns, by kind of element, whether a query may cost far more than what it yields.
+    /// Returns for each kind of element whether a query may take far longer than its results
+    /// justify.
     fn scans(&self, entry: &Entry) -> [bool; 3] {
         if self.subjects[entry.subject].is_external() {
             return [false; 3];
@@ -132,8 +135,8 @@ impl Measurement<'_, '_> {
             let (run, overhead) = self.run_with_overhead(entry, [1, runs as u32], false);
             (ns, overhead_ns) = (run.time.ns().max(0.1), overhead);
         }
-        // A quarter of the slot is for the sample, a quarter for the untimed runs before it, the
-        // rest for waiting and for what happens between runs.
+        // A quarter of the slot is for the sample, a quarter for the untimed runs before it, and
+        // the rest for waiting and for work between runs.
         let target = (slot_ns / 4.0).clamp(SHORTEST_SAMPLE_NS, LONGEST_SAMPLE_NS);
         entry.runs = match self.memory.is_cold() {
             true => 1,
@@ -174,8 +177,8 @@ impl Measurement<'_, '_> {
         };
     }
 
-    /// Times few elements, then more, until the cost of the whole is known; then plans whether to
-    /// run it in full, on a sample, or not at all.
+    /// Times more and more elements until the cost of the whole operation is known. Then plans
+    /// whether to run the operation in full, on a sample, or not at all.
     fn plan_scan(&mut self, entry: &mut Entry, scanned: [bool; 3], slot_ns: f64, left: f64) {
         let operation = entry.job.operation;
         // An operation that cannot be sampled is estimated by the relation that it queries.
@@ -218,7 +221,7 @@ impl Measurement<'_, '_> {
         counts.map(|k| self.population[k]).max().unwrap_or(0)
     }
 
-    /// Times a few elements, then more, until that takes as long as a sample may.
+    /// Times more and more elements, until one run takes as long as a sample may take.
     fn probe(
         &mut self,
         subject: usize,
@@ -346,7 +349,7 @@ fn patch_job(entry: &Entry, size: usize) -> Job {
     }
 }
 
-/// Stores the result of the run as the warm-up; no time if it was refused.
+/// Stores the result of the run as the warm-up; stores no time if the run was refused.
 fn record_warm_up(entry: &mut Entry, run: Run) {
     entry.warm_up = run.refusal.is_none().then_some(run.time);
     entry.outcome = run.outcome;

@@ -7,7 +7,7 @@ use sixfold_workload::Time;
 /// Ratios up to this are a tie, regardless of their intervals.
 pub(crate) const NO_DIFFERENCE: f64 = 1.02;
 
-/// With too few samples for an interval, ratios of this or more are not a tie.
+/// If there are too few samples for an interval, a ratio of this or more is not a tie.
 pub(crate) const CLEAR_DIFFERENCE: f64 = 2.0;
 
 /// The comparison of one backend with the fastest.
@@ -19,12 +19,12 @@ pub(crate) struct Rank {
     pub(crate) standing: Standing,
 }
 
-/// Ranks the backends of one operation by their samples, each with its round; `None` for backends
-/// without samples.
+/// Ranks the backends of one operation by their samples, each with the number of its round. The
+/// rank of a backend without samples is `None`.
 ///
-/// The fastest has the smallest median. Another ties with it if the interval of its ratio includes
-/// 1 or less, or if the ratio is at most `noise`. If there are too few samples for an interval, it
-/// ties if the ratio is below 2.
+/// The fastest has the smallest median. Another backend is tied with it if the interval of its
+/// ratio includes 1 or less, or if its ratio is at most `noise`. If there are too few samples for
+/// an interval, it is tied if its ratio is below 2.
 pub(crate) fn rank(backends: &[Vec<(u32, Time)>], noise: f64) -> Vec<Option<Rank>> {
     let medians = backends
         .iter()
@@ -72,8 +72,8 @@ pub(crate) fn rank(backends: &[Vec<(u32, Time)>], noise: f64) -> Vec<Option<Rank
     ranks
 }
 
-/// Returns the median ratio over the rounds that both have; the ratio of the medians if they have
-/// no round in common.
+/// Returns the median ratio over the rounds in common, or the ratio of the medians if there are no
+/// such rounds.
 pub(crate) fn ratio(samples: &[(u32, Time)], best: &[(u32, Time)]) -> Option<Median> {
     let of_round = |round: u32| best.iter().find(|(r, _)| *r == round);
     let pairs = samples

@@ -69,7 +69,7 @@ impl Results {
     ///
     /// # Errors
     ///
-    /// The errors of `writer`.
+    /// Returns the errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         match self {
             Self::Study(study) => study.write_json(writer),
@@ -85,7 +85,8 @@ impl Results {
     ///
     /// # Errors
     ///
-    /// Truncated text, text that is not JSON, and results of another program, schema or command.
+    /// Returns an error if the text is truncated, is not JSON, or has results of another program,
+    /// schema or command.
     pub fn read_json(text: &str) -> Result<Self, ReadError> {
         check_schema(text)?;
         Ok(match kind(text)? {
@@ -110,7 +111,8 @@ impl Report {
     ///
     /// # Errors
     ///
-    /// Truncated text, text that is not JSON, and results of another program, schema or command.
+    /// Returns an error if the text is truncated, is not JSON, or has results of another program,
+    /// schema or command.
     pub fn read_json(text: &str) -> Result<Self, ReadError> {
         check_schema(text)?;
         let kind = kind(text)?;
@@ -206,7 +208,7 @@ impl Kind {
     }
 }
 
-/// Returns the kind of the results, by a field that only this kind has.
+/// Returns the kind of the results. Each kind has a field that no other kind has.
 fn kind(text: &str) -> Result<Kind, ReadError> {
     #[derive(Deserialize)]
     struct Fields {

@@ -81,9 +81,10 @@ pub struct RawSamples {
     /// Page faults in each sample; `None` if they were not counted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub faults: Option<Vec<u64>>,
-    /// For each sample, the time of a small fixed piece of work before or after it, whichever is
-    /// longer, divided by the undisturbed time of that work. A sample above 1.3 does not count if
-    /// at least a quarter of the samples are at or below.
+    /// For each sample, the slowdown of the machine: the time of a small fixed piece of work
+    /// divided by its undisturbed time. This work is timed before and after the sample, and the
+    /// longer time is used. If at least a quarter of the samples have a slowdown of at most 1.3,
+    /// samples with a larger slowdown do not count.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub slowdowns: Vec<f64>,
     /// Times of one run on fresh pages and tables, in nanoseconds: separate samples, not part of a
@@ -93,7 +94,8 @@ pub struct RawSamples {
 }
 
 impl RawSamples {
-    /// Returns the times of the samples that count: processor time if it is known, else wall time.
+    /// Returns the times of the samples that count. These are processor times if known, else wall
+    /// times.
     pub fn counted_ns(&self) -> Vec<f64> {
         undisturbed(
             self.cpu_ns.as_ref().unwrap_or(&self.wall_ns),
@@ -117,20 +119,20 @@ pub struct MeshReport {
 /// A backend, whether it can hold the mesh, and its memory.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct BackendReport {
-    /// Its name for users: the key of the map.
+    /// The name that users write. It is the key of the map.
     #[serde(rename = "$key$")]
     pub name: String,
     /// Whether it can hold the mesh.
     pub holds: bool,
-    /// The reason if it cannot.
+    /// The reason if it cannot hold the mesh.
     pub reason: Option<String>,
     /// Actual size in bytes; `None` if it was not built.
     pub bytes: Option<usize>,
-    /// The same per vertex of the mesh.
+    /// That size per vertex of the mesh.
     pub bytes_per_vertex: Option<f64>,
     /// Theoretical size of the layout in bytes; `None` if it cannot hold the mesh.
     pub layout_bytes: Option<usize>,
-    /// The same per vertex of the mesh.
+    /// That size per vertex of the mesh.
     pub layout_bytes_per_vertex: Option<f64>,
     /// Actual size in bytes, by table.
     pub tables: Vec<TableBytes>,
@@ -155,7 +157,7 @@ pub struct ResultRow {
     pub min_ns: Option<f64>,
     /// The lower end of the 95 % interval of the median; `None` with fewer than three samples.
     pub ci_low_ns: Option<f64>,
-    /// Its upper end.
+    /// The upper end of that interval.
     pub ci_high_ns: Option<f64>,
     /// The number of elements that a whole run visits.
     pub elements: Option<u64>,
@@ -178,23 +180,24 @@ pub struct ResultRow {
     pub checksum: Option<f64>,
     /// Whether other backends have the same results.
     pub agreement: Agreement,
-    /// Its comparison with the other backends; `None` if nothing was measured.
+    /// The comparison with the other backends; `None` if nothing was measured.
     pub standing: Option<Standing>,
-    /// The median, over rounds, of its time divided by the time of the fastest; 1 for the fastest
-    /// itself.
+    /// The median, over rounds, of the time of this backend divided by the time of the fastest; 1
+    /// for the fastest itself.
     pub ratio_to_best: Option<f64>,
     /// The lower end of the 95 % interval of that ratio.
     pub ratio_ci_low: Option<f64>,
-    /// Its upper end.
+    /// The upper end of that interval.
     pub ratio_ci_high: Option<f64>,
     /// The number of samples.
     pub samples: usize,
     /// The number of consecutive runs in one sample.
     pub runs_per_sample: u32,
-    /// Whether there was only time for the warm-up: its one run, with cold caches, is the sample.
+    /// Whether there was time only for the warm-up. The sample is then the one warm-up run, with
+    /// cold caches.
     pub warm_up_only: bool,
-    /// Whether it is only estimated because it was not named in the settings: the budget has room
-    /// for a run.
+    /// Whether the time is only estimated because the settings do not name the operation. The
+    /// budget has room for a run.
     pub by_name_only: bool,
     /// The largest number of page faults in a sample; `None` if they were not counted.
     #[serde(default)]
@@ -206,16 +209,16 @@ pub struct ResultRow {
     /// The number of samples that do not count, because other work disturbed the machine.
     #[serde(default)]
     pub disturbed: usize,
-    /// The time of a first run, as in a program that runs the operation once, on fresh pages and
-    /// with tables of exact size: `median_ns` multiplied by the median ratio of first runs to the
-    /// runs directly after them. `None` if the operation does not allocate, or if there was no
+    /// The time of a first run, on fresh pages and with tables of exact size, as in a program that
+    /// runs the operation once. It is `median_ns` multiplied by the median ratio of first runs to
+    /// the runs directly after them. `None` if the operation does not allocate, or if there was no
     /// time.
     #[serde(default)]
     pub first_ns: Option<f64>,
     /// The number of samples of first runs.
     #[serde(default)]
     pub first_samples: usize,
-    /// The largest number of page faults in any of them.
+    /// The largest number of page faults in a sample of a first run.
     #[serde(default)]
     pub first_faults: Option<u64>,
 }
@@ -267,8 +270,8 @@ impl ResultRow {
 /// Ratio of the first time to the median above which the first time is shown.
 pub const FIRST_TIME_SHOWN: f64 = 1.1;
 
-/// One backend that was measured twice (an A/A control): the difference of its two columns is
-/// caused by the machine and the clock alone.
+/// One backend that was measured twice (an A/A control). Only the machine and the clock cause the
+/// difference between its two columns.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Control {
     /// The backend.
@@ -293,13 +296,13 @@ pub struct ControlRow {
     pub ratio: f64,
     /// The lower end of the 95 % interval of that ratio; `None` with fewer than three rounds.
     pub ci_low: Option<f64>,
-    /// Its upper end.
+    /// The upper end of that interval.
     pub ci_high: Option<f64>,
 }
 
 impl ControlRow {
-    /// Returns whether the two differ by more than 5 %, and not by chance. Then smaller differences
-    /// between backends are not significant.
+    /// Returns whether the two columns differ by more than 5 %, and not by chance. If so, smaller
+    /// differences between backends are not significant.
     pub fn is_unsteady(&self) -> bool {
         let interval = self.ci_low.zip(self.ci_high);
         let beyond_chance = interval.is_some_and(|(low, high)| low > 1.0 || high < 1.0);
@@ -363,9 +366,9 @@ const COLUMNS: [&str; 30] = [
 pub enum Agreement {
     /// All backends did the same work.
     Same,
-    /// It differs, which is possible because vertices with equal coordinates are merged.
+    /// The checksum differs. This is possible because vertices with equal coordinates are merged.
     Merged,
-    /// It differs without such a reason: a fault in Sixfold.
+    /// The checksum differs without such a reason: this is a fault in Sixfold.
     Mismatch,
     /// There is no other result to compare with.
     Unchecked,
@@ -393,7 +396,7 @@ impl Report {
             .filter(move |row| row.operation == operation)
     }
 
-    /// Returns the results of our backends that differ without a known reason.
+    /// Returns the results of Sixfold's backends that differ without a known reason.
     pub fn mismatches(&self) -> impl Iterator<Item = &ResultRow> {
         let wrong = |row: &&ResultRow| row.agreement == Agreement::Mismatch;
         self.results
@@ -402,7 +405,7 @@ impl Report {
             .filter(|row| !self.is_external(&row.backend))
     }
 
-    /// Returns the results of external programs that differ from those of our backends.
+    /// Returns the results of external programs that differ from those of Sixfold's backends.
     pub fn external_mismatches(&self) -> impl Iterator<Item = &ResultRow> {
         let wrong = |row: &&ResultRow| row.agreement == Agreement::Mismatch;
         self.results
@@ -420,7 +423,7 @@ impl Report {
     ///
     /// # Errors
     ///
-    /// The errors of `writer`.
+    /// Returns the errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
@@ -429,7 +432,7 @@ impl Report {
     ///
     /// # Errors
     ///
-    /// The errors of `writer`.
+    /// Returns the errors of `writer`.
     pub fn write_csv(&self, writer: impl io::Write) -> io::Result<()> {
         let mut lines = csv::Writer::from_writer(writer);
         if self.results.is_empty() {
@@ -447,14 +450,13 @@ impl Inspection {
     ///
     /// # Errors
     ///
-    /// The errors of `writer`.
+    /// Returns the errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
 }
 
-/// Returns the I/O error inside an error of CSV, so that a closed pipe can be recognised by its
-/// kind.
+/// Returns the I/O error inside a CSV error, so that a closed pipe can be recognised by its kind.
 pub(crate) fn into_io_error(error: csv::Error) -> io::Error {
     match error.into_kind() {
         csv::ErrorKind::Io(cause) => cause,

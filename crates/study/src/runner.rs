@@ -29,7 +29,7 @@ pub struct BackendRunner<'a> {
     samples: usize,
 }
 
-/// How long an operation is run untimed before each sample.
+/// Time for which an operation is run untimed before each sample, in nanoseconds.
 const UNTIMED_NS: f64 = 2_000_000.0;
 
 /// The number of different sizes of the gap in front of a structure that is built again.
@@ -61,7 +61,7 @@ impl<'a> BackendRunner<'a> {
     ///
     /// # Errors
     ///
-    /// [`StudyError::NoneHolds`] if the structure cannot hold this mesh.
+    /// Returns [`StudyError::NoneHolds`] if the structure cannot hold this mesh.
     pub fn new(backend: &Backend, polygons: &'a PolygonMesh) -> Result<Self, StudyError> {
         let kept = pages::set_policy(Policy::Kept).policy == Policy::Kept;
         let draw: Option<&Draw> = None;
@@ -80,15 +80,15 @@ impl<'a> BackendRunner<'a> {
         })
     }
 
-    /// Returns its size in bytes.
+    /// Returns the size of the structure in bytes.
     pub fn bytes(&self) -> usize {
         self.subject.bytes()
     }
 
-    /// Runs `operation` on the whole mesh. A short one is repeated until 200 µs have passed, or 1 ms
-    /// if the structure is larger than the second-level cache.
-    /// Untimed runs precede it as in a study, and it is run again if other work disturbs the
-    /// machine. The returned time is that of one run.
+    /// Runs `operation` on the whole mesh. A short operation is repeated until 200 µs have passed,
+    /// or 1 ms if the structure is larger than the second-level cache. Untimed runs come first, as
+    /// in a study. The sample is taken again if other work disturbs the machine. The returned time
+    /// is that of one run.
     ///
     /// A structure larger than the second-level cache is first built again on other pages, as
     /// between the rounds of a study: times differ by up to 20 % from one set of pages to another.

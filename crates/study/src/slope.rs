@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A power law: the time is proportional to the size to this exponent.
+/// A power law: the time is proportional to the size raised to the exponent.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Slope {
     /// The exponent.
@@ -15,8 +15,8 @@ pub struct Slope {
 }
 
 impl Slope {
-    /// Fits the line by least squares on logarithms, with equal weights; `None` if there are not at
-    /// least two sizes.
+    /// Fits the line by least squares on logarithms, with equal weights; `None` with fewer than two
+    /// sizes.
     ///
     /// Points are (size, time); points without a logarithm are left out.
     pub(crate) fn fit(points: impl IntoIterator<Item = (f64, f64)>) -> Option<Self> {

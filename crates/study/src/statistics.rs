@@ -21,11 +21,11 @@ impl Median {
     /// Returns the median of `samples`; `None` if `samples` is empty.
     ///
     /// The interval is the percentile bootstrap of the median (Efron 1979), expanded for few
-    /// samples (Hesterberg 2015): the samples are drawn with replacement, [`RESAMPLES`] times from
-    /// a fixed seed, and the interval is the middle part of the medians. It needs no assumption
-    /// about the distribution of the samples. With fewer than six samples no method can reach 95 %:
-    /// then the interval is from the smallest to the largest sample, and contains the true median
-    /// with a probability of 93.75 % for five, 87.5 % for four, and 75 % for three.
+    /// samples (Hesterberg 2015). The samples are drawn with replacement, [`RESAMPLES`] times from
+    /// a fixed seed, and the interval is the middle part of the medians. This needs no assumption
+    /// about the distribution of the samples. With fewer than six samples no method can reach 95 %.
+    /// The interval is then from the smallest to the largest sample. It contains the true median
+    /// with a probability of 93.75 % for five samples, 87.5 % for four, and 75 % for three.
     pub(crate) fn from_samples(samples: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut sorted: Vec<f64> = samples.into_iter().collect();
         sorted.sort_unstable_by(f64::total_cmp);
@@ -50,8 +50,8 @@ fn median_of_sorted(sorted: &[f64]) -> f64 {
     f64::midpoint(sorted[(count - 1) / 2], sorted[count / 2])
 }
 
-/// Returns the geometric mean and its 95 % interval by resampling; `None` without values, no
-/// interval for fewer than three.
+/// Returns the geometric mean and its 95 % interval, found by resampling. Returns `None` without
+/// values, and no interval for fewer than three values.
 pub(crate) fn geometric_mean(values: &[f64]) -> Option<(f64, Option<[f64; 2]>)> {
     let logs: Vec<f64> = values.iter().map(|value| value.ln()).collect();
     let count = logs.len();
@@ -77,9 +77,9 @@ fn draw_index(random: &mut ChaCha8Rng, count: usize) -> usize {
     ((u64::from(random.next_u32()) * count as u64) >> 32) as usize
 }
 
-/// Returns the median of `samples` divided by the median of `others`, which are independent, and
-/// the 95 % interval by resampling both; `None` without samples, no interval with fewer than three
-/// of either.
+/// Returns the median of `samples` divided by the median of `others`, and the 95 % interval of this
+/// ratio. The two are independent, so the interval is found by resampling both. Returns `None` if
+/// either is empty, and no interval if either has fewer than three samples.
 pub(crate) fn quotient(samples: &[f64], others: &[f64]) -> Option<(f64, Option<[f64; 2]>)> {
     let sorted = [samples, others].map(|samples| {
         let mut sorted = samples.to_vec();
@@ -178,7 +178,8 @@ fn tail_probability(count: usize) -> f64 {
     sum * (-x * x / 2.0).exp() / std::f64::consts::TAU.sqrt()
 }
 
-/// Returns which sample has `rank` in a resample in which each was drawn `drawn` times.
+/// Returns the index of the sample with `rank` in a resample. `drawn` is how often each sample was
+/// drawn.
 fn index_of_rank(drawn: &[u32], rank: usize) -> usize {
     let mut below = 0;
     let at = drawn.iter().position(|&times| {

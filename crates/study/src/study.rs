@@ -50,14 +50,14 @@ pub struct Settings {
     /// The operations; empty for all. A subdivision that takes a large part of the budget is run
     /// only if it is named here; otherwise its time is estimated.
     pub operations: Vec<Operation>,
-    /// Time limit for measuring. Each operation is run at least once, or on a small sample if a
-    /// whole run may take long, even if this exceeds the limit.
+    /// Time limit for measuring. Each operation is run at least once, even if this exceeds the
+    /// limit. If a whole run may take long, only a small sample is run.
     pub budget: Duration,
     /// Seed of the order in which elements are drawn for samples, and of the order of measurement.
     /// The size of samples depends on the clock.
     pub seed: u64,
-    /// What happens to pages that operations free. Keeping pages takes more memory; if there is too
-    /// little, the system's policy is used.
+    /// The policy for pages that operations free. Keeping pages takes more memory. If there is too
+    /// little memory, the system's policy is used.
     pub heap: Policy,
     /// Whether the caches hold the mesh when a sample begins.
     pub caches: CacheState,
@@ -120,8 +120,8 @@ impl Settings {
     ///
     /// # Errors
     ///
-    /// [`StudyError::UnknownBackend`] for the first unknown name, and
-    /// [`StudyError::RepeatedBackend`] for an extra backend with the name of another.
+    /// Returns [`StudyError::UnknownBackend`] for the first unknown name, and
+    /// [`StudyError::RepeatedBackend`] if an extra backend has the name of another backend.
     pub fn chosen_backends(&self) -> Result<Vec<Backend>, StudyError> {
         let mut all = Backend::structures();
         for &extra in &self.extra {
@@ -175,7 +175,8 @@ impl Settings {
 ///
 /// # Errors
 ///
-/// An unknown backend, a mesh without faces, or a mesh that none of the chosen backends can hold.
+/// Returns an error if a backend is unknown, the mesh has no faces, or none of the chosen backends
+/// can hold the mesh.
 pub fn study(
     study_mesh: &StudyMesh,
     settings: &Settings,
@@ -303,14 +304,14 @@ pub(crate) fn needed_bytes(backends: &[Backend], operations: &[Operation], count
     all + most * if makes { 10 } else { 3 }
 }
 
-/// Returns whether a vertex or face has so high a valence or degree that one walk around it for each
-/// of its neighbours can exceed any budget.
+/// Returns whether some valence or degree is very large. Walking around such an element once for
+/// each of its neighbours can exceed any budget.
 pub(crate) fn is_skewed(facts: &Facts) -> bool {
     let most = |spread: &Option<Distribution>| spread.as_ref().map_or(0, |s| s.max);
     most(&facts.valence).max(most(&facts.face_degree)) > MAX_NEIGHBOURS
 }
 
-/// Returns whether some operation scans on this backend.
+/// Returns whether at least one of the operations scans on this backend.
 pub(crate) fn scans(backend: &Backend, operations: &[Operation]) -> bool {
     let costs = &backend.info.costs;
     costs.contains(&QueryCost::Scan)
@@ -356,7 +357,7 @@ pub(crate) fn results(
         let times: Vec<Vec<(u32, Time)>> = group.iter().map(Entry::times).collect();
         let noise = noise(control, group[0].job.operation);
         let verdicts: Vec<Agreement> = agreements.by_ref().take(group.len()).collect();
-        // A backend with a mismatch may have done other work: it is not ranked.
+        // A backend with a mismatch may have done different work, so it is not ranked.
         let mut ranked = times.clone();
         for (verdict, times) in verdicts.iter().zip(&mut ranked) {
             if *verdict == Agreement::Mismatch {
@@ -364,7 +365,7 @@ pub(crate) fn results(
             }
         }
         let ranks = rank(&ranked, noise);
-        // The number of elements of a whole run is known if some backend made one.
+        // The number of elements of a whole run is known if at least one backend made a whole run.
         let counted = group
             .iter()
             .filter(|e| e.job.sample.is_none() && subjects[e.subject].merged_vertices() == 0)
@@ -434,8 +435,8 @@ fn most_faults<'t>(samples: impl IntoIterator<Item = &'t Time>) -> Option<u64> {
     samples.into_iter().filter_map(|time| time.faults).max()
 }
 
-/// Returns the samples of all entries; those of the subject `control` are from the second entry of
-/// a backend.
+/// Returns the samples of all entries. Entries of the subject `control` are the second ones of a
+/// backend.
 fn raw(
     entries: &[Entry],
     subjects: &[Box<dyn TimedBackend + '_>],

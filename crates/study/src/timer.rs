@@ -18,9 +18,9 @@ pub struct Timer {
     /// The time for reading the clock during measurement, in nanoseconds. It is subtracted from
     /// every stretch between two readings.
     pub overhead_ns: f64,
-    /// The uncertainty of `overhead_ns`, in nanoseconds: its difference from the time for reading
-    /// in an empty loop, or the excess of the 95 % quantile in that loop over the median, whichever
-    /// is larger.
+    /// The uncertainty of `overhead_ns`, in nanoseconds. It is the larger of two values from an
+    /// empty loop of readings: the difference between `overhead_ns` and the median time of a
+    /// reading, and the difference between the 95 % quantile and the median.
     #[serde(default, rename = "left_ns")]
     pub uncertainty_ns: f64,
     /// `uncertainty_ns` divided by `shortest_ns`; `None` if nothing was measured.

@@ -10,7 +10,7 @@ use sixfold_workload::pages::Policy;
 const BUSY: f64 = 0.5;
 /// The processor was shared if wall time is more than this multiple of processor time.
 const INTERRUPTED: f64 = 1.05;
-/// An interval is wide if it extends further than this part of its median.
+/// An interval is wide if it extends further from its median than this part of the median.
 const WIDE: f64 = 0.1;
 /// The largest acceptable error of the clock, as a part of the shortest sample.
 const COARSE: f64 = 0.01;
@@ -64,7 +64,7 @@ fn nothing_measured(environment: &Environment, results: &[ResultRow]) -> Option<
     })
 }
 
-/// Warns if pages are not kept although that was set, or if page faults are not counted.
+/// Warns if pages are not kept although the settings request it, or if page faults are not counted.
 fn pages_not_kept(environment: &Environment) -> Option<String> {
     let heap = environment.heap.as_ref()?;
     match &heap.reason {

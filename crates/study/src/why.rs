@@ -1,8 +1,8 @@
 //! Explains the times of the relations on a structure by the memory that they read.
 //!
-//! Counts of reads need no clock and have no noise ([`Reads`]). A study of the same relations gives
-//! their times. [`MemorySpeed`] gives the time on this machine for moving the bytes, or for waiting
-//! for them. [`Bound::from_times`] compares the three.
+//! The counts of reads ([`Reads`]) need no clock and have no noise. A study of the same relations
+//! gives the times of these relations. [`MemorySpeed`] gives the time on this machine for moving
+//! the bytes, or for waiting for them. [`Bound::from_times`] compares the three.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -142,11 +142,11 @@ impl Bound {
     /// Returns the limiting factor of a sweep of `ns`, whose bytes take `floor_ns` to move and
     /// whose jumps take `waits_ns`, one after the other.
     ///
-    /// - `Bandwidth` if moving the bytes takes half of the time or more: only fewer bytes could
-    ///   make it twice as fast.
-    /// - `Latency` if not, and the jumps one after the other take half of the time or more. A
-    ///   processor overlaps several jumps, so they may take less: they can be the reason, but not
-    ///   necessarily the only one.
+    /// - `Bandwidth` if moving the bytes takes half of the time or more. Only a sweep of fewer
+    ///   bytes could then be twice as fast.
+    /// - `Latency` if moving the bytes takes less, but the jumps, one after the other, take half of
+    ///   the time or more. A processor overlaps several jumps, so they may take less. The jumps can
+    ///   be the reason, but not necessarily the only reason.
     /// - `Work` if neither explains half of the time.
     pub fn from_times(ns: f64, floor_ns: f64, waits_ns: f64) -> Self {
         if 2.0 * floor_ns >= ns {
@@ -158,7 +158,7 @@ impl Bound {
         }
     }
 
-    /// Returns its name for users: `bandwidth`.
+    /// Returns the name that users write: `bandwidth`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Bandwidth => "bandwidth",
@@ -177,24 +177,24 @@ impl Why {
             .count()
     }
 
-    /// Writes it as JSON.
+    /// Writes the result as JSON.
     ///
     /// # Errors
     ///
-    /// The errors of `writer`.
+    /// Returns the errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }
 }
 
-/// Counts what relations read on the backends that can hold the mesh, and measures them.
+/// Counts the reads of relations on the backends that can hold the mesh, and measures their times.
 ///
-/// Setting `stop` ends it early; the result contains what is finished. `progress` is called with
-/// the current step.
+/// Setting `stop` ends the measurement early; the result contains the finished part. `progress` is
+/// called with the current step.
 ///
 /// # Errors
 ///
-/// As [`study`].
+/// Returns the same errors as [`study`].
 pub fn why(
     study_mesh: &StudyMesh,
     settings: &WhySettings,

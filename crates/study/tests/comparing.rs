@@ -145,7 +145,7 @@ fn unsuitable_meshes_and_budgets_are_refused() {
         refused,
         OrdersError::Study(StudyError::NoneHolds { .. })
     ));
-    // Other backends can hold it, and the one that cannot is listed.
+    // Other backends can hold the mesh, and the backend that cannot hold it is listed.
     let report =
         quick_orders(shapes::cube(), &brief(100, &["face_vertices"])).expect("five hold it");
     assert_eq!(report.results.len(), 5 * 4);

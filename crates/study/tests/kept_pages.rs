@@ -44,8 +44,8 @@ fn no_sample_faults() {
     assert_eq!(pages::set_policy(Policy::System).policy, Policy::System);
 }
 
-/// Calls `test` with a budget of `seconds`, doubled until there is time for the samples that it
-/// needs, because other programs may run on this machine.
+/// Calls `test` with a budget of `seconds`. Doubles the budget until there is time for the samples
+/// that the test needs, because other programs may run on this machine.
 fn with_time_enough(seconds: u64, test: impl Fn(Duration) -> bool) {
     let mut budgets = [1, 2, 4, 8, 16]
         .map(|times| Duration::from_secs(times * seconds))
@@ -99,7 +99,7 @@ fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> bool {
         );
         samples += faults.len();
     }
-    // The first time must include faults: building a mesh on fresh pages has some.
+    // The first time must include faults, because building a mesh on fresh pages causes some.
     let builds = report.rows("build".parse().expect("an operation"));
     for row in builds.filter(|row| row.first_samples > 0) {
         assert!(row.first_faults > Some(0), "{row:?}");

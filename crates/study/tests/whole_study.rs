@@ -192,7 +192,7 @@ fn a_scanning_subdivision_is_run_if_it_is_named() {
         (0.2..5.0).contains(&(estimate / measured_ns)),
         "estimate {estimate}, measured {measured_ns}"
     );
-    // Longer than the budget: it is not run even if it is named.
+    // The operation takes longer than the budget, so it is not run even if it is named.
     let too_long = searched(named, tight / 1000);
     assert!(too_long.estimated_ns.is_some() && !too_long.by_name_only);
 }

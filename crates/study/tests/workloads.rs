@@ -116,8 +116,8 @@ impl<'a> Oracle<'a> {
         depths.into_iter().flatten().sum()
     }
 
-    /// Returns the points after one step, by the published rules: on boundary edges the mesh ends
-    /// in a cubic B-spline, and a vertex with a single face keeps its position.
+    /// Returns the points after one step, by the published rules. The boundary becomes a cubic
+    /// B-spline, and a vertex with a single face keeps its position.
     fn refined(&self, scheme: Scheme) -> Vec<[f64; 3]> {
         let quads = scheme == Scheme::CatmullClark;
         let centre = |f: &usize| self.mean(self.faces[*f].iter().copied());

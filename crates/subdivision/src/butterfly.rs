@@ -20,7 +20,7 @@
 //!
 //! - The point of a boundary edge depends on boundary vertices only: (−1/16, 9/16, 9/16, −1/16)
 //!   along the boundary (Dyn, Gregory & Levin 1987). Two pieces with the same boundary therefore
-//!   still fit.
+//!   still fit together.
 //! - If a corner of the regular stencil would lie beyond a boundary edge, it is replaced by the
 //!   reflection of the third vertex of the triangle there (Zorin, Schröder & Sweldens 1996):
 //!
@@ -225,9 +225,10 @@ fn ring_weights(valence: usize) -> Vec<f32> {
     }
 }
 
-/// Returns the weights of the k + 1 neighbours of a boundary vertex with k `triangles`, from one
-/// boundary edge to the other, for the edge to neighbour `i` (Zorin & Schröder 2000). The weight of
-/// the vertex itself is 1 minus their sum. With θ = π/k:
+/// Returns the weights for the point of the edge from a boundary vertex to its neighbour `i` (Zorin
+/// & Schröder 2000). The vertex has k `triangles` and k + 1 neighbours. The weights have the order
+/// of the neighbours, from one boundary edge to the other. The weight of the vertex itself is 1
+/// minus their sum. With θ = π/k:
 ///
 /// ```text
 ///   first, last  ±(cos iθ)/4 ∓ sin 2θ sin 2iθ / (4k (cos θ − cos 2θ))

@@ -1,6 +1,7 @@
 //! A mesh as tables of numbers: its corners, and the sides of each edge.
 //!
-//! For schemes that make faces across old edges and need the face on the other side.
+//! These tables are for schemes that make faces across old edges and need the face on the other
+//! side of an edge.
 //!
 //! ```text
 //!          b
@@ -32,7 +33,7 @@ pub(crate) struct Connectivity {
 /// An edge by its sides.
 #[derive(Clone, Copy)]
 pub(crate) struct EdgeSides {
-    /// The side of its face, or of one of them.
+    /// The side of one of its faces.
     pub(crate) first: u32,
     /// The side of the other face; `None` at a boundary.
     pub(crate) second: Option<u32>,
@@ -43,12 +44,13 @@ const UNNUMBERED: u32 = u32::MAX;
 
 impl Connectivity {
     /// Builds the tables of `mesh` for `scheme` with queries for the faces of each edge; edges have
-    /// the order of `edges()`. Queries FV, EV and EF: O(sum, over all edges, of the degrees of
-    /// their faces) plus the cost of the queries.
+    /// the order of `edges()`. Queries FV, EV and EF. Takes O(sum of the squares of the degrees)
+    /// plus the cost of the queries.
     ///
     /// # Errors
     ///
-    /// An edge with three faces, or with two that run along it in the same direction.
+    /// Returns an error for an edge with three faces, or with two that run along it in the same
+    /// direction.
     pub(crate) fn gathered<M: MeshQuery>(
         mesh: &M,
         scheme: Scheme,
@@ -91,7 +93,8 @@ impl Connectivity {
     ///
     /// # Errors
     ///
-    /// An edge with three faces, or with two that run along it in the same direction.
+    /// Returns an error for an edge with three faces, or with two that run along it in the same
+    /// direction.
     pub(crate) fn scattered<M: MeshQuery>(
         mesh: &M,
         scheme: Scheme,
@@ -214,7 +217,7 @@ impl Connectivity {
     ///
     /// # Errors
     ///
-    /// A vertex whose faces are several fans, or an error that `fan` returns.
+    /// Returns an error for a vertex whose faces are several fans, or an error that `fan` returns.
     pub(crate) fn for_each_inner_fan(
         &self,
         vertices: usize,
@@ -262,7 +265,7 @@ impl Connectivity {
     }
 }
 
-/// Returns the number of each vertex: its position in `vertices()`.
+/// Returns the number of each vertex: its index in `vertices()`.
 pub(crate) fn vertex_numbers<M: MeshQuery>(mesh: &M) -> VertexMap<M, u32> {
     let mut numbers = mesh.vertex_map(0_u32);
     let mut number = 0;

@@ -9,16 +9,16 @@ use crate::options::Boundary;
 use crate::subdivision::Subdivision;
 
 impl Subdivision {
-    /// Returns the sharpness before the first step of `mesh`, which was built from `polygons`: that
-    /// of `creases`, and infinite sharpness for the elements below. Uses the numbers of
-    /// `mesh.to_polygons()`. O(corners) expected.
+    /// Returns the sharpness before the first step of `mesh`, which was built from `polygons`. This
+    /// is the sharpness in `creases`, and infinite sharpness for the elements listed below. The
+    /// result uses the numbers of `mesh.to_polygons()`. Takes O(corners) expected time.
     ///
     /// - With [`Boundary::EdgeAndCorner`], vertices with exactly one face.
     /// - Edges with three or more faces, and edges whose two faces run along them in the same
     ///   direction. Boundary edges are not listed: every step finds them.
     /// - Vertices at such edges, and vertices with several fans. Exception: a vertex inside a curve
-    ///   of such edges moves along the curve, as on a crease. It has two such edges, no boundary
-    ///   edge, and more faces than edges.
+    ///   of such edges moves along the curve, as on a crease. Such a vertex has two of these edges,
+    ///   no boundary edge, and more faces than edges.
     ///
     /// # Errors
     ///
@@ -137,7 +137,7 @@ impl VertexCounts {
 
 /// Renumbers the creases of `polygons` to those of `mesh.to_polygons()`, for structures that
 /// identify a vertex by its coordinates. If two edges or vertices have become one, the greater
-/// sharpness counts.
+/// sharpness is used.
 pub fn renumbered<M: Representation>(
     mesh: &M,
     polygons: &PolygonMesh,

@@ -405,8 +405,8 @@ mod tests {
         uniform(&[1.0, 1.25], &[[0.0; 2], [0.25; 2]]);
     }
 
-    /// At vertex 4, 3/4 of the own sharpness plus 1/4 of the mean of the others, minus 1. At the
-    /// far end, which has no others, only minus 1.
+    /// At vertex 4, the result is 3/4 of the own sharpness plus 1/4 of the mean of the other edges,
+    /// minus 1. The far end has no other sharp edges, so the result is the sharpness minus 1.
     #[test]
     fn chaikin_averages_sharpness() {
         let chaikin = |spokes: &[f32], expected: &[[f32; 2]]| {

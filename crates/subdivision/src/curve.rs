@@ -11,9 +11,9 @@
 //!       a         b   (a + 6v + b)/8                  a         b
 //! ```
 //!
-//! The limit of the first is the uniform cubic B-spline (Lane & Riesenfeld 1980), C². The limit of
-//! the second is the quadratic B-spline, C¹ (Riesenfeld 1975). Both lie in the convex hull of the
-//! polygon.
+//! The limit of the first method is the uniform cubic B-spline, which is C² (Lane & Riesenfeld
+//! 1980). The limit of the second method is the quadratic B-spline, which is C¹ (Riesenfeld 1975).
+//! Both limits lie in the convex hull of the polygon.
 
 use sixfold_core::{MAX_ROWS, Point};
 
@@ -25,11 +25,12 @@ use crate::mask::midpoint;
 pub enum Ends {
     /// There are no ends: the last point is joined to the first.
     Closed,
-    /// They stay, like a boundary with fixed corners. The curve is that of the polygon with one
-    /// more point beyond each end: the mirror image for the cubic, the end itself for Chaikin.
+    /// The ends stay, like a boundary with fixed corners. The curve is that of a polygon with one
+    /// more point beyond each end. For the cubic, this point is the neighbour of the end, mirrored
+    /// at the end. For Chaikin, it is the end itself.
     #[default]
     Kept,
-    /// They are dropped because they lack a neighbour. The result is the B-spline of the given
+    /// The ends are dropped because they lack a neighbour. The result is the B-spline of the given
     /// points only.
     Dropped,
 }
@@ -43,7 +44,7 @@ pub enum Ends {
 /// # Errors
 ///
 /// Returns an error for fewer than 3 points if the polygon is closed, 2 if the ends are kept, or 4
-/// if they are dropped, and for more than [`MAX_ROWS`] points in the result.
+/// if they are dropped. Also returns an error for more than [`MAX_ROWS`] points in the result.
 ///
 /// # Examples
 ///
@@ -73,8 +74,8 @@ pub fn cubic_b_spline(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<P
 ///
 /// # Errors
 ///
-/// Returns an error for fewer than 3 points, or 2 if the ends are kept, and for more than
-/// [`MAX_ROWS`] points in the result.
+/// Returns an error for fewer than 3 points, or 2 if the ends are kept. Also returns an error for
+/// more than [`MAX_ROWS`] points in the result.
 pub fn chaikin(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<Point>, CurveError> {
     let (loss, least) = match ends {
         Ends::Closed => (0, 3),

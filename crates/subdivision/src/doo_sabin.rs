@@ -1,4 +1,4 @@
-//! Doo–Sabin: every corner becomes a vertex; every face, inner edge and inner vertex a face; C¹.
+//! Doo–Sabin: corners become vertices; faces, inner edges and inner vertices become faces; C¹.
 //!
 //! Doo & Sabin (1978). The input may have any polygons. After one step all inner vertices have
 //! valence 4, except next to a vertex of valence 2.
@@ -19,8 +19,9 @@
 //!
 //! # Sizes
 //!
-//! For V vertices, of them I isolated and T inner ones with two faces; E edges, of them B on
-//! boundaries; F faces with C corners, of them R at boundary vertices:
+//! The mesh has V vertices; I of them are isolated, and T are inner vertices with two faces. It has
+//! E edges; B of them are boundary edges. It has F faces with C corners in total; R of the corners
+//! are at boundary vertices. After a step:
 //!
 //! ```text
 //!   V' = C      E' = C + 2(E − B) − T      F' = F + (E − B) + (V − I − B − T)
@@ -129,7 +130,7 @@ pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
     builder.finish()
 }
 
-/// Runs one step from one pass over the faces, whose corners are then linked around the vertices.
+/// Runs one step with one pass over the faces. The corners are then linked around the vertices.
 pub(crate) fn scatter<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
     let connectivity = Connectivity::scattered(mesh, Scheme::DooSabin)?;
     let mut builder = Builder::new(mesh, &connectivity)?;

@@ -4,7 +4,7 @@ use sixfold_core::{BuildError, FaceId, Point, PolygonError, RefineError, VertexI
 
 use crate::scheme::{Method, Scheme};
 
-/// The reason why a step, or a whole subdivision, failed. In this case nothing was changed.
+/// The reason why a step, or a whole subdivision, failed. The meshes are then unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message explains each field")]

@@ -103,10 +103,10 @@ impl Extent {
 impl Subdivision {
     /// Returns the extent of a mesh after step `level`, counted from 0; O(1).
     ///
-    /// Exact for manifolds; faces that the boundary rule leaves out later are included. With three
-    /// or more faces at an edge, the vertices, edges and faces are still exact for Catmull–Clark,
-    /// Loop, bilinear and midpoint. Sizes above `usize` saturate. A Doo–Sabin result is reported
-    /// with mixed degrees.
+    /// The sizes are exact for manifolds. They include faces that the boundary rule leaves out
+    /// later. If an edge has three or more faces, the numbers of vertices, edges and faces are
+    /// still exact for Catmull–Clark, Loop, bilinear and midpoint. Sizes above `usize` saturate. A
+    /// Doo–Sabin result is reported with mixed degrees.
     pub fn refined_extent(&self, extent: &Extent, level: u32) -> Extent {
         match self.split(level) {
             Some(split) => extent.face_split(split),

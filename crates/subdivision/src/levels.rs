@@ -59,8 +59,8 @@ pub fn subdivide<M: Representation>(
 }
 
 /// Runs `levels` steps in the tables of a structure of type `M`, which is built once. With the
-/// feature `rayon`, steps use the threads of the current rayon pool. The result is that of [`subdivide`], except that faces and
-/// edge points have the order of the structure.
+/// feature `rayon`, steps use the threads of the current rayon pool. The result is the same as that
+/// of [`subdivide`], except that faces and edge points have the order of the structure.
 ///
 /// # Errors
 ///
@@ -103,7 +103,7 @@ pub fn subdivide_native<M: Refine>(
 ///
 /// # Errors
 ///
-/// Returns [`SubdivisionError::Build`] with the refusal and the level; the control mesh is level 0.
+/// Returns [`SubdivisionError::Build`] with the reason and the level; the control mesh is level 0.
 pub fn build_level<M: Representation>(
     polygons: &PolygonMesh,
     level: u32,
@@ -115,8 +115,8 @@ pub fn build_level<M: Representation>(
     })
 }
 
-/// Returns the mesh without the faces that are left out, and without the vertices of only such
-/// faces.
+/// Returns the mesh without the faces that are left out, and without the vertices that belong only
+/// to such faces.
 fn without_faces(step: Step, left_out: Option<Vec<bool>>) -> Step {
     let Some(left_out) = left_out.filter(|left_out| left_out.contains(&true)) else {
         return step;
@@ -139,7 +139,7 @@ fn without_faces(step: Step, left_out: Option<Vec<bool>>) -> Step {
     let mut positions = Vec::new();
     let mut new_ids = vec![None; polygons.vertex_count()];
     for v in polygons.vertices() {
-        // Vertices that had no face before stay, isolated.
+        // Vertices that had no face before are kept as isolated vertices.
         if on_kept[v.index()] || !on_removed[v.index()] {
             new_ids[v.index()] = Some(VertexId::new(positions.len() as u32));
             positions.push(polygons.position(v));

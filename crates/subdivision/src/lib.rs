@@ -8,12 +8,12 @@
 //! - [`Extent`]: the size of the result, computed in advance.
 //! - [`limit`](Subdivision::limit): the limit positions and normals of the vertices, as
 //!   [`LimitPoint`]s.
-//! - [`cubic_b_spline`], [`chaikin`]: the same for curves; [`ControlGrid`]: for tensor-product
-//!   patches.
+//! - [`cubic_b_spline`], [`chaikin`]: subdivision of curves; [`ControlGrid`]: subdivision of
+//!   tensor-product patches.
 //! - [`refine_locally`]: splits the triangles of a [`Selection`] and keeps the mesh conforming.
 //!
-//! Each scheme has its weights in a file of its own. Points at sharp edges and vertices are placed
-//! afterwards, in one file for all schemes and methods (`crease.rs`).
+//! Each scheme has its weights in its own file. A later pass places the points at sharp edges and
+//! vertices. Its code is in one file for all schemes and methods (`crease.rs`).
 
 mod bilinear;
 mod butterfly;

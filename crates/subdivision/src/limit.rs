@@ -2,7 +2,8 @@
 //! levels.
 //!
 //! A step is a matrix on the neighbourhood of a vertex. Its left eigenvectors are the same at every
-//! level: that of the eigenvalue 1 gives the limit position, those of the next two give tangents.
+//! level. The eigenvector of the eigenvalue 1 gives the limit position. The eigenvectors of the
+//! next two eigenvalues give tangents.
 //!
 //! ```text
 //!   smooth, Catmull–Clark       smooth, Loop          crease            corner
@@ -47,12 +48,13 @@ pub enum LimitPoint {
 pub enum LimitNormal {
     /// One normal.
     One(Point),
-    /// A crease passes through the vertex: one normal on each side. The first is that of the faces
-    /// that follow counter-clockwise after the end of the crease with the lower number.
+    /// A crease passes through the vertex, and each side of the crease has its own normal. The two
+    /// crease edges lead to two neighbours. The first normal is that of the faces that follow
+    /// counter-clockwise after the neighbour with the lower number.
     TwoSides([Point; 2]),
-    /// No mask gives a normal: at corners with several faces, next to a face that is not a quad
-    /// (Catmull–Clark), at inner vertices of valence 2, if the faces are not one oriented fan, and
-    /// if the neighbourhood has no area.
+    /// No mask gives a normal. The possible reasons are: a corner with several faces, an adjacent
+    /// face that is not a quad (Catmull–Clark), an inner vertex of valence 2, faces that are not
+    /// one oriented fan, or a neighbourhood without area.
     Undefined,
 }
 
@@ -66,7 +68,7 @@ pub enum NoLimit {
     /// A face at the vertex is not a quad, and the Catmull–Clark mask needs quads: the limit is
     /// defined at the next level.
     NotAllQuads,
-    /// One crease ends at the vertex: the rules of a step have no limit mask for it.
+    /// One crease ends at the vertex. The rules of a step have no limit mask for this case.
     Dart,
 }
 
@@ -100,10 +102,11 @@ impl Subdivision {
     /// Returns the limit of each vertex of `mesh` after infinitely many levels, for Catmull–Clark
     /// and Loop.
     ///
-    /// `creases` are those of `mesh.to_polygons()`, from [`control_creases`](Self::control_creases)
-    /// or from the step that made the mesh. Next to faces that are not quads, Catmull–Clark has
-    /// limits only on creases and at corners; after one step, everywhere. O(valence log valence)
-    /// per vertex, plus the costs of EF, VV, VF and FV.
+    /// `creases` are the creases of `mesh.to_polygons()`, from
+    /// [`control_creases`](Self::control_creases) or from the step that made the mesh. Next to
+    /// faces that are not quads, Catmull–Clark has limits only on creases and at corners; after one
+    /// step, this restriction ends. Takes O(valence log valence) per vertex, plus the costs of EF,
+    /// VV, VF and FV.
     ///
     /// # Errors
     ///
@@ -183,8 +186,8 @@ fn limits<M: MeshQuery>(mesh: &M, creases: &Creases, surface: Surface) -> Vertex
 
 /// Returns the limit of `v` with the sharpness `own` and the sharp edges `around`.
 ///
-/// Edges that do not end at `v` have no influence, sharp or not: the next ring around `v` consists
-/// of the points of its own edges and faces.
+/// Edges that do not end at `v` have no influence, even if they are sharp. The reason is that the
+/// next ring around `v` consists only of the points of the edges and faces at `v`.
 fn limit_of<M: MeshQuery>(
     mesh: &M,
     v: M::Vertex,
@@ -220,7 +223,7 @@ fn limit_of<M: MeshQuery>(
 }
 
 /// Returns the normal of a corner with one face: the rules keep the directions of its two edges.
-/// With more faces it is undefined, because no two faces need to lie in one plane.
+/// With more faces, the normal is undefined, because the faces need not lie in one plane.
 fn corner_normal<M: MeshQuery>(mesh: &M, v: M::Vertex) -> LimitNormal {
     let mut faces = mesh.vertex_faces(v);
     let (Some(face), None) = (faces.next(), faces.next()) else {

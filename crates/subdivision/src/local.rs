@@ -1,4 +1,5 @@
-//! Local refinement: splits only chosen triangles, and no corner lies inside a side afterwards.
+//! Local refinement: splits only chosen triangles and keeps the mesh conforming. In a conforming
+//! mesh, no corner lies inside a side.
 //!
 //! Red-green refinement after Bank, Sherman & Weiser (1983). Chosen faces are split in four, *red*.
 //! Faces with two or three split sides then become red as well, until nothing changes. Faces with
@@ -14,8 +15,8 @@
 //!  a───m───b        a───m───b               a─x─m───b                 a─x─m───b   (a, m, q) is green
 //! ```
 //!
-//! Every face therefore has the shape of a face of the first mesh, or is half of such a face:
-//! angles do not keep shrinking with the levels. New points are midpoints; old points stay.
+//! Every face therefore has the shape of a face of the first mesh, or of half of such a face. So
+//! the angles do not become smaller with each level. New points are midpoints; old points stay.
 
 use sixfold_core::{
     EdgeMap, FaceId, FaceList, MAX_ROWS, MeshQuery, Numbers, Point, PolygonError, PolygonMesh,
@@ -29,8 +30,9 @@ use crate::select::{Selection, triangle};
 /// Runs `levels` steps of local refinement with a structure of type `M`, which is built again for
 /// each step.
 ///
-/// For a list of faces, their parts are chosen at the next level. A box and an angle are evaluated
-/// again at every level. O(faces) per level, plus the costs of FE, EF and FV.
+/// If the selection is a list of faces, the parts of these faces are chosen at the next level. A
+/// box or an angle is evaluated again at every level. Takes O(faces) per level, plus the costs of
+/// FE, EF and FV.
 ///
 /// # Errors
 ///
@@ -125,8 +127,8 @@ impl LocalMesh {
         Ok(Self { polygons, kinds })
     }
 
-    /// Returns the mesh: first the vertices of the previous mesh in its order, then the midpoints.
-    /// The parts of a face are consecutive.
+    /// Returns the mesh. Its vertices are first the vertices of the previous mesh in their order,
+    /// then the midpoints. The parts of a face are consecutive.
     pub fn polygons(&self) -> &PolygonMesh {
         &self.polygons
     }
@@ -136,8 +138,8 @@ impl LocalMesh {
         self.kinds.iter().map(|kind| kind.origin)
     }
 
-    /// Returns whether `f` is half of a face. A half is not split again; its pair is undone
-    /// instead.
+    /// Returns whether `f` is half of a face. A half is not split again. Instead, its pair is
+    /// joined again to the face that was halved, and this face is split in four.
     ///
     /// # Panics
     ///
@@ -153,9 +155,10 @@ impl LocalMesh {
         chosen.map(|(f, _)| f).collect()
     }
 
-    /// Runs one step: splits the faces `chosen`, given by number in the order of faces, and the
-    /// faces that must be split with them. `mesh` is any structure that was built from
-    /// [`polygons`](Self::polygons). If an edge has more than two faces, all of them take part.
+    /// Runs one step: splits the faces `chosen`, and the faces that must be split with them. `mesh`
+    /// is any structure that was built from [`polygons`](Self::polygons). `chosen` has the numbers
+    /// of faces, in the order of the mesh. If an edge has more than two faces, the rules apply to
+    /// all its faces.
     ///
     /// # Errors
     ///
@@ -164,7 +167,7 @@ impl LocalMesh {
     ///
     /// # Panics
     ///
-    /// Panics if `mesh` has another number of faces.
+    /// Panics if `mesh` has another number of faces than `self`.
     pub fn refined<M: MeshQuery>(&self, mesh: &M, chosen: &[FaceId]) -> Result<Self, LocalError> {
         let faces = self.kinds.len();
         assert_eq!(mesh.face_count(), faces, "the mesh has other polygons");
@@ -238,7 +241,7 @@ impl<'a, M: MeshQuery> Step<'a, M> {
             let sides = self.faces[f].sides;
             match self.before[f].half {
                 None => sides.into_iter().for_each(|side| self.split(side)),
-                // The side of the whole face not halved yet: c–a of (a, m, c), b–c of (b, c, m).
+                // The unsplit side of the whole face: c–a of (a, m, c), b–c of (b, c, m).
                 Some(Half::First) => {
                     self.split(sides[2]);
                     self.queue.push(f + 1);
@@ -323,8 +326,8 @@ impl<'a, M: MeshQuery> Step<'a, M> {
         Ok(LocalMesh { polygons, kinds })
     }
 
-    /// Returns the number of parts of a face; each half of a green pair that is undone counts its
-    /// own.
+    /// Returns the number of parts of a face; if a green pair is joined again, each half counts the
+    /// parts in its own area.
     fn parts(&self, f: usize) -> usize {
         let is_red = self.red[f];
         match self.before[f].half {
@@ -370,7 +373,8 @@ impl Parts {
         self.faces.push(corners)
     }
 
-    /// Adds the parts of a face with these middles of its split sides: no side, one, or all three.
+    /// Adds the parts of a face. `middles` has the middles of its split sides: of no side, one
+    /// side, or all three.
     fn split(
         &mut self,
         kind: Kind,
@@ -410,8 +414,9 @@ impl Parts {
         self.push(half(Half::Second), [m, b, c])
     }
 
-    /// Adds the parts of the whole of two halves (a, m, c) and (b, c, m), which is now red. The
-    /// outer parts at a and b are halved if their part of the side is split again.
+    /// Joins the two halves (a, m, c) and (b, c, m), and adds the parts of the whole face, which is
+    /// now red. The part at a is halved if a–m is split again, and the part at b if m–b is split
+    /// again.
     fn split_pair(
         &mut self,
         kind: Kind,

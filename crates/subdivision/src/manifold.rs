@@ -37,7 +37,8 @@ fn check_edge<M: MeshQuery>(mesh: &M, e: M::Edge) -> Result<(), usize> {
 ///
 /// # Errors
 ///
-/// The first edge that fails, otherwise the first vertex that fails.
+/// Returns an error for the first edge that fails. If no edge fails, returns an error for the first
+/// vertex that fails.
 pub(crate) fn check<M: MeshQuery>(mesh: &M, scheme: Scheme) -> Result<(), SubdivisionError> {
     let number_of = |v: M::Vertex| mesh.vertices().position(|w| w == v).unwrap_or(0) as u32;
     for e in mesh.edges() {
@@ -67,7 +68,8 @@ pub(crate) fn is_always_manifold<M: Refine>() -> bool {
 ///
 /// # Errors
 ///
-/// The first edge with three faces, or with two that run along it in the same direction.
+/// Returns an error for the first edge with three faces, or with two that run along it in the same
+/// direction.
 pub(crate) fn boundary_edges<M: Refine>(
     mesh: &M,
     numbers: &M::EdgeNumbers,

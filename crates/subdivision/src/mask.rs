@@ -10,8 +10,8 @@ use sixfold_core::{Point, Split};
 pub(crate) trait Mask: Copy + Sync {
     /// The way faces are split.
     const SPLIT: Split;
-    /// Whether old vertices move. If not, `vertex` is not called, and boundaries and creases need
-    /// no rules: their edge points are midpoints anyway.
+    /// Whether old vertices move. If they do not, `vertex` is not called. Boundaries and creases
+    /// then need no rules, because all edge points are midpoints.
     const APPROXIMATES: bool;
     /// Whether `edge` uses face values.
     const EDGES_USE_FACES: bool;
@@ -19,7 +19,7 @@ pub(crate) trait Mask: Copy + Sync {
     const VERTICES_USE_FACES: bool;
 
     /// Returns the face value of a face with `degree` corners, whose sum is `corners`. If the split
-    /// has face points, it is the face point.
+    /// has face points, this value is the face point.
     fn face(self, corners: Point, degree: usize) -> Point;
 
     /// Returns the point of an edge `[a, b]` between two faces, whose values have the sum `faces`.

@@ -33,7 +33,7 @@ pub(crate) fn step<M: Refine, K: Mask>(
     let face_points = &*face_points;
     let value = |f: FaceId| match K::SPLIT {
         Split::Quads => face_points[f.index()],
-        // Stored values would be faster, but take more than a tenth of the memory of a corner
+        // Stored values would be faster, but would take more than a tenth of the memory of a corner
         // table.
         _ => face_value(mesh, mask, f),
     };

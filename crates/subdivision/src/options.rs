@@ -15,8 +15,9 @@ pub enum Boundary {
     /// Boundary edges are infinitely sharp: the boundary becomes a B-spline curve with rounded
     /// corners.
     EdgeOnly,
-    /// Faces at a boundary vertex are left out of the result, unless all its boundary edges are
-    /// given infinite sharpness. They still shape the adjacent faces.
+    /// Faces at a boundary vertex are left out of the result, unless all boundary edges of the
+    /// vertex are given infinite sharpness. The faces that are left out still influence the
+    /// adjacent faces.
     None,
 }
 
@@ -43,11 +44,12 @@ impl Boundary {
 )]
 #[non_exhaustive]
 pub enum Creasing {
-    /// The sharpness of the edge minus 1.
+    /// Each half gets the sharpness of the edge minus 1.
     #[default]
     Uniform,
-    /// At each end, 3/4 of the sharpness of the edge plus 1/4 of the mean of the other semi-sharp
-    /// edges there, minus 1. Sharpness then varies along a crease as smoothly as Chaikin's curve.
+    /// At each end, the half gets 3/4 of the sharpness of the edge plus 1/4 of the mean of the
+    /// other semi-sharp edges there, minus 1. Sharpness then varies along a crease as smoothly as
+    /// Chaikin's curve.
     Chaikin,
 }
 
@@ -73,10 +75,10 @@ impl Creasing {
 )]
 #[non_exhaustive]
 pub enum LoopWeights {
-    /// Loop's (1987).
+    /// The weights of Loop (1987).
     #[default]
     Loop,
-    /// Warren's (1995): 3/(8n), and 3/16 at valence 3.
+    /// The weights of Warren (1995): 3/(8n), and 3/16 at valence 3.
     Warren,
 }
 

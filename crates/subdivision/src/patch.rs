@@ -1,7 +1,7 @@
 //! Tensor-product B-spline patches: curves along the rows and columns of a grid of control points.
 //!
-//! Catmull & Clark (1978) start from these: a step of the bicubic patch puts a point on every face,
-//! edge and vertex of the grid.
+//! Catmull & Clark (1978) start from such patches: a step of the bicubic patch puts a point on
+//! every face, edge and vertex of the grid.
 //!
 //! ```text
 //!   a ─── e ─── b      face point     f   (a + b + c + d)/4
@@ -22,9 +22,9 @@ use crate::error::CurveError;
 /// Control points in rows, and the uniform bicubic B-spline patch that they define.
 ///
 /// With [`Ends::Dropped`] in both directions, m × n points define (m − 3) × (n − 3) bicubic pieces,
-/// and grids shrink towards them. With [`Ends::Kept`], the boundary becomes B-spline curves between
-/// corners that stay, as with Catmull–Clark and `edge-and-corner`. [`Ends::Closed`] makes tubes and
-/// tori.
+/// and grids shrink towards them. With [`Ends::Kept`], the four corners stay, and the boundary
+/// becomes B-spline curves between them, as with Catmull–Clark and `edge-and-corner`.
+/// [`Ends::Closed`] makes tubes and tori.
 ///
 /// # Invariants
 ///
@@ -102,8 +102,8 @@ impl ControlGrid {
         &self.points
     }
 
-    /// Returns the grid after `levels` steps, with as many points in each direction as a curve
-    /// would have. O(points of the result).
+    /// Returns the grid after `levels` steps. In each direction, the number of points is that of a
+    /// curve after as many steps. O(points of the result).
     ///
     /// # Errors
     ///
@@ -159,9 +159,9 @@ impl ControlGrid {
     /// Returns the point of the patch at (`u`, `v`): the limit of [`refined`](Self::refined). The
     /// control point in column i of row j has the parameters (i, j).
     ///
-    /// In each direction the parameter runs from 0 to n − 1 if the ends are kept, and from 1 to
-    /// n − 2 if they are dropped; it is periodic if they are joined. Returns `None` outside.
-    /// O(rows).
+    /// In each direction, the parameter is in 0 to n − 1 if the ends are kept, and in 1 to n − 2 if
+    /// they are dropped; it is periodic if the ends are joined. Returns `None` for parameters
+    /// outside. O(rows).
     pub fn evaluate(&self, u: f64, v: f64) -> Option<Point> {
         let [of_rows, of_columns] = self.ends;
         let rows = self.points.chunks(self.columns);

@@ -5,8 +5,9 @@
 //!   each edge     adds its ends to each other                     when it is first found
 //! ```
 //!
-//! Only FV and FE are queried, which no structure has to search for. The time is near-linear on all
-//! structures; edges and vertices whose handles are not rows are found in hash maps.
+//! Only FV and FE are queried, and every structure answers them without a search. The time is
+//! near-linear on all structures; edges and vertices whose handles are not rows are found in hash
+//! maps.
 
 use sixfold_core::{Creases, HandleMap, MeshQuery, Point, VertexMap};
 

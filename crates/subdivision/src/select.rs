@@ -10,19 +10,19 @@ use crate::error::LocalError;
 pub enum Selection {
     /// These faces; at later levels, their parts.
     Faces(Vec<FaceId>),
-    /// The faces that share at least one point with a box, including its surface. A box smaller
-    /// than any face still selects the faces it is in. Bounds may be infinite. Evaluated again at
-    /// every level.
+    /// The faces that share at least one point with a box, including its surface. Even a small box
+    /// inside a face selects this face. Bounds may be infinite. The box is evaluated again at every
+    /// level.
     Box {
         /// The lowest coordinates.
         min: Point,
         /// The highest coordinates.
         max: Point,
     },
-    /// The faces that bend from an adjacent face by more than this angle in degrees, 0 to 180, and
-    /// the faces along edges of three or more faces. Evaluated again at every level; new points lie
-    /// on the old faces, so the faces along the same folds are selected again. Faces without area
-    /// do not count.
+    /// The faces that bend from an adjacent face by more than this angle, in degrees from 0 to 180.
+    /// The faces along edges of three or more faces are selected too. Faces without area are
+    /// ignored. The angle is evaluated again at every level. New points lie on the old faces, so
+    /// the faces along the same folds are selected again.
     Angle(f32),
 }
 
@@ -56,7 +56,8 @@ impl Selection {
     ///
     /// # Errors
     ///
-    /// As [`check`](Self::check), and for a face that is not a triangle.
+    /// Returns the errors of [`check`](Self::check), and an error for a face that is not a
+    /// triangle.
     pub fn faces<M: MeshQuery>(&self, mesh: &M) -> Result<Vec<FaceId>, LocalError> {
         self.check(mesh.face_count())?;
         match self {
@@ -95,7 +96,7 @@ pub(crate) fn triangle<M: MeshQuery>(
 }
 
 /// Returns whether a triangle and a box have a point in common. They have no common point if their
-/// projections on some line are apart; thirteen lines are enough (Akenine-Möller 2001).
+/// projections on some line are apart. It is enough to test thirteen lines (Akenine-Möller 2001).
 fn intersects_box(corners: [Point; 3], min: Point, max: Point) -> bool {
     let [a, b, c] = corners;
     // Cuts the box to the bounds of the triangle; this tests the three lines along the axes.

@@ -1,8 +1,8 @@
 //! √3: splits every triangle into three; approximating, C² except at extraordinary vertices.
 //!
-//! Kobbelt (2000); growth 3. A step adds a face point in each triangle, then flips every old inner
-//! edge. Two steps cut each old edge in three and each triangle into nine, which are aligned with
-//! it again.
+//! Kobbelt (2000). A step adds a face point in each triangle, then flips every old inner edge; the
+//! number of faces grows by the factor 3. Two steps cut each old edge in three and each triangle
+//! into nine. These nine triangles are aligned with the old triangle again.
 //!
 //! ```text
 //!    c ─────── d        c ─────── d        face point     the mean of the corners

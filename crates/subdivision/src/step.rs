@@ -7,10 +7,10 @@ use crate::SubdivisionError;
 /// A refined mesh, and its remaining creases.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// The old vertices, then the face points, then the edge points, each in the order of the
-    /// structure that was refined. The faces that one face was split into are consecutive. After a
-    /// vertex split, the vertices are the corners of the old faces, and the faces are those of
-    /// faces, of edges and of vertices, each in their order.
+    /// The refined mesh. Its vertices are the old vertices, then the face points, then the edge
+    /// points, each in the order of the structure that was refined. The parts of one face are
+    /// consecutive. After a vertex split, the vertices are the corners of the old faces. The faces
+    /// are then made first from faces, then from edges, then from vertices, each in their order.
     pub polygons: PolygonMesh,
     /// The creases of [`polygons`](Self::polygons).
     pub creases: Creases,
@@ -31,8 +31,8 @@ impl StepBuilder {
     /// corners in total.
     pub(crate) fn new<M: MeshQuery>(split: Split, mesh: &M, corners: usize) -> Self {
         let (vertices, faces) = (mesh.vertex_count(), mesh.face_count());
-        // Exact on a closed mesh and, by Euler's formula, close on a mesh with boundaries. If there are
-        // more edges, the tables grow.
+        // This number is exact on a closed mesh and, by Euler's formula, close on a mesh with
+        // boundaries. If there are more edges, the tables grow.
         let expected_edges = (corners / 2).max(vertices + faces).min(corners);
         let (points, corners) = match split {
             Split::Quads => (vertices + faces + expected_edges, 4 * corners),
@@ -112,7 +112,7 @@ impl StepBuilder {
     }
 }
 
-/// The vertices with a crease, so that few edges are looked up.
+/// The vertices with a crease. Only edges between such vertices are looked up.
 pub(crate) struct CreaseVertices(Vec<bool>);
 
 impl CreaseVertices {

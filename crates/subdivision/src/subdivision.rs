@@ -12,7 +12,8 @@ use crate::scheme::{Method, Scheme};
 use crate::step::Step;
 use crate::{butterfly, doo_sabin, gather, native, scatter, sqrt3};
 
-/// Runs a step with the mask of the scheme if the scheme is only a mask; other schemes follow.
+/// Runs a step with the mask of the scheme, if the scheme is defined by a mask. The arms for other
+/// schemes follow in the call.
 macro_rules! by_mask {
     ($self:ident, $mask:ident => $step:expr, { $($others:tt)* }) => {
         match $self.scheme {
@@ -51,8 +52,9 @@ impl Subdivision {
 
     /// Runs one step with queries for each new point.
     ///
-    /// `creases` are those of `mesh.to_polygons()`, from [`control_creases`](Self::control_creases)
-    /// or the step before; `level` is the number of steps before this one.
+    /// `creases` are the creases of `mesh.to_polygons()`, from
+    /// [`control_creases`](Self::control_creases) or from the previous step. `level` is the number
+    /// of previous steps.
     ///
     /// # Errors
     ///
@@ -71,8 +73,9 @@ impl Subdivision {
         })
     }
 
-    /// Runs one step with one pass over the faces. The result is that of [`gather`](Self::gather),
-    /// except that edge points have the order in which the faces list the edges.
+    /// Runs one step with one pass over the faces. The result is the same as that of
+    /// [`gather`](Self::gather), except that edge points have the order in which the faces list the
+    /// edges.
     ///
     /// # Errors
     ///
@@ -96,7 +99,7 @@ impl Subdivision {
     /// child. The tables of `child` are reused if they are large enough. Runs on the threads of the
     /// current rayon pool; the result has the same bytes on any number of threads.
     ///
-    /// `numbers` are filled for `mesh`, and may be reused for other meshes.
+    /// This function fills `numbers` for `mesh`. They may be reused for other meshes.
     ///
     /// # Errors
     ///
@@ -118,7 +121,8 @@ impl Subdivision {
         })
     }
 
-    /// Returns how step `level`, counted from 0, splits faces; `None` if it does not.
+    /// Returns how step `level`, counted from 0, splits faces; `None` if the step does not split
+    /// faces.
     pub fn split(&self, level: u32) -> Option<Split> {
         match self.scheme.kind().split? {
             Split::Sqrt3 { .. } => Some(Split::Sqrt3 {
@@ -170,8 +174,8 @@ impl Subdivision {
                 degree,
             });
         }
-        // A step makes at most four corners from one, and at most as many edges as corners. The
-        // exception is √3 when it cuts boundaries; that step checks its own size.
+        // A step makes at most four corners from one corner, and at most as many edges as corners.
+        // The exception is √3 when it cuts boundaries; that step checks its own size.
         let limit = MAX_ROWS;
         if corners.saturating_mul(4) > limit {
             let elements = "corners";

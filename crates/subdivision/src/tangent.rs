@@ -1,9 +1,9 @@
 //! Two tangents of the limit surface of Catmull–Clark and Loop at a vertex.
 //!
-//! At smooth vertices they are those of Halstead, Kass & DeRose (1993) and Loop (1987): the
-//! neighbours weighted with cosines, and with sines. The tangents across creases were derived for
-//! the step rules of this crate, because Biermann, Levin & Zorin (2000) change the rules next to a
-//! crease; see [`Sector`].
+//! At smooth vertices, the tangents are those of Halstead, Kass & DeRose (1993) and Loop (1987):
+//! sums of the neighbours, weighted with cosines and with sines. The tangents across creases were
+//! derived for the step rules of this crate, because Biermann, Levin & Zorin (2000) change the
+//! rules next to a crease; see [`Sector`].
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,17 +11,19 @@ use sixfold_core::{Handle, MeshQuery, Point};
 
 use crate::options::LoopWeights;
 
-/// Returns the direction perpendicular to both; `None` if errors of size `rounding` could hide it.
+/// Returns the direction perpendicular to both vectors; `None` if errors of size `rounding` make it
+/// uncertain.
 pub(crate) fn normal([a, b]: [Point; 2], rounding: f32) -> Option<Point> {
     let tilt = rounding / a.length() + rounding / b.length();
     let across = a.try_normalize()?.cross(b.try_normalize()?);
     (across.length() > 8.0 * tilt).then(|| across.normalize())
 }
 
-/// Estimates the error of a sum over the points around `at`, because positions are rounded.
+/// Estimates the error of a weighted sum of the points around `at`. The error comes from rounded
+/// positions.
 pub(crate) fn rounding(at: Point, around: &[Point]) -> f32 {
     let radius = around.iter().map(|p| p.length()).fold(0.0, f32::max);
-    // The weights are up to six.
+    // The weights are at most six.
     6.0 * f32::EPSILON * around.len() as f32 * (at.length() + radius)
 }
 
@@ -125,10 +127,11 @@ impl<V: Handle> Fan<V> {
 
 /// The faces of a vertex between two edges of a crease or boundary.
 ///
-/// With k faces let θ = π/k, and let e₀ … eₖ be the neighbours, with the first and the last on the
-/// crease. The matrix of a step decomposes into the crease, a cubic B-spline with the eigenvalues
-/// 1, 1/2, 1/4, and k − 1 inner modes. Mode j is sin(ijθ) along the edges; its eigenvalue falls as
-/// j rises. The tangents are inner mode 1 and the part with the next eigenvalue:
+/// With k faces let θ = π/k, and let e₀ … eₖ be the neighbours. The first and the last neighbour
+/// are on the crease. The matrix of a step decomposes into the crease and k − 1 inner modes. The
+/// crease is a cubic B-spline with the eigenvalues 1, 1/2 and 1/4. Mode j is sin(ijθ) along the
+/// edges; its eigenvalue falls as j rises. The tangents are inner mode 1 and the part with the next
+/// eigenvalue:
 ///
 /// ```text
 ///   across  Σ a·sin(iθ) eᵢ + Σ b·(sin(iθ) + sin((i + 1)θ)) oᵢ + l (e₀ + eₖ)   mode 1
@@ -163,7 +166,8 @@ impl Sector {
             };
             mode.sum(&self.edges, &self.far, wave)
         };
-        // The weight l, from the columns of e₀ and of the vertex, whose weight makes the sum zero.
+        // Computes the weight l from the columns of e₀ and of the vertex. The weight of the vertex
+        // makes the sum zero.
         let mode = surface.mode(angle);
         let ends = (8.0 * mode.neighbour_weight * angle.sin()
             - mode.weight() / (angle / 2.0).tan())

@@ -123,7 +123,7 @@ pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
 impl<'a, P: Probe, E: Editing> EdgeEdges<'a, P, E> {
     #[inline]
     pub(crate) fn new(mesh: &'a WingedEdgeMesh<E, P>, e: EdgeId) -> Self {
-        // The sides of e itself are known: its left run leaves its start, its right run leaves its
+        // The sides of e itself are known: the left run leaves the start, the right run leaves the
         // end.
         let edge = mesh.edge(e);
         let ([v, other], [at, there]) = (edge.ends(), edge.prev());
@@ -180,8 +180,8 @@ mod tests {
     use super::*;
     use crate::WingedEdgeMesh;
 
-    /// Builds a polygon with `3 * count` sides, and `count` neighbours that share three sides with
-    /// it each.
+    /// Builds a polygon with `3 * count` sides, and `count` neighbours. Each neighbour shares three
+    /// sides with the polygon.
     fn polygon_with_neighbours(count: u32) -> WingedEdgeMesh {
         let sides = 3 * count;
         let corners = vec![Point::ZERO; (sides + count) as usize];

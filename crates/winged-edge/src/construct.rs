@@ -28,9 +28,9 @@ impl<E: Editing> Representation for WingedEdgeMesh<E> {
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         let error = || Self::CAPABILITIES.build_error(polygons);
         let faces = polygons.faces();
-        // Uses separate scratch memory. The rows of the edges are four times as large: if the sides
-        // were sorted in them, they would not fit in the caches, and building 392,000 triangles
-        // took 1.5× the time.
+        // Uses separate scratch memory. The rows of the edges are four times as large, and do not
+        // fit in the caches. With the sides sorted in these rows, building 392,000 triangles took
+        // 1.5× the time.
         let pairs = TwinPairs::new(polygons.vertex_count(), faces).ok_or_else(error)?;
         let mut builder = Builder::from_faces(polygons.vertex_count(), faces, &pairs);
         let closed = faces.corners().len() == 2 * pairs.edge_count;
@@ -183,8 +183,8 @@ impl Builder {
             };
             let target = self.edges[e].ends[side.other().index()];
             let spoke = &mut self.spokes[target.index()];
-            // If the blank side of an edge arrives at a vertex, it is on the right of the run from
-            // there.
+            // If the blank side of an edge arrives at a vertex, it is on the right of the run that
+            // leaves this vertex.
             let arrives = |other: EdgeId| {
                 let run = Run::from(&self.edges[other.index()], target);
                 run.across() == Slot::NONE

@@ -11,8 +11,8 @@ use crate::wings::{Side, Wings};
 /// It runs from start to end along its left face, and from end to start along its right face.
 /// `next` and `prev` of a side follow the direction of the face there.
 ///
-/// 32 bytes, aligned to 32: every step of a walk touches one cache line. Without the alignment,
-/// every second record of a large table would lie across two lines.
+/// The record has 32 bytes and is aligned to 32 bytes, so every step of a walk touches one cache
+/// line. Without the alignment, every second record of a large table would lie across two lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(align(32))]
 pub struct Edge {
@@ -128,8 +128,9 @@ impl<'a> Run<'a> {
         Self::new(self.edge, self.side.other())
     }
 
-    // No step waits for these four. A value that the side test has already read is selected, which
-    // costs one more instruction. The others are indexed, which loads one value instead of two.
+    // No step waits for the values of these four functions. If the side test has already read a
+    // value, the function selects that value; this costs one more instruction. The other values are
+    // read by index; this loads one value instead of two.
 
     /// Returns the vertex where the run starts.
     #[inline(always)]
@@ -184,8 +185,8 @@ impl<'a> Run<'a> {
     }
 }
 
-/// A run as an edge and a side, which can be kept while the records are written. It corresponds to
-/// a half-edge of a half-edge mesh.
+/// A run, stored as an edge and a side. It can be kept while the records are written, and
+/// corresponds to a half-edge of a half-edge mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct RunId {
     pub(crate) edge: EdgeId,

@@ -1,8 +1,8 @@
 //! Edits in place: the implementation of [`MeshEdit`], after Baumgart (1975).
 //!
 //! Both wings of both sides are stored, so that an edge is linked and unlinked without a search.
-//! Only two things cost O(valence): to check that an edit is legal, and to change the ends of the
-//! edges at a vertex.
+//! Only two steps of an edit cost O(valence): to check that an edit is legal, and to change the
+//! ends of the edges at a vertex.
 //!
 //! Every edit checks before it writes. Below, a run `a→b` is the edge between `a` and `b` along the
 //! side where it runs from `a` to `b`.
@@ -90,7 +90,7 @@ impl<P: Probe> MeshEdit for WingedEdgeMesh<Editable, P> {
         self.remove(f, log)
     }
 
-    /// O(corners of its faces), times their logarithm if some faces are not triangles.
+    /// O(n) for n corners of its faces; O(n log n) if some faces are not triangles.
     fn remove_vertex_logged(
         &mut self,
         v: VertexId,

@@ -2,8 +2,8 @@
 //!
 //! Use it if most queries are about edges, or if an edge must be one object with one record. It
 //! does not hold edges with three faces: building from them returns an error. It is the oldest
-//! structure with constant-time neighbourhoods. Start at [`generic::WingedEdgeMesh`]; its numbered
-//! invariants define the tables. After Baumgart (1972, 1975).
+//! structure that finds a neighbour in constant time. Start at [`generic::WingedEdgeMesh`]; its
+//! numbered invariants define the tables. The structure follows Baumgart (1972, 1975).
 //!
 //! | holds | |
 //! |---|---|
@@ -18,8 +18,8 @@
 //! | FV, FE, FF | O(degree) | `sides`, then one edge per side |
 //! | refining (quads, triangles) | O(edges + vertices) | each edge and its four wings, in closed form |
 //!
-//! Vertices, edges and faces are rows. Counting and listing them reads only the bits of the holes,
-//! if there are any.
+//! Vertices, edges and faces are rows. Counting or listing them reads no table; if there are holes,
+//! it reads their bits.
 //!
 //! | edit ([`MeshEdit`](sixfold_core::MeshEdit)) | cost | rows that change |
 //! |---|---|---|
@@ -38,20 +38,20 @@
 //! | `remove_isolated_vertices`, `compact` | O(rows) | all |
 //!
 //! Both wings of both sides are stored, so that an edge is linked and unlinked without a search.
-//! Only two things need a walk: to check that an edit is legal, and to change the ends of the edges
-//! at a vertex.
+//! Only two steps of an edit need a walk: to check that an edit is legal, and to change the ends of
+//! the edges at a vertex.
 //!
 //! # The side test
 //!
 //! An edge is part of the walks around both of its ends and along both of its faces. So every step
-//! must test on which side of the edge it is: does the edge start at this vertex, or is this face
-//! on its left? A walk keeps its vertex or face, so one comparison with the record that it has just
-//! read is enough. The result depends on the numbering. As a branch, it would be mispredicted every
-//! second time on a mesh in random order. Here it selects between two loaded values, without a
-//! branch.
+//! must test on which side of the edge it is. A walk around a vertex tests whether the edge starts
+//! there; a walk along a face tests whether the face is on the left of the edge. The walk keeps its
+//! vertex or face, so the test is one comparison with the record that the step has just read. The
+//! result depends on the numbering: on a mesh in random order, a branch would be mispredicted every
+//! second time. Therefore the result selects between two loaded values, without a branch.
 //!
-//! Its cost is the time relative to the half-edge mesh of this workspace, which needs no side test
-//! (82,000 triangles):
+//! The half-edge mesh of this workspace needs no side test. The cost of the test is the time
+//! relative to that mesh (82,000 triangles):
 //!
 //! | operation | in order | shuffled |
 //! |---|---|---|
@@ -61,18 +61,18 @@
 //! | all nine relations | 1.3× | 1.2× |
 //! | breadth-first search over FF | 1.1× | 1.0× |
 //!
-//! The cost is smallest if a walk waits for memory or for a queue, because a step reads one record
-//! in one cache line.
+//! The cost is smallest if a walk waits for memory or for a queue, because a step reads only one
+//! record, in one cache line.
 //!
 //! # What limits the speed of the sweeps
 //!
-//! If the mesh is in the cache, latency limits VV, VE, VF, FV, FE and FF. A step cannot begin
-//! before the previous step has loaded its record, compared and selected: about 8 cycles, against 6
-//! in the half-edge mesh. With walks of six steps, the processor has room for two or three vertices
-//! at once. If the mesh is not in the cache, each step waits for one cache line, in an order that
-//! depends on the numbering of the edges. Bandwidth limits EV and EF: they read the records in
-//! order and use 8 of 32 bytes. The counting sort that pairs the sides limits building: it takes
-//! half of the time. The other limit is writing one record per side.
+//! If the mesh is in the cache, latency limits VV, VE, VF, FV, FE and FF. A step can begin only
+//! after the previous step has loaded its record, compared and selected. This takes about 8 cycles,
+//! and 6 cycles in the half-edge mesh. If a walk has six steps, the processor can work on two or
+//! three vertices at once. If the mesh is not in the cache, each step waits for one cache line. The
+//! order of these lines depends on the numbering of the edges. Bandwidth limits EV and EF: they
+//! read the records in order and use 8 of 32 bytes. Building has two limits: the counting sort that
+//! pairs the sides, which takes half of the time, and the writes of one record per side.
 //!
 //! # Examples
 //!
@@ -123,8 +123,7 @@ pub type EditableWingedEdgeMesh = generic::WingedEdgeMesh<sixfold_core::Editable
 /// errors.
 pub use sixfold_core;
 
-/// Imports for a program that uses this structure: its types, and the traits of its queries and
-/// edits.
+/// Imports for a program: the types of this structure, and the traits of its queries and edits.
 ///
 /// ```
 /// use sixfold_winged_edge::prelude::*;

@@ -23,33 +23,36 @@ use crate::edge::{Edge, NO_EDGE, Run};
 ///     left_prev(e)         right_next(e)
 /// ```
 ///
-/// The side of a boundary edge without a face has wings too: they follow the boundary loop as if it
-/// were a face. So all walks close, and a boundary adds no cost to a query.
+/// A boundary edge also has wings on its side without a face. These wings follow the boundary loop
+/// as if it were a face. So every walk returns to its start, and a boundary adds no cost to a
+/// query.
 ///
 /// # Invariants
 ///
-/// Below, a *run* is an edge along one of its sides, from its origin to its target: on the left
-/// from start to end, on the right from end to start.
+/// Below, a *run* is an edge along one of its sides. It goes from its origin to its target: on the
+/// left side from start to end, on the right side from end to start.
 ///
-/// - I1  The two ends of an edge differ, and so do its two faces (one may be empty): one comparison
-///   finds the side. Every handle in the tables is that of a row.
-/// - I2  The next wing of a run starts at its target, the previous wing ends at its origin.
-/// - I3  A run and its next wing have the same face; it is empty along a boundary loop.
+/// - I1  The two ends of an edge differ, and its two faces differ (one may be empty). So one
+///   comparison finds the side. Every handle in the tables refers to an existing row.
+/// - I2  The next wing of a run starts at the target of the run; the previous wing ends at its
+///   origin.
+/// - I3  A run and its next wing have the same face; along a boundary loop, this face is empty.
 /// - I4  `next` and `prev` are inverse to each other.
-/// - I5  `spoke(v)` has the end `v`; if `v` is on a boundary, its run from `v` has no face on the
-///   right. It is empty if `v` is isolated.
+/// - I5  `spoke(v)` is an edge with the end `v`, or empty if `v` is isolated. If `v` is on a
+///   boundary, the run of this edge from `v` has no face on the right.
 /// - I6  All edges at `v` are one cycle of steps around it: every vertex is manifold.
-/// - I7  `side(f)` has face `f`, and its cycle has at least three vertices, each once.
+/// - I7  `side(f)` is an edge with face `f`. The cycle along `f` has at least three vertices, each
+///   once.
 /// - I8  No two edges have the same ends.
-/// - I9  The bits of deleted vertices, edges and faces are set, and no others. The spoke of a
-///   deleted vertex is empty. The ends of a deleted edge, and the side of a deleted face, hold
-///   values that no row has. Elements that are not deleted never refer to deleted elements.
+/// - I9  Exactly the bits of deleted vertices, edges and faces are set. The spoke of a deleted
+///   vertex is empty. The ends of a deleted edge, and the side of a deleted face, hold values that
+///   no row has. Elements that are not deleted never refer to deleted elements.
 ///
 /// # Memory
 ///
-/// 12 bytes per vertex for its position and 4 for its spoke, 32 per edge, 4 per face: 120 bytes, or
-/// 30 words, per vertex of a large closed triangle mesh. After the first deletion, also one bit per
-/// row up to the last hole.
+/// The tables use 12 bytes per vertex for its position and 4 for its spoke, 32 bytes per edge and 4
+/// per face. A large closed triangle mesh uses 120 bytes, or 30 words, per vertex. After the first
+/// deletion, the tables also use one bit per row up to the last hole.
 #[derive(Debug)]
 pub struct WingedEdgeMesh<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,
@@ -79,8 +82,8 @@ impl<P: Probe> From<WingedEdgeMesh<Compact, P>> for WingedEdgeMesh<Editable, P> 
     }
 }
 
-/// The fields of an edge. Each panics with the handle of the edge if it does not exist. All are
-/// O(1) and read one record.
+/// The fields of an edge. Each function is O(1) and reads one record. It panics if the edge does
+/// not exist; the message names the handle of the edge.
 impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
     /// Returns the record of `e`.
     #[inline]
@@ -152,8 +155,8 @@ impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
         self.edge(e).faces().contains(&None)
     }
 
-    /// Returns an edge at `v`, the first counter-clockwise if `v` is on a boundary, or `None` if
-    /// `v` is isolated.
+    /// Returns an edge at `v`, or `None` if `v` is isolated. If `v` is on a boundary, the edge is
+    /// the first counter-clockwise.
     ///
     /// # Panics
     ///
@@ -200,9 +203,9 @@ fn no_such_face(f: FaceId) -> ! {
     panic!("no face {f}: it was deleted")
 }
 
-/// Moves from an edge around a vertex or a face: Baumgart's ECCW, ECW and OTHER. Each panics if the
-/// vertex is not an end of the edge, or the edge is not a side of the face. All are O(1) and read
-/// one record.
+/// Steps from an edge around a vertex or a face: Baumgart's ECCW, ECW and OTHER. Each step is O(1)
+/// and reads one record. It panics if the vertex is not an end of the edge, or if the edge is not a
+/// side of the face.
 impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
     /// Returns the end of `e` that is not `v`.
     #[inline]
@@ -298,9 +301,10 @@ mod tests {
 
     #[test]
     fn the_lecture_mesh_has_the_expected_rows() {
-        // The first three rows of the lecture notes. v3 is the other end of their e3, e4 and e12,
-        // and v4 that of e16 and e18. The notes give e2 the faces f0 and f1, but then f1 would have
-        // v0 twice. So here it is a separate face, f3.
+        // The first three rows of the lecture notes. v3 is the other end of the edges e3, e4 and
+        // e12 of the notes, and v4 is the other end of e16 and e18. The notes give e2 the faces f0
+        // and f1, but then f1 would have v0 twice. So the second face of e2 is a separate face
+        // here, f3.
         let mesh = mesh(
             5,
             &[

@@ -1,9 +1,9 @@
 //! Refinement: splits every face in the structure's own tables, in closed form.
 //!
 //! A *run* is an edge along one of its sides. A run with a face stands for the corner where it
-//! starts. The runs with a face have the ranks 0, 1, 2 …, edge by edge, left before right; the rows
-//! that a corner adds to the child follow from its rank. Below, h₀ and h₁ are the halves of a run
-//! that starts at `o`, and `r` is the edge that the run adds inside its face.
+//! starts. The runs with a face have the ranks 0, 1, 2 …, edge by edge, left before right. The rank
+//! of a corner determines the rows that the corner adds to the child. Below, h₀ and h₁ are the
+//! halves of a run that starts at `o`, and `r` is the edge that the run adds inside its face.
 //!
 //! ```text
 //!              Quads                               Triangles
@@ -18,9 +18,9 @@
 //! ```
 //!
 //! Edge `e` becomes the edges 2e, from its start to its middle, and 2e + 1, from its middle to its
-//! end. They keep its direction, and the run on side s (0 left, 1 right) has h₀ = 2e + s and h₁ =
-//! 2e + 1 − s. With E edges and C corners in the parent, face number f, rank k, and k₋, k₊ the
-//! ranks of the runs before and after:
+//! end. Both keep the direction of `e`. The run on side s (0 left, 1 right) has h₀ = 2e + s and h₁
+//! = 2e + 1 − s. In the table, the parent has E edges and C corners, f is the number of the face, k
+//! the rank of the run, and k₋ and k₊ are the ranks of the runs before and after:
 //!
 //! | | face | next | prev |
 //! |---|---|---|---|
@@ -32,8 +32,8 @@
 //! | r = 2E + k, triangles: left, m to m₋ | k | h₁ of the run before | h₀ |
 //! | and right, m₋ to m | C + f | 2E + k₊ | 2E + k₋ |
 //!
-//! Along a side without a face, h₀ and h₁ follow each other. An edge reads its four wings, to find
-//! on which of their sides they run, and writes its children.
+//! Along a side without a face, h₀ and h₁ follow each other. For each edge, the code reads the four
+//! wings, to find on which of their sides they run, and then writes the children.
 
 use std::ops::Range;
 
@@ -223,7 +223,7 @@ struct Chunk<'a> {
     inner: &'a mut [Edge],
 }
 
-/// A run and the child edges along it. Its ranks have no meaning without a face.
+/// A run and the child edges along it. If the run has no face, the ranks have no meaning.
 struct SplitRun {
     face: Slot<FaceId>,
     has_face: bool,
@@ -269,8 +269,8 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         });
     }
 
-    /// Fills the rows block by block. The reads of the wings come first: they may be anywhere in
-    /// memory, and a short loop has more of them in flight at once.
+    /// Fills the rows block by block. The wings of a block are read first, in a short loop. The
+    /// wings may be anywhere in memory, and the processor runs more reads at once in a short loop.
     fn fill_chunk(self, edges: Range<usize>, chunk: &mut Chunk<'_>) {
         let mut rank = self.ranks.rank(2 * edges.start) as u32;
         let mut inner = chunk.inner.iter_mut();
@@ -302,7 +302,7 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         }
     }
 
-    /// Returns the sides on which the wing before and the wing after run, along `side` of `edge`.
+    /// Returns the sides on which two wings run: the wings before and after `edge` along `side`.
     #[inline(always)]
     fn sides_of_wings(self, edge: &Edge, side: Side) -> [Side; 2] {
         let [before, after] = [edge.prev.on(side), edge.next.on(side)];
@@ -368,7 +368,7 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         ]
     }
 
-    /// Returns what h₀ and h₁ of a run have along its side.
+    /// Returns the face and the wings of h₀ and h₁ along the side of a run.
     #[inline(always)]
     fn links(self, run: &SplitRun) -> [Links; 2] {
         let [first, second] = run.halves;
@@ -430,8 +430,8 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         VertexId::new(self.spokes.len() as u32 + face.row())
     }
 
-    /// Returns the middle triangle of `face`; for triangles only. These follow the faces of the
-    /// corners.
+    /// Returns the middle triangle of `face`; for triangles only. The middle triangles have the
+    /// numbers after the faces of the corners.
     #[inline(always)]
     fn middle_face(self, face: FaceId) -> FaceId {
         FaceId::new(self.ranks.members() as u32 + face.row())
@@ -461,8 +461,8 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
     }
 
     /// Sets the spokes. An old vertex gets the near half of its spoke. A face point gets an edge
-    /// that ends there. A middle gets a half of its own edge, with no face on the right of the run
-    /// from the middle if possible.
+    /// that ends there. A middle gets a half of its own edge: if possible, the half whose run from
+    /// the middle has no face on the right.
     fn fill_spokes(self, child: &mut [Slot<EdgeId>]) {
         let (old, new) = child.split_at_mut(self.spokes.len());
         let (of_faces, of_edges) = new.split_at_mut(if QUADS { self.sides.len() } else { 0 });

@@ -112,8 +112,8 @@ impl<P: Probe, E: Editing> OrientedWalk for WingedEdgeMesh<E, P> {
 }
 
 impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
-    /// Returns the run along `s`. If elements can be deleted, panics if the side has no face: it may
-    /// have lost it.
+    /// Returns the run along `s`. If elements can be deleted, panics if the side has no face,
+    /// because its face may have been deleted.
     #[inline]
     fn run_of(&self, s: EdgeSide) -> Run<'_> {
         let run = Run::new(self.record(s.edge()), s.side());
@@ -123,7 +123,7 @@ impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
         run
     }
 
-    /// Returns the side of `e` with this face; the right side if neither has it.
+    /// Returns the side of `e` with this face; the right side if neither side has it.
     #[inline]
     fn side_along(&self, e: EdgeId, face: Slot<FaceId>) -> EdgeSide {
         let is_right = self.record(e).faces[0] != face;

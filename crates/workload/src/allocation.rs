@@ -41,8 +41,8 @@ pub enum NotCounted {
 /// The maximum number of faces of a mesh on which operations that scan are run.
 pub const MAX_SCANNED_FACES: usize = 2_000;
 
-/// A clock that returns bytes instead of time, so that set-up is excluded as it is in time
-/// measurements.
+/// A clock that returns allocated bytes instead of time. It excludes set-up, as time measurements
+/// do.
 struct ByteClock<'a>(&'a dyn AllocationCounter);
 
 impl Clock for ByteClock<'_> {
@@ -52,8 +52,8 @@ impl Clock for ByteClock<'_> {
 }
 
 impl Backend {
-    /// Runs `operation` once and counts the bytes that it requests. A native step is counted with
-    /// new tables: its first run, not the later runs, which reuse the tables.
+    /// Runs `operation` once and counts the bytes that it requests. For a native step, the first
+    /// run is counted, because later runs reuse its tables.
     ///
     /// The result is the structure for `build`, the structure of the refined mesh for a
     /// subdivision, the mesh after the edits for a pass of edits, and the depth of each face for
@@ -126,7 +126,7 @@ fn counts_after(
     before: &Counts,
 ) -> Counts {
     let ratio = match pass {
-        // Neither changes the number of elements.
+        // Neither pass changes the number of elements.
         EditPass::SplitCollapse | EditPass::FlipAll => return *before,
         EditPass::DecimateHalf => 0.5,
         EditPass::DecimateTenth => 0.1,
@@ -136,8 +136,8 @@ fn counts_after(
     counts.unwrap_or(*before)
 }
 
-/// Returns the counts of the mesh after `M` was decimated to this ratio of the faces; `None` if
-/// that is refused.
+/// Returns the counts of the mesh after `M` was decimated to this ratio of the faces; `None` if the
+/// decimation is refused.
 pub(crate) fn decimated_counts<M: Representation + MeshEdit>(
     polygons: &PolygonMesh,
     ratio: f64,

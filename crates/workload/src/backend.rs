@@ -1,4 +1,4 @@
-//! A structure in the form that studies measure.
+//! A structure with the functions that studies need to measure it.
 
 use std::fmt;
 use std::sync::atomic::AtomicBool;
@@ -35,8 +35,8 @@ macro_rules! backends {
 
 /// A structure with its properties and the functions that build, run and measure it.
 ///
-/// [`Backend::structures`] returns those of Sixfold. [`Backend::new`] makes a backend from any other
-/// structure. Studies, `pick`, edits and subdivisions accept it like the others:
+/// [`Backend::structures`] returns the backends of Sixfold. [`Backend::new`] makes a backend from
+/// any other structure. Studies, `pick`, edits and subdivisions accept both kinds:
 ///
 /// ```
 /// use sixfold::{EditableHalfEdgeMesh, HalfEdgeMesh, shapes};
@@ -51,13 +51,13 @@ macro_rules! backends {
 /// ```
 #[derive(Clone, Copy)]
 pub struct Backend {
-    /// Properties that are known without building it.
+    /// Properties that are known before the structure is built.
     pub info: StructureInfo,
-    /// Computes the bytes of its layout, by formula, for a mesh with these counts.
+    /// Computes by formula the bytes of the layout for a mesh with these counts.
     pub layout_bytes: fn(&Counts) -> usize,
     pub(crate) queries: QueryFunctions,
     pub(crate) edits: Option<EditFunctions>,
-    /// Sets up a subdivision in its own tables.
+    /// Sets up a subdivision that refines the structure's own tables.
     pub(crate) prepare_native: Option<PrepareRefiner>,
 }
 
@@ -82,7 +82,8 @@ pub(crate) struct EditFunctions {
     pub(crate) decimated_counts: fn(&PolygonMesh, f64) -> Option<Counts>,
 }
 
-/// Builds the structure and prepares it for measurement. Its memory is read before anything is run.
+/// Builds the structure and prepares it for measurement. The memory of the structure is read before
+/// any operation runs.
 type Build =
     for<'a> fn(&Backend, &'a PolygonMesh, Option<&'a Draw>) -> Result<Prepared<'a>, BuildError>;
 
@@ -101,7 +102,7 @@ type PrepareRefiner = fn(SubdivisionJob, &PolygonMesh, &Creases) -> PreparedRefi
 pub type Prepared<'a> = (Box<dyn TimedBackend + 'a>, MemoryFootprint);
 
 impl Backend {
-    /// Makes a backend from `M`, without edits and without refinement of its own tables.
+    /// Makes a backend from `M` that supports neither edits nor native subdivision.
     pub fn new<M: Measured + 'static>() -> Self {
         Self {
             info: StructureInfo::new::<M>(),
@@ -127,7 +128,7 @@ impl Backend {
         }
     }
 
-    /// Adds the edits of `M`, the type of the same structure that can be edited.
+    /// Adds the edits of `M`, the editable type of the same structure.
     #[must_use]
     pub fn with_edits<M: Representation + MeshEdit + 'static>(self) -> Self {
         let edits = EditFunctions {
@@ -143,7 +144,7 @@ impl Backend {
         }
     }
 
-    /// Adds native subdivision with `M`, the type of the same structure that refines its own
+    /// Adds native subdivision. `M` is the type of the same structure that can refine its own
     /// tables.
     #[must_use]
     pub fn with_refinement<M: Refine + 'static>(self) -> Self {
@@ -166,8 +167,8 @@ impl Backend {
         all.find(|backend| backend.name() == name)
     }
 
-    /// Builds it from `polygons` and prepares it for measurement, with its handles of the elements
-    /// of `draw`, if given. Also returns its memory footprint.
+    /// Builds the structure from `polygons` and prepares it for measurement. If `draw` is given,
+    /// the structure can also run samples of the drawn elements. Also returns the memory footprint.
     ///
     /// # Errors
     ///
@@ -180,8 +181,8 @@ impl Backend {
         (self.queries.build)(self, polygons, draw)
     }
 
-    /// Builds only the structure from `polygons`, and counts with `heap` the bytes that this
-    /// allocates.
+    /// Builds the structure from `polygons`, without preparing it for measurement. Counts the
+    /// allocated bytes with `heap`.
     ///
     /// # Errors
     ///
@@ -194,7 +195,8 @@ impl Backend {
         (self.queries.measure_memory)(polygons, heap)
     }
 
-    /// Builds it from `polygons` and counts the table reads of `relations`, until `stop` is true.
+    /// Builds the structure from `polygons` and counts the table reads of `relations`, until `stop`
+    /// is true.
     ///
     /// # Errors
     ///
@@ -209,7 +211,7 @@ impl Backend {
         (self.queries.count)(polygons, relations, stop, observer)
     }
 
-    /// Returns its name, as users write it.
+    /// Returns the name that users write.
     pub fn name(&self) -> &'static str {
         self.info.name
     }

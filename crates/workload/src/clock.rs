@@ -17,8 +17,8 @@ pub struct Time {
 }
 
 impl Time {
-    /// Returns the time to compare, in nanoseconds: processor time if it is known, because a busy
-    /// machine disturbs it less, otherwise wall time.
+    /// Returns the time to compare, in nanoseconds. This is processor time if it is known, because
+    /// a busy machine disturbs it less. Otherwise it is wall time.
     pub fn ns(self) -> f64 {
         self.cpu_ns.unwrap_or(self.wall_ns)
     }
@@ -40,8 +40,8 @@ impl Time {
         }
     }
 
-    /// Adds both times and the page faults. Page faults are known if at least one of the two has
-    /// them.
+    /// Adds both times and the page faults. The sum has page faults if at least one of the two
+    /// times has them.
     pub fn plus(self, other: Self) -> Self {
         let known = self.faults.is_some() || other.faults.is_some();
         Self {
@@ -131,8 +131,8 @@ impl MachineClock {
     }
 
     /// Measures the time that two readings add to the work between them. The result is twice the
-    /// time of some work minus the time of twice the work, so that the caches are in the same state
-    /// as in real use. The minimum is the time of two readings without work between them.
+    /// time of some work minus the time of twice that work. The caches are then in the same state
+    /// as in real use. The result is at least the time of two readings without work between them.
     fn cost_of_reading(&self) -> Time {
         let words: Vec<u64> = vec![1; WORDS];
         let pass = || std::hint::black_box(std::hint::black_box(&words).iter().sum::<u64>());
@@ -195,7 +195,8 @@ impl Clock for MachineClock {
     }
 }
 
-/// Runs `work` and returns its time, without the cost of reading the clock, and its page faults.
+/// Runs `work` and returns its time and its page faults. The cost of reading the clock is
+/// subtracted.
 #[inline]
 pub fn timed(clock: &dyn Clock, work: impl FnOnce()) -> Time {
     let faults = clock.faults();

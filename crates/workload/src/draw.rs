@@ -1,4 +1,4 @@
-//! A seeded random choice of elements. It is made on the input, so it is the same for every
+//! A seeded random choice of elements. It uses only the input mesh, so it is the same for every
 //! structure.
 
 use rand::seq::SliceRandom;

@@ -12,11 +12,12 @@ use crate::series::{ReusedCopies, Series};
 /// A pass of edits that changes a triangle mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum EditPass {
-    /// Inserts a vertex into the centre of every face, then collapses each into a neighbour, with
-    /// all checks, then compacts the tables. At the end the mesh has its original faces.
+    /// Inserts a vertex into the centre of every face. Then collapses each new vertex into a
+    /// neighbour, with all checks, and compacts the tables. At the end the mesh has its original
+    /// faces.
     SplitCollapse,
     /// Flips every edge of the initial mesh if the flip is legal, in the order in which the faces
-    /// first list the edges; then does the same again.
+    /// first list the edges. Then does the same again.
     FlipAll,
     /// Collapses edges by quadric error until half of the faces are left.
     DecimateHalf,
@@ -33,7 +34,7 @@ impl EditPass {
         Self::DecimateTenth,
     ];
 
-    /// Returns its name, as users write it: `split_collapse`.
+    /// Returns the name that users write: `split_collapse`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::SplitCollapse => "split_collapse",
@@ -43,7 +44,8 @@ impl EditPass {
         }
     }
 
-    /// Sets it up on the structure of `backend`. Returns `None` if the structure cannot be edited.
+    /// Sets up the pass on the structure of `backend`. Returns `None` if the structure cannot be
+    /// edited.
     ///
     /// # Errors
     ///
@@ -56,7 +58,7 @@ impl EditPass {
 /// Edits ready to be run, or the reason why they are not.
 pub type PreparedEditor = Result<Box<dyn Editor>, String>;
 
-/// Sets `pass` up on `M`.
+/// Sets up `pass` on `M`.
 pub(crate) fn prepare_pass<M: Representation + MeshEdit + 'static>(
     pass: EditPass,
     polygons: &PolygonMesh,
@@ -86,10 +88,10 @@ impl fmt::Display for EditPass {
 
 /// Edits that are ready to be run repeatedly, each time on the initial mesh.
 pub trait Editor {
-    /// Runs them as `series` describes and returns the total time of all timed runs.
+    /// Runs the edits as `series` describes and returns the total time of all timed runs.
     fn time(&mut self, series: &Series<'_>) -> Time;
 
-    /// Returns the counts of a run; all runs do the same.
+    /// Returns the counts of a run; all runs do the same work.
     fn result(&self) -> Edits;
 }
 
@@ -255,8 +257,8 @@ fn edges_in_face_order<M: MeshQuery>(mesh: &M) -> Vec<M::Edge> {
 /// The current handles of a list of edges, updated when flips change handles.
 ///
 /// A flip returns the new handle of the flipped edge. It changes handles of other edges only in
-/// structures whose edge handle is a corner that faces the edge. Then `indices` finds the list
-/// entry.
+/// structures whose edge handle is the corner opposite the edge. In this case `indices` gives the
+/// list entry of such an edge.
 struct TrackedEdges<M: MeshEdit> {
     edges: Vec<M::Edge>,
     /// By edge: its index in `edges`.

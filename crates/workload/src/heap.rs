@@ -8,17 +8,17 @@ pub trait Heap {
     fn live(&self) -> usize;
     /// Restarts the peak at the bytes that are allocated now.
     fn restart_peak(&self);
-    /// Returns the maximum number of allocated bytes since the last restart, minus those at the
-    /// restart.
+    /// Returns the maximum number of allocated bytes since the last restart, minus the bytes
+    /// allocated at that restart.
     fn peak(&self) -> usize;
 }
 
 /// The memory of a structure: as counted by the allocator and as reported by the structure.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MeasuredMemory {
-    /// Bytes that the allocator counts after building minus those before: those of the structure.
+    /// Bytes of the structure: the allocator's count after building minus its count before.
     pub counted: usize,
-    /// The maximum of the same difference during building; it includes the structure.
+    /// The maximum of this difference during building, including the structure.
     pub peak: usize,
     /// The tables, as the structure reports them.
     pub memory: MemoryFootprint,
@@ -34,7 +34,7 @@ pub(crate) fn measure_memory<M: Representation>(
     let before = heap.live();
     heap.restart_peak();
     let mesh = M::from_polygons(polygons)?;
-    // Read first: the list of tables below is on the heap as well.
+    // The counters are read first, because the list of tables below is also on the heap.
     let (live, peak) = (heap.live(), heap.peak());
     Ok(MeasuredMemory {
         counted: live.saturating_sub(before),

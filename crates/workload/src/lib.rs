@@ -1,9 +1,9 @@
 //! The work that is run on a structure and timed: queries, whole-mesh operations, edits,
 //! subdivisions.
 //!
-//! [`Backend::new`] makes any structure measurable as a [`TimedBackend`], which runs a [`Job`]
-//! and returns its time and its result. This crate contains everything that is compiled once for each
-//! structure. The crates above it measure and evaluate, without any mesh type.
+//! [`Backend::new`] makes any structure measurable as a [`TimedBackend`], which runs a [`Job`] and
+//! returns its time and its result. This crate contains all code that is compiled once for each
+//! structure. The crates above it measure and evaluate. Their code is not generic over structures.
 
 mod allocation;
 mod backend;

@@ -3,11 +3,11 @@
 //!
 //! Both are measured in buffers of growing size. A mesh can then be compared with the speed of the
 //! caches that it fits in; the largest buffer shows the speed of the main memory. One thread reads,
-//! as one thread queries a mesh. Bandwidth: the sum over all words of the buffer, in several
-//! passes. Latency: each line holds the index of the next line, in one cycle through all lines in
-//! random order, so that no read can start before the previous one has finished. Each value is the
-//! shortest of several timed series, after one untimed series. Address translation (TLB misses) is
-//! included in both, as it is for a mesh.
+//! because one thread queries a mesh. The bandwidth test adds all words of the buffer, in several
+//! passes. In the latency test each line holds the index of the next line. The lines form one cycle
+//! in random order, so that no read can start before the previous one has finished. Each value is
+//! the shortest of several timed series, after one untimed series. Both values include address
+//! translation (TLB misses), as the times on a mesh do.
 
 use std::hint::black_box;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -20,8 +20,9 @@ use serde::{Deserialize, Serialize};
 use crate::clock::{Clock, timed};
 use crate::read_probe::LINE_BYTES;
 
-/// Sizes of the buffers in bytes: the first is half of a small first-level cache, and each next one
-/// is four times as large. The last is far larger than the last-level cache of most machines.
+/// Sizes of the buffers in bytes. The first is half of a small first-level cache. Each further size
+/// is four times the previous one. The last is far larger than the last-level cache of most
+/// machines.
 const SIZES: [usize; 8] = [
     1 << 14,
     1 << 16,
@@ -89,20 +90,22 @@ impl MemorySpeed {
         &self.speeds
     }
 
-    /// Returns the read speed for data of `bytes`: that of the largest buffer of at most this size,
-    /// so that the speed is not underestimated; that of the smallest buffer if all are larger.
+    /// Returns the read speed for data of `bytes`: the speed of the largest buffer of at most this
+    /// size, so that the speed is not underestimated. If all buffers are larger, returns the speed
+    /// of the smallest.
     pub fn at(&self, bytes: usize) -> BufferSpeed {
         let larger = self.speeds.partition_point(|speed| speed.bytes <= bytes);
         self.speeds[larger.saturating_sub(1)]
     }
 
-    /// Returns the read speed of the largest buffer, which is that of the main memory.
+    /// Returns the read speed of the main memory: the speed of the largest buffer.
     pub fn memory(&self) -> BufferSpeed {
         self.at(usize::MAX)
     }
 }
 
-/// Returns lines whose first words each hold the index of the next: one cycle in random order.
+/// Returns lines that form one cycle in random order. The first word of each line holds the index
+/// of the next line.
 fn cycle(lines: usize) -> Vec<u64> {
     let mut order: Vec<u32> = (0..).take(lines).collect();
     order.shuffle(&mut ChaCha8Rng::seed_from_u64(1));

@@ -2,8 +2,8 @@
 //!
 //! Operations on elements are grouped into turns of 256 operations, or 64 if there are edits. A
 //! turn runs each part of the mix in proportion to its weight, on consecutive elements of a route
-//! that is the same for all structures. So the parts share caches as they do in a program, and
-//! switching between them costs almost nothing. Passes over the whole mesh run between turns.
+//! that is the same for all structures. The parts therefore share caches as they do in a program,
+//! and switching between parts costs almost nothing. Passes over the whole mesh run between turns.
 
 mod passes;
 mod places;
@@ -33,8 +33,8 @@ pub struct MixRun {
     pub time: Time,
     /// The number of operations.
     pub operations: u64,
-    /// The number of elements that they yielded, or of positions that they read. It is the same for
-    /// all structures that visit all elements, or the same route.
+    /// The number of elements that the operations yielded, or of positions that they read. Two
+    /// structures have the same number if both visit all elements, or the same route.
     pub yielded: u64,
     /// The number of edits that were refused.
     pub refused: u64,
@@ -42,7 +42,7 @@ pub struct MixRun {
 
 /// A backend on which a mix can be run: a structure, or relation tables.
 pub trait MixBackend {
-    /// Returns its name, as users write it.
+    /// Returns the name that users write.
     fn name(&self) -> &'static str;
 
     /// Returns the paths of the types that a program needs to use this backend.
@@ -58,7 +58,7 @@ pub trait MixBackend {
     fn scans(&self) -> Vec<bool>;
 
     /// Runs the element operations of `turns` turns, starting with turn `turn`. If there are edits,
-    /// it does so `copies` times, each time on a copy that is reset outside the timing.
+    /// runs the turns `copies` times, each time on a copy that is reset outside the timing.
     fn run(&mut self, turn: u64, turns: u64, copies: usize, clock: &dyn Clock) -> MixRun;
 
     /// Runs `operations` operations of one part alone, from operation `first` of its route. Edits
@@ -76,13 +76,13 @@ pub trait MixBackend {
         series: &Series<'_>,
     ) -> Run;
 
-    /// Returns for each edit of the schedule, and each place, whether the edit is accepted.
+    /// Returns for each edit of the schedule and each place whether the edit is accepted.
     fn accepted_places(&mut self) -> Vec<Vec<bool>>;
 
-    /// Keeps only the places that are true in `accepted`, which is the same for all structures.
+    /// Keeps only the places that are true in `accepted`. All structures get the same `accepted`.
     fn keep_places(&mut self, accepted: &[Vec<bool>]);
 
-    /// Builds it from the polygons as often as `series` describes and returns the time of one
-    /// build.
+    /// Builds the backend from the polygons as often as `series` describes and returns the time of
+    /// one build.
     fn build(&self, series: &Series<'_>) -> Time;
 }

@@ -48,8 +48,9 @@ impl ElementKind {
 
 /// An operation that a study times.
 ///
-/// Each operation visits its elements in the order of the structure. Every handle that it yields
-/// goes into a sink, so that no structure can count elements without computing their handles.
+/// Each operation visits its elements in the order of the structure. Every handle that a query
+/// yields goes into a sink. A structure therefore cannot count elements without computing their
+/// handles.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, DeserializeFromStr, SerializeDisplay,
 )]
@@ -73,23 +74,23 @@ pub enum Operation {
     /// Traverses faces breadth first from face 0, then from the lowest unvisited face; sums the
     /// depths.
     FfBfs,
-    /// Queries the three relations of every element.
+    /// Queries all three relations of every vertex, edge and face.
     AllQueries,
-    /// One step of Catmull–Clark by one method. [`Operation::subdivision_job`] gives the
+    /// Runs one step of Catmull–Clark by one method. [`Operation::subdivision_job`] gives the
     /// scheme and the way.
     CatmullClark(Method),
-    /// One step of Loop by one method.
+    /// Runs one step of Loop by one method.
     Loop(Method),
     /// A pass of edits that changes the mesh, on a restored copy each time.
     EditPass(EditPass),
 }
 
 const RELATIONS: &[Relation; 9] = &Relation::ALL;
-/// The relations that a step of Catmull–Clark queries of a vertex.
+/// The relations that a step of Catmull–Clark queries at each vertex.
 const VERTEX_RELATIONS: &[Relation] = &[Relation::VertexVertices, Relation::VertexFaces];
-/// The relations that a step by gathering or a native step queries of an edge.
+/// The relations that a gathering or native step queries at each edge.
 const EDGE_RELATIONS: &[Relation] = &[Relation::EdgeVertices, Relation::EdgeFaces];
-/// The relations that any step queries of a face.
+/// The relations that every step queries at each face.
 const FACE_RELATIONS: &[Relation] = &[Relation::FaceVertices, Relation::FaceEdges];
 
 impl Operation {
@@ -125,7 +126,7 @@ impl Operation {
         Self::EditPass(EditPass::DecimateTenth),
     ];
 
-    /// Returns its name, as users write it: `vv_smooth`.
+    /// Returns the name that users write: `vv_smooth`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Build => "build",
@@ -148,7 +149,7 @@ impl Operation {
         }
     }
 
-    /// Returns the subdivision of one level that it runs; `None` if it is not a subdivision.
+    /// Returns the one-level subdivision that the operation runs; `None` for other operations.
     pub fn subdivision_job(self) -> Option<SubdivisionJob> {
         let (scheme, method) = match self {
             Self::CatmullClark(method) => (Scheme::CatmullClark, method),
@@ -163,18 +164,18 @@ impl Operation {
         Some(SubdivisionJob::new(scheme, way, 1))
     }
 
-    /// Returns whether it is a subdivision.
+    /// Returns whether the operation is a subdivision.
     pub const fn subdivides(self) -> bool {
         matches!(self, Self::CatmullClark(_) | Self::Loop(_))
     }
 
-    /// Returns whether it makes another mesh, by subdivision or by edits. Such an operation takes
-    /// long, and its time can be estimated from a patch of the mesh.
+    /// Returns whether the operation makes another mesh, by subdivision or by edits. Such an
+    /// operation takes long, and its time can be estimated from a patch of the mesh.
     pub const fn creates_mesh(self) -> bool {
         self.subdivides() || matches!(self, Self::EditPass(_))
     }
 
-    /// Returns whether a run grows tables that the next run reuses, so that the first run takes
+    /// Returns whether a run grows tables that the next run reuses. The first run then takes
     /// longer.
     pub const fn grows_tables(self) -> bool {
         matches!(
@@ -185,20 +186,20 @@ impl Operation {
         )
     }
 
-    /// Returns whether the clock stops between runs, to restore what a run changed or drop what it
-    /// made.
+    /// Returns whether the clock stops between runs. Meanwhile the changes of a run are undone, or
+    /// its result is dropped.
     pub const fn pauses_clock(self) -> bool {
         matches!(self, Self::Build | Self::VvSmooth | Self::EditPass(_))
     }
 
-    /// Returns whether it allocates memory within the timing, so that its time depends on the
-    /// source of the pages.
+    /// Returns whether the operation allocates memory within the timing. Its time then depends on
+    /// the source of the pages.
     pub const fn allocates(self) -> bool {
         matches!(self, Self::Build | Self::FfBfs) || self.creates_mesh()
     }
 
-    /// Estimates the number of elements that it visits on `polygons`: the faces, or the new faces.
-    /// Used if no run has counted them.
+    /// Estimates the number of elements that the operation visits on `polygons`: the faces, or the
+    /// new faces. The estimate is used if no run has counted the elements.
     pub fn estimated_elements(self, polygons: &PolygonMesh) -> usize {
         match self {
             Self::CatmullClark(_) => polygons.corner_count(),
@@ -207,7 +208,7 @@ impl Operation {
         }
     }
 
-    /// Returns the unit of its element count: `vertex`, `edge`, `face`, `visit` (neighbours are
+    /// Returns the unit of the element count: `vertex`, `edge`, `face`, `visit` (neighbours are
     /// counted) or `new face`.
     pub const fn unit(self) -> &'static str {
         match self {
@@ -222,7 +223,7 @@ impl Operation {
         }
     }
 
-    /// Returns the kinds of elements that it visits, in the order of its steps.
+    /// Returns the kinds of elements that the operation visits, in the order of its steps.
     pub const fn kinds(self) -> &'static [ElementKind] {
         const V: &[ElementKind] = &[ElementKind::Vertex];
         const E: &[ElementKind] = &[ElementKind::Edge];
@@ -247,7 +248,7 @@ impl Operation {
         }
     }
 
-    /// Returns the relations that it queries of elements of `kind`.
+    /// Returns the relations that the operation queries at elements of `kind`.
     pub fn relations(self, kind: ElementKind) -> &'static [Relation] {
         let one = |relation: Relation| std::slice::from_ref(&RELATIONS[relation as usize]);
         match (self, kind) {
@@ -289,7 +290,7 @@ impl Operation {
     }
 
     /// Returns for each kind whether the cost grows with the square of the valences or degrees on
-    /// some structure.
+    /// at least one structure.
     ///
     /// This is true for all relations except EV and FV. An edge has two ends, and the corners of
     /// all faces together are the corners of the mesh. The other relations visit a vertex of
@@ -299,12 +300,12 @@ impl Operation {
         ElementKind::ALL.map(|kind| self.relations(kind).iter().any(|r| !corners.contains(r)))
     }
 
-    /// Returns whether it can be run on a sample of elements.
+    /// Returns whether the operation can be run on a sample of elements.
     pub const fn can_be_sampled(self) -> bool {
         !matches!(self, Self::Build | Self::FfBfs) && !self.creates_mesh()
     }
 
-    /// Returns whether its checksum is a count, which is exactly equal for all structures.
+    /// Returns whether the checksum is a count. Counts are exactly equal for all structures.
     pub const fn has_exact_checksum(self) -> bool {
         !matches!(
             self,
@@ -393,7 +394,7 @@ mod tests {
         assert_eq!(Operation::EdgeLength.grows_with_valence(), [false; 3]);
         assert_eq!(Operation::AllQueries.grows_with_valence(), [true; 3]);
         // Subdivisions scan if they query the faces of vertices. The rules of Loop do not need
-        // them.
+        // these faces.
         let scans = |operation: Operation| operation.scans(&costs)[0];
         assert!(scans(Operation::CatmullClark(Method::Gather)));
         assert!(!scans(Operation::CatmullClark(Method::Scatter)));

@@ -40,7 +40,7 @@ impl Policy {
     /// Both policies.
     pub const ALL: [Self; 2] = [Self::Kept, Self::System];
 
-    /// Returns its name, as users write it: `kept`.
+    /// Returns the name that users write: `kept`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Kept => "kept",
@@ -78,7 +78,7 @@ impl FromStr for Policy {
 pub struct HeapReport {
     /// The active policy.
     pub policy: Policy,
-    /// The reason why it is not the requested policy.
+    /// The reason why the active policy is not the requested one.
     #[serde(default)]
     pub reason: Option<String>,
     /// The allocator, with its version if the platform reports it: `glibc 2.36`.
@@ -144,7 +144,7 @@ fn keep() -> Result<(), String> {
     }
 }
 
-/// Whether pages are kept; only then [`stop_keeping`] has something to undo.
+/// Whether pages are kept. If not, [`stop_keeping`] has nothing to undo.
 static KEEPING: AtomicBool = AtomicBool::new(false);
 
 /// Undoes [`keep`] and returns the kept pages to the kernel.
@@ -172,11 +172,11 @@ pub fn reserve(bytes: usize) {
     touch_free_pages(bytes, |_| {});
 }
 
-/// Touches the same pages as [`reserve`], in random order: the kernel then also chooses the pages of
-/// large tables in random order. The sets of the second-level cache that the tables use then do not
-/// depend on what the process did before.
+/// Touches the same pages as [`reserve`], in random order. The kernel then also chooses the pages
+/// of large tables in random order. As a result, the second-level cache sets that the tables use do
+/// not depend on earlier work of the process.
 pub fn reserve_in_random_order(bytes: usize) {
-    /// The number of calls: the seed of the order, so that each call has another one.
+    /// The number of calls. It is the seed of the order, so that each call has a different order.
     static CALLS: AtomicU64 = AtomicU64::new(0);
     let mut random = ChaCha8Rng::seed_from_u64(CALLS.fetch_add(1, Ordering::Relaxed));
     touch_free_pages(bytes, |pages| pages.shuffle(&mut random));
@@ -185,9 +185,10 @@ pub fn reserve_in_random_order(bytes: usize) {
 /// A page that belongs to no value.
 type FreePage<'b> = &'b mut [MaybeUninit<u8>];
 
-/// Touches the pages of a block of `bytes` and of all freed blocks, after `arrange` arranged them.
+/// Touches the pages of a block of `bytes` and of all freed blocks, in the order into which
+/// `arrange` brings the pages.
 fn touch_free_pages(bytes: usize, arrange: impl FnOnce(&mut [FreePage<'_>])) {
-    // All blocks are held at the same time, so that each is a different one. Large blocks come
+    // All blocks are held at the same time, so that no block is allocated twice. Large blocks come
     // first, because small ones fit anywhere.
     let mut blocks: Vec<Vec<u8>> = untouched_block(bytes).into_iter().collect();
     let mut size = MAX_BLOCK_BYTES;
@@ -310,23 +311,23 @@ fn bracketed(modes: &str) -> Option<&str> {
     Some(from.split_once(']')?.0)
 }
 
-/// Calls to the GNU C library. This is the only file of the workspace with unsafe code: calls that
-/// set options of the allocator; they take and return plain numbers.
+/// Calls to the GNU C library. This is the only file of the workspace with unsafe code. The calls
+/// control the allocator or read its counts; they take and return plain numbers.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 #[allow(unsafe_code)]
 mod platform {
     use std::ffi::CStr;
 
-    /// Size of a test block, in bytes: unusual, so that another thread hardly allocates the same
-    /// size.
+    /// Size of a test block, in bytes. The size is unusual, so that another thread is unlikely to
+    /// allocate the same.
     const TEST_BLOCK_BYTES: usize = (1 << 20) + 4096 * 3;
     /// Number of attempts to see the test block in the counts of the allocator.
     const ATTEMPTS: usize = 16;
     /// The heap grows by at least this many bytes at a time.
     const STEP: libc::c_int = 1 << 20;
 
-    /// Sets the allocator to map no block separately, never to trim its heap, and to use one heap
-    /// for all threads. Returns whether it accepts.
+    /// Makes the allocator map no block separately, never trim its heap, and use one heap for all
+    /// threads. Returns whether the allocator accepts these options.
     pub(super) fn keep() -> bool {
         let options = [
             (libc::M_ARENA_MAX, 1),
@@ -337,8 +338,9 @@ mod platform {
         set(&options)
     }
 
-    /// Sets the values that glibc reaches by itself in a program that has freed large blocks. Once
-    /// its thresholds are set, they no longer adapt. All threads still share one heap.
+    /// Sets the thresholds to the values that glibc reaches by itself in a program that has freed
+    /// large blocks. Once they are set, glibc no longer adapts them. All threads still share one
+    /// heap.
     pub(super) fn restore() {
         let options = [
             (libc::M_MMAP_MAX, 65536),

@@ -11,11 +11,11 @@
 //!               rows 2 and 5 touch two lines each: bytes 48 to 71, and 120 to 143
 //! ```
 //!
-//! A model of a small cache is also updated. It holds [`CACHE_LINES`] lines of any table, first in,
-//! first out. A touched line that is not in the cache is *fetched*. The fetch is a *jump* if the
-//! cache also has none of the [`REACH`] lines on either side. Streaming access fetches lines but
-//! rarely jumps, even if it skips lines; the prefetchers of a processor predict it. They do not
-//! predict jumps.
+//! The probe also updates a model of a small cache. This cache holds [`CACHE_LINES`] lines of any
+//! table, first in, first out. A touched line that is not in the cache is *fetched*. The fetch is a
+//! *jump* if the [`REACH`] lines on either side are not in the cache either. Streaming access
+//! fetches lines but rarely jumps, even if it skips lines. The prefetchers of a processor predict
+//! streaming access, but not jumps.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -26,8 +26,8 @@ use sixfold_core::Probe;
 
 /// Bytes of a cache line.
 pub const LINE_BYTES: usize = 64;
-/// Lines that the small cache of the model holds: 256 KiB, which most processors have at least for
-/// each core. Data in it arrives quickly, so a walk hardly waits for it.
+/// Lines that the small cache of the model holds: 256 KiB. Most processors have at least this much
+/// cache for each core. Data in such a cache arrives quickly, so a walk hardly waits for it.
 pub const CACHE_LINES: u64 = 4096;
 /// A fetch within this many lines of a cached line, on either side, is not a jump.
 pub const REACH: usize = 4;
@@ -209,7 +209,7 @@ impl CountingProbe {
         }
     }
 
-    /// Returns the number of lines touched in any step, each once.
+    /// Returns the number of lines touched in any step; each line counts once.
     pub(crate) fn touched(&self) -> u64 {
         self.0.touched.get()
     }
@@ -224,8 +224,8 @@ impl CountingProbe {
 }
 
 impl CacheModel {
-    /// Records a read of `bytes` of the line `at`, one bit for each byte; `number` is the number of
-    /// bits.
+    /// Records a read of some bytes of the line `at`. `bytes` has one bit for each byte, and
+    /// `number` is the number of bits that are set.
     #[inline]
     fn touch(&self, lines: &[Line], at: usize, bytes: u64, number: usize, total: &Totals) {
         let line = &lines[at];
@@ -349,8 +349,8 @@ mod tests {
     #[test]
     fn a_read_of_part_of_a_row_starts_where_the_row_starts() {
         let probe = probe(&[("halves", 100, 24)]);
-        // Row 5 begins at byte 120: its first four bytes are in line 1, the whole row also in line
-        // 2.
+        // Row 5 begins at byte 120: its first four bytes are in line 1, and the rest of the row
+        // extends into line 2.
         assert_eq!(query(&probe, "halves", 4, &[5]), [1, 4]);
         assert_eq!(query(&probe, "halves", 24, &[5]), [2, 24]);
     }

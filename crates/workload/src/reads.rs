@@ -8,14 +8,15 @@ use sixfold_core::Measured;
 
 use crate::read_probe::{CountingProbe, LINE_BYTES, ReadCounts, Step};
 
-/// Number of sampled elements if a structure scans: evenly spaced, including the first element.
+/// Number of sampled elements if a structure scans. They are evenly spaced and include the first
+/// element.
 pub const SCAN_SAMPLE: usize = 16;
 /// If a query reads more rows than this on average, a sample is used too: at a vertex with very
 /// many faces, a walk is as slow as a scan.
 pub const MAX_READS: u64 = 256;
 
-/// The reads of one relation, queried of every element in the order of the structure, or of a
-/// sample.
+/// The reads of one relation. It is queried at every element in the order of the structure, or at a
+/// sample of the elements.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Reads {
     /// The relation.
@@ -31,9 +32,9 @@ pub struct Reads {
     pub answers: f64,
     /// Row reads per query; a row counts each time it is read.
     pub reads: f64,
-    /// Bytes read per query, each once.
+    /// Bytes read per query; each byte counts once.
     pub bytes: f64,
-    /// Cache lines touched per query, each once.
+    /// Cache lines touched per query; each line counts once.
     pub lines: f64,
     /// Row reads for listing the elements, per element.
     pub listing_reads: f64,
@@ -41,11 +42,11 @@ pub struct Reads {
     pub fetched: f64,
     /// Fetched lines that are not near a cached line, per element.
     pub jumps: f64,
-    /// Lines that the whole sweep touches, each once, including listing. Of the sample if there is
-    /// one.
+    /// Lines that the whole sweep touches, including listing; each line counts once. If there is a
+    /// sample, the sweep visits only the sample.
     pub sweep_lines: u64,
-    /// Bytes to move per element: the lines of the sweep, each once. If a sample was queried: all
-    /// lines of a query, because each query reads them again.
+    /// Bytes to move per element: those of the lines of the sweep, each line counted once. If a
+    /// sample was queried, all lines of a query count, because each query reads them again.
     pub moved_bytes: f64,
     /// By table: the row reads per query.
     pub tables: Vec<TableReads>,
@@ -79,7 +80,7 @@ pub trait ReadsObserver {
 
 /// Queries `relations` of `mesh` and counts the reads, until `stop` is true.
 ///
-/// Takes several times the time of the queries, and a third of the memory of the mesh in addition.
+/// Takes several times as long as the queries, and additional memory of a third of the mesh.
 pub(crate) fn count<M: Measured>(
     mesh: M,
     relations: &[Relation],

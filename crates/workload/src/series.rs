@@ -157,9 +157,9 @@ impl<'c> Series<'c> {
 /// Copies that runs change, and that are reset to their initial state outside the timing.
 ///
 /// Normally one copy is used. If a run is too short for the clock, several copies are used in turn,
-/// for about 60 µs of timed work. Together they fit half of the second-level cache, so that each
-/// copy is as warm in the cache as a single one would be. The copies, with the grown capacity of
-/// their tables, are kept from one series to the next.
+/// for about 60 µs of timed work. Together they fit into half of the second-level cache. Each copy
+/// is therefore as warm in the cache as a single copy would be. The copies, with the grown capacity
+/// of their tables, are kept from one series to the next.
 #[derive(Debug)]
 pub(crate) struct ReusedCopies<T> {
     copies: Vec<T>,
@@ -217,7 +217,7 @@ impl<T> ReusedCopies<T> {
             while self.copies.len() < count {
                 let mut copy = new();
                 if !self.copies.is_empty() && !fresh {
-                    // An untimed run, so that its tables have grown like those of the first copy.
+                    // This untimed run grows the tables of the copy like those of the first copy.
                     run(&mut copy);
                     reset(&mut copy);
                 }
@@ -236,13 +236,14 @@ impl<T> ReusedCopies<T> {
         total
     }
 
-    /// Returns a copy in its state after a run, if there was a run. All runs do the same.
+    /// Returns a copy in its state after a run; `None` before the first run. All runs do the same
+    /// work.
     pub(crate) fn used_copy(&self) -> Option<&T> {
         self.copies.first()
     }
 }
 
-/// Runs `make` as often as `series` describes; the results, of `bytes` each, are dropped outside
+/// Runs `make` as often as `series` describes. The results, of `bytes` each, are dropped outside
 /// the timing. Returns the total time of the timed runs, and one of the results if there was a run.
 pub(crate) fn time_making<T>(
     series: &Series<'_>,

@@ -21,24 +21,25 @@ pub struct SingleEdit {
 }
 
 impl SingleEdit {
-    /// Sets it up on the structure of `backend`. Returns `None` if the structure does not support
-    /// the edit.
+    /// Sets up the edit on the structure of `backend`. Returns `None` if the structure does not
+    /// support the edit.
     ///
     /// # Errors
     ///
-    /// Returns the reason if the structure cannot hold `polygons`, or the edit is refused there.
+    /// Returns the reason if the structure cannot hold `polygons`, or a place cannot be prepared
+    /// for the edit.
     pub fn prepare(self, backend: &Backend, polygons: &PolygonMesh) -> Option<PreparedEditor> {
         backend.info.edits[self.edit as usize]?;
         Some((backend.edits?.prepare_single)(self, polygons))
     }
 
-    /// Returns whether it is one pass over the whole mesh, independent of places.
+    /// Returns whether the edit is one pass over the whole mesh, independent of places.
     pub const fn is_pass(self) -> bool {
         matches!(self.edit, Edit::Compact | Edit::RemoveIsolatedVertices)
     }
 }
 
-/// Sets `job` up on `M`.
+/// Sets up `job` on `M`.
 pub(crate) fn prepare_single<M: Representation + MeshEdit + 'static>(
     job: SingleEdit,
     polygons: &PolygonMesh,

@@ -13,8 +13,9 @@ use crate::series::Series;
 use crate::subdivision_job::SubdivisionJob;
 use crate::timed_structure::{Outcome, Run};
 
-/// Returns the pool of the one thread that runs all subdivisions. With one thread, its processor
-/// time is that of all the work. All structures use the same thread, so that they share its heap.
+/// Returns the pool of the one thread that runs all subdivisions. The processor time of this thread
+/// is therefore that of all the work. All structures use the same thread, so that they share its
+/// heap.
 fn one_thread_pool() -> Result<&'static ThreadPool, String> {
     static POOL: OnceLock<Result<ThreadPool, String>> = OnceLock::new();
     let start = || {
@@ -24,7 +25,7 @@ fn one_thread_pool() -> Result<&'static ThreadPool, String> {
     POOL.get_or_init(start).as_ref().map_err(Clone::clone)
 }
 
-/// Sets `job` up on the structure of `backend`, built from `polygons`, and runs it as `series`
+/// Sets up `job` on the structure of `backend`, built from `polygons`. Runs the job as `series`
 /// describes.
 ///
 /// Set-up is outside the timing. In native subdivisions, the untimed runs make the tables that all
@@ -70,8 +71,8 @@ fn set_up_and_run(
     Ok(Run::done(time, outcome))
 }
 
-/// Checks that the scheme accepts the degrees of the faces. It is checked here, so that the error
-/// is the same for all structures and names a face of the whole mesh. O(faces) at most.
+/// Checks that the scheme accepts the degrees of the faces. The check is made here, so that the
+/// error is the same for all structures and names a face of the whole mesh. O(faces) at most.
 fn check_degrees(job: SubdivisionJob, polygons: &PolygonMesh) -> Result<(), SubdivisionError> {
     let scheme = job.subdivision.scheme;
     if scheme.kind().takes != "triangles" {
@@ -87,9 +88,9 @@ fn check_degrees(job: SubdivisionJob, polygons: &PolygonMesh) -> Result<(), Subd
     }
 }
 
-/// Returns a mesh of about the first `size` faces of `polygons`, without faces that touch others
-/// only at a vertex. So every structure that holds `polygons` also holds it. O(size · log size) for
-/// each of a few passes.
+/// Returns a mesh of about the first `size` faces of `polygons`. Faces that touch others only at a
+/// vertex are left out, so that every structure that holds `polygons` also holds this mesh. Takes
+/// O(size · log size) for each of a few passes.
 pub(crate) fn patch(polygons: &PolygonMesh, size: usize) -> PolygonMesh {
     let faces = polygons.faces().iter().take(size.max(1));
     let mut faces: Vec<&[VertexId]> = faces.map(|(_, corners)| corners).collect();

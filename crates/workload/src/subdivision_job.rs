@@ -28,7 +28,7 @@ impl Way {
     /// All four ways.
     pub const ALL: [Self; 4] = [Self::Gather, Self::Scatter, Self::NativeFresh, Self::Native];
 
-    /// Returns its name, as users write it: `native_fresh`.
+    /// Returns the name that users write: `native_fresh`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Gather => "gather",
@@ -95,8 +95,8 @@ impl SubdivisionJob {
         }
     }
 
-    /// Sets it up on the structure of `backend`. Returns `None` if the structure does not support
-    /// this way.
+    /// Sets up the subdivision on the structure of `backend`. Returns `None` if the structure does
+    /// not support this way.
     ///
     /// # Errors
     ///
@@ -129,7 +129,7 @@ impl SubdivisionJob {
 /// A subdivision ready to be run, or the reason why it is not.
 pub type PreparedRefiner = Result<Box<dyn Refiner>, SubdivisionError>;
 
-/// Sets `job` up on `M`, which is rebuilt from each level.
+/// Sets up `job` on `M`, which is rebuilt from each level.
 pub(crate) fn prepare_rebuilt<M: Representation + 'static>(
     job: SubdivisionJob,
     polygons: &PolygonMesh,
@@ -144,7 +144,7 @@ pub(crate) fn prepare_rebuilt<M: Representation + 'static>(
     }))
 }
 
-/// Sets `job` up in the tables of `M`.
+/// Sets up `job` in the tables of `M`.
 pub(crate) fn prepare_native<M: Refine + 'static>(
     job: SubdivisionJob,
     polygons: &PolygonMesh,
@@ -173,7 +173,7 @@ impl<M: Representation + 'static> Refiner for Rebuilt<M> {
     fn run(&mut self) -> Result<(), SubdivisionError> {
         let subdivision = &self.job.subdivision;
         let mut creases = self.creases.clone();
-        // Drops the result of the previous run, so that all runs do the same.
+        // Drops the result of the previous run, so that all runs do the same work.
         self.last = PolygonMesh::default();
         let mut finest: Option<M> = None;
         for level in 0..self.job.levels {

@@ -4,14 +4,14 @@
 //! `for_each`: circulators are 5 to 20 % faster with it than with `for` (`vertex_normal`,
 //! `face_barycenter`, `edge_edges` on icosphere6, in order and shuffled).
 //!
-//! The loops over all elements must not depend on inlining, which differs between programs: a
-//! closure that changes captured variables keeps them in memory if it is not inlined, and then
-//! loads the addresses of all tables again for each element. So they pass sums by value with
-//! `fold`, or store results with `for`.
+//! The loops over all elements must be fast without inlining, because inlining differs between
+//! programs. If a closure changes captured variables and is not inlined, it keeps these variables
+//! in memory, and loads the addresses of all tables again for each element. Therefore the loops
+//! pass sums by value with `fold`, or store results with `for`.
 //!
-//! Operations store their results in [`Outputs`], which are made once per structure. By definition
-//! of the operations, allocating outputs is outside the timing, but allocating the queue and the
-//! depths of `ff_bfs` is inside.
+//! Operations store their results in [`Outputs`], which are made once per structure. The allocation
+//! of outputs is not timed. The allocation of the queue and the depths of `ff_bfs` is timed: it is
+//! part of that operation.
 
 use std::hash::Hasher;
 use std::hint::black_box;
@@ -182,7 +182,8 @@ pub(crate) struct Sink {
 impl Sink {
     #[inline(always)]
     pub(crate) fn consume<H: Handle>(&mut self, handles: impl IntoIterator<Item = H>) {
-        // Added in registers: a sum behind a reference would be stored for every handle.
+        // The sums are kept in registers: a sum behind a reference would be stored for every
+        // handle.
         let add = |(count, tokens): (u64, u64), handle: H| {
             (count + 1, tokens.wrapping_add(token(handle)))
         };
@@ -268,7 +269,7 @@ fn query_faces<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepRes
     })
 }
 
-/// Calls `store` for each element, which stores a result, and counts the elements.
+/// Calls `store` for each element to store its result, and counts the elements.
 #[inline(always)]
 fn count_each<I: Iterator>(elements: I, mut store: impl FnMut(I::Item)) -> SweepResult {
     let mut count = 0;
@@ -303,8 +304,8 @@ fn face_barycenters<M: MeshQuery, E: Elements<M>>(
 /// first corner.
 #[inline(always)]
 fn face_normal<M: MeshQuery>(mesh: &M, f: M::Face) -> Point {
-    // Does not use `map` to get positions: its `fold` is not always inlined, and a call per face is
-    // measurable.
+    // Positions are read without `map`: the `fold` of `map` is not always inlined, and a call per
+    // face is measurable.
     let mut corners = mesh.face_vertices(f);
     let (Some(first), Some(second)) = (corners.next(), corners.next()) else {
         return Point::ZERO; // unreachable, as a face has three corners; avoids the code of a panic
@@ -399,9 +400,9 @@ fn boundary_edges<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> Sweep
 ///
 /// Every neighbour is written to the end of the queue, but the queue grows only if the neighbour is
 /// new. This avoids a branch: two of three neighbours are already visited, in an order that a
-/// processor cannot predict. Measured on half-edge, ns per face with that branch / without it /
-/// without it and with `for_each`: icosphere6 23 / 24 / 19, bunny 21 / 18 / 11, nefertiti 30 / 28 /
-/// 20.
+/// processor cannot predict. Measured on half-edge, in ns per face (with that branch / without it /
+/// without it and with `for_each`): icosphere6 23 / 24 / 19, bunny 21 / 18 / 11, nefertiti 30 / 28
+/// / 20.
 #[inline(never)]
 fn breadth_first<M: MeshQuery>(mesh: &M) -> SweepResult {
     const UNVISITED: u32 = u32::MAX;

@@ -19,17 +19,17 @@ use crate::sweeps::{All, Elements, Outputs, SweepResult, field_sum, sweep_kind};
 pub struct Job {
     /// The operation.
     pub operation: Operation,
-    /// The elements that represent all; `None` runs all of them.
+    /// The elements that represent all elements; `None` to run all of them.
     pub sample: Option<ElementSample>,
 }
 
-/// The elements that represent all: the first ones of the draw, for the kinds whose queries scan.
-/// For a subdivision, the first faces as a mesh of their own.
+/// The elements that represent all elements. For each kind whose queries scan, these are the first
+/// elements of the draw. For a subdivision, they are the first faces, as a separate mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ElementSample {
     /// By kind: whether it is sampled. All elements of the other kinds are visited.
     pub scanned: [bool; 3],
-    /// The number of elements of each sampled kind, limited by how many the mesh has.
+    /// The number of elements of each sampled kind, or all elements if the mesh has fewer.
     pub size: usize,
 }
 
@@ -77,7 +77,7 @@ pub struct Outcome {
 /// A backend that is ready to be timed: a structure built from a mesh, or an external program. Tests
 /// can implement it.
 pub trait TimedBackend {
-    /// Returns its name, as users write it.
+    /// Returns the name that users write.
     fn name(&self) -> &str;
     /// Returns whether it is an external program. Such a program runs only whole operations, and
     /// the results of other backends are not checked against its results.
@@ -90,16 +90,16 @@ pub trait TimedBackend {
     fn merged_vertices(&self) -> usize;
     /// Returns the bytes of its tables.
     fn bytes(&self) -> usize;
-    /// Builds it again from the same polygons at other addresses: the times of some operations
-    /// depend slightly on the addresses and pages of the tables. Does nothing if there is nothing
-    /// to build.
+    /// Builds the backend again from the same polygons at other addresses. The times of some
+    /// operations depend slightly on the addresses and pages of the tables. Does nothing if there
+    /// is nothing to build.
     fn rebuild(&mut self) {}
-    /// Runs `job` as `series` describes, or once if the job has a sample. The time is that of one
-    /// run.
+    /// Runs `job` as `series` describes, or once if the job has a sample. The returned time is that
+    /// of one run.
     fn run(&mut self, job: &Job, series: &Series<'_>) -> Run;
 }
 
-/// A structure built from `polygons`, with storage for outputs and its handles of the drawn
+/// A structure built from `polygons`, with storage for outputs and with handles of the drawn
 /// elements.
 pub(crate) struct TimedStructure<'a, M: Representation> {
     backend: Backend,
@@ -173,9 +173,10 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         let outcome = copies.used_copy().filter(|_| series.check).map(|smoothed| {
             let after = smoothed.vertices().map(|v| smoothed.position(v));
             let means = mesh.vertices().map(|v| outputs.vertices[v]);
-            // If a vertex is its coordinates, smoothing can move two vertices to one position. The
-            // structure then merges them, or refuses if they are corners of one face. The work up
-            // to that point is the same, so the checksum then uses the computed means.
+            // If a structure identifies vertices by their coordinates, smoothing can move two
+            // vertices to one position. The structure then merges them, or refuses the mesh if they
+            // are corners of one face. The work up to that point is the same, so the checksum then
+            // uses the computed means.
             let apart = smoothed.vertex_count() == mesh.vertex_count();
             let checksum = match moved.is_ok() && apart {
                 true => field_sum(after),
@@ -375,10 +376,11 @@ impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
 /// Reads every table of `mesh`, if the mesh is larger than the second-level cache and runs are to
 /// start with warm caches.
 ///
-/// After another backend was measured, runs that read the tables in another order need up to ten
-/// passes until the third-level cache holds them again: `edge_edges` on a winged-edge mesh of
-/// 200,000 faces then took 8 ms instead of 3 ms. After one sequential pass, the first run already
-/// takes 3 ms, as in a program that runs nothing else.
+/// If another backend was measured before, the third-level cache holds the data of that backend.
+/// Runs that do not read the tables in row order then need up to ten passes until the cache holds
+/// the tables again. `edge_edges` on a winged-edge mesh of 200,000 faces took 8 ms instead of 3 ms.
+/// After one sequential pass, the first run already takes 3 ms, as in a program that runs nothing
+/// else.
 fn fill_caches<M: Representation>(mesh: &M, series: &Series<'_>) {
     if needs_filling(mesh, series) {
         let scans = M::cost(Relation::VertexFaces) == QueryCost::Scan;
@@ -407,8 +409,8 @@ fn needs_filling<M: Representation>(mesh: &M, series: &Series<'_>) -> bool {
     matches!(series.start, Start::Warm) && exceeds_second_level(mesh.memory().total())
 }
 
-/// Reads every row of every table of `mesh`, as far as possible in the order of the rows. `scans`:
-/// whether relations of vertices read all faces.
+/// Reads every row of every table of `mesh`, as far as possible in the order of the rows. `scans`
+/// is true if relations of vertices read all faces.
 fn read_tables<M: MeshQuery>(mesh: &M, scans: bool) {
     mesh.faces().for_each(|f| {
         black_box(mesh.face_vertices(f).last());
@@ -421,7 +423,7 @@ fn read_tables<M: MeshQuery>(mesh: &M, scans: bool) {
             black_box(mesh.vertex_faces(v).last());
         });
     }
-    // If edges are not rows, no table has them, and listing them would search.
+    // If edges are not rows, no table contains them, and listing them would need searches.
     if mesh.edge_rows() > 0 {
         mesh.edges().for_each(|e| {
             black_box(mesh.edge_vertices(e));
@@ -475,7 +477,8 @@ impl<M: MeshQuery> Default for DrawnHandles<M> {
 }
 
 impl<M: Representation> DrawnHandles<M> {
-    /// Looks up handles of drawn elements until there are `size` of each kind, or all of them.
+    /// Looks up handles of drawn elements until there are `size` handles of each kind, or one for
+    /// every element.
     fn extend_to(&mut self, mesh: &M, polygons: &PolygonMesh, draw: &Draw, size: usize) {
         fn missing<T>(drawn: &[T], known: usize, size: usize) -> &[T] {
             &drawn[known..drawn.len().min(size).max(known)]
@@ -508,7 +511,7 @@ pub(crate) fn edge_handle<M: Representation>(
         .expect("a face has an edge for each of its sides")
 }
 
-/// The sampled elements of the kinds that are sampled, and all elements of the others.
+/// The sampled elements of each sampled kind, and all elements of the other kinds.
 struct SampledElements<'c, M: MeshQuery> {
     drawn: &'c DrawnHandles<M>,
     scanned: [bool; 3],
@@ -516,7 +519,7 @@ struct SampledElements<'c, M: MeshQuery> {
 }
 
 impl<M: MeshQuery> SampledElements<'_, M> {
-    /// Returns the sampled `handles` of `kind`, or all of `others`, which may be costly to list.
+    /// Returns the sampled `handles` if `kind` is sampled, else the elements that `others` lists.
     #[inline(always)]
     fn pick<'p, H: Copy, I: Iterator<Item = H> + 'p>(
         &self,

@@ -2,7 +2,7 @@
 
 use strsim::jaro_winkler;
 
-/// Minimum Jaro–Winkler similarity of a known name to be suggested.
+/// Minimum Jaro–Winkler similarity between the unknown name and a suggested name.
 const MIN_SIMILARITY: f64 = 0.8;
 
 /// Builds a message such as: no operation is called `boundry` (did you mean `boundary`?): choose

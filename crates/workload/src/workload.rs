@@ -24,8 +24,8 @@ pub struct Workload {
     pub access: Access,
     /// The number of operations in one use of a mesh.
     pub operations: Amount,
-    /// The number of times that the structure is rebuilt during these operations, without the first
-    /// build.
+    /// The number of rebuilds of the structure during these operations. The first build is not
+    /// counted.
     pub rebuilds: u64,
     /// The operations with their weights; at least one weight is more than 0.
     pub mix: Vec<Part>,
@@ -36,7 +36,7 @@ pub struct Workload {
 pub struct Part {
     /// The operation.
     pub action: Action,
-    /// Its frequency relative to the weights of the other parts.
+    /// The frequency of the operation, relative to the weights of the other parts.
     pub weight: Amount,
 }
 
@@ -74,8 +74,8 @@ pub enum Access {
     Sequential,
     /// In random order: each element of the mesh once, then again in the same order.
     Random,
-    /// Patch by patch: the faces around a random face, breadth first, with their vertices and
-    /// edges.
+    /// Patch by patch. A patch is the faces around a random face, breadth first, with their
+    /// vertices and edges.
     Patches,
 }
 
@@ -169,7 +169,7 @@ impl Access {
     /// All three orders.
     pub const ALL: [Self; 3] = [Self::Sequential, Self::Random, Self::Patches];
 
-    /// Returns its name, as users write it: `patches`.
+    /// Returns the name that users write: `patches`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Sequential => "sequential",
@@ -220,7 +220,7 @@ impl Action {
             .collect()
     }
 
-    /// Returns its name, as users write it: `vertex_faces`.
+    /// Returns the name that users write: `vertex_faces`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Relation(relation) => relation.name(),
@@ -235,8 +235,8 @@ impl Action {
         }
     }
 
-    /// Returns the kind of element that it works on. `None` for passes, which work on the whole
-    /// mesh, and for edits, which have their own places.
+    /// Returns the kind of element that the action works on. `None` for passes, because they work
+    /// on the whole mesh, and for edits, because they have their own places.
     pub const fn kind(self) -> Option<ElementKind> {
         match self {
             Self::Relation(relation) => Some(ElementKind::queried_by(relation)),
@@ -249,7 +249,8 @@ impl Action {
         }
     }
 
-    /// Returns the relations that it queries; empty for [`Self::Edit`] and [`Self::Subdivide`].
+    /// Returns the relations that the action queries; empty for [`Self::Edit`] and
+    /// [`Self::Subdivide`].
     pub fn relations(self) -> Vec<Relation> {
         match self {
             Self::Relation(relation) => vec![relation],
@@ -264,12 +265,12 @@ impl Action {
         }
     }
 
-    /// Returns whether it visits the whole mesh.
+    /// Returns whether the action visits the whole mesh.
     pub const fn is_pass(self) -> bool {
         matches!(self, Self::Pass(_) | Self::Subdivide)
     }
 
-    /// Returns whether it changes connectivity, in the mesh or in a copy of it.
+    /// Returns whether the action changes the connectivity of the mesh or of a copy.
     pub const fn changes_connectivity(self) -> bool {
         match self {
             Self::Edit(_) | Self::Subdivide => true,
@@ -278,7 +279,7 @@ impl Action {
         }
     }
 
-    /// Returns whether it needs an editable mesh.
+    /// Returns whether the action needs an editable mesh.
     pub const fn needs_editable_mesh(self) -> bool {
         matches!(
             self,
@@ -318,7 +319,7 @@ impl Workload {
     }
 
     /// Returns the share of each part of the mix in all operations, on a mesh with these counts.
-    /// The shares add up to 1. They are equal if the mesh has no elements of the kinds in the
+    /// The shares add up to 1. All shares are equal if the mesh has no elements of the kinds in the
     /// weights.
     pub fn shares(&self, counts: &Counts) -> Vec<f64> {
         let weights: Vec<f64> = self.mix.iter().map(|p| p.weight.value_on(counts)).collect();
@@ -334,7 +335,7 @@ impl Workload {
         self.rebuilds as f64 / self.operations_on(counts)
     }
 
-    /// Returns whether it does not change connectivity. It may change positions.
+    /// Returns whether the workload leaves the connectivity unchanged. Positions may change.
     pub fn is_read_only(&self) -> bool {
         !self
             .mix
@@ -342,7 +343,7 @@ impl Workload {
             .any(|part| part.action.changes_connectivity())
     }
 
-    /// Returns the relations that its operations query, each once.
+    /// Returns the relations that the operations query, each once.
     pub fn relations(&self) -> Vec<Relation> {
         let queried = self.mix.iter().flat_map(|part| part.action.relations());
         let mut queried: Vec<Relation> = queried.collect();

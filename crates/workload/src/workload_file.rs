@@ -1,4 +1,4 @@
-//! Reads workload files: TOML text in, a workload or an error with its line out.
+//! Reads workload files: parses TOML text into a workload, or returns an error with its line.
 
 use std::fmt;
 use std::ops::Range;

@@ -6,8 +6,8 @@ use sixfold_core::{EditRecord, MeshEdit, Refusal};
 
 use super::action::Action;
 
-/// Applies `action` to a mesh of the structure `name`, with the handles of the elements of the
-/// model, and returns the vertex that it made or moved.
+/// Applies `action` to a mesh of the structure `name`. `vertices` and `faces` map the elements of
+/// the model to handles. Returns the vertex that the action made or moved.
 pub(super) fn apply_action<M: MeshEdit>(
     mesh: &mut M,
     name: &str,

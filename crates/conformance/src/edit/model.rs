@@ -14,7 +14,7 @@ use crate::weld::position_key;
 pub struct Rules {
     /// Meshes that the structure can hold.
     pub capabilities: Capabilities,
-    /// Whether it supports each edit, in the order of [`Edit::ALL`].
+    /// Whether the structure supports each edit, in the order of [`Edit::ALL`].
     pub supported: [bool; Edit::ALL.len()],
 }
 
@@ -67,8 +67,8 @@ impl Model {
         *self.positions.get(v)?
     }
 
-    /// Returns each edge with its faces, and whether each face runs along it from the lower end to
-    /// the higher.
+    /// Returns each edge with its faces. The flag of a face is true if the face runs along the edge
+    /// from the lower to the higher end.
     pub fn edges(&self) -> BTreeMap<[usize; 2], Vec<(usize, bool)>> {
         let mut edges: BTreeMap<_, Vec<_>> = BTreeMap::new();
         for (f, face) in self.faces() {
@@ -100,7 +100,7 @@ impl Model {
     ///
     /// # Panics
     ///
-    /// Panics if a face uses a removed vertex: then the model itself has a bug.
+    /// Panics if a face uses a removed vertex, because this is a bug of the model.
     pub fn to_polygons(&self) -> PolygonMesh {
         let number: BTreeMap<usize, u32> = self.vertices().zip(0..).collect();
         let positions: Vec<Point> = self.positions.iter().copied().flatten().collect();
@@ -151,8 +151,8 @@ impl Model {
         }
     }
 
-    /// Returns the two faces of an edge if they run along it in opposite directions; the one from
-    /// `a` to `b` is first.
+    /// Returns the two faces of an edge if they run along it in opposite directions. The face that
+    /// runs from `a` to `b` is first.
     fn opposite_faces(&self, [a, b]: [usize; 2]) -> Option<[usize; 2]> {
         let edges = self.edges();
         match *edges.get(&[a.min(b), a.max(b)])?.as_slice() {

@@ -30,7 +30,7 @@ pub struct ModelTest<M: MeshEdit> {
     rules: Rules,
     vertices: BTreeMap<usize, M::Vertex>,
     faces: BTreeMap<usize, M::Face>,
-    /// Handles of removed elements, which must not be valid again.
+    /// Handles of removed elements. They must not become valid again.
     removed: Vec<Removed<M::Vertex, M::Edge, M::Face>>,
 }
 
@@ -42,7 +42,7 @@ enum Removed<V, E, F> {
 }
 
 impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
-    /// Builds `M` from `polygons`; `None` if its capabilities exclude them.
+    /// Builds `M` from `polygons`. Returns `None` if the capabilities of `M` exclude this mesh.
     ///
     /// # Panics
     ///
@@ -74,11 +74,11 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         self.model.after(action, &self.rules).is_some()
     }
 
-    /// Applies `action` to the mesh and to the model, and returns whether it was accepted.
+    /// Applies `action` to the mesh and to the model, and returns whether the action was accepted.
     ///
     /// # Panics
     ///
-    /// Panics if the mesh and the model differ: in acceptance, faces, positions, handles or record.
+    /// Panics if the mesh and the model differ in acceptance, faces, positions, handles or record.
     /// Also panics if an invariant of the mesh is broken.
     pub fn apply(&mut self, action: &Action) -> bool {
         let name = M::NAME;
@@ -127,8 +127,8 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         true
     }
 
-    /// Applies `action` to `mesh`, which must have the same handles as the mesh under test, and
-    /// reports the changes to `log`. Returns the vertex that was made or moved.
+    /// Applies `action` to `mesh`, and reports the changes to `log`. `mesh` must have the same
+    /// handles as the mesh under test. Returns the vertex that was made or moved.
     ///
     /// # Errors
     ///
@@ -167,16 +167,16 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         self.faces[&f]
     }
 
-    /// Returns whether both hold the same mesh: equal positions and equal faces.
+    /// Returns whether both tests hold the same mesh, with equal positions and equal faces.
     pub fn is_same_mesh(&self, other: &Self) -> bool {
         let [first, second] = [self, other].map(|test| test.mesh.to_polygons());
         sorted_faces(&first) == sorted_faces(&second)
             && sorted_positions(&first) == sorted_positions(&second)
     }
 
-    /// Compares all relations and the boundary of the mesh, which may have holes, with its faces.
-    /// Checks its iterators and its numbers, that the mesh contains its own elements, and that
-    /// removed handles are invalid.
+    /// Compares all relations and the boundary of the mesh with its faces. The mesh may have
+    /// deleted rows. Checks the iterators and the numbers of the mesh. Also checks that the mesh
+    /// contains its own elements, and that handles of removed elements are invalid.
     ///
     /// # Panics
     ///
@@ -242,8 +242,8 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         }
     }
 
-    /// Returns whether the handle of a removed element is not a row of its own, but a pair,
-    /// coordinates or a corner.
+    /// Returns whether the handle of a removed element is derived: a pair, coordinates or a corner,
+    /// instead of a row of its own.
     fn has_derived_handle(removed: Removed<M::Vertex, M::Edge, M::Face>) -> bool {
         match removed {
             Removed::Vertex(_) => !M::CAPABILITIES.coincident_vertices,
@@ -261,13 +261,14 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         ends.is_ok_and(|ends| ends.iter().any(|end| message.contains(&format!("{end:?}"))))
     }
 
-    /// Returns whether the handle of a removed element is derived, and another element has it now.
+    /// Returns whether the handle of a removed element is derived and another element now has the
+    /// same handle.
     fn is_reused(&self, removed: Removed<M::Vertex, M::Edge, M::Face>) -> bool {
         Self::has_derived_handle(removed)
             && match removed {
                 Removed::Vertex(v) => self.mesh.vertices().any(|known| known == v),
-                // Any corner that faces an edge may stand for it, not only the one used as its
-                // handle.
+                // Every corner opposite an edge identifies this edge, not only the corner that is
+                // its handle.
                 Removed::Edge(e) => {
                     catch_panic(|| self.mesh.edge_vertices(e)).is_ok_and(|[a, b]| {
                         catch_panic(|| self.mesh.edge_between(a, b))
@@ -278,7 +279,8 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
             }
     }
 
-    /// Checks that the mesh without its holes is the same mesh, and can be made editable again.
+    /// Checks that `into_compact` returns the same mesh, and that the result can be made editable
+    /// again.
     fn check_into_compact(&self) {
         let compact = self.mesh.clone().into_compact();
         assert_eq!(
@@ -297,7 +299,7 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         assert!(same, "{}: into_compact changes the mesh", M::NAME);
     }
 
-    /// Checks that `set_positions` moves all vertices of a mesh with holes, and that removed
+    /// Checks that `set_positions` moves all vertices of a mesh with deleted rows, and that removed
     /// vertices stay removed.
     fn check_set_positions(&self) {
         let mut mesh = self.mesh.clone();
@@ -354,7 +356,7 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
             .map(|(v, handle)| (v, renamed.get(&handle).copied().unwrap_or(handle)))
             .collect();
         if let Some(made) = made {
-            // The newest vertex of the model, or the one that was moved.
+            // The vertex that was moved, or the newest vertex of the model.
             let v = match action {
                 Action::SetPosition { v, .. } => *v,
                 Action::CollapseEdge { ends, .. } => ends[0],
@@ -427,7 +429,8 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
     }
 }
 
-/// Returns the change of χ by an edit on a manifold, if it does not depend on the mesh.
+/// Returns the amount by which an edit on a manifold changes χ, if this amount does not depend on
+/// the mesh.
 fn euler_step(action: &Action) -> Option<isize> {
     match action.edit() {
         Edit::AddVertex => Some(1),

@@ -1,4 +1,4 @@
-//! Compares the nine relations of an edited mesh, which may have holes, with its faces.
+//! Compares the nine relations of an edited mesh with its faces. The mesh may have deleted rows.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
@@ -32,8 +32,8 @@ pub(crate) fn check_relations<M: MeshQuery>(mesh: &M, name: &str) {
     }
 }
 
-/// The relations between the elements of a mesh, computed from the corners of its faces. An edge is
-/// found by its ends, the lower one first.
+/// The relations between the elements of a mesh, computed from the corners of its faces. The key of
+/// an edge is its two ends, the lower one first.
 struct Expected<'a, M: MeshQuery> {
     name: &'a str,
     corners: BTreeMap<M::Face, Vec<M::Vertex>>,
@@ -43,7 +43,8 @@ struct Expected<'a, M: MeshQuery> {
 }
 
 impl<'a, M: MeshQuery> Expected<'a, M> {
-    /// Computes the relations. Panics unless the edges are the sides of the faces, each once.
+    /// Computes the relations. Panics if `edges` does not list every edge of the faces exactly
+    /// once.
     fn new(mesh: &M, edges: &[M::Edge], faces: &[M::Face], name: &'a str) -> Self {
         let corners_of = |&f: &M::Face| (f, mesh.face_vertices(f).collect());
         let corners: BTreeMap<_, Vec<_>> = faces.iter().map(corners_of).collect();

@@ -40,8 +40,8 @@ pub fn script(edits: &[Edit], max_steps: usize) -> impl Strategy<Value = Vec<Ste
 }
 
 impl Step {
-    /// Returns the action of this step on `model`; `number` gives the position of a new vertex.
-    /// `None` if `model` has no element for the action.
+    /// Returns the action of this step on `model`, or `None` if `model` has no element for the
+    /// action. `number` determines the position of a new vertex.
     pub fn action(&self, model: &Model, number: usize) -> Option<Action> {
         let at = self.new_position(model, number)?;
         let vertex = || pick(&model.vertices().collect::<Vec<_>>(), self.pick(0));
@@ -71,12 +71,13 @@ impl Step {
         })
     }
 
-    /// Returns the number `i` of the four that select elements.
+    /// Returns the `i`-th of the four numbers that select elements.
     fn pick(&self, i: usize) -> usize {
         self.picks[i].into()
     }
 
-    /// Returns the edit of this step, or a collapse if it would add faces to a mesh that has many.
+    /// Returns the edit of this step, or a collapse if the edit would add faces to a mesh with many
+    /// faces.
     fn edit_on(&self, model: &Model) -> Edit {
         let grows = matches!(
             self.edit,
@@ -93,7 +94,7 @@ impl Step {
         }
     }
 
-    /// Returns the position of a new vertex; sometimes that of an existing vertex.
+    /// Returns the position of a new vertex. Sometimes this is the position of an existing vertex.
     fn new_position(&self, model: &Model, number: usize) -> Option<Point> {
         let [p, q, r, s] = self.picks.map(usize::from);
         if s % 64 == 63 {
@@ -115,8 +116,8 @@ impl Step {
         })
     }
 
-    /// Returns the split of a face between two of its corners, of a polygon if there is one,
-    /// because a triangle cannot be split.
+    /// Returns the split of a face between two of its corners. Chooses a face with more than three
+    /// corners if there is one, because a triangle cannot be split.
     fn face_split(&self, model: &Model) -> Option<Action> {
         let [p, q, r, _] = self.picks.map(usize::from);
         let polygons = model.faces().filter(|(_, face)| face.len() > 3);
@@ -143,8 +144,8 @@ impl Step {
         Some(Action::CollapseEdge { ends, to })
     }
 
-    /// Returns the split of `v` between two adjacent vertices, or sometimes from one to the
-    /// boundary.
+    /// Returns the split of `v` between two adjacent vertices, or sometimes from one adjacent
+    /// vertex to the boundary.
     fn vertex_split(&self, model: &Model, v: usize, at: Point) -> Action {
         let [_, q, r, s] = self.picks.map(usize::from);
         let around: Vec<usize> = model.neighbours(v).into_iter().collect();
@@ -157,12 +158,12 @@ impl Step {
         Action::SplitVertex { v, left, right, at }
     }
 
-    /// Returns corners of a new face that is often legal: any three vertices, a triangle at a
+    /// Returns the corners of a new face that is often legal: any three vertices, a triangle at a
     /// boundary edge or between two successive boundary edges, or the whole boundary of a hole.
     fn new_face(&self, model: &Model) -> Option<Vec<usize>> {
         let [p, q, r, s] = self.picks.map(usize::from);
         let vertices: Vec<usize> = model.vertices().collect();
-        // The sides of the boundary, in the direction of a face outside it.
+        // The boundary edges, in the direction in which a new face would run along them.
         let boundary: Vec<[usize; 2]> = model
             .edges()
             .into_iter()

@@ -20,7 +20,7 @@ pub(super) fn klein_bottle(m: u32, n: u32) -> PolygonMesh {
     mesh(m * n, &faces.collect::<Vec<_>>())
 }
 
-/// Builds 4 × 4 quads, row by row, without two of the inner four, which have a corner in common.
+/// Builds 4 × 4 quads, row by row, but leaves out two inner quads that share only a corner.
 pub(super) fn touching_holes() -> PolygonMesh {
     let cells = (0..4_u32).flat_map(|j| (0..4_u32).map(move |i| (i, j)));
     let kept = cells.filter(|cell| ![(1, 1), (2, 2)].contains(cell));
@@ -29,14 +29,15 @@ pub(super) fn touching_holes() -> PolygonMesh {
     mesh(25, &faces.collect::<Vec<_>>())
 }
 
-/// Builds triangles from a ring of `n` vertices to an apex above (the first vertex) and one below.
+/// Builds triangles that join a ring of `n` vertices to two apexes. The first vertex is the apex
+/// above the ring; the other apex is below the ring.
 pub(crate) fn double_cone(n: u32) -> PolygonMesh {
     let sides = (0..n).map(|i| (1 + i, 1 + (i + 1) % n));
     let faces = sides.flat_map(|(a, b)| [[0, a, b], [n + 1, b, a]]);
     mesh(n + 2, &faces.collect::<Vec<_>>())
 }
 
-/// Builds a strip of `n` triangles, from `x` to the right.
+/// Builds a strip of `n` triangles that starts at `x` and runs to the right.
 pub(crate) fn strip(n: u32, x: f32) -> PolygonMesh {
     let faces = (0..n).map(|i| match i % 2 {
         0 => [i, i + 1, i + 2],
@@ -47,7 +48,7 @@ pub(crate) fn strip(n: u32, x: f32) -> PolygonMesh {
     PolygonMesh::new(points, faces).expect("three successive vertices are distinct")
 }
 
-/// Builds the surface of a slab of cubes, one for each dot.
+/// Builds the surface of a layer of cubes. Each dot in `rows` is one cube.
 pub(super) fn voxels(rows: &[&str]) -> PolygonMesh {
     let filled = |x: i32, y: i32, z: i32| {
         let row = usize::try_from(y).ok().and_then(|y| rows.get(y));
@@ -100,7 +101,7 @@ pub(super) fn separate_faces(polygons: &PolygonMesh) -> PolygonMesh {
     PolygonMesh::new(points, faces).expect("each corner has its own vertex")
 }
 
-/// Builds two triangles that share an edge if −0 equals 0.
+/// Builds two triangles that share an edge only if −0 equals 0.
 pub(super) fn negative_zero() -> PolygonMesh {
     let points = [
         Point::new(0.0, 0.0, 0.0),
@@ -147,7 +148,8 @@ pub(super) fn mesh<F: AsRef<[u32]>>(vertices: u32, faces: &[F]) -> PolygonMesh {
     PolygonMesh::new(points, faces).expect("a mesh made by hand is valid")
 }
 
-/// Returns a position for each number: all positions differ, and long collinear runs do not occur.
+/// Returns the position for `number`. Different numbers have different positions, and no long run
+/// of positions is collinear.
 pub(crate) fn distinct_position(number: u32) -> Point {
     let x = number as f32;
     Point::new(x, (number * number % 7) as f32, (number % 3) as f32)

@@ -14,7 +14,7 @@ struct Case {
     answers: &'static [(&'static str, &'static str)],
 }
 
-/// The cases show four rules: an element that is adjacent twice is listed once, no element is
+/// The cases show four rules: an element that is adjacent in two ways is listed once, no element is
 /// adjacent to itself, a vertex has no ring if its faces do not form one fan, and a boundary loop
 /// continues in the same fan.
 const CASES: &[Case] = &[
@@ -166,15 +166,15 @@ const CASES: &[Case] = &[
     },
 ];
 
-/// The answers in the corner cases of the contract are those of a table made by hand.
+/// The answers in the corner cases of the contract equal a table made by hand.
 pub fn corner_cases<M: Representation>() {
     let gallery = gallery();
     let mut compared = 0;
     for case in CASES {
         let entry = gallery.iter().find(|entry| entry.name == case.mesh);
         let polygons = &entry.expect("the gallery has it").polygons;
-        // If a vertex is identified by its coordinates, only meshes that keep their numbering under
-        // welding can be compared.
+        // If a vertex is identified by its coordinates, only meshes whose numbers stay the same
+        // after welding can be compared.
         if !M::CAPABILITIES.coincident_vertices && welded(polygons).as_ref() != Ok(polygons) {
             continue;
         }

@@ -9,15 +9,15 @@ use sixfold_core::{
 use crate::gallery::double_cone;
 use crate::oracle::Oracle;
 
-/// `COSTS` are correct, measured in table reads; `cost` and `is_local` agree with them.
+/// `COSTS` are correct, as measured in table reads, and `cost` and `is_local` agree with `COSTS`.
 ///
 /// - Constant: the number of reads per item is bounded, for any size of mesh and any valence.
-/// - Local: the number of reads is bounded at a bounded valence, for any size of mesh.
+/// - Local: if the valence is bounded, the number of reads is bounded for any size of mesh.
 /// - Scan: the number of reads grows with the mesh. Declaring a lower cost for a scan is wrong, and
 ///   declaring a scan for a cheaper query is wrong too.
 ///
-/// The meshes are two tori of valence six, one nine times the size of the other, and two double
-/// cones whose apexes have valence 24 and 240.
+/// The meshes are two tori of valence six and two double cones. The large torus is nine times the
+/// size of the small one. The apexes have valence 24 in one double cone and 240 in the other.
 pub fn costs<M: Measured>() {
     let scans = M::COSTS.contains(&QueryCost::Scan);
     assert_eq!(M::is_local(), !scans, "{}: is_local", M::NAME);
@@ -49,7 +49,7 @@ pub fn costs<M: Measured>() {
     }
 }
 
-/// The methods of [`OrientedWalk`], first those that need only the face of the side.
+/// The methods of [`OrientedWalk`]. The methods that need only the face of the side come first.
 const WALK_METHODS: [&str; 11] = [
     "next_side",
     "prev_side",
@@ -64,11 +64,11 @@ const WALK_METHODS: [&str; 11] = [
     "outgoing_sides",
 ];
 
-/// How many of [`WALK_METHODS`] need only the face of the side.
+/// The number of [`WALK_METHODS`] that need only the face of the side.
 const WITHIN_A_FACE: usize = 6;
 
-/// No step of a walk scans, and a step within a face does not depend on the valence of its corners,
-/// measured in table reads on the meshes of [`costs`].
+/// No step of a walk scans, and the cost of a step within a face does not depend on the valence of
+/// its corners. The costs are measured in table reads on the meshes of [`costs`].
 pub fn oriented_walk_costs<M>()
 where
     M: Measured + OrientedWalk,
@@ -92,7 +92,7 @@ where
     }
 }
 
-/// Counts the maximum reads of each of [`WALK_METHODS`].
+/// Returns the maximum number of reads of each of [`WALK_METHODS`].
 fn walk_reads<M>(polygons: &PolygonMesh) -> [usize; WALK_METHODS.len()]
 where
     M: Measured + OrientedWalk,
@@ -188,8 +188,8 @@ fn reads<M: Measured>(polygons: &PolygonMesh) -> [Reads; 9] {
     let mut record = |relation: Relation, items: usize| {
         maxima[relation as usize].record(items, probe.take().len());
     };
-    // A few elements are enough, because the shapes are regular. The first and the last are among
-    // them, because these are the apexes.
+    // A few elements are enough, because the shapes are regular. The sample includes the first and
+    // the last vertex, because these are the apexes.
     probe.take();
     for v in sample(mesh.vertices().collect()) {
         record(Relation::VertexVertices, probed.vertex_vertices(v).count());

@@ -10,12 +10,12 @@ use sixfold_core::{
 use super::scripts::on_random_scripts;
 use crate::edit::{Action, ModelTest, Step};
 
-/// At least one in this number of steps of each edit must be accepted, because scripts of refused
-/// steps do not test much.
+/// Maximum number of steps for each accepted step of an edit. Scripts in which most steps are
+/// refused do not test much.
 const MAX_STEPS_PER_ACCEPTED: usize = 12;
 
-/// Random scripts: after every step, mesh and model are equal, handles and records agree, and the
-/// invariants hold. A refused edit changes nothing. After every 16 steps, all relations are
+/// Runs random scripts. After every step, mesh and model are equal, handles and records agree, and
+/// the invariants hold. A refused edit changes nothing. After every 16 steps, all relations are
 /// checked.
 ///
 /// `PROPTEST_CASES` sets the number of scripts.
@@ -95,14 +95,14 @@ fn check_acceptance<M: MeshEdit + Representation>(counts_by_edit: &[[usize; 2]; 
     }
 }
 
-/// `EDITS` are correct, measured in rows read and written.
+/// `EDITS` are correct, as measured in rows read and written.
 ///
 /// - Constant and Local: the number of accesses does not depend on the size of the mesh.
 /// - Scan: the number of accesses grows with the mesh. Declaring a scan for a cheaper edit is
 ///   wrong.
 ///
-/// The meshes are two tori of valence six, one sixteen times the size of the other. The cost of
-/// growing a table is not counted, only accesses to rows.
+/// The meshes are two tori of valence six. The large torus is sixteen times the size of the small
+/// one. Only accesses to rows are counted, not the cost of growing a table.
 pub fn edit_costs<M>()
 where
     M: Measured + MeshEdit,

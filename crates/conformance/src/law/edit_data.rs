@@ -39,14 +39,14 @@ impl<M: MeshQuery> ElementNumbers<M> for Numbers<M, u32> {
     }
 }
 
-/// The mesh under test: with numbers, and with a list for every element. The rule for new elements
-/// joins the lists of the parents.
+/// The mesh under test. Every element has a number and a list. For a new element, a rule joins the
+/// lists of the parents.
 type Subject<M, D> = MeshWithData<M, (D, Numbers<M, Vec<u32>>)>;
 
 type Numbers<M, T> = (VertexData<M, T>, EdgeData<M, T>, FaceData<M, T>);
 
-/// Random scripts on a [`MeshWithData`]: after every step, each element has the number that a
-/// replay of the reports by brute force gives it, and the rules for new elements received the
+/// Runs random scripts on a [`MeshWithData`]. After every step, the number of each element equals
+/// the number from a brute-force replay of the reports. The rules for new elements received the
 /// correct parents. After a script, `into_compact` and `from_compact` keep the numbers.
 ///
 /// `PROPTEST_CASES` sets the number of scripts.
@@ -54,7 +54,7 @@ pub fn data_follows_edits<M: Representation + MeshEdit + Debug>() {
     numbers_follow_edits::<M, Numbers<M, u32>>();
 }
 
-/// Does [`data_follows_edits`] with data of type `D`.
+/// Checks [`data_follows_edits`] with data of type `D`.
 pub fn numbers_follow_edits<M, D>()
 where
     M: Representation + MeshEdit + Debug,
@@ -207,7 +207,7 @@ impl<M: Representation + MeshEdit + Debug, D: ElementNumbers<M>> DataTest<M, D> 
         }
     }
 
-    /// Returns what `action` would split, before it is applied.
+    /// Returns the elements that `action` would split. Call this before the action is applied.
     fn parents(&self, test: &ModelTest<M>, action: &Action) -> Parents<M> {
         let mut parents = Parents {
             vertices: vec![],
@@ -293,7 +293,7 @@ impl<M: Representation + MeshEdit + Debug, D: ElementNumbers<M>> DataTest<M, D> 
     }
 }
 
-/// The parents of new elements that an action would make, as numbers.
+/// The numbers of the parents of the elements that an action would make.
 struct Parents<M: MeshQuery> {
     /// The parents of a new vertex, sorted.
     vertices: Vec<u32>,
@@ -303,7 +303,7 @@ struct Parents<M: MeshQuery> {
     cut: Vec<(u32, Vec<M::Vertex>)>,
 }
 
-/// Updates the numbers as an edit reports its changes, one element after the other.
+/// Updates the numbers by the reported changes of an edit, one element after the other.
 fn replay<H: Handle>(numbers: &mut BTreeMap<H, u32>, changes: &Changes<H>) {
     for (old, number) in std::mem::take(numbers) {
         if changes.removed.contains(&old) {
@@ -316,8 +316,8 @@ fn replay<H: Handle>(numbers: &mut BTreeMap<H, u32>, changes: &Changes<H>) {
     numbers.extend(changes.created.iter().map(|&new| (new, 0)));
 }
 
-/// Returns a sorted list with the numbers of each element: of a vertex, of an edge and its ends, or
-/// of a face and its corners.
+/// Returns a sorted list with one entry for each element. An entry has the number of a vertex, the
+/// numbers of an edge and its ends, or the numbers of a face and its corners.
 fn sorted_numbers<N, M, D>(mesh: &MeshWithData<N, (D, Numbers<M, Vec<u32>>)>) -> Vec<Vec<u32>>
 where
     M: MeshQuery,

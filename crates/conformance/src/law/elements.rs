@@ -12,8 +12,8 @@ use crate::element::Element;
 use crate::subject::{Subject, stored_mesh};
 use crate::weld::position_key;
 
-/// Each element is iterated once, faces and vertices in the order of the contract, and counts
-/// agree.
+/// Each element is iterated once, and counts agree. Faces and vertices come in the order of the
+/// contract.
 pub fn elements<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -93,7 +93,7 @@ pub fn names<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// `position` is the position in the input, bit for bit, except that −0 may be 0.
+/// `position` is the position in the input, bit for bit, except that −0 may become 0.
 pub fn positions<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -110,7 +110,7 @@ pub fn positions<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// Maps contain the initial value for every handle, and after a write the value written.
+/// Maps contain the initial value for every handle. After a write, they contain the new value.
 pub fn maps<M: Representation>(polygons: &PolygonMesh) {
     let Some(Subject { mesh, .. }) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -161,9 +161,9 @@ fn check_kind<H: Handle>(name: &str, handles: Vec<H>, numbers: &Numbers<H>) {
     }
 }
 
-/// For a handle that is a row beyond the mesh, queries panic with a message that contains the
-/// handle. For a handle that is coordinates, or a pair of them, and that is not in the mesh,
-/// relations are empty.
+/// If a handle is a row beyond the mesh, queries panic with a message that contains the handle. If
+/// a handle consists of the coordinates of one or two points and is not in the mesh, its relations
+/// are empty.
 ///
 /// The missing handles are those of a strip of triangles that is larger than the mesh and far away.
 pub fn missing_handles<M: Representation>(polygons: &PolygonMesh) {
@@ -255,7 +255,8 @@ fn face_answers<M: Representation>(mesh: &M, f: M::Face) -> [Answer; 3] {
     ]
 }
 
-/// Whether the handles of each kind are rows; a map panics if it has no row for a handle.
+/// Whether the handles of each kind of element are rows. A map panics if it has no row for a
+/// handle.
 struct Rows {
     vertex: bool,
     edge: bool,
@@ -274,7 +275,8 @@ impl Rows {
     fn for_edge(&self) -> Missing {
         match (self.edge, self.vertex) {
             (true, _) => Missing::Panics,
-            // A pair of rows: its ends are out of range, and the mesh does not have the pair.
+            // The handle is a pair of rows. Its ends are out of range, and the mesh does not
+            // contain the pair.
             (false, true) => Missing::Either,
             (false, false) => Missing::Empty,
         }

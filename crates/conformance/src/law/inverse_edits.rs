@@ -10,10 +10,11 @@ use crate::edit::{Action, ModelTest};
 const FAR: Point = Point::new(50.0, 60.0, 70.0);
 
 /// Edits, and a function that executes one of them at an edge or a face and then undoes it. The
-/// function returns whether both edits are accepted; if so, it checks that the mesh is unchanged.
+/// function returns whether both edits are accepted. If they are, the function checks that the mesh
+/// is unchanged.
 type Undo<M, At> = (&'static [Edit], fn(&ModelTest<M>, At) -> bool);
 
-/// Edits that undo each other give the same mesh again.
+/// Edits that undo each other restore the mesh.
 pub fn inverse_edits<M: Representation + MeshEdit + Debug>() {
     let at_edges: [Undo<M, [usize; 2]>; 4] = [
         (&[Edit::SplitEdge], |test, ends| {
@@ -73,7 +74,8 @@ fn check_undo_count<M: Representation + MeshEdit>(edits: &[Edit], count: usize) 
     );
 }
 
-/// `split` adds a vertex to an edge at `end`; collapsing the new vertex into `end` undoes it.
+/// `split` adds a vertex to an edge at `end`; collapsing the new vertex into `end` undoes the
+/// split.
 fn is_undone_by_collapse<M: Representation + MeshEdit + Debug>(
     test: &ModelTest<M>,
     split: Action,

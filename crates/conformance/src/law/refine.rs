@@ -84,7 +84,7 @@ pub fn refine<M: Refine>(polygons: &PolygonMesh) {
     }
 }
 
-/// Refined meshes of many chunks are equal on one thread and on three.
+/// A refined mesh of many chunks is the same on one thread and on three threads.
 pub fn refine_in_parallel<M: Refine>() {
     let pool = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();

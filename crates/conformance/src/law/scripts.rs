@@ -19,8 +19,9 @@ const MAX_STEPS: usize = 160;
 /// The actions of a script that were executed, and whether each was accepted.
 pub(super) type Executed = RefCell<Vec<(Action, bool)>>;
 
-/// Calls `run` with random scripts and meshes to start from. Panics with the smallest script for
-/// which `run` panics; the message begins with the name of the structure and `fault`.
+/// Calls `run` with random start meshes and random scripts. If `run` panics, shrinks the script and
+/// panics with the smallest script that fails. The message begins with the name of the structure
+/// and `fault`.
 pub(super) fn on_random_scripts<M: Representation>(
     fault: &str,
     run: impl Fn(&PolygonMesh, &[Step], &Executed),

@@ -8,8 +8,8 @@ use super::relations::{check_relation, is_rotation};
 use crate::subject::{Subject, stored_mesh};
 use crate::weld::position_key;
 
-/// `from_polygons` accepts exactly the meshes that `CAPABILITIES` include. For all others, it
-/// returns the error of `CAPABILITIES.check`, which is also the error found by brute force.
+/// `from_polygons` accepts exactly the meshes that `CAPABILITIES` include. For all other meshes, it
+/// returns the error of `CAPABILITIES.check`. Brute force finds the same error.
 pub fn verdict<M: Representation>(polygons: &PolygonMesh) {
     let built = M::from_polygons(polygons).map(|_| ());
     let declared = M::CAPABILITIES.check(polygons);
@@ -28,8 +28,8 @@ pub fn verdict<M: Representation>(polygons: &PolygonMesh) {
     );
 }
 
-/// `to_polygons` returns the mesh from which the structure was built, up to the start of each face.
-/// The result can be used to build the structure again.
+/// `to_polygons` returns the mesh from which the structure was built; each face may start at
+/// another corner. The result can be used to build the structure again.
 pub fn round_trip<M: Representation>(polygons: &PolygonMesh) {
     let Some(Subject { mesh, input, .. }) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -208,7 +208,8 @@ pub fn probed<M: Measured>(polygons: &PolygonMesh) {
     );
 }
 
-/// Checks that positions are equal bit for bit (−0 equals 0), and faces up to their start.
+/// Checks that positions are equal bit for bit (−0 equals 0), and that faces are equal up to a
+/// rotation.
 fn assert_same<M: Representation>(what: &str, got: &PolygonMesh, expected: &PolygonMesh) {
     let keys = |mesh: &PolygonMesh| {
         mesh.positions()

@@ -12,9 +12,9 @@ use crate::catch_panic::catch_panic;
 use crate::edit::{ModelTest, Step};
 use crate::subject::Subject;
 
-/// Every side has the face, the edge, the ends and the neighbours that follow from the lists of
-/// corners; sides of edges and at vertices are complete. A side that does not exist panics or gives
-/// an element that does not exist.
+/// The face, the edge, the ends and the neighbours of every side agree with the lists of corners.
+/// The sides of each edge and of each vertex are complete. For a side that does not exist, every
+/// method panics or returns an element that does not exist.
 pub fn oriented_walk<M: Representation + OrientedWalk>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -32,8 +32,9 @@ pub fn oriented_walk<M: Representation + OrientedWalk>(polygons: &PolygonMesh) {
     expected.check_missing(missing.expect("the larger mesh has sides"));
 }
 
-/// Random scripts of edits: after every few steps, and after the last one, the walk agrees with the
-/// corners of the faces, and the sides of a face that is removed then do not exist any more.
+/// Runs random scripts of edits. After every few steps and after the last step, the walk agrees
+/// with the corners of the faces. Then one face of a copy is removed, and its sides no longer
+/// exist.
 ///
 /// `PROPTEST_CASES` sets the number of scripts.
 pub fn oriented_walk_after_edits<M: Representation + MeshEdit + OrientedWalk + Debug>() {
@@ -60,7 +61,8 @@ fn run_script<M: Representation + MeshEdit + OrientedWalk + Debug>(
     check_edited(&test.mesh);
 }
 
-/// Checks the walk on a mesh that may have holes, and on the mesh without one of its faces.
+/// Checks the walk on a mesh that may have deleted rows. Then removes a face of a copy, and checks
+/// that the sides of this face do not exist.
 fn check_edited<M: Representation + MeshEdit + OrientedWalk>(mesh: &M) {
     ExpectedWalk::from_mesh(mesh).check();
     let mut without = mesh.clone();
@@ -100,8 +102,8 @@ impl<'a, M: Representation + OrientedWalk> ExpectedWalk<'a, M> {
 }
 
 impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
-    /// Computes the answers from `faces`, each with its corners from any start. Only the handles of
-    /// the sides are from `mesh`.
+    /// Computes the answers from `faces`; the corners of a face may start anywhere. Only the
+    /// handles of the sides come from `mesh`.
     fn new(mesh: &'a M, name: &'a str, faces: Vec<(M::Face, Vec<M::Vertex>)>) -> Self {
         let mut sides = Vec::new();
         let mut by_ends: BTreeMap<_, Vec<_>> = BTreeMap::new();
@@ -182,7 +184,7 @@ impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
         assert_eq!(back, twin.map(|_| s), "{name}: twin of the twin of {s:?}");
     }
 
-    /// Checks the two sides around the origin, which follow from twins.
+    /// Checks the next sides around the origin in both directions. These sides follow from twins.
     fn check_turns(&self, expected: &ExpectedSide<M>) {
         let (mesh, name, s) = (self.mesh, self.name, expected.side);
         let cw = self.twin(expected.ends).map(|twin| mesh.next_side(twin));
@@ -191,8 +193,8 @@ impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
         assert_eq!(mesh.ccw_side(s), ccw, "{name}: ccw_side of {s:?}");
     }
 
-    /// Returns the twin of the sides with these ends: the side with the opposite ends, if there is
-    /// one side in each direction.
+    /// Returns the twin of the side between these ends. The twin is the side in the opposite
+    /// direction, if there is exactly one side in each direction.
     fn twin(&self, [from, to]: [M::Vertex; 2]) -> Option<M::Side> {
         match (self.between([from, to]), self.between([to, from])) {
             ([_], [twin]) => Some(*twin),
@@ -243,7 +245,8 @@ impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
         }
     }
 
-    /// Checks that `s`, which is not a side of the mesh, panics or gives elements that do not exist.
+    /// Checks a side `s` that is not in the mesh: its methods panic or return elements that do not
+    /// exist.
     fn check_missing(&self, s: M::Side) {
         let mesh = self.mesh;
         let has = |s: M::Side| self.sides.iter().any(|known| known.side == s);

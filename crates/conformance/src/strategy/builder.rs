@@ -14,7 +14,7 @@ pub(super) struct MeshBuilder {
     pub(super) faces: Vec<Vec<u32>>,
     /// Number of isolated vertices to add.
     pub(super) isolated: u32,
-    /// A vertex and another vertex whose position it gets.
+    /// Two vertices: the first gets the position of the second.
     pub(super) coincident: Option<[u32; 2]>,
 }
 
@@ -80,7 +80,8 @@ impl MeshBuilder {
         used.into_iter().collect()
     }
 
-    /// Gives each fan of a vertex, except the first, a separate vertex.
+    /// Separates the fans of each vertex: one fan keeps the vertex, and every other fan gets a new
+    /// vertex.
     ///
     /// The faces of one fan share edges at the vertex. No edge is in two fans, so no edge is cut.
     pub(super) fn separate_fans(&mut self) {

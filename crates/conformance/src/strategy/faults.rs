@@ -36,7 +36,7 @@ impl Fault {
         let (a, b, f) = sides[at % sides.len()];
         match self {
             Self::TurnedFace => {
-                // The fault needs an adjacent face across that side.
+                // Without an adjacent face across that side, turning the face would not be a fault.
                 if !sides.iter().any(|side| (side.0, side.1) == (b, a)) {
                     let apex = builder.add_vertex();
                     builder.faces.push(vec![b, a, apex]);
@@ -62,8 +62,8 @@ impl Fault {
     }
 }
 
-/// Merges `v` with a vertex that has no adjacent vertex in common with it, or attaches a triangle
-/// to `v`.
+/// Merges `v` with another vertex if the two have no face and no adjacent vertex in common. If
+/// there is no such vertex, attaches a triangle to `v`.
 fn bow_tie(builder: &mut MeshBuilder, v: u32) {
     let neighbours = builder.neighbours(v);
     let is_separate = |&u: &u32| builder.neighbours(u).is_disjoint(&neighbours);

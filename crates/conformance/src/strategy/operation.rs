@@ -7,12 +7,12 @@ use proptest::prelude::*;
 use super::builder::MeshBuilder;
 
 /// One operation. Its numbers, taken modulo the number of elements, select the elements. If the
-/// operation is impossible there, nothing happens.
+/// operation is impossible at these elements, it does nothing.
 #[derive(Clone, Debug)]
 pub(super) enum Operation {
-    /// Removes a face, unless it is the last one; a vertex that then has two fans is duplicated.
+    /// Removes a face, unless it is the last one. If a vertex then has two fans, it is duplicated.
     RemoveFace(usize),
-    /// Inserts a vertex into an edge, in each of its faces.
+    /// Inserts a vertex into an edge, and into each face at the edge.
     SplitEdge(usize),
     /// Replaces a face by triangles around a new vertex in its middle.
     PokeFace(usize),
@@ -129,8 +129,8 @@ fn split_face(builder: &mut MeshBuilder, f: usize, i: usize, j: usize) {
     builder.faces.push(second);
 }
 
-/// Merges two faces only if the edge is all that they share. Otherwise the merged face would use a
-/// vertex twice.
+/// Merges two faces if they share only an edge and its ends. If they shared another vertex, the
+/// merged face would use this vertex twice.
 fn dissolve_edge(builder: &mut MeshBuilder, side: usize) {
     let face_of_side = builder.face_by_side();
     let shared = face_of_side.iter().filter_map(|(&(a, b), &f)| {
@@ -143,7 +143,7 @@ fn dissolve_edge(builder: &mut MeshBuilder, side: usize) {
     let Some((a, b, f, g)) = pick(&shared.collect::<Vec<_>>(), side) else {
         return;
     };
-    // From b around f to a, then from a around g, without its ends.
+    // The corners of f from b to a, then the corners of g from a on, without a and b.
     let from = |face: &[u32], start: u32| {
         let at = face.iter().position(|&v| v == start).unwrap_or(0);
         [&face[at..], &face[..at]].concat()
@@ -175,8 +175,9 @@ fn fill_hole(builder: &mut MeshBuilder, side: usize) {
     builder.faces.push(around.collect());
 }
 
-/// Returns the sides that a face in each hole would have, by their start: the boundary in opposite
-/// direction. At most one of them starts at each vertex, because the mesh is manifold.
+/// Returns the sides of the faces that would fill the holes: the boundary edges in the opposite
+/// direction. The result maps the start of each side to its end. At most one side starts at each
+/// vertex, because the mesh is manifold.
 fn holes(builder: &MeshBuilder) -> BTreeMap<u32, u32> {
     let face_of_side = builder.face_by_side();
     let open = face_of_side

@@ -136,7 +136,7 @@ detects! {
     }
 }
 
-/// The seventh structure searches all edges for the one of a side.
+/// The seventh structure searches all edges to find the edge of a side.
 #[test]
 fn a_walk_that_scans_is_found() {
     let fault = fault(law::oriented_walk_costs::<FaceAndEdgeLists>);
@@ -170,7 +170,7 @@ fn every_law_detects_a_flaw() {
     }
 }
 
-/// If only a large random mesh shows a flaw, it is shrunk to a small mesh.
+/// If only a large random mesh shows a flaw, the mesh is shrunk to a small mesh.
 #[test]
 fn a_failing_mesh_shrinks_and_is_shown() {
     type Lists = crate::face_and_edge_lists::FaceAndEdgeLists;

@@ -1,4 +1,4 @@
-//! Steps from side to side on the seventh structure, from its answers to queries.
+//! Steps from side to side on the seventh structure, computed from its answers to queries.
 
 use sixfold_core::{
     EdgeId, FaceId, Handle, HandleMap, HashHandleMap, MeshQuery, OrientedWalk, Probe, SideMap,

@@ -11,7 +11,7 @@ use crate::table::Table;
 /// can name one more face or corner.
 impl<P: Probe> FaceSpans<P, Editable> {
     /// Adds a face at the end of the table; O(degree) amortised. The first face of another degree
-    /// adds a table of spans; O(corners), once.
+    /// adds a table of spans, which takes O(corners) once.
     pub fn push<T: Copy>(&mut self, corners: &mut Table<T, P>, face: &[T]) -> FaceId {
         let id = FaceId::new(row(self.len()));
         if let Self::Uniform { degree, faces } = self {
@@ -41,9 +41,9 @@ impl<P: Probe> FaceSpans<P, Editable> {
         id
     }
 
-    /// Replaces the corners of `f`; O(degree) amortised. The new corners are written in place
-    /// unless there are more of them; otherwise at the end of the table. The first change of a
-    /// degree adds a table of spans; O(corners), once.
+    /// Replaces the corners of `f`; O(degree) amortised. If the face gets more corners than before,
+    /// they are written at the end of the table; otherwise they are written in place. The first
+    /// change of a degree adds a table of spans, which takes O(corners) once.
     pub fn rewrite<T: Copy>(&mut self, corners: &mut Table<T, P>, f: FaceId, face: &[T], blank: T) {
         let old = self.range(f);
         if face.len() != old.len() {
@@ -124,7 +124,7 @@ impl<P: Probe> FaceSpans<P, Editable> {
         }
     }
 
-    /// Lets faces lie anywhere from now on; O(corners), or O(1) if they already do.
+    /// Changes the spans so that faces can lie anywhere; O(corners), or O(1) if they already can.
     fn scatter<T>(&mut self, corners: &Table<T, P>) {
         if let Self::Scattered(_) = self {
             return;

@@ -1,4 +1,4 @@
-//! Collapsing an edge, and moving a vertex in structures where a vertex is its coordinates.
+//! Collapsing an edge, and moving a vertex in structures that identify vertices by coordinates.
 
 use super::{Refusal, ScannedMesh, sorted_once};
 use crate::edit_error::EditError;
@@ -21,7 +21,7 @@ struct Star<V> {
 }
 
 impl<V: ScannedVertex> Star<V> {
-    /// Returns the end of the edge that the corner is not at.
+    /// Returns the end of the edge other than the vertex of `hit`.
     fn other(&self, hit: &Hit<V>) -> V {
         if hit.at == self.keep {
             self.removed
@@ -56,7 +56,7 @@ impl<V: ScannedVertex> Star<V> {
         ends.flat_map(|end| self.ring(end, |f| self.remains(f)))
     }
 
-    /// Reports the changes of the edges at both ends, one of which is `to` from now on.
+    /// Reports the changes of the edges at both ends, which become the vertex `to`.
     fn report_edges<M: ScannedMesh<V>>(&self, to: V, log: &mut impl EditLog<M>) {
         let (keep, removed) = (self.keep, self.removed);
         log.removed_edge(Pair::new(keep, removed));
@@ -81,13 +81,14 @@ impl<V: ScannedVertex> Star<V> {
 }
 
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
-    /// Merges the two ends of `e` into `keep`, which becomes `to`. One scan, and another for a
-    /// third corner that may have no other face.
+    /// Merges the two ends of `e` into `keep`, whose handle becomes `to`. This takes one scan, and
+    /// another scan for each third corner that may have no other face.
     ///
     /// # Errors
     ///
-    /// Refuses a missing edge, a `keep` that is not an end of it, a face that has both ends but not
-    /// as adjacent corners, a vertex that would lose its last face, and an occupied position.
+    /// Refuses a missing edge, a `keep` that is not an end of it, a face that has both ends as
+    /// corners that are not adjacent, a vertex that would lose its last face, and an occupied
+    /// position.
     pub fn collapse_edge<M: ScannedMesh<V>>(
         &mut self,
         e: Pair<V>,
@@ -205,7 +206,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         Ok(())
     }
 
-    /// Moves `v` to `to`, which changes its handle, as a vertex is its coordinates; one scan.
+    /// Moves `v` to `to`; one scan. The handle changes, because vertices are identified by
+    /// coordinates.
     ///
     /// # Errors
     ///

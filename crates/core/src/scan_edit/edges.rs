@@ -12,7 +12,7 @@ use crate::row_id::FaceId;
 use crate::scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};
 use crate::short_vec::ShortVec;
 
-/// A side: an edge as one face runs along it.
+/// A side: an edge together with one face that runs along it.
 #[derive(Clone, Copy)]
 struct FaceSide<V> {
     face: FaceId,
@@ -49,8 +49,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         })
     }
 
-    /// Returns the side along `e` of each of its faces; one scan, which also checks that `m` is
-    /// free if a vertex is its coordinates.
+    /// Returns the side along `e` of each face of `e`; one scan. If vertices are identified by
+    /// coordinates, the same scan checks that the position `m` is free.
     fn along(&self, e: Pair<V>, m: Option<V>) -> Result<ShortVec<FaceSide<V>>, Refusal<V>> {
         let (mut along, mut occupied) = (ShortVec::new(), false);
         let [a, b] = e.ends();
@@ -96,7 +96,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         }
     }
 
-    /// Inserts `m`, a new vertex, into `e` and each of its faces; one scan.
+    /// Inserts the new vertex `m` into `e` and into each face of `e`; one scan.
     ///
     /// # Errors
     ///
@@ -124,7 +124,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         Ok(())
     }
 
-    /// Inserts `m`, a new vertex, into `e` and cuts the triangles of `e` in two there; one scan.
+    /// Inserts the new vertex `m` into `e` and cuts each triangle of `e` in two at `m`; one scan.
     ///
     /// # Errors
     ///
@@ -160,8 +160,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Refuses a missing edge, one without exactly two faces, and faces that run along it in the
-    /// same direction or share another vertex.
+    /// Refuses a missing edge, an edge that does not have exactly two faces, and faces that run
+    /// along it in the same direction or share another vertex.
     pub fn dissolve_edge<M: ScannedMesh<V>>(
         &mut self,
         e: Pair<V>,
@@ -201,8 +201,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Refuses a missing edge, and what [`MeshEdit::flip_edge`](crate::MeshEdit::flip_edge)
-    /// refuses.
+    /// Refuses a missing edge, and the same cases as
+    /// [`MeshEdit::flip_edge`](crate::MeshEdit::flip_edge).
     pub fn flip_edge<M: ScannedMesh<V>>(
         &mut self,
         e: Pair<V>,

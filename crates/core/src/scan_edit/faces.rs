@@ -12,8 +12,8 @@ use crate::scanned::{ScannedFaces, ScannedVertex, SearchSet};
 use crate::short_vec::ShortVec;
 
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
-    /// Adds a face with these `corners`, which are vertices already or positions of new ones:
-    /// O(degree), and a scan for sides that exist already if the log uses reports.
+    /// Adds a face with these `corners`, which are existing vertices or positions of new vertices.
+    /// O(degree); if the log uses reports, one more scan finds the sides that already exist.
     ///
     /// # Errors
     ///
@@ -39,8 +39,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         Ok(f)
     }
 
-    /// Removes `f`: O(degree), and a scan for the sides that other faces have if the log uses
-    /// reports. If a vertex is its coordinates, corners without a face are removed.
+    /// Removes `f`; O(degree). If the log uses reports, one more scan finds the sides that other
+    /// faces have. If vertices are identified by coordinates, corners without a face are removed.
     ///
     /// # Errors
     ///
@@ -55,12 +55,12 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         Ok(())
     }
 
-    /// Removes the faces at `v`; one scan, and another for the sides that other faces have if the
-    /// log uses reports.
+    /// Removes the faces at `v`; one scan. If the log uses reports, a second scan finds the sides
+    /// that other faces have.
     ///
     /// # Errors
     ///
-    /// Refuses a vertex without faces if a vertex is its coordinates.
+    /// Refuses a vertex without faces if vertices are identified by coordinates.
     pub fn remove_faces_at<M: ScannedMesh<V>>(
         &mut self,
         v: V,
@@ -92,8 +92,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         }
     }
 
-    /// Returns the given vertices and sides that no face has, apart from the faces in the sorted
-    /// list `except`; one scan.
+    /// Returns the given vertices and sides that no face has; faces in the sorted list `except` do
+    /// not count. One scan.
     fn unused_elsewhere(
         &self,
         vertices: impl Iterator<Item = V>,
@@ -122,8 +122,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         (vertices, sides)
     }
 
-    /// Cuts `f` into triangles around `m`, a new vertex; `f` becomes the one at its first side.
-    /// O(degree), and a scan for `m` if a vertex is its coordinates.
+    /// Cuts `f` into triangles around the new vertex `m`; `f` becomes the triangle at its first
+    /// side. O(degree); if vertices are identified by coordinates, one more scan searches for `m`.
     ///
     /// # Errors
     ///
@@ -140,8 +140,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         }
         self.check_capacity(corners.len() - 1, 3 * corners.len())?;
         log.created_vertex(m);
-        // The corners of `f` stay in place until it is rewritten at the end; pushing other faces
-        // before does not move them.
+        // The corners of `f` stay in place until `f` is rewritten at the end. Pushing other faces
+        // does not move these corners.
         let start = corners.start;
         let [first, second] =
             [start, start + 1].map(|corner| V::from_corner(*self.corners.read(corner)));
@@ -159,8 +159,9 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         Ok(())
     }
 
-    /// Cuts `f` in two between `ends`; `f` becomes the part from the earlier corner to the later.
-    /// O(degree), and a scan for an edge between them in other faces if the log uses reports.
+    /// Cuts `f` in two between `ends`; `f` becomes the part from the earlier to the later corner.
+    /// O(degree); if the log uses reports, one more scan searches the other faces for an edge
+    /// between `ends`.
     ///
     /// # Errors
     ///

@@ -10,8 +10,8 @@ use crate::query::ring;
 use crate::scanned::{ScannedFaces, ScannedVertex};
 
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
-    /// Splits `v`: `n`, a new vertex, gets the faces counter-clockwise from `right` to `left`, or
-    /// from or to the boundary. One scan.
+    /// Splits `v`; one scan. The new vertex `n` gets the faces counter-clockwise from `right` to
+    /// `left`. If `right` or `left` is `None`, the faces start or end at the boundary instead.
     ///
     /// ```text
     ///              left
@@ -24,7 +24,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Refuses what [`MeshEdit::split_vertex`](crate::MeshEdit::split_vertex) refuses.
+    /// Refuses the same cases as [`MeshEdit::split_vertex`](crate::MeshEdit::split_vertex).
     pub fn split_vertex<M: ScannedMesh<V>>(
         &mut self,
         v: V,

@@ -27,8 +27,8 @@ impl RemainingFan {
 
 impl<P: Probe> CornerTable<Editable, P> {
     /// Merges the ends of `e`, if the link condition holds (Dey, Edelsbrunner, Guha & Nekhayev
-    /// 1999): only C and D are adjacent to both ends, no triangle of one end would coincide with a
-    /// triangle of the other, and the collapse does not join two boundaries.
+    /// 1999). The condition is: only C and D are adjacent to both ends, no triangle of one end
+    /// would coincide with a triangle of the other, and the collapse does not join two boundaries.
     ///
     /// ```text
     ///         C                 C          T and R are deleted. on and op become opposite, as do
@@ -112,7 +112,7 @@ impl<P: Probe> CornerTable<Editable, P> {
             return Err(EditError::AcrossBoundary { edge: e });
         }
 
-        // If one of the two fans is at a boundary, the boundary is where the merged fan begins.
+        // If one of the two fans is at a boundary, the merged fan begins at this boundary.
         let start_vertex = match across {
             None => vb,
             Some(_) if !closed => gone,

@@ -6,8 +6,8 @@ use super::{Refusal, faced_by, report_renamed};
 use crate::mesh::{CornerId, CornerTable, edge_between};
 
 impl<P: Probe> CornerTable<Editable, P> {
-    /// Adds a triangle with the given vertices, beside the triangles that run its sides the other
-    /// way.
+    /// Adds a triangle with the given vertices, and links it to the triangles that run along its
+    /// sides in the other direction.
     ///
     /// ```text
     ///     s           l        The fan of v is open, from the edge v–s to the edge v–l. The new
@@ -69,7 +69,7 @@ impl<P: Probe> CornerTable<Editable, P> {
             });
         };
         let (mut last, mut end) = (first.next(), Slot::NONE);
-        // The corners after v in the triangles in which v is followed by u, and by w.
+        // `at_u` is the corner after v in the triangle where u follows v; `at_w` is the same for w.
         let (mut at_u, mut at_w) = (None, None);
         for (after, across) in self.fan(v) {
             let beyond = *self.vertex.read(after.index());
@@ -121,8 +121,8 @@ impl<P: Probe> CornerTable<Editable, P> {
         }
     }
 
-    /// Returns the error for an edge with two faces: from the vertex before `after` to that of
-    /// `after`.
+    /// Returns the error for an edge with two faces. The edge goes from the vertex before `after`
+    /// to the vertex of `after`.
     fn full_edge_error(&self, after: CornerId) -> Refusal {
         EditError::FullEdge {
             edge: self.edge(after.next()),
@@ -197,8 +197,9 @@ impl<P: Probe> CornerTable<Editable, P> {
         (star, closed)
     }
 
-    /// Returns the vertex between two consecutive corners at `v`, and the corners across the outer
-    /// sides of their triangles: before both in the fan of that vertex, and after both.
+    /// Returns the vertex u between two consecutive corners at `v`, and the corners across the
+    /// outer sides of their two triangles. In the fan of u, one of these corners is before both
+    /// triangles and the other is after both.
     fn rim(
         &self,
         v: VertexId,
@@ -265,8 +266,8 @@ impl<P: Probe> CornerTable<Editable, P> {
         Ok(())
     }
 
-    /// Updates `corner(v)`: the fan begins after the removed triangles; if nothing follows, as
-    /// before.
+    /// Updates `corner(v)`: the fan begins after the removed triangles. If only triangles before
+    /// them remain, the beginning does not change.
     fn remove_from_fan(&mut self, v: VertexId, before: Slot<CornerId>, after: Slot<CornerId>) {
         match after.get() {
             Some(after) => *self.corner.write(v.index()) = Slot::some(after.next()),

@@ -50,7 +50,7 @@ impl<P: Probe> CornerTable<Editable, P> {
         }
         *self.opposite.write(n.index()) = Slot::some(q);
         *self.opposite.write(q.index()) = Slot::some(n);
-        // n is the corner at A in place of two, and q the corner at B.
+        // Of the two corners at A, only n is left; of the two corners at B, only q is left.
         self.replace_corner(va, r, n);
         self.replace_corner(vb, p, q);
 
@@ -85,8 +85,8 @@ impl<P: Probe> CornerTable<Editable, P> {
         }
     }
 
-    /// Returns the same by a walk around the whole fan of C: from `on` one way, from `op` the
-    /// other.
+    /// Returns whether C and D are adjacent, by a walk around the whole fan of C: from `on` in one
+    /// direction, then from `op` in the other.
     #[cold]
     #[inline(never)]
     fn are_neighbours(&self, [on, op]: [Slot<CornerId>; 2], va: VertexId, vd: VertexId) -> bool {

@@ -234,9 +234,9 @@ impl<P: Probe> CornerTable<Editable, P> {
         Ok(n)
     }
 
-    /// Links a new triangle between the two corners that faced an edge: `in_next` and `in_previous`
-    /// now face two of its sides, which the corners `across_next` and `across_previous` of the new
-    /// triangle face.
+    /// Links a new triangle between the two corners that faced an edge. `in_next` and `in_previous`
+    /// now face two sides of the new triangle. The corners `across_next` and `across_previous` of
+    /// the new triangle face the same two sides.
     fn link_new_triangle(
         &mut self,
         in_next: Slot<CornerId>,
@@ -254,7 +254,8 @@ impl<P: Probe> CornerTable<Editable, P> {
     }
 }
 
-/// Reports that `old` faces a new edge, and that `new` faces the edge it faced with `across`.
+/// Reports that `old` faces a new edge, and that `new` faces the edge that `old` and `across` faced
+/// before.
 #[inline]
 fn report_cut<P: Probe>(
     log: &mut impl EditLog<CornerTable<Editable, P>>,

@@ -26,7 +26,8 @@ use crate::CornerTable;
 use crate::mesh::CornerId;
 
 impl CornerTable {
-    /// Splits every triangle into four. Overwrites the tables of `child`, which already have their final lengths.
+    /// Splits every triangle into four. Overwrites the tables of `child`. They already have their
+    /// final lengths.
     pub(super) fn split_in_four(&self, numbers: &EdgeNumbers, child: &mut Self) {
         let count = self.positions.len();
         let middle = |c, across| VertexId::new(count as u32 + numbers.number(c, across));
@@ -67,9 +68,9 @@ impl CornerTable {
                 let at_middles = [towards(c, b), towards(a, c), towards(b, a)];
                 for ((corner, &across), middle) in [a, b, c].into_iter().zip(across).zip(at_middles)
                 {
-                    // Not every corner names an edge, in an unpredictable order. To avoid a branch,
-                    // every corner writes; the next one overwrites the row of a corner that names
-                    // no edge.
+                    // It is unpredictable which corners name an edge. To avoid a branch, every
+                    // corner writes a row. If a corner names no edge, the next corner overwrites
+                    // its row.
                     if let Some(row) = corners.get_mut(edge) {
                         *row = Slot::some(middle);
                     }

@@ -1,9 +1,10 @@
 //! Triangles split in three at a new point each, with their inner edges flipped (√3).
 //!
-//! Each corner c of triangle `t` makes the child triangle c at the edge that it faces. Its vertices
-//! are the first end a of that edge, the point p′ of the triangle across, and the point p of `t`. On
-//! a boundary, the other end b replaces p′. If the boundary edge is cut in three, its triangles are
-//! c, x and x + 1, with x = 3F + 2k for the k-th boundary edge of a mesh of F triangles.
+//! Each corner c of triangle `t` makes the child triangle c at the edge that the corner faces. The
+//! vertices of this child are the first end a of that edge, the point p′ of the triangle across,
+//! and the point p of `t`. On a boundary, the other end b replaces p′. If the boundary edge is cut
+//! in three, its triangles are c, x and x + 1, with x = 3F + 2k for the k-th boundary edge of a
+//! mesh of F triangles.
 //!
 //! ```text
 //!     p ─────── b           inner edge                boundary edge     cut: c      x       x + 1

@@ -126,7 +126,8 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         }
     }
 
-    /// Returns the neighbours of `gone` except `keep`, each with whether it is adjacent to `keep`.
+    /// Returns the neighbours of `gone` except `keep`, each with a flag: whether it is adjacent to
+    /// `keep`.
     fn other_neighbours(&self, gone: VertexId, keep: VertexId) -> Vec<(VertexId, bool)> {
         let others = self.ring(gone, |v| v).filter(|&v| v != keep);
         others

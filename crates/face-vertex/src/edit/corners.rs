@@ -18,7 +18,8 @@ pub(super) fn corners_from(face: &[VertexId], v: VertexId) -> impl Iterator<Item
     after.iter().chain(before).copied()
 }
 
-/// Returns the end of the side `e` in the direction of a triangle at `e`, and the third corner.
+/// Returns the end of `e` that the triangle `face` reaches when it runs along `e`, and the third
+/// corner.
 #[inline]
 pub(super) fn third_corner(face: [VertexId; 3], e: Edge) -> (VertexId, VertexId) {
     let [a, b, c] = face;
@@ -44,7 +45,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
     pub(super) fn replace_corner(&mut self, f: FaceId, old: VertexId, new: VertexId) {
         let range = self.spans.range(f);
         let at = match self.corners.read_range(range.clone()) {
-            // Without a branch, because its place is unpredictable.
+            // Uses no branch, because the place of `old` is unpredictable.
             &[_, b, c] => usize::from(b == old) + 2 * usize::from(c == old),
             face => {
                 let at = face.iter().position(|&v| v == old);

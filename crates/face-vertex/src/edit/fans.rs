@@ -1,4 +1,4 @@
-//! Changes of fans: each fan is in the pool where it has room.
+//! Changes of fans. A fan without room to grow moves to the end of the pool.
 //!
 //! ```text
 //!            v's fan      behind it          v's fan
@@ -19,8 +19,8 @@ use super::find::mask;
 use crate::mesh::{BLANK_PLACE, FaceVertexMesh, Fan};
 
 impl<P: Probe> FaceVertexMesh<Editable, P> {
-    /// Returns the blanks that follow a fan of `len` faces, one of them new, after its move to the
-    /// end of the pool. Returns no blanks if places are short, so that
+    /// Returns the blanks that follow a fan after its move to the end of the pool. The fan has
+    /// `len` faces, including the new face. Returns no blanks if places are short, so that
     /// [`check_room`](Self::check_room) is sufficient.
     fn spare_places(&self, len: u32) -> impl Iterator<Item = FaceId> + use<P> {
         let room = if self.pool.len() < MAX_ROWS / 2 {
@@ -86,8 +86,8 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
     #[inline]
     fn place_of(&self, fan: Fan, f: FaceId) -> usize {
         let start = fan.range().start;
-        // Without a branch, because its place is unpredictable. Another fan behind may contain it
-        // too.
+        // Uses no branch, because the place of `f` is unpredictable. The places behind this fan may
+        // contain `f` too.
         let hits = if let Some(faces) = self.lanes::<8>(fan) {
             mask(faces.map(|face| u32::from(face == f)))
         } else if let Some(faces) = self.lanes::<16>(fan) {
@@ -103,7 +103,8 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         start + place.expect("I3: the fan of a corner contains its face")
     }
 
-    /// Replaces the faces `old` in the fan of `v` by `new`; more than four old ones must be sorted.
+    /// Replaces the faces `old` in the fan of `v` by `new`. If `old` has more than four faces, they
+    /// must be sorted.
     pub(super) fn replace_faces(&mut self, v: VertexId, old: &[FaceId], new: &[FaceId]) {
         const FEW: usize = 4;
         if old.len() > FEW {

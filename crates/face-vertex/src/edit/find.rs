@@ -45,8 +45,8 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         Err(EditError::NoSuchFace { face: f })
     }
 
-    /// Visits the faces with corners at both ends of `e`, adjacent or not; none if an end is
-    /// missing.
+    /// Visits the faces with corners at both ends of `e`; the two corners need not be adjacent.
+    /// Visits no face if an end does not exist.
     ///
     /// Compares short fans with each other, which needs no jump to the corners of a face.
     #[inline]
@@ -66,7 +66,8 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
     /// Visits the faces that two fans of up to `N` faces have in common. Returns false if a fan is
     /// longer, or so near the end of the pool that fewer than `N` places follow.
     ///
-    /// Compares all faces with all, without a branch, because the matches are unpredictable.
+    /// Compares all faces of one fan with all faces of the other, without a branch, because the
+    /// matches are unpredictable.
     #[inline]
     fn compare_fans<const N: usize>(&self, fans: [Fan; 2], visit: &mut impl FnMut(FaceId)) -> bool {
         let [Some(some), Some(others)] = fans.map(|fan| self.lanes::<N>(fan)) else {
@@ -89,7 +90,8 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         true
     }
 
-    /// Does the same for long fans: visits faces of the shorter fan that contain the other vertex.
+    /// Does the same as `compare_fans`, for long fans: visits the faces of the shorter fan that
+    /// contain the other vertex.
     #[cold]
     #[inline(never)]
     fn search_shorter_fan(&self, ends: [(VertexId, Fan); 2], visit: &mut impl FnMut(FaceId)) {
@@ -104,7 +106,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         }
     }
 
-    /// Returns the faces with corners at both ends of `e`, adjacent or not.
+    /// Returns the faces with corners at both ends of `e`; the two corners need not be adjacent.
     #[inline]
     pub(super) fn faces_at_both(&self, e: Pair<VertexId>) -> ShortVec<FaceId> {
         let mut both = ShortVec::new();
@@ -124,7 +126,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         places.first_chunk().copied()
     }
 
-    /// Returns whether `f`, which has both ends of `e`, has them as adjacent corners.
+    /// Returns whether the ends of `e` are adjacent corners of `f`. `f` has corners at both ends.
     #[inline]
     pub(super) fn has_side(&self, f: FaceId, e: Pair<VertexId>) -> bool {
         let [a, b] = e.ends();
@@ -154,7 +156,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         has
     }
 
-    /// Returns the two faces of `e`; the first of them runs `e` from its lower end.
+    /// Returns the two faces of `e`; the first of them runs along `e` from the lower end.
     #[inline]
     pub(super) fn two_faces(&self, e: Pair<VertexId>) -> Result<[FaceId; 2], Refused> {
         let [low, high] = e.ends();

@@ -98,7 +98,8 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         if uses_reports(log) {
             log.created_vertex(n);
             log.created_edge(Pair::new(v, n));
-            // The neighbours between the sides; if a side is missing, also the one on the boundary.
+            // The neighbours between the sides; if a side is missing, also the neighbour on the
+            // boundary.
             let passed = fan.indices_between(from, to).map(|i| fan.neighbour(i));
             let all = passed.chain([fan.neighbour(to)]);
             for other in all.filter(|&u| !sides.contains(&Some(u))) {

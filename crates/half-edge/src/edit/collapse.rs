@@ -20,7 +20,8 @@ struct Collapse {
     kept: End,
 }
 
-/// One end of the collapsed edge, as found by a walk around it from the edge back to the edge.
+/// One end of the collapsed edge. A walk around the end, from the edge back to the edge, finds
+/// these values.
 struct End {
     /// The number of spokes. `end_without_walk` reports any valence other than 3 as 4.
     valence: usize,
@@ -59,7 +60,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         Ok(keep)
     }
 
-    /// Reads the edge `e`, of which `pair` are the half-edges, and its two faces.
+    /// Reads the edge `e` and its two faces. `pair` has the half-edges of `e`.
     #[inline]
     fn read_collapse(&self, e: EdgeId, pair: [Half; 2], keep: VertexId) -> Collapse {
         let side = usize::from(pair[0].origin == keep);
@@ -85,8 +86,8 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
     /// Checks the link condition (Dey et al. 1999), and that no face would contain `keep` twice.
     /// Sets both ends of `collapse`.
     ///
-    /// The result of the check is not returned: it would be copied in pieces of other sizes than it
-    /// was written in, and processors wait for such reads.
+    /// The check writes into `collapse` and does not return a new value. A returned value would be
+    /// copied in pieces of other sizes than those written, and processors wait for such reads.
     #[inline]
     fn check_collapse(
         &self,
@@ -160,9 +161,9 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         }
     }
 
-    /// Walks clockwise around the origin of `h` once, and updates `end`, which has `h` only. `twin`
-    /// is the record of the twin of `h`; `visit` gets the record of every other half-edge that
-    /// arrives at the origin.
+    /// Walks clockwise around the origin of `h` once, and updates `end`, which at first has only
+    /// `h`. `twin` is the record of the twin of `h`; `visit` gets the record of every other
+    /// half-edge that arrives at the origin.
     #[inline]
     fn walk_end(
         &self,
@@ -210,7 +211,8 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         }
     }
 
-    /// Refuses an inner edge between two boundaries, and a third corner without another face.
+    /// Refuses an inner edge that joins two boundaries, and an edge whose third corner has no other
+    /// face.
     #[cold]
     #[inline(never)]
     fn check_at_boundary(&self, e: EdgeId, checked: &Collapse) -> Result<(), Refusal> {

@@ -87,8 +87,8 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         (half.face == Slot::NONE && twin.origin == to).then_some(h)
     }
 
-    /// Refuses if an edge joins the two vertices; it is known that no boundary half-edge runs from
-    /// `from` to `to`.
+    /// Refuses if an edge joins the two vertices. The caller has checked that no boundary half-edge
+    /// runs from `from` to `to`.
     fn check_no_edge(&self, from: VertexId, to: VertexId) -> Result<(), Refusal> {
         let mut spokes = self.spokes(from);
         let Some((h, arriving)) = spokes.find(|(_, arriving)| arriving.origin == to) else {
@@ -172,8 +172,8 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         }
     }
 
-    /// Checks that without the faces of `v`, the faces at each other corner of them would form one
-    /// fan.
+    /// Checks each other corner of the faces of `v`: without these faces, its remaining faces must
+    /// form one fan.
     ///
     /// O(valence) for each corner of each face of `v`.
     pub(super) fn check_fan_removable(&self, v: VertexId) -> Result<(), Refusal> {
@@ -211,7 +211,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
     }
 
     /// Unlinks the faces of `v` counter-clockwise, starting at the boundary if there is one. Each
-    /// next face then has a side on the boundary that the face before it left.
+    /// face after the first then has a side on the boundary, because the face before it is gone.
     pub(super) fn unlink_fan(&mut self, v: VertexId, log: &mut impl EditLog<Self>) {
         let Some(mut out) = self.leaving.read(v.index()).get() else {
             return;

@@ -6,8 +6,8 @@ use super::Refusal;
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
 impl<P: Probe> HalfEdgeMesh<Editable, P> {
-    /// Flips `e`. O(valence) of `c` or `d`, whichever is smaller: reads the records of five edges,
-    /// then one half-edge around each of `c` and `d` per step.
+    /// Flips `e`; O(smaller valence of `c` and `d`). Reads the records of five edges. Each step
+    /// then reads one half-edge around `c` and one around `d`.
     ///
     /// ```text
     ///        c                    c

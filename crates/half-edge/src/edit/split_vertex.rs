@@ -102,8 +102,8 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
             (spoke.h, self.double(spoke, v, y, log))
         });
         let (leaves_v, leaves_n) = match (left, right) {
-            // The first spoke, on the boundary if there is one, leaves one of the two vertices, or
-            // its new copy does.
+            // One vertex keeps the first spoke or gets its new copy. The first spoke is on the
+            // boundary if there is one.
             (Some((hl, new_l)), Some((hr, new_r))) => {
                 if first_moves {
                     (hr, first)

@@ -1,9 +1,9 @@
 //! Faces split at the midpoints of their edges: any face into quads, or a triangle into four.
 //!
 //! Half-edge `h` runs from vertex `v` along face `f`; `p` and `n` are the half-edges before and
-//! after it, `t` is its twin, and `#h` the number of its corner. It is cut in two at the midpoint
-//! m(h): e(h) is the early half, l(h) the late half. Its corner adds one edge inside the face, i(h)
-//! and its twin j(h).
+//! after it, `t` is its twin, and `#h` the number of its corner. The midpoint m(h) cuts `h` in two:
+//! e(h) is the early half, l(h) the late half. The corner of `h` adds one edge inside the face:
+//! i(h) and its twin j(h).
 //!
 //! ```text
 //!   Quads                                  Triangles
@@ -28,9 +28,9 @@
 //! | e(b), on the boundary | 2b | l(b) | v | none |
 //! | l(b), on the boundary | 2(b ^ 1) + 1 | e(n) | m(b) | none |
 //!
-//! So edge e becomes the edges 2e and 2e + 1, whose four rows are adjacent, as are the rows of i
-//! and j for the two half-edges of an edge. A thread takes a range of edges, and writes two ranges
-//! of rows.
+//! So edge e becomes the edges 2e and 2e + 1, and their four rows are adjacent. The rows of i and j
+//! for the two half-edges of an edge are also adjacent. A thread takes a range of edges, and writes
+//! two ranges of rows.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -40,7 +40,8 @@ use super::{BLANK, Corners, fill, for_each_edge_chunk, half};
 use crate::HalfEdgeMesh;
 use crate::mesh::{Half, HalfEdgeId};
 
-/// The number of steps after which [`previous`] stops: walks from all corners take O(degree²).
+/// The number of steps after which [`previous`] stops. Without this limit, the walks from all
+/// corners of a face would take O(degree²).
 const MAX_STEPS: usize = 8;
 
 /// The row counts of the parent, from which the rows of the child are computed.

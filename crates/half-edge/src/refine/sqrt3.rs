@@ -1,8 +1,9 @@
 //! Triangles split at face points, with their edges flipped.
 //!
 //! Half-edge `h` runs from vertex `a` to `b` along face `f`; `p` and `n` are the half-edges before
-//! and after it, and its twin `t` has face `g`. In the child it has the same row, but runs from the
-//! face point g to f. Its corner adds one edge, the spoke s(h) from `a` to f, and r(h) back.
+//! and after it, and its twin `t` has face `g`. In the child, `h` has the same row, but runs from
+//! the face point g to the face point f. The corner of `h` adds one edge: the spoke s(h) from `a`
+//! to f, and its twin r(h).
 //!
 //! ```text
 //!             g            x = next(t)            f           ▲ y + 4  ▲ y + 6   to f;
@@ -25,9 +26,9 @@
 //! | r(h), t without a face | s(h) + 1 | h | f | #h |
 //!
 //! Boundary half-edges stay as they are. If boundary edges are cut in three, the `j`-th of them
-//! gets the points q and q', the triangles C + 2j (a q f) and C + 2j + 1 (q q' f) beside #h (q' b
-//! f), and eight rows from y = 2(E + C) + 8j on. Its boundary half-edge keeps its row and runs from
-//! `b` to q'; y + 1 then runs to q, and y + 3 to `a`.
+//! gets the points q and q', and eight rows from y = 2(E + C) + 8j on. It also gets two triangles
+//! beside #h (q' b f): C + 2j (a q f) and C + 2j + 1 (q q' f). Its boundary half-edge keeps its row
+//! and runs from `b` to q'; y + 1 then runs to q, and y + 3 to `a`.
 
 use sixfold_core::{FaceId, MeshQuery, Slot};
 

@@ -118,7 +118,7 @@ fn a_structure_that_scans_makes_the_same_mesh() {
 #[test]
 fn lengths_below_the_precision_are_refused_and_others_end() {
     let grid = sixfold_shapes::triangle_grid(20, 20).expect("small");
-    // Like survey coordinates: neighbouring f32 coordinates are half a unit apart there.
+    // Large coordinates, as in surveys: neighbouring f32 coordinates are half a unit apart.
     let far = |p: &Point| Point::new(0.7 * p.x + 500_000.0, 0.7 * p.y + 4_650_000.0, 0.0);
     let far: Vec<Point> = grid.positions().iter().map(far).collect();
     let far = PolygonMesh::from_faces(far, grid.faces().clone()).expect("the same faces");

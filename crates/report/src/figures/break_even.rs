@@ -8,7 +8,7 @@ use sixfold_study::{Operation, PickReport, Report, ResultRow};
 use crate::colours::column_colour;
 use crate::figure::{Figure, Table, base_layout, render_svg};
 
-/// The structure in which the mesh is given; it need not be built.
+/// The structure of the input mesh. Building it is not necessary.
 const INPUT_BACKEND: &str = "indexed-face-set";
 
 /// Draws the time to build once and then repeat one operation, over the number of runs.

@@ -1,4 +1,5 @@
-//! Growth of costs with the mesh: lines through the logarithms, whose slopes are exponents.
+//! Growth of costs with the size of the mesh. The slopes of lines through the logarithms are the
+//! exponents of growth.
 
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::plots::Plot;

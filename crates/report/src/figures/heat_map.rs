@@ -10,7 +10,7 @@ use sixfold_study::{Collection, Operation, Report};
 use crate::colours::GRID_COLOUR;
 use crate::figure::{Figure, Table, base_layout, ratio_ticks, render_svg};
 
-/// Ratios above this have one colour, so that smaller differences remain visible.
+/// All ratios above this have the same colour, so that smaller differences remain visible.
 const MAX_RATIO: f64 = 1000.0;
 
 /// Draws the ratios to the best of one study.

@@ -8,7 +8,8 @@ use sixfold_study::numbers::grouped;
 use crate::colours::table_colour;
 use crate::figure::{Figure, Table, base_layout, render_svg};
 
-/// Name of the table of positions; structures with points instead of vertices do not have it.
+/// Name of the table of positions; structures with points instead of vertices do not have this
+/// table.
 const POSITIONS: &str = "positions";
 
 /// Draws the bytes per vertex of each table.
@@ -27,7 +28,8 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
     let mut titles = Vec::new();
     for column in &columns {
         let mut parts = Vec::new();
-        // Positions first, in one colour for all structures; then the others in their order.
+        // Positions come first, in the same colour for all structures. The other tables keep their
+        // order.
         let mut tables: Vec<_> = column.tables.iter().collect();
         tables.sort_by_key(|part| part.table != POSITIONS);
         let first = usize::from(tables.first().is_none_or(|part| part.table != POSITIONS));

@@ -1,5 +1,5 @@
-//! Times of queries over the bytes that they move. A mark on the line of a memory speed can become
-//! faster only by moving fewer bytes.
+//! Times of queries as a function of the bytes that they move. If a mark lies on the line of a
+//! memory speed, the query can become faster only if it moves fewer bytes.
 
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::plots::Plot;
@@ -28,7 +28,7 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
         .fold([f64::INFINITY, 0.0], |[min_bytes, max_bytes], bytes| {
             [f64::min(min_bytes, bytes), f64::max(max_bytes, bytes)]
         });
-    // The fastest and the slowest buffer; all others are between them.
+    // The fastest and the slowest buffer; all other buffers are between these two.
     let buffers = [buffers.first(), buffers.last()].into_iter().flatten();
     let mut plots: Vec<Plot> = buffers
         .map(|buffer| line(buffer, min_bytes, max_bytes))
@@ -57,7 +57,8 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
     })
 }
 
-/// Draws a mark with a title for each relation on the structure `backend`, if it has rows.
+/// Draws a mark with a title for each relation on the structure `backend`; `None` if it has no
+/// rows.
 fn marks(rows: &[TimedRow], backend: &str) -> Option<Plot> {
     let (mut points, mut titles) = (Vec::new(), Vec::new());
     for (row, timed) in rows.iter().filter(|(row, _)| row.backend == backend) {

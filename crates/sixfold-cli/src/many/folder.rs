@@ -61,7 +61,7 @@ impl StudyRecord {
         }
     }
 
-    /// Adds it to the results.
+    /// Adds the saved study, or the reason of its failure, to the results.
     pub(super) fn add_to(self, collection: &mut Collection) {
         match (self.study, self.failure) {
             (Some(study), _) => collection.add_study(study),

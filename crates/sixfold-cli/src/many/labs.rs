@@ -77,8 +77,8 @@ pub(super) struct LabRunner<'a> {
     pub(super) study_mesh: &'a StudyMesh,
     pub(super) settings: &'a Settings,
     pub(super) folder: &'a Folder,
-    /// The study was finished by an earlier run: the folder has results of the same mesh and
-    /// settings.
+    /// Whether an earlier run finished the study, so that the folder has results of the same mesh
+    /// and settings.
     pub(super) resumed: bool,
     pub(super) stop: &'a AtomicBool,
 }

@@ -104,7 +104,7 @@ fn list_obj_files(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), (PathBu
         }
         let path = entry.path();
         let is_folder = entry.file_type().map_err(failed)?.is_dir();
-        // Only files and links to files: opening a pipe, for example, may block.
+        // Only files and links to files are listed, because opening a pipe, for example, may block.
         if is_folder || fs::metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
             paths.push((path, is_folder));
         }

@@ -9,8 +9,8 @@ use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
 use sixfold_study::numbers::{bytes, counted};
 
-/// Bytes of the sums per edge in a pass over the faces. They are in a hash map if edges have no
-/// rows.
+/// Bytes per edge of the sums in a pass over the faces. If edges have no rows, the sums are in a
+/// hash map.
 const SUMS_BYTES: usize = 120;
 
 /// Bytes per vertex while limits are computed.

@@ -146,7 +146,8 @@ struct LocalRefinement<'a> {
 impl Visitor for LocalRefinement<'_> {
     type Output = Result<LocalMesh, Failure>;
 
-    /// Works as `refine_locally`, but checks the memory of each level once its faces are selected.
+    /// Refines like `refine_locally`, but checks the memory of each level after its faces are
+    /// selected.
     fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
         let mut local = LocalMesh::new(self.polygons.clone()).map_err(Failure::unsupported)?;
         for level in 0..self.levels {

@@ -1,4 +1,4 @@
-//! What the examples share: the mesh to work on.
+//! Code that all examples share: reads the mesh to work on.
 
 use std::error::Error;
 use std::path::Path;

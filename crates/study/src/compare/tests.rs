@@ -21,7 +21,7 @@ fn report(factor: impl Fn(&str, Operation) -> f64) -> Report {
     report.control = None;
     // Other tests of this program may have changed the policy.
     report.environment.heap.as_mut().expect("measured").policy = Policy::Kept;
-    // Every row gets samples, even one that had no time for any.
+    // Every row gets samples, even a row that was not measured for lack of time.
     let raw = report.results.iter().map(|row| {
         let base = 1000.0 * factor(&row.backend, row.operation);
         // Nine samples, from −2 % to +2 %.

@@ -155,7 +155,7 @@ impl<'a> Program<'a> {
         })
     }
 
-    /// Returns whether programs are started with [`TUNABLES`]: not if the user has set the
+    /// Returns whether programs are started with [`TUNABLES`]. They are not if the user has set the
     /// variable.
     pub(super) fn sets_tunables(heap: Policy) -> bool {
         heap == Policy::Kept && std::env::var_os(TUNABLES[0]).is_none()
@@ -189,7 +189,7 @@ impl<'a> Program<'a> {
         });
         match sent {
             Some(Ok(())) => self.read_answer(&format!("to {}", request.run)),
-            // It closed its input: report its status and last error line.
+            // The program closed its input: report its status and last error line.
             _ => Err(self.describe_exit()),
         }
     }

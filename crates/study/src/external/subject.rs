@@ -6,8 +6,8 @@ use sixfold_workload::{Clock, Job, Outcome, Run, Series, Time, TimedBackend};
 use super::program::{Program, Request, Response};
 use crate::sanitize::sanitize;
 
-/// Largest ratio of the time a program reports to the time Sixfold waited; the two clocks may
-/// differ.
+/// Largest ratio of the time that a program reports to the time that Sixfold waited. The two clocks
+/// may differ.
 const CLOCK_TOLERANCE: f64 = 1.01;
 
 /// An external program that holds the mesh; after a failure, the error instead of the program.
@@ -26,8 +26,8 @@ impl<'a> ExternalSubject<'a> {
         }
     }
 
-    /// Sends `request` and checks the reported time, which is `None` if the program refuses. After
-    /// an error or an impossible time the program is not used again.
+    /// Sends `request` and checks the reported time. The time is `None` if the program refuses.
+    /// After an error or an impossible time the program is not used again.
     fn ask(
         &mut self,
         request: &Request,

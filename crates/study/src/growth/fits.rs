@@ -22,7 +22,7 @@ pub struct Fit {
     pub all: Option<Slope>,
     /// Line through the sizes at which the structure fits into the last cache.
     pub in_cache: Option<Slope>,
-    /// Line through the sizes at which it does not fit.
+    /// Line through the sizes at which the structure does not fit into the last cache.
     pub beyond: Option<Slope>,
     /// Number of sizes at which the time is an estimate.
     pub estimated: usize,

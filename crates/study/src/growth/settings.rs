@@ -170,7 +170,7 @@ fn sizes(from: usize, to: usize, steps: usize) -> Vec<usize> {
 ///
 /// # Errors
 ///
-/// The errors of [`growth`](super::growth) about invalid settings.
+/// Returns the errors of [`growth`](super::growth) about invalid settings.
 pub fn growth_bytes(settings: &GrowthSettings) -> Result<u64, GrowthError> {
     let plan = settings.plan()?;
     // A small mesh has the same proportions as a large one.

@@ -28,7 +28,7 @@ impl ScalableShape {
     ///
     /// # Errors
     ///
-    /// The shape does not allow this number of faces.
+    /// Returns an error if the shape does not allow this number of faces.
     ///
     /// # Panics
     ///

@@ -179,12 +179,12 @@ fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget()
                 },
             }) as Box<dyn TimedBackend>
         };
-        // At each place one is slow and the other fast.
+        // At each place one structure is slow and the other is fast.
         let mut subjects = vec![subject(0, [1.0, 1.2]), subject(1, [1.2, 1.0])];
         let (entries, elapsed) = run(&machine, &mut subjects, budget, false, false);
         (entries, elapsed, rebuilt[0].get())
     };
-    // Both are at both places equally often.
+    // Both structures are at both places equally often.
     let (entries, elapsed, rebuilt) = placed(100_000.0);
     assert!(elapsed <= budget);
     assert!(
@@ -257,7 +257,8 @@ fn ratios_within_rounds_do_not_depend_on_drift() {
         let alike = ratio(&entries, first + 2, first).value;
         assert!((alike - 1.0).abs() < 0.05, "{alike}");
     }
-    // The drift is large: single samples of one entry differ by more than the two costs.
+    // The drift is large: single samples of one entry differ by more than the costs of the two
+    // entries do.
     let own =
         Median::from_samples(entries[0].samples.iter().map(|(_, t)| t.ns())).expect("samples");
     let most = entries[0]

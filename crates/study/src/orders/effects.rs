@@ -31,7 +31,7 @@ impl OrderSamples {
 pub struct Factor {
     /// The median.
     pub ratio: f64,
-    /// Lower end of the 95 % interval; `None` below three rounds.
+    /// Lower end of the 95 % interval; `None` with fewer than three rounds.
     pub ci_low: Option<f64>,
     /// Upper end of the interval.
     pub ci_high: Option<f64>,
@@ -76,11 +76,12 @@ pub struct OrderEffect {
     pub worst_to_best: Factor,
     /// Time of the given order divided by that of the best.
     pub given_to_best: Option<Factor>,
-    /// Whether the worst order is slower than the best beyond the noise.
+    /// Whether the worst order is slower than the best by more than the noise.
     pub matters: bool,
 }
 
-/// The effect of the structure, each in its own best order, among structures that do not scan.
+/// The effect of the structure, among structures that do not scan. Each structure is in its best
+/// order.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct StructureEffect {
     /// The structure with the smallest median.
@@ -93,7 +94,7 @@ pub struct StructureEffect {
     pub slowest_order: Order,
     /// Time of the slowest divided by that of the fastest.
     pub slowest_to_fastest: Factor,
-    /// Whether the slowest is slower than the fastest beyond the noise.
+    /// Whether the slowest is slower than the fastest by more than the noise.
     pub matters: bool,
 }
 
@@ -103,9 +104,9 @@ pub struct StructureEffect {
 pub enum Larger {
     /// The effect of the order is larger on every structure that does not scan.
     Order,
-    /// The effect of the structure is larger on all of them.
+    /// The effect of the structure is larger on every structure that does not scan.
     Structure,
-    /// It depends on the structure, or the intervals overlap.
+    /// The larger effect depends on the structure, or the intervals overlap.
     Depends,
 }
 

@@ -14,7 +14,7 @@ pub(crate) struct PickBackend<'a> {
     pub(crate) made_from: Option<&'static str>,
     /// Whether it is the second copy of a backend, for the control.
     pub(crate) control: bool,
-    /// By part: how a pass is timed.
+    /// By part: the plan for timing a pass.
     pub(crate) passes: Vec<PassPlan>,
     /// By part: number of operations in one sample of that part alone.
     pub(crate) part_operations: Vec<u64>,
@@ -24,25 +24,26 @@ pub(crate) struct PickBackend<'a> {
     pub(crate) slowdowns: Vec<f64>,
     /// The building times.
     pub(crate) builds: Vec<Time>,
-    /// Ratios of building times: on fresh pages to directly afterwards on kept pages.
+    /// Ratios of building times: the time on fresh pages divided by the time directly afterwards on
+    /// kept pages.
     pub(crate) first_builds: Vec<f64>,
     /// By part: the times of one operation, timed alone, in nanoseconds.
     pub(crate) parts: Vec<Vec<f64>>,
-    /// By part: what its operations yielded on all elements, or the checksum of a pass; `None` if
-    /// not all elements were queried.
+    /// By part: the count that its operations yielded on all elements, or the checksum of a pass;
+    /// `None` if not all elements were queried.
     pub(crate) results: Vec<Option<f64>>,
 }
 
-/// How a pass is timed on one backend.
+/// The plan for timing a pass on one backend.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PassPlan {
-    /// The operation that it is on this backend; `None` for parts that are not passes.
+    /// The operation that the pass runs on this backend; `None` for parts that are not passes.
     pub(crate) operation: Option<sixfold_workload::Operation>,
     /// Number of consecutive runs in one sample.
     pub(crate) runs: u32,
     /// The sample of the elements to run on, if it scans.
     pub(crate) sample: Option<sixfold_workload::ElementSample>,
-    /// Its estimated time, if a run would exceed the budget.
+    /// The estimated time, if a run would exceed the budget.
     pub(crate) estimate: Option<Time>,
 }
 
@@ -79,7 +80,7 @@ impl<'a> PickBackend<'a> {
         }
     }
 
-    /// Returns whether some part scans all faces. Then the parts are timed one by one, on few
+    /// Returns whether some part scans all faces. If so, the parts are timed one by one, on few
     /// elements.
     pub(crate) fn scans(&self) -> bool {
         self.mixer.scans().contains(&true)
@@ -87,7 +88,7 @@ impl<'a> PickBackend<'a> {
 }
 
 /// Tries the edits of the schedule at their places on all backends, and keeps the places that all
-/// of them accept, so that all do the same work.
+/// backends accept, so that all backends do the same work.
 pub(crate) fn keep_common_places(
     backends: &mut [PickBackend<'_>],
     schedule: &Schedule,
@@ -125,8 +126,8 @@ pub(crate) fn keep_common_places(
     Ok(())
 }
 
-/// Returns tables of the relations that the workload queries, made from the structure for which
-/// that is fastest; `None` if the workload queries nothing that can be tabulated.
+/// Returns tables of the relations that the workload queries, made from the structure that builds
+/// the tables fastest; `None` if the workload queries nothing that can be tabulated.
 pub(crate) fn build_tables<'a>(
     backends: &[PickBackend<'a>],
     clock: &dyn Clock,

@@ -8,9 +8,9 @@ use crate::statistics::Median;
 const BASE: &str = "indexed-face-set";
 
 /// Returns the break-even of each backend, compared with an indexed face set that need not be
-/// built. It is at n = build / (t_base − t) operations, where the time saved equals the building
-/// time. Differences are formed within rounds; the interval of n is derived from the interval of
-/// the median difference. `operations` is the number of operations in one use.
+/// built. The break-even is at n = build / (t_base − t) operations: the time saved then equals the
+/// building time. Differences are formed within rounds; the interval of n is derived from the
+/// interval of the median difference. `operations` is the number of operations in one use.
 pub(crate) fn break_even(
     backends: &[&PickBackend<'_>],
     ranking: &[Ranked],

@@ -120,7 +120,7 @@ impl PickMeasurement<'_> {
             backend.samples = undisturbed(&backend.samples, &backend.slowdowns);
         }
         self.time_parts(&mut backends, deadline - FOR_FIRST_BUILDS * budget);
-        // Last, because it returns pages to the kernel that later samples would need.
+        // This comes last, because it returns pages to the kernel that later samples would need.
         self.time_first_builds(&mut backends, deadline);
         let shortest_ns = backends
             .iter()
@@ -191,7 +191,7 @@ impl PickMeasurement<'_> {
     }
 
     /// Runs all parts on elements in one loop. The preceding turns are run first, untimed and for
-    /// as long, so that caches and branch predictors are in the same state as in a program.
+    /// the same time, so that caches and branch predictors are in the same state as in a program.
     fn time_mix(&self, backend: &mut PickBackend<'_>, round: u32, plan: SamplePlan) -> Time {
         let SamplePlan { turns, copies } = plan;
         let at = u64::from(round) * turns;
@@ -215,7 +215,7 @@ impl PickMeasurement<'_> {
         total
     }
 
-    /// Returns the time of the pass `part`: its estimate if it has one.
+    /// Returns the time of the pass `part`, or its estimate if it has one.
     fn time_pass(&self, backend: &mut PickBackend<'_>, part: usize) -> Time {
         let PassPlan {
             operation,
@@ -412,7 +412,7 @@ fn shortest(backend: &PickBackend<'_>, plan: SamplePlan, schedule: &Schedule) ->
     times.min_by(f64::total_cmp)
 }
 
-/// Returns the package of a type; its path begins with the name of the crate.
+/// Returns the package of a type. The path of the type begins with the name of its crate.
 fn package_of(type_path: &str) -> String {
     let (package, _) = type_path.split_once("::").unwrap_or((type_path, ""));
     package.replace('_', "-")

@@ -39,7 +39,7 @@ impl Need {
         Self::Refine,
     ];
 
-    /// Returns its name for users: `non-manifold`.
+    /// Returns the name that users write: `non-manifold`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Edit => "edit",

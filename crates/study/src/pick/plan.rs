@@ -13,7 +13,7 @@ use crate::pick::measurement::PickMeasurement;
 const SHORTEST_SAMPLE_NS: f64 = 500_000.0;
 /// The longest sample of the slowest backend. Longer ones would leave too few rounds.
 const LONGEST_SAMPLE_NS: f64 = 20_000_000.0;
-/// The largest number of copies in a sample. More do not improve it.
+/// The largest number of copies in a sample. More copies do not improve the sample.
 const MAX_COPIES: usize = 10_000;
 /// Sizes of the patches, in faces, from which the time of a scanning pass is estimated.
 const PATCHES: [usize; 2] = [256, 1024];
@@ -74,7 +74,7 @@ impl PickMeasurement<'_> {
         }
     }
 
-    /// Plans which operation each pass is on this backend, and how it is timed.
+    /// Plans which operation each pass runs on this backend, and how the pass is timed.
     pub(crate) fn plan_passes(&self, backend: &mut PickBackend<'_>, slot_ns: f64) {
         for part in self.schedule.passes() {
             let operation = match self.schedule.parts[part].action {
@@ -103,8 +103,9 @@ impl PickMeasurement<'_> {
         }
     }
 
-    /// Plans a pass that scans all faces for each element: on a sample of the elements, or, if it
-    /// cannot be sampled and is too long, as an estimate from patches of the mesh.
+    /// Plans a pass that scans all faces for each element. The pass is run on a sample of the
+    /// elements. If it cannot be sampled and takes too long, its time is estimated from patches of
+    /// the mesh.
     fn plan_search(
         &self,
         backend: &mut PickBackend<'_>,
@@ -178,8 +179,8 @@ impl PickMeasurement<'_> {
         }
     }
 
-    /// Plans how many operations of each part make a sample of that part, and records what they
-    /// yield on all elements.
+    /// Plans how many operations of each part make a sample of that part, and records the counts
+    /// that the operations yield on all elements.
     pub(crate) fn plan_parts(&self, backend: &mut PickBackend<'_>, slot_ns: f64) {
         let scans = backend.mixer.scans();
         for part in self.schedule.elements() {

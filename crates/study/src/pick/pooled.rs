@@ -153,7 +153,7 @@ fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
 }
 
 /// Returns the break-even of `ranked` over all meshes; it has no number of operations if building
-/// never pays off on one of them.
+/// never pays off on one of the meshes.
 fn break_even_on_all(outcomes: &[Outcome], ranked: &Ranked) -> Option<BreakEven> {
     let rows: Option<Vec<&BreakEven>> = outcomes
         .iter()

@@ -134,7 +134,8 @@ fn largest_loss(report: &PickReport, best: &Ranked) -> Option<String> {
     ))
 }
 
-/// Describes the time of relation tables; if they are the best, that of the fastest structure.
+/// Describes the time of relation tables. If the tables are the best, describes the time of the
+/// fastest structure.
 fn tables(report: &PickReport, best: &Ranked) -> Option<String> {
     let structure = report
         .ranking

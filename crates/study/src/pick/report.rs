@@ -33,10 +33,10 @@ pub struct PickReport {
     #[serde(serialize_with = "by_name", deserialize_with = "from_names")]
     pub excluded: Vec<Excluded>,
     /// For each backend, the number of operations after which its building time is saved, compared
-    /// with an indexed face set that exists already; empty if the indexed face set did not take
+    /// with an indexed face set that exists already. Empty if the indexed face set did not take
     /// part.
     pub break_even: Vec<BreakEven>,
-    /// The time ratio, 1 or more, of one backend that was measured twice: the noise.
+    /// The noise: the ratio, 1 or more, of the two times of a backend that was measured twice.
     pub noise: Option<f64>,
     /// Backends with other results than the rest for the same work: a fault in Sixfold.
     pub mismatches: Vec<String>,
@@ -60,11 +60,11 @@ pub struct PickReport {
 pub struct MeshRanking {
     /// The mesh.
     pub mesh: String,
-    /// As [`PickReport::ranking`].
+    /// The ranking on this mesh, as in [`PickReport::ranking`].
     pub ranking: Vec<Ranked>,
-    /// As [`PickReport::break_even`].
+    /// The break-even on this mesh, as in [`PickReport::break_even`].
     pub break_even: Vec<BreakEven>,
-    /// As [`PickReport::noise`].
+    /// The noise on this mesh, as in [`PickReport::noise`].
     pub noise: Option<f64>,
 }
 
@@ -80,29 +80,30 @@ pub struct Ranked {
     /// The median, over rounds, of the time of one operation of the mix, rebuilding included, in
     /// nanoseconds.
     pub ns_per_operation: f64,
-    /// The lower end of its 95 % interval; `None` with fewer than three rounds.
+    /// The lower end of the 95 % interval of that time; `None` with fewer than three rounds.
     pub ns_ci_low: Option<f64>,
-    /// Its upper end.
+    /// The upper end of that interval.
     pub ns_ci_high: Option<f64>,
-    /// The median, over rounds, of its time divided by the time of the fastest; 1 for the fastest
-    /// itself.
+    /// The median, over rounds, of the time of this backend divided by the time of the fastest; 1
+    /// for the fastest itself.
     pub ratio_to_best: f64,
     /// The lower end of the 95 % interval of that ratio.
     pub ci_low: Option<f64>,
-    /// Its upper end.
+    /// The upper end of that interval.
     pub ci_high: Option<f64>,
     /// Whether it is tied with the fastest: not measurably different from it.
     pub tied_with_best: bool,
-    /// The time to build it from polygons, tabulating included, on pages that were freed before, in
-    /// nanoseconds. Each rebuilding costs this time.
+    /// The time to build the backend from polygons, on pages that were freed before, in
+    /// nanoseconds. For relation tables, this includes making the tables. Each rebuild takes this
+    /// time.
     pub build_ns: f64,
-    /// The same on fresh pages: the time in a program that builds the structure once. `None` if
+    /// The time to build the backend on fresh pages, as in a program that builds it once. `None` if
     /// there was no time to measure it.
     #[serde(default)]
     pub first_build_ns: Option<f64>,
     /// The size of its tables, in bytes.
     pub bytes: usize,
-    /// The same per vertex of the mesh.
+    /// That size per vertex of the mesh.
     pub bytes_per_vertex: f64,
     /// Whether only a sample of the elements was queried, because a query scans all faces.
     pub sampled: bool,
@@ -142,7 +143,8 @@ impl Ranked {
 }
 
 impl PartCost {
-    /// Returns its contribution to the time of one operation of the mix, in nanoseconds.
+    /// Returns the contribution of the part to the time of one operation of the mix, in
+    /// nanoseconds.
     pub(crate) fn weighted_ns(&self) -> f64 {
         self.ns.unwrap_or(0.0) * self.share
     }
@@ -155,14 +157,14 @@ pub struct BreakEven {
     pub backend: String,
     /// The time to build it, in nanoseconds.
     pub build_ns: f64,
-    /// The time that it saves per operation, compared with the indexed face set, in nanoseconds;
-    /// negative if it is slower.
+    /// The time that the backend saves per operation, compared with the indexed face set, in
+    /// nanoseconds; negative if the backend is slower.
     pub saves_ns_per_operation: f64,
     /// The number of operations after which its building time is saved; `None` if never.
     pub operations: Option<f64>,
     /// The lower end of the 95 % interval of that number.
     pub ci_low: Option<f64>,
-    /// Its upper end; `None` if it may be never.
+    /// The upper end of that interval; `None` if building may never pay off.
     pub ci_high: Option<f64>,
     /// The same number in uses of the mesh by this workload.
     pub uses: Option<f64>,
@@ -186,7 +188,7 @@ impl Excluded {
     }
 }
 
-/// Returns the reason for excluding a backend of `bytes` bytes with at most `most` allowed.
+/// Returns the reason why a backend of `bytes` bytes is excluded if at most `most` are allowed.
 pub(crate) fn over_memory_limit(bytes: u64, most: u64) -> String {
     let [bytes, most] = [bytes, most].map(|bytes| grouped(bytes as usize));
     format!("it takes {bytes} bytes, and --max-memory allows {most}")
@@ -197,7 +199,7 @@ impl PickReport {
     ///
     /// # Errors
     ///
-    /// The errors of `writer`.
+    /// Returns the errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
     }

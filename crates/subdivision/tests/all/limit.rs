@@ -104,7 +104,8 @@ fn ring_after(scheme: &Subdivision, from: &Step) -> (Step, Point, f32) {
 }
 
 /// Returns the position of vertex 0 after `levels` steps, and the direction of the sum of the
-/// normals of its faces; only of the faces that `counts` selects by their first neighbour.
+/// normals of its faces. The sum includes only the faces that `counts` selects by their first
+/// neighbour.
 fn vertex_after(
     scheme: &Subdivision,
     from: Step,
@@ -236,8 +237,8 @@ fn a_boundary_vertex_converges_to_its_limit() {
             let (creases, at) = limits::<IndexedFaceSet>(&scheme, &polygons, &Creases::default());
             let (position, normal) = defined(at[0]);
             let start = Step { polygons, creases };
-            // Few faces become flat along the boundary until rounding dominates; many converge
-            // slowly.
+            // With few faces, the faces become flat along the boundary until rounding dominates.
+            // With many faces, the steps converge slowly.
             let (levels, least) = match k {
                 1 | 2 => (14, 0.9995),
                 3 => (20, 0.9995),

@@ -37,7 +37,8 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
                 self.side_or_new([v, corners[i + 1]], log)
             };
             self.link_corner(v, before, after);
-            // Not earlier: a run without a face shows that the side already exists.
+            // The face is set here and not earlier: before, a run without a face shows that the
+            // side already exists.
             self.set_face(before.run, Slot::some(face));
             before = after;
         }

@@ -201,7 +201,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
     /// Checks the link condition (Dey et al. 1999), and that no face would contain `keep` twice.
     ///
     /// Walks around the removed end, then around the kept end. Only the third corners may be
-    /// adjacent to both, and no face except those along the edge may be at both.
+    /// adjacent to both ends. Only the faces along the edge may be at both ends.
     fn check_link(
         &self,
         out: RunId,
@@ -273,8 +273,8 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
             && to_removed.prev() == from_removed.next()
     }
 
-    /// Returns whether the same is true of the kept end. The last two triangles would then have the
-    /// same corners.
+    /// Returns whether the kept end has three edges and three triangles around it. The last two
+    /// triangles would then have the same corners.
     #[inline(always)]
     fn kept_end_has_valence_three(&self, left: Triangle, right: Triangle) -> bool {
         let from_keep = self.run(left.kept.twin());

@@ -71,11 +71,12 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         Ok(e)
     }
 
-    /// Returns whether an edge joins two vertices. Each entry has a vertex, the first edge of its
-    /// walk (counter-clockwise), the edge at which the walk stops, and the other vertex.
+    /// Returns whether an edge joins two vertices. Each entry of `walks` has a vertex, the first
+    /// edge of its walk (counter-clockwise), the edge at which the walk stops, and the other
+    /// vertex.
     ///
-    /// Walks around both vertices at once, so that neither walk waits for the other, until the
-    /// shorter walk ends: a vertex with many edges costs no more than the other one.
+    /// Walks around both vertices at once, so that neither walk waits for the other. Stops when the
+    /// shorter walk ends, so a vertex with many edges costs no more than the other vertex.
     #[inline(always)]
     fn are_neighbours(&self, walks: [(VertexId, EdgeId, EdgeId, VertexId); 2]) -> bool {
         let [(c, mut at_c, end_c, to_d), (d, mut at_d, end_d, to_c)] = walks;

@@ -58,7 +58,8 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
     }
 }
 
-/// Runs as an edge and a side; all O(1), except the degree that `apex` returns as an error.
+/// Functions of runs, which are stored as an edge and a side. All are O(1), except if `apex`
+/// returns a degree as an error.
 impl<P: Probe> WingedEdgeMesh<Editable, P> {
     #[inline(always)]
     pub(super) fn run(&self, run: RunId) -> Run<'_> {
@@ -152,7 +153,8 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         *self.spokes.write(v.index()) = Slot::some(spoke);
     }
 
-    /// Makes `other` the spoke of `v` if `gone` was. At an inner vertex, any edge can be the spoke.
+    /// Makes `other` the spoke of `v` if `gone` was its spoke. At an inner vertex, any edge can be
+    /// the spoke.
     #[inline(always)]
     pub(super) fn replace_spoke(&mut self, v: VertexId, gone: EdgeId, other: EdgeId) {
         if *self.spokes.read(v.index()) == Slot::some(gone) {

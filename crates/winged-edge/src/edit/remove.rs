@@ -18,7 +18,7 @@ struct OutlineRun {
     across: Across,
 }
 
-/// What is on the other side of a run of the outline.
+/// The element on the other side of a run of the outline.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Across {
     /// A face that is kept: the run becomes a boundary.
@@ -128,7 +128,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         }
     }
 
-    /// Merges the corners of each vertex. Refuses if two fans would remain at one.
+    /// Merges the corners of each vertex. Refuses if two fans would remain at one vertex.
     fn merge_corners(mut corners: Vec<Corner>) -> Result<Vec<Corner>, Refusal<Self>> {
         corners.sort_unstable_by_key(|corner| corner.v);
         let mut two_fans = None;

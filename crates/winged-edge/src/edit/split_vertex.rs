@@ -14,7 +14,8 @@ struct Part {
     /// The edges to `left` and `right`, if given.
     left: Option<EdgeId>,
     right: Option<EdgeId>,
-    /// The edges between them; if one is missing, from or up to the boundary.
+    /// The edges between `left` and `right`. If one of the two is missing, the edges up to the
+    /// boundary or from it.
     moved: ShortVec<EdgeId>,
     /// Whether the boundary begins in this part.
     has_boundary: bool,

@@ -51,7 +51,8 @@ fn a_flip_writes_the_expected_records() {
     let e = between(&mesh, 0, 2);
     let [ab, bc, cd, da] =
         [[0, 1], [1, 2], [2, 3], [3, 0]].map(|[a, b]| between(&mesh, a, b).row());
-    // Before, it runs from v0 to v2 with f1 = (0, 2, 3) on the left; after, from v1 to v3.
+    // Before the flip, `e` runs from v0 to v2 with f1 = (0, 2, 3) on the left; after the flip, `e`
+    // runs from v1 to v3.
     assert_eq!(
         row(mesh.edge(e)),
         ([0, 2], [Some(1), Some(0)], [cd, ab], [da, bc])

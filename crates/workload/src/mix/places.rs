@@ -67,7 +67,8 @@ impl EditPlaces {
         if faces.len() < edits.len() {
             return Err(too_small);
         }
-        // Each edit gets one place, then the edit with the fewest places relative to its share.
+        // Each edit gets one place. Each further place goes to the edit with the fewest places
+        // relative to its share.
         let mut by_edit: Vec<Vec<FaceId>> = faces.drain(..edits.len()).map(|f| vec![f]).collect();
         for face in faces {
             let fewest = (0..edits.len()).min_by(|&a, &b| {
@@ -103,7 +104,7 @@ impl EditPlaces {
 fn vertices_near_places(by_edit: &[Vec<FaceId>], polygons: &PolygonMesh) -> Vec<bool> {
     let mut occupied = vec![false; polygons.vertex_count()];
     let Ok(mesh) = FaceVertexMesh::from_polygons(polygons) else {
-        return occupied; // it refuses only meshes with too many elements
+        return occupied; // refused only if the mesh has too many elements
     };
     for &f in by_edit.iter().flatten() {
         let fans = mesh.face(f).iter().flat_map(|&v| mesh.fan(v));

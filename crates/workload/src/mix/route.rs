@@ -43,14 +43,14 @@ impl Route {
             }
             Access::Patches => match FaceVertexMesh::from_polygons(polygons) {
                 Ok(mesh) => patches(&mesh, polygons, seed),
-                Err(_) => empty, // it refuses only meshes with too many elements
+                Err(_) => empty, // refused only if the mesh has too many elements
             },
         }
     }
 }
 
-/// Builds patches around random faces until they have as many faces in total as the mesh. They
-/// contain no isolated vertices.
+/// Builds patches around random faces until the patches have as many faces in total as the mesh.
+/// Patches contain no isolated vertices.
 fn patches(mesh: &FaceVertexMesh, polygons: &PolygonMesh, seed: u64) -> Route {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut route = Route {

@@ -52,7 +52,7 @@ impl<M: MeshQuery> RouteHandles<M> {
     }
 
     /// Runs `action` on the elements of the operations `range`. Returns the number of elements that
-    /// it yielded, or of positions that it read.
+    /// the action yielded, or of positions that it read.
     #[inline(never)]
     pub(crate) fn run_action(&self, mesh: &M, action: Action, range: Range<u64>) -> u64 {
         let (v, e, f) = (&self.vertices, &self.edges, &self.faces);

@@ -45,8 +45,8 @@ impl Schedule {
         }
     }
 
-    /// Returns the range of operations of `part` that turn `turn` runs, counted from the first
-    /// turn.
+    /// Returns the range of operations of `part` that turn `turn` runs. Operations are counted from
+    /// the first turn on.
     pub fn turn_range(&self, part: usize, turn: u64) -> Range<u64> {
         if self.parts[part].action.is_pass() {
             return 0..0;

@@ -237,8 +237,8 @@ struct StructureMix<'a, M: Representation, W> {
     prepared: Option<M>,
     /// Copies of `prepared`, each with the counts of the last run on it.
     copies: ReusedCopies<(M, [u64; 3])>,
-    /// The structure as a study measures it, for passes that make a mesh or visit a sample. Built
-    /// when first needed.
+    /// The structure as a study measures it, for passes that make a mesh or visit a sample. It is
+    /// built when first needed.
     timed_backend: Option<Box<dyn TimedBackend + 'a>>,
 }
 

@@ -80,8 +80,8 @@ impl Tables {
     }
 }
 
-/// Defines one query; an empty row if the relation has no table, because the workload does not
-/// query it.
+/// Defines one query. The query returns an empty row if the relation has no table because the
+/// workload does not query it.
 macro_rules! row {
     ($name:ident, $from:ty, $to:ty) => {
         #[inline]
@@ -151,9 +151,9 @@ impl MeshQuery for Tables {
     }
 }
 
-/// Builds tables of the relations that `schedule` queries, from the structure of `backend`, which is
-/// built from `polygons`. Returns `None` if the structure cannot hold `polygons`, or the schedule
-/// changes connectivity.
+/// Builds the structure of `backend` from `polygons`, then tables of the relations that `schedule`
+/// queries. Returns `None` if the structure cannot hold `polygons`, or if the schedule changes
+/// connectivity.
 pub fn tabulate<'a>(
     backend: &Backend,
     polygons: &'a PolygonMesh,
@@ -332,7 +332,8 @@ impl MixBackend for TableMix<'_> {
         if operation != Operation::VvSmooth {
             return run;
         }
-        // Written to a copy, as for every structure, so that the mesh keeps its positions.
+        // The positions are written to a copy, as for every structure, so that the mesh keeps its
+        // own.
         let Self { moved, outputs, .. } = self;
         let swap = series.time_together(|| {
             moved.copy_from_slice(black_box(outputs.vertices.values()));

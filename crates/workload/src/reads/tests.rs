@@ -281,7 +281,7 @@ impl AccessLog<'_> {
 
 #[test]
 fn counts_of_all_six_structures_equal_their_logs() {
-    // So few elements that structures that scan are not sampled.
+    // The mesh has so few elements that even a structure that scans is not sampled.
     let open = polygons(6, &[&[0, 1, 2], &[0, 2, 3], &[3, 2, 4], &[4, 2, 5]]);
     let mixed = polygons(7, &[&[0, 1, 2], &[0, 2, 3, 4], &[4, 3, 5], &[0, 4, 6, 1]]);
     let isolated = polygons(8, &[&[0, 1, 2], &[2, 1, 3], &[2, 3, 4, 5, 6]]);

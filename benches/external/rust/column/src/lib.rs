@@ -83,7 +83,7 @@ struct Header<'a> {
     library: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<String>,
-    /// The allocator, if Sixfold can make it keep pages by an environment variable.
+    /// The allocator, if Sixfold can make it keep pages with an environment variable.
     #[serde(skip_serializing_if = "Option::is_none")]
     heap: Option<&'static str>,
 }
@@ -107,8 +107,8 @@ struct Refused<'a> {
     refused: &'a str,
 }
 
-/// Runs the whole program: reads the mesh that the first argument names, and answers until standard
-/// input ends.
+/// Runs the whole program: reads the mesh that the first argument names, and answers requests until
+/// standard input ends.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! The operations, written once for all libraries, as Sixfold defines them.
+//! The operations as Sixfold defines them, written once for all libraries.
 
 use std::collections::{HashSet, VecDeque};
 use std::hint::black_box;
@@ -108,8 +108,9 @@ impl<C: Column> Runner<C> {
     pub(crate) fn run(&mut self, operation: &str, times: u64) -> Option<Response> {
         let (mut wall, mut cpu) = (Duration::ZERO, Duration::ZERO);
         let mut found = None;
-        // Moved positions are reset outside the timing. All other operations are timed together,
-        // because reading the clocks takes as long as a run on a small mesh.
+        // If an operation moves positions, each run is timed alone, and the reset between runs is
+        // not timed. All runs of another operation are timed together, because reading the clocks
+        // takes as long as a run on a small mesh.
         let moves = operation == "vv_smooth";
         let (batches, runs) = if moves { (times, 1) } else { (1, times) };
         for _ in 0..batches {

@@ -1,5 +1,5 @@
-//! The column of parry3d: a triangle mesh with half-edges and a bounding volume hierarchy. It has
-//! the half-edge tables but no traversals, so the traversals are here.
+//! The column of parry3d: a triangle mesh with half-edges and a bounding volume hierarchy. parry3d
+//! has the half-edge tables but no traversals, so this file implements the traversals.
 
 use std::error::Error;
 
@@ -21,12 +21,14 @@ impl Parry {
         &topology.expect("built with it").half_edges
     }
 
-    /// Returns the previous half-edge. Those of a triangle have consecutive numbers, in order.
+    /// Returns the previous half-edge. The half-edges of a triangle have consecutive numbers, in
+    /// order.
     fn prev(half: u32) -> u32 {
         if half % 3 == 0 { half + 2 } else { half - 1 }
     }
 
-    /// Returns the edge of a half-edge: the smaller one of the two half-edges.
+    /// Returns the edge of a half-edge. An edge is represented by the smaller of its two
+    /// half-edges.
     fn edge(&self, half: u32) -> u32 {
         half.min(self.half_edges()[half as usize].twin)
     }
@@ -43,8 +45,8 @@ impl Parry {
         half_edges[half_edges[half as usize].next as usize].vertex
     }
 
-    /// Visits every half-edge that starts at `v`. At a boundary, also visits the half-edge that
-    /// ends at `v` and has no twin, with `true`.
+    /// Calls `sink` with every half-edge that starts at `v`, and `false`. At a boundary, also calls
+    /// `sink` with the half-edge that ends at `v` and has no twin, and `true`.
     fn visit_spokes(&self, v: u32, mut sink: impl FnMut(u32, bool)) {
         let half_edges = self.half_edges();
         let topology = self.mesh.topology().expect("built with it");
@@ -160,7 +162,7 @@ impl Column for Parry {
         self.mesh.vertices()[v as usize].into()
     }
     fn set_positions(&mut self, positions: &[[f32; 3]]) {
-        // The only way to move vertices in parry3d; it rebuilds the hierarchy.
+        // This is the only way to move vertices in parry3d. It also rebuilds the hierarchy.
         self.mesh.update_vertices(|points| {
             for (point, &position) in points.iter_mut().zip(positions) {
                 *point = position.into();

@@ -7,8 +7,7 @@ use sixfold_core::Point;
 use super::{Model, Rules, position_of_side, sides, sorted};
 use crate::edit::action::Action;
 
-/// The edits return `None` if they are illegal by their own rules; the model may then be partly
-/// edited.
+/// An edit returns `None` if its own rules forbid it. The model may then be partly edited.
 impl Model {
     /// Executes `action`, even if the structure could not hold the result.
     pub(super) fn apply(&mut self, action: &Action, rules: &Rules) -> Option<()> {
@@ -79,7 +78,7 @@ impl Model {
         Some(())
     }
 
-    /// Adds a vertex to an edge, as a corner of its faces.
+    /// Adds a vertex to an edge, as a new corner of the faces at the edge.
     fn split_edge(&mut self, ends: [usize; 2], at: Point) -> Option<()> {
         let faces = self.edges().remove(&sorted(ends))?;
         let m = self.add_vertex(at);
@@ -91,7 +90,7 @@ impl Model {
         Some(())
     }
 
-    /// Adds a vertex to an edge, and splits its triangles in two.
+    /// Adds a vertex to an edge, and splits each triangle at the edge in two.
     fn bisect_edge(&mut self, ends: [usize; 2], at: Point) -> Option<()> {
         let faces = self.edges().remove(&sorted(ends))?;
         let m = self.add_vertex(at);
@@ -176,7 +175,7 @@ impl Model {
         Some(())
     }
 
-    /// Moves the edges and faces of `removed` to `keep`, which moves to `to`.
+    /// Attaches the edges and faces of `removed` to `keep`, and moves `keep` to the position `to`.
     fn collapse_edge(
         &mut self,
         [keep, removed]: [usize; 2],
@@ -240,8 +239,8 @@ impl Model {
     }
 
     /// Returns the faces at `v` counter-clockwise, from the boundary if there is one. Each entry
-    /// has the corner after `v`, the face, and the corner before `v`. `None` if the faces are not
-    /// one oriented fan.
+    /// has the corner after `v`, the face, and the corner before `v`. Returns `None` if the faces
+    /// are not one oriented fan.
     fn fan(&self, v: usize) -> Option<Vec<(usize, usize, usize)>> {
         let mut left: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
         for (f, face) in self.faces() {
@@ -268,8 +267,8 @@ impl Model {
         (left.is_empty() && all_before.len() == fan.len()).then_some(fan)
     }
 
-    /// Moves the faces at `v` from `right` to `left` to a new vertex, and adds a triangle at each of
-    /// the two.
+    /// Attaches the faces at `v` between `right` and `left` to a new vertex. Then adds one triangle
+    /// at `left` and one at `right`.
     fn split_vertex(
         &mut self,
         v: usize,
@@ -280,8 +279,8 @@ impl Model {
         let fan = self.fan(v)?;
         let (first, last) = (fan[0].0, fan[fan.len() - 1].2);
         let closed = first == last;
-        // The sectors between consecutive adjacent vertices; at a boundary, the gap is a sector
-        // too.
+        // The sectors between consecutive vertices of the ring. At a boundary, the gap without a
+        // face is a sector too.
         let mut ring: Vec<usize> = fan.iter().map(|&(after, ..)| after).collect();
         let mut sectors: Vec<Option<usize>> = fan.iter().map(|&(_, f, _)| Some(f)).collect();
         if !closed {
@@ -289,8 +288,8 @@ impl Model {
             sectors.push(None);
         }
         let index_in_ring = |u: usize| ring.iter().position(|&w| w == u);
-        // Without `left`, the part ends at the start of the gap. Without `right`, it starts at the
-        // end of the gap.
+        // Without `left`, the moved part ends at the start of the gap. Without `right`, it starts
+        // at the end of the gap.
         let (from, to) = match (left, right) {
             (Some(l), Some(r)) if l != r => (index_in_ring(r)?, index_in_ring(l)?),
             (None, Some(r)) if !closed => (index_in_ring(r)?, ring.len() - 1),

@@ -6,7 +6,8 @@ use sixfold_core::{Counts, FaceId, Point, PolygonMesh, Refine, Split, VertexId};
 
 /// The expected result of a split.
 pub(super) struct ExpectedChild {
-    /// Faces of the child, each from its lowest vertex on, with the parent face; sorted.
+    /// The sorted faces of the child. Each has its corners, from the lowest vertex on, and its
+    /// parent face.
     faces: Vec<(Vec<usize>, FaceId)>,
     vertices: usize,
     edges: usize,
@@ -15,7 +16,7 @@ pub(super) struct ExpectedChild {
 }
 
 impl ExpectedChild {
-    /// Splits the faces of `input`; `mesh` gives the numbers of its edges.
+    /// Splits the faces of `input`. The edges have the numbers that `mesh` gives them.
     pub(super) fn new<M: Refine>(mesh: &M, input: &PolygonMesh, split: Split) -> Self {
         let parent = Parent::new(mesh, input);
         let mut faces: Vec<(Vec<usize>, FaceId)> = Vec::new();
@@ -91,7 +92,7 @@ impl ExpectedChild {
 /// The mesh that is split, with the numbers of the points that a split adds.
 struct Parent<'a> {
     input: &'a PolygonMesh,
-    /// By ends, the lower one first: the number of each edge, and its faces.
+    /// The number and the faces of each edge. The key is the ends, the lower one first.
     edges: BTreeMap<[VertexId; 2], (usize, Vec<FaceId>)>,
     /// The numbers of the boundary edges, sorted.
     boundary: Vec<usize>,
@@ -155,7 +156,7 @@ impl<'a> Parent<'a> {
         quads.collect()
     }
 
-    /// Returns a triangle for each corner, and the one in the middle.
+    /// Returns one triangle for each corner, and one in the middle.
     fn triangles(&self, corners: &[VertexId]) -> Vec<Vec<usize>> {
         let middles = self.middles(corners, self.input.vertex_count());
         let at_corners = (0..corners.len()).map(|i| {
@@ -171,8 +172,8 @@ impl<'a> Parent<'a> {
         edges.map(|(number, _)| first + number).collect()
     }
 
-    /// Returns the triangles at a side of `f`: three if the side is on the boundary and `trisect`,
-    /// otherwise one.
+    /// Returns the triangles at a side of `f`: three if the side is on the boundary and `trisect`
+    /// is true, otherwise one.
     fn sqrt3_triangles(&self, f: FaceId, side: [VertexId; 2], trisect: bool) -> Vec<Vec<usize>> {
         let (number, along) = &self.edges[&sorted(side)];
         let across = along.iter().find(|&&g| g != f);
