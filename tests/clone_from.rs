@@ -4,7 +4,6 @@
 
 use std::alloc::System;
 
-use libtest_mimic::{Arguments, Trial};
 use sixfold::{MeshEdit, PolygonMesh, Representation, for_each_editable, shapes};
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
 
@@ -44,17 +43,9 @@ fn edit<M: MeshEdit>(mesh: &mut M) {
     }
 }
 
-fn main() {
-    let test = || {
-        let polygons = shapes::geodesic(6).expect("720 triangles");
-        for_each_editable!(M => { check_clone_from::<M>(&polygons); });
-        Ok(())
-    };
-    // One thread, because other threads allocate too.
-    let arguments = Arguments {
-        test_threads: Some(1),
-        ..Arguments::from_args()
-    };
-    let tests = vec![Trial::test("clone_from_does_not_allocate", test)];
-    libtest_mimic::run(&arguments, tests).exit();
+fn clone_from_does_not_allocate() {
+    let polygons = shapes::geodesic(6).expect("720 triangles");
+    for_each_editable!(M => { check_clone_from::<M>(&polygons); });
 }
+
+sixfold_tests::main_on_one_thread!(clone_from_does_not_allocate);

@@ -6,7 +6,6 @@ use std::cell::Cell;
 use std::path::PathBuf;
 use std::{env, fs};
 
-use libtest_mimic::{Arguments, Trial};
 use peak_alloc::PeakAlloc;
 use sixfold::remeshing::{Boundary, Decimation, Target, decimate};
 use sixfold::{
@@ -45,47 +44,15 @@ impl Heap for Counters {
     }
 }
 
-fn main() {
-    // One thread, because the counters count the whole program.
-    let arguments = Arguments {
-        test_threads: Some(1),
-        ..Arguments::from_args()
-    };
-    let tests: [(&str, fn()); 7] = [
-        ("counters_are_correct", counters_are_correct),
-        (
-            "reported_bytes_are_right_on_generated_shapes",
-            reported_bytes_are_right_on_generated_shapes,
-        ),
-        (
-            "reported_bytes_are_right_on_the_gallery",
-            reported_bytes_are_right_on_the_gallery,
-        ),
-        (
-            "reported_bytes_are_right_on_real_meshes",
-            reported_bytes_are_right_on_real_meshes,
-        ),
-        (
-            "words_per_vertex_equal_the_literature",
-            words_per_vertex_equal_the_literature,
-        ),
-        (
-            "bytes_outside_the_formula_are_found",
-            bytes_outside_the_formula_are_found,
-        ),
-        (
-            "tables_report_all_bytes_after_edits",
-            tables_report_all_bytes_after_edits,
-        ),
-    ];
-    let tests = tests.map(|(name, test)| {
-        Trial::test(name, move || {
-            test();
-            Ok(())
-        })
-    });
-    libtest_mimic::run(&arguments, tests.into()).exit();
-}
+sixfold_tests::main_on_one_thread!(
+    counters_are_correct,
+    reported_bytes_are_right_on_generated_shapes,
+    reported_bytes_are_right_on_the_gallery,
+    reported_bytes_are_right_on_real_meshes,
+    words_per_vertex_equal_the_literature,
+    bytes_outside_the_formula_are_found,
+    tables_report_all_bytes_after_edits,
+);
 
 fn counters_are_correct() {
     let heap = Counters::default();

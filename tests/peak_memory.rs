@@ -3,7 +3,6 @@
 //!
 //! This is a separate program, because its allocator counts every byte.
 
-use libtest_mimic::{Arguments, Trial};
 use peak_alloc::PeakAlloc;
 use sixfold::subdivision::{Scheme, Subdivision};
 use sixfold::{Creases, PolygonMesh, Refine, Representation, for_each_refinable, shapes};
@@ -64,16 +63,4 @@ fn a_native_step_needs_little_more_than_its_result() {
     assert!(steps >= 20, "only {steps} steps were checked");
 }
 
-fn main() {
-    let test = || {
-        a_native_step_needs_little_more_than_its_result();
-        Ok(())
-    };
-    // One thread, because other threads allocate too.
-    let arguments = Arguments {
-        test_threads: Some(1),
-        ..Arguments::from_args()
-    };
-    let name = "a_native_step_needs_little_more_than_its_result";
-    libtest_mimic::run(&arguments, vec![Trial::test(name, test)]).exit();
-}
+sixfold_tests::main_on_one_thread!(a_native_step_needs_little_more_than_its_result);

@@ -150,7 +150,9 @@ def operation_of(figure, kind):
 def check_ranking(figure, rows, operation):
     assert len(figure["marks"]) == len(rows) == figure["rows"], figure["id"]
     by_name = {row["backend"]: row for row in rows}
-    longest = max(row["ratio_to_best"] for row in rows)
+    longest = max(math.log10(row["ratio_to_best"]) for row in rows)
+    # The axis has a least length, and a bar is at least 2 % of the axis long.
+    shortest = 0.02 * max(longest, 0.1)
     widest = max(mark["width"] for mark in figure["marks"])
     for mark in figure["marks"]:
         name, figures = mark["title"].split(": ", 1)
@@ -161,9 +163,8 @@ def check_ranking(figure, rows, operation):
         if low is not None:
             close_to(shown[1], low, f"{operation} on {name}, low", 6e-4)
             close_to(shown[2], high, f"{operation} on {name}, high", 6e-4)
-        if longest > 1.2:
-            share = max(math.log10(row["ratio_to_best"]) / math.log10(longest), 0.02)
-            close_to(mark["width"], share * widest, f"the bar of {operation} on {name}", 0.6)
+        share = max(math.log10(row["ratio_to_best"]), shortest) / max(longest, shortest)
+        close_to(mark["width"], share * widest, f"the bar of {operation} on {name}", 0.6)
 
 
 def check_heat_map(figure, rows, columns):

@@ -213,23 +213,28 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
     #[inline]
     pub(crate) fn faces_around(&self, f: FaceId) -> impl Iterator<Item = FaceId> + use<P, E> {
         let mut around = FewOrMany::new(f, |g| g);
+        match self.few_faces_around(f, &mut around.few) {
+            Some(count) => around.rest.end = count,
+            None => around.many = self.many_faces_around(f).into_iter(),
+        }
+        around
+    }
+
+    /// Writes the faces that share a side with `f` to `few`, each once; returns their number. Returns
+    /// `None` if `f` has many sides, or its sides have more faces than `few` has places.
+    #[inline]
+    fn few_faces_around(&self, f: FaceId, few: &mut Few<FaceId>) -> Option<usize> {
         if self.face(f).len() > FEW_SIDES {
-            around.many = self.many_faces_around(f).into_iter();
-            return around;
+            return None;
         }
         let mut found = 0;
         for side in self.sides(f) {
             for g in self.faces_along(side) {
-                if found == FEW {
-                    around.many = self.many_faces_around(f).into_iter();
-                    return around;
-                }
-                around.few.0[found] = g;
+                *few.0.get_mut(found)? = g;
                 found += usize::from(g != f);
             }
         }
-        around.rest.end = keep_distinct(&mut around.few.0[..found]);
-        around
+        Some(keep_distinct(&mut few.0[..found]))
     }
 
     /// Returns the faces that share a side with `f`, for any number of sides. Searches no face

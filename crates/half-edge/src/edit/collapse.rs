@@ -118,7 +118,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
 
         let mut neighbours = HandleSet::new();
         let mut faces = HandleSet::new();
-        self.walk_end(h, &back, &mut collapse.gone, |arriving| {
+        collapse.gone = self.walk_end(h, &back, |arriving| {
             if !apexes.contains(&arriving.origin) {
                 neighbours.push(arriving.origin);
             }
@@ -132,16 +132,16 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         })?;
         neighbours.sort();
         faces.sort();
-        match right {
+        collapse.kept = match right {
             // No common neighbour is possible, so a walk around the kept end is not needed.
             Some((last, _)) if neighbours.is_empty() => {
                 let found = |f: &FaceId| self.sides(*f).any(|(_, half)| half.origin == keep);
                 if faces.iter().any(found) {
                     return Err(EditError::RepeatedVertex { vertex: keep });
                 }
-                collapse.kept = self.end_without_walk(keep, into.next, last.twin());
+                self.end_without_walk(keep, into.next, last.twin())
             }
-            _ => self.walk_end(h.twin(), &into, &mut collapse.kept, |arriving| {
+            _ => self.walk_end(h.twin(), &into, |arriving| {
                 if neighbours.contains(arriving.origin) {
                     let vertex = arriving.origin;
                     return Err(EditError::CommonNeighbour { edge: e, vertex });
@@ -151,7 +151,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
                     _ => Ok(()),
                 }
             })?,
-        }
+        };
         if collapse.gone.on_boundary || collapse.kept.on_boundary {
             self.check_at_boundary(e, collapse)
         } else if collapse.valence_after() == 2 && self.only_triangles_remain(collapse) {
@@ -161,37 +161,32 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         }
     }
 
-    /// Walks clockwise around the origin of `h` once, and updates `end`, which at first has only
-    /// `h`. `twin` is the record of the twin of `h`; `visit` gets the record of every other
-    /// half-edge that arrives at the origin.
+    /// Walks clockwise around the origin of `h` once. `twin` is the record of the twin of `h`;
+    /// `visit` gets the record of every other half-edge that arrives at the origin.
     #[inline]
     fn walk_end(
         &self,
         h: HalfEdgeId,
         twin: &Half,
-        end: &mut End,
         mut visit: impl FnMut(&Half) -> Result<(), Refusal>,
-    ) -> Result<(), Refusal> {
-        let mut valence = 1;
-        let mut on_boundary = twin.face == Slot::NONE;
-        let (mut last, mut last_but_one) = (h, h);
+    ) -> Result<End, Refusal> {
+        let mut end = End {
+            valence: 1,
+            on_boundary: twin.face == Slot::NONE,
+            last: h,
+            last_but_one: h,
+        };
         let mut spoke = twin.next;
         while spoke != h {
             let arriving = self.record(spoke.twin());
             visit(&arriving)?;
-            valence += 1;
-            on_boundary |= arriving.face == Slot::NONE;
-            last_but_one = last;
-            last = spoke;
+            end.valence += 1;
+            end.on_boundary |= arriving.face == Slot::NONE;
+            end.last_but_one = end.last;
+            end.last = spoke;
             spoke = arriving.next;
         }
-        *end = End {
-            valence,
-            on_boundary,
-            last,
-            last_but_one,
-        };
-        Ok(())
+        Ok(end)
     }
 
     /// Returns the data of the end `v` without a walk around it. The spokes after and before the

@@ -6,7 +6,6 @@
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use libtest_mimic::{Arguments, Trial};
 use sixfold::shapes;
 use sixfold_study::{
     MachineClock, PickError, PickSettings, Policy, Series, Settings, Start, StudyMesh, built_in,
@@ -15,18 +14,7 @@ use sixfold_study::{
 
 const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corner-table"];
 
-fn main() {
-    let test = || {
-        no_sample_faults();
-        Ok(())
-    };
-    let arguments = Arguments {
-        test_threads: Some(1),
-        ..Arguments::from_args()
-    };
-    let tests = vec![Trial::test("no_sample_faults", test)];
-    libtest_mimic::run(&arguments, tests).exit();
-}
+sixfold_tests::main_on_one_thread!(no_sample_faults);
 
 fn no_sample_faults() {
     let heap = pages::set_policy(Policy::Kept);
