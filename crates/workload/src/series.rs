@@ -157,9 +157,10 @@ impl<'c> Series<'c> {
 /// Copies that runs change, and that are reset to their initial state outside the timing.
 ///
 /// Normally one copy is used. If a run is too short for the clock, several copies are used in turn,
-/// for about 60 µs of timed work. Together they fit into half of the second-level cache. Each copy
-/// is therefore as warm in the cache as a single copy would be. The copies, with the grown capacity
-/// of their tables, are kept from one series to the next.
+/// for about 60 µs of timed work, even if the series asks for fewer runs. Together they fit into
+/// half of the second-level cache. Each copy is therefore as warm in the cache as a single copy
+/// would be. The copies, with the grown capacity of their tables, are kept from one series to the
+/// next.
 #[derive(Debug)]
 pub(crate) struct ReusedCopies<T> {
     copies: Vec<T>,
@@ -179,7 +180,8 @@ impl<T> Default for ReusedCopies<T> {
 impl<T> ReusedCopies<T> {
     /// Runs `run` as often as `series` describes, each time on a copy that `reset` has restored
     /// outside the timing. `new` makes a copy if one is missing; `bytes` is the size of a copy.
-    /// Returns the total time of the timed runs.
+    /// Returns the total time of the timed runs: of more runs in proportion, if those that were
+    /// asked for are too short for the clock.
     pub(crate) fn time(
         &mut self,
         series: &Series<'_>,
@@ -194,7 +196,16 @@ impl<T> ReusedCopies<T> {
             ..*series
         };
         self.run_all(&untimed, bytes, &new, &mut reset, &mut run);
-        self.run_all(series, bytes, &new, &mut reset, &mut run)
+        let least = match series.start {
+            Start::Warm => copy_count(self.last_ns, bytes) as u32,
+            Start::Cold(_) | Start::FreshPages => 1,
+        };
+        let enough = Series {
+            runs: series.runs.max(least),
+            ..*series
+        };
+        let time = self.run_all(&enough, bytes, &new, &mut reset, &mut run);
+        time.scaled(f64::from(series.runs) / f64::from(enough.runs))
     }
 
     /// Returns the time of the timed runs of `series`, on as many copies as [`copy_count`] allows.
@@ -329,10 +340,36 @@ mod tests {
                     },
                 );
                 assert_eq!(time.wall_ns, ns * f64::from(runs));
+                let enough = copy_count(ns, bytes);
+                assert_eq!(copies.copies.len(), enough, "{runs} runs of {ns} ns");
             }
-            assert_eq!(copies.copies.len(), copy_count(ns, bytes));
             assert_eq!(copies.used_copy(), Some(&1));
         }
+    }
+
+    #[test]
+    fn a_cold_start_has_no_more_runs_than_were_asked_for() {
+        let clock = ManualClock::default();
+        let flusher = CacheFlusher::new();
+        let mut copies = ReusedCopies::default();
+        let mut count_runs = |start: Start<'_>| {
+            let mut runs = 0;
+            let series = Series {
+                start,
+                ..Series::with_runs(2, &clock)
+            };
+            let run = |_: &mut ()| {
+                clock.advance(1_000.0);
+                runs += 1;
+            };
+            let time = copies.time(&series, 64, || (), |_| {}, run);
+            assert_eq!(time.wall_ns, 2_000.0);
+            runs
+        };
+        assert_eq!(count_runs(Start::Cold(&flusher)), 2);
+        assert_eq!(count_runs(Start::FreshPages), 2);
+        // One run makes each of the 58 missing copies equal to the first two.
+        assert_eq!(count_runs(Start::Warm), 60 + 58);
     }
 
     #[test]
