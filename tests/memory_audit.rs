@@ -233,7 +233,8 @@ fn bytes_outside_the_formula_are_found() {
     let audit = audit_of(incomplete);
     assert_eq!(audit.backends[0].agrees, Some(false));
     // 300 vertices, 900 edges, 600 faces; the formula leaves out the ends of the edges.
-    let expected = "its tables hold 18000 bytes, 7200 bytes more than its layout formula (10800)";
+    let expected =
+        "its tables hold 18000 bytes, 7200 bytes more than its layout formula gives (10800 bytes)";
     assert!(
         audit.faults()[0].ends_with(expected),
         "{:?}",

@@ -21,7 +21,9 @@ pub enum PolygonError {
     #[error("face {face} has {corners} corners, and a polygon has at least three: remove the face")]
     TooFewCorners { face: FaceId, corners: usize },
     /// A face names one vertex twice.
-    #[error("face {face} names vertex {vertex} twice: remove the face, or split it there")]
+    #[error(
+        "face {face} names vertex {vertex} twice: remove the face, or split the face at this vertex"
+    )]
     RepeatedVertex { face: FaceId, vertex: VertexId },
     /// More elements than a handle can name.
     #[error("more than {limit} {elements}: split the mesh, because handles have 32 bits")]
@@ -50,7 +52,8 @@ pub enum BuildError {
     #[error("face {face} has {degree} corners, and only triangles fit: triangulate the mesh")]
     NotATriangle { face: FaceId, degree: usize },
     /// Three or more faces along one edge.
-    #[error("edge {0}–{1} has {count} faces ({faces}): split it, or choose a structure that holds non-manifold edges",
+    #[error("edge {0}–{1} has {count} faces ({faces}): split the edge, or choose a structure that \
+             holds non-manifold edges",
         .vertices[0], .vertices[1], count = .faces.len(), faces = format_faces(.faces))]
     NonManifoldEdge {
         vertices: [VertexId; 2],
@@ -66,7 +69,8 @@ pub enum BuildError {
     },
     /// The faces at a vertex form more than one fan.
     #[error(
-        "faces {first} and {second} meet at vertex {vertex} but not along edges there: duplicate the vertex"
+        "faces {first} and {second} meet at vertex {vertex}, but are not connected by edges at \
+         this vertex: duplicate the vertex"
     )]
     NonManifoldVertex {
         vertex: VertexId,
@@ -93,7 +97,8 @@ pub enum MoveError {
     /// Two corners of one face at one point, in a structure that identifies vertices by
     /// coordinates.
     #[error(
-        "two corners of face {face} would be at one point, and in this structure a vertex is its coordinates: keep them apart, or choose a structure that shares vertices"
+        "two corners of face {face} would be at one point, and this structure identifies vertices \
+         by their coordinates: keep the corners apart, or choose a structure that shares vertices"
     )]
     CoincidentCorners { face: FaceId },
     /// Positions for a different number of vertices.
@@ -108,7 +113,8 @@ pub enum MoveError {
 pub enum RefineError {
     /// A split that the structure does not support.
     #[error(
-        "{structure} cannot split its own tables into {split}: build it from the refined polygons, or choose another structure"
+        "{structure} cannot split its own tables into {split}: build the structure from the \
+         refined polygons, or choose another structure"
     )]
     Unsupported {
         structure: &'static str,
@@ -143,7 +149,7 @@ pub enum RefineError {
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum CreaseError {
     /// A vertex that does not exist.
-    #[error("vertex {vertex} does not exist: the mesh has {vertices}, counted from 0")]
+    #[error("vertex {vertex} does not exist: the mesh has {vertices} vertices, counted from 0")]
     MissingVertex {
         entry: usize,
         vertex: u32,
@@ -153,7 +159,7 @@ pub enum CreaseError {
     #[error("{0} and {1} are not the ends of an edge: name two vertices that follow each other in a face", .ends[0], .ends[1])]
     NotAnEdge { entry: usize, ends: [VertexId; 2] },
     /// A sharpness below 0 or NaN.
-    #[error("sharpness {sharpness} is not a number from 0 to inf")]
+    #[error("sharpness {sharpness} is not a number from 0 to inf: write it like 2, 0.5 or inf")]
     BadSharpness { entry: usize, sharpness: f32 },
 }
 

@@ -23,7 +23,7 @@ use crate::representation::{QueryCost, Representation};
 #[diagnostic::on_unimplemented(
     message = "queries of `{Self}` may scan all faces of the mesh",
     label = "this structure does not implement `LocalQueries`",
-    note = "these never scan: FaceVertexMesh, WingedEdgeMesh, HalfEdgeMesh, CornerTable"
+    note = "these structures never scan: FaceVertexMesh, WingedEdgeMesh, HalfEdgeMesh, CornerTable"
 )]
 pub trait LocalQueries: Representation {
     /// Proof that the costs were checked; only [`local_queries!`](crate::local_queries) creates it.

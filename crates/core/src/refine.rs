@@ -139,7 +139,7 @@ impl fmt::Display for Split {
 ///   `PolygonMesh`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot split its own tables",
-    note = "face-vertex, winged-edge, half-edge meshes and corner tables can, in their compact form: \
+    note = "face-vertex, winged-edge and half-edge meshes and corner tables can, if they are compact: \
             `mesh.into_compact()`"
 )]
 pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {

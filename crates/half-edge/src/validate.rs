@@ -191,7 +191,7 @@ fn check_faces<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError>
     if along != with_face {
         return fails(
             "I7",
-            format!("{with_face} half-edges have a face, the walks along faces visit {along}"),
+            format!("{with_face} half-edges have a face, but the walks along faces visit {along}"),
         );
     }
     Ok(())

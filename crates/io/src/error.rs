@@ -95,7 +95,8 @@ pub enum ObjError {
         vertices: usize,
     },
     /// A face counts backwards beyond the first vertex.
-    #[error("{at}: face names vertex {index}, but before it there {count}: correct the index", count = vertices_phrase(*before))]
+    #[error("{at}: face names vertex {index}, but before this line there {count}: correct the \
+             index", count = vertices_phrase(*before))]
     RelativeIndexOutOfRange {
         at: Location,
         index: i64,

@@ -31,8 +31,8 @@ pub struct CornerTag {
 }
 
 /// A crease whose edge belongs only to faces that are left out; printed as
-/// `line 40: crease 3 7 lies only on faces that are left out`. Its vertices count from 0, as in the
-/// tag.
+/// `line 40: crease 3 7 is ignored, because all faces along it are left out`. Its vertices count
+/// from 0, as in the tag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnusedCrease {
     /// Line of the tag, counted from 1.
@@ -47,7 +47,7 @@ impl fmt::Display for UnusedCrease {
         let line = self.line;
         write!(
             f,
-            "line {line}: crease {a} {b} lies only on faces that are left out"
+            "line {line}: crease {a} {b} is ignored, because all faces along it are left out"
         )
     }
 }
@@ -58,7 +58,7 @@ impl fmt::Display for UnusedCrease {
 #[expect(missing_docs, reason = "the message shows the meaning of each field")]
 pub enum TagFault {
     /// The tag does not start with three counts.
-    #[error("tag {tag} has invalid counts {text:?}: write it like `t {tag} {}`", tag.example())]
+    #[error("tag {tag} has invalid counts {text:?}: write the tag like `t {tag} {}`", tag.example())]
     Counts { tag: Tag, text: String },
     /// The number of values does not match the counts.
     #[error(
@@ -70,7 +70,7 @@ pub enum TagFault {
         found: usize,
     },
     /// The numbers of vertices and sharpnesses do not match, or the tag has words.
-    #[error("counts {counts} do not fit tag {tag}: write it like `t {tag} {}`; {}", tag.example(), tag.rule())]
+    #[error("counts {counts} do not fit tag {tag}: write the tag like `t {tag} {}`; {}", tag.example(), tag.rule())]
     Shape { tag: Tag, counts: String },
     /// A value is not the number of a vertex.
     #[error("{text:?} in tag {tag} is not a vertex number: use whole numbers that count from 0")]

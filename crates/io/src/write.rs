@@ -44,7 +44,10 @@ pub fn write_obj_with_normals(
 ) -> io::Result<()> {
     let vertices = polygons.vertex_count();
     if normals.len() != vertices {
-        let message = format!("{} normals for {vertices} vertices", normals.len());
+        let message = format!(
+            "{} normals do not fit {vertices} vertices: give one normal for each vertex",
+            normals.len()
+        );
         return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     }
     write_text(polygons, normals, out)
@@ -57,7 +60,9 @@ fn write_text(
 ) -> io::Result<()> {
     let positions = polygons.positions();
     if let Some(v) = positions.iter().position(|p| !p.is_finite()) {
-        let message = format!("the position of vertex v{v} is not finite: OBJ cannot store it");
+        let message = format!(
+            "the position of vertex v{v} is not finite, so OBJ cannot store it: correct the position"
+        );
         return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     }
     let mut out = BufWriter::new(out);
@@ -160,7 +165,8 @@ mod tests {
             let mut text = Vec::new();
             let error = write_obj(&mesh, &mut text).expect_err("not finite");
             assert_eq!(error.kind(), io::ErrorKind::InvalidInput);
-            let message = "the position of vertex v1 is not finite: OBJ cannot store it";
+            let message = "the position of vertex v1 is not finite, so OBJ cannot store it: \
+                           correct the position";
             assert_eq!(error.to_string(), message);
             assert!(text.is_empty());
         }

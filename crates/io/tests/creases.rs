@@ -93,11 +93,11 @@ fn each_fault_of_a_crease_file_is_named_with_its_line() {
         ("corner 0 -inf", format!("1: sharpness \"-inf\" {number}")),
         (
             "corner 0 1\ncorner 6 1",
-            "2: vertex 6 does not exist: the mesh has 6, counted from 0".into(),
+            "2: vertex 6 does not exist: the mesh has 6 vertices, counted from 0".into(),
         ),
         (
             "edge 0 1 1\ncorner 0 1\nedge 0 4294967295 1",
-            "3: vertex 4294967295 does not exist: the mesh has 6, counted from 0".into(),
+            "3: vertex 4294967295 does not exist: the mesh has 6 vertices, counted from 0".into(),
         ),
         (
             "corner 0 1\n\nedge 3 5 0",
@@ -238,8 +238,8 @@ fn creases_of_faces_that_are_left_out_are_unused() {
     assert_eq!(
         unused,
         [
-            "line 11: crease 3 4 lies only on faces that are left out",
-            "line 12: crease 5 2 lies only on faces that are left out",
+            "line 11: crease 3 4 is ignored, because all faces along it are left out",
+            "line 12: crease 5 2 is ignored, because all faces along it are left out",
         ]
     );
     let (polygons, left_out) = obj.into_polygons();
@@ -248,8 +248,8 @@ fn creases_of_faces_that_are_left_out_are_unused() {
 
 #[test]
 fn each_fault_of_a_tag_is_named_with_its_line() {
-    let crease = "write it like `t crease 2/1/0 0 1 2.5`";
-    let corner = "write it like `t corner 1/1/0 0 2.5`";
+    let crease = "write the tag like `t crease 2/1/0 0 1 2.5`";
+    let corner = "write the tag like `t corner 1/1/0 0 2.5`";
     let of_crease = "n vertices in a row need 1 or n - 1 sharpness values";
     let of_corner = "n vertices need 1 or n sharpness values";
     let number = "is not a number from 0 to inf: write it like 2, 0.5 or inf";
@@ -333,11 +333,11 @@ fn each_fault_of_a_tag_is_named_with_its_line() {
         ),
         (
             "corner 1/1/0 6 1",
-            "tag corner: vertex 6 does not exist: the mesh has 6, counted from 0".into(),
+            "tag corner: vertex 6 does not exist: the mesh has 6 vertices, counted from 0".into(),
         ),
         (
             "crease 3/1/0 0 1 6 1",
-            "tag crease: vertex 6 does not exist: the mesh has 6, counted from 0".into(),
+            "tag crease: vertex 6 does not exist: the mesh has 6 vertices, counted from 0".into(),
         ),
         (
             "crease 2/1/0 3 5 1",

@@ -219,7 +219,7 @@ fn invalid_vertex_numbers_are_refused() {
     );
     refused(
         "f 1 2 -4",
-        "4: face names vertex -4, but before it there are 3 vertices: correct the index",
+        "4: face names vertex -4, but before this line there are 3 vertices: correct the index",
     );
     refused(
         "f 0 1 2",
@@ -239,12 +239,13 @@ fn invalid_vertex_numbers_are_refused() {
     );
     assert_refused(
         "f -1 1 1\nv 0 0 0",
-        "bad.obj:1: face names vertex -1, but before it there is no vertex: correct the index",
+        "bad.obj:1: face names vertex -1, but before this line there is no vertex: correct the \
+         index",
     );
     assert_refused(
         "v 0 0 0\nf 1 1 -9223372036854775808",
-        "bad.obj:2: face names vertex -9223372036854775808, but before it there is 1 vertex: correct \
-         the index",
+        "bad.obj:2: face names vertex -9223372036854775808, but before this line there is 1 \
+         vertex: correct the index",
     );
 }
 

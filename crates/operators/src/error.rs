@@ -16,11 +16,15 @@ pub enum SmoothingError {
     )]
     NotATriangle { face: FaceId, degree: usize },
     /// A step outside 0 to 1.
-    #[error("step {step} is not between 0 and 1: beyond 1 a vertex moves past its neighbours")]
+    #[error(
+        "step {step} is not between 0 and 1: choose a step in this range, because a larger step \
+         moves a vertex past its neighbours"
+    )]
     Step { step: f64 },
     /// A step back that is not longer than the step, or that is so long that roughness would grow.
     #[error(
-        "step back {back} does not fit step {step}: it must be negative, longer than the step, and (1 − 2·step)·(1 − 2·back) between −1 and 1"
+        "step back {back} does not fit step {step}: choose a step back below −{step}, with (1 − \
+         2·step)·(1 − 2·back) between −1 and 1"
     )]
     StepBack { step: f64, back: f64 },
 }
@@ -34,11 +38,13 @@ pub enum DualError {
     #[error("vertex {vertex} has no face and therefore no dual face: remove isolated vertices")]
     IsolatedVertex { vertex: VertexId },
     /// An edge with one face.
-    #[error("edge {0}–{1} has one face, and only a closed mesh has a dual: fill the hole there", .ends[0], .ends[1])]
+    #[error("edge {0}–{1} has one face, and only a closed mesh has a dual: fill the hole at this \
+             edge", .ends[0], .ends[1])]
     BoundaryEdge { ends: [VertexId; 2] },
     /// A vertex whose face in the dual would have only one or two corners.
     #[error(
-        "vertex {vertex} has {valence} edges, and a face of the dual needs at least 3: remove the vertex from its faces"
+        "vertex {vertex} has {valence} edges, but a vertex needs at least 3 edges to become a \
+         face of the dual: remove the vertex from its faces"
     )]
     LowValence { vertex: VertexId, valence: usize },
     /// A mesh that is not an oriented manifold: an edge has three faces, a vertex has two fans, or
@@ -53,7 +59,9 @@ pub enum DualError {
 #[expect(missing_docs, reason = "the message explains each field")]
 pub enum OrientationError {
     /// A closed chain of faces that returns with the opposite orientation, as on a Möbius strip.
-    #[error("the mesh is not orientable, and its faces cannot agree at edge {0}–{1}: cut the mesh open along this edge, or choose a structure that accepts inconsistent orientation", .ends[0], .ends[1])]
+    #[error("the mesh is not orientable, because its faces cannot have the same orientation at \
+             edge {0}–{1}: cut the mesh open along this edge, or choose a structure that accepts \
+             inconsistent orientation", .ends[0], .ends[1])]
     NotOrientable { ends: [VertexId; 2] },
 }
 
@@ -69,7 +77,8 @@ pub enum SphereError {
     InvalidSphere { centre: [f32; 3], radius: f32 },
     /// A vertex that is at the centre or not finite, so that it has no direction from the centre.
     #[error(
-        "vertex {vertex} is at the centre or not finite, so it has no direction from the centre: move it, or choose another centre"
+        "vertex {vertex} is at the centre or not finite, so it has no direction from the centre: \
+         move the vertex, or choose another centre"
     )]
     NoDirection { vertex: VertexId },
 }

@@ -27,7 +27,8 @@ pub struct RelationTable<A, B> {
 pub enum TabulationError {
     /// The relation has more items than a 32-bit offset can address.
     #[error(
-        "{relation} yields more than {} items: query the structure, or split the mesh",
+        "the table of {relation} would have more than {} items: query the structure instead, or \
+         split the mesh",
         u32::MAX
     )]
     TooManyItems { relation: Relation },

@@ -18,14 +18,16 @@ pub enum RemeshError {
     #[error("vertex {vertex} is at {at:?}, which is not finite: correct the coordinates")]
     NotFinite { vertex: VertexId, at: [f32; 3] },
     /// The ratio is not a number from 0 to 1.
-    #[error("the ratio {ratio} is not from 0 to 1: give the part of the faces to keep")]
+    #[error("the ratio {ratio} is not from 0 to 1: give the fraction of the faces to keep")]
     BadRatio { ratio: f64 },
     /// The edge length is not a finite positive number.
     #[error("the edge length {length} is not a finite positive number: choose one above 0")]
     BadLength { length: f64 },
     /// The edge length is too short for the precision of the positions.
     #[error(
-        "the edge length {length} is too short so far from the origin: at the coordinate {coordinate}, positions are {step} apart; move the mesh to the origin, or choose a length of {minimum} or more"
+        "the edge length {length} is too short, because positions near the coordinate \
+         {coordinate} are at least {step} apart: move the mesh to the origin, or choose a length \
+         of {minimum} or more"
     )]
     BelowPrecision {
         length: f64,
@@ -35,7 +37,8 @@ pub enum RemeshError {
     },
     /// The edge length would need more faces than allowed.
     #[error(
-        "the edge length {length} would need about {faces:.0} triangles, but {limit} are allowed: choose a greater length, or allow more"
+        "the edge length {length} would need about {faces:.0} triangles, but only {limit} are \
+         allowed: choose a greater length, or allow more triangles"
     )]
     TooFine {
         length: f64,

@@ -11,7 +11,7 @@ use crate::svg::MAX_SVG_FACES;
 #[expect(missing_docs, reason = "the message explains each field")]
 pub enum RenderError {
     /// There is no mesh.
-    #[error("no mesh to draw: give at least one")]
+    #[error("no mesh to draw: give at least one mesh")]
     NoMesh,
     /// The picture is too wide or too high, or has too many pixels.
     #[error(
@@ -20,7 +20,8 @@ pub enum RenderError {
     TooLarge { width: u32, height: u32 },
     /// A panel would be too small.
     #[error(
-        "{width} × {height} pixels are too few: a mesh needs {MIN_PANEL} × {MIN_PANEL}, and the row has {panels}"
+        "a picture of {width} × {height} pixels is too small for a row of {panels}: give each \
+         mesh at least {MIN_PANEL} × {MIN_PANEL} pixels"
     )]
     TooSmall {
         width: u32,
@@ -29,7 +30,8 @@ pub enum RenderError {
     },
     /// An angle is not finite, or the elevation is out of range.
     #[error(
-        "azimuth {azimuth} and elevation {elevation} are not valid: both are degrees, the elevation from -90 to 90"
+        "azimuth {azimuth} and elevation {elevation} are not valid: give both in degrees, the \
+         elevation from -90 to 90"
     )]
     View { azimuth: f64, elevation: f64 },
     /// The samples do not fit into memory.
@@ -49,12 +51,12 @@ pub enum MeshFault {
     #[error("the mesh has no faces: there is nothing to draw")]
     NoFaces,
     /// A vertex of a face has a coordinate that is infinite or NaN.
-    #[error("vertex {vertex} has a coordinate that is not finite: correct it")]
+    #[error("vertex {vertex} has a coordinate that is not finite: correct the coordinate")]
     NotFinite { vertex: VertexId },
     /// All faces are in one point.
     #[error("all faces lie in one point: there is nothing to draw")]
     NoExtent,
     /// There are too many visible faces for an SVG.
-    #[error("{faces} faces are visible, an SVG can have {MAX_SVG_FACES}: write a PNG")]
+    #[error("{faces} faces are visible, but an SVG can have at most {MAX_SVG_FACES}: write a PNG")]
     TooManyFaces { faces: usize },
 }

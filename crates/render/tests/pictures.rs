@@ -526,6 +526,7 @@ fn an_svg_with_too_many_faces_is_refused() {
         creases: &creases,
     };
     let error = draw_svg(&[render_mesh], &settings).expect_err("too many");
-    let message = "mesh 1 of the row: 90000 faces are visible, an SVG can have 50000: write a PNG";
+    let message = "mesh 1 of the row: 90000 faces are visible, but an SVG can have at most 50000: \
+                   write a PNG";
     assert_eq!(error.to_string(), message);
 }

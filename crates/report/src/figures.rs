@@ -95,7 +95,8 @@ pub(crate) fn page(collection: &Collection, command: &str) -> ReportPage {
 }
 
 /// Warning about interrupted results.
-const INTERRUPTED: &str = "Interrupted: some results are from the finished part only; `sixfold study --resume` continues the report.";
+const INTERRUPTED: &str = "Interrupted: some results are incomplete. To complete the report, use \
+                           `sixfold study --resume`.";
 
 fn is_interrupted(collection: &Collection) -> bool {
     let mut studies = collection.studies.iter();
@@ -124,7 +125,7 @@ fn labs(labs: &Labs, command: &str) -> Vec<Section> {
     let mut sections = Vec::new();
     for (i, orders) in orders.iter().enumerate() {
         sections.push(Section {
-            title: format!("Effect of the order of {}", orders.mesh.name),
+            title: format!("Effect of the order in memory: {}", orders.mesh.name),
             facts: facts(&orders.mesh),
             sentences: orders.sentences.clone(),
             figures: orders::from_orders(
@@ -142,7 +143,7 @@ fn labs(labs: &Labs, command: &str) -> Vec<Section> {
             format!("{sizes} from {first} to {last} faces.")
         });
         sections.push(Section {
-            title: format!("How costs grow: {}, {}", growth.shape, growth.order),
+            title: format!("How costs grow: {}, order {}", growth.shape, growth.order),
             facts: sizes,
             sentences: growth.sentences.clone(),
             figures: growth::from_growth(
@@ -159,7 +160,7 @@ fn labs(labs: &Labs, command: &str) -> Vec<Section> {
         });
         let figure = roofline::from_why(why, &numbered_id("roofline", i), command);
         sections.extend(figure.map(|figure| Section {
-            title: format!("What limits queries on {}", why.mesh.name),
+            title: format!("Limiting factors of the queries on {}", why.mesh.name),
             facts: facts(&why.mesh),
             sentences: Vec::new(),
             figures: vec![figure],

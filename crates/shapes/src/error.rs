@@ -43,7 +43,7 @@ pub enum ShapeError {
         parameter: &'static str,
     },
     /// The control points do not fill a grid.
-    #[error("{points} control points in rows of {columns}: every row must be full")]
+    #[error("{points} control points do not fill rows of {columns}: add or remove points")]
     RaggedNet { points: usize, columns: usize },
     /// The field is not positive far away.
     #[error("the solid is unbounded: raise the level of the blobs, or inflate by less")]

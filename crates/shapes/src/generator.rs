@@ -140,7 +140,7 @@ const STEPS_N: Parameter = Parameter::count("n", "cells from bottom to top", 20,
 /// The parameter for the number of triangles. With fewer than `min` triangles, the lattice would be
 /// too coarse for the thin parts of the shape.
 const fn faces(min: usize) -> Parameter {
-    let meaning = "triangles, within 5 % or 20";
+    let meaning = "number of triangles, accurate to 5 % or 20";
     Parameter::count("faces", meaning, 5_000, min, MAX_FACES)
 }
 

@@ -31,7 +31,7 @@ const EXAMPLES: &str = "Examples:
   sixfold                                    study the built-in mesh
   sixfold study bunny.obj                    study your own mesh
   sixfold pick --workload smoothing bunny.obj
-  sixfold inspect bunny.obj                  its facts, and which backends can hold it
+  sixfold inspect bunny.obj                  facts about the mesh, and which backends can hold it
   sixfold generate geodesic frequency=20 -o ball.obj
   sixfold subdivide --scheme loop --levels 2 bunny.obj -o smooth.obj
   sixfold decimate --ratio 0.1 bunny.obj -o small.obj
@@ -50,41 +50,47 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study bunny.obj --report bunny            a page with figures
   sixfold study scans --report results              all OBJ files in a folder; --resume continues
 
-How it measures: each round runs every operation once on every backend, in random order. The clock
-is the processor time of the thread; the table shows medians. The seed determines the order and
-which elements are sampled; measured times determine how many are sampled. One backend is measured
-in two columns: their difference is the noise, and smaller differences count as ties. Ctrl-C stops
-after the current sample and keeps the finished results. A second Ctrl-C stops at once, with exit
-code 130.
+How it measures: Each round runs every operation once on every backend, in random order. The clock
+measures the processor time of the thread. The table shows medians. One backend is measured twice in
+each round: the difference between its two times is the noise, and smaller differences count as
+ties.
 
-Memory: --heap kept keeps freed pages in the process, so that no sample needs fresh pages;
-`first time` shows the time on fresh pages. --heap system leaves freed pages to the allocator of the
-platform: the times of operations that allocate then depend on what ran before. With --caches cold
-each sample is one run, after the caches were filled with other data. `compare` and `merge` refuse
-to mix results with different --heap or --caches.
+Seed: The seed determines the random order. A slow operation may run on a sample of the elements.
+The seed also determines the elements in this sample. The number of these elements depends on
+measured times, so it can differ between two runs with the same seed.
 
-Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold) or in an external
-program; 2 wrong usage or unusable input; 3 none of the selected backends can hold the mesh;
-4 interrupted, finished results are kept.";
+Interruption: Ctrl-C stops after the current sample and keeps the finished results. A second Ctrl-C
+stops at once, with exit code 130.
+
+Memory: With --heap kept, the process keeps freed pages, so that no sample needs fresh pages. The
+rows `first time` show the time on fresh pages. With --heap system, the allocator of the platform
+manages freed pages. The time of an operation that allocates memory then depends on the operations
+that ran before it. With --caches cold, each sample is one run, and the caches are filled with other
+data before each sample. `compare` and `merge` refuse to mix results with different --heap or
+--caches.
+
+Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold), or the results of an
+external program differ; 2 wrong usage or unusable input; 3 none of the selected backends can hold
+the mesh; 4 interrupted, finished results are kept.";
 
 const MERGE_EXAMPLES: &str = "Examples:
   sixfold study scans --shard 1/2 --report one      on one machine
   sixfold study scans --shard 2/2 --report two      on another
   sixfold merge one two --report all
 
-All shards must have the same list of mesh names and the same settings. If several shards contain a
-mesh, the first of them is used.
+All shards must have the same list of mesh names and the same settings. If several shards contain
+the same mesh, the results of the first of these shards are used.
 
 Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold); 2 wrong usage, or
-shards that do not belong together.";
+shards with different mesh names or settings.";
 
 const REPORT_EXAMPLES: &str = "Examples:
   sixfold growth --to 4000000 --budget 5m --json growth.json
   sixfold report growth.json --to growth
   sixfold report results pick.json orders.json --to all
 
-Exit codes: 0 success; 2 wrong usage, or a file that is incomplete, not a result, or of another
-schema.";
+Exit codes: 0 success; 2 wrong usage, or a file that is incomplete, is not a result, or has another
+schema version.";
 
 const INSPECT_EXAMPLES: &str = "Examples:
   sixfold inspect bunny.obj
@@ -94,8 +100,9 @@ Exit codes: 0 success; 2 wrong usage or unusable input; 4 interrupted.";
 
 /// Measure which mesh data structure fits a mesh and a workload.
 ///
-/// Builds every backend from the same mesh, runs the same operations on each and compares times.
-/// Without a command it studies a built-in mesh of about 20,000 triangles for about 20 seconds.
+/// Builds every backend from the same mesh, runs the same operations on each backend, and compares
+/// the times. Without a command, sixfold studies a built-in mesh of about 20,000 triangles for
+/// about 20 seconds.
 #[derive(Debug, Parser)]
 #[command(name = "sixfold", version, after_help = EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Arguments {
@@ -121,7 +128,7 @@ pub(crate) enum Command {
     Merge(Merge),
     /// Draw saved results on one page
     Report(Draw),
-    /// Show what changed between two studies beyond the noise
+    /// Show the differences between two studies that exceed the noise
     Compare(Compare),
     /// Show facts about a mesh, and which backends can hold it
     Inspect(Inspect),
@@ -156,7 +163,7 @@ pub(crate) enum Command {
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Study {
-    /// OBJ files, or folders that contain them; without any, a built-in mesh
+    /// OBJ files, or folders with OBJ files [default: a built-in mesh]
     #[arg(value_name = "FILE.obj|DIR")]
     pub(crate) meshes: Vec<PathBuf>,
     /// Only these backends, by name
@@ -176,7 +183,7 @@ pub(crate) struct Study {
     /// Measure another program as one more column; may be repeated
     #[arg(long = "external", value_name = "NAME=COMMAND")]
     pub(crate) externals: Vec<External>,
-    /// Time limit for one answer of such a program
+    /// Time limit for one answer of an external program
     #[arg(long, value_name = "TIME", default_value = "60s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) patience: Duration,
     /// Cut every polygon into a fan of triangles first
@@ -194,7 +201,7 @@ pub(crate) struct Study {
     /// Write report.html, report.md, results.json and results.csv to DIR
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
-    /// Labs of a one-mesh report: orders,growth,why; all (default); none
+    /// Labs to add for one mesh: orders,growth,why or none [default: all]
     #[arg(long, value_name = "NAME,…", requires = "report")]
     pub(crate) labs: Option<LabSelection>,
     /// Continue the study in the folder of --report
@@ -208,7 +215,7 @@ pub(crate) struct Study {
 /// How freed pages and the caches are treated while times are measured.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub(crate) struct MemoryState {
-    /// Freed pages: kept in this process, or system
+    /// Freed pages: kept (by the process) or system
     #[arg(long, value_name = "POLICY", default_value = "kept")]
     pub(crate) heap: Policy,
     /// Caches before each sample: warm or cold

@@ -33,7 +33,8 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     let changes = compare(&before, &after, settings).map_err(Failure::usage)?;
     if changes.rows.is_empty() {
         return Err(Failure::usage(format!(
-            "{} and {} have no operation on the same backend in common: nothing to compare",
+            "{} and {} contain no operation that both measured on the same backend, so there is \
+             nothing to compare: study both with the same --backends and --operations",
             arguments.before.display(),
             arguments.after.display()
         )));

@@ -60,13 +60,13 @@ fn legend() -> String {
         .filter(|backend| !backend.capabilities.non_manifold_edges);
     let manifold: Vec<&str> = manifold.map(|backend| backend.name).collect();
     let lines = [
-        "constant: a few rows, for any mesh. local: the faces around the edited element. \
-         scan: all faces."
+        "constant: an edit visits a few rows, for any size of mesh. local: an edit visits the \
+         faces around the edited element. scan: an edit visits all faces."
             .to_owned(),
         "–: the structure does not support the edit.".to_owned(),
         format!(
-            "{} hold only oriented manifolds, and refuse an edit with any other result; the other \
-             structures have no such limit.",
+            "{} hold only oriented manifolds. They refuse an edit if the result is not an oriented \
+             manifold. The other structures have no such limit.",
             manifold.join(", ")
         ),
     ];

@@ -57,8 +57,10 @@ fn orientation(facts: &Facts) -> String {
     match (facts.consistently_oriented, facts.orientable) {
         (Some(true), Some(true)) => "consistent".into(),
         (Some(true), _) => "consistent along edges with two faces, but not orientable".into(),
-        (_, Some(true)) => format!("orientable, but the two faces disagree along {edges}"),
-        _ => format!("not orientable; the two faces disagree along {edges}"),
+        (_, Some(true)) => {
+            format!("orientable, but at {edges} the two faces have opposite orientations")
+        }
+        _ => format!("not orientable; at {edges} the two faces have opposite orientations"),
     }
 }
 
@@ -127,7 +129,7 @@ pub(crate) fn verdicts_text(mesh: &MeshReport, backends: &[BackendReport]) -> St
     if backends.iter().any(|backend| !backend.holds) {
         let changed = match mesh.changes.is_empty() {
             true => "",
-            false => ", f0 the first remaining face",
+            false => ", f0 is the first remaining face",
         };
         lines.push(format!(
             "{:<13}(numbers start at 0: v0 is the first vertex of the file{changed})",

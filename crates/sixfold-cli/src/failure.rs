@@ -24,7 +24,8 @@ impl Failure {
     /// may hold.
     pub(crate) fn cannot_hold(refusal: impl Display) -> Self {
         Self::unsupported(format!(
-            "{refusal}; or choose another --backend: `sixfold inspect` shows which can hold the mesh"
+            "{refusal}; or choose another --backend: `sixfold inspect` shows which backends can \
+             hold the mesh"
         ))
     }
 

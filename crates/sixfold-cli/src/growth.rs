@@ -133,10 +133,11 @@ fn print(report: &GrowthReport, text: &mut TextOutput) {
     text.print_line(&hanging_indent("", &settings));
 }
 
-const LEGEND: &str = "ns per element, and the smallest cache that can hold the structure (–: none, \
-    or unknown); * best at that size; = tied with the best; ~ from a sample of the elements; \
-    ? estimated, not run. power: the total time grows as this power of the number of faces, \
-    ± standard error; in cache, beyond: for sizes that fit into the last cache, and larger ones.";
+const LEGEND: &str = "Each cell has the ns per element, and the smallest cache that can hold the \
+    structure (– if no known cache is large enough). * best at that size; = tied with the best; \
+    ~ measured on a sample of the elements; ? estimated, not run. power: the total time is \
+    proportional to this power of the number of faces, ± standard error. in cache: the power for \
+    the sizes that fit into the last cache. beyond: the power for the larger sizes.";
 
 /// Returns the table with a row per size and fitted line, and a column per backend.
 fn table(report: &GrowthReport, operation: Operation, bold: bool) -> String {
@@ -228,7 +229,9 @@ fn cell(size: &SizeReport, row: &ResultRow, bold: bool) -> Cell {
 
 /// Returns the table of the number of faces at which each structure outgrows each cache.
 fn cache_table(report: &GrowthReport, bold: bool) -> String {
-    let mut header = vec![Cell::new("faces at which it\noutgrows a cache")];
+    let mut header = vec![Cell::new(
+        "faces at which the\nstructure outgrows\nthe cache",
+    )];
     header.extend(
         report
             .backends

@@ -63,7 +63,8 @@ pub(crate) fn for_study(
             ),
         };
         return Err(Failure::usage(format!(
-            "{file}: {what}, so there is nothing to study: use `sixfold inspect` instead"
+            "{file}: the file has {what}, so there is nothing to study: use `sixfold inspect` \
+             instead"
         )));
     }
     print_left_out(path, &left_out);
@@ -92,7 +93,7 @@ pub(crate) fn without_creases(path: &Path) -> Result<PolygonMesh, Failure> {
     if !creases.is_empty() {
         let file = path.display();
         print_stderr(&format!(
-            "note: {file}: sharp edges and vertices are not kept"
+            "note: {file}: the result does not keep sharp edges and vertices"
         ));
     }
     Ok(polygons)
@@ -112,8 +113,11 @@ pub(crate) fn read_results<T>(
     parse: impl Fn(&str) -> Result<T, ReadError>,
 ) -> Result<T, Failure> {
     let file = path.display();
-    let text = fs::read_to_string(path)
-        .map_err(|cause| Failure::usage(format!("{file}: cannot be read: {cause}")))?;
+    let text = fs::read_to_string(path).map_err(|cause| {
+        Failure::usage(format!(
+            "{file}: cannot be read ({cause}): name a file from --json, or a folder from --report"
+        ))
+    })?;
     parse(&text).map_err(|error| Failure::usage(format!("{file}: {error}")))
 }
 

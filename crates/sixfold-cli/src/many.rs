@@ -33,7 +33,7 @@ use folder::{Folder, StudyRecord};
 use meshes::{Mesh, find_meshes};
 
 /// The reason text of [`FailureKind::NoneHolds`].
-const NONE_HOLDS: &str = "none of the selected backends can hold it";
+const NONE_HOLDS: &str = "none of the selected backends can hold the mesh";
 
 /// Studies the selected meshes, except those that are finished already. If a mesh cannot be loaded,
 /// lists it and continues with the next mesh.
@@ -102,7 +102,8 @@ fn check_files(arguments: &Study, meshes: &[Mesh]) -> Result<(), Failure> {
     }
     if arguments.csv.is_some() && meshes.len() != 1 {
         return Err(Failure::usage(
-            "--csv is for one mesh: --report DIR writes the samples of all meshes to results.csv",
+            "--csv is for one mesh: use --report DIR instead, to write the samples of all meshes \
+             to results.csv",
         ));
     }
     Ok(())
@@ -303,7 +304,7 @@ fn print(collection: &Collection, text: &mut TextOutput) {
     }
     for failed in &collection.failures {
         let mesh = &failed.mesh;
-        print_stderr(&format!("note: {mesh}: not studied, {}", failed.reason));
+        print_stderr(&format!("note: {mesh}: not studied: {}", failed.reason));
     }
 }
 
@@ -311,7 +312,12 @@ fn print(collection: &Collection, text: &mut TextOutput) {
 fn none_studied(failures: &[Failed]) -> Failure {
     let mut kinds = failures.iter().map(|failed| failed.kind);
     match kinds.all(|kind| kind == FailureKind::NoneHolds) {
-        true => Failure::unsupported(format!("all meshes failed: {NONE_HOLDS}")),
-        false => Failure::usage("none of the meshes could be studied"),
+        true => Failure::unsupported(
+            "all meshes failed, because none of the selected backends can hold them: choose other \
+             --backends, or see `sixfold inspect`",
+        ),
+        false => Failure::usage(
+            "none of the meshes could be studied: repair the files that the notes above name",
+        ),
     }
 }

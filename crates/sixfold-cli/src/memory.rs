@@ -73,7 +73,7 @@ pub(crate) fn run(arguments: &Memory) -> Result<ExitCode, Failure> {
 fn report_faults(faults: &[String]) -> ExitCode {
     for fault in faults {
         print_stderr(&format!(
-            "error: {fault}: a fault in Sixfold, please report it"
+            "error: {fault}: this is a fault in Sixfold, please report it"
         ));
     }
     match faults.is_empty() {
@@ -245,8 +245,8 @@ fn sentences(audit: &Audit) -> Vec<String> {
         false => sentences.extend(faults.into_iter().map(|fault| format!("! {fault}."))),
     }
     sentences.push(
-        "A word is 4 bytes: an index or a coordinate. The last column is the formula for 2 faces \
-         and 3 edges per vertex, as in the literature."
+        "A word is 4 bytes: an index or a coordinate. The last column is computed by the formula \
+         for a mesh with 2 faces and 3 edges per vertex, as in the literature."
             .to_owned(),
     );
     sentences.extend(operation_sentences(audit));
@@ -254,8 +254,9 @@ fn sentences(audit: &Audit) -> Vec<String> {
         let backend = &entry.backend;
         if let Some(merged @ 1..) = backend.merged_vertices {
             sentences.push(format!(
-                "{} merges {} with others at the same position. Its bytes do not change, because it \
-                 stores corners; figures per vertex count the vertices of the file.",
+                "{} merges {} with other vertices at the same position. The bytes do not change, \
+                 because the structure stores corners. Figures per vertex refer to the vertices \
+                 of the file.",
                 backend.name,
                 counted(merged, "vertex", "vertices")
             ));
@@ -273,19 +274,20 @@ fn operation_sentences(audit: &Audit) -> Vec<String> {
     }
     sentences.push(
         "Allocated bytes are all bytes that one run of the operation requests from the allocator, \
-         including scratch that it frees. If a block grows, only its growth is added. Native \
-         steps start with new tables."
+         including temporary memory that the run frees again. If a block grows, only the added \
+         bytes count. Native steps start with new tables."
             .to_owned(),
     );
     sentences.push(
-        "Results: build: the structure; ff_bfs: the depth of each face; catmull_clark_* and \
-         loop_*: the structure of the refined mesh; other operations: the mesh after the edits."
+        "Result bytes are the bytes of the structure (build), of the depth of each face (ff_bfs), \
+         of the structure of the refined mesh (catmull_clark_* and loop_*), or of the mesh after \
+         the edits (other operations)."
             .to_owned(),
     );
     if operations().any(|operation| operation.scans) {
         sentences.push(format!(
-            "scans: not run, because the structure scans all faces for each element and the mesh has \
-             more than {} faces.",
+            "scans: the operation was not run, because the structure scans all faces for each \
+             element, and the mesh has more than {} faces.",
             grouped(MAX_SCANNED_FACES)
         ));
     }

@@ -124,9 +124,11 @@ fn print(report: &OrdersReport, text: &mut TextOutput) {
     text.print_line(&hanging_indent("", &settings));
 }
 
-const LEGEND: &str = "ns per element, and the ratio to the best order of that backend; * its best \
-    order; = tied with it; ~ from a sample of the elements; ? estimated, not run; m on a mesh with \
-    merged vertices; ! WRONG; worst/best: – no difference beyond the noise.";
+const LEGEND: &str = "Each cell has the ns per element, and the ratio to the best order of that \
+    backend. * best order of the backend; = tied with the best order; ~ measured on a sample of \
+    the elements; ? estimated, not run; m the backend merges vertices; ! WRONG: the result differs \
+    from the other results. worst/best: time in the worst order, divided by the time in the best \
+    order (– if the difference is within the noise).";
 
 /// Returns the table with a row per backend and a column per order.
 fn table(comparison: &Comparison, rows: &[&OrderRow], bold: bool) -> String {

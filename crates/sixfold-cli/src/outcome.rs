@@ -36,7 +36,8 @@ pub(crate) fn exit_code(
     if mismatches > 0 {
         let results = counted(mismatches, "result differs", "results differ");
         print_stderr(&format!(
-            "error: {results} from those of other backends for the same work: a fault in Sixfold, please report it"
+            "error: {results} from the results of other backends for the same work. This is a \
+             fault in Sixfold: please report it"
         ));
     }
     written?;
@@ -85,7 +86,9 @@ fn print_different_work(study: &Report, row: &ResultRow) {
     });
     let (name, operation, mesh) = (&row.backend, row.operation, &study.mesh.name);
     print_stderr(&format!(
-        "error: {mesh}: {name}: the checksum of {operation} is {theirs}, but {ours} on the built-in backends: different work, so its times are not comparable"
+        "error: {mesh}: {name}: the checksum of {operation} is {theirs}, but {ours} on the \
+         built-in backends. The program did different work, so its times are not comparable: \
+         correct the program"
     ));
 }
 

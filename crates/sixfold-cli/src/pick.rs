@@ -171,7 +171,7 @@ fn ranking(report: &PickReport) -> String {
     let legend = [
         "~ measured on a sample of the elements, because each query scans all faces",
         "? estimated, because a full run would exceed the budget",
-        "= tied with the best: not measurably different from it",
+        "= tied with the best: no measurable difference",
     ];
     for (line, _) in legend.into_iter().zip(notes).filter(|(_, note)| *note) {
         text += "\n";
@@ -186,9 +186,10 @@ fn ranking(report: &PickReport) -> String {
             "\nrelation-tables: flat tables of only the relations in the mix, made from {over}"
         );
     }
-    text + "\n1st build: on fresh pages; again: on freed pages that are used again\n\
-            pays after: operations until the first build has paid off, compared with keeping the\n\
-            indexed face set"
+    text + "\n1st build: time to build on fresh pages\n\
+            again: time to build on pages that were used before\n\
+            pays after: number of operations after which the first build has paid off,\n\
+            compared with keeping the indexed face set"
 }
 
 /// Formats a ratio as `1.04`, `12.3` or `1,230`.

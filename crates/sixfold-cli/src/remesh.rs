@@ -82,7 +82,10 @@ fn not_editable(backend: &str) -> String {
     let infos = structure_infos().into_iter();
     let editable = infos.filter(|info| info.is_editable());
     let names: Vec<&str> = editable.map(|info| info.name).collect();
-    format!("{backend} cannot be edited: choose {}", names.join(", "))
+    format!(
+        "{backend} cannot be edited: choose one of {}",
+        names.join(", ")
+    )
 }
 
 /// Returns an error for the first face that is not a triangle.
@@ -132,7 +135,8 @@ fn warn_of_scans<M: MeshEdit + Representation>(faces: usize) {
     let others = infos.filter(|info| info.is_editable() && !scans(&info.edits));
     let others: Vec<&str> = others.map(|info| info.name).collect();
     print_stderr(&format!(
-        "note: {} scans all {} faces for each edit, which is slow: {} visit only the faces around the edge",
+        "note: {} scans all {} faces for each edit, so this command is slow. Faster choices for \
+         --backend: {}",
         M::NAME,
         grouped(faces),
         others.join(", ")
@@ -169,7 +173,8 @@ impl Work for Decimation {
                 Boundary::Follow => "",
             };
             format!(
-                "the target of {} was not reached: any other collapse would {fixed}flip a face or change the topology",
+                "the target of {} was not reached, because any further collapse would {fixed}flip \
+                 a face or change the topology",
                 counted(target, "face", "faces")
             )
         });
@@ -193,7 +198,8 @@ impl Work for Remeshing {
         let iterations = counted(report.iterations, "iteration", "iterations");
         let shortfall = (report.stop != Stop::Done).then(|| {
             format!(
-                "stopped after {iterations}: --max-faces {} prevents more splits, so edges are longer than --edge-length",
+                "stopped after {iterations}, because --max-faces {} allows no more splits. Some \
+                 edges are longer than --edge-length. For shorter edges, increase --max-faces",
                 self.max_faces
             )
         });

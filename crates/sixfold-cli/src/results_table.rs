@@ -122,7 +122,9 @@ fn noise_warning(report: &Report, operation: Operation) -> Option<String> {
     let row = control.operations.iter().find(is_same)?;
     row.is_unsteady().then(|| {
         format!(
-            "the two columns of {} differ by {:.0} % here: smaller differences are not significant. Measure again with a longer --budget, or with --operations {} only.",
+            "{} was measured twice here, and its two times differ by {:.0} %: smaller differences \
+             in this row are not significant. Measure again with a longer --budget, or with \
+             --operations {} only.",
             control.backend,
             100.0 * (row.difference() - 1.0),
             row.operation
@@ -257,20 +259,21 @@ impl Signs {
             ('*', "best"),
             (
                 '=',
-                "tied with the best: differs by less than the noise or 2 % (2 × with one or two samples)",
+                "tied with the best: differs by less than the noise (at least 2 %; 100 % if 1 or 2 \
+                 samples)",
             ),
             (
                 'h',
                 "own heap: the allocator of this program does not keep freed pages",
             ),
-            ('~', "from a sample of the elements"),
+            ('~', "measured on a sample of the elements"),
             ('?', "estimated, not run"),
             ('±', "95 % interval of the median"),
-            ('m', "on a mesh with merged vertices"),
-            ('!', "WRONG: differs from the other backends"),
+            ('m', "the backend merges vertices"),
+            ('!', "WRONG: the result differs from the other backends"),
         ];
         let used = meanings.iter().filter(|(sign, _)| self.used.contains(sign));
-        let first_times = "first time: one run on fresh pages, with tables of exact size";
+        let first_times = "first time: one run on fresh pages, with tables without spare capacity";
         let first_times = self.first_times.then(|| first_times.to_owned());
         let parts = used.map(|(sign, meaning)| format!("{sign} {meaning}"));
         // Lines are broken only between two signs of the legend.
@@ -299,10 +302,12 @@ fn not_run_note(row: &ResultRow) -> Option<String> {
     } = row;
     Some(match row.by_name_only {
         true => format!(
-            "? {operation} on {backend} was left out (about {time} per run): to run it, name it in --operations"
+            "? {operation} on {backend} was not run: one run would take about {time}. To run this \
+             operation, name it in --operations."
         ),
         false => format!(
-            "? {operation} on {backend} was not run: one run would take about {time}, too long for the budget"
+            "? {operation} on {backend} was not run: one run would take about {time}. To run this \
+             operation, increase --budget."
         ),
     })
 }

@@ -102,10 +102,12 @@ fn matrix() -> String {
         methods.add_row(row);
     }
     let mut text = methods.trim_fmt();
-    text += "\n\nG gather: each new point queries its neighbours. S scatter: one pass over faces.";
-    text += "\nN native: the structure splits its own tables, on all threads; G and S rebuild it.";
+    text += "\n\nG gather: each new point queries its neighbours. S scatter: one pass over the \
+        faces.";
+    text += "\nN native: the structure refines its own tables, on all threads. G and S build it \
+        again.";
     if once {
-        text += "\n1  one step only: the structure cannot hold the result.";
+        text += "\n1  only one step is possible, because the structure cannot hold the result.";
     }
     text
 }

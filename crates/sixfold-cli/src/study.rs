@@ -158,11 +158,12 @@ pub(crate) fn print(report: &Report, text: &mut TextOutput) {
 
 /// Describes the overhead of the clock.
 fn clock_text(timer: Timer) -> String {
-    let share = timer.largest_share.map_or("unknown".into(), |share| {
-        format!("{:.2} % of the shortest sample", 100.0 * share)
+    let error = timer.largest_share.map_or("unknown".into(), |share| {
+        format!("at most {:.2} % of the shortest sample", 100.0 * share)
     });
     format!(
-        "Reading the clock takes {:.0} ns, which is subtracted; the remaining error is at most {share}.",
+        "Reading the clock takes {:.0} ns. This time is subtracted; the remaining error is \
+         {error}.",
         timer.overhead_ns
     )
 }

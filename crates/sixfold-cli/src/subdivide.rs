@@ -113,7 +113,7 @@ fn options(arguments: &Subdivide) -> Result<Subdivision, Failure> {
     let kind = scheme.kind();
     let unsupported_option = |option: &str, schemes: &str| {
         Failure::unsupported(format!(
-            "{scheme} has no option {option}: leave it out, or choose {schemes}"
+            "{scheme} has no option {option}: remove the option, or choose {schemes}"
         ))
     };
     let creases = "catmull-clark or loop";
@@ -153,7 +153,8 @@ fn check_tags(arguments: &Subdivide, creases: &Creases) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::unsupported(format!(
-        "{}: the file has sharp edges or vertices, and {scheme} has no rule for them: remove the lines `t crease` and `t corner`, or choose catmull-clark or loop",
+        "{}: the file has sharp edges or vertices, but {scheme} has no rule for sharpness: remove \
+         the lines `t crease` and `t corner`, or choose catmull-clark or loop",
         arguments.mesh.display()
     )))
 }
@@ -176,17 +177,21 @@ fn method(arguments: &Subdivide) -> Result<Method, Failure> {
         )));
     }
     let best = row.default_method();
-    let best =
-        best.ok_or_else(|| Failure::unsupported(format!("{scheme} does not run on {backend}")))?;
+    let best = best.ok_or_else(|| {
+        Failure::unsupported(format!(
+            "{scheme} does not run on {backend}: `sixfold schemes` lists other backends"
+        ))
+    })?;
     match arguments.method.unwrap_or(best) {
         method if row.methods.contains(&method) => match arguments.threads {
             Some(2..) if method != Method::Native => Err(Failure::unsupported(format!(
-                "{scheme} by {method} on {backend} runs on one thread: leave --threads out, or see `sixfold schemes` for a native method"
+                "{scheme} by {method} on {backend} runs on one thread: remove --threads, or choose \
+                 a native method from `sixfold schemes`"
             ))),
             _ => Ok(method),
         },
         method => Err(Failure::unsupported(format!(
-            "{scheme} does not run by {method} on {backend}: choose {names}, or see `sixfold schemes`"
+            "{scheme} has no method {method} on {backend}: choose {names}, or see `sixfold schemes`"
         ))),
     }
 }
@@ -226,7 +231,7 @@ impl Job<'_> {
                 let pool = ThreadPoolBuilder::new().num_threads(threads).build();
                 let pool = pool.map_err(|error| {
                     Failure::usage(format!(
-                        "{threads} threads cannot be started ({error}): use fewer"
+                        "{threads} threads cannot be started ({error}): choose fewer --threads"
                     ))
                 })?;
                 pool.install(|| visit_refinable(backend, self))

@@ -30,7 +30,7 @@ pub(crate) fn triangulated(study_mesh: StudyMesh) -> Result<StudyMesh, Failure> 
     }
     for effect in &side_effects {
         print_stderr(&format!(
-            "note: {}: --triangulate changes more than the faces: {effect}",
+            "note: {}: --triangulate has a side effect: {effect}",
             study_mesh.name
         ));
     }

@@ -149,25 +149,25 @@ pub(crate) fn sentence(row: &WhyRow) -> String {
     text += &match reads.reads {
         0.0 => "a query reads nothing".into(),
         number => format!(
-            "{} reads in {} lines, {} bytes per query",
+            "a query makes {} reads in {} cache lines, and reads {} bytes",
             short_figure(number),
             short_figure(reads.lines),
             short_figure(reads.bytes)
         ),
     };
     if reads.sampled {
-        text += &format!(" (the mean of {})", reads.queried);
+        text += &format!(" (mean of {} queries)", reads.queried);
     }
     let swept = bytes(reads.sweep_bytes());
     text += &match reads.moved_bytes {
-        0.0 => "; a sweep reads nothing either".into(),
+        0.0 => ". A sweep over all elements also reads nothing.".into(),
         moved => format!(
-            "; a sweep touches {swept} and moves {} bytes per {per}",
+            ". A sweep over all elements touches {swept} and moves {} bytes per {per}.",
             short_figure(moved)
         ),
     };
     match timed {
-        None => text + ".",
+        None => text,
         Some(timed) => text + &describe_times(timed),
     }
 }
@@ -195,7 +195,8 @@ fn describe_times(timed: &Timed) -> String {
         Bound::Work => "bound by the work of the query itself, not by memory",
     };
     format!(
-        "; at {speed} GB/s that takes {floor} ns; jumps take {waits} ns; measured {measured} ns: {verdict}."
+        " At {speed} GB/s, moving these bytes takes {floor} ns. The jumps take {waits} ns. \
+         The measured time is {measured} ns: it is {verdict}."
     )
 }
 
@@ -211,65 +212,73 @@ pub(crate) fn legend(why: &Why) -> String {
     let first = [
         (
             "answers",
-            "elements that a query returns; all figures are means over all queries",
+            "number of elements that a query returns; all figures are means over all queries",
         ),
         (
             "reads",
-            "rows of tables that a query reads; repeated reads count again",
+            "number of table rows that a query reads; a row that is read twice counts twice",
         ),
         (
             "lines",
             &format!(
-                "cache lines of {line_bytes} bytes that it touches, each counted once; tables begin at a line"
+                "number of cache lines of {line_bytes} bytes that a query touches; each line \
+                 counts once"
             ),
         ),
-        ("bytes", "bytes read in these lines, each counted once"),
+        (
+            "bytes",
+            "number of bytes that a query reads; each byte counts once",
+        ),
         (
             "jumps",
             &format!(
-                "lines per element, in a sweep over all elements in order, that a prefetcher cannot \
-                 predict: none of the last {} fetched lines is within {reach} lines of them",
+                "number of lines per element that a prefetcher cannot predict, in a sweep over all \
+                 elements in order. A fetched line is a jump if none of the last {} fetched lines \
+                 is within {reach} lines of this line.",
                 grouped(cache_lines as usize)
             ),
         ),
         (
             "moved",
-            "minimum bytes per element that a sweep moves: each of its lines once; in a row with ~, \
-             all lines of a query",
+            "minimum number of bytes per element that a sweep moves from memory: each line of the \
+             sweep counts once. In a row with ~, all lines of each query count.",
         ),
     ];
     let timed = [
         (
             "floor",
-            "ns to move these bytes in order, at the speed of the largest buffer above that is not larger \
-             than the memory that the sweep touches",
+            "ns per element to move these bytes in order. The speed is that of the largest buffer \
+             above that is not larger than the memory that the sweep touches.",
         ),
         (
             "waits",
-            "ns for the jumps, if each waits for the previous one, in the same buffer",
+            "ns per element for the jumps, if each jump waits for the previous jump, at the \
+             latency of the same buffer",
         ),
         (
             "measured",
-            "ns per element of the sweep, median; ~ from a sample",
+            "time of the sweep in ns per element, median; ~ if measured on a sample",
         ),
         (
             "bound by",
-            "bandwidth, if floor is at least half of the measured time; else latency, if waits is at least \
-             half of it; else work: reading nearby data, comparing, branching",
+            "bandwidth: floor is at least half of the measured time. latency: otherwise, if waits \
+             is at least half of the measured time. work: in all other cases; the time then goes \
+             into reading nearby data, comparing and branching.",
         ),
     ];
-    let counted = [("by table", "reads of a query in each table")];
+    let counted = [("by table", "number of reads of a query in each table")];
     let listing = match why.memory.is_some() {
         true => {
-            "Jumps, moved and measured include the iteration over the elements. If a structure has no \
-             table of edges, the time to prepare the list of edges is included in measured only."
+            "The figures `jumps`, `moved` and `measured` include the iteration over the elements. \
+             If a structure has no table of edges, a list of edges is prepared first. Only \
+             `measured` includes this preparation."
         }
-        false => "Jumps and moved include the iteration over the elements.",
+        false => "The figures `jumps` and `moved` include the iteration over the elements.",
     };
     let last = [
         (
             "~",
-            &*format!("measured on {sample} evenly spaced elements instead of all"),
+            &*format!("only {sample} evenly spaced elements are queried, instead of all"),
         ),
         ("", listing),
     ];

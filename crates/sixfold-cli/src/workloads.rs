@@ -49,11 +49,16 @@ pub(crate) fn workload(word: &str) -> Result<Workload, Failure> {
     if !is_file {
         return built_in(word).ok_or_else(|| unknown(word));
     }
-    let cannot_read = |error: std::io::Error| Failure::usage(format!("{word}: {error}"));
+    let cannot_read = |error: std::io::Error| {
+        Failure::usage(format!(
+            "{word}: {error}: name a workload file, or a workload from `sixfold workloads`"
+        ))
+    };
     let length = std::fs::metadata(path).map_err(cannot_read)?.len();
     if length > MAX_FILE_BYTES {
         return Err(Failure::usage(format!(
-            "{word}: {length} bytes are too many for a workload, which has a few lines: see `sixfold workloads --show smoothing`"
+            "{word}: the file has {length} bytes, but a workload file has only a few lines: for an \
+             example, see `sixfold workloads --show smoothing`"
         )));
     }
     let text = std::fs::read_to_string(path).map_err(cannot_read)?;
@@ -89,7 +94,7 @@ fn list() -> String {
         let operations = workload.operations;
         lines.push(hanging_indent(
             "  ",
-            &format!("{access}; {operations} operations{rebuilt}: {mix}"),
+            &format!("{access} access; operations: {operations}{rebuilt}; mix: {mix}"),
         ));
     }
     lines.join("\n")

@@ -266,7 +266,7 @@ fn invalid_input_is_refused_before_anything_is_written() {
             (
                 &["book.obj"],
                 3,
-                "`sixfold inspect` shows which can hold the mesh",
+                "`sixfold inspect` shows which backends can hold the mesh",
             ),
             (&["t.obj", "--backend", "abacus"], 2, "corner-table"),
             (&["missing.obj"], 2, "missing.obj"),

@@ -269,13 +269,14 @@ impl BackendAudit {
         let difference = |what: &str, is: usize, other: &str, than: usize| {
             let more = if is > than { "more" } else { "fewer" };
             let by = is.abs_diff(than);
-            (by > 0).then(|| format!("{name}: {what}, {by} bytes {more} than {other} ({than})"))
+            (by > 0)
+                .then(|| format!("{name}: {what}, {by} bytes {more} than {other} ({than} bytes)"))
         };
         let tables_text = format!("its tables hold {tables} bytes");
         let heap_text = format!("the allocator counted {counted} bytes");
         let faults = [
-            difference(&tables_text, tables, "its layout formula", layout),
-            difference(&heap_text, counted, "its tables", tables),
+            difference(&tables_text, tables, "its layout formula gives", layout),
+            difference(&heap_text, counted, "its tables hold", tables),
         ];
         faults.into_iter().flatten().collect()
     }

@@ -119,7 +119,8 @@ pub struct Pooled {
 /// The error for adding a second study to a page. A page can show only one study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "is a second study, but a page shows one study: to study several meshes, use `sixfold study` with --report DIR"
+    "is a second study, but a page can show only one: to study several meshes, use `sixfold \
+     study` with --report DIR"
 )]
 pub struct SecondStudy;
 
@@ -129,10 +130,13 @@ pub struct SecondStudy;
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum MergeError {
     /// The lists of meshes differ.
-    #[error("the lists of meshes differ: {which}")]
+    #[error("the lists of meshes differ: {which}; use results of one study")]
     OtherMeshes { which: String },
     /// The settings differ.
-    #[error("the settings differ: {what} is {theirs}, expected {ours}")]
+    #[error(
+        "the settings differ: {what} is {theirs}, expected {ours}; measure again with the same \
+         settings"
+    )]
     OtherSettings {
         what: &'static str,
         ours: String,
@@ -219,9 +223,9 @@ impl Collection {
         if other.meshes != self.meshes {
             let unknown = |mesh: &&String| !self.meshes.contains(mesh);
             let which = match other.meshes.iter().find(unknown) {
-                Some(mesh) => mesh.clone(),
+                Some(mesh) => format!("{mesh} is in only one list"),
                 None => format!(
-                    "{} meshes instead of {}, or another order",
+                    "{} meshes, expected {} in the same order",
                     other.meshes.len(),
                     self.meshes.len()
                 ),
@@ -447,19 +451,24 @@ fn sentences(pooled: &[Pooled]) -> Vec<String> {
             .filter(|row| row.meshes < most && row.ratio_to_best < *ratio_to_best);
         let better = better.map(|row| {
             let (name, ratio) = (&row.backend, row.ratio_to_best);
-            format!("{name}: {ratio:.2} × on {}", row.meshes)
+            format!("{name} {ratio:.2} × on {}", row.meshes)
         });
         let better: Vec<String> = better.collect();
         let elsewhere = match better.is_empty() {
             true => String::new(),
-            false => format!("; on fewer meshes, {}", better.join(", ")),
+            false => format!(
+                ". Some backends have a lower ratio, but on fewer meshes: {}",
+                better.join(", ")
+            ),
         };
         let ties = match tied {
             0 => String::new(),
-            _ => format!(", tied on {tied}"),
+            _ => format!(" and tied for the fastest on {tied}"),
         };
         sentences.push(format!(
-            "{operation}: {backend} leads the backends measured on all {meshes} meshes: fastest on {best}{ties}, on average {ratio_to_best:.2} × the time of the fastest{elsewhere}."
+            "{operation}: {backend} leads the backends measured on all {meshes} meshes. On \
+             average, {backend} takes {ratio_to_best:.2} × the time of the fastest. {backend} is \
+             the single fastest on {best}{ties}{elsewhere}."
         ));
     }
     sentences

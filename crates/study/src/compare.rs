@@ -135,7 +135,8 @@ pub struct NewWinner {
 pub enum CompareError {
     /// The heap policies or the cache states differ.
     #[error(
-        "the first was measured with {option} {before}, the second with {option} {after}: these times cannot be compared; measure one of them again"
+        "the first study was measured with {option} {before}, the second with {option} {after}, \
+         so their times cannot be compared: measure both with the same {option}"
     )]
     OtherMemory {
         option: &'static str,
@@ -370,36 +371,42 @@ impl Changes {
         let mut sentences = Vec::new();
         if let Some([before, after]) = &self.meshes {
             sentences.push(format!(
-                "The meshes differ ({before}, {after}): the times are of different work, so compare only the ratios between backends."
+                "The meshes differ ({before}, {after}), so the two studies did different work: \
+                 compare only the ratios between backends."
             ));
         }
         let (slower, faster) = (self.count(Verdict::Slower), self.count(Verdict::Faster));
         let same = self.count(Verdict::Same);
         sentences.push(format!(
-            "Of {} figures, {faster} are faster, {slower} slower, and {same} the same within the noise.",
+            "Of {} figures, {faster} are faster in the second study, {slower} are slower, and \
+             {same} are equal within the noise.",
             self.rows.len()
         ));
         if let Some(overall) = self.overall {
             let factor = overall.max(overall.recip());
-            let way = if overall > 1.0 { "slower" } else { "faster" };
             let machines = self.environment.iter().any(|s| s.what == "processor");
             if factor > self.drift {
                 let hint = match (self.relative, machines) {
-                    (true, _) => "; each row is judged after division by this factor",
-                    (false, true) => "; the machines differ: --relative divides each row by it",
+                    (true, _) => ". Each ratio is divided by this median before it is judged",
+                    (false, true) => {
+                        ". The machines differ: to divide each ratio by this median, \
+                                      use --relative"
+                    }
                     (false, false) => {
-                        "; if the machine was busy or hot, --relative divides each row by it"
+                        ". If a machine was busy or hot, use --relative to divide each ratio by \
+                         this median"
                     }
                 };
                 sentences.push(format!(
-                    "Overall, the second study is {factor:.2} × {way} (median of all rows){hint}."
+                    "Overall, the second study takes {overall:.2} × the time of the first (median \
+                     of all ratios){hint}."
                 ));
             }
         }
         for winner in &self.winners {
             sentences.push(format!(
-                "{}: the fastest is now {}; it was {}.",
-                winner.operation, winner.after, winner.before
+                "{}: the fastest backend was {} and is now {}.",
+                winner.operation, winner.before, winner.after
             ));
         }
         let others: Vec<String> = self
@@ -410,7 +417,7 @@ impl Changes {
             .collect();
         if !others.is_empty() {
             sentences.push(format!(
-                "The checksum changed, so the work is different: {}.",
+                "The checksums of these figures differ, so the two studies did different work: {}.",
                 others.join(", ")
             ));
         }

@@ -133,7 +133,7 @@ impl Environment {
         let caches = self.cache_state.as_ref();
         if let Some(caches) = caches.filter(|caches| caches.state == CacheState::Cold) {
             let level = caches.defeats_level.map_or(String::new(), |level| {
-                format!(", twice the level-{level} cache")
+                format!(", twice the size of the level-{level} cache")
             });
             let written = bytes(caches.written_bytes);
             phrases.push(format!(

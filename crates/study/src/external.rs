@@ -79,10 +79,13 @@ pub enum ExternalError {
     )]
     BadName { name: String },
     /// A quote is not closed.
-    #[error("the command of {name} has an unclosed quote: {command}")]
+    #[error("the command of {name} has an unclosed quote: close the quote in {command}")]
     OpenQuote { name: String, command: String },
     /// The command is empty, or no argument contains `{mesh}`.
-    #[error("the command of {name} has no {{mesh}}, the place for the path of the mesh: {command}")]
+    #[error(
+        "the command of {name} has no {{mesh}}: write {{mesh}} where the path of the mesh \
+         belongs: {command}"
+    )]
     NoMesh { name: String, command: String },
 }
 

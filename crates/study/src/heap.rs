@@ -167,7 +167,7 @@ fn shortage_reason(needed: u64, free: Option<u64>) -> Option<String> {
     let free = free.filter(|&free| kept > free)?;
     let [kept, free] = [kept, free].map(shown);
     Some(format!(
-        "keeping freed pages could take {kept}, but only {free} are free"
+        "keeping freed pages could take {kept} of memory, but only {free} are free"
     ))
 }
 

@@ -55,7 +55,7 @@ pub(crate) fn methods(
             (Vec::new(), Vec::new(), Vec::new());
         for backend in backends {
             let [gather, scatter, own] = Method::ALL.map(|method| time_of(by(method), backend));
-            let phrase = |ratio: f64| (ratio, format!("{} {}", backend.name, times(ratio)));
+            let phrase = |ratio: f64| (ratio, format!("{} ({})", backend.name, times(ratio)));
             if let (Some(gather), Some(scatter)) = (gather, scatter) {
                 scatter_faster.extend(gather.ratio_if_longer(scatter).map(phrase));
                 scatter_slower.extend(scatter.ratio_if_longer(gather).map(phrase));
@@ -68,18 +68,14 @@ pub(crate) fn methods(
         }
         let parts = [
             ("scatter is faster than gather on", scatter_faster),
-            ("slower on", scatter_slower),
-            ("native is faster than both on", native),
+            ("scatter is slower than gather on", scatter_slower),
+            ("native is faster than gather and scatter on", native),
         ];
         let mut phrases = Vec::new();
         for (verb, mut list) in parts {
             list.sort_by(|(a, _), (b, _)| b.total_cmp(a));
             let list: Vec<String> = list.into_iter().map(|(_, phrase)| phrase).collect();
             if !list.is_empty() {
-                let verb = match verb {
-                    "slower on" if phrases.is_empty() => "scatter is slower than gather on",
-                    verb => verb,
-                };
                 phrases.push(format!("{verb} {}", list.join(", ")));
             }
         }

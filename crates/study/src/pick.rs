@@ -86,7 +86,8 @@ pub enum PickError {
     /// The budget is too short for three rounds. `needed_ms` is rounded up and is for all meshes
     /// together.
     #[error(
-        "{mesh}: a budget of {} ms is too small to measure anything: it has no room for three rounds; give --budget {needed_ms}ms or more", .budget.as_millis()
+        "{mesh}: a budget of {} ms is too small to measure anything, because three rounds take \
+         longer: use --budget {needed_ms}ms or more", .budget.as_millis()
     )]
     BudgetTooSmall {
         mesh: String,
@@ -94,7 +95,7 @@ pub enum PickError {
         needed_ms: u64,
     },
     /// The list of meshes is empty.
-    #[error("there is no mesh to pick a backend for")]
+    #[error("the list of meshes is empty: give at least one mesh")]
     NoMesh,
 }
 

@@ -30,10 +30,13 @@ pub enum ReadError {
         cause: String,
     },
     /// The text is JSON of another program.
-    #[error("is JSON, but not written by sixfold: it has no `schema`")]
+    #[error("is JSON, but has no `schema`: choose a file that sixfold wrote")]
     Foreign,
     /// The schema is of another version.
-    #[error("has schema {found}, expected {SCHEMA}: use the version of sixfold that wrote it")]
+    #[error(
+        "has schema {found}, expected {SCHEMA}: use the version of sixfold that wrote the file, \
+         or measure again"
+    )]
     OtherSchema { found: u64 },
     /// The results are of another command.
     #[error("is {found}, expected {wanted}")]
@@ -147,10 +150,12 @@ impl Report {
             let fits = |len: usize| len == raw.rounds.len();
             let fit = fits(raw.wall_ns.len()) && fits(cpu.len());
             if !fit || !optional.into_iter().all(|len| len == 0 || fits(len)) {
-                return wrong(format!("{of} are columns of different lengths"));
+                return wrong(format!("{of} have columns of different lengths"));
             }
             if !raw.wall_ns.iter().chain(cpu).all(time) {
-                return wrong(format!("{of} are not finite times of 0 or more"));
+                return wrong(format!(
+                    "{of} include a time that is negative or not finite"
+                ));
             }
         }
         for row in &self.results {
@@ -161,7 +166,10 @@ impl Report {
         }
         let rows = self.control.iter().flat_map(|control| &control.operations);
         match rows.into_iter().find(|row| row.ratio <= 0.0) {
-            Some(row) => wrong(format!("the control of {} is not positive", row.operation)),
+            Some(row) => wrong(format!(
+                "the control of {} has a ratio that is not positive",
+                row.operation
+            )),
             None => Ok(()),
         }
     }
@@ -202,7 +210,7 @@ impl Kind {
             Self::Orders => "the result of `sixfold orders`",
             Self::Growth => "the result of `sixfold growth`",
             Self::Why => "the result of `sixfold why`",
-            Self::Pick => "the answer of `sixfold pick`",
+            Self::Pick => "the result of `sixfold pick`",
             Self::Other => "the result of another command",
         }
     }

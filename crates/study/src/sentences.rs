@@ -36,11 +36,12 @@ pub(crate) fn sentences(
         } = row;
         let column = backends.iter().find(|column| column.name == *backend);
         let consequence = match column.is_some_and(|column| column.external.is_some()) {
-            true => "its times cannot be compared.",
-            false => "a fault in Sixfold; please report it.",
+            true => "The times of this backend cannot be compared.",
+            false => "This is a fault in Sixfold: please report it.",
         };
         sentences.push(format!(
-            "{backend} has other results than the other backends for {operation}: {consequence}"
+            "{operation} on {backend} gives different results from the other backends. \
+             {consequence}"
         ));
     }
     sentences
@@ -73,7 +74,8 @@ fn speed(backends: &[BackendReport], results: &[ResultRow]) -> Option<String> {
         let ratio_to_next = times(ratio_to_next);
         parts.push(match i {
             0 => format!(
-                "{name} is fastest in {wins} (the next typically takes {ratio_to_next} its time)"
+                "{name} is fastest in {wins} (the second backend typically takes {ratio_to_next} \
+                 the time)"
             ),
             _ => format!("{name} in {wins} ({ratio_to_next})"),
         });
@@ -100,7 +102,9 @@ fn noise(control: &Control) -> Option<String> {
         .max_by(|a, b| difference(a).total_cmp(&difference(b)))?;
     let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
     Some(format!(
-        "Noise: {} was measured twice; its two columns typically differ by {}, at most by {} ({}). In each operation, backends that differ by no more than these columns are tied.",
+        "Noise: {} was measured twice. The two columns typically differ by {}, at most by {} \
+         ({}). For each operation, backends that differ by no more than these two columns are \
+         tied.",
         control.backend,
         percent(control.typical),
         percent(control.worst),
@@ -172,12 +176,12 @@ fn merging(backend: &BackendReport, results: &[ResultRow]) -> Option<String> {
         .iter()
         .any(|r| r.backend == *name && r.agreement == Agreement::Merged);
     let suffix = if differs {
-        "; its results marked m are of the merged mesh"
+        "; results marked m are those of the merged mesh"
     } else {
         ""
     };
     Some(format!(
-        "{name} merges {merged} {vertices} that {share} coordinates with another{suffix}."
+        "{name} merges {merged} {vertices} that {share} coordinates with another vertex{suffix}."
     ))
 }
 
@@ -227,7 +231,8 @@ mod tests {
         ];
         let found = sentences(&backends, &results, &mesh, None, &|_, _| false);
         let expected = format!(
-            "Of 2 operations, {a} is fastest in 1 (the next typically takes 1.5 × its time), 1 has a tie for the fastest."
+            "Of 2 operations, {a} is fastest in 1 (the second backend typically takes 1.5 × the \
+             time), 1 has a tie for the fastest."
         );
         assert_eq!(found, [expected]);
         let found = sentences(&backends, &results[2..], &mesh, None, &|_, _| false);
@@ -235,7 +240,7 @@ mod tests {
         results[2].agreement = Agreement::Mismatch;
         let found = sentences(&backends, &results, &mesh, None, &|_, _| false).join(" ");
         assert!(
-            found.contains(&format!("{a} has other results than")),
+            found.contains(&format!("on {a} gives different results from")),
             "{found}"
         );
     }
@@ -269,7 +274,9 @@ mod tests {
             timed("half-edge", Native, 0.5, 1.01),
         ];
         let found = sentences(&backends, &results, &mesh, None, &|_, _| false);
-        let expected = "Loop: scatter is faster than gather on polygon-soup 30 ×; slower on half-edge 1.5 ×; native is faster than both on half-edge 4.0 ×.";
+        let expected = "Loop: scatter is faster than gather on polygon-soup (30 ×); scatter is \
+                        slower than gather on half-edge (1.5 ×); native is faster than gather and \
+                        scatter on half-edge (4.0 ×).";
         assert!(
             found.iter().any(|sentence| sentence == expected),
             "{found:?}"

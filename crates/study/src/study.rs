@@ -91,19 +91,22 @@ pub enum StudyError {
         known: Vec<&'static str>,
     },
     /// Two structures have the same name.
-    #[error("two backends are called `{name}`: give each a name of its own")]
+    #[error("two backends are called `{name}`: give each backend its own name")]
     RepeatedBackend { name: String },
     /// The mesh has no faces.
-    #[error("the mesh has no faces, so there is nothing to study: `inspect` shows its facts")]
+    #[error(
+        "the mesh has no faces, so there is nothing to study: choose another mesh, or see its \
+         facts with `sixfold inspect`"
+    )]
     NoFaces,
     /// Two columns have the same name.
-    #[error("two columns are called `{name}`: give each program a name of its own")]
+    #[error("two columns are called `{name}`: give each program its own name")]
     RepeatedExternal { name: String },
     /// The file of the mesh for external programs cannot be written.
-    #[error("the mesh cannot be written for other programs to read: {cause}")]
+    #[error("the mesh file for the external programs cannot be written: {cause}")]
     NoMeshFile { cause: String },
     /// None of the chosen backends can hold the mesh.
-    #[error("none of the selected backends can hold the mesh ({}): {}", .refusals.len(), reasons(.refusals))]
+    #[error("none of the selected backends can hold the mesh: {}", reasons(.refusals))]
     NoneHolds { refusals: Vec<(String, String)> },
 }
 

@@ -69,10 +69,15 @@ fn pages_not_kept(environment: &Environment) -> Option<String> {
     let heap = environment.heap.as_ref()?;
     match &heap.reason {
         Some(reason) => Some(format!(
-            "Measured on the system's heap: {reason}. Times of operations that allocate include page faults and depend on what ran before: compare them only with results of --heap system."
+            "The system's heap was used: {reason}. The times of operations that allocate memory \
+             include page faults and depend on earlier operations. Compare these times only with \
+             results of --heap system."
         )),
         None if !heap.counts_faults => Some(
-            "This platform does not count page faults, so samples with page faults are not recognised. For operations that allocate, check whether the two columns of the control differ.".into(),
+            "This platform does not count page faults, so samples with page faults cannot be \
+             found. If the two columns of the control differ in an operation that allocates \
+             memory, page faults may be the reason."
+                .into(),
         ),
         None => None,
     }
@@ -90,7 +95,9 @@ fn page_faults(environment: &Environment, results: &[ResultRow]) -> Option<Strin
     } = worst;
     (heap.policy == Policy::Kept).then(|| {
         format!(
-            "{count} of {} figures include samples with page faults, at most {faults} in a sample ({operation} on {backend}). Measure again with more free memory.",
+            "{count} of {} figures include samples with page faults. The sample with the most \
+             page faults has {faults} ({operation} on {backend}). Measure again with more free \
+             memory.",
             results.len()
         )
     })
@@ -99,9 +106,14 @@ fn page_faults(environment: &Environment, results: &[ResultRow]) -> Option<Strin
 fn busy(environment: &Environment) -> Option<String> {
     let (load, cores) = environment.load_average.zip(environment.cores)?;
     (load > BUSY * cores as f64).then(|| {
-        let cores = if cores == 1 { "1 core".into() } else { format!("{cores} cores") };
+        let cores = if cores == 1 {
+            "1 core".into()
+        } else {
+            format!("{cores} cores")
+        };
         format!(
-            "The machine was busy: load {load:.1} on {cores} at the start. Stop other programs and measure again; until then use the ratios, not the nanoseconds."
+            "The machine was busy at the start (load {load:.1} on {cores}). The ratios in this \
+             result are more reliable than the times. Stop other programs and measure again."
         )
     })
 }
@@ -116,7 +128,8 @@ fn interrupted(environment: &Environment, results: &[ResultRow]) -> Option<Strin
     let ratio = Median::from_samples(ratios)?.value;
     (ratio > INTERRUPTED).then(|| {
         format!(
-            "Other programs used the processor for {:.0} % of the time and disturbed the caches. Stop them, or pin the study to its own core.",
+            "Other programs used the processor for {:.0} % of the time and disturbed the caches. \
+             Stop the other programs, or pin the study to its own core.",
             100.0 * (1.0 - 1.0 / ratio)
         )
     })
@@ -142,7 +155,9 @@ fn coarse(timer: &Timer) -> Option<String> {
 
 fn wall_time_only(environment: &Environment) -> Option<String> {
     (environment.clock == "wall").then(|| {
-        "This platform does not report the processor time of a thread: the figures are wall time, which other programs make longer. Keep the machine quiet.".to_owned()
+        "This platform does not report the processor time of a thread, so the figures are wall \
+         time. Other programs make wall time longer: keep the machine quiet."
+            .to_owned()
     })
 }
 
@@ -153,7 +168,8 @@ fn few(results: &[ResultRow]) -> Option<String> {
     let once = results.iter().all(|row| row.warm_up_only); // `nothing_measured` warns of this
     (few > 0 && !once).then(|| {
         format!(
-            "{few} of {all} figures are from fewer than {FEW} samples, too few for a 95 % interval. Use a longer --budget or fewer --operations."
+            "{few} of {all} figures are from fewer than {FEW} samples, but a 95 % interval needs \
+             {FEW}. Use a longer --budget or fewer --operations."
         )
     })
 }
@@ -173,7 +189,8 @@ fn wide(results: &[ResultRow]) -> Option<String> {
     let (count, all) = (wide.clone().count(), known.len());
     let (worst, row) = wide.max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(format!(
-        "{count} of {all} intervals extend more than {:.0} % from their median, at most {:.0} % ({} on {}). Use a longer --budget or a quieter machine.",
+        "{count} of {all} intervals extend more than {:.0} % from their median. The widest \
+         interval extends {:.0} % ({} on {}). Use a longer --budget or a quieter machine.",
         100.0 * WIDE,
         100.0 * worst,
         row.operation,
@@ -187,7 +204,8 @@ fn powersave(environment: &Environment) -> Option<String> {
         .as_ref()
         .filter(|name| *name == "powersave")?;
     Some(format!(
-        "The governor of the processor is {governor}: the frequency follows the load. `cpupower frequency-set --governor performance` keeps it constant."
+        "The frequency governor of the processor is {governor}, so the frequency changes with the \
+         load. To keep the frequency constant, run `cpupower frequency-set --governor performance`."
     ))
 }
 

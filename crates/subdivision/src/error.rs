@@ -19,7 +19,9 @@ pub enum SubdivisionError {
         degree: usize,
     },
     /// Creases, but the scheme has no rule for them.
-    #[error("{scheme} has no rule for creases: remove them, or choose catmull-clark or loop")]
+    #[error(
+        "{scheme} has no rule for creases: remove the creases, or choose catmull-clark or loop"
+    )]
     NoCreases { scheme: Scheme },
     /// A scheme for which this crate has no limit masks.
     #[error("{scheme} has no limit masks: choose catmull-clark or loop, or use more levels")]
@@ -32,7 +34,9 @@ pub enum SubdivisionError {
         choice: &'static str,
     },
     /// An edge that the scheme has no rule for.
-    #[error("edge {0}–{1} has {faces} faces, and {scheme} needs one or two that run along it in opposite directions: split it, or choose catmull-clark or loop", .ends[0], .ends[1])]
+    #[error("edge {0}–{1} has {faces} faces, but {scheme} needs one face, or two faces that run \
+             along the edge in opposite directions: split the edge, or choose catmull-clark or \
+             loop", .ends[0], .ends[1])]
     NonManifoldEdge {
         scheme: Scheme,
         ends: [VertexId; 2],
@@ -40,7 +44,8 @@ pub enum SubdivisionError {
     },
     /// A vertex that the scheme has no rule for.
     #[error(
-        "the faces at vertex {vertex} are not one fan, and {scheme} needs one: duplicate the vertex, or choose catmull-clark or loop"
+        "the faces at vertex {vertex} are not one fan, but {scheme} needs one fan: duplicate the \
+         vertex, or choose catmull-clark or loop"
     )]
     NonManifoldVertex { scheme: Scheme, vertex: VertexId },
     /// The structure cannot be refined.
@@ -65,12 +70,14 @@ pub enum SubdivisionError {
 pub enum CurveError {
     /// Too few points in one direction.
     #[error(
-        "{given} points are too few, ends of this kind need at least {least}: add points, or keep the ends"
+        "{given} points are too few, because ends of this kind need at least {least}: add points, \
+         or keep the ends"
     )]
     TooFewPoints { given: usize, least: usize },
     /// More points than a 32-bit handle can number.
     #[error(
-        "{levels} levels of {given} points make too many points, 32-bit handles allow at most {limit}: refine fewer levels"
+        "{levels} levels of {given} points make too many points, because 32-bit handles allow at \
+         most {limit}: refine fewer levels"
     )]
     TooManyPoints {
         given: usize,
@@ -93,10 +100,10 @@ pub enum LocalError {
     )]
     NotATriangle { face: FaceId, degree: usize },
     /// A chosen face that does not exist.
-    #[error("face {face} does not exist: the mesh has {faces}, counted from 0")]
+    #[error("face {face} does not exist: the mesh has {faces} faces, counted from 0")]
     MissingFace { face: FaceId, faces: usize },
     /// A box with NaN or with swapped bounds.
-    #[error("{min} to {max} is not a box: give numbers, the lower ones first")]
+    #[error("{min} to {max} is not a box: give the lower coordinates first")]
     BadBox { min: Point, max: Point },
     /// An angle outside 0 to 180 degrees.
     #[error("{degrees} is not an angle between two faces: give degrees from 0 to 180")]

@@ -215,7 +215,8 @@ fn check_faces<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantErro
         .filter(|(_, run)| run.face() != Slot::NONE)
         .count();
     if along != with_face {
-        let detail = format!("{with_face} sides have a face, the walks along faces visit {along}");
+        let detail =
+            format!("{with_face} sides have a face, but the walks along faces visit {along}");
         return fails("I7", detail);
     }
     Ok(())

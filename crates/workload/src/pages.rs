@@ -117,7 +117,10 @@ pub fn set_policy(requested: Policy) -> HeapReport {
 /// Makes the allocator keep freed pages in the process.
 fn keep() -> Result<(), String> {
     if !platform::is_glibc_allocator() {
-        return Err("keeping pages needs the glibc allocator; this program uses another".into());
+        return Err(
+            "keeping pages needs the glibc allocator, but this program uses another allocator"
+                .into(),
+        );
     }
     KEEPING.store(true, Ordering::Relaxed);
     if !platform::keep() {
@@ -138,7 +141,10 @@ fn keep() -> Result<(), String> {
     match (before, faults()) {
         (Some(before), Some(after)) if after - before > MAX_PROBE_FAULTS => {
             stop_keeping();
-            Err("the allocator accepted the option to keep pages, but returned them".into())
+            Err(
+                "the allocator accepted the option to keep pages, but returned pages to the system"
+                    .into(),
+            )
         }
         _ => Ok(()),
     }

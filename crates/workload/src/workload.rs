@@ -143,7 +143,10 @@ impl<'de> Deserialize<'de> for Amount {
 
 /// The error for a text that is not an amount.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{text}` is not an amount: write a number, or as in `2 per face` (vertex, edge, face)")]
+#[error(
+    "`{text}` is not an amount: write a number such as `20`, or a number per vertex, edge or face \
+     such as `2 per face`"
+)]
 pub struct ParseAmountError {
     /// The text.
     pub text: String,

@@ -140,7 +140,8 @@ impl Workload {
         }
         mix.retain(|part| part.weight.number() > 0.0);
         if mix.is_empty() {
-            let message = "the mix has no operation with a weight: give at least one, as in `vertex_faces = 1`";
+            let message = "the mix has no operation with a weight above 0: add one, such as \
+                           `vertex_faces = 1`";
             return Err(at(parsed.mix.span(), message.into()));
         }
         Ok(Self {
@@ -169,7 +170,7 @@ fn amount(loose: &NumberOrText) -> Result<Amount, String> {
 fn readable_message(message: &str) -> String {
     let message = message.lines().collect::<Vec<_>>().join("; ");
     match message.contains("untagged enum") {
-        true => "an amount is a number, or a text as in `\"2 per face\"`".into(),
+        true => "an amount is a number such as `20`, or a text such as `\"2 per face\"`".into(),
         false => message,
     }
 }

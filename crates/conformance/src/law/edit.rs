@@ -66,13 +66,13 @@ fn check_acceptance<M: MeshEdit + Representation>(counts_by_edit: &[[usize; 2]; 
     let default_cases = std::env::var_os("PROPTEST_CASES").is_none();
     assert!(
         tried > MIN_STEPS || !default_cases,
-        "{}: only {tried} steps on meshes that it can hold",
+        "{}: only {tried} steps were on meshes that the structure can hold",
         M::NAME
     );
     for (edit, [accepted, refused]) in Edit::ALL.into_iter().zip(counts_by_edit) {
         let share = 100.0 * *accepted as f64 / (accepted + refused).max(1) as f64;
         println!(
-            "{}: {edit} accepted {accepted} of {} ({share:.0} %)",
+            "{}: {accepted} of {} steps of {edit} were accepted ({share:.0} %)",
             M::NAME,
             accepted + refused
         );

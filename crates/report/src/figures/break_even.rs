@@ -57,12 +57,13 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         })
         .collect();
     let title = format!(
-        "Building once, then repeating {operation}: {}",
+        "Time to build once and repeat {operation}: {}",
         study.mesh.name
     );
     let caption = format!(
-        "The mesh is given as an {INPUT_BACKEND}. Every other structure is built first, on fresh pages; this has paid off where its line \
-         falls below that of the {INPUT_BACKEND}. `sixfold pick` measures this for the mix of a workload."
+        "The mesh is given as an {INPUT_BACKEND}. Every other structure is built first, on fresh \
+         pages. Building pays off as soon as the line of the structure is below the line of the \
+         {INPUT_BACKEND}. `sixfold pick` measures this for a workload."
     );
     let curves = Curves {
         title,
@@ -97,10 +98,11 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
     });
     let lines: Vec<Line<'_>> = lines.collect();
     let name = &report.workload.name;
-    let title = format!("Building once, then running {name}");
+    let title = format!("Time to build once and run {name}");
     let caption = format!(
-        "The mesh is given as an {INPUT_BACKEND}. Every other structure is built first, on fresh pages; this has paid off where its line \
-         falls below that of the {INPUT_BACKEND}. One use of the mesh consists of {}.",
+        "The mesh is given as an {INPUT_BACKEND}. Every other structure is built first, on fresh \
+         pages. Building pays off as soon as the line of the structure is below the line of the \
+         {INPUT_BACKEND}. One use of the mesh consists of {}.",
         counted(
             report.operations.round() as usize,
             "operation",

@@ -30,7 +30,7 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
         .flat_map(|fit| curve(&report.sizes, fit))
         .collect();
     let (name, per) = (operation.name(), per_unit(operation.unit()));
-    let title = format!("{name}: how its cost grows with the mesh");
+    let title = format!("{name}: total time as the mesh grows");
     let layout = base_layout(&plots, 860.0, 440.0)
         .with_log_scale()
         .with_x_label("faces")
@@ -40,9 +40,11 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
         svg: render_svg(&title, plots, layout),
         title,
         caption: format!(
-            "Both axes are logarithmic, so a straight line is a power of the number of faces. The number after each name \
-             is its exponent: 1 means a constant time per element, 2 a scan of all faces per element. The table shows \
-             the time {per}, and the slopes for the sizes that fit into the last cache and for those that do not."
+            "Both axes are logarithmic, so a straight line is a power of the number of faces. The \
+             number after each name is the exponent. At 1, the time per element is constant; at \
+             2, each element takes a scan of all faces. The table shows the time {per}, and the \
+             slopes: for all sizes, for the sizes that fit into the last cache, and for the \
+             larger sizes."
         ),
         table: times_and_slopes(&report.sizes, &fits),
         command: command.into(),

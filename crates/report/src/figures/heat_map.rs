@@ -98,8 +98,9 @@ fn figure(
         title: title.to_owned(),
         svg: render_svg(title, plots, layout),
         caption: format!(
-            "Time relative to the fastest of the row. Dark is fast; all ratios from {} on have the same colour. Grey cells were not \
-             measured, because they would take too long or cannot be done.",
+            "Each cell shows the time relative to the fastest structure of the row. Dark cells \
+             are fast. All ratios of {} or more have the same colour. Grey cells were not \
+             measured, because the operation is not possible or would take too long.",
             times(MAX_RATIO)
         ),
         table,

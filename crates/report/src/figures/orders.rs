@@ -47,7 +47,9 @@ fn figure(
             let time = time.map_or_else(|| "–".into(), duration);
             titles.push(match ratio {
                 Some(ratio) => {
-                    format!("{backend}, {order}: {ratio:.3} × its best order, {time} {per}")
+                    format!(
+                        "{backend}, {order}: {ratio:.3} × the time of its best order, {time} {per}"
+                    )
                 }
                 None => format!("{backend}, {order}: not measured"),
             });
@@ -72,7 +74,7 @@ fn figure(
         report.mesh.name
     );
     let layout = base_layout(&plots, 860.0, 360.0)
-        .with_y_label("× the best order of the structure")
+        .with_y_label("× the time of the best order")
         .with_y_axis_min(0.0)
         .with_y_axis_max(1.05 * max_log)
         .with_y_tick_format(ratio_ticks(max_log));
@@ -81,8 +83,9 @@ fn figure(
         svg: render_svg(&title, plots, layout),
         title,
         caption: format!(
-            "Times of each structure in four orders of the same mesh, relative to its own best order; the axis is \
-             logarithmic and begins at 1. The table shows the time {per}."
+            "The bars show the time of each structure in four orders of the same mesh, relative \
+             to the best order of that structure. The axis is logarithmic and begins at 1. The \
+             table shows the time {per}."
         ),
         table,
         command: command.into(),

@@ -59,7 +59,7 @@ pub(super) fn pooled(collection: &Collection, command: &str) -> Vec<Figure> {
             ns: row.ns_per_element,
             first_ns: None,
             note: format!(
-                "on {} meshes, the fastest alone on {}, tied on {}",
+                "measured on {} meshes: single fastest on {}, tied for the fastest on {}",
                 row.meshes, row.best, row.tied
             ),
         });
@@ -143,7 +143,7 @@ fn figure(
         whiskers.push(((length - ends[0]).max(0.0), (ends[1] - length).max(0.0)));
         let between = interval.map_or_else(String::new, |interval| format!(" ({interval})"));
         titles.push(format!(
-            "{}: {ratio}{between} × the fastest, {time} {}",
+            "{}: {ratio}{between} × the time of the fastest, {time} {}",
             row.backend,
             per_unit(per)
         ));
@@ -176,8 +176,9 @@ fn figure(
         id,
         svg: render_svg(&title, plots, layout),
         title,
-        caption: "The scale is logarithmic and begins at 1, the fastest. The thin lines are 95 % intervals of the ratio, \
-             which is formed within rounds."
+        caption: "The scale is logarithmic and begins at 1, the time of the fastest. Each ratio \
+                  compares times of the same rounds. The thin lines are the 95 % intervals of the \
+                  ratios."
             .into(),
         table,
         command: command.into(),

@@ -38,7 +38,7 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
             .iter()
             .filter_map(|backend| marks(&rows, &backend.name)),
     );
-    let title = format!("Time against the bytes that must move: {}", why.mesh.name);
+    let title = format!("Time and bytes that must move: {}", why.mesh.name);
     let layout = base_layout(&plots, 860.0, 520.0)
         .with_log_scale()
         .with_x_label("bytes that must move per element")
@@ -47,10 +47,11 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
         id: id.into(),
         svg: render_svg(&title, plots, layout),
         title,
-        caption: "One mark for each relation on each structure. The lines show the time of this machine to read these \
-             bytes in order, from the smallest and from the largest buffer. A mark near its line is bound by \
-             bandwidth. A mark above it waits for reads that cannot be predicted, or is busy computing; the table \
-             shows which."
+        caption: "Each mark is one relation on one structure. The two lines show the time in \
+                  which this machine reads these bytes in order: one line for the smallest \
+                  buffer, the other for the largest. Bandwidth limits a query near a line. A \
+                  query above the lines waits for reads that cannot be predicted, or computes. \
+                  The column `bound by` of the table shows the limit."
             .into(),
         table: table(&rows),
         command: command.into(),

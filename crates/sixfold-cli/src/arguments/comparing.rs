@@ -17,10 +17,12 @@ pub(crate) const ORDERS_EXAMPLES: &str = "Examples:
   sixfold orders bunny.obj --budget 2m --json orders.json
 
 Orders: given (as in the file), shuffled (vertices and faces in random order), morton (along a
-space-filling curve), breadth-first (as a walk from face to face visits them). All pairs of a
-backend and an order are measured in the same interleaved rounds, as in `study`. First the four
-orders of each backend are compared, then the backends, each in its best order. One backend in the
-order `given` is measured in two columns: their difference is the noise.
+space-filling curve), breadth-first (as a walk from face to face visits the elements).
+
+Each round measures every pair of a backend and an order, as in `study`. The report first compares
+the four orders of each backend. It then compares the backends, each in its best order. One backend
+in the order `given` is measured twice in each round: the difference between its two times is the
+noise.
 
 Exit codes: 0 success; 1 results differ between backends or orders (a fault in Sixfold); 2 wrong
 usage or unusable input; 3 none of the selected backends can hold the mesh, or too little memory;
@@ -63,16 +65,22 @@ const COMPARE_EXAMPLES: &str = "Examples:
   sixfold compare before.json after.json --fail-if-slower      for CI: exit code 1
   sixfold compare laptop.json server.json --relative
 
-Both files are written by `sixfold study --json`. A figure is faster or slower if the 95 % interval
-of the ratio of the medians excludes 1, and if the ratio exceeds both --noise and the noise of that
-operation in either study. With fewer than three samples, a factor of 2 is required. The default of
---noise is for shared virtual machines, whose speed drifts between studies. On a dedicated machine
-it can be lower: compare two studies of the same program to find a value.
+Both files are written by `sixfold study --json`. The ratio of a figure is its median in the second
+study, divided by its median in the first study. A figure counts as slower if three conditions hold:
+  - The 95 % interval of the ratio lies above 1.
+  - The ratio is above --noise.
+  - The ratio is above the noise of this operation in both studies.
+A figure counts as faster if the same conditions hold for the inverse of the ratio. With fewer than
+three samples there is no interval; the ratio must then be above 2.
 
-Exit codes: 0 success; 1 a figure is slower, with --fail-if-slower; 2 wrong usage, or a file that
-is incomplete, not a study, or of another schema.";
+The default of --noise is for shared virtual machines, because their speed changes between studies.
+A dedicated machine allows a lower value. To find this value, compare two studies of the same
+program.
 
-/// Show what changed between two studies beyond the noise.
+Exit codes: 0 success; 1 a figure is slower and --fail-if-slower is given; 2 wrong usage, or a file
+that is incomplete, is not a study, or has another schema version.";
+
+/// Show the differences between two studies that exceed the noise.
 ///
 /// Compares studies of one mesh on two machines, with two compilers or of two commits. Shows which
 /// figures are faster or slower, which backend is now the fastest, and how machines and programs
@@ -83,7 +91,7 @@ pub(crate) struct Compare {
     /// The first study, as JSON
     #[arg(value_name = "BEFORE.json")]
     pub(crate) before: PathBuf,
-    /// The second study
+    /// The second study, as JSON
     #[arg(value_name = "AFTER.json")]
     pub(crate) after: PathBuf,
     /// Divide each ratio by the median ratio of all figures first
@@ -110,11 +118,13 @@ pub(crate) const GROWTH_EXAMPLES: &str = "Examples:
   sixfold growth --shape blobs --order shuffled --to 4000000 --budget 5m
   sixfold growth --shape grid --from 500 --to 50000 --steps 5 --json growth.json
 
-At each size all backends are measured in interleaved rounds, as in `study`. The power is the slope
-of a straight line through the logarithms of faces and total time, with its standard error. At 1 the
-time per element does not depend on the size; at 2 each element takes a scan of all faces. Sizes
-that fit into the last cache and larger sizes also have separate lines. Operations that scan all
-faces are measured on a sample of the elements.
+At each size, every round measures all backends, as in `study`. The total time is proportional to a
+power of the number of faces. The table shows this power with its standard error. The power is the
+slope of a straight line through the logarithms of the number of faces and of the total time. If the
+power is 1, the time per element does not depend on the size. If the power is 2, each element takes
+a scan of all faces. Two more lines show the power only for the sizes that fit into the last cache,
+and only for the larger sizes. Operations that scan all faces are measured on a sample of the
+elements.
 
 Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold); 2 wrong usage;
 3 none of the selected backends can hold the shape, or too little memory; 4 interrupted, finished

@@ -11,16 +11,18 @@ const EXAMPLES: &str = "Examples:
   sixfold memory bunny.obj --backends half-edge,corner-table
   sixfold memory quads.obj --triangulate --json -
 
-The same bytes are counted in three ways, which must agree to the byte. formula: computed from the
-counts of the mesh and the layout. tables: the size of the tables, including spare capacity.
-counted: bytes allocated after building, minus bytes allocated before. The peak is the maximum while
-building, without the polygons from which the structure is built. The figures do not include the
-overhead of the allocator for each block, or the few dozen bytes of the structure outside the heap.
+The same bytes are counted in three ways. The three counts must agree to the byte:
+  formula   computed from the numbers of elements of the mesh and the layout of the tables
+  tables    the size of the tables, including spare capacity
+  counted   the allocated bytes after building, minus the allocated bytes before building
+The peak is the maximum of the allocated bytes during building. It does not include the polygons
+from which the structure is built. All figures leave out the overhead of the allocator for each
+block, and the few dozen bytes of the structure that are not on the heap.
 
 A word is 4 bytes: an index or a coordinate. The literature counts words per vertex of a large
-closed triangle mesh, with 2 faces and 3 edges per vertex: 18 for a polygon soup, 9 for an indexed
-face set, 16 for face-vertex (here 17: each list of faces stores its length beside its start, so
-that it can grow), 30 for winged-edge, 24 for half-edge without prev links, 16 for a corner table.
+closed triangle mesh, with 2 faces and 3 edges per vertex: polygon-soup 18, indexed-face-set 9,
+face-vertex 16, winged-edge 30, half-edge without prev links 24, corner-table 16. In Sixfold,
+face-vertex has 17 words: each list of faces also stores its length, so that the list can grow.
 
 Exit codes: 0 success; 1 the three counts differ (a fault in Sixfold); 2 wrong usage or unusable
 input; 3 none of the selected backends can hold the mesh; 4 interrupted.";

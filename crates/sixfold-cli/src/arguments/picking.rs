@@ -14,11 +14,12 @@ const PICK_EXAMPLES: &str = "Examples:
   sixfold pick --workload mine.toml --needs edit,non-manifold scans/*.obj --json -
   sixfold workloads --show smoothing > mine.toml
 
-The whole mix of the workload runs on every backend that qualifies, in its access order, in
-interleaved rounds; times of single operations are not added up. If the mix has queries only, flat
-tables of the relations in it are one more candidate. The ranking excludes the time to build. The
-column `pays after` shows after how many operations building pays off, compared with keeping an
-indexed face set that exists already. Several meshes are combined by geometric means.
+Each round runs the whole mix of the workload on every backend that qualifies, in the access order
+of the workload. Times of single operations are not added up. If the mix contains only queries, flat
+tables of the relations in the mix are one more candidate. The ranking does not include the time to
+build. The column `pays after` compares each backend with an indexed face set that exists already:
+it shows the number of operations after which building the backend has paid off. The results of
+several meshes are combined by geometric means.
 
 Needs: edit, non-manifold, polygons, mixed-orientation, isolated-vertices, coincident-vertices,
 refine.
@@ -59,10 +60,10 @@ pub(crate) struct Pick {
     /// Total time to measure: 20s, 500ms, 2m
     #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Duration,
-    /// Seed of random orders
+    /// Seed of the random orders
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
-    /// Freed pages: kept in this process, or system
+    /// Freed pages: kept (by the process) or system
     #[arg(long, value_name = "POLICY", default_value = "kept")]
     pub(crate) heap: Policy,
     /// Cut every polygon into a fan of triangles first

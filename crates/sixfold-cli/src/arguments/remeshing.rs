@@ -14,14 +14,16 @@ const DECIMATE_EXAMPLES: &str = "Examples:
   sixfold decimate --ratio 0.1 scan.obj -o small.obj
   sixfold decimate --ratio 0.5 --boundary fixed terrain.obj -o half.obj
 
-A collapse merges the two ends of an edge into one vertex, at the position with the least error in
-the distances to the planes of the faces around it (Garland & Heckbert 1997). It removes two faces,
-or one at a boundary, so the result may have one face fewer than the target. Collapses that flip a
-face or change the topology are skipped. If only such collapses are left, the mesh is written as it
-is, with a note. Triangles only: `sixfold triangulate` cuts polygons.
+A collapse merges the two ends of an edge into one vertex. The new vertex has the position with the
+least error. The error is the sum of the squared distances to the planes of the faces around the
+edge (Garland & Heckbert 1997). A collapse removes two faces, or one face at a boundary. The result
+may therefore have one face fewer than the target. Collapses that flip a face or change the topology
+are skipped. If only such collapses are left, decimation ends above the target, and a note says so.
+All faces must be triangles; `sixfold triangulate` cuts polygons into triangles.
 
 Exit codes: 0 success, even if the target was not reached; 2 wrong usage or unusable input; 3 the
-mesh has polygons, or the backend cannot hold it; 4 interrupted, nothing written.";
+mesh has faces that are not triangles, or the backend cannot hold the mesh; 4 interrupted, nothing
+written.";
 
 /// Make a mesh coarser: collapse the edges with the least error first.
 ///
@@ -38,7 +40,7 @@ pub(crate) struct Decimate {
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) goal: Goal,
-    /// Boundary: follow (also simplified) or fixed
+    /// Boundary: follow (simplify the boundary too) or fixed
     #[arg(long, value_name = "RULE", default_value = "follow", value_parser = boundary)]
     pub(crate) boundary: Boundary,
     /// The structure to use
@@ -74,18 +76,25 @@ const REMESH_EXAMPLES: &str = "Examples:
   sixfold remesh --edge-length 0.05 scan.obj -o even.obj
   sixfold remesh --edge-length 0.01 --iterations 5 --max-faces 2000000 scan.obj -o fine.obj
 
-Each iteration splits edges longer than 4/3 of the length, collapses edges shorter than 4/5 of it,
-flips edges if that brings valences nearer to six, and moves each vertex in its tangent plane to the
-mean of its neighbours (Botsch & Kobbelt 2004). It ends early when almost nothing changes. Vertices
-are not projected back to the original surface: the boundary keeps its shape, but sharp edges are
-rounded and the mesh shrinks there. Choose a length well below the size of the details to keep. If
---max-faces stops the splitting, the mesh is written as it is, with a note. A length that needs more
-faces, estimated from the area and from the edges to split, is refused before the work begins.
-Triangles only: `sixfold triangulate` cuts polygons.
+Each iteration has four steps (Botsch & Kobbelt 2004):
+  - Split the edges that are longer than 4/3 of the target edge length.
+  - Collapse the edges that are shorter than 4/5 of the target edge length.
+  - Flip edges if the flip brings valences nearer to six.
+  - Move each vertex in its tangent plane to the mean of its neighbours.
+The command stops early when almost nothing changes.
 
-Exit codes: 0 success, even if --max-faces stopped it; 2 wrong usage or unusable input; 3 the mesh
-has polygons, the backend cannot hold it, or the length needs too many faces; 4 interrupted, nothing
-written.";
+Vertices are not projected back to the original surface. The boundary keeps its shape, but sharp
+edges become rounded, and the mesh shrinks there. Choose an edge length well below the size of the
+details that you want to keep.
+
+Before the work begins, the command estimates the number of faces from the area of the mesh and from
+the edges to split. If the estimate is above --max-faces, the edge length is refused. If the number
+of faces reaches --max-faces later, splitting stops; the mesh is written, and a note is printed. All
+faces must be triangles; `sixfold triangulate` cuts polygons into triangles.
+
+Exit codes: 0 success, even if --max-faces stopped the splitting; 2 wrong usage or unusable input;
+3 the mesh has faces that are not triangles, the backend cannot hold the mesh, or the edge length
+needs too many faces; 4 interrupted, nothing written.";
 
 /// Remesh with edges of one length and nearly equilateral triangles.
 ///
@@ -106,7 +115,7 @@ pub(crate) struct Remesh {
     /// Maximum number of iterations
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = iterations, allow_hyphen_values = true)]
     pub(crate) iterations: usize,
-    /// Maximum number of faces: stop splitting there
+    /// Stop splitting at this number of faces
     #[arg(long, value_name = "N", default_value_t = 10_000_000, value_parser = faces, allow_hyphen_values = true)]
     pub(crate) max_faces: usize,
     /// The structure to use

@@ -11,10 +11,11 @@ const EXAMPLES: &str = "Examples:
   sixfold render part.obj --creases part.creases -o part.png --view iso --up z
   sixfold render part.obj -o part.svg --wireframe --view=-20,10
 
-Several meshes are drawn in a row, all at one scale. Sharp edges and corners are red: those of the
-tags t crease and t corner in an OBJ file, and those of --creases, which may be given once per mesh,
-in the same order. A face is blue on the side from which its corners run counter-clockwise; the
-other side is sand-coloured. A PNG is shaded per sample; an SVG has one colour per face.
+Several meshes are drawn in a row, all at one scale. Sharp edges and corners are red. They come from
+the tags `t crease` and `t corner` of the OBJ file, and from the crease file. Give --creases at most
+once per mesh, in the order of the meshes. The front of a face is blue; the back is sand-coloured.
+Seen from the front, the corners of a face run counter-clockwise. A PNG is shaded per sample; an SVG
+has one colour per face.
 
 Exit codes: 0 success; 2 wrong usage or unusable input; 3 too many faces for an SVG; 4 interrupted,
 nothing written.";
@@ -32,7 +33,7 @@ pub(crate) struct Render {
     /// Pixels of the whole picture [default: 480 × 480 per mesh]
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<Size>,
-    /// View from: degrees right and up, or iso
+    /// Viewpoint: degrees to the right and up, or iso
     #[arg(long, value_name = "AZIMUTH,ELEVATION", default_value = "30,22", value_parser = view, allow_hyphen_values = true)]
     pub(crate) view: [f64; 2],
     /// The axis that points up: y or z

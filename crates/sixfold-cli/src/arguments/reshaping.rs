@@ -31,7 +31,7 @@ pub(crate) struct Smooth {
     /// Weights of the neighbours: uniform or cotangent
     #[arg(long, value_name = "WHICH", default_value = "uniform", value_parser = weights)]
     pub(crate) weights: Weights,
-    /// Boundary: fixed, or curve (smoothed along itself)
+    /// Boundary: fixed, or curve (smoothed as a curve)
     #[arg(long, value_name = "RULE", default_value = "fixed", value_parser = boundary)]
     pub(crate) boundary: Boundary,
     /// Number of iterations
@@ -45,7 +45,7 @@ pub(crate) struct Smooth {
         allow_hyphen_values = true
     )]
     pub(crate) step: f64,
-    /// Second, negative step, below minus --step: keeps the volume
+    /// Second step to keep the volume: negative, and larger in size than --step
     #[arg(long, value_name = "PART", allow_hyphen_values = true)]
     pub(crate) step_back: Option<f64>,
     /// The structure to use
@@ -96,10 +96,10 @@ pub(crate) struct Triangulate {
     /// The file to write (- for standard output)
     #[arg(short, long, value_name = "OUT.obj")]
     pub(crate) output: PathBuf,
-    /// ears (for any simple polygon) or fan (for convex ones)
+    /// ears (for any simple polygon) or fan (for convex polygons)
     #[arg(long, value_name = "NAME", default_value = "ears", value_parser = triangulation)]
     pub(crate) method: Triangulation,
-    /// Flip faces until they agree: majority (like most faces) or outward
+    /// Flip faces so that all agree: majority (like most faces) or outward
     #[arg(long, value_name = "RULE", value_parser = facing)]
     pub(crate) orient: Option<Facing>,
 }

@@ -15,17 +15,19 @@ const EXAMPLES: &str = "Examples:
 
 Schemes: catmull-clark, loop, sqrt3, butterfly, doo-sabin, midpoint, bilinear.
 
-A crease file has lines `edge a b sharpness` and `corner v sharpness`. Vertices count from 0; the
-sharpness is a number from 0, or inf; # begins a comment. A sharpness of 10 or more never decreases;
-a smaller one decreases by one per level. Creases in an OBJ file (t crease, t corner) are used too.
-`sixfold schemes` lists which methods run on which backend.
+A crease file has lines `edge a b sharpness` and `corner v sharpness`. Vertices are numbered from 0.
+A sharpness is a number that is not negative, or inf. The sign # begins a comment. A sharpness below
+10 decreases by one per level. A sharpness of 10 or more never decreases. Creases in the OBJ file
+(`t crease`, `t corner`) are also used. `sixfold schemes` lists the methods of each backend.
 
---select, with midpoint only, refines the faces that a file lists (numbers from 0), the faces that
-touch a box, or the faces at an edge that bends by more than an angle. Adjacent faces are halved, so
-that no gaps are left.
+--select refines only some faces, and requires --scheme midpoint:
+  faces:FILE              the faces that a file lists (numbers from 0)
+  box:X0,Y0,Z0,X1,Y1,Z1   the faces that touch a box
+  angle:DEGREES           the faces at an edge that bends by more than an angle
+Faces beside the refined faces are halved, so that there are no gaps.
 
-Exit codes: 0 success; 2 wrong usage or unusable input; 3 the scheme, the backend or the memory does
-not allow the mesh, the option or the levels; 4 interrupted, nothing written.";
+Exit codes: 0 success; 2 wrong usage or unusable input; 3 the scheme or the backend does not support
+the mesh or an option, or the result is too large; 4 interrupted, nothing written.";
 
 const SCHEMES_EXAMPLES: &str = "Examples:
   sixfold schemes
@@ -67,10 +69,10 @@ pub(crate) struct Subdivide {
     /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
     pub(crate) backend: String,
-    /// gather, scatter or native [default: the last one supported]
+    /// gather, scatter or native [default: the last supported method]
     #[arg(long, value_name = "NAME", value_parser = method)]
     pub(crate) method: Option<Method>,
-    /// Threads of a native step; 0: one per processor
+    /// Number of threads of a native step; 0: one per processor
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub(crate) threads: Option<usize>,
     /// Sharp edges and vertices, in addition to those in the mesh file
@@ -82,7 +84,7 @@ pub(crate) struct Subdivide {
     /// How sharpness decreases: uniform or chaikin
     #[arg(long, value_name = "RULE", value_parser = creasing)]
     pub(crate) creasing: Option<Creasing>,
-    /// Weights of the scheme loop: loop or warren
+    /// Weights of the Loop scheme: loop or warren
     #[arg(long, value_name = "WHOSE", value_parser = loop_weights)]
     pub(crate) loop_weights: Option<LoopWeights>,
     /// Also write limit positions and normals to this file
@@ -115,7 +117,7 @@ fn select(text: &str) -> Result<Select, String> {
         let numbers = parsed.map_err(|_| wrong())?;
         match numbers.iter().all(|x| x.is_finite()) {
             true => Ok(numbers),
-            false => Err("numbers must be finite".to_owned()),
+            false => Err("write only finite numbers".to_owned()),
         }
     };
     match kind {
@@ -124,7 +126,7 @@ fn select(text: &str) -> Result<Select, String> {
             [x0, y0, z0, x1, y1, z1] if x0 <= x1 && y0 <= y1 && z0 <= z1 => {
                 Ok(Select::Box([x0, y0, z0], [x1, y1, z1]))
             }
-            [_, _, _, _, _, _] => Err("the lower corner of the box comes first".to_owned()),
+            [_, _, _, _, _, _] => Err("write the lower corner of the box first".to_owned()),
             _ => Err(wrong()),
         },
         "angle" => match numbers()?[..] {

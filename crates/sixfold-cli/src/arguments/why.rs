@@ -14,12 +14,15 @@ const WHY_EXAMPLES: &str = "Examples:
   sixfold why bunny.obj --relations vertex_faces           counts, times, and a sentence for each
   sixfold why bunny.obj --backends half-edge,face-vertex --budget 1m --json why.json
 
-Counts are exact, free of noise, and the same on every machine. Every row that a query reads is
-recorded; each table is assumed to begin at a cache line of 64 bytes. If a query scans all faces, or
-reads more than 256 rows on average, 16 evenly spaced elements are counted instead of all, marked ~.
-Times are measured as in `sixfold study`. The speed of memory is measured first, in buffers of
-growing size. Each structure is compared with the largest buffer that is not larger than the memory
-that its sweep touches. Relations that are named are also described in sentences.
+Counts are exact and the same on every machine. Every row that a query reads is counted. The counts
+assume that each table begins at the start of a cache line of 64 bytes. If a query scans all faces,
+or reads more than 256 rows on average, only 16 evenly spaced elements are queried. The sign ~ marks
+such rows of the table.
+
+Times are measured as in `sixfold study`. A sweep queries all elements once, in order. The speed of
+memory is measured first, in buffers of growing size. The time of a sweep is compared with the speed
+of the largest buffer that is not larger than the memory that the sweep touches. With --relations,
+the command also describes each row in a sentence.
 
 Relations: vertex_vertices, vertex_edges, vertex_faces, edge_vertices, edge_edges, edge_faces,
            face_vertices, face_edges, face_faces

@@ -161,7 +161,10 @@ impl Folder {
     /// Returns the files of finished studies and their text.
     fn study_files(&self) -> Result<Vec<(PathBuf, String)>, Failure> {
         let failed = |path: &Path, cause: io::Error| {
-            Failure::usage(format!("{}: cannot be read: {cause}", path.display()))
+            Failure::usage(format!(
+                "{}: cannot be read ({cause}): check the permissions, or name another folder",
+                path.display()
+            ))
         };
         let studies = self.studies();
         let entries = fs::read_dir(&studies).map_err(|cause| failed(&studies, cause))?;

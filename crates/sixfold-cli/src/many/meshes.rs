@@ -62,11 +62,15 @@ pub(crate) fn find_meshes(places: &[PathBuf]) -> Result<Vec<Mesh>, Failure> {
         if place.is_dir() {
             let listed = list_obj_files(place, &mut files);
             listed.map_err(|(folder, cause)| {
-                Failure::usage(format!("{}: cannot be listed: {cause}", folder.display()))
+                Failure::usage(format!(
+                    "{}: cannot be listed ({cause}): check the permissions of this directory",
+                    folder.display()
+                ))
             })?;
             if files.is_empty() {
                 return Err(Failure::usage(format!(
-                    "{}: no .obj file in this directory or its subdirectories",
+                    "{}: no .obj file in this directory or its subdirectories: name another \
+                     directory",
                     place.display()
                 )));
             }

@@ -34,7 +34,7 @@ pub(super) fn pooled_table(collection: &Collection, bold: bool) -> String {
 }
 
 const LEGEND: &str = "* fastest or tied with the fastest on most meshes\n\
-    (n) on n meshes only: it cannot hold the other meshes, or did other work on them";
+    (n) on n meshes only: the backend cannot hold the other meshes, or did different work there";
 
 /// Formats a cell as `1.04*` or `18.2 (3)`.
 fn cell(row: &Pooled, most: usize, bold: bool) -> Cell {

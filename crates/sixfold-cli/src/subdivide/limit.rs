@@ -69,8 +69,10 @@ impl Limits {
         let normals = counted(normals, "normal", "normals");
         let mut lines = vec![format!("{place}: limit positions, {normals}")];
         for (reason, &number) in &self.undefined {
-            let vertices = counted(number, "vertex stays", "vertices stay");
-            lines.push(format!("{place}: {vertices}, {reason}"));
+            let vertices = counted(number, "vertex keeps", "vertices keep");
+            lines.push(format!(
+                "{place}: {vertices} the position of the last level, because {reason}"
+            ));
         }
         lines
     }
@@ -78,9 +80,9 @@ impl Limits {
 
 fn reason_text(reason: NoLimit) -> &'static str {
     match reason {
-        NoLimit::SemiSharp => "still sharp for some levels: take more levels",
-        NoLimit::NotAllQuads => "at a face that is not a quad: take one more level",
-        NoLimit::Dart => "at the end of a crease: the rules have no limit for a dart",
-        _ => "because the rules have no limit there",
+        NoLimit::SemiSharp => "the sharpness there is not yet 0: increase --levels",
+        NoLimit::NotAllQuads => "a face there is not a quad: increase --levels by 1",
+        NoLimit::Dart => "a crease ends there, and the rules have no limit for this case",
+        _ => "the rules have no limit there",
     }
 }

@@ -56,7 +56,7 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
     let all = mesh.faces().iter();
     let green = all.filter(|&(f, _)| refined.is_green(f)).count();
     text.print_line(&format!(
-        "{place}: {vertices}, {faces} ({} of them halves); refined on {}",
+        "{place}: {vertices}, {faces} ({} made by halving); refined on {}",
         grouped(green),
         arguments.backend
     ));
@@ -86,7 +86,7 @@ fn check_options(arguments: &Subdivide) -> Result<(), Failure> {
     ];
     match others.into_iter().find(|&(_, given)| given) {
         Some((option, _)) => Err(Failure::unsupported(format!(
-            "{option} has no effect with --select, which inserts midpoints: leave it out"
+            "{option} has no effect with --select: remove {option}"
         ))),
         None => Ok(()),
     }

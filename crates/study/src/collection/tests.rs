@@ -99,7 +99,7 @@ fn ratios_are_pooled_by_geometric_means_over_meshes() {
         "{sentence}"
     );
     assert!(
-        sentence.contains("; on fewer meshes, corner-table: 1.00 × on 2"),
+        sentence.contains("lower ratio, but on fewer meshes: corner-table 1.00 × on 2"),
         "{sentence}"
     );
     // A second study of one mesh replaces the first.

@@ -100,7 +100,7 @@ fn a_known_change_is_found_and_nothing_else() {
         (&[][..], &None)
     );
     assert!(
-        changes.sentences[0].contains("1 are faster, 1 slower"),
+        changes.sentences[0].contains("1 are faster in the second study, 1 are slower"),
         "{:?}",
         changes.sentences
     );
@@ -117,7 +117,7 @@ fn a_slower_machine_is_one_factor_that_relative_removes() {
     let absolute = compare(&before, &after, CompareSettings::default()).expect("one memory state");
     assert_eq!(absolute.count(Verdict::Slower), absolute.rows.len());
     assert!(
-        absolute.sentences[1].contains("3.00 × slower"),
+        absolute.sentences[1].contains("takes 3.00 × the time of the first"),
         "{:?}",
         absolute.sentences
     );

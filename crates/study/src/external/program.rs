@@ -217,7 +217,7 @@ impl<'a> Program<'a> {
                     self.kill();
                     let seconds = self.timeout.as_secs_f64();
                     return Err(format!(
-                        "no answer {to} within {seconds} s, so it was killed"
+                        "it was killed because it gave no answer {to} within {seconds} s"
                     ));
                 }
                 Err(RecvTimeoutError::Timeout) => {}
@@ -226,7 +226,7 @@ impl<'a> Program<'a> {
         serde_json::from_str(&line).map_err(|error| {
             self.kill();
             let excerpt = excerpt(&line);
-            format!("its answer {to}, `{excerpt}`, does not follow the protocol: {error}")
+            format!("its answer {to} does not follow the protocol ({error}): `{excerpt}`")
         })
     }
 

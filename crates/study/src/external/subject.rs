@@ -81,7 +81,7 @@ impl TimedBackend for ExternalSubject<'_> {
             refusal: Some(refusal),
         };
         if job.sample.is_some() {
-            return refused("it cannot run samples".into());
+            return refused("an external program cannot time a sample of the elements".into());
         }
         let request = |times: u32| Request {
             run: job.operation.name(),
@@ -108,13 +108,14 @@ impl TimedBackend for ExternalSubject<'_> {
 /// Returns the reported time, or an error if it is missing or impossible.
 fn time(response: &Response, waited_ns: f64, cpu: bool) -> Result<Time, String> {
     let Some(wall_ns) = response.wall_ns else {
-        return Err("its answer has no `wall_ns`, the time of the runs".into());
+        return Err("its answer has no `wall_ns` (the time of the runs)".into());
     };
     let times = [Some(wall_ns), response.cpu_ns.filter(|_| cpu)];
     for ns in times.into_iter().flatten() {
         if !(0.0..=waited_ns * CLOCK_TOLERANCE).contains(&ns) {
             return Err(format!(
-                "it reports {ns} ns, but its answer took {waited_ns:.0} ns: give the time of all runs together, on one thread, in nanoseconds"
+                "it reports {ns} ns, but its answer took {waited_ns:.0} ns: report the total time \
+                 of all runs on one thread, in nanoseconds"
             ));
         }
     }

@@ -25,7 +25,8 @@ pub(super) fn sentences(
             if row.agreement == Agreement::Mismatch {
                 let (backend, operation) = (&row.backend, row.operation);
                 sentences.push(format!(
-                    "{backend} has other results than the other backends for {operation} at {} faces: a fault in Sixfold; please report it.",
+                    "{operation} on {backend} gives different results from the other backends at \
+                     {} faces. This is a fault in Sixfold: please report it.",
                     grouped(size.faces)
                 ));
             }
@@ -39,7 +40,7 @@ pub(super) fn left_out(sizes: &[usize]) -> Option<String> {
     let names: Vec<String> = sizes.iter().map(|&faces| grouped(faces)).collect();
     (!names.is_empty()).then(|| {
         format!(
-            "Sizes of about {} faces are left out for lack of time: use a longer --budget.",
+            "The budget was too short to measure sizes of about {} faces: use a longer --budget.",
             names.join(", ")
         )
     })
@@ -59,8 +60,9 @@ fn exponents(fits: &[Fit], caches: &[Cache]) -> Vec<String> {
     let mut sentences = Vec::new();
     if let Some(all) = range(false, &|fit| fit.all) {
         let parts = [
-            range(false, &|fit| fit.in_cache).map(|r| format!("{r} within the last cache")),
-            range(false, &|fit| fit.beyond).map(|r| format!("{r} beyond it")),
+            range(false, &|fit| fit.in_cache)
+                .map(|r| format!("{r} for sizes that fit into the last cache")),
+            range(false, &|fit| fit.beyond).map(|r| format!("{r} for larger sizes")),
         ];
         let parts: Vec<String> = parts.into_iter().flatten().collect();
         let split = match parts.is_empty() {
@@ -68,12 +70,14 @@ fn exponents(fits: &[Fit], caches: &[Cache]) -> Vec<String> {
             false => format!(" ({})", parts.join(", ")),
         };
         sentences.push(format!(
-            "If a structure does not scan, the time of a whole pass grows with the number of faces to the power {all}{split}."
+            "On structures that do not scan all faces for each element, the total time grows with \
+             the number of faces to the power {all}{split}."
         ));
     }
     if let Some(all) = range(true, &|fit| fit.all) {
         sentences.push(format!(
-            "If a structure scans all faces for each element, the time grows with the number of faces to the power {all}."
+            "On structures that scan all faces for each element, the total time grows with the \
+             number of faces to the power {all}."
         ));
     }
     let reliable = |fit: &Fit| {
@@ -82,7 +86,9 @@ fn exponents(fits: &[Fit], caches: &[Cache]) -> Vec<String> {
     };
     if last_level_bytes(caches).is_some() && !fits.iter().any(reliable) {
         sentences.push(
-            "Fewer than three sizes exceed the last cache, too few for a reliable line: use a larger --to or more --steps.".into(),
+            "Fewer than three sizes are larger than the last cache, but a reliable line needs at \
+             least three: use a larger --to or more --steps."
+                .into(),
         );
     }
     sentences
@@ -136,19 +142,26 @@ fn fastest(sizes: &[SizeReport]) -> Vec<String> {
         });
         let best: Vec<(usize, Option<&str>)> = best.collect();
         let runs = best.chunk_by(|(_, a), (_, b)| a == b).map(|run| {
-            let name = run[0].1.unwrap_or("a tie");
+            let name = run[0].1.map_or_else(
+                || "a tie for the fastest".to_owned(),
+                |name| format!("{name} is fastest"),
+            );
             match (run.first(), run.last()) {
                 (Some((first, _)), Some((last, _))) if first < last => {
-                    format!("{name} from {} to {}", grouped(*first), grouped(*last))
+                    format!(
+                        "{name} from {} to {} faces",
+                        grouped(*first),
+                        grouped(*last)
+                    )
                 }
-                _ => format!("{name} at {}", grouped(run[0].0)),
+                _ => format!("{name} at {} faces", grouped(run[0].0)),
             }
         });
         let runs: Vec<String> = runs.collect();
         sentences.push(match (&best[..], runs.len()) {
-            ([(_, None), ..], 1) => format!("{operation}: a tie at every size."),
+            ([(_, None), ..], 1) => format!("{operation}: a tie for the fastest at every size."),
             ([(_, Some(name)), ..], 1) => format!("{operation}: {name} is fastest at every size."),
-            _ => format!("{operation}: fastest is {}.", runs.join(", ")),
+            _ => format!("{operation}: {}.", runs.join("; ")),
         });
     }
     sentences
@@ -170,7 +183,8 @@ fn cache_limits(caches: &[Cache], ends: &[CacheLimit]) -> Option<String> {
         .collect();
     let kib = grouped(bytes as usize >> 10);
     Some(format!(
-        "Faces at which each structure outgrows the last cache (L{last}, {kib} KiB): {}.",
+        "Number of faces from which each structure is larger than the last cache (L{last}, {kib} \
+         KiB): {}.",
         parts.join(", ")
     ))
 }
@@ -182,7 +196,8 @@ fn noise(sizes: &[SizeReport]) -> Option<String> {
     let name = &controls.first()?.backend;
     let most = controls.iter().map(|c| c.typical).fold(1.0, f64::max);
     Some(format!(
-        "Noise: {name} was measured twice at every size; its two columns typically differ by at most {}.",
+        "Noise: {name} was measured twice at every size. At the noisiest size, the typical ratio \
+         of the two columns is {}.",
         times(most)
     ))
 }
@@ -201,7 +216,7 @@ fn uncertain_figures(sizes: &[SizeReport], fits: &[Fit]) -> Vec<String> {
     let estimated: usize = fits.iter().map(|fit| fit.estimated).sum();
     if estimated > 0 {
         sentences.push(format!(
-            "{} of the fitted times are estimates, because the runs are too long for the budget.",
+            "{} of the fitted times are estimates, because measured runs would exceed the budget.",
             grouped(estimated)
         ));
     }

@@ -65,16 +65,19 @@ pub enum GrowthError {
     #[error(transparent)]
     Shape(#[from] ShapeError),
     /// The name of the shape is unknown.
-    #[error("{}", unknown("shape that grows", .name, &SCALABLE_SHAPES.iter().map(|shape| shape.name).collect::<Vec<_>>()))]
+    #[error("{}", unknown("scalable shape", .name, &SCALABLE_SHAPES.iter().map(|shape| shape.name).collect::<Vec<_>>()))]
     UnknownShape { name: String },
     /// The largest size is not larger than the smallest.
-    #[error("sizes from {from} to {to} faces do not grow: give the smaller first")]
+    #[error(
+        "the first size ({from} faces) is not smaller than the last size ({to} faces): give the \
+         smaller first"
+    )]
     SizesReversed { from: usize, to: usize },
     /// A size is too small to time, or too large for handles.
-    #[error("{faces} faces: choose from {MIN_FACES} to {MAX_FACES}")]
+    #[error("a size of {faces} faces is out of range: choose from {MIN_FACES} to {MAX_FACES}")]
     SizeOutOfRange { faces: usize },
     /// The number of sizes is below two or too large.
-    #[error("{steps} sizes: choose from 2 to {MAX_STEPS}")]
+    #[error("{steps} sizes are out of range: choose from 2 to {MAX_STEPS}")]
     StepsOutOfRange { steps: usize },
     /// All requested face counts give the same mesh.
     #[error("the shape has only one size from {from} to {to} faces: use sizes further apart")]

@@ -21,7 +21,9 @@ pub(super) fn sentences(
     sentences.extend(control.map(|control| {
         let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
         format!(
-            "Noise: {} in the given order was measured twice; its two columns typically differ by {}, at most by {}. In each operation, smaller differences are ties.",
+            "Noise: {} in the given order was measured twice. The two columns typically differ by \
+             {}, at most by {}. For each operation, results that differ by no more than these two \
+             columns are tied.",
             control.backend,
             percent(control.typical),
             percent(control.worst),
@@ -32,7 +34,8 @@ pub(super) fn sentences(
         if row.agreement == Agreement::Mismatch {
             let (backend, operation) = (&row.backend, row.operation);
             sentences.push(format!(
-                "{backend} has other results for {operation} in the order {order}: a fault in Sixfold; please report it."
+                "{operation} on {backend} gives different results in the order {order}. This is a \
+                 fault in Sixfold: please report it."
             ));
         }
     }
@@ -64,10 +67,12 @@ fn best_orders(rows: &[OrderRow]) -> Option<String> {
     sorted.sort_by_key(|&(_, best, tied)| std::cmp::Reverse((best + tied, best)));
     let parts: Vec<String> = sorted
         .iter()
-        .map(|(order, best, tied)| format!("{order} alone in {best}, tied in {tied}"))
+        .map(|(order, best, tied)| {
+            format!("{order} is the single best order in {best} and tied for the best in {tied}")
+        })
         .collect();
     Some(format!(
-        "Of {} pairs of a structure and an operation, the best order is: {}.",
+        "Of {} pairs of a structure and an operation, {}.",
         pairs.len(),
         parts.join("; ")
     ))
@@ -88,13 +93,17 @@ fn given_order(comparisons: &[Comparison]) -> Option<String> {
         .count();
     let all = given.len();
     if within_noise == all {
-        return Some("The given order is within the noise of the best everywhere.".into());
+        return Some(
+            "In all pairs, the given order is as fast as the best order, within the noise.".into(),
+        );
     }
     Some(format!(
-        "The given order is within the noise of the best in {within_noise} of {all} pairs; at worst it takes {} the time of the best ({} on {}, best order {}).",
-        times(*most),
+        "In {within_noise} of {all} pairs, the given order is as fast as the best order, within \
+         the noise. In the worst case ({} on {}), the given order takes {} the time of the best \
+         order ({}).",
         comparison.operation,
         effect.backend,
+        times(*most),
         effect.best,
     ))
 }
@@ -112,11 +121,11 @@ fn effects(comparison: &Comparison) -> Option<String> {
     let operation = comparison.operation;
     let orders = match local().count() {
         1 => format!(
-            "{operation}: time of the worst order relative to the best: {}",
+            "{operation}: time of the worst order relative to the best order: {}",
             describe(most)
         ),
         _ => format!(
-            "{operation}: time of the worst order relative to the best: {} to {}",
+            "{operation}: time of the worst order relative to the best order: {} to {}",
             describe(least),
             describe(most)
         ),
@@ -126,19 +135,22 @@ fn effects(comparison: &Comparison) -> Option<String> {
     };
     let between = match structures.matters {
         true => format!(
-            "of the slowest structure relative to the fastest: {} ({} to {}, each in its best order)",
-            times(structures.slowest_to_fastest.ratio),
+            "Time of the slowest structure ({}) relative to the fastest ({}), each in its best \
+             order: {}",
+            structures.slowest,
             structures.fastest,
-            structures.slowest
+            times(structures.slowest_to_fastest.ratio)
         ),
-        false => "the structures in their best orders do not differ beyond the noise".into(),
+        false => {
+            "The times of the structures, each in its best order, are equal within the noise".into()
+        }
     };
     let larger = match comparison.larger? {
-        Larger::Order => "The order matters more",
-        Larger::Structure => "The structure matters more",
-        Larger::Depends => "Which of them matters more depends on the structure",
+        Larger::Order => "The effect of the order is larger",
+        Larger::Structure => "The effect of the structure is larger",
+        Larger::Depends => "The larger effect depends on the structure, or is uncertain",
     };
-    Some(format!("{orders}; {between}. {larger}."))
+    Some(format!("{orders}. {between}. {larger}."))
 }
 
 /// Describes the effect of the order on structures that scan: they read memory from end to end.
@@ -153,11 +165,14 @@ fn scan_effect(comparisons: &[Comparison]) -> Option<String> {
     })?;
     Some(match most.matters {
         true => format!(
-            "If a structure scans all faces for each element, the order changes the time by at most {} ({operation} on {}).",
+            "On structures that scan all faces for each element, the worst order takes at most {} \
+             the time of the best order ({operation} on {}).",
             times(most.worst_to_best.ratio),
             most.backend
         ),
-        false => "If a structure scans all faces for each element, the order makes no difference beyond the noise.".into(),
+        false => "On structures that scan all faces for each element, all orders are equally \
+                  fast, within the noise."
+            .into(),
     })
 }
 
@@ -167,7 +182,9 @@ fn verdict(comparisons: &[Comparison]) -> Option<String> {
     let (order, structure) = (count(Larger::Order), count(Larger::Structure));
     (known.len() > 1).then(|| {
         format!(
-            "Overall: the order matters more in {order} of {} operations, the structure in {structure}; in {} it depends on the structure.",
+            "Overall, {} operations were compared. The effect of the order is larger in {order}, \
+             and the effect of the structure in {structure}. In {}, the larger effect depends on \
+             the structure, or is uncertain.",
             known.len(),
             count(Larger::Depends)
         )

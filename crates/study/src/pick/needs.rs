@@ -66,7 +66,10 @@ impl Need {
                 can.inconsistent_orientation,
                 "it holds consistently oriented faces only",
             ),
-            Self::IsolatedVertices => (can.isolated_vertices, "it holds no vertex without a face"),
+            Self::IsolatedVertices => (
+                can.isolated_vertices,
+                "it cannot hold a vertex without a face",
+            ),
             Self::CoincidentVertices => (
                 can.coincident_vertices,
                 "it merges vertices that share coordinates",

@@ -29,12 +29,14 @@ pub(crate) fn warnings(report: &PickReport) -> Vec<String> {
     let fewest = report.ranking.iter().map(|ranked| ranked.samples).min();
     if let Some(fewest) = fewest.filter(|&fewest| fewest < 6) {
         warnings.push(format!(
-            "Some figures are from {fewest} rounds, too few for a 95 % interval: use a longer --budget."
+            "Some figures are from only {fewest} rounds, but a 95 % interval needs 6: use a \
+             longer --budget."
         ));
     }
     for backend in &report.mismatches {
         warnings.push(format!(
-            "{backend} has other results than the other backends: a fault in Sixfold; please report it."
+            "{backend} gives different results from the other backends. This is a fault in \
+             Sixfold: please report it."
         ));
     }
     warnings
@@ -106,7 +108,7 @@ fn dominant_part(report: &PickReport, best: &Ranked) -> Option<String> {
         return None;
     }
     Some(format!(
-        "{} takes {:.0} % of the time of the fastest backend ({each} each).",
+        "{} takes {:.0} % of the time of the fastest backend ({each} each time).",
         heaviest.operation,
         100.0 * heaviest.weighted_ns() / total
     ))
@@ -126,11 +128,12 @@ fn largest_loss(report: &PickReport, best: &Ranked) -> Option<String> {
         return None;
     }
     Some(format!(
-        "{} is slower mainly in {}: {}, compared with {}.",
+        "{} is slower mainly in {}: {} each time, compared with {} on {}.",
         name(next),
         theirs.operation,
         duration(theirs.ns?),
-        duration(ours.ns?)
+        duration(ours.ns?),
+        name(best)
     ))
 }
 
@@ -153,7 +156,8 @@ fn tables(report: &PickReport, best: &Ranked) -> Option<String> {
         .iter()
         .find(|ranked| ranked.made_from.is_some())?;
     Some(format!(
-        "Tables of only the queried relations, made once from {}, take {} the time of the fastest.",
+        "Relation tables take {1} the time of the fastest. The tables contain only the queried \
+         relations, and are made once from {0}.",
         tables.made_from.as_deref().unwrap_or_default(),
         times(tables.ratio_to_best)
     ))
@@ -183,11 +187,14 @@ fn one_use_with_building(report: &PickReport, best: &Ranked) -> Option<String> {
     let cost = duration(total(least));
     Some(match least.backend == best.backend {
         true => format!(
-            "With building included, {} is still fastest for one use of {count} {used}: {cost} in total.",
+            "If the time to build is included, {} is still fastest for one use of the mesh \
+             ({count} {used}): {cost} in total.",
             name(best)
         ),
         false => format!(
-            "With building included (an indexed face set exists already), one use of {count} {used} is fastest on {}: {cost} in total, compared with {} on {}.",
+            "If the time to build is included, {} is fastest for one use of the mesh ({count} \
+             {used}): {cost} in total, compared with {} on {}. An indexed face set exists \
+             already, so its time to build is 0.",
             name(least),
             duration(total(best)),
             name(best)

@@ -191,7 +191,7 @@ impl Excluded {
 /// Returns the reason why a backend of `bytes` bytes is excluded if at most `most` are allowed.
 pub(crate) fn over_memory_limit(bytes: u64, most: u64) -> String {
     let [bytes, most] = [bytes, most].map(|bytes| grouped(bytes as usize));
-    format!("it takes {bytes} bytes, and --max-memory allows {most}")
+    format!("it takes {bytes} bytes, but --max-memory allows only {most}")
 }
 
 impl PickReport {

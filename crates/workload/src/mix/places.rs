@@ -26,12 +26,14 @@ pub enum EditPlaceError {
     },
     /// The mesh is too small for the places of the edits and other elements to query.
     #[error(
-        "the mesh has no room for {edits} kinds of edits and other elements to query: use a larger mesh"
+        "the mesh is too small: it has no room for {edits} kinds of edits beside the elements to \
+         query; use a larger mesh"
     )]
     TooSmall { edits: usize },
     /// The edit is refused at every place by at least one backend.
     #[error(
-        "no place of the mesh allows {edit} on all backends: leave it out, or use another mesh"
+        "no place of the mesh allows {edit} on all backends: remove {edit} from the workload, or \
+         use another mesh"
     )]
     NowhereAccepted { edit: Edit },
 }
