@@ -65,7 +65,7 @@ impl Edit {
         costs
     };
 
-    /// The costs of the edits in a structure that searches all faces, if the log uses no reports.
+    /// The costs of the edits in a structure that searches all faces, if the log ignores reports.
     /// Adding a face costs O(1). An edit of one face reads only that face. All other edits read the
     /// whole mesh.
     pub const SCAN_COSTS: [Option<QueryCost>; Self::ALL.len()] = {

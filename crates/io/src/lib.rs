@@ -49,8 +49,8 @@
 //! one statement at a time. If `tobj` returns an error, its cause is the last statement that was
 //! passed, and the line of that statement is known. The final statement is a polygon through all
 //! vertices in file order. The corners of this polygon show which number `tobj` gave to each vertex
-//! of the file, even to unused vertices. The whole text is never in memory. The alternative is a
-//! separate scanner beside `tobj`. It would read every file twice and would need the same rules for
+//! of the file, even to unused vertices. The whole text is never in memory. A scanner
+//! beside `tobj` would read every file a second time. It would also need the same rules for
 //! lines. The scanner and `tobj` could disagree on the numbering.
 
 mod crease_file;

@@ -53,7 +53,7 @@ fn histogram(hist: &std::collections::BTreeMap<usize, usize>) -> Value {
         .collect()
 }
 
-/// Returns `facts` under the names, and in the format, of `truth.json`.
+/// Returns `facts` with the field names and the format of `truth.json`.
 fn truth_fields(facts: &Facts) -> [(&'static str, Value); 18] {
     [
         ("V", json!(facts.vertices)),

@@ -24,7 +24,7 @@ const STRAIGHT: f64 = 0.9962; // 5 degrees
 const MIN_STEPS: f64 = 4.0;
 
 /// Remeshing ends early if an iteration changes no edge, and moves no vertex by more than this
-/// fraction of the length.
+/// fraction of the target edge length.
 const TOLERANCE: f64 = 1e-3;
 
 /// Options of remeshing. Set the length; the default is at most 10 iterations and 10 million faces.

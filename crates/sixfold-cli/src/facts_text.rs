@@ -129,10 +129,10 @@ pub(crate) fn verdicts_text(mesh: &MeshReport, backends: &[BackendReport]) -> St
     if backends.iter().any(|backend| !backend.holds) {
         let changed = match mesh.changes.is_empty() {
             true => "",
-            false => ", f0 is the first remaining face",
+            false => ", f0 the first face that is left",
         };
         lines.push(format!(
-            "{:<13}(numbers start at 0: v0 is the first vertex of the file{changed})",
+            "{:<13}(counting from 0: v0 is the first vertex of the file{changed})",
             ""
         ));
     }

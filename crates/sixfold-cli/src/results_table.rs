@@ -259,7 +259,7 @@ impl Signs {
             ('*', "best"),
             (
                 '=',
-                "tied with the best: differs by less than the noise (at least 2 %; 100 % if 1 or 2 \
+                "tied with the best: differs by less than the noise (2 × with one or two \
                  samples)",
             ),
             (

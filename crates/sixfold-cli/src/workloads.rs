@@ -94,7 +94,7 @@ fn list() -> String {
         let operations = workload.operations;
         lines.push(hanging_indent(
             "  ",
-            &format!("{access} access; operations: {operations}{rebuilt}; mix: {mix}"),
+            &format!("access: {access}; operations: {operations}{rebuilt}; mix: {mix}"),
         ));
     }
     lines.join("\n")

@@ -62,7 +62,7 @@ fn a_change_is_shown_and_can_set_the_exit_code() {
         "slower",
         "commit",
         "0123456",
-        "2 slower",
+        "2 are slower",
     ] {
         assert!(run.stdout.contains(part), "{part}: {}", run.stdout);
     }

@@ -102,7 +102,7 @@ fn invalid_input_gives_one_error_and_no_picture() {
         (&["missing.obj", "-o", "out.png"], "missing.obj"),
         (&["mesh.obj", "-o", "no/such/out.png"], "out.png"),
         (&["mesh.obj", "-o", "out.png", "--size", "640"], "640x480"),
-        (&["mesh.obj", "-o", "out.png", "--size", "0x0"], "too few"),
+        (&["mesh.obj", "-o", "out.png", "--size", "0x0"], "too small"),
         (
             &["mesh.obj", "-o", "out.png", "--size", "100000x100000"],
             "too large",

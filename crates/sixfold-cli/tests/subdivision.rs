@@ -169,7 +169,7 @@ fn a_part_of_a_mesh_is_refined_without_gaps() {
         ("faces:wrong.txt", "wrong.txt: face f4 does not exist"),
         ("faces:words.txt", "words.txt:2"),
         ("faces:missing.txt", "missing.txt"),
-        ("box:1,0,0,0,1,1", "comes first"),
+        ("box:1,0,0,0,1,1", "lower corner of the box first"),
         ("box:0,0,0,nan,1,1", "finite"),
         ("angle:181", "0 to 180"),
         ("all", "box:X0"),
@@ -405,7 +405,7 @@ fn smooth_dual_and_triangulate_write_meshes_or_refuse() {
     }
     let run = run_ok(&sixfold, &["triangulate", "tagged.obj", "-o", "-"]);
     assert_eq!(Obj::parse(&run.stdout).counts(), [4, 2]);
-    assert!(run.stderr.contains("not kept"), "{run:?}");
+    assert!(run.stderr.contains("does not keep"), "{run:?}");
     for (arguments, code, message) in [
         (&["smooth", "book.obj"][..], 3, "another --backend"),
         (

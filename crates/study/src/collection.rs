@@ -21,7 +21,7 @@ use crate::statistics::geometric_mean;
 pub struct Collection {
     /// Version of the JSON schema.
     pub schema: u32,
-    /// Names of all meshes; their order is that of `studies`, `failures` and `missing`.
+    /// Names of all meshes. `studies`, `failures` and `missing` have the same order as this list.
     pub meshes: Vec<String>,
     /// The settings that all studies share.
     pub settings: SharedSettings,

@@ -1,4 +1,4 @@
-//! Runs orders and growth with small budgets, so that scans have to be sampled.
+//! Runs the labs `orders` and `growth` with small time budgets, so that scans must be sampled.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;

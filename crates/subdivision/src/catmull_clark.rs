@@ -139,8 +139,9 @@ mod tests {
             for step in steps.into_iter().chain(native) {
                 let points = step.polygons.positions();
                 assert_near(points[0], corner);
-                // Boundary vertices use (1, 6, 1)/8. The crease ends at 3, which has three sharp
-                // edges and stays. Vertex 4 follows the crease: 6/8 of 64.
+                // Boundary vertices use (1, 6, 1)/8. The crease ends at vertex 3. This vertex has
+                // three sharp edges, so it keeps its position. Vertex 4 follows the crease: 6/8 of
+                // 64.
                 assert_near(points[1], Point::new(1.0, 0.0, 0.0));
                 assert_near(points[3], Point::new(0.0, 1.0, 0.0));
                 assert_near(points[4], Point::new(1.0, 1.0, 48.0));

@@ -92,7 +92,7 @@ impl ControlGrid {
         self.points.len() / self.columns
     }
 
-    /// Returns the treatment of the ends of rows, and of columns.
+    /// Returns the treatment of the ends of the rows, then of the ends of the columns.
     pub fn ends(&self) -> [Ends; 2] {
         self.ends
     }

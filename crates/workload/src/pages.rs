@@ -40,7 +40,7 @@ impl Policy {
     /// Both policies.
     pub const ALL: [Self; 2] = [Self::Kept, Self::System];
 
-    /// Returns the name that users write: `kept`.
+    /// Returns the name that users write: `kept` or `system`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Kept => "kept",
@@ -188,7 +188,7 @@ pub fn reserve_in_random_order(bytes: usize) {
     touch_free_pages(bytes, |pages| pages.shuffle(&mut random));
 }
 
-/// A page that belongs to no value.
+/// A page of memory that no value uses.
 type FreePage<'b> = &'b mut [MaybeUninit<u8>];
 
 /// Touches the pages of a block of `bytes` and of all freed blocks, in the order into which

@@ -13,9 +13,9 @@
 //!
 //! The probe also updates a model of a small cache. This cache holds [`CACHE_LINES`] lines of any
 //! table, first in, first out. A touched line that is not in the cache is *fetched*. The fetch is a
-//! *jump* if the [`REACH`] lines on either side are not in the cache either. Streaming access
-//! fetches lines but rarely jumps, even if it skips lines. The prefetchers of a processor predict
-//! streaming access, but not jumps.
+//! *jump* if the cache has none of the [`REACH`] lines before this line, and none of the [`REACH`]
+//! lines after it. Streaming access fetches lines but rarely jumps, even if it skips lines. The
+//! prefetchers of a processor predict streaming access, but not jumps.
 
 use std::borrow::Cow;
 use std::sync::Arc;

@@ -11,8 +11,9 @@ use crate::read_probe::{CountingProbe, LINE_BYTES, ReadCounts, Step};
 /// Number of sampled elements if a structure scans. They are evenly spaced and include the first
 /// element.
 pub const SCAN_SAMPLE: usize = 16;
-/// If a query reads more rows than this on average, a sample is used too: at a vertex with very
-/// many faces, a walk is as slow as a scan.
+/// Maximum number of rows that a query may read on average. If a relation reads more, only
+/// [`SCAN_SAMPLE`] elements are queried: at a vertex with very many faces, a walk is as slow as a
+/// scan.
 pub const MAX_READS: u64 = 256;
 
 /// The reads of one relation. It is queried at every element in the order of the structure, or at a

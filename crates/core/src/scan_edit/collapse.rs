@@ -86,9 +86,11 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Refuses a missing edge, a `keep` that is not an end of it, a face that has both ends as
-    /// corners that are not adjacent, a vertex that would lose its last face, and an occupied
-    /// position.
+    /// Returns an error if
+    /// - the mesh has no edge `e`, or `keep` is not an end of `e`;
+    /// - both ends of `e` are corners of a face, but are not adjacent in that face;
+    /// - a vertex would lose its last face;
+    /// - another vertex has the position `to`.
     pub fn collapse_edge<M: ScannedMesh<V>>(
         &mut self,
         e: Pair<V>,

@@ -197,9 +197,9 @@ impl<P: Probe> CornerTable<Editable, P> {
         (star, closed)
     }
 
-    /// Returns the vertex u between two consecutive corners at `v`, and the corners across the
-    /// outer sides of their two triangles. In the fan of u, one of these corners is before both
-    /// triangles and the other is after both.
+    /// Returns the other end of the edge at `v` that the triangles of two consecutive corners share.
+    /// Also returns the corners opposite the sides of these triangles that have this end, but not
+    /// `v`.
     fn rim(
         &self,
         v: VertexId,

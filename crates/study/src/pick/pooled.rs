@@ -90,7 +90,7 @@ pub(crate) fn pooled(
     report
 }
 
-/// Ranks the backends that took part on all meshes, by the geometric mean of their times.
+/// Ranks the backends that have results on all meshes, by the geometric mean of their times.
 fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
     let mut by_name: BTreeMap<&str, Vec<&Ranked>> = BTreeMap::new();
     for ranked in outcomes.iter().flat_map(|o| &o.ranking) {

@@ -35,7 +35,8 @@ fn between(mesh: &EditableWingedEdgeMesh, a: u32, b: u32) -> EdgeId {
     mesh.edge_between(v(a), v(b)).expect("an edge")
 }
 
-/// Returns the ends, the faces, the next wings and the previous wings, each left then right.
+/// Returns the start and the end of `edge`. Then returns its faces, its next edges and its previous
+/// edges; the left one comes first in each pair.
 fn row(edge: &Edge) -> ([u32; 2], [Option<u32>; 2], [u32; 2], [u32; 2]) {
     (
         edge.ends().map(RowId::row),
