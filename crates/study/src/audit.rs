@@ -372,16 +372,14 @@ mod tests {
     fn a_difference_is_reported_with_its_bytes() {
         let right = Backend::new::<HalfEdgeMesh>();
         let spare = audited(right, &Scripted::new([[BYTES + 40, BYTES]]));
-        let expected =
-            "half-edge: the allocator counted 1192 bytes, 40 bytes more than its tables (1152)";
+        let expected = "half-edge: the allocator counted 1192 bytes, 40 bytes more than its tables hold (1152 bytes)";
         assert_eq!(spare.faults(), [expected]);
         assert_eq!(spare.backends[0].agrees, Some(false));
 
         let mut wrong = right;
         wrong.layout_bytes = |counts| HalfEdgeMesh::layout_bytes(counts) + 8;
         let formula = audited(wrong, &Scripted::new([[BYTES, BYTES]]));
-        let expected =
-            "half-edge: its tables hold 1152 bytes, 8 bytes fewer than its layout formula (1160)";
+        let expected = "half-edge: its tables hold 1152 bytes, 8 bytes fewer than its layout formula gives (1160 bytes)";
         assert_eq!(formula.faults(), [expected]);
 
         let both = audited(wrong, &Scripted::new([[0, 0]]));

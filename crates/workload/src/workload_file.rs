@@ -246,7 +246,7 @@ mod tests {
             (
                 "operations = '5 per cow'\n[mix]\nposition = 1",
                 1,
-                "vertex, edge, face",
+                "vertex, edge or face",
             ),
             (
                 "operations = true\n[mix]\nposition = 1",
@@ -268,7 +268,7 @@ mod tests {
                 4,
                 "a weight must be from 0",
             ),
-            ("operations = 5\n[mix]\nposition = 0", 2, "at least one"),
+            ("operations = 5\n[mix]\nposition = 0", 2, "weight above 0"),
             (
                 "operations = 5\n[mix]\nposition = 1\nposition = 2",
                 4,
