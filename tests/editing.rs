@@ -119,10 +119,11 @@ fn run_script(start: &PolygonMesh, steps: &[Step], counts: &mut Counts) -> Resul
     Ok(())
 }
 
-/// Checks which structures accept an action. The three manifold structures must give the same
-/// answer, except if the corner table does not support the action. The other structures must accept
-/// every action that a manifold structure accepts. This does not apply to a structure that does not
-/// support the action, merges vertices at the same position, or holds only triangles.
+/// Checks which structures accept an action.
+/// - The three manifold structures must give the same answer. The corner table is exempt if it does
+///   not support the action, or if the action makes a polygon.
+/// - If the manifold structures accept the action, every other structure must accept it.
+///   Structures that do not support the action, or that merge vertices, are exempt.
 fn check_legality(
     tests: &[Box<dyn AnyTest>],
     legality: &[bool],

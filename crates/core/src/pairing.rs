@@ -160,9 +160,9 @@ impl SideRows for [(u32, u32)] {
 
 /// Pairs the sides of triangles without numbering their edges; O(corners + vertices).
 ///
-/// A side is identified by its opposite corner. Calls `pair` once for each side, with the side and
-/// its partner. The partner of the first side of an edge is the side itself; the partner of the
-/// second side is the first side. So a boundary side is paired only with itself.
+/// A side is identified by its opposite corner. For the first side of an edge, calls
+/// `pair(side, side)`. For the second side, calls `pair(second, first)`. A boundary edge has only a
+/// first side.
 ///
 /// `highs` is scratch memory with one row per corner. `highs` can be an unused table of the caller.
 /// Returns scratch memory of 4 bytes per corner, which the caller can reuse, and the number of

@@ -1,8 +1,7 @@
 //! Indexed face set: shared vertices, a vertex list for each face, and no other tables.
 //!
 //! Files and renderers use this form. Use it to read faces in order, or to keep a mesh in memory
-//! without queries. No structure with shared vertices is smaller. An indexed face set holds every
-//! polygon mesh. FV, FE and EV take O(1) per item. Every query of a neighbourhood scans all
+//! without queries. It is the smallest structure with shared vertices. It holds every polygon mesh. FV, FE and EV take O(1) per item. Every query of a neighbourhood scans all
 //! corners, because no table stores neighbours. Start at [`generic::IndexedFaceSet`]; its three
 //! invariants define the tables.
 //!
@@ -25,7 +24,7 @@
 //! scan. Every other edit begins with a scan; an edge flip needs two scans. Use the structure to
 //! edit a few places, or to add and remove faces, which takes O(1) per corner. For many edits of
 //! edges, use a structure that stores neighbours. [`ScannedFaces`](sixfold_core::ScannedFaces)
-//! implements the scan and the edits of faces, also for the polygon soup.
+//! implements the scan and the face edits of this structure and of the polygon soup.
 //!
 //! # Examples
 //!

@@ -8,7 +8,8 @@
 //! # What is read
 //!
 //! The reader uses the statements `v` and `f`; `fo` is an old name of `f`. A vertex may have a
-//! weight or a colour. A corner may have texture and normal numbers (`7/1/3`). An index may count
+//! weight or a colour. A corner may have indices of a texture coordinate and of a normal
+//! (`7/1/3`). An index may count
 //! backwards. A face may come before its vertices. Lines end in LF, CRLF or CR; `\` at the end of a
 //! line continues the line. `#` starts a comment; a comment cannot be continued. The reader also
 //! uses the tags `t crease` and `t corner` of OpenSubdiv. Vertices of tags count from 0, but

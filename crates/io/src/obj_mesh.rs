@@ -62,7 +62,8 @@ pub enum LeftOutReason {
 }
 
 impl ObjMesh {
-    /// Returns the topology of the file. Short faces count as degenerate. O(corners) expected.
+    /// Returns the topology of the file. Faces with fewer than three corners count as
+    /// degenerate. O(corners) expected.
     ///
     /// # Panics
     ///

@@ -165,8 +165,8 @@ mod tests {
         }
     }
 
-    /// Three squares at the corner of a cube, each cut in two. The whole lower square is incident
-    /// to the corner, but only one half of each other square.
+    /// Three unit squares meet at a corner of a cube. Each is cut into two triangles. Both triangles
+    /// of the lower square are incident to the corner, but only one triangle of each other square.
     #[test]
     fn angle_weights_do_not_depend_on_how_a_surface_is_cut() {
         let points = [

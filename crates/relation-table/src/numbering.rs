@@ -8,8 +8,9 @@ use crate::table::{RelationTable, TabulationError};
 
 /// The elements of a mesh, numbered in the order in which the structure lists them.
 ///
-/// If handles are rows and nothing was removed, the number of an element is its row. The first use
-/// of a number of one kind (vertex, edge or face) numbers all elements of this kind.
+/// If handles are rows and nothing was removed, the number of an element is its row. Vertices,
+/// edges and faces are numbered separately. All elements of one kind are numbered when the first
+/// number of this kind is needed.
 pub struct Numbering<'m, M: MeshQuery> {
     mesh: &'m M,
     vertices: OnceCell<Numbers<M::Vertex>>,

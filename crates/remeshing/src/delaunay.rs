@@ -9,7 +9,8 @@ use crate::error::RemeshError;
 use crate::numbering::{Numbering, corners};
 use crate::rules::at;
 
-/// Maximum number of flips per edge. Without this limit, flipping on a surface might never end.
+/// Maximum number of flips, divided by the number of edges. Without this limit, flipping on a
+/// surface might never end.
 const FLIPS_PER_EDGE: usize = 16;
 
 /// An edge is flipped if its sum of cotangents is below `-TOLERANCE`. The tolerance prevents flips

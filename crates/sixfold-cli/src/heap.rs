@@ -19,7 +19,8 @@ pub(crate) struct Counters;
 impl Heap for Counters {
     fn live(&self) -> usize {
         let stats = LIVE.stats();
-        // Both counters already include blocks that grow or shrink.
+        // The growth of a block is included in `bytes_allocated`, its shrinkage in
+        // `bytes_deallocated`.
         stats
             .bytes_allocated
             .saturating_sub(stats.bytes_deallocated)

@@ -1,5 +1,5 @@
-//! Repeats one study many times. Reports which backends are best, and how often an interval
-//! contains the median of all studies.
+//! Repeats one study many times. For each operation, counts the studies in which each backend is
+//! best or tied. Also reports how many 95 % intervals contain the median of all studies.
 //!
 //! ```sh
 //! cargo run --release -p sixfold-study --example repeatability_report -- \

@@ -45,7 +45,7 @@ pub struct Changes {
     pub schema: u32,
     /// Names of the two meshes if their facts differ. The rows then compare different work.
     pub meshes: Option<[String; 2]>,
-    /// Differences of machines, programs and settings.
+    /// Differences between the studies in machine, program and settings.
     pub environment: Vec<SettingChange>,
     /// Median over all rows of the second time divided by the first time.
     pub overall: Option<f64>,

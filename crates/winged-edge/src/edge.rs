@@ -116,7 +116,7 @@ impl<'a> Run<'a> {
         self.side
     }
 
-    /// Returns the run along the other side of the edge.
+    /// Returns the run of the same edge in the opposite direction.
     #[inline(always)]
     pub(crate) fn twin(self) -> Self {
         Self::new(self.edge, self.side.other())
@@ -189,7 +189,7 @@ impl RunId {
         Self { edge, side }
     }
 
-    /// Returns the run along the other side of the edge.
+    /// Returns the run of the same edge in the opposite direction.
     #[inline(always)]
     pub(crate) fn twin(self) -> Self {
         Self::new(self.edge, self.side.other())

@@ -28,7 +28,6 @@ fn one_thread_pool() -> Result<&'static ThreadPool, String> {
 ///
 /// Set-up is not timed. In native subdivisions, the untimed runs make the tables that later runs
 /// reuse. The other methods build their structures within the timing.
-/// later runs reuse. The other methods build their structures within the timing.
 pub(crate) fn subdivide(
     backend: &Backend,
     job: SubdivisionJob,

@@ -81,7 +81,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         *self.pool.write(place) = new;
     }
 
-    /// Returns the place of `f` in `fan`, which contains `f`.
+    /// Returns the index in `pool` of the entry `f` of `fan`. The fan must contain `f`.
     #[inline]
     fn place_of(&self, fan: Fan, f: FaceId) -> usize {
         let start = fan.range().start;

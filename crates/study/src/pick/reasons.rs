@@ -134,8 +134,8 @@ fn largest_loss(report: &PickReport, best: &Ranked) -> Option<String> {
     ))
 }
 
-/// Describes the time of relation tables. If the tables are the fastest, also describes the fastest
-/// structure.
+/// Describes the time of relation tables. If the tables are the fastest, describes the fastest
+/// structure instead.
 fn tables(report: &PickReport, best: &Ranked) -> Option<String> {
     let structure = report
         .ranking
