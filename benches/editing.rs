@@ -1,8 +1,8 @@
-//! How much time do single edits and edit workloads take on each structure as the mesh grows?
+//! How do the times of edits and edit workloads on each structure grow with the mesh?
 //!
 //! A time in `edit/` is the time of one edit: the time of a run at many places, divided by the
-//! number of places. A structure that scans is measured at few places, and not on the largest
-//! meshes.
+//! number of places. A structure that scans all faces is measured at few places, and not on the
+//! largest meshes.
 
 use std::time::Duration;
 
@@ -13,12 +13,12 @@ use sixfold_study::{Backend, EditPass, Editor, MachineClock, Series, SingleEdit}
 
 use crate::input::inputs;
 
-/// Cells per side of triangle tori: about 1,000, 10,000 and 100,000 faces.
+/// Side lengths of triangle tori, in cells: about 1,000, 10,000 and 100,000 faces.
 const SIDES: [usize; 3] = [23, 71, 224];
 
-/// Maximum number of faces for single edits on a structure that scans.
+/// Maximum number of faces for single edits on a structure that scans all faces.
 const MAX_SCANNED_FACES: usize = 20_000;
-/// Maximum number of faces for edit workloads on a structure that scans.
+/// Maximum number of faces for edit workloads on a structure that scans all faces.
 const MAX_WORKLOAD_SCANNED_FACES: usize = 2_000;
 
 pub(crate) fn define(criterion: &mut Criterion) {
@@ -80,7 +80,8 @@ fn workloads(criterion: &mut Criterion) {
     }
 }
 
-/// Measures runs on a copy that is reset before each run; the reported time is divided by `parts`.
+/// Measures runs on a copy that is reset before each run. The reported time is the time of a run
+/// divided by `parts`.
 fn bench_editor(
     group: &mut BenchmarkGroup<'_, WallTime>,
     id: BenchmarkId,

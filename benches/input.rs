@@ -1,4 +1,4 @@
-//! The meshes of the benchmarks, and the code that measures one backend with criterion.
+//! The meshes of the benchmarks, and the function that measures a backend with criterion.
 
 use std::time::Duration;
 
@@ -7,18 +7,17 @@ use criterion::{BenchmarkGroup, BenchmarkId, Throughput};
 use sixfold::{Facts, PolygonMesh, shapes};
 use sixfold_study::{Backend, BackendRunner, MachineClock, Operation};
 
-/// Frequencies of the geodesic spheres: 320, 1,280 and 5,120 triangles.
+/// Frequencies of the geodesic spheres. The spheres have 320, 1,280 and 5,120 triangles.
 const FREQUENCIES: [usize; 3] = [4, 8, 16];
 
 /// A mesh and its name in a benchmark.
 pub(crate) struct Input {
-    /// The name: `regular/320`.
+    /// The name, for example `regular/320`.
     pub(crate) name: String,
-    /// The mesh.
     pub(crate) mesh: PolygonMesh,
 }
 
-/// Returns closed triangle meshes of three sizes: regular meshes, irregular meshes, and the regular
+/// Returns closed triangle meshes of three sizes: regular meshes, irregular meshes, and regular
 /// meshes in random order.
 pub(crate) fn inputs() -> Vec<Input> {
     let mut inputs = Vec::new();
@@ -53,7 +52,7 @@ fn irregular(faces: usize) -> PolygonMesh {
     mesh
 }
 
-/// Times `operation` on every backend that holds `input`, with the same code as a study.
+/// Times `operation` on every backend that can hold `input`, with the same code as a study.
 pub(crate) fn bench_backends(
     group: &mut BenchmarkGroup<'_, WallTime>,
     operation: Operation,

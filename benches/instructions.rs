@@ -1,5 +1,5 @@
 //! Instruction counts of the operations of a study on the four local structures. Callgrind counts
-//! the instructions, so the results have no noise of a clock.
+//! the instructions, so the results contain no timing noise.
 //!
 //! ```text
 //! apt-get install valgrind
@@ -7,12 +7,13 @@
 //! python3 benches/checks/instructions.py             # compares the counts with the baseline
 //! ```
 //!
-//! The benchmarks are the lines of `instructions.txt`: a structure and an operation. Each runs the
-//! operation on 2,000 triangles in random order, so that no loop profits from a regular order.
-//! Subdivisions run once, other operations twice.
+//! The benchmarks are the lines of `instructions.txt`: a structure and an operation. Each benchmark
+//! runs the operation on 2,000 triangles in random order. Subdivisions run once; other operations
+//! run twice.
 //!
-//! The program builds on every platform and runs on those that valgrind supports. A plain `cargo
-//! bench` leaves it out (`bench = false`), because it does not understand the options of criterion.
+//! The program builds on every platform, but runs only on platforms that valgrind supports. A plain
+//! `cargo bench` does not run this program (`bench = false`), because the program does not
+//! understand the options of criterion.
 
 #![expect(missing_docs, reason = "gungraun's macros make public items without")]
 
@@ -26,16 +27,15 @@ use sixfold_study::{Backend, BackendRunner, MachineClock, Operation};
 /// An operation that is ready to run.
 type Prepared = Box<dyn FnMut()>;
 
-/// Prepares the operation of a line such as `half-edge vertex_vertices`. The mesh is never freed,
-/// because freeing would be counted too.
+/// Prepares the operation of a line such as `half-edge vertex_vertices`. The mesh is not freed,
+/// because Callgrind would also count the instructions for freeing.
 fn prepare(line: String) -> Prepared {
     let (structure, operation) = line.split_once(' ').expect("a structure and an operation");
     let backend = Backend::find(structure).expect("a structure");
     let operation: Operation = operation.parse().expect("an operation");
     let sphere = shapes::geodesic(10).expect("a small frequency");
     let polygons = Box::leak(Box::new(shapes::shuffled(&sphere, 1)));
-    // Callgrind counts only the thread of the benchmark. With a pool of one thread, subdivisions
-    // run on the calling thread.
+    // Callgrind counts only this thread. A pool of one thread runs subdivisions on this thread.
     let pool = ThreadPoolBuilder::new().num_threads(1).build_global();
     pool.expect("the only pool");
     if let Some(job) = operation.subdivision_job() {
@@ -51,7 +51,7 @@ fn prepare(line: String) -> Prepared {
     let mut run = move || {
         black_box(runner.run_times(operation, 1, &clock));
     };
-    // The first run also reads the sizes of the caches from the system.
+    // Only the first run reads the sizes of the caches from the system.
     run();
     Box::new(run)
 }

@@ -16,9 +16,8 @@ use std::time::Duration;
 use criterion::{Criterion, criterion_group, criterion_main};
 use sixfold_study::{Policy, pages};
 
-/// Configures criterion. Freed pages stay in the process, as in a study, so that allocations cause
-/// no page faults. Measurements are short, because there are hundreds of benchmarks and the ratios
-/// within a group become stable early.
+/// Configures criterion for short measurements. Freed pages stay in the process, so that
+/// allocations cause no page faults.
 fn short_runs() -> Criterion {
     pages::set_policy(Policy::Kept);
     Criterion::default()

@@ -1,5 +1,5 @@
-//! How much time does each relation take on each structure, for growing meshes in regular and
-//! random order?
+//! How much time does each relation take on each structure? The meshes have different sizes, and
+//! regular or random order.
 
 use criterion::Criterion;
 use sixfold::Relation;

@@ -1,7 +1,8 @@
-//! How much time does a subdivision take on each structure, by each method, level by level?
+//! How much time does a subdivision take on each structure, by each method, at each level?
 //!
-//! Each time is one run of all levels, starting from a built control mesh. The throughput is in
-//! faces of the last level. Native methods run on one thread and on two.
+//! Each time is one run of all levels, starting from a built control mesh. The throughput is the
+//! number of faces of the last level per second. Native methods run on one thread and on two
+//! threads.
 
 use std::hint::black_box;
 
@@ -11,7 +12,7 @@ use sixfold::subdivision::{Method, Scheme};
 use sixfold::{Creases, QueryCost, Relation, shapes};
 use sixfold_study::{Backend, SubdivisionJob, Way};
 
-/// Maximum number of levels: the last has about 300,000 triangles, or 250,000 quads.
+/// Maximum number of levels. The last level has about 300,000 triangles or 250,000 quads.
 const LEVELS: u32 = 3;
 
 pub(crate) fn define(criterion: &mut Criterion) {
@@ -32,7 +33,6 @@ pub(crate) fn define(criterion: &mut Criterion) {
                     for threads in thread_counts(way) {
                         let pool = ThreadPoolBuilder::new().num_threads(*threads).build();
                         let pool = pool.expect("two threads can be started");
-                        // Skips subdivisions that the structure or the scheme refuses.
                         if pool.install(|| refiner.run()).is_err() {
                             continue;
                         }
@@ -50,8 +50,8 @@ pub(crate) fn define(criterion: &mut Criterion) {
     }
 }
 
-/// Returns whether the way makes queries for which the structure scans all faces. Such a run would
-/// take seconds; the report of a study shows its time on a smaller mesh.
+/// Returns whether the structure scans all faces for queries of this method. Such a run would take
+/// seconds.
 fn scans_faces(backend: &Backend, way: Way) -> bool {
     let cost = backend.info.costs[Relation::VertexFaces as usize];
     way == Way::Gather && cost == QueryCost::Scan

@@ -17,7 +17,7 @@ const WORKLOADS: [Operation; 8] = [
 ];
 
 pub(crate) fn define(criterion: &mut Criterion) {
-    // Only the largest meshes; `query` shows how times grow.
+    // Uses only the largest meshes. `query` shows how times grow with the mesh.
     let inputs = inputs().split_off(6);
     for operation in WORKLOADS {
         let mut group = criterion.benchmark_group(format!("workload/{}", operation.name()));

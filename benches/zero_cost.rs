@@ -1,7 +1,5 @@
 //! Does the trait cost time? Compares generic code with hand-written loops over the raw tables.
-//!
-//! Both do the same arithmetic on polygons of any degree. The hand-written loops do not use the
-//! trait.
+//! Both versions do the same arithmetic on polygons of any degree.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -13,7 +11,7 @@ use sixfold::{
     RowMap, VertexId, VertexMap, WingedEdgeMesh, shapes,
 };
 
-/// Computes the mean of each vertex's neighbours, on any structure.
+/// Computes for each vertex the mean of its neighbours.
 fn means<M: MeshQuery>(mesh: &M, means: &mut VertexMap<M, Point>) {
     mesh.vertices().for_each(|v| {
         let (mut sum, mut valence) = (Point::ZERO, 0_u32);
@@ -25,8 +23,7 @@ fn means<M: MeshQuery>(mesh: &M, means: &mut VertexMap<M, Point>) {
     });
 }
 
-/// Computes the normals of all faces, and for each vertex the normalised sum over its faces, on any
-/// structure.
+/// Computes the normals of all faces, and the normalised sum of the face normals for each vertex.
 fn normals<M: MeshQuery>(
     mesh: &M,
     by_face: &mut FaceMap<M, Point>,
@@ -45,7 +42,7 @@ fn normals<M: MeshQuery>(
     });
 }
 
-/// The sum of cross products of a fan of triangles, computed corner by corner.
+/// A sum of cross products, computed corner by corner.
 #[derive(Default)]
 struct Fan {
     first: Point,
@@ -68,11 +65,11 @@ impl Fan {
     }
 }
 
-/// The same two operations as hand-written loops.
+/// The same two operations as hand-written loops without the trait.
 trait HandWritten: Representation<Vertex = VertexId, Face = FaceId> {
-    /// Computes the same as [`means`].
+    /// Does the same as [`means`].
     fn means_by_hand(&self, means: &mut [Point]);
-    /// Computes the same as [`normals`].
+    /// Does the same as [`normals`].
     fn normals_by_hand(&self, by_face: &mut [Point], by_vertex: &mut [Point]);
 }
 
@@ -143,7 +140,7 @@ impl HandWritten for CornerTable {
                     Some(next) if next != first => n = next,
                     Some(_) => break,
                     None => {
-                        // An open fan has one more neighbour than faces.
+                        // A vertex on the boundary has one more neighbour than faces.
                         sum += positions[vertex[n.next().index()].index()];
                         valence += 1;
                         break;
@@ -284,8 +281,8 @@ where
     );
 }
 
-/// Measures both versions with criterion. Then runs both alternately, so that noise changes their
-/// ratio little.
+/// Measures both versions with criterion. Then runs both versions alternately, so that noise has
+/// little effect on the ratio of their times.
 fn compare_alternating(
     group: &mut BenchmarkGroup<'_, WallTime>,
     mut generic: impl FnMut(),

@@ -28,7 +28,7 @@ fn check_clone_from<M: Representation + MeshEdit>(polygons: &PolygonMesh) {
     println!("{}: restored without an allocation", M::NAME);
 }
 
-/// Pokes and removes faces, which makes tables longer and leaves holes in them.
+/// Pokes and removes faces. Tables become longer and get unused rows.
 fn edit<M: MeshEdit>(mesh: &mut M) {
     let faces: Vec<M::Face> = mesh.faces().take(40).collect();
     for (i, face) in faces.into_iter().enumerate() {

@@ -1,5 +1,5 @@
-//! Checks that algorithms on meshes with data give the same result on every structure, and that the
-//! law of data that follows edits detects faults.
+//! Checks that meshes with data give the same result on every structure, and that the law for data
+//! after edits detects faults.
 
 use std::marker::PhantomData;
 use std::panic::catch_unwind;
@@ -15,11 +15,11 @@ use sixfold_conformance::law::{ElementNumbers, numbers_follow_edits};
 
 use crate::remeshing::{Delaunay, Operator, surfaces};
 
-/// Each face of a mesh: the coordinates and the value of each corner, and the value of the face.
+/// The faces of a mesh. Each face has the coordinates and values of its corners, and its own value.
 type ValuedFaces = Vec<(Vec<[u32; 4]>, u32)>;
 
-/// Applies `operator` to `polygons` with data. At the start, the value of a vertex is linear in x,
-/// and the value of a face is its number.
+/// Applies `operator` to `polygons` with data. At the start, the value of a vertex is a linear
+/// function of x, and the value of a face is its number.
 fn run<M: MeshEdit + Representation>(
     operator: &impl Operator,
     polygons: &PolygonMesh,
@@ -63,7 +63,6 @@ fn run<M: MeshEdit + Representation>(
     faces
 }
 
-/// Checks that the data is the same on all structures after `operator`.
 fn compare_structures(operator: &impl Operator, polygons: &PolygonMesh) {
     let mut first = None;
     for_each_editable!(M => {
@@ -93,7 +92,7 @@ fn data_follows_remeshing_in_the_same_way_on_all() {
     }
 }
 
-/// Numbers of elements that do not follow edits correctly; `F` is the fault.
+/// Numbers of elements with an incorrect update after edits. `F` is the fault.
 struct Faulty<M: MeshQuery, F> {
     vertices: VertexMap<M, u32>,
     edges: EdgeMap<M, u32>,
@@ -101,7 +100,6 @@ struct Faulty<M: MeshQuery, F> {
     fault: PhantomData<F>,
 }
 
-/// A wrong update of a map after an edit.
 trait Fault {
     fn follow<H: Handle>(changes: &Changes<H>, map: &mut H::Map<u32>);
 }
@@ -134,7 +132,7 @@ impl<M: MeshQuery, F: Fault> ElementNumbers<M> for Faulty<M, F> {
     }
 }
 
-/// Renames elements one by one, although elements can exchange handles.
+/// Renames elements one after the other, which is wrong if elements exchange handles.
 struct RenamedOneByOne;
 
 impl Fault for RenamedOneByOne {
@@ -151,7 +149,6 @@ impl Fault for RenamedOneByOne {
     }
 }
 
-/// Does not rename elements.
 struct NotRenamed;
 
 impl Fault for NotRenamed {
@@ -164,7 +161,6 @@ impl Fault for NotRenamed {
     }
 }
 
-/// Gives no values to new elements.
 struct NewLeftOut;
 
 impl Fault for NewLeftOut {
@@ -177,7 +173,7 @@ impl Fault for NewLeftOut {
     }
 }
 
-/// Checks that the law fails for `M` with this fault, with a message that contains `words`.
+/// Checks that the law fails for `M` with this fault. The message must contain `words`.
 fn assert_detected<M: Representation + MeshEdit + std::fmt::Debug, F: Fault>(words: &str) {
     let payload = catch_unwind(numbers_follow_edits::<M, Faulty<M, F>>);
     let payload = payload.expect_err("the law passes with the fault");

@@ -1,5 +1,5 @@
-//! Edits all structures with the same scripts, step by step. Checks that all structures accept and
-//! refuse the same edits, and that they always hold the same mesh.
+//! Runs the same random edits on all structures. Checks that the structures accept the same edits
+//! and always contain the same mesh.
 
 use std::fmt::{Debug, Write as _};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,13 +16,12 @@ const SCRIPTS: u32 = 40;
 /// Number of steps of a script.
 const STEPS: usize = 240;
 
-/// A model test of any structure.
 trait AnyTest {
     fn name(&self) -> &'static str;
     fn rules(&self) -> Rules;
     fn model(&self) -> &Model;
     fn is_legal(&self, action: &Action) -> bool;
-    /// Applies the action to a copy, only to run the checks.
+    /// Runs the checks of the action on a copy.
     fn apply_to_copy(&self, action: &Action) -> bool;
     fn apply(&mut self, action: &Action) -> bool;
     fn check_all(&mut self);
@@ -54,8 +53,8 @@ impl<M: Representation + MeshEdit + Debug> AnyTest for Wrapped<M> {
     }
 }
 
-/// Returns the structures that hold `start`. The soup takes part only if no vertex is isolated,
-/// because it would lose such a vertex.
+/// Returns the structures that can hold `start`. The soup is included only if no vertex is
+/// isolated, because a soup does not store isolated vertices.
 fn tests(start: &PolygonMesh) -> Vec<Box<dyn AnyTest>> {
     let mut tests: Vec<Box<dyn AnyTest>> = Vec::new();
     for_each_editable!(M => {
@@ -66,25 +65,24 @@ fn tests(start: &PolygonMesh) -> Vec<Box<dyn AnyTest>> {
     tests
 }
 
-/// Returns how many editable structures have capabilities for which `holds` is true.
+/// Returns the number of editable structures for which `holds` is true.
 fn structures(holds: impl Fn(&Capabilities) -> bool) -> usize {
     let mut structures = 0;
     for_each_editable!(M => { structures += usize::from(holds(&M::CAPABILITIES)); });
     structures
 }
 
-/// The counts of all scripts.
 #[derive(Default)]
 struct Counts {
     /// For each edit: the number of steps that all structures accepted, and the number of other
     /// steps.
     steps: [[usize; 2]; Edit::ALL.len()],
-    /// For each script: the number of structures that took part.
+    /// For each script: the number of structures.
     tests: Vec<usize>,
 }
 
-/// Runs a script on all structures that hold `start`. If one of them refuses a step, the others
-/// apply it only to copies, so that all continue with the same mesh.
+/// Runs a script on all structures that can hold `start`. If a structure refuses a step, the other
+/// structures apply the step only to copies. So all structures continue with the same mesh.
 fn run_script(start: &PolygonMesh, steps: &[Step], counts: &mut Counts) -> Result<(), String> {
     let mut tests = tests(start);
     counts.tests.push(tests.len());
@@ -121,10 +119,11 @@ fn run_script(start: &PolygonMesh, steps: &[Step], counts: &mut Counts) -> Resul
     Ok(())
 }
 
-/// Checks which structures accept an action. The three manifold structures must give the same
-/// answer, except on actions that the corner table does not support. Each other structure must
-/// accept all actions that a manifold structure accepts. Exempt are structures that do not support
-/// the action, merge coincident vertices, or hold only triangles.
+/// Checks which structures accept an action.
+/// - The three manifold structures must give the same answer. The corner table is exempt if it does
+///   not support the action, or if the action makes a polygon.
+/// - If the manifold structures accept the action, every other structure must accept it.
+///   Structures that do not support the action, or that merge vertices, are exempt.
 fn check_legality(
     tests: &[Box<dyn AnyTest>],
     legality: &[bool],
@@ -171,10 +170,9 @@ fn is_offered_to_triangles(action: &Action, rules: &Rules) -> bool {
     rules.supported[action.edit() as usize] && !makes_polygons
 }
 
-/// Runs random scripts on meshes from `starts`. Checks that exactly `structures` structures take
-/// part in more than a fifth of the scripts. Also checks for each edit that all of them accept more
-/// than one step in `steps_per_accepted`. (A limit of a third was too strict: in one run, they took
-/// part in only 13 of 40 scripts.)
+/// Runs random scripts on meshes from `starts`. Checks that more than a fifth of the scripts run on
+/// exactly `structures` structures. Checks for each edit that all structures accept more than one
+/// step in `steps_per_accepted`.
 fn run_scripts(
     starts: impl Strategy<Value = PolygonMesh>,
     edits: &[Edit],
@@ -235,7 +233,7 @@ impl Debug for ShortDebug {
     }
 }
 
-/// The edits that make triangles from triangles and that every structure supports.
+/// Edits that make triangles from triangles and that every structure supports.
 const TRIANGLE_EDITS: [Edit; 11] = [
     Edit::SetPosition,
     Edit::AddFace,
@@ -250,7 +248,6 @@ const TRIANGLE_EDITS: [Edit; 11] = [
     Edit::Compact,
 ];
 
-/// Returns the mesh without isolated vertices, which a soup would lose.
 fn without_isolated(polygons: &PolygonMesh) -> PolygonMesh {
     sixfold_conformance::welded(polygons).expect("a manifold has distinct positions")
 }

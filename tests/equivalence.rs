@@ -1,16 +1,16 @@
-//! Checks that all structures that hold a mesh give the same answers. The other structures must
-//! refuse the mesh with the error that the contract defines.
+//! Checks that all structures that can hold a mesh give the same answers. The other structures must
+//! refuse the mesh with the expected error.
 
 use proptest::prelude::*;
 use sixfold::{MeshQuery, PolygonMesh, Representation, for_each_representation};
 use sixfold_conformance::strategy::{any_mesh, faulty_mesh, manifold_mesh};
 use sixfold_conformance::{answers, expected_check, gallery, one_line, welded};
 
-/// Checks that every error equals the error that brute force finds, and that the structures that
-/// hold the mesh give the same answer to every query.
+/// Checks the error of every structure, and compares the answers of the structures that can hold
+/// the mesh.
 ///
-/// Structures that keep coincident vertices apart are compared on the mesh itself. All structures
-/// are compared on the welded mesh. Its vertices are numbered in the order that the soup uses.
+/// Structures that can hold several vertices at one position are compared on the mesh itself. All
+/// structures are compared on the welded mesh, whose vertices have the order that a soup uses.
 pub(crate) fn compare_structures(polygons: &PolygonMesh) {
     for_each_representation!(M => {
         let expected = expected_check(&M::CAPABILITIES, polygons).err();
@@ -23,7 +23,6 @@ pub(crate) fn compare_structures(polygons: &PolygonMesh) {
     }
 }
 
-/// Compares the answers of each structure that holds `polygons` with those of the first one.
 fn compare_answers(polygons: &PolygonMesh, welded: bool) {
     let mut first = None;
     for_each_representation!(M => {
@@ -47,7 +46,6 @@ fn all_give_the_same_answers_on_the_gallery() {
     }
 }
 
-/// Without this check, the comparisons could compare a structure only with itself.
 #[test]
 fn every_representation_holds_a_closed_triangle_mesh() {
     let icosahedron = sixfold::shapes::icosahedron();

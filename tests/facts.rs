@@ -1,5 +1,5 @@
-//! Compares [`sixfold::Facts`] with brute force on small meshes. (For real meshes, the tests of
-//! `io` compare with `truth.json`.)
+//! Compares [`sixfold::Facts`] with brute force on small meshes. (The tests of `io` compare real
+//! meshes with `truth.json`.)
 
 mod brute_force;
 

@@ -1,7 +1,6 @@
-//! Checks that no sample has a page fault if freed pages are kept: in studies of three sizes and in
-//! a pick.
+//! Checks that no sample of a study or a pick has a page fault if freed pages are kept.
 //!
-//! A separate program with one thread: the policy must be set before other threads start.
+//! This is a separate program with one thread: the policy must be set before other threads start.
 
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -32,8 +31,8 @@ fn no_sample_faults() {
     assert_eq!(pages::set_policy(Policy::System).policy, Policy::System);
 }
 
-/// Calls `test` with a budget of `seconds`. Doubles the budget until there is time for the samples
-/// that the test needs, because other programs may run on this machine.
+/// Calls `test` with a budget of `seconds`. Doubles the budget until `test` returns true, because
+/// other programs may run on this machine.
 fn with_time_enough(seconds: u64, test: impl Fn(Duration) -> bool) {
     let mut budgets = [1, 2, 4, 8, 16]
         .map(|times| Duration::from_secs(times * seconds))
@@ -41,7 +40,7 @@ fn with_time_enough(seconds: u64, test: impl Fn(Duration) -> bool) {
     assert!(budgets.any(test), "too few samples in the longest budget");
 }
 
-/// Returns the number of page faults of filling a block of `bytes`.
+/// Returns the number of page faults when a block of `bytes` is filled.
 fn faults_of(bytes: usize, start: Start<'_>) -> u64 {
     let clock = MachineClock::start();
     let series = Series {
@@ -87,7 +86,7 @@ fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> bool {
         );
         samples += faults.len();
     }
-    // The first time must include faults, because building a mesh on fresh pages causes some.
+    // Building a mesh on fresh pages causes page faults.
     let builds = report.rows("build".parse().expect("an operation"));
     for row in builds.filter(|row| row.first_samples > 0) {
         assert!(row.first_faults > Some(0), "{row:?}");

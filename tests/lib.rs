@@ -1,11 +1,11 @@
-//! The main function of test programs that count what their whole process does; the other tests are
+//! The main function of test programs that count events of their whole process. The other tests are
 //! in `main.rs`.
 
 pub use libtest_mimic::{Arguments, Trial, run};
 
-/// Defines `main`, which runs these test functions on one thread, because other threads would be
-/// counted too. The program has the options of other test programs: it lists its tests, and runs
-/// those that are named.
+/// Defines `main`, which runs these test functions on one thread. Events of other threads would
+/// also be counted. The program has the usual options of test programs, for example to list tests
+/// or to run named tests.
 #[macro_export]
 macro_rules! main_on_one_thread {
     ($($test:ident),+ $(,)?) => {

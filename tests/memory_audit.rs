@@ -1,4 +1,4 @@
-//! Checks on every shape that a structure reports exactly the bytes that the allocator counts.
+//! Checks that structures report exactly the bytes that the allocator counts.
 //!
 //! This is a separate program, because its allocator counts every byte. It runs on one thread.
 
@@ -23,7 +23,7 @@ use face_and_edge_lists::FaceAndEdgeLists;
 #[global_allocator]
 static HEAP: PeakAlloc = PeakAlloc;
 
-/// Counters that are independent of those of the `sixfold` command.
+/// Counters of the allocator. The `sixfold` command has its own counters.
 #[derive(Default)]
 struct Counters {
     before: Cell<usize>,
@@ -72,8 +72,7 @@ fn run_audit(name: &str, polygons: PolygonMesh) -> Audit {
     audit(&study_mesh, &Backend::structures(), &heap, &mut |_| ())
 }
 
-/// Checks that the bytes agree in three ways for each structure that holds the mesh. Returns the
-/// number of these structures.
+/// Checks for each structure that its bytes agree. Returns the number of checked structures.
 fn check_audit(name: &str, polygons: &PolygonMesh) -> usize {
     let audit = run_audit(name, polygons.clone());
     assert_eq!(audit.faults(), Vec::<String>::new(), "{name}");
@@ -88,9 +87,8 @@ fn check_audit(name: &str, polygons: &PolygonMesh) -> usize {
         };
         structures += 1;
         assert!(peak >= counted, "{backend} on {name}: {peak} < {counted}");
-        // Building may also need a copy of the positions, a mark for each vertex, and the sides of
-        // all corners, but never a second mesh. For small meshes, a scratch list may be larger than
-        // this.
+        // Building also needs a copy of the positions, a mark for each vertex, and the sides of all
+        // corners, but not a second mesh. On small meshes, another list can be larger.
         let copy = 13 * polygons.vertex_count() + 4 * polygons.corner_count();
         assert!(
             polygons.vertex_count() < 300 || peak <= counted + copy,
@@ -131,14 +129,13 @@ fn reported_bytes_are_right_on_generated_shapes() {
     }
 }
 
-/// Returns the mesh with three additional isolated vertices.
 fn with_isolated(mesh: &PolygonMesh) -> PolygonMesh {
     let far = [1, 2, 3].map(|i| Point::splat(100.0 + i as f32));
     let positions = mesh.positions().iter().copied().chain(far);
     PolygonMesh::from_faces(positions.collect(), mesh.faces().clone()).expect("the same faces")
 }
 
-/// Returns the mesh with an additional triangle on an edge that already has two.
+/// Returns the mesh with an additional triangle on an edge that already has two triangles.
 fn with_fin(mesh: &PolygonMesh) -> PolygonMesh {
     let sides = |face: &[_]| [[face[0], face[1]], [face[1], face[2]], [face[2], face[0]]];
     let mut all: Vec<[_; 2]> = Vec::new();
@@ -165,7 +162,7 @@ fn with_fin(mesh: &PolygonMesh) -> PolygonMesh {
     PolygonMesh::new(positions.collect::<Vec<_>>(), &faces).expect("valid")
 }
 
-/// Returns the same faces, each with its own vertices. A soup merges these and has the same size.
+/// Returns the same faces, each with its own vertices.
 fn separate_faces(mesh: &PolygonMesh) -> PolygonMesh {
     let corners = mesh.faces().corners().iter();
     let positions: Vec<Point> = corners.map(|&v| mesh.position(v)).collect();
@@ -184,7 +181,6 @@ fn reported_bytes_are_right_on_the_gallery() {
     );
 }
 
-/// Checks the meshes in the folder that `SIXFOLD_MESHES` names, if it is set.
 fn reported_bytes_are_right_on_real_meshes() {
     let Some(folder) = env::var_os("SIXFOLD_MESHES").map(PathBuf::from) else {
         return;
@@ -205,8 +201,8 @@ fn reported_bytes_are_right_on_real_meshes() {
     println!("{meshes} real meshes");
 }
 
-/// Checks a large closed triangle mesh. Face-vertex stores the length of each list beside its
-/// start, so it has one word per vertex more than in the literature.
+/// Face-vertex stores the start and the length of each list, so each vertex needs one word more
+/// than in the literature.
 fn words_per_vertex_equal_the_literature() {
     let audit = run_audit("closed", shapes::geodesic(100).expect("200,000 triangles"));
     let words = [18.0, 9.0, 17.0, 30.0, 24.0, 16.0];
@@ -219,8 +215,6 @@ fn words_per_vertex_equal_the_literature() {
     }
 }
 
-/// Checks that the audit of a seventh structure reports the bytes that its layout formula leaves
-/// out.
 fn bytes_outside_the_formula_are_found() {
     let torus = || StudyMesh::new("torus", shapes::triangle_torus(20, 15).expect("a torus"));
     let seventh = Backend::new::<FaceAndEdgeLists>();
@@ -232,7 +226,7 @@ fn bytes_outside_the_formula_are_found() {
     incomplete.layout_bytes = |counts| FaceAndEdgeLists::layout_bytes(counts) - 8 * counts.edges;
     let audit = audit_of(incomplete);
     assert_eq!(audit.backends[0].agrees, Some(false));
-    // 300 vertices, 900 edges, 600 faces; the formula leaves out the ends of the edges.
+    // The formula does not contain the ends of the 900 edges.
     let expected =
         "its tables hold 18000 bytes, 7200 bytes more than its layout formula gives (10800 bytes)";
     assert!(
@@ -242,7 +236,7 @@ fn bytes_outside_the_formula_are_found() {
     );
 }
 
-/// Edits leave spare capacity. The formula does not include it, but the reported tables do.
+/// Edits leave spare capacity. The reported tables contain this capacity, but the formula does not.
 fn tables_report_all_bytes_after_edits() {
     let polygons = shapes::geodesic(12).expect("2,880 triangles");
     let decimation = Decimation {

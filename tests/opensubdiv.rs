@@ -1,21 +1,18 @@
-//! Compares Catmull–Clark and Loop with creases with the results of OpenSubdiv on the same meshes.
+//! Compares Catmull–Clark and Loop with OpenSubdiv on the same meshes with the same creases.
 //!
-//! The environment variable `SIXFOLD_OPENSUBDIV` names the program built from
-//! `opensubdiv/refine.cpp`. If it is not set, these tests do nothing. Vertices are matched by their
-//! origin (the vertex, edge or face of the level above), never by position. Seeds are fixed, so
-//! failures are reproducible.
+//! The environment variable `SIXFOLD_OPENSUBDIV` contains the path of the program built from
+//! `opensubdiv/refine.cpp`. If the variable is not set, these tests do nothing. Vertices are
+//! matched by the vertex, edge or face from which they come. They are not matched by position.
 //!
 //! Not compared:
 //!
-//! - Chaikin steps in which OpenSubdiv extrapolates or the result depends on rounding: see
-//!   `Level::is_incomparable`.
+//! - Chaikin steps for which `Level::is_incomparable` is true.
 //! - The limit of a smooth vertex of valence 2: OpenSubdiv returns the vertex itself, but the
 //!   levels converge to another point.
-//! - Loop on two triangles with the same corners: the halves of their edges have the same ends, and
-//!   OpenSubdiv keeps these halves as two edges.
+//! - Loop on two triangles with the same corners. The halves of their edges have the same ends, but
+//!   OpenSubdiv keeps both halves.
 //! - Normals on creases: OpenSubdiv uses the tangents of Biermann, Levin & Zorin (2000), which
-//!   belong to modified rules near creases. `tangent.rs` derives the tangents of the original
-//!   rules.
+//!   belong to other step rules. `tangent.rs` has the tangents for the rules of Sixfold.
 
 #[path = "opensubdiv/cases.rs"]
 mod cases;
@@ -39,10 +36,9 @@ use sixfold::{
 use numbers::{NumberMap, sorted_pair};
 use reference::{Answer, Case, Level, Reference};
 
-/// Maximum distance of two points that count as equal, relative to the size of the control mesh.
+/// Maximum distance of two equal points, relative to the size of the control mesh.
 const TOLERANCE: f32 = 1e-5;
 
-/// Checks that one of our levels equals the level of OpenSubdiv.
 fn check_level(
     level: &Level,
     numbers: &NumberMap,
@@ -66,7 +62,7 @@ fn check_level(
     }
     let uses = polygons.edge_uses();
     for edge in uses.iter().filter(|edge| edge.faces != 2) {
-        // Boundary and non-manifold edges are always sharp, even without a stored sharpness.
+        // Boundary and non-manifold edges are always sharp.
         ours.insert(edge.ends.map(|v| v.index()), f32::INFINITY);
     }
     let theirs = level.edges.iter().map(|&([a, b], sharpness)| {
@@ -80,7 +76,7 @@ fn check_level(
     for v in polygons.faces().corners() {
         is_used[v.index()] = true;
     }
-    // Isolated vertices never move; OpenSubdiv reports them as corners.
+    // OpenSubdiv reports isolated vertices as corners.
     let ours = creases.corners().iter();
     let ours = ours.map(|&(v, sharpness)| (v.index(), sharpness));
     let theirs = level.corners.iter();
@@ -105,8 +101,7 @@ fn check_sharpness<K: Ord + std::fmt::Debug>(
     }
 }
 
-/// Checks that our limits, where they are defined, equal the limits of OpenSubdiv. Returns the
-/// number of compared limits.
+/// Checks the limits that are defined. Returns the number of compared limits.
 fn check_limits<M: Representation>(
     case: &Case,
     answer: &Answer,
@@ -125,12 +120,11 @@ fn check_limits<M: Representation>(
         let v = M::vertex_handle(&polygons, v);
         let valence = mesh.vertex_edges(v).count();
         if valence == 0 {
-            // An isolated vertex: it does not move.
+            // An isolated vertex.
             continue;
         }
         let LimitPoint::Defined { position, normal } = limits[v] else {
-            // All faces are quads here, so the limit is undefined only near semi-sharp creases or
-            // at darts.
+            // All faces are quads, so the limit is undefined only at semi-sharp vertices and darts.
             let is_semi_sharp = {
                 let level = &answer.levels[case.levels as usize];
                 let edges = level
@@ -179,8 +173,8 @@ fn comparable_levels(case: &Case, answer: &Answer) -> u32 {
     levels.find(is_incomparable).unwrap_or(case.levels)
 }
 
-/// Compares every level of `case` on one structure. `next` makes the next level; `all` makes all
-/// levels at once, without holes. Returns the number of compared limits; `None` if the structure
+/// Compares every level of `case` on one structure. `next` makes the next level. `all` makes all
+/// levels at once, without holes. Returns the number of compared limits, or `None` if the structure
 /// cannot hold the mesh.
 fn compare_levels<M: Representation>(
     case: &Case,
@@ -224,8 +218,8 @@ fn compare_levels<M: Representation>(
     ))
 }
 
-/// Returns `polygons` without the faces that are holes in OpenSubdiv, and without vertices that
-/// only such faces use.
+/// Returns `polygons` without the faces that are holes in OpenSubdiv, and without the vertices of
+/// these faces that no other face uses.
 fn without_holes(level: &Level, numbers: &NumberMap, polygons: &PolygonMesh) -> PolygonMesh {
     let mut is_hole = vec![false; polygons.face_count()];
     for (face, &number) in level.faces.iter().zip(&numbers.faces) {
@@ -251,7 +245,6 @@ fn without_holes(level: &Level, numbers: &NumberMap, polygons: &PolygonMesh) -> 
     PolygonMesh::new(points, faces).expect("faces of a mesh")
 }
 
-/// Returns whether two triangles have the same corners.
 fn has_duplicate_triangles(polygons: &PolygonMesh) -> bool {
     let mut seen = BTreeSet::new();
     polygons.faces().iter().any(|(_, face)| {
@@ -261,7 +254,7 @@ fn has_duplicate_triangles(polygons: &PolygonMesh) -> bool {
     })
 }
 
-/// Counts of comparisons, so that a test that compares nothing fails.
+/// Numbers of comparisons.
 #[derive(Default)]
 struct Counts {
     runs: Cell<usize>,
@@ -274,7 +267,7 @@ fn add(count: &Cell<usize>, more: usize) {
     count.set(count.get() + more);
 }
 
-/// Runs `case` in OpenSubdiv, and compares the answer with the results of all our methods.
+/// Compares the results of all methods with the answer of OpenSubdiv.
 fn compare_case(reference: &Reference, case: &Case, counts: &Counts) {
     if case.subdivision.scheme == Scheme::Loop && has_duplicate_triangles(&case.polygons) {
         return;
@@ -323,8 +316,8 @@ fn compare_case(reference: &Reference, case: &Case, counts: &Counts) {
     });
 }
 
-/// Runs [`compare_levels`] with native steps. Also returns `None` if the structure does not support
-/// the split.
+/// Runs [`compare_levels`] with native steps. Returns `None` if the structure cannot hold the mesh
+/// or does not support the split.
 fn native<M: Refine>(case: &Case, answer: &Answer) -> Option<usize> {
     let Case {
         subdivision,
@@ -348,7 +341,7 @@ fn native<M: Refine>(case: &Case, answer: &Answer) -> Option<usize> {
     compare_levels(case, answer, next, all)
 }
 
-/// Compares `cases` random cases of a strategy; `seed` makes them the same in every run.
+/// Compares `cases` random cases. `seed` makes the cases the same in every run.
 fn compare_random(cases: u32, seed: u64, strategy: impl Strategy<Value = Case>) -> Option<Counts> {
     let reference = Reference::from_env()?;
     let mut runner = TestRunner::new(ProptestConfig {
@@ -369,7 +362,7 @@ fn compare_random(cases: u32, seed: u64, strategy: impl Strategy<Value = Case>) 
 #[test]
 fn manifolds_equal_those_of_opensubdiv() {
     if let Some(counts) = compare_random(300, 1998, cases::manifold()) {
-        // For each case: two runs by polygons, and native runs of at least three structures.
+        // Each case has two runs by polygons, and native runs of at least three structures.
         assert!(counts.runs.get() > 1200, "{} runs", counts.runs.get());
         assert!(
             counts.limits.get() > 100_000,

@@ -1,5 +1,5 @@
-//! Checks that operators give the same mesh on every structure, and that half-edge accepts meshes
-//! after orientation repair.
+//! Checks that operators give the same mesh on every structure. Also checks that half-edge accepts
+//! meshes after orientation repair.
 
 use proptest::prelude::*;
 use sixfold::operators::{
@@ -12,7 +12,7 @@ use sixfold::{
 use sixfold_conformance::strategy::{any_mesh, manifold_mesh};
 use sixfold_conformance::{gallery, one_line, welded};
 
-/// Asserts that two structures compute the same position or normal, up to 4 ulps of `size`.
+/// Asserts that two vectors are equal, up to 4 ulps of `size`.
 fn assert_near(got: Point, expected: Point, size: f32, context: &str) {
     let off = (got - expected).abs().max_element();
     assert!(
@@ -26,8 +26,8 @@ fn size(polygons: &PolygonMesh) -> f32 {
     polygons.positions().iter().map(largest).fold(0.0, f32::max)
 }
 
-/// Returns the results on `M`: first those of the vertices of `polygons`, then those of the faces.
-/// Returns `None` if `M` refuses the mesh.
+/// Returns the results on `M` for the vertices of `polygons`, then for the faces. Returns `None` if
+/// `M` refuses the mesh.
 fn results<M: Representation>(
     polygons: &PolygonMesh,
     operator: impl Fn(&M) -> Option<Results<M>>,
@@ -45,8 +45,7 @@ fn results<M: Representation>(
 
 type Results<M> = (sixfold::VertexMap<M, Point>, sixfold::FaceMap<M, Point>);
 
-/// Compares the results of `operator` on all structures that hold `polygons` with the result on the
-/// first of these structures.
+/// Compares the results of `operator` on all structures that can hold `polygons`.
 macro_rules! compare_structures {
     ($polygons:expr, $size:expr, $operator:expr) => {{
         let polygons: &PolygonMesh = $polygons;
@@ -86,11 +85,10 @@ fn smoothing() -> impl Strategy<Value = Smoothing> {
     )
 }
 
-/// Checks that all structures that hold `polygons` give the same dual or the same error, and
-/// returns this result.
+/// Checks that all structures that can hold `polygons` give the same dual or the same error.
+/// Returns the dual or the error.
 ///
-/// `polygons` must be welded, because the soup numbers vertices in the order in which faces first
-/// use them.
+/// `polygons` must be welded, because a soup numbers vertices in the order of their first use.
 fn compare_duals(polygons: &PolygonMesh) -> Option<Result<PolygonMesh, DualError>> {
     let mut first = None;
     for_each_representation!(M => {
@@ -111,7 +109,6 @@ fn compare_duals(polygons: &PolygonMesh) -> Option<Result<PolygonMesh, DualError
     first
 }
 
-/// Without this check, the comparisons could compare a structure only with itself.
 #[test]
 fn all_structures_are_compared() {
     let icosahedron = sixfold::shapes::icosahedron();
@@ -224,8 +221,7 @@ proptest! {
         }
     }
 
-    /// Orientation repair fails only if the mesh is not orientable. If orientation was the only
-    /// fault, half-edge accepts the result.
+    /// Half-edge accepts the repaired mesh if the orientation was the only fault.
     #[test]
     fn every_orientable_mesh_is_repaired(polygons in any_mesh()) {
         let before = Facts::from_polygons(&polygons);

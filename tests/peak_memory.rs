@@ -1,5 +1,4 @@
-//! Checks that a native step allocates almost nothing in addition to the mesh and its child: no
-//! polygons, no hash table.
+//! Checks that a native step allocates almost no memory in addition to the mesh and its child.
 //!
 //! This is a separate program, because its allocator counts every byte.
 
@@ -10,7 +9,7 @@ use sixfold::{Creases, PolygonMesh, Refine, Representation, for_each_refinable, 
 #[global_allocator]
 static HEAP: PeakAlloc = PeakAlloc;
 
-/// Returns the peak memory of one step into a new mesh, relative to both meshes together.
+/// Returns the peak memory of one step divided by the memory of the mesh and its child.
 fn peak_of_a_step<M: Refine>(scheme: Scheme, polygons: &PolygonMesh) -> Option<f64> {
     let subdivision = Subdivision::new(scheme);
     let split = subdivision.split(0)?;
@@ -35,7 +34,7 @@ fn a_native_step_needs_little_more_than_its_result() {
     let open = shapes::triangle_grid(150, 150).expect("45,000 triangles");
     let quads = shapes::torus(200, 200).expect("40,000 quads");
     let mixed = shapes::mixed_grid(150, 150).expect("mixed degrees");
-    // One thread, because each thread allocates its own stack and queues.
+    // Each thread would allocate its own stack and queues.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let mut steps = 0;
     pool.expect("a thread").install(|| {

@@ -1,8 +1,8 @@
-//! Checks on real meshes that `check` and building agree, and that all structures give the same
-//! answers on the small meshes.
+//! Checks on real meshes that `check` and building agree. Also checks that all structures give the
+//! same answers on small meshes.
 //!
-//! The environment variable `SIXFOLD_MESHES` names the folder. If it is not set, these tests do
-//! nothing.
+//! The environment variable `SIXFOLD_MESHES` contains the path of the folder. If the variable is
+//! not set, these tests do nothing.
 
 use std::path::PathBuf;
 use std::{env, fs};
@@ -11,7 +11,7 @@ use sixfold::{MeshQuery, PolygonMesh, Representation, for_each_representation, i
 
 use crate::equivalence::compare_structures;
 
-/// Reads each OBJ file of the folder, without its degenerate faces. Returns names and meshes.
+/// Reads each OBJ file of the folder without its degenerate faces. Returns names and meshes.
 fn meshes() -> Vec<(String, PolygonMesh)> {
     let Some(folder) = env::var_os("SIXFOLD_MESHES").map(PathBuf::from) else {
         return Vec::new();
@@ -46,7 +46,7 @@ fn building_fails_with_the_error_of_the_check() {
     }
 }
 
-/// Tests only small meshes, because scanning all faces for every element takes quadratic time.
+/// Scanning all faces for every element takes quadratic time.
 #[test]
 fn all_give_the_same_answers_on_small_meshes() {
     for (_, polygons) in meshes() {

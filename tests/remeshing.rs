@@ -7,8 +7,7 @@ use sixfold::remeshing::{
 use sixfold::{for_each_editable, shapes};
 use sixfold_core::{MeshEdit, Point, PolygonMesh, Representation};
 
-/// Returns closed and open surfaces. One of them is rough and has corners; collapses near its
-/// boundary are among the cheapest.
+/// Returns closed and open surfaces. One surface is rough and has corners.
 pub(crate) fn surfaces() -> [PolygonMesh; 4] {
     let message = "a small shape";
     let flat = shapes::triangle_grid(12, 12).expect(message);
@@ -25,11 +24,11 @@ pub(crate) fn surfaces() -> [PolygonMesh; 4] {
     ]
 }
 
-/// Returns the sorted faces. A face consists of the bits of its corners and starts at its least
+/// Returns the sorted faces. A face consists of the bits of its corners and starts at its lowest
 /// corner.
 fn faces(polygons: &PolygonMesh) -> Vec<Vec<[u32; 3]>> {
     let faces = polygons.faces().iter().map(|(_, face)| {
-        // Adding zero turns −0 into 0. Structures whose vertices are coordinates do this too.
+        // Adding zero turns −0 into 0.
         let at = |v| {
             (polygons.position(v) + Point::ZERO)
                 .to_array()
@@ -45,7 +44,7 @@ fn faces(polygons: &PolygonMesh) -> Vec<Vec<[u32; 3]>> {
     faces
 }
 
-/// An operator that can be run on any structure, and on a mesh with data.
+/// An operator that runs on any structure, and on a mesh with data.
 pub(crate) trait Operator {
     fn run<M: MeshEdit>(&self, mesh: &mut M);
 }

@@ -1,6 +1,6 @@
-//! Checks that a seventh structure takes part in studies, `pick`, subdivisions and edits, and that
-//! its results equal those of the six. The structure is one file of tests and needs no change in
-//! any crate.
+//! Checks that a seventh structure can be used for studies, `pick`, subdivisions and edits, and
+//! gives the same results as the six structures. The seventh structure is in one test file and
+//! needs no change in any crate.
 
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -16,20 +16,19 @@ use sixfold_study::{
     SubdivisionJob, Way, built_in, inspect, pick, study,
 };
 
-// This file belongs to the tests of the conformance suite itself; ARCHITECTURE.md explains it.
+// The conformance suite uses this file too; see ARCHITECTURE.md.
 #[path = "../crates/conformance/tests/all/face_and_edge_lists.rs"]
 mod face_and_edge_lists;
 
 use face_and_edge_lists::FaceAndEdgeLists;
 
-/// Returns the seventh structure. It only answers queries.
+/// Returns the seventh structure without edits.
 fn lists() -> Backend {
     Backend::new::<FaceAndEdgeLists>()
 }
 
-/// Returns the seventh structure with edits and with native refinement. The structure implements
-/// neither of them, so the types of two other structures are registered for it. This shows that the
-/// program uses the registered types, not a list of names.
+/// Returns the seventh structure with edits and native refinement, for which types of two other
+/// structures are registered.
 fn lists_with_all() -> Backend {
     let backend = lists().with_edits::<EditableIndexedFaceSet>();
     backend.with_refinement::<FaceVertexMesh>()
@@ -39,8 +38,8 @@ fn torus() -> PolygonMesh {
     shapes::triangle_torus(30, 20).expect("a small torus")
 }
 
-/// Checks that a study measures all operations on `seventh`, except the operations that it refuses;
-/// `refused` is their number. The results must equal those of the other structures.
+/// Checks that a study measures all operations on `seventh` except `refused` operations. Compares
+/// the results with the other structures.
 fn check_study(seventh: Backend, refused: usize) {
     let small = shapes::triangle_torus(6, 4).expect("a small torus");
     let settings = Settings {
@@ -72,7 +71,7 @@ fn check_study(seventh: Backend, refused: usize) {
 
 #[test]
 fn a_study_measures_a_seventh_structure() {
-    // The structure refuses only native subdivisions (2) and passes of edits (4).
+    // The structure refuses two native subdivisions and four passes of edits.
     check_study(lists(), 2 + 4);
 }
 
@@ -110,7 +109,7 @@ fn two_backends_with_the_same_name_are_refused() {
     );
 }
 
-/// Runs `workload` on `seventh` and on `others`, or on all six if `others` is empty.
+/// Runs `workload` on `seventh` and on `others`. If `others` is empty, runs on all six structures.
 fn pick_with(seventh: Backend, others: &[&str], workload: &str, needs: &[Need]) -> PickReport {
     let mut backends: Vec<String> = others.iter().map(|&name| name.into()).collect();
     if !others.is_empty() {
@@ -138,7 +137,7 @@ fn pick_with(seventh: Backend, others: &[&str], workload: &str, needs: &[Need]) 
     report
 }
 
-/// Returns the ranked structures, without relation tables.
+/// Returns the ranked structures without relation tables.
 fn ranked(report: &PickReport) -> Vec<&str> {
     let ranking = report.ranking.iter().filter(|row| row.made_from.is_none());
     ranking.map(|row| row.backend.as_str()).collect()
@@ -199,8 +198,8 @@ fn a_pick_excludes_a_seventh_structure_with_the_reason() {
     }
 }
 
-/// Returns the number of faces and the checksum after a subdivision; `None` if `backend` does not
-/// support it.
+/// Returns the number of faces and the checksum after a subdivision, or `None` if `backend` does
+/// not support the subdivision.
 fn subdivided(backend: &Backend, job: SubdivisionJob) -> Option<(usize, f64)> {
     let polygons = shapes::geodesic(3).expect("small");
     let refiner = job.prepare(backend, &polygons, &Creases::default())?;
@@ -237,7 +236,7 @@ fn a_seventh_structure_is_subdivided_like_the_others() {
     }
 }
 
-/// Runs edits once and returns how many were done, and the checksum.
+/// Runs edits once. Returns the number of edits and the checksum.
 fn edited(mut editor: Box<dyn Editor>) -> (u64, f64) {
     editor.time(&Series::once(&MachineClock::start()));
     let edits = editor.result();
@@ -281,8 +280,7 @@ fn a_seventh_structure_runs_alone() {
     assert_eq!(run.elements, polygons.face_count() as u64);
 }
 
-/// If a line of the list of structures lacks `edit` or `refine`, the structure is left out only if
-/// that capability is required.
+/// A structure whose line lacks `edit` or `refine` is left out only if this capability is required.
 #[test]
 fn a_line_of_the_list_can_lack_capabilities() {
     macro_rules! names {

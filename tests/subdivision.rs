@@ -1,4 +1,4 @@
-//! Checks that every scheme gives the same mesh by every method on every structure.
+//! Checks that all methods and structures give the same mesh for every scheme.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -11,8 +11,7 @@ use sixfold::{
 use sixfold_conformance::strategy::{any_mesh, manifold_mesh};
 use sixfold_conformance::{gallery, one_line, welded};
 
-/// Maximum distance of two points that count as equal, relative to the size of the mesh: a few
-/// ulps.
+/// Maximum distance of two equal points, relative to the size of the mesh.
 const TOLERANCE: f32 = 4e-6;
 
 /// Runs one step by one method on a structure. Returns `None` if the structure cannot hold the
@@ -37,7 +36,8 @@ fn step_by_polygons<M: Representation>(
     Some(step.map_err(|refusal| refusal.to_string()))
 }
 
-/// Runs one native step on one thread and on three, and checks that the results are bit-identical.
+/// Runs one native step on one thread and on three threads, and checks that the results are
+/// bit-identical.
 fn native<M: Refine>(
     subdivision: &Subdivision,
     polygons: &PolygonMesh,
@@ -66,7 +66,7 @@ fn native<M: Refine>(
     Some(one)
 }
 
-/// Returns `step` with vertices renumbered as in `first`, matched by position; `None` if two
+/// Returns `step` with the vertex numbers of `first`, matched by position. Returns `None` if two
 /// vertices of `first` have the same position.
 fn renumbered_like(step: &Step, first: &Step) -> Option<Step> {
     let size = extent(&first.polygons);
@@ -104,7 +104,7 @@ fn extent(polygons: &PolygonMesh) -> f32 {
     sizes.fold(1e-30, f32::max)
 }
 
-/// Returns the faces, each starting at its lowest vertex, sorted.
+/// Returns the sorted faces, each starting at its lowest vertex.
 fn faces(polygons: &PolygonMesh) -> Vec<Vec<VertexId>> {
     let rotate_to_lowest = |face: &[VertexId]| {
         let lowest = (0..face.len()).min_by_key(|&i| face[i]).unwrap_or(0);
@@ -118,7 +118,6 @@ fn faces(polygons: &PolygonMesh) -> Vec<Vec<VertexId>> {
     all
 }
 
-/// Checks that `step` equals `first`, which another structure or method made from the same mesh.
 fn assert_same_step(step: &Step, first: &Step, what: &str) {
     let sizes = |step: &Step| (step.polygons.vertex_count(), step.polygons.face_count());
     assert_eq!(sizes(step), sizes(first), "{what}");
@@ -142,8 +141,8 @@ fn assert_same_step(step: &Step, first: &Step, what: &str) {
     }
 }
 
-/// Runs `levels` steps by all methods on all structures, and compares the results of each step.
-/// Each step starts from the first result of the previous step. Returns the number of comparisons.
+/// Runs `levels` steps by all methods on all structures, and compares the results of each step. The
+/// next step starts from the first result. Returns the number of comparisons.
 fn compare_methods(
     subdivision: &Subdivision,
     polygons: &PolygonMesh,
@@ -153,8 +152,7 @@ fn compare_methods(
     let (mut polygons, mut creases) = (polygons.clone(), creases.clone());
     let mut compared = 0;
     for level in 0..levels {
-        // A soup numbers vertices in the order of the faces. After the first step, it may merge
-        // vertices.
+        // A soup numbers vertices in the order of the faces, and can merge vertices after a step.
         let Ok(mesh) = welded(&polygons) else { break };
         if mesh != polygons && level > 0 {
             break;
@@ -169,8 +167,7 @@ fn compare_methods(
             );
             match (done, &first) {
                 (None, _) => {}
-                // Native edge tables cannot hold two edges with the same ends, but polygons can
-                // have them.
+                // Polygons can have two edges with the same ends, but native edge tables cannot.
                 (Some(Err(why)), Some(_)) if method == Method::Native => {
                     assert!(why.contains("share two edges"), "{what}: {why}");
                 }
@@ -202,7 +199,6 @@ fn compare_methods(
     compared
 }
 
-/// Generates the sharpness of a few edges and vertices, several of them at one vertex.
 pub(crate) fn sharpness() -> impl Strategy<Value = Vec<(Index, Index, f32)>> {
     let value = prop_oneof![
         Just(0.3_f32),
@@ -218,8 +214,8 @@ pub(crate) fn sharpness() -> impl Strategy<Value = Vec<(Index, Index, f32)>> {
     vec((any::<Index>(), any::<Index>(), value), 0..8)
 }
 
-/// Builds creases on `polygons` from `choices`. Every second choice is an edge at a vertex of an
-/// earlier choice, so that creases meet.
+/// Builds creases on `polygons` from `choices`. Every second crease starts at a vertex of an
+/// earlier crease.
 pub(crate) fn creases_on(polygons: &PolygonMesh, choices: &[(Index, Index, f32)]) -> Creases {
     let edges = polygons.edge_uses();
     if edges.is_empty() {
@@ -248,8 +244,8 @@ pub(crate) fn creases_on(polygons: &PolygonMesh, choices: &[(Index, Index, f32)]
     Creases::new(polygons, sharp, corners).expect("edges and vertices of the mesh")
 }
 
-/// Returns the mesh for a scheme: triangulated if the scheme takes only triangles, and with
-/// vertices in the order that a soup uses.
+/// Triangulates the mesh if the scheme accepts only triangles, and numbers the vertices like a
+/// soup.
 fn for_scheme(scheme: Scheme, polygons: &PolygonMesh) -> Option<PolygonMesh> {
     let polygons = match scheme.kind().takes {
         "triangles" => polygons.fan_triangulated().ok()?,

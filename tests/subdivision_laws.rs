@@ -1,5 +1,5 @@
-//! Checks the invariants and the element counts of every scheme, on random manifolds with random
-//! creases.
+//! Checks laws of every scheme on random manifolds with random creases: element counts, symmetry
+//! and other invariants.
 
 #[path = "subdivision_laws/regular.rs"]
 mod regular;
@@ -17,10 +17,9 @@ use sixfold_conformance::strategy::manifold_mesh;
 
 use crate::subdivision::{creases_on, sharpness};
 
-/// Maximum distance of two points that count as equal, relative to the size of the mesh.
+/// Maximum distance of two equal points, relative to the size of the mesh.
 const TOLERANCE: f32 = 1e-5;
 
-/// A subdivision and a mesh that it accepts, with creases if the scheme supports them.
 #[derive(Clone, Debug)]
 struct Case {
     subdivision: Subdivision,
@@ -89,8 +88,8 @@ fn creases_for(scheme: Scheme, polygons: &PolygonMesh, choices: &[(Index, Index,
     }
 }
 
-/// Triangulates the mesh if the scheme takes only triangles. Returns `None` if the result is not a
-/// manifold, or two triangles have the same corners.
+/// Triangulates the mesh if the scheme accepts only triangles. Returns `None` if the result is not
+/// a manifold or contains a triangle twice.
 fn for_scheme(scheme: Scheme, polygons: PolygonMesh) -> Option<PolygonMesh> {
     if scheme.kind().takes != "triangles" {
         return Some(polygons);
@@ -104,7 +103,6 @@ fn is_plain_manifold(polygons: &PolygonMesh) -> bool {
     !has_duplicates && HalfEdgeMesh::from_polygons(polygons).is_ok()
 }
 
-/// Returns the same faces with positions mapped by `place`.
 fn map_positions(polygons: &PolygonMesh, place: impl Fn(Point) -> Point) -> PolygonMesh {
     let positions = polygons.positions().iter().copied().map(place).collect();
     PolygonMesh::from_faces(positions, polygons.faces().clone()).expect("the same faces")
@@ -115,7 +113,7 @@ fn size(polygons: &PolygonMesh) -> f32 {
     sizes.fold(0.0, f32::max)
 }
 
-/// Returns for each vertex its valence, and whether a boundary edge ends there.
+/// Returns the valence of each vertex, and whether the vertex is on the boundary.
 fn valences(polygons: &PolygonMesh) -> Vec<(usize, bool)> {
     let mut valences = vec![(0, false); polygons.vertex_count()];
     for edge in polygons.edge_uses() {
@@ -163,8 +161,7 @@ fn expected_counts(scheme: Scheme, polygons: &PolygonMesh, level: u32) -> [usize
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, cases: 96, ..ProptestConfig::default() })]
 
-    /// Does not use `Boundary::None`, because it removes faces at the boundary and changes the
-    /// counts.
+    /// `Boundary::None` removes faces, so it is not used here.
     #[test]
     fn topology_is_kept_and_counts_follow_the_formulas(
         start in cases_with(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
@@ -199,8 +196,6 @@ proptest! {
         }
     }
 
-    /// Old vertices keep their valence. New vertices, except face points, have the valence of a
-    /// regular mesh.
     #[test]
     fn valences_are_kept(
         start in cases_with(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
@@ -224,13 +219,11 @@ proptest! {
                 prop_assert!(kept.clone().all(|(old, new)| old == new));
                 prop_assert!(regular(vertices, 6, 4));
             }
-            // The new edges lead to the faces at the vertex. At the boundary, two old edges remain,
-            // so the valence increases by one.
+            // The new edges of a boundary vertex lead to its faces, and two old edges remain.
             Scheme::Sqrt3 => {
                 let expected_valence = |&(valence, is_open): &(usize, bool)| (valence + usize::from(is_open), is_open);
                 prop_assert!(kept.clone().all(|(old, new)| expected_valence(old) == *new));
-                // A face point is adjacent to three corners, and to one face point across each
-                // inner side.
+                // A face point is adjacent to three corners and to at most three other face points.
                 prop_assert!(new[vertices..].iter().all(|&(valence, _)| (3..=6).contains(&valence)));
             }
             Scheme::DooSabin => {
@@ -263,7 +256,7 @@ proptest! {
         }
     }
 
-    /// The weights of every stencil add up to 1: if all points are equal, they do not move.
+    /// Equal points do not move if the weights of every stencil add up to 1.
     #[test]
     fn weights_are_a_partition_of_unity(start in cases()) {
         let place = Point::new(1.0, -3.0, 0.7);
@@ -327,8 +320,8 @@ proptest! {
     }
 }
 
-/// Joins a mesh and its mirror image along the boundary, which lies in x = 0. Also returns the
-/// mirror vertex of each vertex. Returns `None` if the result is not a manifold.
+/// Joins a mesh and its mirror image along the boundary, which lies in x = 0. Returns the joined
+/// mesh, and the mirror vertex of each vertex. Returns `None` if the result is not a manifold.
 ///
 /// ```text
 ///       boundary

@@ -14,7 +14,7 @@ fn main() {
     if let Some(commit) = git(&["describe", "--always", "--dirty", "--abbrev=12"]) {
         println!("cargo::rustc-env=STUDY_COMMIT={commit}");
     }
-    // Git writes this file when HEAD moves. Outside a repository it does not exist.
+    // Git writes this file when HEAD moves. The file does not exist outside a repository.
     if let Some(log) = git(&[
         "rev-parse",
         "--path-format=absolute",
@@ -38,9 +38,8 @@ fn main() {
     println!("cargo::rerun-if-changed=build.rs");
 }
 
-/// Returns the name of the profile: `release`, `dist` or `debug`. Cargo passes to build scripts
-/// only whether a profile inherits from `release`, but it writes each profile into a separate
-/// folder.
+/// Returns the name of the profile: `release`, `dist` or `debug`. Cargo does not pass the name to
+/// build scripts, but each profile has its own output folder.
 fn profile() -> String {
     let inherits = env::var("PROFILE").unwrap_or_else(|_| "unknown".into());
     let out = env::var("OUT_DIR").unwrap_or_default();
@@ -50,7 +49,7 @@ fn profile() -> String {
     name.map_or(inherits, str::to_owned)
 }
 
-/// Returns the output of git, on one line; `None` without git or a repository.
+/// Returns the output of git on one line; `None` without git or a repository.
 fn git(arguments: &[&str]) -> Option<String> {
     let output = Command::new("git").args(arguments).output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;

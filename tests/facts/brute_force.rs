@@ -1,11 +1,11 @@
-//! Computes the facts of a small mesh by their definitions in TRUTH.md, each with its own loop.
+//! Computes the facts of a small mesh by their definitions in TRUTH.md.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use sixfold::{Distribution, FaceId, Facts, PolygonMesh, Relation, VertexId};
 use sixfold_conformance::{Element, Oracle};
 
-/// Returns the expected result of [`Facts::from_polygons`] for `polygons`.
+/// Returns the expected result of [`Facts::from_polygons`].
 pub(crate) fn facts(polygons: &PolygonMesh) -> Facts {
     let oracle = Oracle::new(polygons);
     let mesh = Incidence::new(&oracle);
@@ -71,11 +71,10 @@ pub(crate) fn facts(polygons: &PolygonMesh) -> Facts {
     }
 }
 
-/// The faces at the edges and vertices of a mesh, found by nested loops.
+/// The faces at the edges and vertices of a mesh.
 struct Incidence<'a> {
     oracle: &'a Oracle,
-    /// The faces at each vertex, in classes. Faces that share an edge at the vertex are in one
-    /// class.
+    /// The fans at each vertex. Faces that share an edge at the vertex are in one fan.
     fans: BTreeMap<VertexId, Vec<Vec<FaceId>>>,
 }
 
@@ -89,7 +88,6 @@ impl<'a> Incidence<'a> {
         mesh
     }
 
-    /// Returns the faces on `e`.
     fn faces_on(&self, e: Element) -> Vec<FaceId> {
         faces_of(self.oracle.answer(Relation::EdgeFaces, e))
     }
@@ -105,7 +103,7 @@ impl<'a> Incidence<'a> {
         })
     }
 
-    /// Returns the faces in classes; faces that share an edge are in one class.
+    /// Returns the connected components: faces that share an edge are in one component.
     fn components(&self) -> Vec<Vec<FaceId>> {
         let faces: Vec<FaceId> = self.oracle.faces().collect();
         classes(&faces, |f, g| {
@@ -114,7 +112,7 @@ impl<'a> Incidence<'a> {
         })
     }
 
-    /// Returns whether `f` runs along the edge from its lower to its higher end.
+    /// Returns whether `f` runs along the edge from the lower vertex to the higher vertex.
     fn runs_upwards(&self, f: FaceId, edge: Element) -> bool {
         let corners = self.oracle.corners(f);
         (0..corners.len()).any(|i| {
@@ -123,7 +121,7 @@ impl<'a> Incidence<'a> {
         })
     }
 
-    /// Returns whether `e` has exactly two faces and both run along it in the same direction.
+    /// Returns whether `e` has exactly two faces that run along `e` in the same direction.
     fn is_inconsistent(&self, e: Element) -> bool {
         match self.faces_on(e)[..] {
             [f, g] => self.runs_upwards(f, e) == self.runs_upwards(g, e),
@@ -131,7 +129,6 @@ impl<'a> Incidence<'a> {
         }
     }
 
-    /// Returns whether faces can be flipped so that no edge with two faces is inconsistent.
     fn is_orientable(&self, components: &[Vec<FaceId>]) -> bool {
         let pairs: Vec<([FaceId; 2], bool)> = self
             .oracle
@@ -143,8 +140,7 @@ impl<'a> Incidence<'a> {
             .collect();
         let mut is_reversed: BTreeMap<FaceId, bool> = BTreeMap::new();
         for &start in components.iter().flatten() {
-            // If no step has reached this face, do not flip it. Then propagate until nothing
-            // changes.
+            // No step has reached this face, so the face is not flipped.
             is_reversed.entry(start).or_insert(false);
             let mut changed = true;
             while changed {
@@ -166,7 +162,7 @@ impl<'a> Incidence<'a> {
             .all(|&([f, g], differ)| is_reversed[&f] ^ is_reversed[&g] == differ)
     }
 
-    /// Returns the boundary edges in classes. Edges that meet in one fan are in one class.
+    /// Returns the boundary edges in groups. Edges that meet in one fan are in one group.
     fn loops(&self, boundary: &[Element]) -> Vec<Vec<Element>> {
         classes(boundary, |e, g| {
             let (Element::Edge(a, b), Element::Edge(c, d)) = (e, g) else {
@@ -181,8 +177,7 @@ impl<'a> Incidence<'a> {
         })
     }
 
-    /// Returns the genus of an orientable component; a vertex with several fans counts once for
-    /// each fan.
+    /// Returns the genus of an orientable component. A vertex counts once for each of its fans.
     fn genus(&self, component: &[FaceId], loops: &[Vec<Element>]) -> i64 {
         let inside = |f: &FaceId| component.contains(f);
         let fans = self.oracle.vertices().flat_map(|v| &self.fans[&v]);
@@ -210,7 +205,7 @@ fn faces_of(elements: &[Element]) -> Vec<FaceId> {
     faces.collect()
 }
 
-/// Partitions `items` into the connected components of the relation `linked`.
+/// Returns the connected components of the relation `linked`.
 fn classes<T: Copy + PartialEq>(items: &[T], linked: impl Fn(T, T) -> bool) -> Vec<Vec<T>> {
     let mut rest = items.to_vec();
     let mut classes = Vec::new();

@@ -13,16 +13,15 @@ use sixfold_conformance::strategy::{any_mesh, manifold_mesh};
 use super::reference::Case;
 use crate::subdivision::{creases_on, sharpness};
 
-/// Maximum number of corners of the finest mesh. Larger meshes only take more time.
+/// Maximum number of corners of the finest mesh.
 const MAX_CORNERS: usize = 12_000;
 
-/// Generates manifolds, open and closed, of mixed degrees.
+/// Generates manifolds with and without boundary, with faces of different degrees.
 pub(crate) fn manifold() -> impl Strategy<Value = Case> {
     cases_on(manifold_mesh())
 }
 
-/// Generates meshes that have edges of three faces, vertices with several fans or flipped faces,
-/// and arbitrary meshes.
+/// Generates meshes with non-manifold edges, vertices with several fans, or flipped faces.
 pub(crate) fn non_manifold() -> impl Strategy<Value = Case> {
     let meshes = prop_oneof![
         (3..6_u32, 2..4_u32).prop_map(|(pages, length)| book(pages, length)),
@@ -70,9 +69,8 @@ fn for_scheme(scheme: Scheme, polygons: PolygonMesh) -> PolygonMesh {
     }
 }
 
-/// Returns cases with different creases that meet at the hub of a closed or open wheel, and cases
-/// with inner vertices of two faces. Each case has three levels, so that sharpness ends at
-/// different levels.
+/// Returns cases with different creases at the hub of a wheel, and cases with inner vertices of two
+/// faces. Each case has three levels.
 pub(crate) fn fixed() -> Vec<Case> {
     let inf = f32::INFINITY;
     let hubs: [(f32, &[f32]); 12] = [
@@ -112,7 +110,7 @@ pub(crate) fn fixed() -> Vec<Case> {
             }
         }
     }
-    // Two quads back to back: every vertex has two faces, and is smooth or on a crease.
+    // Every vertex has two faces.
     for s in [0.0, 0.5, 1.5] {
         let corners = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.3), Point::Y];
         let polygons = PolygonMesh::new(corners, [[0, 1, 2, 3], [3, 2, 1, 0]]).expect("two quads");
@@ -139,7 +137,7 @@ fn on_circle(i: u32, n: u32, z: f32) -> Point {
     Point::new(cos, sin, z)
 }
 
-/// Builds triangles around vertex 0; if `is_closed` is false, one triangle is missing.
+/// Builds triangles around vertex 0. If `is_closed` is false, one triangle is missing.
 fn wheel(n: u32, is_closed: bool) -> PolygonMesh {
     let rim = (0..n).map(|i| on_circle(i, n, (i % 3) as f32 * 0.25));
     let points: Vec<Point> = std::iter::once(Point::Z).chain(rim).collect();
@@ -169,7 +167,7 @@ fn book(pages: u32, length: u32) -> PolygonMesh {
     PolygonMesh::new(points, quads.collect::<Vec<_>>()).expect("a book")
 }
 
-/// Builds polygons of one degree that share only vertex 0.
+/// Builds polygons that share only vertex 0. All polygons have the same degree.
 fn bow_tie(fans: u32, degree: u32) -> PolygonMesh {
     let rim = fans * (degree - 1);
     let points = (0..rim).map(|i| on_circle(i, rim, (i % 2) as f32 * 0.5));
@@ -181,7 +179,6 @@ fn bow_tie(fans: u32, degree: u32) -> PolygonMesh {
     PolygonMesh::new(points, faces.collect::<Vec<_>>()).expect("a bow-tie")
 }
 
-/// Builds two closed pyramids that share their apex, vertex 0.
 fn two_cones(n: u32) -> PolygonMesh {
     let rings = (0..2 * n).map(|i| on_circle(i, n, if i < n { 1.0 } else { -1.0 }));
     let points: Vec<Point> = std::iter::once(Point::ZERO).chain(rings).collect();
@@ -209,7 +206,7 @@ fn with_fin(edge: usize) -> PolygonMesh {
     PolygonMesh::new(points, faces).expect("a grid with a fin")
 }
 
-/// Removes some faces of the mesh (at least one stays) and flips some others.
+/// Removes some faces of the mesh, but not all, and flips some other faces.
 fn damaged(mesh: &PolygonMesh, removed: &[Index], reversed: &[Index]) -> PolygonMesh {
     let mut faces = face_rows(mesh);
     for index in removed {

@@ -1,4 +1,4 @@
-//! Maps the vertices and faces of OpenSubdiv to ours.
+//! Maps the vertices and faces of OpenSubdiv to the vertices and faces of Sixfold.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,14 +7,14 @@ use sixfold::subdivision::Scheme;
 
 use super::reference::{Level, Origin};
 
-/// Our numbers of OpenSubdiv's vertices and faces, on one level.
+/// For each vertex and face of OpenSubdiv, the number in Sixfold, at one level.
 pub(crate) struct NumberMap {
     pub(crate) vertices: Vec<usize>,
     pub(crate) faces: Vec<usize>,
 }
 
 impl NumberMap {
-    /// Makes the map of the control mesh, for which both programs use the same numbers.
+    /// Makes the map of the control mesh. Both programs use the same numbers for the control mesh.
     pub(crate) fn identity(polygons: &PolygonMesh) -> Self {
         Self {
             vertices: (0..polygons.vertex_count()).collect(),
@@ -22,8 +22,8 @@ impl NumberMap {
         }
     }
 
-    /// Makes the map of the next level from the origin of each vertex. `child` is the mesh of that
-    /// level.
+    /// Makes the map of the next level from the origins of the vertices. `child` is the mesh of the
+    /// next level.
     pub(crate) fn next_level(&self, scheme: Scheme, level: &Level, child: &PolygonMesh) -> Self {
         let (old, faces) = (self.vertices.len(), self.faces.len());
         let first_edge = match scheme {
@@ -68,13 +68,11 @@ fn rotate_to_lowest(corners: impl Iterator<Item = usize>) -> Vec<usize> {
     corners
 }
 
-/// Sorts the two numbers, the lower first.
 pub(crate) fn sorted_pair([a, b]: [usize; 2]) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// Returns the edge points. The key of a point is the two old vertices adjacent to it. Old vertices
-/// have numbers below `old`.
+/// Returns the edge points by the two adjacent old vertices. Old vertices have numbers below `old`.
 fn edge_points(child: &PolygonMesh, old: usize, first_edge: usize) -> BTreeMap<[usize; 2], usize> {
     let mut ends = vec![Vec::new(); child.vertex_count()];
     for edge in child.edge_uses() {

@@ -1,4 +1,4 @@
-//! Runs the program `refine`: it reads a case and prints OpenSubdiv's levels and limits.
+//! Runs the program `refine`, which reads a case and prints the levels and limits of OpenSubdiv.
 
 use std::env;
 use std::fmt::{self, Write as _};
@@ -10,7 +10,6 @@ use std::str::{FromStr, SplitWhitespace};
 use sixfold::subdivision::{Creasing, Subdivision};
 use sixfold::{Creases, Point, PolygonMesh, SHARPNESS_INFINITE};
 
-/// A mesh to refine, with the subdivision and the number of levels.
 #[derive(Clone)]
 pub(crate) struct Case {
     pub(crate) subdivision: Subdivision,
@@ -19,7 +18,7 @@ pub(crate) struct Case {
     pub(crate) levels: u32,
 }
 
-/// Writes the input of `refine`, so that a failing case can be run by hand.
+/// Writes the input of `refine`.
 impl fmt::Display for Case {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "scheme {}", self.subdivision.scheme)?;
@@ -52,7 +51,7 @@ impl fmt::Debug for Case {
     }
 }
 
-/// OpenSubdiv's result of a case, in OpenSubdiv's numbering.
+/// The result of OpenSubdiv for a case, with the numbering of OpenSubdiv.
 pub(crate) struct Answer {
     /// The levels, starting with the control mesh.
     pub(crate) levels: Vec<Level>,
@@ -77,7 +76,7 @@ pub(crate) struct Vertex {
     pub(crate) origin: Origin,
 }
 
-/// The vertex, edge or face of the level above from which a vertex comes.
+/// The element of the previous level from which a vertex comes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Origin {
     Given(usize),
@@ -91,11 +90,11 @@ pub(crate) struct Face {
     pub(crate) corners: Vec<usize>,
 }
 
-/// The path of the built program.
 pub(crate) struct Reference(PathBuf);
 
 impl Reference {
-    /// Returns the program that `SIXFOLD_OPENSUBDIV` names, if it is set.
+    /// Returns the program from the variable `SIXFOLD_OPENSUBDIV`, or `None` if the variable is not
+    /// set.
     pub(crate) fn from_env() -> Option<Self> {
         let program = env::var_os("SIXFOLD_OPENSUBDIV").map(|program| Self(program.into()));
         if program.is_none() {
@@ -104,15 +103,13 @@ impl Reference {
         program
     }
 
-    /// Returns OpenSubdiv's result of `case`.
     pub(crate) fn answer(&self, case: &Case) -> Answer {
         let child = Command::new(&self.0)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn();
         let mut child = child.unwrap_or_else(|error| panic!("{}: {error}", self.0.display()));
-        // The program reads all input before it prints, so writing cannot block. `drop` closes the
-        // pipe.
+        // `drop` closes the pipe. The program reads all input before it prints.
         let text = case.to_string();
         let mut input = child.stdin.take().expect("a pipe");
         input.write_all(text.as_bytes()).expect("the program reads");
@@ -178,11 +175,10 @@ impl Level {
 
     /// Returns whether the next step with Chaikin creases cannot be compared with OpenSubdiv:
     ///
-    /// - An edge of sharpness above 1 has a half that is not sharp any more. OpenSubdiv then
-    ///   extrapolates beyond the midpoint, but its own masks and those of Sixfold make a full
-    ///   crease.
+    /// - An edge has sharpness above 1, and one of its halves is not sharp. OpenSubdiv then
+    ///   extrapolates beyond the midpoint. The masks of OpenSubdiv and Sixfold make a full crease.
     /// - The sharpness of a half is close to zero. Then rounding determines whether the half is
-    ///   sharp, because both programs add in 32 bits, but in different orders.
+    ///   sharp, because the programs add numbers in different orders.
     pub(crate) fn is_incomparable(&self, creasing: Creasing) -> bool {
         creasing == Creasing::Chaikin
             && self.semi_sharp().any(|(ends, s)| {
@@ -197,8 +193,7 @@ impl Level {
         edges.map(|&(ends, s)| (ends, f64::from(s)))
     }
 
-    /// Returns the sharpness of the half of an edge at `v`. A negative result stands for a
-    /// sharpness that the rule sets to zero.
+    /// Returns the sharpness of the half of an edge at `v`, before negative values are set to zero.
     fn half(&self, v: usize, edge: [usize; 2], sharpness: f64) -> f64 {
         let at = self.semi_sharp().filter(|(ends, _)| ends.contains(&v));
         let others: Vec<f64> = at

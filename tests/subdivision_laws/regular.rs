@@ -1,5 +1,5 @@
-//! Checks on regular meshes: convergence to the limit surface, symmetry, and the decrease of
-//! sharpness.
+//! Checks schemes on regular meshes: convergence to the limit surface, symmetry, and the decrease
+//! of sharpness.
 
 use std::collections::BTreeMap;
 
@@ -24,11 +24,14 @@ fn control_grids() -> impl Strategy<Value = ControlGrid> {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, cases: 24, ..ProptestConfig::default() })]
 
-    /// If no coordinate is above 1, the distance of a vertex to its limit is at most a sixth of the
-    /// second difference along rows, plus a sixth of the second difference along columns, plus a
-    /// 36th of the mixed second difference. The differences along rows and columns are at most 4,
-    /// and the mixed difference is at most 16. A step divides the differences along rows and
-    /// columns by 4, and the mixed difference by 16. So after k steps
+    /// All coordinates are at most 1. The distance of a vertex to its limit is at most the sum of:
+    ///
+    /// - 1/6 of the second difference along rows, which is at most 4
+    /// - 1/6 of the second difference along columns, which is at most 4
+    /// - 1/36 of the mixed second difference, which is at most 16
+    ///
+    /// A step divides the differences along rows and columns by 4, and the mixed difference by 16.
+    /// So after k steps
     ///
     /// ```text
     ///   |vertex − limit| ≤ 4/3 · 4⁻ᵏ + 4/9 · 16⁻ᵏ
@@ -42,7 +45,7 @@ proptest! {
         let mut compared = BTreeMap::new();
         for levels in 0..=4 {
             let refined = subdivided(&subdivision, &polygons, &Creases::default(), levels).polygons;
-            // Control vertices keep their numbers in later levels, and so do the first face points.
+            // Control vertices and the first face points keep their numbers at later levels.
             let old = (0..vertices).map(|v| (v, (v % columns) as f64, (v / columns) as f64, levels));
             let faces = (0..polygons.face_count()).filter(|_| levels > 0).map(|f| {
                 let (i, j) = (f % across, f / across);
@@ -61,7 +64,6 @@ proptest! {
     }
 }
 
-/// Subdivision does not depend on the numbering, so a torus keeps its rotational symmetry.
 #[test]
 fn a_regular_torus_keeps_its_symmetry() {
     let torus = shapes::torus(6, 5).expect("a small torus");
@@ -74,7 +76,6 @@ fn a_regular_torus_keeps_its_symmetry() {
     let facts = Facts::from_polygons(&step.polygons);
     assert_eq!([facts.vertices, facts.faces], [480, 480]);
     assert_eq!(facts.genus, Some(1));
-    // A rotation by a sixth of a turn maps the torus to itself.
     let turn = std::f32::consts::TAU / 6.0;
     let (sin, cos) = turn.sin_cos();
     let points = step.polygons.positions();
@@ -89,7 +90,6 @@ fn a_regular_torus_keeps_its_symmetry() {
     }
 }
 
-/// A sharpness of 10 or more is infinite and stays; a lower sharpness decreases by 1 in each step.
 #[test]
 fn sharpness_of_ten_stays_and_less_decreases() {
     let grid = shapes::grid(2, 2).expect("a small grid");

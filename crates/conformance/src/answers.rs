@@ -11,10 +11,9 @@ use crate::subject::Subject;
 /// boundary loop. Returns `None` if `M` cannot hold `polygons`.
 ///
 /// Elements have the numbers of the input. Sets are sorted, and cycles start at their lowest
-/// element, so that equal meshes have equal answers. The ring of a vertex has a key such as
-/// `one_ring v7`; the key is missing if the vertex has no ring. Boundary loops are lists of
-/// vertices. A closed loop has a key such as `boundary_loop 0`, and an open chain has a key such as
-/// `boundary_chain 0`.
+/// element. The ring of a vertex has a key such as `one_ring v7`; the key is missing if the vertex
+/// has no ring. Boundary loops are lists of vertices. A closed loop has a key such as
+/// `boundary_loop 0`, and an open chain has a key such as `boundary_chain 0`.
 pub fn answers<M: Representation>(
     polygons: &PolygonMesh,
 ) -> Option<BTreeMap<String, Vec<Element>>> {
@@ -48,7 +47,6 @@ pub fn answers<M: Representation>(
     Some(answers)
 }
 
-/// Rotates a cycle so that its lowest element is first.
 fn rotate_to_lowest(cycle: &mut [Element]) {
     let lowest = (0..cycle.len()).min_by_key(|&i| cycle[i]);
     cycle.rotate_left(lowest.unwrap_or(0));

@@ -1,4 +1,4 @@
-//! Compares the boundary edges and loops of a mesh with those computed from its faces only.
+//! Checks the boundary edges and loops of a mesh by a search in its lists of corners.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
@@ -36,8 +36,7 @@ type Chain<V> = (VecDeque<V>, VecDeque<[V; 2]>);
 /// The corners of each face, and the faces along each edge.
 struct Lists<V> {
     corners: Vec<Vec<V>>,
-    /// The sides of each edge, by its sorted ends. A side is a face and the direction along the
-    /// edge.
+    /// By the sorted ends of each edge: its faces, each with its direction along the edge.
     sides: BTreeMap<[V; 2], Vec<(usize, [V; 2])>>,
 }
 
@@ -94,8 +93,7 @@ impl<V: Copy + Ord> Lists<V> {
         (vertices, edges)
     }
 
-    /// Starts at `edge` and crosses the faces around `at`, up to an edge that does not have two
-    /// faces. Returns that edge if it has one face.
+    /// Returns the other boundary edge of the fan at `at` that starts at `edge`.
     fn next(&self, mut edge: [V; 2], at: V) -> Option<[V; 2]> {
         let mut crossed = BTreeSet::new();
         loop {

@@ -6,12 +6,9 @@ use std::fmt;
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::Once;
 
-/// A panic that was caught.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct CaughtPanic {
-    /// Message of the panic.
     pub(crate) message: String,
-    /// File and line of the panic.
     location: String,
 }
 
@@ -28,8 +25,7 @@ thread_local! {
 
 /// Calls `action`, and catches a panic without printing it.
 ///
-/// While a mesh shrinks, a law fails a hundred times, and a hundred backtraces would hide the
-/// relevant message. Panics of other threads are printed as usual.
+/// Panics of other threads are printed as usual.
 pub(crate) fn catch_panic<T>(action: impl FnOnce() -> T) -> Result<T, CaughtPanic> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
@@ -59,7 +55,6 @@ pub(crate) fn catch_panic<T>(action: impl FnOnce() -> T) -> Result<T, CaughtPani
     })
 }
 
-/// Returns the message of a panic.
 fn message(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<String>().cloned();
     let text = text.or_else(|| payload.downcast_ref::<&str>().map(ToString::to_string));

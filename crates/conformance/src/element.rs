@@ -9,14 +9,14 @@ use sixfold_core::{FaceId, VertexId};
 pub enum Element {
     /// A vertex.
     Vertex(VertexId),
-    /// An edge by its ends, the lower one first; built by [`Element::edge`].
+    /// An edge, given by its ends: the lower end first. [`Element::edge`] sorts the ends.
     Edge(VertexId, VertexId),
     /// A face.
     Face(FaceId),
 }
 
 impl Element {
-    /// Returns the edge between `a` and `b`, which may be given in either order.
+    /// Returns the edge between `a` and `b`, in any order.
     pub fn edge(a: VertexId, b: VertexId) -> Self {
         Self::Edge(a.min(b), a.max(b))
     }

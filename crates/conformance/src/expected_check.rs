@@ -9,7 +9,7 @@ use crate::weld::position_key;
 
 /// Computes the expected result of [`Capabilities::check`] for `polygons` with independent code.
 ///
-/// Does not compute errors of size, because no mesh in a test has too many elements.
+/// Does not check the number of elements.
 ///
 /// # Errors
 ///
@@ -92,9 +92,8 @@ fn non_manifold_vertex(polygons: &PolygonMesh) -> Option<BuildError> {
     })
 }
 
-/// Groups the faces at `v` into fans: faces that share an edge at `v` are in the same fan.
 pub(crate) fn fans_at(polygons: &PolygonMesh, v: VertexId) -> Vec<Vec<FaceId>> {
-    // The faces of each fan, and their corners next to v. Fans that share such a corner are merged.
+    // The faces of each fan, and their corners next to `v`.
     let mut fans: Vec<(Vec<FaceId>, Vec<VertexId>)> = Vec::new();
     for (f, corners) in polygons.faces().iter() {
         let sides = sides_of(corners);

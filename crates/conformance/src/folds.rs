@@ -8,9 +8,6 @@ use sixfold_core::MeshQuery;
 /// Checks that every iterator of `mesh` yields the same items by `next` and by `fold`. Also checks
 /// `fold` after some calls of `next`.
 ///
-/// A structure may override `fold` to make complete iterations faster. `for_each` and most adaptors
-/// use `fold`, but a loop uses `next`. So both must yield the same items.
-///
 /// # Panics
 ///
 /// Panics if the items differ. The message names the query and the element.
@@ -43,8 +40,6 @@ where
 {
     let mut steps = items();
     let expected: Vec<I::Item> = iter::from_fn(|| steps.next()).collect();
-    // Tries every number of calls of `next` if there are fewer than 16 items, otherwise about eight
-    // numbers.
     let step = (expected.len() / 8).max(1);
     for taken in (0..=expected.len()).step_by(step) {
         let mut rest = items();

@@ -14,7 +14,7 @@ pub(crate) use make::{distinct_position, double_cone, strip};
 /// A mesh of the gallery, with its name.
 #[derive(Clone, Debug)]
 pub struct GalleryMesh {
-    /// Name, which describes the special case.
+    /// A name that describes the corner case.
     pub name: &'static str,
     /// The mesh.
     pub polygons: PolygonMesh,
@@ -150,7 +150,6 @@ fn corner_cases() -> Vec<Named> {
     ]
 }
 
-/// Returns meshes that are not oriented manifolds.
 fn faulty() -> Vec<Named> {
     let mut with_reversed_face = sixfold_shapes::cube()
         .faces()
@@ -273,7 +272,6 @@ mod tests {
         }
     }
 
-    /// Only the faulty meshes and the non-orientable surfaces are refused.
     #[test]
     fn exactly_faulty_and_non_orientable_meshes_are_refused() {
         let refused =

@@ -15,8 +15,7 @@
 //! sixfold_conformance::suite!(half_edge::HalfEdgeMesh);
 //! ```
 //!
-//! This crate does not use the incidence code of `sixfold-core`, because the laws also test that
-//! code.
+//! This crate does not use the incidence code of `sixfold-core`, because the laws test that code.
 
 mod answers;
 mod boundary;

@@ -9,8 +9,8 @@ use crate::element::Element;
 /// The expected answer of each query, computed by brute force from lists of corners.
 ///
 /// The code is slow and simple on purpose. The oracle copies FV from the input and derives FE from
-/// FV. It collects the other seven relations from sides and corners into ordered sets. The oracle
-/// uses no structure and no incidence code of `sixfold-core`.
+/// FV. The oracle collects the other seven relations from sides and corners into ordered sets. The
+/// oracle uses no structure and no incidence code of `sixfold-core`.
 #[derive(Clone, Debug)]
 pub struct Oracle {
     vertices: usize,
@@ -75,7 +75,7 @@ impl Oracle {
         }
     }
 
-    /// Iterates over all vertices, including isolated ones.
+    /// Iterates over all vertices, including isolated vertices.
     pub fn vertices(&self) -> impl Iterator<Item = VertexId> + Clone {
         (0..self.vertices as u32).map(VertexId::new)
     }
@@ -126,12 +126,11 @@ impl Oracle {
             .any(|&edge| self.answer(Relation::EdgeFaces, edge).len() == 1)
     }
 
-    /// Returns the one-ring of `v`, counter-clockwise, and whether it is closed; `None` if the
-    /// faces at `v` are not one oriented fan.
+    /// Returns the one-ring of `v`, counter-clockwise, and whether the ring is closed; `None` if
+    /// the faces at `v` are not one oriented fan.
     ///
     /// A closed ring starts at its lowest vertex. An isolated vertex has an empty, open ring.
     pub fn one_ring(&self, v: VertexId) -> Option<(Vec<VertexId>, bool)> {
-        // Each face at v is a step from the corner after v to the corner before v.
         let mut steps = BTreeMap::new();
         let mut targets = BTreeSet::new();
         for corners in self.faces.iter().filter(|corners| corners.contains(&v)) {
@@ -163,15 +162,13 @@ impl Oracle {
     }
 }
 
-/// The answers while they are collected.
 type Sets = BTreeMap<(Relation, Element), BTreeSet<Element>>;
 
 fn add(sets: &mut Sets, relation: Relation, of: Element, item: Element) {
     sets.entry((relation, of)).or_default().insert(item);
 }
 
-/// Applies the relation `first` and then `second` to each element, and removes the element itself
-/// from the result.
+/// Applies `first` and then `second` to each element, and removes the element from the result.
 fn compose(
     from: &Sets,
     sets: &Sets,
@@ -187,7 +184,6 @@ fn compose(
     joined.collect()
 }
 
-/// Returns the sides of a face, each from its start to its end.
 pub(crate) fn sides_of(corners: &[VertexId]) -> Vec<(VertexId, VertexId)> {
     let next = corners.iter().cycle().skip(1);
     corners.iter().copied().zip(next.copied()).collect()

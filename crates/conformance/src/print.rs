@@ -6,7 +6,7 @@ use sixfold_core::PolygonMesh;
 
 /// Formats the mesh on one line: `5 vertices, faces [0 1 2] [2 1 3], v4 at v0`.
 ///
-/// Coordinates are left out, but vertices with equal positions are listed.
+/// Coordinates are left out. Vertices with equal positions are listed.
 pub fn one_line(polygons: &PolygonMesh) -> String {
     let mut line = format!("{} vertices, faces", polygons.vertex_count());
     for (_, corners) in polygons.faces().iter() {

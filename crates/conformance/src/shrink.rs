@@ -2,16 +2,13 @@
 
 use sixfold_core::{Point, PolygonMesh, VertexId};
 
-/// Shrinks `polygons` to a mesh that still `fails`. If any one face of the result is removed, the
-/// result no longer `fails`.
+/// Removes faces from `polygons` as long as the mesh still `fails`.
 ///
-/// Proptest shrinks the random choices that made a mesh, and can stop at a large mesh. This
-/// function continues with that mesh.
+/// Proptest shrinks only the random choices that made a mesh, so its result may be large.
 pub(crate) fn shrink(polygons: PolygonMesh, fails: impl Fn(&PolygonMesh) -> bool) -> PolygonMesh {
     let mut smallest = polygons;
     let mut at = 0;
     let mut kept = 0;
-    // Cycles through the faces until none of them can be removed.
     while kept < smallest.face_count() {
         at %= smallest.face_count();
         let fewer = without_face(&smallest, at);

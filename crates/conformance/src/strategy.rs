@@ -1,8 +1,8 @@
 //! Random meshes that shrink towards a single triangle.
 //!
-//! Manifolds are constructed; random meshes are not filtered. First, shapes are placed side by
-//! side. Then operations change them and keep them manifold (`operation`). Finally, all elements
-//! are renumbered (`builder`).
+//! Random manifolds are constructed in three steps. First, shapes are placed side by side. Then
+//! operations change the shapes (`operation`); the mesh stays manifold. Finally, all elements are
+//! renumbered (`builder`).
 
 mod builder;
 mod faults;
@@ -28,8 +28,8 @@ pub struct Faulty {
 }
 
 /// Generates oriented manifolds of random topology: open and closed, of any genus, with several
-/// components, mixed degrees, isolated vertices, and random numbering. No two vertices share a
-/// position.
+/// components, mixed degrees, isolated vertices, and random numbering. All vertices have different
+/// positions.
 pub fn manifold_mesh() -> impl Strategy<Value = PolygonMesh> {
     let isolated = prop_oneof![4 => Just(0_u32), 1 => 1..4_u32];
     let parts = (seed(), any::<bool>(), isolated, builder(1..=3));
@@ -73,7 +73,6 @@ pub fn any_mesh() -> impl Strategy<Value = PolygonMesh> {
     faces.prop_map(|(places, faces)| build_mesh(places, faces))
 }
 
-/// Builds a mesh with one vertex for each of `places`; the faces are lists of its vertices.
 fn build_mesh(places: Vec<u32>, faces: Vec<Vec<u32>>) -> PolygonMesh {
     let points: Vec<_> = places.into_iter().map(distinct_position).collect();
     PolygonMesh::new(points, faces).expect("no face uses a vertex twice")
@@ -86,7 +85,7 @@ fn build_mesh(places: Vec<u32>, faces: Vec<Vec<u32>>) -> PolygonMesh {
 fn builder(pieces: RangeInclusive<usize>) -> impl Strategy<Value = MeshBuilder> {
     let pieces = collection::vec(piece(), pieces);
     let operations = collection::vec(operation::operation(), 0..12);
-    // Proptest shrinks the parts in this order, so it removes operations before it removes pieces.
+    // Proptest shrinks the parts in this order: operations before pieces.
     let parts = (prop::bool::weighted(0.25), operations, pieces);
     parts.prop_map(|(triangulated, operations, pieces)| {
         let mut builder = MeshBuilder::from_meshes(&pieces);
@@ -100,7 +99,6 @@ fn builder(pieces: RangeInclusive<usize>) -> impl Strategy<Value = MeshBuilder> 
     })
 }
 
-/// Generates one shape with few faces.
 fn piece() -> impl Strategy<Value = PolygonMesh> {
     let polygon = (3..8_u32).prop_map(|n| {
         let all: Vec<u32> = (0..n).collect();

@@ -20,8 +20,6 @@ pub(crate) struct Subject<M: Representation> {
 
 impl<M: Representation> Subject<M> {
     /// Builds `M` from `polygons`. Returns `None` if the capabilities of `M` exclude this mesh.
-    ///
-    /// If the capabilities include the mesh but `M` returns an error, the test fails.
     pub(crate) fn from_polygons(polygons: &PolygonMesh) -> Option<Self> {
         M::CAPABILITIES.check(polygons).ok()?;
         let mesh = M::from_polygons(polygons);
@@ -29,7 +27,6 @@ impl<M: Representation> Subject<M> {
         Some(Self::from_mesh(mesh, polygons))
     }
 
-    /// Wraps `mesh`, which should hold `polygons`.
     pub(crate) fn from_mesh(mesh: M, polygons: &PolygonMesh) -> Self {
         let input = stored_mesh::<M>(polygons);
         Self {
@@ -40,14 +37,13 @@ impl<M: Representation> Subject<M> {
         }
     }
 
-    /// Queries `relation` of `element`.
     pub(crate) fn query(&self, relation: Relation, element: Element) -> Vec<Element> {
         self.handles.query(&self.mesh, relation, element)
     }
 }
 
-/// Returns the mesh that a structure `M` holds after `M` was built from `polygons`. The
-/// capabilities of `M` must include `polygons`.
+/// Returns the polygons that `M` stores for `polygons`. The capabilities of `M` must include
+/// `polygons`.
 pub(crate) fn stored_mesh<M: Representation>(polygons: &PolygonMesh) -> PolygonMesh {
     if M::CAPABILITIES.coincident_vertices {
         return polygons.clone();
@@ -98,40 +94,32 @@ impl<M: Representation> HandleMap<M> {
         maps
     }
 
-    /// Returns the handle of `v`.
     pub(crate) fn vertex(&self, v: VertexId) -> M::Vertex {
         lookup(self.vertices.get(&v), M::NAME, v)
     }
 
-    /// Returns the handle of `edge`.
     pub(crate) fn edge(&self, edge: Element) -> M::Edge {
         lookup(self.edges.get(&edge), M::NAME, edge)
     }
 
-    /// Returns the handle of `f`.
     pub(crate) fn face(&self, f: FaceId) -> M::Face {
         lookup(self.faces.get(&f), M::NAME, f)
     }
 
-    /// Returns the vertex of the input with the handle `handle`.
     pub(crate) fn vertex_id(&self, handle: M::Vertex) -> VertexId {
         lookup(self.vertex_ids.get(&handle), M::NAME, handle)
     }
 
-    /// Returns the edge of the input with the handle `handle`.
     pub(crate) fn edge_id(&self, handle: M::Edge) -> Element {
         lookup(self.edge_ids.get(&handle), M::NAME, handle)
     }
 
-    /// Returns the face of the input with the handle `handle`.
     pub(crate) fn face_id(&self, handle: M::Face) -> FaceId {
         lookup(self.face_ids.get(&handle), M::NAME, handle)
     }
 
     /// Queries `relation` of `element`, and converts the answer to input numbers. The answer keeps
     /// the order of the structure.
-    ///
-    /// The answer is empty if `relation` does not apply to this kind of element.
     pub(crate) fn query<Q>(&self, mesh: &Q, relation: Relation, element: Element) -> Vec<Element>
     where
         Q: MeshQuery<Vertex = M::Vertex, Edge = M::Edge, Face = M::Face>,
@@ -172,7 +160,6 @@ impl<M: Representation> HandleMap<M> {
         }
     }
 
-    /// Returns the one-ring of `v`, converted to input numbers.
     pub(crate) fn ring<Q>(&self, mesh: &Q, v: VertexId) -> Option<Vec<VertexId>>
     where
         Q: MeshQuery<Vertex = M::Vertex, Edge = M::Edge, Face = M::Face>,

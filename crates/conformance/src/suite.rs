@@ -10,7 +10,8 @@ use crate::print::one_line;
 use crate::shrink::shrink;
 use crate::strategy::{any_mesh, faulty_mesh, manifold_mesh};
 
-/// Makes one `#[test]` from each law: `sixfold_conformance::suite!(half_edge::HalfEdgeMesh);`
+/// Makes one `#[test]` from each law. Example:
+/// `sixfold_conformance::suite!(half_edge::HalfEdgeMesh);`
 ///
 /// Laws about a mesh run on the gallery and on random meshes. A failing random mesh is shrunk and
 /// printed on one line. `PROPTEST_CASES` sets the number of random meshes per law.
@@ -88,8 +89,8 @@ macro_rules! edit_suite {
 /// Makes the tests of structures that step from side to side:
 /// `sixfold_conformance::walk_suite!(half_edge::HalfEdgeMesh, half_edge::EditableHalfEdgeMesh);`
 ///
-/// The second type is the editable form of the structure. Without this type, the macro leaves out
-/// the tests after edits and the test that the steps are local.
+/// The second type is the editable form of the structure. Without the second type, two tests are
+/// left out: the test after edits, and the test that steps are local.
 #[macro_export]
 macro_rules! walk_suite {
     ($mesh:ty) => {
@@ -153,7 +154,6 @@ pub fn check_law<M: Representation>(name: &str, law: impl Fn(&PolygonMesh)) {
     }
 }
 
-/// Generates manifolds in half of the cases, otherwise meshes with known faults or random faces.
 fn random_mesh() -> impl Strategy<Value = OneLineDebug> {
     let faulty = faulty_mesh().prop_map(|faulty| faulty.polygons);
     Union::new_weighted(vec![

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use sixfold_core::{Point, PolygonError, PolygonMesh, VertexId};
 
-/// Merges vertices with equal positions. Vertices are numbered in the order of their first use in a
-/// face.
+/// Merges vertices with equal positions. The new vertices are numbered in the order in which faces
+/// first use them.
 ///
 /// −0 equals 0. Isolated vertices are dropped, because no face uses them.
 ///
@@ -25,7 +25,7 @@ pub fn welded(polygons: &PolygonMesh) -> Result<PolygonMesh, PolygonError> {
     PolygonMesh::new(positions, faces)
 }
 
-/// Returns the number that [`welded`] gives to each vertex with a face.
+/// Returns the new number of each vertex with a face.
 pub(crate) fn weld_numbers(polygons: &PolygonMesh) -> BTreeMap<VertexId, u32> {
     let mut number_at: BTreeMap<[u32; 3], u32> = BTreeMap::new();
     let mut numbers = BTreeMap::new();

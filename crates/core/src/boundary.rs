@@ -2,16 +2,16 @@
 
 use crate::query::{EdgeMap, MeshQuery};
 
-/// A chain of boundary edges. It is closed, unless it ends at a non-manifold edge.
+/// A chain of boundary edges. The chain is closed, unless it ends at a non-manifold edge.
 ///
 /// [`MeshQuery::boundary_loops`] defines which edge follows which.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BoundaryLoop<V, E> {
     /// The vertices, in order. A closed chain has as many vertices as edges; an open chain has one
-    /// more.
+    /// more vertex than edges.
     pub vertices: Vec<V>,
-    /// The edges, in order: edge `i` joins vertices `i` and `i + 1`. The last edge of a closed loop
-    /// joins the last vertex and the first.
+    /// The edges, in order: edge `i` joins vertices `i` and `i + 1`. The last edge of a closed
+    /// chain joins the last vertex and the first vertex.
     pub edges: Vec<E>,
 }
 
@@ -67,7 +67,7 @@ struct Side<V, E> {
     edge: E,
 }
 
-/// Returns the boundary edges, sorted by the numbers of their starts and then of their ends.
+/// Returns the boundary edges, sorted by the number of the start, then by the number of the end.
 fn boundary_sides<M: MeshQuery + ?Sized>(
     mesh: &M,
     counts: &EdgeMap<M, u8>,
@@ -100,7 +100,6 @@ struct Turn<V, E, F> {
     other: E,
 }
 
-/// The turns of a mesh.
 type Turns<M> = Vec<Turn<<M as MeshQuery>::Vertex, <M as MeshQuery>::Edge, <M as MeshQuery>::Face>>;
 
 /// Returns both turns of every face around every boundary vertex, sorted.
@@ -135,7 +134,6 @@ fn boundary_turns<M: MeshQuery + ?Sized>(mesh: &M, sides: &[Side<M::Vertex, M::E
     turns
 }
 
-/// The data that the walks along a boundary read.
 struct Boundary<'m, M: MeshQuery + ?Sized> {
     mesh: &'m M,
     counts: EdgeMap<M, u8>,
@@ -143,7 +141,7 @@ struct Boundary<'m, M: MeshQuery + ?Sized> {
 }
 
 impl<M: MeshQuery + ?Sized> Boundary<'_, M> {
-    /// Returns the whole chain through `side`, in its direction.
+    /// Returns the whole chain through `side`, in the direction of `side`.
     fn chain(&self, side: Side<M::Vertex, M::Edge>) -> BoundaryLoop<M::Vertex, M::Edge> {
         let [from, to] = side.ends;
         let after = self.walk(side.edge, [from, to]);
@@ -189,7 +187,8 @@ impl<M: MeshQuery + ?Sized> Boundary<'_, M> {
             let first = self
                 .turns
                 .partition_point(|turn| (turn.at, turn.edge) < (at, edge));
-            // A boundary edge has one turn here, and an edge with two faces has two.
+            // At this vertex, a boundary edge has one turn, and an edge with two faces has two
+            // turns.
             let mut turns = self.turns[first..].iter();
             let turn = turns.find(|turn| Some(turn.face) != last)?;
             match self.counts[turn.other] {

@@ -12,7 +12,7 @@ use crate::polygon_mesh::PolygonMesh;
 /// The meshes that a structure can hold beyond closed, oriented triangle manifolds.
 ///
 /// The command line prints this table, constructors take their errors from it, and the conformance
-/// suite tests every structure against it. All six structures hold boundaries.
+/// suite tests every structure against it. All six structures can hold meshes with a boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Capabilities {
@@ -28,7 +28,7 @@ pub struct Capabilities {
     pub isolated_vertices: bool,
     /// Vertices with equal coordinates stay separate. If false, such vertices become one vertex,
     /// and a face with two corners at one point is refused. Coordinates are compared without a
-    /// tolerance; the documentation of the polygon soup's handles explains why.
+    /// tolerance.
     pub coincident_vertices: bool,
 }
 
@@ -95,7 +95,7 @@ impl Capabilities {
         Ok(())
     }
 
-    /// Returns the fault of `polygons` after a constructor has found one.
+    /// Returns the fault of `polygons` after a constructor has found a fault.
     ///
     /// Constructors call this, so that they always return the same error as [`check`](Self::check).
     ///
@@ -197,8 +197,7 @@ fn check_coincident_corners(polygons: &PolygonMesh) -> Result<(), BuildError> {
     Ok(())
 }
 
-/// Returns the bits of a point's coordinates, with −0 replaced by 0. These bits are compared if
-/// vertices are identified by coordinates.
+/// Returns the bits of the coordinates, with −0 replaced by 0.
 fn coordinates(point: Point) -> [u32; 3] {
     point.to_array().map(|x| (x + 0.0).to_bits())
 }

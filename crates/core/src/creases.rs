@@ -7,8 +7,8 @@ use crate::handle::Pair;
 use crate::polygon_mesh::PolygonMesh;
 use crate::row_id::VertexId;
 
-/// The smallest sharpness that counts as infinite: such a sharpness does not decrease from level to
-/// level.
+/// The smallest sharpness that counts as infinite. An infinite sharpness does not decrease from
+/// level to level.
 pub const SHARPNESS_INFINITE: f32 = 10.0;
 
 /// The sharpness of edges and vertices of a [`PolygonMesh`]. Without an entry, the sharpness is 0.
@@ -131,8 +131,7 @@ fn all_edges(polygons: &PolygonMesh) -> FxHashSet<Pair<VertexId>> {
 
 /// Sorts entries by key, keeps the last entry of each key, and drops entries of sharpness 0.
 fn last_of_each<K: Ord + Copy>(entries: &mut Vec<(K, f32)>) {
-    // The entries are reversed before a stable sort, so the last entry of each key comes first and
-    // is kept.
+    // After the reversal and a stable sort, the last entry of each key comes first.
     entries.reverse();
     entries.sort_by_key(|&(key, _)| key);
     entries.dedup_by_key(|&mut (key, _)| key);

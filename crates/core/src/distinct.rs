@@ -6,15 +6,14 @@ use rustc_hash::FxHashSet;
 
 use crate::row_id::{RowId, Slot};
 
-/// The largest number of distinct items that are compared one by one; a hash set holds more.
+/// Maximum number of distinct items that are stored in an array instead of a hash set.
 const ARRAY_LEN: usize = 16;
 
 /// The distinct items of an iterator, each at its first occurrence.
 ///
-/// Neighbourhoods are small, so the items seen are stored in an array and compared one by one. From
-/// the 17th distinct item on, a hash set is used: a vertex of valence 100,000 still takes linear
-/// time. The array is filled only when the first item comes, so an empty iterator costs nothing.
-/// O(1) expected per item.
+/// The first 16 distinct items are stored in an array and compared one by one. This is fast for
+/// small neighbourhoods. From the 17th distinct item on, a hash set is used. O(1) expected per
+/// item.
 #[derive(Clone, Debug)]
 pub struct Distinct<I: Iterator> {
     items: I,
@@ -77,17 +76,16 @@ where
     }
 }
 
-/// From this number of steps on, a hash set is used instead of repeating the walk.
+/// Minimum number of steps for which a hash set is used instead of repeating the walk.
 const SET_STEPS: usize = 32;
 
 /// The distinct items of a walk that can be repeated, each at its first occurrence; empty slots are
 /// skipped.
 ///
-/// This iterator yields the faces across the sides of a face. Two faces may share several sides, so
-/// each item is compared with the earlier items. The last three items are stored, which is enough
-/// for triangles and quads. For larger faces, the walk is repeated to find the earlier items; from
-/// 32 steps on, a hash set keeps the total time linear. So this iterator stays in registers, but
-/// [`Distinct`] fills an array in memory. O(1) expected per step.
+/// This iterator yields the faces across the sides of a face. The last three items are stored,
+/// which is enough for triangles and quads. For larger faces, the walk is repeated to find earlier
+/// items. From 32 steps on, a hash set is used. For triangles and quads, this iterator is faster
+/// than [`Distinct`], because it needs no array in memory. O(1) expected per step.
 ///
 /// ```
 /// use sixfold_core::{DistinctWalk, FaceId, Slot};
@@ -100,9 +98,7 @@ const SET_STEPS: usize = 32;
 pub struct DistinctWalk<W, H: RowId> {
     start: W,
     walk: W,
-    /// The number of steps taken.
     steps: usize,
-    /// The three items found last.
     last: [Slot<H>; 3],
     set: Option<FxHashSet<H>>,
 }
@@ -128,8 +124,7 @@ impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> DistinctWalk<W, H> {
             return false;
         }
         if steps > self.last.len() {
-            // All arguments except the set are passed by value, so that the walk itself can stay in
-            // registers.
+            // The arguments are passed by value, so that the walk can stay in registers.
             if !is_new_among_many(self.start.clone(), steps, item, &mut self.set) {
                 return false;
             }
@@ -182,9 +177,8 @@ impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> Iterator for DistinctWalk<W,
 
     /// Folds all items at once. For triangles, this needs three comparisons and no state.
     ///
-    /// All functions on this path are always inlined, and the fields are in variables. If the walk
-    /// is passed to a function in memory, the fold can take three times the time, depending on the
-    /// position of the stack.
+    /// All functions on this path are inlined, and the fields are in variables. If the walk is in
+    /// memory instead, the fold can take three times the time.
     #[inline(always)]
     fn fold<B, F: FnMut(B, H) -> B>(self, init: B, mut f: F) -> B {
         let Self {
@@ -240,7 +234,6 @@ mod tests {
         let limit = SET_STEPS as u32;
         for distinct in [1, 2, 3, 4, 5, limit - 1, limit, limit + 1, limit + 2, 200] {
             for steps in [0, 1, 2, 3, 4, 5, limit, limit + 1, 3 * distinct] {
-                // Every fourth step is empty; the others repeat the items.
                 let slot = |i: u32| match i % 4 {
                     1 => Slot::NONE,
                     _ => Slot::some(FaceId::new(i * 7 % distinct)),

@@ -11,8 +11,7 @@ use crate::representation::QueryCost;
 pub type Refusal<M> =
     EditError<<M as MeshQuery>::Vertex, <M as MeshQuery>::Edge, <M as MeshQuery>::Face>;
 
-/// Declares edits in both forms: the short form, with the given documentation, and the form with a
-/// log. Every edit can be refused.
+/// Declares the short form and the logged form of each edit.
 macro_rules! edits {
     ($(
         $(#[$documentation:meta])*
@@ -38,31 +37,30 @@ macro_rules! edits {
 ///
 /// # Contract
 ///
-/// - **All or nothing.** A refused edit leaves every table unchanged. An edit also refuses an
-///   invalid handle; it never panics as a query does.
+/// - **All or nothing.** A refused edit leaves every table unchanged. An edit with an invalid
+///   handle is refused; it does not panic.
 /// - **Legality.** An edit is legal if it satisfies its rule below and the structure can hold the
-///   resulting mesh ([`Capabilities`](crate::Capabilities)). So all structures that hold only
-///   manifolds accept and refuse the same edits; the other structures also accept edits that make a
-///   mesh non-manifold.
-/// - **Handles.** Elements that an edit does not touch keep their handles. Some handles are made of
-///   other data: a pair of ends, coordinates, or the corner opposite an edge. An edit may rename
-///   such elements, which means that their handles change. The edit reports every created, removed
-///   or renamed element to the [`EditLog`].
-/// - **Holes.** Counts, iterations, relations, conversions and files no longer contain a removed
-///   element, and a query with its handle panics. The row of the element stays a hole until
-///   [`compact`](Self::compact) closes the hole; before that, no row is reused. A handle made of
-///   other data (a pair, coordinates) behaves differently: it may read as an element without faces,
-///   and may later name another element.
+///   resulting mesh ([`Capabilities`](crate::Capabilities)). For example, structures that can hold
+///   non-manifold meshes accept edits that make a mesh non-manifold.
+/// - **Handles.** Elements that an edit does not touch keep their handles. In some structures, a
+///   handle is not a row of its own: it is a pair of ends, coordinates, or the corner opposite an
+///   edge. An edit may rename such an element, which means that the handle of the element changes.
+///   The edit reports every created, removed or renamed element to the [`EditLog`].
+/// - **Holes.** Counts, iterations, relations and conversions do not contain removed elements. The
+///   row of a removed element becomes a hole. A query with the handle of a hole panics. No row is
+///   reused until [`compact`](Self::compact) closes the holes. If the handle of a removed element
+///   is a pair or coordinates, its relations are empty, and a later edit may create an element with
+///   the same handle.
 /// - **In place.** An edit does not convert or rebuild the mesh. [`EDITS`](Self::EDITS) states how
 ///   much of the mesh an edit reads.
 ///
 /// # Two forms
 ///
-/// Every edit has a short form, such as [`flip_edge`](Self::flip_edge), and a form that reports its
-/// changes of handles to a log, such as [`flip_edge_logged`](Self::flip_edge_logged). The short
-/// form uses the log `()`, which ignores the reports and costs nothing. [`EditLog`] describes when
-/// to use which form. In a [`MeshWithData`](crate::MeshWithData), data by vertex, edge or face
-/// follows all edits, in both forms.
+/// Every edit has a short form, such as [`flip_edge`](Self::flip_edge), and a logged form, such as
+/// [`flip_edge_logged`](Self::flip_edge_logged). The logged form reports all created, removed and
+/// renamed elements to a log. The short form reports nothing. [`EditLog`] describes when to use
+/// which form. In a [`MeshWithData`](crate::MeshWithData), data by vertex, edge or face follows all
+/// edits, in both forms.
 ///
 /// ```
 /// # use sixfold_core::{MeshEdit, Point, Refusal};
@@ -74,7 +72,7 @@ macro_rules! edits {
 /// ```
 pub trait MeshEdit: MeshQuery + Sized {
     /// How much of the mesh each edit reads, in the order of [`Edit::ALL`]; `None` if the structure
-    /// refuses the edit on every mesh.
+    /// does not support the edit.
     const EDITS: [Option<QueryCost>; Edit::ALL.len()];
 
     /// The same structure without deleted rows: its type parameter is [`Compact`](crate::Compact).
@@ -119,8 +117,8 @@ pub trait MeshEdit: MeshQuery + Sized {
         fn add_face, add_face_logged(corners: &[Self::Vertex]) -> Result<Self::Face, Refusal<Self>>;
 
         /// Removes `f`, and the edges that no other face has. The corners of `f` stay, even if they
-        /// become isolated. If vertices are identified by coordinates, corners that lose their last
-        /// face are removed instead.
+        /// become isolated. If vertices are identified by coordinates, corners without a face are
+        /// removed.
         ///
         /// # Errors
         ///
@@ -195,9 +193,9 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// # Errors
         ///
-        /// Refuses two vertices that are not corners of `f`, that are equal, or that are adjacent
-        /// in `f`. [`EditError::EdgeExists`] if only manifold edges are allowed and the two
-        /// vertices already have an edge; [`EditError::Unsupported`] if only triangles are allowed.
+        /// Refuses `ends` that are not corners of `f`, are equal, or are adjacent in `f`.
+        /// [`EditError::EdgeExists`] if only manifold edges are allowed and the two vertices
+        /// already have an edge; [`EditError::Unsupported`] if only triangles are allowed.
         fn split_face, split_face_logged(
             f: Self::Face, ends: [Self::Vertex; 2],
         ) -> Result<Self::Edge, Refusal<Self>>;
@@ -247,9 +245,10 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// # Errors
         ///
-        /// Refuses a `keep` that is not an end of `e`, a face that has both ends as corners that
-        /// are not adjacent, and a vertex that would lose its last face. [`EditError::Occupied`] if
-        /// vertices are identified by coordinates and another vertex is at `to`.
+        /// Refuses these cases: `keep` is not an end of `e`; both ends of `e` are corners of a
+        /// face, but are not adjacent in the face; a vertex would lose its last face.
+        /// [`EditError::Occupied`] if vertices are identified by coordinates and another vertex is
+        /// at `to`.
         ///
         /// If only manifolds are allowed, also refuses violations of the link condition (Dey et al.
         /// 1999):
@@ -266,9 +265,9 @@ pub trait MeshEdit: MeshQuery + Sized {
         /// vertex. This is the inverse of [`collapse_edge`](Self::collapse_edge) (Hoppe 1996).
         ///
         /// The new vertex gets the faces counter-clockwise around `v`, from the edge `v`–`right` to
-        /// the edge `v`–`left`. If `left` is `None`, the new edge is on the boundary and has one
-        /// triangle, on its right; the new vertex gets the faces up to the boundary. If `right` is
-        /// `None`, the new vertex gets the faces from the boundary to the edge `v`–`left`.
+        /// the edge `v`–`left`. If `left` is `None`, the new edge has only the triangle on its
+        /// right, and the new vertex gets the faces up to the boundary. If `right` is `None`, the
+        /// new vertex gets the faces from the boundary to the edge `v`–`left`.
         ///
         /// ```text
         ///     left             left

@@ -7,8 +7,7 @@ use crate::handle::Handle;
 use crate::polygon_mesh::repeated;
 use crate::row_id::FaceId;
 
-/// Checks that a table does not grow beyond the rows that handles can name. `rows` is the number of
-/// rows after the edit.
+/// Checks that a table has at most `limit` rows. `rows` is the number of rows after the edit.
 ///
 /// # Errors
 ///
@@ -25,8 +24,8 @@ pub fn check_rows<V: Debug, E: Debug, F: Debug>(
     Ok(())
 }
 
-/// Checks the corners of a new face: first their number, then each with `check_vertex`, then that
-/// no corner repeats an earlier one.
+/// Checks the corners of a new face, in this order: the number of corners, each corner with
+/// `check_vertex`, repeated corners.
 ///
 /// # Errors
 ///

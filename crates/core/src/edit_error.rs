@@ -51,7 +51,7 @@ pub enum EditError<V: Debug, E: Debug, F: Debug> {
         "a face would have vertex {vertex:?} twice: choose other corners, or cut the face first"
     )]
     RepeatedVertex { vertex: V },
-    /// A polygon, for an edit of triangles.
+    /// A face that is not a triangle; the edit requires triangles.
     #[error(
         "face {face:?} has {degree} corners, and this edit requires triangles: cut the face first"
     )]
@@ -59,7 +59,7 @@ pub enum EditError<V: Debug, E: Debug, F: Debug> {
     /// A side that a face already runs along in the same direction.
     #[error("face {face:?} already runs {from:?}→{to:?}: reverse the corners of the new face")]
     RepeatedSide { from: V, to: V, face: F },
-    /// An edge with two faces, in a structure that allows no third.
+    /// An edge that already has two faces, in a structure without non-manifold edges.
     #[error(
         "edge {edge:?} already has two faces: remove one of the faces first, or choose a \
          structure that holds non-manifold edges"
@@ -89,7 +89,7 @@ pub enum EditError<V: Debug, E: Debug, F: Debug> {
         "both triangles of edge {edge:?} have the same third corner {vertex:?}: choose another edge"
     )]
     SameApex { edge: E, vertex: V },
-    /// An end of a flipped edge that would keep too few edges.
+    /// An end of the flipped edge that would have too few edges.
     #[error(
         "vertex {vertex:?} has only three edges and three faces, and the flip would leave the \
          vertex with only two edges: choose another edge"

@@ -77,7 +77,7 @@ impl Edit {
         costs
     };
 
-    /// Returns the name of the method: `flip_edge`.
+    /// Returns the name of the method, for example `flip_edge`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::SetPosition => "set_position",

@@ -7,7 +7,7 @@ use crate::handle::{Handle, HandleMap};
 use crate::query::{EdgeMap, FaceMap, MeshQuery, VertexMap};
 
 /// The new handle of each element that existed before [`compact`](crate::MeshEdit::compact); `None`
-/// for rows that were holes. The maps cost as much as the structure's own maps by handle.
+/// for rows that were holes.
 pub struct OldToNew<M: MeshQuery> {
     /// By old vertex.
     pub vertices: VertexMap<M, Option<M::Vertex>>,
@@ -35,8 +35,8 @@ impl<M: MeshQuery> EditLog<M> for OldToNew<M> {
 ///
 /// An edit reports every change, and nothing else. A refused edit reports nothing. The order of the
 /// calls within one edit is not specified. A log that stores handles must apply the changes of an
-/// edit in three steps: first it drops all removed handles, then it renames all renamed handles at
-/// once (elements may exchange handles), then it adds the created handles.
+/// edit in three steps: drop all removed handles; rename all renamed handles at once, because
+/// elements may exchange handles; add the created handles.
 ///
 /// # When to use which
 ///
@@ -82,7 +82,7 @@ impl<M: MeshQuery> EditLog<M> for () {
     const USES_REPORTS: bool = false;
 }
 
-/// The changes by edits since the record was last cleared, to be read or applied to maps.
+/// The changes by edits since the record was last cleared.
 ///
 /// ```
 /// # use sixfold_core::{EditRecord, HandleMap, MeshEdit, MeshQuery};
@@ -175,9 +175,9 @@ impl<H: Handle> Changes<H> {
         self.created.is_empty() && self.removed.is_empty() && self.renamed.is_empty()
     }
 
-    /// Updates `map` after one edit; O(changes). Removed elements lose their values; in a map by
-    /// row, the value stays until the row is reused. Renamed elements keep their values under the
-    /// new handles. New elements get `initial`.
+    /// Updates `map` after one edit; O(changes). Removed elements lose their values; a map by row
+    /// keeps the old value in the row. Renamed elements keep their values under the new handles.
+    /// New elements get `initial`.
     ///
     /// The record must hold the changes of one edit; after several edits, apply their records one
     /// by one.
@@ -196,7 +196,7 @@ impl<H: Handle> Changes<H> {
         for &old in &self.removed {
             map.remove(old);
         }
-        // All at once: the new handle of one element may be the old handle of another.
+        // All at once, because elements may exchange handles.
         match *self.renamed.as_slice() {
             [] => {}
             [[old, new]] => map.rename(old, new),

@@ -57,8 +57,8 @@ pub type FaceData<M, T> = ElementData<M, Faces, T>;
 /// }
 /// ```
 ///
-/// With a rule, each edit that splits an element also queries the parents: EV and EF (and VE for
-/// edge data), or FV. Data with a fixed value costs O(changes) for each edit.
+/// Data with a fixed value costs O(changes) for each edit. Data with a rule costs more, because
+/// each edit that splits an element also queries the parents.
 pub struct ElementData<M: MeshQuery, K: ElementKind<M>, T: Clone> {
     values: Map<M, K, T>,
     initial: Initial<M, K, T>,
@@ -75,14 +75,14 @@ enum Initial<M: MeshQuery, K: ElementKind<M>, T: Clone> {
     Rule(Arc<Rule<M, K, T>>),
 }
 
-/// A new element, as the rule of [`ElementData`] receives it.
+/// A new element: an argument of the rule of [`ElementData`].
 pub struct Created<'a, M, H> {
     /// The mesh after the edit.
     pub mesh: &'a M,
     /// The new element; the map has no value for it yet.
     pub element: H,
-    /// The old elements of the same kind from which the new element was made, under their current
-    /// handles.
+    /// The current handles of the old elements from which the new element was made. All are of the
+    /// same kind as the new element.
     pub parents: &'a [H],
 }
 

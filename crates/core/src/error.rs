@@ -48,7 +48,7 @@ pub enum BuildError {
         elements: &'static str,
         limit: usize,
     },
-    /// A polygon, in a structure that holds only triangles.
+    /// A face that is not a triangle, in a structure that holds only triangles.
     #[error("face {face} has {degree} corners, and only triangles fit: triangulate the mesh")]
     NotATriangle { face: FaceId, degree: usize },
     /// Three or more faces along one edge.
@@ -120,7 +120,7 @@ pub enum RefineError {
         structure: &'static str,
         split: Split,
     },
-    /// A polygon, for a split of triangles.
+    /// A face that is not a triangle; the split requires triangles.
     #[error(
         "face {face} has {degree} corners, and this split requires triangles: triangulate the mesh"
     )]
@@ -181,7 +181,7 @@ pub struct InvariantError {
 }
 
 impl InvariantError {
-    /// Builds the error that `invariant` fails, with `detail`.
+    /// Builds the error for `invariant`, with `detail`.
     pub fn new(invariant: &'static str, detail: impl Into<String>) -> Self {
         Self {
             invariant,

@@ -7,17 +7,17 @@ use crate::face_spans::FaceSpans;
 use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
 use crate::table::Table;
 
-/// Faces as lists of vertices, unchecked as in a file: a face may have any number of corners and
+/// Faces as lists of vertices. The lists are not checked: a face may have any number of corners and
 /// name any vertex.
 ///
-/// As long as all faces have one degree, no offsets are stored. The first face of another degree
-/// adds a table of offsets.
+/// If all faces have the same degree, no offsets are stored. The first face of another degree adds
+/// a table of offsets.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FaceList {
     corners: Vec<VertexId>,
     faces: usize,
-    /// The start of each face, followed by the end of the last face. Empty as long as all faces
-    /// have one degree.
+    /// The start of each face, followed by the end of the last face. Empty if all faces have the
+    /// same degree.
     offsets: Vec<u32>,
 }
 
@@ -154,7 +154,7 @@ fn check_corners(corners: usize) -> Result<(), PolygonError> {
     Ok(())
 }
 
-/// Builds a list of faces of these degrees. In each face, the corners are numbered from 0.
+/// Builds a list of faces of these degrees. In each face, the vertices are numbered from 0.
 #[cfg(test)]
 pub(crate) fn faces_of_degrees(degrees: &[u32]) -> FaceList {
     let mut faces = FaceList::default();

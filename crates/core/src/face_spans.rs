@@ -15,8 +15,8 @@ use crate::table::Table;
 
 /// The division of a flat table of corners into faces: one degree for all faces, or a table.
 ///
-/// Structures store the corners themselves, as vertices or points. A deleted face keeps its row and
-/// its corners until the mesh is compacted; its corners are blank, so that scans skip them.
+/// The table of corners is stored separately. A deleted face keeps its row and its corners until
+/// the mesh is compacted. The corners of a deleted face are blank: scans skip blank corners.
 #[derive(Debug)]
 pub enum FaceSpans<P: Probe = Untraced, E: Editing = Compact> {
     /// Every face has `degree` corners.
@@ -28,7 +28,8 @@ pub enum FaceSpans<P: Probe = Untraced, E: Editing = Compact> {
     },
     /// Face `f` has the corners `offsets[f]..offsets[f + 1]`.
     Mixed(Table<u32, P>),
-    /// The degrees of faces have been edited: faces lie anywhere, with blank corners between them.
+    /// Each face has its own range of corners, because an edit changed a degree. There may be blank
+    /// corners between faces.
     Scattered(E::Scattered<P>),
 }
 
@@ -91,7 +92,7 @@ impl<P: Probe> ScatteredFaces<P> {
         owner.expect("scans skip the blank corners between faces")
     }
 
-    /// Checks that each face owns its corners and has at least three, and that no other corner has
+    /// Checks that each face has at least three corners and owns them, and that no other corner has
     /// an owner.
     fn check(&self, corners: usize) -> Result<(), String> {
         let owners = self.owners.rows();
@@ -118,17 +119,14 @@ impl<P: Probe> ScatteredFaces<P> {
     }
 }
 
-/// The rows of the corners of one face, in a table where faces lie anywhere.
+/// The rows of the corners of one face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Span {
-    /// The first row.
     start: u32,
-    /// The number of rows.
     len: u32,
 }
 
 impl Span {
-    /// Returns all rows.
     #[inline]
     fn range(self) -> Range<usize> {
         let start = self.start as usize;
@@ -152,7 +150,7 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
         self.len() == 0
     }
 
-    /// Returns the range of the corners of `face`; reads two offsets if degrees are mixed.
+    /// Returns the range of the corners of `face`; O(1).
     ///
     /// # Panics
     ///
@@ -178,13 +176,12 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
         }
     }
 
-    /// Returns the face of a corner. This takes a division, or a binary search if degrees are
-    /// mixed, or a look-up if degrees have been edited. The result for a corner that does not exist
-    /// is arbitrary.
+    /// Returns the face of a corner; O(1), or O(log faces) for [`Mixed`](Self::Mixed). If the
+    /// corner does not exist, the result is arbitrary.
     ///
     /// # Panics
     ///
-    /// May panic if there are no faces, or if the corner is a blank between faces.
+    /// May panic if there are no faces, or if the corner is between faces.
     pub fn face_of(&self, corner: usize) -> FaceId {
         let face = match self {
             Self::Uniform { degree, .. } => corner / *degree as usize,
@@ -224,8 +221,7 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
     ///
     /// # Errors
     ///
-    /// Returns a description of the first face whose corners are missing or too few, or of the
-    /// corners that belong to no face.
+    /// Returns a description of the fault.
     pub fn check(&self, corners: usize) -> Result<(), String> {
         if let Self::Mixed(offsets) = self
             && offsets.is_empty()

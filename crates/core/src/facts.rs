@@ -12,10 +12,10 @@ use crate::polygon_mesh::{PolygonMesh, repeated};
 
 /// The topology of a list of faces; exact, and independent of any structure.
 ///
-/// A face that names a vertex twice is degenerate: it counts in `degenerate_faces`, `faces`,
-/// `face_degree` and `isolated_vertices` only. A list of fewer than three corners counts only in
-/// `degenerate_faces`. All other faces are *used*, and so are their vertices. A field is `None` if
-/// it is not defined for the mesh.
+/// A face that names a vertex twice is degenerate. It counts only in `degenerate_faces`, `faces`
+/// and `face_degree`; its vertices are not isolated. A face with fewer than three corners counts
+/// only in `degenerate_faces`. All other faces are *used*, and so are their vertices. A field is
+/// `None` if it is not defined for the mesh.
 ///
 /// `genus` is computed from the Euler–Poincaré formula v − e + f = 2(c − g) − h, for c components,
 /// h boundary loops and genus g. For this formula, a vertex with several fans is first cut into one
@@ -31,7 +31,7 @@ pub struct Facts {
     pub faces: usize,
     /// V − E + F over the used vertices and faces.
     pub euler_characteristic: i64,
-    /// Classes of used faces that are connected by shared edges.
+    /// Sets of used faces that are connected by shared edges.
     pub components: usize,
     /// Edges with one face.
     pub boundary_edges: usize,
@@ -51,14 +51,14 @@ pub struct Facts {
     pub orientable: Option<bool>,
     /// Whether there are faces, and no boundary edge.
     pub closed: bool,
-    /// The sum over the components; `None` if a component is not orientable or has a non-manifold
-    /// edge.
+    /// The sum of the genera of all components; `None` if a component is not orientable or has a
+    /// non-manifold edge.
     pub genus: Option<i64>,
-    /// Vertices that no face names.
+    /// Vertices that no face with three corners or more names.
     pub isolated_vertices: usize,
-    /// The number of used faces minus the number of different vertex sets among them.
+    /// The number of used faces minus the number of different vertex sets of these faces.
     pub duplicate_faces: usize,
-    /// Faces that name a vertex twice, and lists of fewer than three corners.
+    /// Faces that name a vertex twice, and faces with fewer than three corners.
     pub degenerate_faces: usize,
     /// The number of edges at a vertex, over the used vertices.
     pub valence: Option<Distribution>,
@@ -81,12 +81,11 @@ pub struct Distribution {
     pub hist: Option<BTreeMap<usize, usize>>,
 }
 
-/// The form of a histogram in files: the values are texts, because JSON requires texts as keys.
+/// The form of a histogram in files. The values are strings, because JSON requires strings as keys.
 #[cfg(feature = "serde")]
 type Histogram = serde_with::As<Option<BTreeMap<serde_with::DisplayFromStr, serde_with::Same>>>;
 
 impl Distribution {
-    /// Returns the distribution of `values`; `None` if there are no values.
     fn from_values(values: impl Iterator<Item = usize>) -> Option<Self> {
         let mut hist = BTreeMap::new();
         for value in values {
@@ -144,7 +143,6 @@ impl Facts {
     }
 }
 
-/// The results of one pass over the edges.
 struct EdgePass<'a> {
     faces: &'a FaceList,
     used: &'a [bool],
@@ -153,13 +151,13 @@ struct EdgePass<'a> {
     non_manifold_edges: usize,
     inconsistent_edges: usize,
     orientable: bool,
-    /// Classes of faces that are connected by shared edges; each unused face is a class of its own.
+    /// Sets of faces that are connected by shared edges. Each unused face is a set of its own.
     components: Partition,
-    /// Classes of corners in the same fan; each corner of an unused face is a class of its own.
+    /// Sets of corners in the same fan. Each corner of an unused face is a set of its own.
     fans: Partition,
-    /// Classes of fans that are joined by boundary edges.
+    /// Sets of fans that are joined by boundary edges.
     loops: Partition,
-    /// One fan of every boundary edge.
+    /// A fan of each boundary edge.
     boundary_fans: Vec<usize>,
     /// By vertex: the number of edges that end there.
     valence: Vec<usize>,
@@ -186,7 +184,7 @@ impl<'a> EdgePass<'a> {
             valence: vec![0; vertices],
             on_non_manifold_edge: vec![false; vertices],
         };
-        // Which faces must be flipped relative to each other; only edges with two faces count.
+        // For each edge with two faces: whether exactly one of the two faces must be flipped.
         let mut flipped = Partition::new(faces.len());
         for edge in incidence.edges() {
             pass.edges += 1;
@@ -263,7 +261,6 @@ impl<'a> EdgePass<'a> {
         }
     }
 
-    /// Returns the number of boundary loops: classes of fans that are joined by boundary edges.
     fn boundary_loops(&mut self) -> usize {
         let fans = std::mem::take(&mut self.boundary_fans);
         let loops = fans.into_iter().map(|fan| self.loops.root(fan).0);

@@ -1,4 +1,4 @@
-//! Data that follows edits automatically: the trait, and what it receives after an edit.
+//! The trait of data that follows edits.
 
 use crate::edit_log::{Changes, EditRecord};
 use crate::handle::Handle;
@@ -103,8 +103,8 @@ impl<M: MeshQuery> AcceptedEdit<'_, M> {
 }
 
 impl<H: Handle> Changes<H> {
-    /// Returns the current handle of the element whose handle was `old` before the edit;
-    /// O(changes). The element must still exist.
+    /// Returns the current handle of the element whose handle was `old` before the edit. The
+    /// element must still exist.
     fn current(&self, old: H) -> H {
         let mut renamed = self.renamed.iter();
         renamed

@@ -20,19 +20,19 @@ pub trait Handle: Copy + Eq + Ord + Hash + Debug + Send + Sync + 'static {
 
 /// Data for each element of one kind, by handle.
 ///
-/// Until a value is written for a handle, the map returns the value that it was filled with.
+/// The map returns its initial value for a handle until another value is written.
 pub trait HandleMap<H: Copy, T: Clone>: Index<H, Output = T> + IndexMut<H> + Clone {
     /// Builds a map that returns `value` for every handle; `rows` is the exclusive upper bound of
     /// handles that are rows.
     fn filled(rows: usize, value: T) -> Self;
 
-    /// Reserves memory for `more` handles, if the map allocates for each handle that is written.
+    /// Reserves memory for `more` handles, if the map is a hash map.
     fn reserve(&mut self, more: usize) {
         let _ = more;
     }
 
-    /// Stores `value` for `handle`, which may be new; O(1) amortised. A map by row grows up to the
-    /// row; the new rows before it, which are not elements yet, also get `value`.
+    /// Stores `value` for `handle`, which may be new; O(1) amortised. A map by row grows if
+    /// necessary; all new rows get `value`.
     fn insert(&mut self, handle: H, value: T);
 
     /// Removes the value of `handle` after its element was removed; O(1).
@@ -70,7 +70,7 @@ impl<H, T> Default for RowMap<H, T> {
     }
 }
 
-/// Uses the vector as the values by row, without copying.
+/// Builds the map from the values by row, without copying.
 ///
 /// ```
 /// use sixfold_core::{FaceId, RowMap};
@@ -129,8 +129,7 @@ impl<H: RowId, T: Clone> HandleMap<H, T> for RowMap<H, T> {
         }
     }
 
-    /// Does nothing: no other element has the row, so the old value can stay until the row is
-    /// written.
+    /// Does nothing: the old value stays in the row.
     #[inline]
     fn remove(&mut self, _: H) {}
 }
@@ -158,16 +157,14 @@ impl<H: RowId, T> IndexMut<H> for RowMap<H, T> {
     }
 }
 
-/// Panics because the map has no row for `handle`. A handle passed by reference would have to be in
-/// memory, even if nothing panics.
+/// Takes the handle by value: a reference would force the handle into memory in the caller.
 #[cold]
 #[inline(never)]
 fn no_such_row<H: Debug>(handle: H, rows: usize) -> ! {
     panic!("no {handle:?} in this map: it has {rows} rows")
 }
 
-/// A [`HandleMap`] for handles that are not rows: a hash map, and a default value for all handles
-/// that are not in it.
+/// A [`HandleMap`] for handles that are not rows: a hash map with a default value.
 #[derive(Clone, Debug)]
 pub struct HashHandleMap<H, T> {
     written: FxHashMap<H, T>,

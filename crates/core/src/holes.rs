@@ -29,8 +29,7 @@ pub struct Holes<P: Probe = Untraced> {
 clone_by_field!(Holes<P: Probe> { words, count });
 
 impl Holes {
-    /// Returns an empty set; `name` is the name of its table of bits, once there is one (`"face
-    /// holes"`).
+    /// Returns an empty set; `name` is the name of its table of bits, for example `"face holes"`.
     pub fn new(name: &'static str) -> Self {
         Self {
             words: Table::new(name, "64 rows", Vec::new()),
@@ -48,7 +47,7 @@ impl<P: Probe> Holes<P> {
         }
     }
 
-    /// Makes `row` a hole; O(1) amortised. If the row is beyond all words, adds words up to it.
+    /// Makes `row` a hole; O(1) amortised.
     ///
     /// # Panics
     ///
@@ -63,9 +62,8 @@ impl<P: Probe> Holes<P> {
         self.count += 1;
     }
 
-    /// Makes holes of the rows below `end` that `is_unused` selects, except rows that are already
-    /// holes. Calls `report` with each new hole, ascending, and returns the number of new holes;
-    /// O(end).
+    /// Makes every row below `end` a hole for which `is_unused` returns true. Calls `report` with
+    /// each new hole, ascending, and returns the number of new holes; O(end).
     pub fn insert_unused<H: RowId>(
         &mut self,
         end: usize,
@@ -89,7 +87,8 @@ impl<P: Probe> Holes<P> {
         self.count = 0;
     }
 
-    /// Returns the rows below `end` that are not holes, ascending; O(end), not observed.
+    /// Returns the rows below `end` that are not holes, ascending; O(end). The probe does not
+    /// record this.
     #[inline]
     pub fn rows(&self, end: usize) -> impl Iterator<Item = u32> + Clone + use<'_, P> {
         let words = self.words.rows();
@@ -143,7 +142,7 @@ impl<P: Probe> HoleSet<P> for Holes<P> {
 impl<P: Probe> Holes<P> {
     /// Removes the rows that are holes from `table`; the other rows move down and keep their order.
     /// The set must describe the rows of this table. A table that is less than half used frees its
-    /// spare memory. O(rows), not observed.
+    /// spare memory. O(rows). The probe does not record this.
     pub fn compact_table<T: Copy>(&self, table: &mut Table<T, P>) {
         let mut to = 0;
         let end = table.len();

@@ -4,7 +4,7 @@ use crate::face_list::FaceList;
 use crate::partition::Partition;
 use crate::row_id::{FaceId, VertexId, row};
 
-/// One side of one face, stored under the lower of its two ends.
+/// One side of one face, stored under its lower end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Side {
     /// The higher end.
@@ -13,7 +13,7 @@ pub(crate) struct Side {
     pub(crate) face: FaceId,
     /// The corner at which the side starts, numbered over all faces.
     pub(crate) corner: u32,
-    /// Whether the side runs from the higher end to the lower one.
+    /// Whether the side runs from the higher end to the lower end.
     pub(crate) downward: bool,
 }
 
@@ -22,7 +22,7 @@ pub(crate) struct Side {
 pub(crate) struct EdgeSides<'a> {
     /// The two ends, the lower first.
     pub(crate) ends: [VertexId; 2],
-    /// The sides along it; at least one.
+    /// The sides along the edge; at least one.
     pub(crate) sides: &'a [Side],
 }
 
@@ -31,7 +31,7 @@ pub(crate) struct EdgeSides<'a> {
 pub struct EdgeUse {
     /// The two ends, the lower first.
     pub ends: [VertexId; 2],
-    /// The number of faces that run along it; one on a boundary.
+    /// The number of faces along the edge.
     pub faces: usize,
     /// Whether no two of these faces run along the edge in the same direction.
     pub opposed: bool,
@@ -48,12 +48,13 @@ impl EdgeUse {
         }
     }
 
-    /// Returns whether it has exactly one face.
+    /// Returns whether the edge has exactly one face.
     pub fn is_boundary(&self) -> bool {
         self.faces == 1
     }
 
-    /// Returns whether it has at most two faces, which run along it in opposite directions.
+    /// Returns whether the edge has one face, or two faces that run along it in opposite
+    /// directions.
     pub fn is_manifold(&self) -> bool {
         self.opposed
     }
@@ -106,7 +107,7 @@ impl Incidence {
         }
     }
 
-    /// Returns every edge, ordered by its lower and then by its higher end.
+    /// Returns every edge, ordered by the lower end, then by the higher end.
     pub(crate) fn edges(&self) -> impl Iterator<Item = EdgeSides<'_>> {
         let starts = std::iter::once(0).chain(self.ends.iter().map(|&end| end as usize));
         let buckets = starts.zip(&self.ends).zip(0..);
@@ -119,8 +120,8 @@ impl Incidence {
         })
     }
 
-    /// Returns the fans of all vertices as classes of corners: two corners of one vertex are in one
-    /// fan if their faces share an edge that ends there.
+    /// Returns the fans of all vertices as classes of corners. Two corners of a vertex are in the
+    /// same fan if their faces share an edge at the vertex.
     pub(crate) fn fans(&self, faces: &FaceList) -> Partition {
         let mut fans = Partition::new(faces.corners().len());
         for edge in self.edges() {
@@ -135,9 +136,9 @@ impl Incidence {
         fans
     }
 
-    /// Returns the vertices whose faces form more than one fan. Each vertex comes with a face of
-    /// its first fan and the first face of another fan. The vertices are in the order of these
-    /// second faces.
+    /// Returns the vertices whose faces form more than one fan. Each vertex has two faces: the
+    /// first face of its first fan, and the first face of another fan. The vertices are in the
+    /// order of the second faces.
     pub(crate) fn several_fans(&self, faces: &FaceList) -> Vec<(VertexId, [FaceId; 2])> {
         let mut fans = self.fans(faces);
         // By vertex: its first face, the fan of that face, and whether another fan was found.
@@ -157,7 +158,7 @@ impl Incidence {
     }
 }
 
-/// Returns the corners of the side's face at the lower and at the higher end.
+/// Returns the corners of a side: the corner at its lower end, then the corner at its higher end.
 pub(crate) fn corners_at_ends(side: &Side, faces: &FaceList) -> [usize; 2] {
     let range = faces.range(side.face);
     let start = side.corner as usize;

@@ -24,10 +24,9 @@ pub trait IteratorExt: Iterator + Sized {
     /// Maps each item with `f`, like [`map`](Iterator::map); for iterators that public functions
     /// return.
     ///
-    /// The `fold` of the result, which `for_each` and `sum` call, is always inlined. The `fold` of the
-    /// standard library's `Map` is not marked for inlining: without link-time optimisation,
-    /// `for_each` over the neighbours of a vertex can then take 1.6 times the time, because the
-    /// user's closure keeps its variables in memory.
+    /// The `fold` of the result is always inlined; `for_each` and `sum` call `fold`. The `fold` of
+    /// the standard library's `Map` may not be inlined. Without link-time optimisation, `for_each`
+    /// over the neighbours of a vertex can then take 1.6 times the time.
     #[inline]
     fn map_inline<B, F: FnMut(Self::Item) -> B>(self, f: F) -> MapInline<Self, F> {
         MapInline { items: self, f }

@@ -9,12 +9,12 @@
 //! - [`MeshQuery`]: the nine relations of Weiler (1985) and their contract.
 //! - [`OrientedWalk`]: steps from side to side, along faces and around vertices.
 //! - [`Representation`]: the trait of all structures, with their construction and memory.
-//! - [`LocalQueries`]: the bound of algorithms that require structures whose queries never scan.
+//! - [`LocalQueries`]: the trait of structures whose queries never scan, as a bound for algorithms.
 //! - [`Handle`] and [`HandleMap`]: handles of elements, and data stored by handle; [`Numbers`]:
 //!   numbers of elements from 0.
 //! - [`BoundaryLoop`]: a chain of boundary edges.
 //! - [`BuildError`]: the reason why a structure refuses a mesh; [`Capabilities`]: the check that
-//!   finds it.
+//!   finds this reason.
 //! - [`Refine`] and [`Split`]: structures that split every face in their own tables.
 //! - [`MeshEdit`], [`EditRecord`] and [`EditError`]: edits in place, the record of created, removed
 //!   and renamed elements, and the reason why an edit is refused.
@@ -44,8 +44,8 @@
 //! # Features
 //!
 //! No feature is on by default. `rayon`: refinement on all threads. `serde`: reading and writing of
-//! facts, capabilities, costs and memory tables. `mint`: positions as points and vectors of that
-//! crate.
+//! facts, capabilities, costs and memory tables. `mint`: positions as points and vectors of the
+//! crate `mint`.
 
 mod boundary;
 mod capability;

@@ -7,7 +7,7 @@ use crate::representation::Representation;
 /// The sizes of a mesh that determine the memory of a structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counts {
-    /// The number of vertices, isolated ones included.
+    /// The number of vertices, including isolated vertices.
     pub vertices: usize,
     /// The number of edges.
     pub edges: usize,
@@ -15,12 +15,12 @@ pub struct Counts {
     pub faces: usize,
     /// The number of corners of all faces.
     pub corners: usize,
-    /// Whether all faces have one degree.
+    /// Whether all faces have the same degree.
     pub uniform: bool,
 }
 
 impl Counts {
-    /// Returns the bytes of the table of face offsets; 0 if all faces have one degree.
+    /// Returns the bytes of the table of face offsets; 0 if all faces have the same degree.
     pub const fn offset_bytes(&self) -> usize {
         if self.uniform {
             0
@@ -40,6 +40,6 @@ pub trait Measured: Representation {
     /// Returns the bytes of the layout for a mesh of these sizes, computed by formula.
     fn layout_bytes(counts: &Counts) -> usize;
 
-    /// Returns the same mesh with `probe` observing every table.
+    /// Returns the same mesh; `probe` records every access to a table.
     fn probed<P: Probe>(self, probe: P) -> Self::Probed<P>;
 }

@@ -10,14 +10,14 @@ pub struct TableBytes {
     pub table: Cow<'static, str>,
     /// The number of rows.
     pub rows: usize,
-    /// The bytes allocated for the rows, spare capacity included.
+    /// The bytes allocated for the rows, including spare capacity.
     pub bytes: usize,
     /// The bytes of one row; not part of reports.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub row_bytes: usize,
 }
 
-/// The bytes that a structure holds on the heap, table by table, positions included.
+/// The bytes that a structure holds on the heap, table by table, including positions.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct MemoryFootprint {

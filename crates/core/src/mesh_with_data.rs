@@ -138,8 +138,7 @@ impl<M: MeshQuery + fmt::Debug, D: fmt::Debug> fmt::Debug for MeshWithData<M, D>
     }
 }
 
-/// A log that passes the reports of an edit to another log, and to the record of changes if the
-/// data uses the record.
+/// A log that passes reports to `log`, and also to `changes` if the data uses the changes.
 struct Reports<'a, M: MeshQuery, D, L> {
     changes: &'a mut EditRecord<M>,
     log: &'a mut L,
@@ -180,7 +179,7 @@ where
     }
 }
 
-/// Implements each query by a call of the same query of the mesh.
+/// Forwards each query to the mesh.
 macro_rules! queries {
     ($($query:ident($($argument:ident: $kind:ty),*) -> $answer:ty;)+) => {$(
         #[inline]
@@ -231,8 +230,8 @@ impl<M: MeshQuery, D> MeshQuery for MeshWithData<M, D> {
     }
 }
 
-/// Implements each edit by a call of the same edit of the mesh. An entry names the kind of element
-/// that the edit splits, and the argument that is this element.
+/// Forwards each edit to the mesh. `splits` names the kind of the element that the edit splits, and
+/// its argument.
 macro_rules! edits {
     ($($edit:ident($($argument:ident: $kind:ty),*) -> $outcome:ty, splits $split:ident($($element:ident)?);)+) => {$(
         #[inline]

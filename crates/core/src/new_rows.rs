@@ -9,8 +9,8 @@ use crate::probe::Probe;
 use crate::query::MeshQuery;
 use crate::row_id::{RowId, VertexId};
 
-/// The row that each element gets when the holes of a table are closed: the number of rows before
-/// it that are not holes.
+/// The new row of each element after the holes of a table are closed. The new row is the number of
+/// rows before the element that are not holes.
 ///
 /// ```text
 /// old row   0 1 2 3 4 5 6 7
@@ -19,7 +19,7 @@ use crate::row_id::{RowId, VertexId};
 /// ```
 #[derive(Clone, Debug)]
 pub struct NewRows {
-    /// By old row; empty if there are no holes, because every row then stays.
+    /// By old row: the new row. Empty if there are no holes.
     rows: Vec<u32>,
 }
 
@@ -34,7 +34,7 @@ impl NewRows {
         Self { rows }
     }
 
-    /// Returns whether there are no holes, so that every row stays.
+    /// Returns whether every row stays, because there are no holes.
     #[inline]
     pub fn is_unchanged(&self) -> bool {
         self.rows.is_empty()
@@ -43,13 +43,12 @@ impl NewRows {
     /// Returns the new handle of `old`, which must not be a hole.
     #[inline]
     pub fn new_handle<H: RowId>(&self, old: H) -> H {
-        // One comparison answers two questions: whether the row is in the list, and whether there
-        // is a list.
+        // If there are no holes, the list is empty, and `get` returns `None`.
         let new = self.rows.get(old.row() as usize);
         new.map_or(old, |&new| H::from_row(new))
     }
 
-    /// Calls `report` with the old and the new handle of each of `elements` whose row changes.
+    /// Calls `report` with the old and the new handle of each element whose row changes.
     pub fn for_each_renamed<H: RowId>(
         &self,
         elements: impl Iterator<Item = H>,
@@ -76,8 +75,8 @@ impl NewRows {
         }
     }
 
-    /// Returns the polygons of `mesh`, with vertices numbered by their new rows. `positions` has
-    /// the old rows; `corners` is an estimate of the number of corners, for reserving memory.
+    /// Returns the polygons of `mesh`, with vertices numbered by their new rows. `positions` are by
+    /// old row. `corners` is an estimate of the number of corners, to reserve memory.
     ///
     /// # Panics
     ///
@@ -108,7 +107,6 @@ impl NewRows {
     }
 }
 
-/// Calls `report` with each of `elements` that `new_handle` changes, and its new handle.
 fn for_each_changed<H: PartialEq + Copy>(
     elements: impl Iterator<Item = H>,
     new_handle: impl Fn(H) -> H,

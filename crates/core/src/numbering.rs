@@ -6,7 +6,7 @@ use std::ops::Index;
 use crate::handle::{Handle, HandleMap};
 use crate::row_id::row;
 
-/// The entry of a handle without a number. [`row`] never returns this value for an index of a list.
+/// The entry of a handle without a number. No element has this number.
 const NO_NUMBER: u32 = u32::MAX;
 
 /// Elements of one kind, numbered from 0 without gaps.
@@ -17,8 +17,7 @@ const NO_NUMBER: u32 = u32::MAX;
 /// order in which the mesh lists them. [`Numbers::new`] numbers a selection of elements, for
 /// example only the free vertices of a system with a fixed boundary.
 ///
-/// The numbers describe the mesh at the time when they were built; edits do not change the numbers.
-/// They are stored as one map by handle and one list of handles.
+/// The numbers describe the mesh at the time when they were built. Edits do not change the numbers.
 ///
 /// [`MeshQuery::vertex_numbers`]: crate::MeshQuery::vertex_numbers
 /// [`edge_numbers`]: crate::MeshQuery::edge_numbers
@@ -109,7 +108,7 @@ impl<H: Handle> Numbers<H> {
     }
 }
 
-/// Returns the number of a handle; O(1) expected. Panics if it has no number.
+/// Returns the number of a handle; O(1) expected. Panics if the handle has no number.
 impl<H: Handle> Index<H> for Numbers<H> {
     type Output = u32;
 

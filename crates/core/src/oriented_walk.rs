@@ -21,7 +21,7 @@ pub type SideMap<M, T> = <<M as OrientedWalk>::Side as Handle>::Map<T>;
 /// Most relations of [`MeshQuery`] yield sets. This trait adds an order: [`next_side`] and
 /// [`prev_side`] step along a face, [`ccw_side`] and [`cw_side`] around a vertex. The half-edge
 /// mesh, the winged-edge mesh, the corner table and the face-vertex mesh implement this trait. The
-/// other two structures would have to scan all faces for every step around a vertex.
+/// other two structures do not: they would scan all faces for every step around a vertex.
 ///
 /// # Contract
 ///

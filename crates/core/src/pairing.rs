@@ -4,30 +4,31 @@ use crate::face_list::FaceList;
 use crate::row_id::{FaceId, RowId, VertexId};
 use crate::sides::{Sides, bucket_starts, fill_buckets};
 
-/// The largest number of corners for [`TwinPairs`]: a corner and a direction share 32 bits.
+/// Maximum number of corners for [`TwinPairs`]. A corner and one bit for the direction share 32
+/// bits.
 pub(crate) const MAX_CORNERS: usize = (u32::MAX / 2) as usize;
 
-/// The largest number of edges for [`TwinPairs`]: an edge and the directions found share 32 bits.
+/// Maximum number of edges for [`TwinPairs`]. An edge and two bits for the directions share 32
+/// bits.
 pub(crate) const MAX_EDGES: usize = (u32::MAX / 4) as usize;
 
 /// The half-edge of every corner.
 ///
 /// Half-edge `2e` runs from the lower to the higher end of edge `e`, and half-edge `2e + 1` in the
-/// other direction. Edges are numbered in the order of their lower ends, so that the edges of one
-/// vertex are adjacent in memory.
+/// other direction. Edges are numbered in the order of their lower ends.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TwinPairs {
-    /// By corner: the half-edge that starts there and runs along the corner's face.
+    /// By corner: the half-edge that starts at the corner and runs along its face.
     pub half_of_corner: Vec<u32>,
-    /// The number of edges; half the number of corners if there is no boundary.
+    /// The number of edges.
     pub edge_count: usize,
 }
 
 impl TwinPairs {
     /// Pairs the sides of `faces`; O(corners + vertices).
     ///
-    /// Sides are put into buckets by their lower end (a counting sort). Within a bucket, a scratch
-    /// row for each higher end finds the partner of a side.
+    /// A counting sort puts the sides into buckets by lower end. In each bucket, a table by higher
+    /// end finds the two sides of an edge.
     ///
     /// Returns `None` if two sides run along one edge in the same direction, or if there are too
     /// many corners or edges. An edge with three faces always has two such sides.
@@ -41,8 +42,8 @@ impl TwinPairs {
     }
 
     /// Pairs sides like [`new`](Self::new), but stores the sorted sides in `rows`, with one place
-    /// per corner. A constructor can pass a table of its result that is not filled yet. Afterwards,
-    /// the content of `rows` is arbitrary.
+    /// per corner. `rows` can be an unused table of the caller. The content of `rows` is arbitrary
+    /// afterwards.
     ///
     /// # Panics
     ///
@@ -61,9 +62,8 @@ impl TwinPairs {
         fill_buckets(faces, &mut ends, |at, a, b, corner| {
             rows.write(at, a.max(b), tag(a, b, corner));
         });
-        // By vertex: the last edge with this higher end, and the directions found for it; 0 if
-        // there is no edge yet. Edges of earlier buckets have lower numbers, so they are recognised
-        // as old.
+        // By vertex: the last edge with this higher end, and two bits for the directions found. 0
+        // means no edge.
         let mut last = vec![0_u32; vertices];
         let mut half_of_corner = vec![0_u32; corners];
         let (mut edges, mut conflict, mut start) = (0_u32, 0, 0);
@@ -75,7 +75,7 @@ impl TwinPairs {
                 let row = &mut last[high.index()];
                 let (corner, direction) = (tag >> 1, tag & 1);
                 let new = *row < first;
-                // No branch: half of all sides are new, in unpredictable order.
+                // No branch: it would be unpredictable.
                 let known = if new { edges << 2 } else { *row };
                 let seen = 1 << direction;
                 conflict |= known & seen;
@@ -97,8 +97,7 @@ impl TwinPairs {
 
     /// Links every face of `faces`, in order.
     ///
-    /// If all faces have three corners, or all have four, the loop over the corners of a face is
-    /// unrolled. An inlined implementation of [`LinkFaces`] then gets slices of known length.
+    /// If all faces are triangles, or all faces are quads, the loop over the corners is unrolled.
     // Always inlined: otherwise the loop loads the addresses of the tables for every corner.
     #[inline(always)]
     pub fn link_faces(&self, faces: &FaceList, tables: &mut impl LinkFaces) {
@@ -115,7 +114,6 @@ impl TwinPairs {
     }
 }
 
-/// Links faces of one degree, which is known at compile time.
 #[inline]
 fn link_uniform<const DEGREE: usize>(
     corners: &[VertexId],
@@ -129,18 +127,18 @@ fn link_uniform<const DEGREE: usize>(
     }
 }
 
-/// The tables of a structure during construction, to which faces are linked one by one.
+/// The tables of a structure during construction.
 pub trait LinkFaces {
-    /// Links the face `f`. The half-edge `halves[i]` runs along it from `corners[i]`.
+    /// Links the face `f`. The half-edge `halves[i]` runs along `f` and starts at `corners[i]`.
     fn link_face(&mut self, f: FaceId, corners: &[VertexId], halves: &[u32]);
 }
 
 /// Places for the sorted sides of faces, one per corner.
 ///
-/// A constructor implements this trait for rows of its result that are not filled yet, so that the
-/// sides need no memory of their own.
+/// A constructor can implement this trait for unused rows of its result. Then the sorted sides need
+/// no additional memory.
 pub trait SideRows {
-    /// Writes the higher end of a side and its tag to place `at`. The tag is never `u32::MAX`.
+    /// Writes the higher end and the tag of a side to place `at`. The tag is never `u32::MAX`.
     fn write(&mut self, at: usize, high: VertexId, tag: u32);
 
     /// Returns the higher end and the tag at place `at`.
@@ -162,13 +160,13 @@ impl SideRows for [(u32, u32)] {
 
 /// Pairs the sides of triangles without numbering their edges; O(corners + vertices).
 ///
-/// A side is identified by its opposite corner. Calls `pair` once for each side, with the side and
-/// its partner. The partner of the first side of an edge is the side itself; the partner of the
-/// second side is the first side. So a boundary side is paired only with itself.
+/// A side is identified by its opposite corner. For the first side of an edge, calls
+/// `pair(side, side)`. For the second side, calls `pair(second, first)`. A boundary edge has only a
+/// first side.
 ///
-/// `highs` is scratch memory with one row per corner; a constructor can pass a table of its result
-/// that is not filled yet. Returns scratch memory of 4 bytes per corner, which the caller can
-/// reuse, and the number of edges. Returns `None` in the same cases as [`TwinPairs::new`].
+/// `highs` is scratch memory with one row per corner. `highs` can be an unused table of the caller.
+/// Returns scratch memory of 4 bytes per corner, which the caller can reuse, and the number of
+/// edges. Returns `None` in the same cases as [`TwinPairs::new`].
 ///
 /// # Panics
 ///
@@ -218,7 +216,8 @@ pub fn pair_triangle_sides(
     (!conflict && edges <= MAX_EDGES).then_some((tags, edges))
 }
 
-/// The tag of an edge whose two sides were both found; the tag of a corner is always smaller.
+/// The tag of the first side of an edge after its second side was found. All other tags are
+/// smaller.
 const PAIRED: u32 = u32::MAX;
 
 /// Returns twice the corner of a side, plus one if the side runs from the higher end to the lower.
@@ -282,8 +281,6 @@ mod tests {
         assert_eq!(mixed.half_of_corner[0] ^ 1, mixed.half_of_corner[4]);
         assert_eq!(pairs(0, &[]).expect("empty").edge_count, 0);
     }
-    /// Returns the partner of each side of these triangles, where sides are given by their opposite
-    /// corners.
     fn paired(vertices: usize, faces: &[[u32; 3]]) -> Option<Vec<u32>> {
         let corners: Vec<VertexId> = faces.iter().flatten().map(|&v| VertexId::new(v)).collect();
         let list = FaceList::uniform(3, corners).expect("small");
@@ -302,8 +299,6 @@ mod tests {
 
     #[test]
     fn sides_of_triangles_are_paired_by_opposite_corners() {
-        // Edge v0–v1 is opposite the third corner of both triangles; the other edges are on the
-        // boundary.
         let two = paired(4, &[[0, 1, 2], [1, 0, 3]]).expect("manifold");
         assert_eq!(two, [0, 1, 5, 3, 4, 2]);
         assert_eq!(paired(4, &[[0, 1, 2], [0, 1, 3]]), None, "one direction");

@@ -30,7 +30,7 @@ impl Partition {
         self.classes
     }
 
-    /// Returns the root of the item's class, and whether the item differs from it.
+    /// Returns the root of the item's class, and whether the item differs from the root.
     pub(crate) fn root(&mut self, item: usize) -> (usize, bool) {
         let (mut at, mut odd) = (item, false);
         loop {
@@ -55,7 +55,7 @@ impl Partition {
     }
 
     /// Merges the classes of `a` and `b`, and records whether the two items differ. Returns false
-    /// if this contradicts earlier relations.
+    /// if `differ` contradicts earlier relations.
     pub(crate) fn relate(&mut self, a: usize, b: usize, differ: bool) -> bool {
         let ((mut a, odd_a), (mut b, odd_b)) = (self.root(a), self.root(b));
         let differ = differ ^ odd_a ^ odd_b;
@@ -81,7 +81,6 @@ mod tests {
     fn parity_is_right_after_unions_in_any_order() {
         let len = 200;
         let mut partition = Partition::new(len);
-        // i and i + 7 differ; 0, 7, 14, … alternate.
         for i in (0..len - 7)
             .rev()
             .step_by(2)

@@ -15,11 +15,13 @@ use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
 ///
 /// # Invariants
 ///
-/// - I1  Every face names at least three vertices; each of them exists and is named once.
+/// - I1  Every face has at least three corners. The vertices of its corners exist and are
+///   different.
 /// - I2  There are at most [`MAX_ROWS`] vertices, faces and corners.
 ///
 /// Nothing else is guaranteed: edges with three faces, inconsistently oriented faces, and isolated
-/// or coincident vertices are allowed. The capabilities of each structure state what it can hold.
+/// or coincident vertices are allowed. The capabilities of a structure state which of these meshes
+/// the structure can hold.
 ///
 /// # Examples
 ///
@@ -40,11 +42,11 @@ pub struct PolygonMesh {
 }
 
 impl PolygonMesh {
-    /// Builds a mesh from `positions` and `faces`, each a list of vertex numbers from 0;
-    /// O(vertices + corners).
+    /// Builds a mesh from `positions` and `faces`; O(vertices + corners). Each face is a list of
+    /// vertex numbers, counted from 0.
     ///
-    /// A position is a [`Point`], three numbers (`[f32; 3]` or a tuple), or, with the feature
-    /// `mint`, a point or vector of the crate `mint`. A [`Point`] converts back with `into()`.
+    /// A position is a [`Point`] or three numbers (`[f32; 3]` or a tuple). With the feature `mint`,
+    /// a position can be a point or vector of the crate `mint`. `into()` converts a [`Point`] back.
     ///
     /// ```
     /// # use sixfold_core::PolygonMesh;
@@ -94,7 +96,7 @@ impl PolygonMesh {
         Ok(Self { positions, faces })
     }
 
-    /// Returns the number of vertices, isolated ones included.
+    /// Returns the number of vertices, including isolated vertices.
     pub fn vertex_count(&self) -> usize {
         self.positions.len()
     }
@@ -158,8 +160,7 @@ impl PolygonMesh {
 
     /// Returns the vertices whose faces form more than one fan, ascending; O(corners) expected.
     ///
-    /// Two faces are in one fan if a chain of faces leads from one to the other, each step across
-    /// an edge at the vertex. Orientation does not matter.
+    /// Faces that share an edge at the vertex are in the same fan. Orientation does not matter.
     pub fn vertices_of_several_fans(&self) -> Vec<VertexId> {
         let incidence = Incidence::new(self.vertex_count(), &self.faces, |_| true);
         let fans = incidence.several_fans(&self.faces).into_iter();
@@ -242,7 +243,7 @@ impl fmt::Display for PolygonMesh {
     }
 }
 
-/// Returns whether all faces satisfy I1; their degree is a constant.
+/// Returns whether all faces satisfy I1. All faces have `DEGREE` corners.
 fn all_valid<const DEGREE: usize>(corners: &[VertexId], vertices: usize) -> bool {
     corners.as_chunks::<DEGREE>().0.iter().all(|face| {
         // No early exit: it would almost never be taken.
@@ -278,7 +279,7 @@ fn check_face(face: FaceId, corners: &[VertexId], vertices: usize) -> Result<(),
     }
 }
 
-/// Returns the first of `corners` that repeats an earlier one.
+/// Returns the first corner that repeats an earlier corner.
 pub(crate) fn repeated<V: Handle>(corners: &[V]) -> Option<V> {
     if let &[a, b, c] = corners {
         return match (a == b || a == c, b == c) {

@@ -12,7 +12,7 @@ pub trait Probe: Clone + Debug + Send + Sync {
     fn write(&self, table: &'static str, row: usize, bytes: usize);
 }
 
-/// Observes nothing and compiles to nothing: the probe for normal use.
+/// The probe for normal use: it records nothing and costs nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Untraced;
 
@@ -46,7 +46,7 @@ pub struct Access {
     pub bytes: usize,
 }
 
-/// Records every access in order, in a log that its clones share.
+/// A probe that records every access in order. All clones of the probe share one log.
 #[derive(Clone, Debug, Default)]
 pub struct Traced {
     log: Arc<Mutex<Vec<Access>>>,

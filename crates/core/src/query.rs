@@ -25,10 +25,10 @@ pub type FaceMap<M, T> = <<M as MeshQuery>::Face as Handle>::Map<T>;
 /// # Contract
 ///
 /// - **Elements.** An edge is an unordered pair of vertices that follow each other in some face; no
-///   two edges have the same ends. A face names at least three vertices, each once.
+///   two edges have the same ends. A face has at least three corners, at different vertices.
 /// - **Once.** A relation yields each element once, and never the element that is queried. For
-///   example, two faces that share two edges yield each other only once. This also holds for two
-///   faces with the same corners. An isolated vertex has empty relations.
+///   example, two faces that share two edges yield each other only once. Two faces with the same
+///   corners also yield each other only once. The relations of an isolated vertex are empty.
 /// - **Symmetry.** `f ∈ VF(v)` exactly if `v ∈ FV(f)`; likewise VE/EV, EF/FE, VV, EE and FF.
 /// - **Order.** FV and FE run counter-clockwise in the order of the input, from an arbitrary start.
 ///   Side `i` joins corners `i` and `i + 1`. The other seven relations are sets; their order is not
@@ -36,7 +36,7 @@ pub type FaceMap<M, T> = <<M as MeshQuery>::Face as Handle>::Map<T>;
 /// - **Iteration.** `next` and `fold` yield the same items. This also holds if `next` takes the
 ///   first items and `fold` the rest.
 /// - **No cache.** Each result is computed from the stored tables alone; nothing is kept between
-///   calls. If this requires a scan of all faces, the query scans.
+///   calls. If the tables have no links for a query, the query scans all faces.
 /// - **Handles.** A handle is valid until the next edit. A query panics if its handle is out of
 ///   range or belongs to a deleted element; the message names the handle. A handle of another mesh
 ///   may panic or give a wrong result; it is always memory-safe.
@@ -152,8 +152,8 @@ pub trait MeshQuery {
 
     /// Returns whether `e` is an edge of this mesh: false after it was deleted or renamed.
     ///
-    /// A list of edges that was made before edits can be checked with this method. If the row of a
-    /// deleted edge is reused for a new edge, this returns true.
+    /// Use this method to check a list of edges that was made before edits. If a later edit created
+    /// an edge with the same handle, this returns true.
     ///
     /// O(1) if edges are rows or corners; costs as much as VE if an edge is the pair of its ends.
     fn contains_edge(&self, e: Self::Edge) -> bool {
@@ -165,11 +165,11 @@ pub trait MeshQuery {
         self.faces().any(|face| face == f)
     }
 
-    /// Returns the exclusive upper bound of the vertex handles that are rows; O(1).
+    /// Returns an exclusive upper bound of the vertex rows; 0 if vertex handles are not rows. O(1).
     fn vertex_rows(&self) -> usize;
-    /// Returns the exclusive upper bound of the edge handles that are rows; O(1).
+    /// Returns an exclusive upper bound of the edge rows; 0 if edge handles are not rows. O(1).
     fn edge_rows(&self) -> usize;
-    /// Returns the exclusive upper bound of the face handles that are rows; O(1).
+    /// Returns an exclusive upper bound of the face rows; O(1).
     fn face_rows(&self) -> usize;
 
     /// Returns a map that holds `value` for every vertex.
@@ -227,15 +227,14 @@ pub trait MeshQuery {
     /// ```
     ///
     /// - Every boundary edge is in exactly one loop, once.
-    /// - At a vertex, a loop continues to the other boundary edge of the same fan of faces. If
-    ///   several loops meet at a vertex, each loop stays in its own fan. If two holes meet at a
-    ///   vertex, one loop runs around both holes and visits the vertex twice.
+    /// - At a vertex, a loop continues to the other boundary edge of the same fan of faces. If two
+    ///   holes meet at a vertex, one loop runs around both holes and visits the vertex twice.
     /// - A chain ends where its fan reaches an edge with three or more faces. All other chains are
     ///   [closed](BoundaryLoop::is_closed).
     /// - Each edge runs in the direction opposite to its face. Edges are ordered by the place of
     ///   their start in [`vertices`](Self::vertices), then by the place of their end. If the faces
-    ///   of a loop disagree in orientation, the first of its edges in this order determines the
-    ///   direction.
+    ///   of a loop disagree in orientation, the loop has the direction of its first edge in this
+    ///   order.
     /// - A closed loop starts with its first edge in this order, and the loops are sorted by their
     ///   first edges. So structures that list the vertices in the same order return the same loops.
     ///
@@ -245,8 +244,9 @@ pub trait MeshQuery {
         boundary::boundary_loops(self)
     }
 
-    /// Returns the neighbours of a manifold vertex, counter-clockwise: from one boundary edge to
-    /// the other if there is a boundary, otherwise from any start.
+    /// Returns the neighbours of a manifold vertex, counter-clockwise. At a boundary vertex, the
+    /// ring runs from one boundary edge to the other. Otherwise, the start of the ring is
+    /// arbitrary.
     ///
     /// Returns `None` if the faces at `v` do not form one consistently oriented fan. The ring of an
     /// isolated vertex is empty. The time is O(valence log valence) in addition to VF and FV.
@@ -266,7 +266,7 @@ pub trait MeshQuery {
     }
 }
 
-/// Returns the corners after and before `v` in a face that has `v`.
+/// Returns the corners after and before `v` in a face.
 fn spoke<V: Eq + Copy>(corners: impl Iterator<Item = V>, v: V) -> [V; 2] {
     let (mut first, mut last) = (None, None);
     let (mut after, mut before) = (None, None);
@@ -287,8 +287,8 @@ fn spoke<V: Eq + Copy>(corners: impl Iterator<Item = V>, v: V) -> [V; 2] {
         .expect("a face has corners")
 }
 
-/// Chains spokes `[after, before]`, each from its first to its second vertex, into one ring; `None`
-/// if they form more than one chain or cycle.
+/// Chains spokes `[after, before]` into one ring; `None` if the spokes form more than one chain or
+/// cycle.
 pub(crate) fn ring<V: Ord + Copy>(mut spokes: Vec<[V; 2]>) -> Option<Vec<V>> {
     let Some(&[any, _]) = spokes.first() else {
         return Some(Vec::new());

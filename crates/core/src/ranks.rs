@@ -14,9 +14,9 @@ const BLOCK: usize = u64::BITS as usize;
 /// rank     0 1   2   3 4 5
 /// ```
 ///
-/// It stores one bit per item and one count per block of 64 (Jacobson 1989): 16 bytes for 64 items.
-/// If every item is a member, it stores nothing, because the rank of an item is the item itself. An
-/// example is the set of half-edges with a face in a closed mesh.
+/// The set stores one bit per item and one count per block of 64 items (Jacobson 1989): 16 bytes
+/// for 64 items. If every item is a member, the set stores nothing, because the rank of an item is
+/// the item.
 #[derive(Clone, Debug, Default)]
 pub struct Ranks {
     blocks: Vec<Block>,
@@ -154,8 +154,7 @@ impl Ranks {
     /// Panics if `rank` is not less than the number of missing items.
     pub fn select_missing(&self, rank: usize) -> usize {
         assert!(rank < self.missing(), "no gap {rank} of {}", self.missing());
-        // The number of items before a block that are not members; the binary search finds the
-        // block by this number.
+        // The number of missing items before a block.
         let gaps = |block: usize| BLOCK * block - self.blocks[block].before as usize;
         let (mut low, mut high) = (0, self.blocks.len());
         while high - low > 1 {
@@ -170,7 +169,7 @@ impl Ranks {
     }
 }
 
-/// Returns the position of the set bit of `bits` that has `rank` set bits before it.
+/// Returns the position of the set bit that has `rank` set bits below it.
 fn nth_bit(bits: u64, rank: usize) -> usize {
     let clear_lowest = |bits: u64| bits & (bits - 1);
     (0..rank)

@@ -40,9 +40,8 @@ pub enum Split {
     Triangles,
     /// Splits every triangle into three, with a face point; then flips every old inner edge
     /// (Kobbelt 2000). If `trisect` is set, every boundary edge is cut in three; otherwise boundary
-    /// edges are unchanged. The two points of each boundary edge come last among the vertices, in
-    /// the order of `edges()`. The first of the two is nearer to the start of the face's side along
-    /// the edge.
+    /// edges are unchanged. The new vertices on boundary edges come last, in the order of
+    /// `edges()`. Each boundary edge has two new vertices, in the direction of its face.
     Sqrt3 {
         /// Whether boundary edges are cut in three.
         trisect: bool,
@@ -50,7 +49,7 @@ pub enum Split {
 }
 
 impl Split {
-    /// Returns the name for users: `quads`.
+    /// Returns the name for users: `quads`, `triangles` or `sqrt3`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Quads => "quads",
@@ -64,8 +63,8 @@ impl Split {
         !matches!(self, Self::Quads)
     }
 
-    /// Returns the sizes of the refined mesh, in closed form. `boundary` is the number of edges
-    /// with one face; only the √3 split with `trisect` uses this number. Sizes beyond `usize`
+    /// Returns the sizes of the refined mesh, computed by formula. `boundary` is the number of
+    /// edges with one face; only the √3 split with `trisect` uses this number. Sizes beyond `usize`
     /// saturate.
     ///
     /// For quads and triangles, the sizes are correct even if edges have three or more faces.
@@ -118,11 +117,10 @@ impl fmt::Display for Split {
     }
 }
 
-/// A structure that can refine its own tables: it splits every face, in closed form, without
-/// rebuilding.
+/// A structure that can split all faces in its own tables, without rebuilding.
 ///
 /// The structure computes only the connectivity. The subdivision scheme computes the positions: it
-/// queries the nine relations of the parent mesh and writes the child's
+/// queries the parent mesh and writes the positions of the child through
 /// [`positions_mut`](Self::positions_mut).
 ///
 /// # Contract
@@ -134,8 +132,8 @@ impl fmt::Display for Split {
 ///   refinement into the same mesh allocates nothing.
 /// - With the feature `rayon` the work runs on the threads of the current rayon pool; otherwise it
 ///   runs on one thread. The child has the same bytes for any number of threads.
-/// - Refinement needs at most a tenth of the bytes of the two meshes as additional memory. It uses
-///   no hash table, no [`from_polygons`](Representation::from_polygons) and no intermediate
+/// - The additional memory is at most a tenth of the bytes of the two meshes. Refinement uses no
+///   hash table, no [`from_polygons`](Representation::from_polygons) and no intermediate
 ///   `PolygonMesh`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot split its own tables",
@@ -148,8 +146,7 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
 
     /// The numbers of the edges, computed once per mesh; the memory is reused for the next mesh.
     ///
-    /// If edges are rows, this type holds only the data that `split_into` and `parent` look up.
-    /// Otherwise it is a table by corner.
+    /// If edges are not rows, this type is a table by corner.
     type EdgeNumbers: Default + Send + Sync;
 
     /// Returns a mesh without elements, as a target for refinement.
@@ -226,8 +223,7 @@ pub fn check_split<M: Refine>(
         return Err(RefineError::Unsupported { structure, split });
     }
     let refined = split.refined_counts(counts, boundary);
-    // Half-edges and corners are rows too, so twice the number of edges and the number of corners
-    // must also be within the limit.
+    // The limit applies to half-edges and corners, too.
     for (elements, number) in [
         ("vertices", refined.vertices),
         ("half-edges", refined.edges.saturating_mul(2)),
@@ -330,7 +326,6 @@ pub fn all_rows<T: Sync>(rows: &[T], holds: impl Fn(&T) -> bool + Sync) -> bool 
 mod tests {
     use super::*;
 
-    /// A cube: 8 vertices, 12 edges, 6 faces.
     const CUBE: Counts = Counts {
         vertices: 8,
         edges: 12,
@@ -339,7 +334,6 @@ mod tests {
         uniform: true,
     };
 
-    /// One triangle.
     const TRIANGLE: Counts = Counts {
         vertices: 3,
         edges: 3,

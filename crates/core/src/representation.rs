@@ -46,7 +46,7 @@ impl Relation {
         Self::FaceFaces,
     ];
 
-    /// Returns the name of the method: `vertex_vertices`.
+    /// Returns the name of the method, for example `vertex_vertices`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::VertexVertices => "vertex_vertices",
@@ -76,7 +76,7 @@ impl fmt::Display for Relation {
     serde(rename_all = "snake_case")
 )]
 pub enum QueryCost {
-    /// The query reads O(1) for each element that it yields.
+    /// The query reads O(1) rows for each element that it yields.
     Constant,
     /// The query reads the faces around the element. The cost does not depend on the size of the
     /// mesh.
@@ -106,13 +106,13 @@ impl QueryCost {
 /// - `from_polygons` succeeds exactly if [`CAPABILITIES`](MeshQuery::CAPABILITIES)`.check`
 ///   succeeds; otherwise both return the same error. The only exception is a mesh with too many
 ///   elements for the handles of the structure.
-/// - `faces()` and `vertices()` keep the order of the input. If vertices are identified by
-///   coordinates, the vertices come instead in the order in which the faces first name them.
+/// - `faces()` and `vertices()` keep the order of the input. Exception: if vertices are identified
+///   by coordinates, they have the order in which the faces first name them.
 /// - `to_polygons(from_polygons(m))` equals `m`, except that a face may start at another corner. If
 ///   vertices are identified by coordinates, vertices with equal coordinates become one vertex, and
 ///   the result has the order of `vertices()`.
 pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
-    /// The name that users see: `half-edge`.
+    /// The name for users, for example `half-edge`.
     const NAME: &'static str;
 
     /// How much of the mesh each relation reads, in the order of [`Relation::ALL`].
@@ -130,8 +130,8 @@ pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
         QueryCost::are_local(&Self::COSTS)
     }
 
-    /// Returns the path of the type that users see: `sixfold_half_edge::HalfEdgeMesh`. The first
-    /// part is the crate.
+    /// Returns the path of the type, for example `sixfold_half_edge::HalfEdgeMesh`. The first part
+    /// is the crate.
     fn type_path() -> &'static str {
         std::any::type_name::<Self>()
     }
@@ -168,7 +168,7 @@ pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
     /// Returns the bytes that each table holds on the heap.
     fn memory(&self) -> MemoryFootprint;
 
-    /// Checks every invariant that the structure's documentation numbers; O(corners) expected.
+    /// Checks all numbered invariants of the structure; O(corners) expected.
     ///
     /// # Errors
     ///

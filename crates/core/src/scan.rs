@@ -1,4 +1,4 @@
-//! The scan of a whole table, for queries for which a structure stores no links.
+//! The scan of a whole table.
 
 use crate::probe::Probe;
 use crate::table::Table;
@@ -9,9 +9,9 @@ const BLOCK: usize = 64;
 impl<T, P: Probe> Table<T, P> {
     /// Scans the whole table for the rows that `hits` finds in its blocks, in order.
     ///
-    /// `hits` gets a block of up to 64 rows and returns one bit for each row; the lowest bit is
-    /// that of the first row. [`hits_in`] computes these bits for one condition. Every row is read
-    /// once, just before `hits` gets its block.
+    /// `hits` gets a block of up to 64 rows and returns one bit for each row; the lowest bit
+    /// belongs to the first row. [`hits_in`] computes these bits for one condition. Every row is
+    /// read once, just before `hits` gets its block.
     ///
     /// ```
     /// use sixfold_core::{Table, hits_in};
@@ -31,9 +31,9 @@ impl<T, P: Probe> Table<T, P> {
     }
 }
 
-/// Returns the rows that meet the condition `is_hit` in a block of up to 64, as bits.
+/// Tests a block of up to 64 rows with `is_hit`; returns one bit for each row.
 ///
-/// Few blocks contain such a row. So the whole block is tested first; this test has no branch and
+/// Few blocks contain a hit. So the whole block is tested first; this test has no branch and
 /// compiles to vector instructions. The rows are tested one by one only if the block has a hit.
 #[inline]
 pub fn hits_in<T>(block: &[T], is_hit: impl Fn(&T) -> bool) -> u64 {

@@ -1,11 +1,10 @@
 //! The edits of structures that scan: their legality, their effect on the faces, and their reports.
 //!
-//! If an edit adds a vertex, it gets the new handle as an argument. Each edit checks everything,
-//! and then changes only the faces; the structure updates its table of vertices, if it has one. The
-//! hits of a scan are kept only during the edit, on the stack if there are few.
+//! An edit that adds a vertex receives the new handle as an argument. Each edit first checks all
+//! conditions and then changes the faces. The structure itself updates its table of vertices.
 //!
-//! If the log ignores reports, an edit of one face reads only that face. These structures then need
-//! not compute whether other faces have the same sides and corners.
+//! If the log ignores reports, an edit of one face reads only that face. Otherwise, a scan finds
+//! the other faces with the same sides and corners.
 
 mod collapse;
 mod edges;
@@ -45,8 +44,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         self.spans.range(f).len()
     }
 
-    /// Checks that handles can name this many more faces and corners. A face that gets more corners
-    /// moves, and needs new rows for all its corners.
+    /// Checks that the mesh can have this many additional faces and rows of corners. A face that
+    /// gets more corners needs new rows for all its corners.
     fn check_capacity(&self, faces: usize, corners: usize) -> Result<(), Refusal<V>> {
         check_rows("faces", self.spans.len() + faces, MAX_ROWS)?;
         check_rows("corners", self.corners.len() + corners, MAX_ROWS)
@@ -126,7 +125,6 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     }
 }
 
-/// Returns the items sorted, each once.
 fn sorted_once<T: Ord>(items: impl Iterator<Item = T>) -> Vec<T> {
     let mut items: Vec<T> = items.collect();
     items.sort_unstable();

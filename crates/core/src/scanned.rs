@@ -23,8 +23,8 @@ pub trait ScannedVertex: Handle {
     /// A handle that no vertex has. Corners of deleted faces have this handle, and no scan searches
     /// for it.
     const BLANK: Self;
-    /// Whether vertices are identified by coordinates. If so, a vertex exists as long as a face has
-    /// it, and no two vertices are at one position.
+    /// Whether vertices are identified by coordinates. If so, every vertex has a face, and no two
+    /// vertices are at one position.
     const IS_POSITION: bool;
 
     /// Returns the vertex of a corner.
@@ -88,14 +88,14 @@ pub enum SearchSet<V, S> {
     One(V),
     /// Two vertices.
     Two([V; 2]),
-    /// Up to four vertices, some possibly repeated.
+    /// Three or four vertices; three vertices are stored with a repeated vertex.
     Four([V; 4]),
     /// Any number of vertices.
     Many(S),
 }
 
 impl<V: ScannedVertex> SearchSet<V, V::Set> {
-    /// Builds the set of `vertices`, which must not be empty.
+    /// Builds the set of `vertices`.
     #[inline]
     pub fn from_vertices(vertices: &[V]) -> Self {
         match *vertices {
@@ -107,7 +107,8 @@ impl<V: ScannedVertex> SearchSet<V, V::Set> {
         }
     }
 
-    /// Builds the set of every second corner of a face: each side of the face ends at one of them.
+    /// Builds the set of every second corner of a face. Each side of the face has an end in this
+    /// set.
     pub fn every_second(face: &[V::Corner]) -> Self {
         match *face {
             [a, _, c] | [a, _, c, _] => Self::Two([a, c].map(V::from_corner)),
@@ -138,15 +139,15 @@ impl<V: ScannedVertex> SearchSet<V, V::Set> {
 /// A corner that a scan found.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<V> {
-    /// Its row.
+    /// The row of the corner.
     pub corner: usize,
-    /// Its face.
+    /// The face of the corner.
     pub face: FaceId,
-    /// The vertex before it in the face.
+    /// The vertex before the corner in the face.
     pub before: V,
-    /// Its vertex.
+    /// The vertex of the corner.
     pub at: V,
-    /// The vertex after it in the face.
+    /// The vertex after the corner in the face.
     pub after: V,
 }
 
@@ -167,8 +168,8 @@ impl<V: Handle> Hit<V> {
 /// The faces of a structure that stores no other connectivity: lists of corners, one after another.
 ///
 /// Every query and every edit scans all corners to find the faces at a vertex or along an edge.
-/// When a face is deleted or moved to another place in the table, its old corners become blank. No
-/// scan finds blank corners.
+/// When a face is deleted or moved to another place in the table, its old corners become blank.
+/// Scans do not find blank corners.
 #[derive(Debug)]
 pub struct ScannedFaces<V: ScannedVertex, P: Probe = Untraced, E: Editing = Compact> {
     /// The corners, face by face.
@@ -193,7 +194,7 @@ impl<V: ScannedVertex, E: Editing> ScannedFaces<V, Untraced, E> {
 }
 
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
-    /// Converts to faces without deletion; `None` if they have not been compacted.
+    /// Converts to faces of a compact mesh; `None` if there are holes or scattered faces.
     pub fn into_compact(self) -> Option<ScannedFaces<V, P>> {
         let spans = self
             .spans
@@ -258,8 +259,8 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
     #[inline]
     pub fn face(&self, f: FaceId) -> &[V::Corner] {
         let corners = self.corners.read_range(self.spans.range(f));
-        // This checks the holes, not whether the first corner is blank, because a loop over faces
-        // reads the number of holes only once.
+        // This check is faster than a check for blank corners, because a loop over faces reads the
+        // number of holes only once.
         if self.holes.has(f.index()) {
             deleted(f);
         }
@@ -350,7 +351,7 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
         })
     }
 
-    /// FF; one scan for every second corner of `f`, because each side of `f` ends at one of them.
+    /// FF; one scan for every second corner of `f`. Each side of `f` has an end at such a corner.
     pub fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
         let set = SearchSet::every_second(self.face(f));
         let mut sides: Vec<Pair<V>> = self.face_edges(f).collect();
@@ -369,9 +370,8 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
         corners.chain(self.spans.bytes()).chain(self.holes.bytes())
     }
 
-    /// Checks that the holes are faces, and that the blank corners are exactly those of deleted
-    /// faces and those between faces. Requires that the spans pass their own
-    /// [check](FaceSpans::check).
+    /// Checks that the holes are faces. Also checks that a corner is blank if and only if no face
+    /// has the corner. Requires that the spans pass their own [check](FaceSpans::check).
     ///
     /// # Errors
     ///

@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-/// The number of items that are stored on the stack and compared one by one.
+/// Maximum number of items that are stored on the stack and compared one by one.
 const INLINE_LEN: usize = 16;
 
 /// A list of the elements in a neighbourhood. Up to 16 items are stored on the stack, which is
@@ -14,8 +14,8 @@ pub trait Lookup<T> {
     /// Sorts the items if [`has`](Self::has) needs it; O(items log items).
     fn sort_for_lookup(&mut self);
 
-    /// Returns whether `item` is in the list, after [`sort_for_lookup`](Self::sort_for_lookup);
-    /// O(log items) if there are many.
+    /// Returns whether `item` is in the list; O(log items) if there are many. The caller must call
+    /// [`sort_for_lookup`](Self::sort_for_lookup) first.
     fn has(&self, item: T) -> bool;
 }
 

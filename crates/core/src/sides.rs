@@ -11,7 +11,7 @@ use crate::table::Table;
 
 /// Faces whose sides can be visited repeatedly.
 pub(crate) trait Sides {
-    /// Calls `visit` with the two ends of every side and the corner where it starts.
+    /// Calls `visit` with the two ends and the corner of every side.
     fn for_each_side(&self, visit: impl FnMut(VertexId, VertexId, u32));
 }
 
@@ -29,7 +29,7 @@ impl Sides for FaceList {
     }
 }
 
-/// Spans, the corners that they divide, and the faces that are holes.
+/// The spans, the corners and the holes of a structure.
 type Parts<'a, P, E> = (
     &'a FaceSpans<P, E>,
     &'a Table<VertexId, P>,
@@ -57,8 +57,8 @@ impl<P: Probe, E: Editing> Sides for Parts<'_, P, E> {
     }
 }
 
-/// Visits the sides of one face after another; each face comes with its first corner. Side `i`
-/// joins corners `i` and `i + 1`.
+/// Visits the sides of all faces. `faces` yields the first corner and the vertices of each face.
+/// Side `i` joins corners `i` and `i + 1`.
 #[inline(always)]
 fn sides_of_each<'a>(
     faces: impl Iterator<Item = (usize, &'a [VertexId])>,
@@ -72,8 +72,7 @@ fn sides_of_each<'a>(
     }
 }
 
-/// Visits sides like `sides_of_each`. The degree is a constant, so the compiler unrolls the loop
-/// over a face.
+/// Visits sides like `sides_of_each`, with an unrolled loop over the corners of a face.
 #[inline(always)]
 fn sides_of_uniform<const DEGREE: usize>(
     corners: &[VertexId],
@@ -97,7 +96,7 @@ pub(crate) struct Buckets<T> {
 
 impl<T: Copy + Default> Buckets<T> {
     /// Builds the buckets in two passes; O(corners + vertices). The first pass counts the sides.
-    /// The second stores the result of `entry` for the two ends and the corner of each side.
+    /// The second pass stores the result of `entry` for each side.
     #[inline(always)]
     pub(crate) fn new(
         vertices: usize,
@@ -126,8 +125,8 @@ pub(crate) fn bucket_starts(vertices: usize, faces: &impl Sides) -> (Vec<u32>, u
     (starts, total as usize)
 }
 
-/// Calls `place` with the row of each side in the bucket of its lower end, and with the side's two
-/// ends and corner. Moves each start in `starts` to the end of its bucket.
+/// Calls `place` for each side, with the row of the side in its bucket, the two ends and the
+/// corner. Changes each start in `starts` to the end of the bucket.
 #[inline(always)]
 pub(crate) fn fill_buckets(
     faces: &impl Sides,
@@ -145,9 +144,8 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
     /// Returns every edge of the faces once, ordered by the lower end. Faces that are holes are
     /// skipped.
     ///
-    /// The higher ends are put into one bucket for each lower end (a counting sort over all sides);
-    /// within a bucket, each higher end is yielded at its first occurrence. O(corners + vertices).
-    /// The cost of a face is linear in its corners, because no face is searched.
+    /// A counting sort puts the higher ends into one bucket for each lower end. In each bucket,
+    /// each higher end is yielded at its first occurrence. O(corners + vertices).
     ///
     /// # Panics
     ///
@@ -161,7 +159,7 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
         let higher_end = |a: VertexId, b: VertexId, _| a.max(b).index() as u32;
         let Buckets { entries, ends } = Buckets::new(vertices, &(self, corners, holes), higher_end);
         // By vertex: the lower end of the last edge with this higher end; initially the vertex
-        // itself, because a vertex is never its own lower end.
+        // itself, which means no edge.
         let mut last_low: Vec<u32> = (0..row(vertices)).collect();
         let (mut low, mut at) = (0_u32, 0);
         std::iter::from_fn(move || {
@@ -185,7 +183,6 @@ mod tests {
     use crate::editing::NoHoles;
     use crate::probe::Traced;
 
-    /// Returns the edges of these faces, and the number of reads of their corners.
     fn edges(vertices: usize, faces: &[&[u32]]) -> (Vec<[usize; 2]>, usize) {
         let mut list = FaceList::default();
         for face in faces {

@@ -10,12 +10,10 @@ use crate::memory::TableBytes;
 use crate::probe::{Probe, Untraced};
 use crate::row_id::VertexId;
 
-/// The rows of one column of a structure; query and edit code accesses the rows only through this
-/// type.
+/// One table of a structure. Queries and edits access the rows only through this type.
 ///
-/// With the probe [`Untraced`] a read is only a bounds-checked index (the benchmark group
-/// `zero_cost` compares it with bare slices). Each table stores its name and the kind of its rows,
-/// for traces, memory reports and the panic message of a missing row.
+/// With the probe [`Untraced`], a read is only a bounds-checked index. Each table stores its name
+/// and the kind of its rows, for traces, memory reports and the panic message of a missing row.
 pub struct Table<T, P: Probe = Untraced> {
     rows: Vec<T>,
     name: &'static str,
@@ -82,7 +80,8 @@ impl<T, P: Probe> Table<T, P> {
     ///
     /// # Panics
     ///
-    /// Panics if the table lacks one of them; the message names the table, the element and the row.
+    /// Panics if the table lacks one of these rows; the message names the table, the element and
+    /// the row.
     #[inline]
     pub fn read_pair(&self, pair: usize) -> &[T; 2] {
         self.probe.read(self.name, 2 * pair, size_of::<T>());
@@ -97,7 +96,7 @@ impl<T, P: Probe> Table<T, P> {
     ///
     /// # Panics
     ///
-    /// Panics if the table lacks one of them.
+    /// Panics if the table lacks one of these rows.
     #[inline]
     pub fn read_range(&self, range: Range<usize>) -> &[T] {
         for row in range.clone() {
@@ -125,8 +124,8 @@ impl<T, P: Probe> Table<T, P> {
 
     /// Adds a row at the end; O(1) amortised.
     ///
-    /// The caller checks beforehand that there may be one more row: see
-    /// [`MAX_ROWS`](crate::MAX_ROWS).
+    /// The caller must check beforehand that the table has fewer than [`MAX_ROWS`](crate::MAX_ROWS)
+    /// rows.
     #[inline]
     pub fn push(&mut self, value: T) {
         self.probe.write(self.name, self.rows.len(), size_of::<T>());
@@ -161,55 +160,57 @@ impl<T, P: Probe> Table<T, P> {
         self.probe.clone()
     }
 
-    /// Replaces all rows. Not observed.
+    /// Replaces all rows. The probe does not record this.
     pub fn replace(&mut self, rows: Vec<T>) {
         self.rows = rows;
     }
 
-    /// Drops the rows from `len` on. Not observed.
+    /// Drops the rows from `len` on. The probe does not record this.
     pub fn truncate(&mut self, len: usize) {
         self.rows.truncate(len);
     }
 
-    /// Drops all rows and frees their memory. Not observed.
+    /// Drops all rows and frees their memory. The probe does not record this.
     pub fn clear(&mut self) {
         self.rows = Vec::new();
     }
 
-    /// Frees spare memory if less than half of the capacity is used. Not observed.
+    /// Frees spare memory if less than half of the capacity is used. The probe does not record
+    /// this.
     pub fn shrink_if_half_empty(&mut self) {
         if self.rows.len() < self.rows.capacity() / 2 {
             self.rows.shrink_to_fit();
         }
     }
 
-    /// Returns all rows, not observed: for passes over the whole table and for raw access.
+    /// Returns all rows. The probe does not record the reads.
     #[inline]
     pub fn rows(&self) -> &[T] {
         &self.rows
     }
 
-    /// Returns all rows for writing in place, not observed.
+    /// Returns all rows for writing. The probe does not record the writes.
     #[inline]
     pub fn rows_mut(&mut self) -> &mut [T] {
         &mut self.rows
     }
 
     /// Changes the number of rows to `len`. The content of the rows is arbitrary, so the caller
-    /// must overwrite it. The table is not moved if its capacity is large enough. Not observed.
+    /// must overwrite all rows. Allocates only if the capacity is too small. The probe does not
+    /// record this.
     pub fn resize(&mut self, len: usize, blank: T)
     where
         T: Copy,
     {
         if len > self.rows.capacity() {
-            // The old rows are not needed: free them before the new ones are allocated.
+            // Frees the old rows before the new rows are allocated.
             self.rows = Vec::new();
             self.rows.reserve_exact(len);
         }
         self.rows.resize(len, blank);
     }
 
-    /// Returns the name and the bytes held, spare capacity included.
+    /// Returns the name and the size of the table; the bytes include spare capacity.
     pub fn bytes(&self) -> TableBytes {
         TableBytes {
             table: self.name.into(),
@@ -231,9 +232,9 @@ impl<T, P: Probe> Table<T, P> {
 }
 
 impl<P: Probe> Table<Point, P> {
-    /// Moves every vertex to its position in `positions`; O(vertices), not observed. This
-    /// implements [`set_positions`](crate::Representation::set_positions) for structures with a
-    /// table of positions.
+    /// Moves every vertex to its position in `positions`; O(vertices). The probe does not record
+    /// this. This implements [`set_positions`](crate::Representation::set_positions) for structures
+    /// with a table of positions.
     ///
     /// # Errors
     ///

@@ -14,11 +14,10 @@ use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between, named_edge, n
 
 /// The edges of a mesh, by ascending corner.
 ///
-/// About every second corner is skipped, in an unpredictable order.
+/// The iterator skips about every second corner, in an unpredictable order.
 #[derive(Clone, Debug)]
 pub(crate) struct Edges<'a, P: Probe, E: Editing> {
     mesh: &'a CornerTable<E, P>,
-    /// The row of the next corner.
     at: usize,
 }
 
@@ -50,7 +49,7 @@ impl<P: Probe, E: Editing> Iterator for Edges<'_, P, E> {
         let corners = row(self.at)..row(self.mesh.opposite.len());
         let edges = corners.map(CornerId::new).filter_map(|c| {
             let across = *self.mesh.opposite.read(c.index());
-            // The corners of a deleted triangle are their own opposites.
+            // A corner of a deleted triangle is its own opposite.
             let is_there = !E::CAN_DELETE || across != Slot::some(c);
             named_edge(c, across).filter(|_| is_there)
         });
@@ -78,8 +77,8 @@ impl<P: Probe, E: Editing> Iterator for CornersAt<'_, P, E> {
 }
 
 impl<P: Probe, E: Editing> CornerTable<E, P> {
-    /// Returns the corners at `v`, counter-clockwise; on a boundary, from one boundary edge to the
-    /// other.
+    /// Returns the corners at `v`, counter-clockwise. At a boundary vertex, the corners go
+    /// from one boundary edge to the other boundary edge.
     ///
     /// # Panics
     ///
@@ -100,8 +99,8 @@ impl<P: Probe, E: Editing> CornerTable<E, P> {
     }
 }
 
-/// For each corner at a vertex, counter-clockwise: the next corner in its triangle, and its
-/// opposite.
+/// The corners at a vertex, counter-clockwise. Each item has the next corner in the triangle and
+/// the opposite of the corner.
 #[derive(Clone, Debug)]
 pub(crate) struct Fan<'a, P: Probe, E: Editing> {
     mesh: &'a CornerTable<E, P>,
@@ -142,7 +141,7 @@ impl<P: Probe, E: Editing> Iterator for Fan<'_, P, E> {
 #[derive(Clone, Debug)]
 pub(crate) struct Neighbours<'a, P: Probe, E: Editing> {
     fan: Fan<'a, P, E>,
-    /// The last corner of an open fan, set when the fan has ended.
+    /// The last corner of an open fan, after the end of the fan.
     last: Option<CornerId>,
 }
 
@@ -173,7 +172,7 @@ impl<P: Probe, E: Editing> Iterator for Neighbours<'_, P, E> {
         Some(self.fan.mesh.vertex(at))
     }
 
-    /// Uses its own loop: the loop of the fan would test twice per step whether the fan is open.
+    /// Uses its own loop: with the loop of the fan, each step would need a second test.
     #[inline]
     fn fold<B, F: FnMut(B, VertexId) -> B>(self, init: B, mut f: F) -> B {
         let Fan { mesh, at, first } = self.fan;
@@ -195,7 +194,7 @@ impl<P: Probe, E: Editing> Iterator for Neighbours<'_, P, E> {
     }
 }
 
-/// The edges at a vertex: one for each corner, and at the end of an open fan its first edge.
+/// The edges at a vertex: one for each corner, and the first edge of an open fan.
 #[derive(Clone, Debug)]
 pub(crate) struct Spokes<'a, P: Probe, E: Editing> {
     fan: Fan<'a, P, E>,
@@ -211,7 +210,7 @@ impl<'a, P: Probe, E: Editing> Spokes<'a, P, E> {
         }
     }
 
-    /// Returns the boundary edge at which an open fan begins.
+    /// Returns the first boundary edge of an open fan.
     #[inline]
     fn first_edge(&self) -> Option<EdgeCorner> {
         self.fan.first.map(|n| edge_between(n.next(), Slot::NONE))
@@ -250,7 +249,7 @@ impl<P: Probe, E: Editing> Iterator for Spokes<'_, P, E> {
     }
 }
 
-/// The other edges at both ends of an edge, read from `opposite` alone.
+/// The edges at both ends of an edge, except the edge itself. Reads only `opposite`.
 ///
 /// ```text
 ///        c              Around a, counter-clockwise from the edge: the first corner that faces
@@ -267,15 +266,14 @@ pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
     /// The corner that faces the next edge.
     at: Option<CornerId>,
     direction: Direction,
-    /// The corner that faces the edge, on the side where the walk began.
+    /// The corner that faces the edge at the start of the walk.
     near: Slot<CornerId>,
-    /// The corner that faces the edge on the other side: the walk ends there.
+    /// The corner that faces the edge at the end of the walk.
     far: Slot<CornerId>,
     /// Whether the walk around the other end has not started.
     other_end_pending: bool,
 }
 
-/// The direction of a walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Direction {
     Counterclockwise,
@@ -301,8 +299,7 @@ impl<P: Probe, E: Editing> EdgeEdges<'_, P, E> {
     /// Starts the next walk. Returns false if all walks are finished.
     #[inline]
     fn begin_next_walk(&mut self) -> bool {
-        // A walk that returned to the edge has visited the whole fan. A walk that ended at a
-        // boundary has not.
+        // A walk that ended at a boundary has not visited the whole fan.
         if self.at.is_none() && self.direction == Direction::Counterclockwise {
             self.direction = Direction::Clockwise;
             self.at = self.far.get().map(CornerId::next);
@@ -343,8 +340,8 @@ impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
         let opposite = &self.mesh.opposite;
         let mut folded = init;
         loop {
-            // Two loops, so that the steps do not test the direction. They use variables and not
-            // fields, which would be read from memory at every step.
+            // Two loops without a test of the direction. The variables stay in registers; fields
+            // would be read from memory at every step.
             let (mut at, far) = (self.at, self.far);
             match self.direction {
                 Direction::Counterclockwise => {
@@ -370,7 +367,7 @@ impl<P: Probe, E: Editing> Iterator for EdgeEdges<'_, P, E> {
     }
 }
 
-/// Returns the corner `at`, or `None` if the walk ends there: at `far` or at a boundary.
+/// Returns `at`, or `None` if the walk ends there.
 #[inline(always)]
 fn before(at: Option<CornerId>, far: Slot<CornerId>) -> Option<CornerId> {
     at.filter(|&at| Slot::some(at) != far)
@@ -386,7 +383,7 @@ mod tests {
     use super::*;
     use crate::CornerTable;
 
-    /// Checks that `fold` visits the items of `next`, from the start and after any number of steps.
+    /// Checks that `fold` and `next` visit the same items, after any number of steps.
     fn check_fold_equals_next<I>(items: I, of: impl Debug)
     where
         I: Iterator<Item: Debug + PartialEq> + Clone,

@@ -20,8 +20,8 @@ impl<E: Editing> Representation for CornerTable<E> {
         }
     }
 
-    /// Pairs the sides, links the corners that face a pair, then sets `corner` of each vertex.
-    /// O(corners + vertices), without hashing.
+    /// Pairs the sides, links the corners that face a pair, then sets `corner` of each vertex;
+    /// O(corners + vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         let refusal = || Self::CAPABILITIES.build_error(polygons);
         let (vertices, faces) = (polygons.vertex_count(), polygons.faces());
@@ -120,19 +120,18 @@ impl<E: Editing> Measured for CornerTable<E> {
     }
 }
 
-/// The data that building needs for every corner.
 struct Links {
     /// The corner that faces the same edge from the other side.
     opposite: Vec<Slot<CornerId>>,
-    /// The row of the next corner around its vertex; `u32::MAX` at the end of an open fan.
+    /// The row of the next corner around the vertex; `u32::MAX` at the end of an open fan.
     swing: Vec<u32>,
     /// Whether the mesh has no boundary.
     closed: bool,
 }
 
 impl Links {
-    /// Finds for each corner the corner that faces the same edge from the other side; O(corners +
-    /// vertices). Returns `None` if the sides cannot be paired. `scratch` has one row per corner.
+    /// Finds the opposite of each corner; O(corners + vertices). Returns `None` if the sides cannot
+    /// be paired. `scratch` has one row per corner.
     fn from_faces(vertices: usize, faces: &FaceList, scratch: &mut [VertexId]) -> Option<Self> {
         let mut opposite = vec![Slot::some(CornerId::new(0)); faces.corners().len()];
         let (mut swing, edges) = pair_triangle_sides(vertices, faces, scratch, |own, across| {
@@ -143,12 +142,11 @@ impl Links {
         let closed = opposite.len() == 2 * edges;
         let mut first = 0;
         let triangles = opposite.as_chunks_mut::<3>().0.iter_mut();
-        // The pairing no longer needs its scratch memory, which has one row per corner. So this
-        // memory stores the swings. With stored swings the walks around all vertices take half the
-        // time.
+        // The scratch memory of the pairing now stores the swings. With stored swings, the walks
+        // around all vertices take half the time.
         for (triangle, swing) in triangles.zip(swing.as_chunks_mut::<3>().0) {
             if !closed {
-                // The pairing has paired a corner that faces a boundary edge with itself.
+                // If a corner faces a boundary edge, the pairing has paired the corner with itself.
                 for (corner, across) in (first..).zip(&mut *triangle) {
                     if *across == Slot::some(CornerId::new(corner)) {
                         *across = Slot::NONE;
@@ -169,7 +167,7 @@ impl Links {
         })
     }
 
-    /// Returns a corner for each vertex; on a boundary, the corner that has no `unswing`.
+    /// Returns a corner for each vertex. On a boundary, this is the first corner of the fan.
     fn first_corners(&self, vertices: usize, vertex: &[VertexId]) -> Vec<Slot<CornerId>> {
         let mut first = vec![Slot::NONE; vertices];
         for (c, v) in (0..).zip(vertex) {
@@ -180,7 +178,7 @@ impl Links {
         }
         for (c, across) in (0..).zip(&self.opposite) {
             if across.get().is_none() {
-                // Unswinging the next corner would cross the edge that c faces.
+                // The `unswing` of the next corner would cross the edge that c faces.
                 let start = CornerId::new(c).next();
                 first[vertex[start.index()].index()] = Slot::some(start);
             }
@@ -188,7 +186,7 @@ impl Links {
         first
     }
 
-    /// Returns whether the walks from `first` visit every corner.
+    /// Returns whether the walks from the corners in `first` visit every corner.
     fn every_vertex_is_one_fan(&self, first: &[Slot<CornerId>]) -> bool {
         let mut visited = 0;
         for first in first.iter().filter_map(|first| first.get()) {

@@ -1,7 +1,6 @@
 //! Edits in place.
 //!
-//! Every edit changes one triangle, the two triangles at an edge, or the fan of a vertex. The
-//! figure names their corners and edges:
+//! Every edit changes one triangle, the two triangles at an edge, or the fan of a vertex:
 //!
 //! ```text
 //!            C
@@ -20,9 +19,9 @@
 //!            D
 //! ```
 //!
-//! The handle of an edge is the lower of the two corners that face it. If an edit changes the
-//! corners that face an edge, the handle may change. New triangles have the highest rows and change
-//! no handle.
+//! The handle of an edge is the lower of the two corners that face the edge. So the handle may
+//! change when an edit changes these corners. New triangles have the highest rows and change no
+//! handle.
 
 mod collapse;
 mod compact;
@@ -40,16 +39,16 @@ use sixfold_core::{
 use crate::EditableCornerTable;
 use crate::mesh::{CornerId, CornerTable, EdgeCorner, NO_VERTEX, names_edge};
 
-/// The error of an edit; the same type for every probe.
+/// The error of an edit, without the type of the probe.
 type Refusal = sixfold_core::Refusal<EditableCornerTable>;
 
-/// Maximum number of corners, so that the mesh can be rebuilt from its polygons.
+/// Maximum number of corners.
 const MAX_CORNERS: usize = MAX_ROWS / 2;
 
 impl<P: Probe> MeshEdit for CornerTable<Editable, P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {
         let mut costs = Edit::LOCAL_COSTS;
-        // These three make polygons.
+        // These three edits make faces that are not triangles.
         costs[Edit::SplitEdge as usize] = None;
         costs[Edit::SplitFace as usize] = None;
         costs[Edit::DissolveEdge as usize] = None;
@@ -127,7 +126,7 @@ impl<P: Probe> MeshEdit for CornerTable<Editable, P> {
         self.remove_star(v, log)
     }
 
-    /// Reads `corner` once; O(vertices).
+    /// O(vertices).
     fn remove_isolated_vertices_logged(&mut self, log: &mut impl EditLog<Self>) -> usize {
         let is_isolated = |v| *self.corner.read(v) == Slot::NONE;
         let end = self.corner.len();
@@ -135,7 +134,7 @@ impl<P: Probe> MeshEdit for CornerTable<Editable, P> {
             .insert_unused(end, is_isolated, |v| log.removed_vertex(v))
     }
 
-    /// Always returns an error: this edit makes polygons.
+    /// Always returns an error: the edit makes faces that are not triangles.
     fn split_edge_logged(
         &mut self,
         _: EdgeCorner,
@@ -166,7 +165,7 @@ impl<P: Probe> MeshEdit for CornerTable<Editable, P> {
         self.poke(f, at, log)
     }
 
-    /// Always returns an error: this edit makes polygons.
+    /// Always returns an error: the edit makes faces that are not triangles.
     fn split_face_logged(
         &mut self,
         _: FaceId,
@@ -176,7 +175,7 @@ impl<P: Probe> MeshEdit for CornerTable<Editable, P> {
         Err(unsupported(Edit::SplitFace))
     }
 
-    /// Always returns an error: this edit makes polygons.
+    /// Always returns an error: the edit makes faces that are not triangles.
     fn dissolve_edge_logged(
         &mut self,
         _: EdgeCorner,
@@ -185,8 +184,7 @@ impl<P: Probe> MeshEdit for CornerTable<Editable, P> {
         Err(unsupported(Edit::DissolveEdge))
     }
 
-    /// O(valence of a third corner) to check that the new edge does not exist; O(1) to change the
-    /// rows.
+    /// O(valence of a third corner).
     #[inline]
     fn flip_edge_logged(
         &mut self,
@@ -247,7 +245,6 @@ impl<P: Probe> CornerTable<Editable, P> {
         Err(EditError::NoSuchVertex { vertex: v })
     }
 
-    /// Returns the corner across `e`, or an error if `e` is not the handle of an edge.
     #[inline]
     fn check_edge(&self, e: EdgeCorner) -> Result<Slot<CornerId>, Refusal> {
         if e.index() < self.opposite.len() {
@@ -259,7 +256,6 @@ impl<P: Probe> CornerTable<Editable, P> {
         Err(EditError::NoSuchEdge { edge: e })
     }
 
-    /// Returns the vertices of `f`, or an error if `f` does not exist.
     #[inline]
     fn check_face(&self, f: FaceId) -> Result<[VertexId; 3], Refusal> {
         let first = 3 * f.index();
@@ -272,14 +268,14 @@ impl<P: Probe> CornerTable<Editable, P> {
         Err(EditError::NoSuchFace { face: f })
     }
 
-    /// Checks that handles can name this number of additional vertices and triangles.
+    /// Checks that handles exist for this number of new vertices and triangles.
     #[inline]
     fn check_room(&self, vertices: usize, triangles: usize) -> Result<(), Refusal> {
         check_rows("vertices", self.positions.len() + vertices, MAX_ROWS)?;
         check_rows("corners", self.vertex.len() + 3 * triangles, MAX_CORNERS)
     }
 
-    /// Returns whether `v`, which has a corner, is on a boundary. Relies on I5.
+    /// Returns whether `v` is on a boundary (I5). `v` must have a corner.
     #[inline]
     fn is_on_boundary(&self, v: VertexId) -> bool {
         let first = self.corner.read(v.index()).get();
@@ -297,7 +293,7 @@ impl<P: Probe> CornerTable<Editable, P> {
         v
     }
 
-    /// Returns the corners of the `i`-th triangle that will be pushed next.
+    /// Returns the corners of the `i`-th triangle from now on.
     #[inline]
     fn new_corners(&self, i: u32) -> [CornerId; 3] {
         let first = row(self.vertex.len()) + 3 * i;
@@ -310,8 +306,7 @@ impl<P: Probe> CornerTable<Editable, P> {
         self.opposite.extend(opposites);
     }
 
-    /// Sets the opposite of `across` to `c`, if `across` is not empty. The caller sets the opposite
-    /// of `c`.
+    /// Sets the opposite of `across` to `c`, but not the opposite of `c`.
     #[inline]
     fn set_opposite(&mut self, across: Slot<CornerId>, c: Slot<CornerId>) {
         if let Some(across) = across.get() {
@@ -319,7 +314,6 @@ impl<P: Probe> CornerTable<Editable, P> {
         }
     }
 
-    /// Sets `corner(v)` to `new`, if it was `old`.
     #[inline]
     fn replace_corner(&mut self, v: VertexId, old: CornerId, new: CornerId) {
         if *self.corner.read(v.index()) == Slot::some(old) {
@@ -327,8 +321,7 @@ impl<P: Probe> CornerTable<Editable, P> {
         }
     }
 
-    /// Marks `f` as deleted (I8). The caller has unlinked its corners: no other corner may be
-    /// opposite to them.
+    /// Marks `f` as deleted (I8). No other corner may be opposite to a corner of `f`.
     #[inline]
     fn delete_triangle(&mut self, f: FaceId) {
         let first = 3 * f.row();
@@ -339,7 +332,7 @@ impl<P: Probe> CornerTable<Editable, P> {
         self.face_holes.insert(f.index());
     }
 
-    /// Deletes `v`, which has no triangles any more.
+    /// Deletes `v`. No triangle may have a corner at `v`.
     #[inline]
     fn delete_vertex(&mut self, v: VertexId) {
         *self.corner.write(v.index()) = Slot::NONE;
@@ -347,13 +340,13 @@ impl<P: Probe> CornerTable<Editable, P> {
     }
 }
 
-/// Returns the handle of the edge that `c` faces, if `c` is the lower of the two corners.
+/// Returns the edge that `c` faces, if `c` is the lower of the two corners.
 #[inline]
 fn faced_by(c: CornerId) -> EdgeCorner {
     EdgeCorner::new(c.row())
 }
 
-/// Reports the new handle of an edge to the log, if it changed.
+/// Reports a change of an edge handle to the log.
 #[inline]
 fn report_renamed<P: Probe>(
     log: &mut impl EditLog<CornerTable<Editable, P>>,

@@ -1,11 +1,10 @@
 //! Corner table: a triangle mesh in two arrays, the vertex and the opposite corner of each corner.
 //!
 //! Use it for large triangle meshes with neighbour queries. It is the smallest structure that
-//! answers every query without a search of the whole mesh. Its `vertex` table is an index list that
-//! a renderer accepts unchanged. It does not hold polygons or edges with three faces: building from
-//! them returns an error. Start at [`generic::CornerTable`]; its numbered invariants define the
-//! tables. The structure follows Rossignac, Safonova & Szymczak, *3D compression made simple*
-//! (2001).
+//! answers every query without a search of the whole mesh. A renderer accepts its `vertex` table as
+//! an index list. It does not hold polygons or edges with three faces: building from such a mesh
+//! returns an error. Start at [`generic::CornerTable`]; its numbered invariants define the tables.
+//! The structure follows Rossignac, Safonova & Szymczak, *3D compression made simple* (2001).
 //!
 //! | holds | |
 //! |---|---|
@@ -18,7 +17,7 @@
 //! |---|---|---|
 //! | VV | O(valence) | `corner`, then one row of `vertex` and one of `opposite` per neighbour |
 //! | VE, VF | O(valence) | `corner`, then one row of `opposite` per triangle |
-//! | EV | O(1) | two rows of `vertex`, of one triangle |
+//! | EV | O(1) | two rows of `vertex` |
 //! | EE | O(valence) of both ends | one row of `opposite` per edge |
 //! | EF | O(1) | one row of `opposite` |
 //! | FV | O(1) | three rows of `vertex`, adjacent in memory |
@@ -44,28 +43,26 @@
 //! | `flip_edge` | O(valence) to check, O(1) to change | two rows of `vertex`, six of `opposite`; no position |
 //! | `collapse_edge` | O(valence) | `vertex` around the removed end, four rows of `opposite`, two triangles deleted |
 //! | `split_vertex` | O(valence) | `vertex` around the new vertex, two new triangles, `opposite` across four corners |
-//! | `split_edge`, `split_face`, `dissolve_edge` | | not supported: they make polygons |
+//! | `split_edge`, `split_face`, `dissolve_edge` | | not supported: the results are polygons |
 //! | `compact` | O(corners + vertices) | every row |
 //!
-//! An edit can change which of the two corners that face an edge has the lower row. The edge then
-//! has a new handle, and the edit reports it to the [`EditLog`](sixfold_core::EditLog).
+//! The handle of an edge is the lower of the two corners that face the edge. If an edit changes
+//! this corner, the edit reports the new handle to the [`EditLog`](sixfold_core::EditLog).
 //!
-//! Corner `c` belongs to triangle `c / 3`. `next` and `prev` are computed, not stored. An edge is
-//! named by the lower of the corners that face it. Data by edge is a vector with one row per
-//! corner, without hashing; half of the rows are unused.
+//! Corner `c` belongs to triangle `c / 3`. `next` and `prev` are computed, not stored. A table by
+//! edge has one row per corner; half of the rows are unused.
 //!
 //! # What limits the speed of the sweeps
 //!
-//! Around a vertex, each step needs the row that the step before it read. A step is a load and the
-//! computation of `prev`: a multiplication for `c % 3`, a comparison and a selection. It takes
-//! about ten cycles if the tables are in the nearest cache. This chain of dependent steps is the
-//! cost of not storing `next`. If the vertices are visited in order, the chain limits VV, VE, VF
-//! and EE; the number of bytes has no effect. Smoothing took 18 ns per vertex on 2,562 vertices and
-//! 27 ns on 40,962, and moved 76 bytes per vertex (icospheres, one core of a shared AMD EPYC). In
-//! random order, the limit is the latency of the cache or memory at each step. A vertex takes 58 ns
-//! on 82,000 triangles. On 1.3 million triangles it takes 390 ns, which is one memory access per
-//! neighbour. FV, FE and FF read three rows in sequence. Their limit is the work done with the
-//! result. This is also the limit of EF and of listing the edges, at 1.5 ns per edge.
+//! Around a vertex, each step waits for the row that the previous step read. A step is a load and
+//! the computation of `prev`: a multiplication for `c % 3`, a comparison and a selection. A step
+//! takes about ten cycles if the tables are in the nearest cache. If the vertices are visited in
+//! order, these steps limit VV, VE, VF and EE. Smoothing took 18 ns per vertex on 2,562 vertices
+//! and 27 ns per vertex on 40,962 vertices (icospheres, one core of a shared AMD EPYC). In random
+//! order, the latency of the cache or of the memory is the limit at each step. A vertex takes 58 ns
+//! on 82,000 triangles. On 1.3 million triangles, a vertex takes 390 ns, which is one memory access
+//! per neighbour. FV, FE and FF read three rows in sequence, so their limit is the work with the
+//! result. EF and the list of the edges have the same limit, at 1.5 ns per edge.
 //!
 //! # Examples
 //!
@@ -101,7 +98,7 @@ pub use circulate::CornersAt;
 pub use mesh::{CornerId, EdgeCorner};
 pub use refine::EdgeNumbers;
 
-/// The mesh with its type parameters, for code that is generic over them.
+/// The mesh type with its type parameters, for generic code.
 ///
 /// Programs use the two types of the crate root instead.
 pub mod generic {
@@ -115,7 +112,7 @@ pub type CornerTable = generic::CornerTable;
 /// [`generic::CornerTable`] with holes.
 pub type EditableCornerTable = generic::CornerTable<sixfold_core::Editable>;
 
-/// The traits and types that all structures share: `PolygonMesh`, `MeshQuery`, handles, errors.
+/// The traits and types that all Sixfold structures share.
 pub use sixfold_core;
 
 /// Imports for a program: the types of this structure, and the traits of its queries and edits.

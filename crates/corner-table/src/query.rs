@@ -22,7 +22,7 @@ impl<P: Probe, E: Editing> MeshQuery for CornerTable<E, P> {
         self.vertex_holes.handles(self.positions.len())
     }
 
-    /// Lists every corner whose opposite is missing or has a higher row; reads `opposite` once.
+    /// Lists every corner that names an edge; reads `opposite` once.
     #[inline]
     fn edges(&self) -> impl Iterator<Item = EdgeCorner> {
         Edges::new(self)
@@ -37,7 +37,7 @@ impl<P: Probe, E: Editing> MeshQuery for CornerTable<E, P> {
         self.positions.len() - self.vertex_holes.len()
     }
 
-    /// Counts the edges, because no table has one row per edge; O(corners).
+    /// Counts the boundary edges; O(corners).
     fn edge_count(&self) -> usize {
         let opposite = self.opposite.read_range(0..self.opposite.len());
         let boundary = opposite.iter().filter(|across| across.get().is_none());
@@ -97,14 +97,14 @@ impl<P: Probe, E: Editing> MeshQuery for CornerTable<E, P> {
 
     #[inline]
     fn face_edges(&self, f: FaceId) -> impl Iterator<Item = EdgeCorner> {
-        // Side i runs from corner i to the next corner; the third corner faces it.
+        // Side i runs from corner i to the next corner. The corner that is left faces side i.
         let [a, b, c] = self.opposites_of(f);
         [c, a, b]
             .into_iter()
             .map_inline(|(c, across)| edge_between(c, across))
     }
 
-    // Always inlined: a call would return the iterator in memory, which doubles the time.
+    // Always inlined: a call would return the iterator in memory and double the time.
     #[inline(always)]
     fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
         // Two triangles may share two or three sides.
@@ -147,7 +147,7 @@ impl<P: Probe, E: Editing> MeshQuery for CornerTable<E, P> {
         self.vertex.len() / 3
     }
 
-    /// Returns `vertex_vertices`, because its order is counter-clockwise from the boundary.
+    /// Returns `vertex_vertices`, whose order is counter-clockwise from the boundary.
     fn one_ring(&self, v: VertexId) -> Option<impl Iterator<Item = VertexId>> {
         Some(self.vertex_vertices(v))
     }

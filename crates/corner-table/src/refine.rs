@@ -14,28 +14,28 @@ use self::sqrt3::Sqrt3;
 use crate::CornerTable;
 use crate::mesh::{CornerId, EdgeCorner, edge_between, named_edge, names_edge};
 
-/// Number of corners in one chunk: whole triangles.
+/// Number of corners in one chunk of whole triangles.
 const CHUNK_CORNERS: usize = 3 * CHUNK_ROWS;
 
-/// Numbers of the edges: which corners name an edge, and which face another triangle.
+/// The numbers of the edges.
 ///
-/// It stores no table by corner: the number of an edge is the rank of the corner that names it.
+/// The number of an edge is the rank of the corner that names the edge.
 #[derive(Clone, Debug, Default)]
 pub struct EdgeNumbers {
     /// The corners that name an edge.
     names: Ranks,
-    /// The corners that have an opposite: all of them if the mesh is closed.
+    /// The corners that have an opposite.
     inner: Ranks,
 }
 
 impl EdgeNumbers {
-    /// Returns the number of the edge that `c` faces, with `across` opposite to it.
+    /// Returns the number of the edge that `c` faces. `across` is opposite to `c`.
     #[inline(always)]
     fn number(&self, c: CornerId, across: Slot<CornerId>) -> u32 {
         self.names.rank(edge_between(c, across).index()) as u32
     }
 
-    /// Returns the number, among the boundary edges, of the boundary edge that `c` faces.
+    /// Returns the number of a boundary edge among the boundary edges. `c` faces the edge.
     #[inline]
     fn boundary_number(&self, c: CornerId) -> u32 {
         c.row() - self.inner.rank(c.index()) as u32
@@ -125,7 +125,7 @@ impl Refine for CornerTable {
         Ok(())
     }
 
-    /// O(1); O(log corners) for the triangles that the √3 split cuts off boundary edges.
+    /// O(1). For the triangles of √3 at boundary edges, O(log corners).
     fn parent(&self, numbers: &EdgeNumbers, split: Split, child: FaceId) -> FaceId {
         match (split, child.index().checked_sub(self.corner_count())) {
             (Split::Sqrt3 { .. }, Some(cut)) => {
@@ -147,9 +147,8 @@ impl Refine for CornerTable {
 }
 
 impl CornerTable {
-    /// Returns an error if two triangles have the same edges. Two triangles cannot share exactly
-    /// two edges, because their third edges would have the same ends. It is therefore sufficient
-    /// to look across two sides of each triangle.
+    /// Returns an error if two triangles have the same edges. Triangles that share two edges also
+    /// share the third edge. So the check looks across only two sides of each triangle.
     fn check_double_edges(&self) -> Result<(), RefineError> {
         let across = |o: Slot<CornerId>| o.get().map(CornerId::triangle);
         let has_double_edge =

@@ -6,8 +6,7 @@ use sixfold_core::{Editing, HoleSet, InvariantError, MeshQuery, Slot, VertexId, 
 
 use crate::mesh::{CornerId, CornerTable, NO_VERTEX};
 
-/// Checks the lengths of the tables, the holes, and I1 to I7 in order; later checks rely on
-/// earlier.
+/// Checks the lengths of the tables, the holes, and I1 to I7. Later checks rely on earlier checks.
 pub(crate) fn validate<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
     check_table_lengths(mesh)?;
     check_holes(mesh)?;
@@ -192,8 +191,8 @@ mod tests {
         mesh
     }
 
-    /// Returns the invariant that fails after `break_it` changed a fan of two triangles around v0
-    /// (corners 0 and 3; 1 and 5 are opposite) and an isolated v4.
+    /// Returns the invariant that fails after `break_it`. The mesh has a fan of two triangles
+    /// around v0 (corners 0 and 3; corners 1 and 5 are opposite) and an isolated v4.
     fn broken(break_it: impl Fn(&mut EditableCornerTable)) -> &'static str {
         let mut mesh = table(5, [[0, 1, 2], [0, 2, 3]]);
         break_it(&mut mesh);
@@ -207,7 +206,7 @@ mod tests {
     #[test]
     fn each_broken_invariant_is_named() {
         let v = VertexId::new;
-        // I1: a table that is too short, a vertex that does not exist, a vertex that is repeated.
+        // A table that is too short, a missing vertex, a repeated vertex.
         let short = |m: &EditableCornerTable| m.corner_vertices()[..4].to_vec();
         assert_eq!(
             broken(|m| m.vertex = Table::new("vertex", "corner", short(m))),
@@ -219,23 +218,21 @@ mod tests {
         );
         assert_eq!(broken(|m| m.vertex.rows_mut()[1] = v(99)), "I1");
         assert_eq!(broken(|m| m.vertex.rows_mut()[1] = v(2)), "I1");
-        // I2: an opposite that does not exist, without the reverse link, or linked to another
-        // corner.
+        // A missing opposite, an opposite without the reverse link, a link to the wrong corner.
         assert_eq!(broken(|m| m.opposite.rows_mut()[1] = c(99)), "I2");
         assert_eq!(broken(|m| m.opposite.rows_mut()[5] = Slot::NONE), "I2");
         assert_eq!(broken(|m| m.opposite.rows_mut()[0] = c(1)), "I2");
-        // I3: the pair faces two different edges; the pair runs one edge in the same direction.
+        // Two different edges, then one edge in the same direction.
         assert_eq!(broken(|m| m.vertex.rows_mut()[3] = v(1)), "I3");
         assert_eq!(broken(|m| m.vertex.rows_mut().swap(3, 4)), "I3");
-        // I4: a corner that does not exist, a corner at another vertex, no corner, and a corner for
-        // an isolated vertex.
+        // A missing corner, a corner at another vertex, no corner, a corner of an isolated vertex.
         assert_eq!(broken(|m| m.corner.rows_mut()[0] = c(99)), "I4");
         assert_eq!(broken(|m| m.corner.rows_mut()[0] = c(1)), "I4");
         assert_eq!(broken(|m| m.corner.rows_mut()[0] = Slot::NONE), "I4");
         assert_eq!(broken(|m| m.corner.rows_mut()[4] = c(0)), "I4");
-        // I5: corner(v0) is the second corner of its fan.
+        // corner(v0) is the second corner of its fan.
         assert_eq!(broken(|m| m.corner.rows_mut()[0] = c(3)), "I5");
-        // I8: holes without marks, marks without a hole, a deleted vertex with a corner, a deleted
+        // Holes without marks, marks without a hole, a deleted vertex with a corner, a deleted
         // vertex in a face.
         assert_eq!(broken(|m| m.face_holes.insert(0)), "I8");
         assert_eq!(broken(|m| m.face_holes.insert(2)), "I8");
@@ -251,7 +248,7 @@ mod tests {
 
     #[test]
     fn a_vertex_with_two_fans_is_reported() {
-        // Two separate triangles; then a vertex of one replaces a vertex of the other.
+        // Two separate triangles; then a vertex of one triangle replaces a vertex of the other.
         let mut mesh = table(6, [[0, 1, 2], [3, 4, 5]]);
         mesh.vertex.rows_mut()[5] = VertexId::new(0);
         mesh.corner.rows_mut()[5] = Slot::NONE;
@@ -260,8 +257,8 @@ mod tests {
 
     #[test]
     fn edges_with_the_same_ends_are_reported() {
-        // A tetrahedron cut open along two edges that share no end becomes a band. Each of its two
-        // rims has two edges between the same two vertices. Every vertex still has one fan.
+        // A tetrahedron, cut open along two edges without a common end, becomes a band. Two edges
+        // of each rim have the same ends.
         let mut mesh = table(4, [[0, 1, 2], [1, 3, 2], [1, 0, 3], [0, 2, 3]]);
         let cut = corners(&mesh).filter(|&c| {
             let ends = [c.next(), c.prev()].map(|c| mesh.vertex(c).index());

@@ -1,4 +1,4 @@
-//! The walk from side to side: a side is named by the corner where it starts.
+//! The walk from side to side: the corner where a side starts names the side.
 
 use sixfold_core::{
     Editing, FaceId, HandleMap, IteratorExt, OrientedWalk, Probe, SideMap, VertexId,
@@ -6,8 +6,8 @@ use sixfold_core::{
 
 use crate::mesh::{CornerId, CornerTable, EdgeCorner, NO_VERTEX};
 
-/// A side is named by the corner where it starts: the side `c` runs from `vertex(c)` to
-/// `vertex(next(c))`, and `prev(c)` is the corner that faces it.
+/// The corner where a side starts names the side. Side `c` runs from `vertex(c)` to
+/// `vertex(next(c))`; corner `prev(c)` faces side `c`.
 ///
 /// Every method is O(1). The steps along a face and `side_face` read no table; all other methods
 /// read one row. `ccw_side` is [`swing`](CornerTable::swing), `cw_side` is
@@ -26,7 +26,7 @@ impl<P: Probe, E: Editing> OrientedWalk for CornerTable<E, P> {
         facing.into_iter().flatten().map_inline(CornerId::next)
     }
 
-    /// Yields the sides counter-clockwise, starting at the boundary if `v` is on one.
+    /// Yields the sides counter-clockwise. At a boundary vertex, starts at the boundary.
     #[inline]
     fn outgoing_sides(&self, v: VertexId) -> impl Iterator<Item = CornerId> {
         self.corners_at(v)

@@ -11,19 +11,18 @@ use crate::mesh::FaceVertexMesh;
 /// Maximum number of handles that a result stores inline.
 const FEW: usize = 32;
 
-/// Maximum number of sides for which comparisons find repeated neighbours. For more sides, a hash
-/// set finds them.
+/// Maximum number of sides of a face without a hash set for repeated neighbours.
 const FEW_SIDES: usize = 8;
 
-/// Returns the vertices before and after `v` in a face that contains `v`.
+/// Returns the vertices before and after `v` in a face.
 ///
 /// # Panics
 ///
-/// Panics if `v` is missing from a face of more than three corners, which I3 rules out.
+/// Panics if `v` is missing from a face of more than three corners.
 #[inline]
 pub(crate) fn neighbours_in(face: &[VertexId], v: VertexId) -> [VertexId; 2] {
     if let &[a, b, c] = face {
-        // Uses two selections for each and no branch, because the place of `v` is unpredictable.
+        // No branch, because the place of `v` is unpredictable.
         let before = if v == b {
             a
         } else if v == a {
@@ -48,21 +47,20 @@ pub(crate) fn neighbours_in(face: &[VertexId], v: VertexId) -> [VertexId; 2] {
     [face[before], face[after]]
 }
 
-/// Returns whether a face that contains `v` has a side between `v` and `other`.
+/// Returns whether a face has a side between `v` and `other`. The face contains `v`.
 #[inline]
 pub(crate) fn has_side_between(face: &[VertexId], v: VertexId, other: VertexId) -> bool {
     match face {
-        // Any two corners of a triangle are adjacent.
+        // In a triangle, any two corners are adjacent.
         &[a, b, c] => (a == other) | (b == other) | (c == other),
         face => neighbours_in(face, v).contains(&other),
     }
 }
 
-/// Moves the first of each group of equal items to the front; returns the number of distinct items.
+/// Moves the distinct items to the front. Returns the number of distinct items.
 ///
-/// Compares each item with all distinct items before it, without a branch. It is unpredictable
-/// which items are new, and a branch misprediction costs more than the comparison with a whole
-/// ring.
+/// Compares each item with all distinct items before it, without a branch. A branch misprediction
+/// would cost more than these comparisons.
 #[inline]
 fn keep_distinct<T: Copy + PartialEq>(items: &mut [T]) -> usize {
     let mut kept = 0;
@@ -77,17 +75,16 @@ fn keep_distinct<T: Copy + PartialEq>(items: &mut [T]) -> usize {
     kept
 }
 
-/// Handles in whole cache lines: otherwise the time to copy them depends on their place on the
-/// stack (VV: 43 to 64 ns for each vertex).
+/// Handles, aligned to cache lines. Without this alignment, VV takes 43 to 64 ns per vertex,
+/// depending on the place on the stack.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 struct Few<H>([H; FEW]);
 
-/// An item for each of several distinct handles: the handles are stored inline if they are few,
-/// else in a vector.
+/// An item for each of several distinct handles. Few handles are stored inline, many in a vector.
 pub(crate) struct FewOrMany<H, F> {
     few: Few<H>,
-    /// The part of `few` that is still to come.
+    /// The part of `few` that is not returned yet.
     rest: Range<usize>,
     many: vec::IntoIter<H>,
     item: F,
@@ -105,7 +102,7 @@ impl<H: Copy + PartialEq, F> FewOrMany<H, F> {
         }
     }
 
-    /// Returns whether `handle` is still to come.
+    /// Returns whether `handle` is not returned yet.
     #[inline]
     pub(crate) fn has(&self, handle: H) -> bool {
         self.few.0[self.rest.clone()].contains(&handle) || self.many.as_slice().contains(&handle)
@@ -138,10 +135,10 @@ impl<H: Copy, T, F: FnMut(H) -> T> Iterator for FewOrMany<H, F> {
 }
 
 impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
-    /// Returns `item` of each vertex adjacent to `v` in its faces.
+    /// Returns `item` of each vertex adjacent to `v`.
     ///
-    /// Compares the vertices of a small fan in place; uses a hash set for a large fan, so that the
-    /// time stays linear even for a vertex of valence 100,000.
+    /// Compares the vertices of a small fan in place. Uses a hash set for a large fan, so that the
+    /// time stays linear.
     #[inline]
     pub(crate) fn ring<T, F: FnMut(VertexId) -> T>(
         &self,
@@ -164,7 +161,6 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         ring
     }
 
-    /// Returns the edges at `v`.
     #[inline]
     pub(crate) fn spokes(
         &self,
@@ -173,7 +169,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         self.ring(v, move |other| Pair::new(v, other))
     }
 
-    /// Returns the vertices adjacent to `v`, each once; `fan` is the fan of `v`, of any length.
+    /// Returns the vertices adjacent to `v`, each once. The fan of `v` may have any length.
     #[inline(never)]
     fn many_neighbours(&self, fan: &[FaceId], v: VertexId) -> Vec<VertexId> {
         let neighbours = fan
@@ -182,14 +178,13 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         neighbours.distinct().collect()
     }
 
-    /// Returns the sides of `f`, in order.
     #[inline]
     pub(crate) fn sides(&self, f: FaceId) -> impl Iterator<Item = Pair<VertexId>> {
         let face = self.face(f);
         Pair::sides(face.len(), |i| face[i])
     }
 
-    /// Returns the end of `e` with fewer faces, those faces, and the other end.
+    /// Returns the end of `e` with fewer faces, the faces at this end, and the other end.
     #[inline]
     pub(crate) fn shorter_fan(&self, e: Pair<VertexId>) -> (VertexId, &[FaceId], VertexId) {
         let [a, b] = e.ends();
@@ -201,7 +196,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         }
     }
 
-    /// Returns the faces at the edge `e`, from the end with the shorter fan.
+    /// Returns the faces at the edge `e`.
     #[inline]
     pub(crate) fn faces_along(&self, e: Pair<VertexId>) -> impl Iterator<Item = FaceId> {
         let (v, fan, other) = self.shorter_fan(e);
@@ -209,7 +204,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         fan.filter(move |&f| has_side_between(self.known_face(f), v, other))
     }
 
-    /// Returns the faces that share a side with `f`, each once; allocates only for many sides.
+    /// Returns the faces that share a side with `f`, each once.
     #[inline]
     pub(crate) fn faces_around(&self, f: FaceId) -> impl Iterator<Item = FaceId> + use<P, E> {
         let mut around = FewOrMany::new(f, |g| g);
@@ -220,8 +215,8 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         around
     }
 
-    /// Writes the faces that share a side with `f` to `few`, each once; returns their number. Returns
-    /// `None` if `f` has many sides, or its sides have more faces than `few` has places.
+    /// Writes the faces that share a side with `f` to `few`, each once. Returns the number of
+    /// faces, or `None` if `few` has too few places or `f` has many sides.
     #[inline]
     fn few_faces_around(&self, f: FaceId, few: &mut Few<FaceId>) -> Option<usize> {
         if self.face(f).len() > FEW_SIDES {
@@ -237,8 +232,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         Some(keep_distinct(&mut few.0[..found]))
     }
 
-    /// Returns the faces that share a side with `f`, for any number of sides. Searches no face
-    /// again that was already found.
+    /// Returns the faces that share a side with `f`, each once.
     #[inline(never)]
     fn many_faces_around(&self, f: FaceId) -> Vec<FaceId> {
         let mut known = FxHashSet::from_iter([f]);

@@ -25,7 +25,7 @@ impl<E: Editing> Representation for FaceVertexMesh<E> {
         }
     }
 
-    /// Copies the face list, then sorts the faces by their vertices; O(corners + vertices).
+    /// Copies the face list and sorts the faces by their vertices; O(corners + vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         let faces = polygons.faces();
         let (fans, pool) = incident_faces(polygons.vertex_count(), faces);
@@ -107,7 +107,7 @@ impl<E: Editing> Measured for FaceVertexMesh<E> {
     }
 }
 
-/// Returns the faces around every vertex, in the order of the faces, by a counting sort.
+/// Returns the faces around every vertex, in the order of the faces.
 fn incident_faces(vertices: usize, faces: &FaceList) -> (Vec<Fan>, Vec<FaceId>) {
     let corners = faces.corners();
     let mut fans = vec![Fan::default(); vertices];
@@ -118,7 +118,7 @@ fn incident_faces(vertices: usize, faces: &FaceList) -> (Vec<Fan>, Vec<FaceId>) 
     for fan in &mut fans {
         fan.start = total;
         total += fan.len;
-        // Counted again while the pool is filled.
+        // The loop that fills the pool counts again.
         fan.len = 0;
     }
     let mut pool = vec![FaceId::new(0); corners.len()];
@@ -139,8 +139,7 @@ fn incident_faces(vertices: usize, faces: &FaceList) -> (Vec<Fan>, Vec<FaceId>) 
     (fans, pool)
 }
 
-/// Calls `add` for each corner of each face of `DEGREE` corners. The compiler unrolls the loop over
-/// a constant degree.
+/// Calls `add` for each corner of each face. The compiler unrolls the loop for a constant degree.
 #[inline(always)]
 fn add_uniform<const DEGREE: usize>(corners: &[VertexId], mut add: impl FnMut(FaceId, VertexId)) {
     let faces = corners.as_chunks::<DEGREE>().0;

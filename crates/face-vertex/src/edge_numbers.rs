@@ -7,8 +7,8 @@ use sixfold_core::{CHUNK_ROWS, FaceId, FaceSpans, Pair, VertexId, row};
 
 use crate::FaceVertexMesh;
 
-/// The numbers of the edges, stored by corner: a corner has the number of the edge along the side
-/// that starts there. The number of an edge is its position in `edges()`.
+/// The number of each edge, stored by corner. The entry of a corner is the number of the edge along
+/// the side that starts at the corner. The number of an edge is its position in `edges()`.
 ///
 /// ```text
 ///    c ──3── b     corners   a b c │ a d b      edges  0 ab, 1 ac, 2 ad  by the lower end, then
@@ -18,19 +18,18 @@ use crate::FaceVertexMesh;
 ///    a ──2── d
 /// ```
 ///
-/// Uses four bytes per corner, and scratch memory of four bytes per vertex. The next mesh reuses
-/// this scratch memory.
+/// Uses four bytes per corner and four bytes per vertex.
 #[derive(Clone, Debug, Default)]
 pub struct EdgeNumbers {
     pub(crate) by_corner: Vec<u32>,
     /// The starts of the chunks, and the end of the last chunk.
     pub(crate) chunks: Vec<EdgeChunk>,
-    /// By vertex: 1 + the highest number of the edges that have this vertex as higher end. Used
+    /// For each vertex, 1 + the highest number of the edges with this vertex as higher end. Used
     /// only while edges are numbered.
     bounds: Vec<u32>,
 }
 
-/// The start of a chunk of some thousand edges: all edges with lower ends in a range of vertices.
+/// The start of a chunk. A chunk has all edges whose lower ends are in a range of vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct EdgeChunk {
     /// The first vertex of the range.
@@ -41,12 +40,12 @@ pub(crate) struct EdgeChunk {
     pub(crate) side: usize,
 }
 
-/// Number of faces of a fan that are read before their sides are processed.
+/// Number of faces that are read before their sides are processed.
 const FEW: usize = 64;
 
 impl EdgeNumbers {
-    /// Numbers the edges of `mesh`, fan after fan: each side to a higher vertex gets a new number,
-    /// unless its edge was already found in the fan. O(corners · degree + vertices).
+    /// Numbers the edges of `mesh`, fan after fan. A side to a higher vertex gets a new number if
+    /// its edge is new in this fan. O(corners · degree + vertices).
     pub(crate) fn fill(&mut self, mesh: &FaceVertexMesh) {
         match mesh.spans {
             FaceSpans::Uniform { degree: 3, .. } => self.fill_from::<3>(mesh),
@@ -75,14 +74,14 @@ impl EdgeNumbers {
             }
             let mut fan = mesh.fan(v);
             if !fan.is_sorted() {
-                // I3 does not fix an order, but `edges()` uses the order of the faces.
+                // I3 does not fix an order of the fan, but `edges()` uses the order of the faces.
                 in_order.clear();
                 in_order.extend_from_slice(fan);
                 in_order.sort_unstable();
                 fan = &in_order;
             }
-            // Numbers increase. So if a higher end was already found in this fan, its entry is
-            // above `known`.
+            // If this fan already has an edge to a higher end, the bound of the higher end is above
+            // `known`.
             let known = edges;
             for faces in fan.chunks(FEW) {
                 let found = mesh.sides_upward::<DEGREE>(v, faces, &mut upward);
@@ -106,14 +105,13 @@ impl EdgeNumbers {
         });
     }
 
-    /// Returns the number of edges.
     pub(crate) fn edges(&self) -> usize {
         self.chunks.last().map_or(0, |end| end.edge)
     }
 }
 
 impl FaceVertexMesh {
-    /// Returns the corners of `f`; `DEGREE` is the degree of all faces, or 0 if degrees differ.
+    /// Returns the corners of `f`. `DEGREE` is the degree of all faces, or 0 if degrees differ.
     #[inline(always)]
     pub(crate) fn corners_of<const DEGREE: usize>(&self, f: FaceId) -> Range<usize> {
         if DEGREE == 0 {
@@ -140,9 +138,8 @@ impl FaceVertexMesh {
         [before, i, after].map(|i| (range.start + i) as u32)
     }
 
-    /// Writes the sides between `v` and a higher vertex in these faces of its fan into `sides`. An
-    /// entry has the corner where the side starts, and the higher vertex. Returns the number of
-    /// sides.
+    /// Writes the sides between `v` and higher vertices into `sides`: the corner where the side
+    /// starts, and the higher vertex. Returns the number of sides.
     #[inline(always)]
     fn sides_upward<const DEGREE: usize>(
         &self,
@@ -156,7 +153,7 @@ impl FaceVertexMesh {
             let [before, at, after] = self.corners_around::<DEGREE>(f, v);
             let to = corners[after as usize].index() as u32;
             let from = corners[before as usize].index() as u32;
-            // In the order of the corners where the sides start.
+            // Sorted by the corners where the sides start.
             let turned = at < before;
             let highs = [
                 select_unpredictable(turned, to, from),
@@ -171,7 +168,6 @@ impl FaceVertexMesh {
         found
     }
 
-    /// Returns the edges of a chunk, in the order of their numbers.
     pub(crate) fn edges_in_chunk(
         &self,
         numbers: &EdgeNumbers,
@@ -212,10 +208,10 @@ mod tests {
 
     use super::*;
 
-    /// Returns the numbers of the edges, after a check that they are positions in `edges()`.
+    /// Numbers the edges, and checks that the numbers are positions in `edges()`.
     fn numbered(mesh: &FaceVertexMesh) -> EdgeNumbers {
         let mut numbers = EdgeNumbers::default();
-        // First filled for another mesh, to check that reuse works.
+        // The first mesh checks that the memory can be reused.
         numbers.fill(&build(3, &[[0, 2, 1]]));
         numbers.fill(mesh);
         let edges: Vec<Pair<VertexId>> = mesh.edges().collect();
@@ -254,7 +250,7 @@ mod tests {
 
     #[test]
     fn chunks_start_at_vertices() {
-        // Triangles at one edge v0–v1: v0 is the lower end of half of the edges, v1 of the others.
+        // v0 is the lower end of half of the edges, v1 of the other half.
         let n = 2 * CHUNK_ROWS;
         let mesh = build(n + 5, (0..row(n)).map(|i| [0, 1, i + 2]));
         let chunk = |vertex, edge, side| EdgeChunk { vertex, edge, side };

@@ -1,9 +1,9 @@
 //! Edits in place: they rewrite corners and repair the fans at these corners.
 //!
-//! The structure holds every polygon mesh, so an edit is refused only if its own rule is broken. An
-//! edge can have any number of faces, and a vertex any number of fans. A collapse may leave edges
-//! with many faces, and faces with the same corners. [`EditableFaceVertexMesh`] documents the costs
-//! and what each edit writes.
+//! The structure holds every polygon mesh, so an edit is refused only if the edit breaks its own
+//! rule. An edge can have any number of faces, and a vertex any number of fans. After a collapse,
+//! an edge may have many faces, and several faces may have the same corners.
+//! [`EditableFaceVertexMesh`] documents the cost of each edit.
 
 mod collapse;
 mod compact;
@@ -196,7 +196,6 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
                 apexes.push(c);
             }
         }
-        // Triangles with the same third corner share one new edge.
         apexes.sort_unstable();
         apexes.dedup();
         let spokes = apexes.iter().map(|&c| Pair::new(m, c));
@@ -222,7 +221,7 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
         for (i, &a) in face.iter().enumerate().skip(1) {
             let b = face[if i + 1 == face.len() { 0 } else { i + 1 }];
             let part = self.spans.push(&mut self.corners, &[a, b, n]);
-            // The fan of `a` gets this part and the part before it, which is `f` if i = 1.
+            // Face `f` is this part or the part before.
             if i > 1 {
                 self.replace_in_fan(a, f, part);
                 self.add_to_fan(a, parts[i - 1]);
@@ -241,7 +240,7 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
         Ok(n)
     }
 
-    /// Keeps the part between the two ends in the corner order of `f`; the other part is new.
+    /// `f` keeps the part between the two ends in the corner order of `f`.
     fn split_face_logged(
         &mut self,
         f: FaceId,
@@ -279,7 +278,7 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
     ) -> Result<FaceId, Refusal<Self>> {
         let [f, g] = self.two_faces(e)?;
         let [low, high] = e.ends();
-        // The corners of f from the higher end around to the lower, then those of g.
+        // First the corners of f from the higher end to the lower end, then the corners of g.
         let kept = corners_from(self.known_face(f), high);
         let gained = corners_from(self.known_face(g), low).skip(1);
         let gained = gained.filter(|&v| v != high);
@@ -355,14 +354,14 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
         self.split_fan(v, [left, right], at, log)
     }
 
-    /// Puts the fans in the order of their vertices again, and each fan in the order of its faces.
+    /// Sorts the fans by vertex, and each fan by face.
     fn compact_logged(&mut self, log: &mut impl EditLog<Self>) {
         self.compact_tables(log);
     }
 }
 
 impl<P: Probe> FaceVertexMesh<Editable, P> {
-    /// Reports those of `sides` that are no longer edges. All of them were edges before.
+    /// Reports the `sides` that were edges and are not edges any more.
     fn report_removed(&self, sides: impl IntoIterator<Item = Edge>, log: &mut impl EditLog<Self>) {
         for e in sides.into_iter().filter(|&e| !self.has_edge(e)) {
             log.removed_edge(e);
@@ -370,7 +369,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
     }
 }
 
-/// Reports that `m` splits `e`: `e` is renamed to its lower half, and the upper half is new.
+/// Reports the split of `e` at `m`: the lower half is the renamed `e`, and the upper half is new.
 fn report_split<P: Probe>(
     e: Edge,
     m: VertexId,

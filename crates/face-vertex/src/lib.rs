@@ -1,11 +1,11 @@
 //! Face-vertex mesh: shared vertices, a vertex list for each face, a face list for each vertex.
 //!
-//! Use it if the main query is the faces around a vertex (normals, gathering in a smoothing step,
-//! faces for a renderer). Use it also if the input is unrestricted: it holds every polygon mesh.
-//! Edges are not stored; an edge is the [pair](sixfold_core::Pair) of its ends. FV, FE, EV and VF
-//! take O(1) per item; the other five search the faces around the element. All edits of
-//! [`MeshEdit`](sixfold_core::MeshEdit) are supported and local. An edit is refused only if its own
-//! rule is broken. Start at [`generic::FaceVertexMesh`]; its four invariants define the tables.
+//! Use it if the main query is the faces around a vertex, for example for normals. Use it also if
+//! the input is unrestricted: it holds every polygon mesh. Edges are not stored; an edge is the
+//! [pair](sixfold_core::Pair) of its ends. FV, FE, EV and VF take O(1) per item; the other five
+//! relations search the faces around the element. All edits of [`MeshEdit`](sixfold_core::MeshEdit)
+//! are supported and local. An edit is refused only if the edit breaks its own rule. Start at
+//! [`generic::FaceVertexMesh`]; its four invariants define the tables.
 
 mod circulate;
 mod construct;
@@ -22,7 +22,7 @@ pub use edge_numbers::EdgeNumbers;
 pub use mesh::Fan;
 pub use walk::{CornerMap, FaceSide};
 
-/// The mesh with its type parameters, for code that is generic over them.
+/// The mesh type with its type parameters, for generic code.
 ///
 /// Programs use the two types of the crate root instead.
 pub mod generic {
@@ -36,7 +36,7 @@ pub type FaceVertexMesh = generic::FaceVertexMesh;
 /// [`generic::FaceVertexMesh`] with holes.
 pub type EditableFaceVertexMesh = generic::FaceVertexMesh<sixfold_core::Editable>;
 
-/// The traits and types that all structures share: `PolygonMesh`, `MeshQuery`, handles, errors.
+/// The traits and types that all Sixfold structures share.
 pub use sixfold_core;
 
 /// Imports for a program: the types of this structure, and the traits of its queries and edits.

@@ -17,27 +17,24 @@ use sixfold_core::{
 ///    a ────── d     pool       f0 f1 │ f0 f1 │ f0 │ f1 │ …  the faces around a, b, c, d …
 /// ```
 ///
-/// - I1  Face `f` has the corners `spans.range(f)`. These ranges are disjoint. Until an edit
-///   changes a degree, they are consecutive and cover the whole table. A face has at least three
-///   vertices; they all exist and are distinct.
+/// - I1  Face `f` has the corners `spans.range(f)`. The ranges of faces are disjoint. Until an edit
+///   changes a degree, the ranges are consecutive and cover the whole table. A face has at least
+///   three vertices; they all exist and are distinct.
 /// - I2  The fans of two vertices do not overlap in the pool.
 /// - I3  The fan of `v` contains exactly the faces with a corner at `v`, each once.
-/// - I4  Deleted and unused entries are blank. A corner contains vertex `u32::MAX` if it belongs to
-///   a deleted face or to no face; no mesh has this vertex. A place outside all fans contains face
-///   `u32::MAX`. The fan of a deleted vertex is [`Fan::DELETED`]. The holes are exactly the deleted
-///   vertices and faces.
+/// - I4  Deleted and unused entries are blank. A corner that belongs to no face or to a deleted
+///   face contains vertex `u32::MAX`. A place outside all fans contains face `u32::MAX`. The fan of
+///   a deleted vertex is [`Fan::DELETED`]. The holes are exactly the deleted vertices and faces.
 ///
 /// A large closed triangle mesh uses 17 words per vertex: 3 for positions, 6 for corners, 2 for
-/// fans and 6 for the pool. With mixed degrees, the offsets add one word per face. One offset per
-/// vertex, instead of start and length, would need 16 words. But the fans would then fill the pool
-/// without gaps, and a fan that grows by one face would move all later fans. With start and length,
-/// only the fan itself moves, to the end of the pool. A deletion adds one bit per row of vertices
-/// or of faces. An edit of degrees adds two words per face and one per corner.
+/// fans and 6 for the pool. With mixed degrees, the mesh uses one more word per face. A fan stores
+/// its start and its length, so a fan that grows can move alone to the end of the pool. A deletion
+/// adds one bit per row of vertices or of faces. An edit of degrees adds two words per face and one
+/// word per corner.
 ///
 /// # Complexity
 ///
-/// The length of a fan is its number of faces. A fan has one face for each corner at the vertex;
-/// `d` is the degree of these faces.
+/// `length` is the number of faces in a fan; `d` is the degree of these faces.
 ///
 /// | query | reads | time |
 /// |---|---|---|
@@ -53,29 +50,28 @@ use sixfold_core::{
 ///
 /// Sweeps over VF and FV read tables from start to end. In cache, the limit is the loop over six
 /// items (VF) or three items (FV). In larger meshes, the limit is the number of bytes: 32 per
-/// vertex (8 of fans, 24 of pool) for VF, and 12 per triangle for FV. The other sweeps jump from
-/// the pool to the corners of faces, with six independent loads per vertex. Then they compare the
-/// vertices at these corners. In a well ordered mesh, the comparisons limit VV; in a shuffled mesh,
-/// the latency of the jumps limits VV.
+/// vertex for VF (8 of fans, 24 of pool), and 12 per triangle for FV. The other sweeps jump from
+/// the pool to the corners of six faces per vertex, then compare the vertices at these corners. In
+/// a well ordered mesh, the comparisons limit VV. In a shuffled mesh, the latency of the jumps
+/// limits VV.
 ///
-/// Splitting every face ([`Refine`](sixfold_core::Refine)) takes O(corners · d + vertices), and
-/// numbering the edges takes the same time. Both search each face of a fan for the vertex of the
-/// fan.
+/// Splitting every face ([`Refine`](sixfold_core::Refine)) takes O(corners · d + vertices).
+/// Numbering the edges takes the same time.
 ///
 /// Edits ([`MeshEdit`](sixfold_core::MeshEdit)) rewrite corners and repair fans. A fan that shrinks
-/// stays in place and leaves blanks behind it. A fan that grows uses a blank behind it. If there is
-/// no blank, the fan moves to the end of the pool, with blanks for as many faces again. So a fan
-/// that grows face by face moves O(log length) times. The pool has at most a few times as many
-/// places as the input and the edits have filled. [`compact`](sixfold_core::MeshEdit::compact)
-/// removes the blanks. Every edit except the last two is local. `n` is the length of a fan, `d` the
-/// degree of a face at the edited element.
+/// stays in place and leaves blanks behind its last face. A fan that grows uses such a blank. If
+/// there is no blank, the fan moves to the end of the pool and reserves blanks for as many faces
+/// again. So a fan that grows face by face moves O(log length) times.
+/// [`compact`](sixfold_core::MeshEdit::compact) removes the blanks. Every edit except the last two
+/// in the table is local. `n` is the length of a fan, `d` the degree of a face at the edited
+/// element.
 ///
 /// | edit | time | writes |
 /// |---|---|---|
 /// | `set_position` | O(1) | the position |
 /// | `add_vertex` | O(1) | a position, an empty fan |
 /// | `add_face` | O(d) | d new corners, a place in d fans |
-/// | `remove_face` | O(d · n) | its corners and d places, as blanks |
+/// | `remove_face` | O(d · n) | blanks in its corners and in d places |
 /// | `remove_vertex` | O(n · d · n) | the same for each face of its fan |
 /// | `split_edge` | O(n · d) | the corners of its faces, at the end of the table; a new fan |
 /// | `bisect_edge` | O(n) | a corner in each face, three in each new face; four fans for two faces |
@@ -88,11 +84,11 @@ use sixfold_core::{
 /// | `remove_isolated_vertices` | O(vertices) | their fans |
 /// | `compact` | O(corners + vertices) | all tables |
 ///
-/// The first edit of degrees builds a table of spans and a table of owners
-/// ([`FaceSpans::Scattered`]); O(corners), once until the next `compact`. An edit of degrees
-/// changes the degree of a face, or adds a face of another degree to a uniform mesh. `split_edge`,
-/// `split_face` and `dissolve_edge` always change degrees; `add_face`, `poke_face` and
-/// `collapse_edge` do so only for polygons.
+/// An edit of degrees changes the degree of a face, or adds a face of another degree to a uniform
+/// mesh. `split_edge`, `split_face` and `dissolve_edge` always change degrees. `add_face`,
+/// `poke_face` and `collapse_edge` change degrees only if a face is not a triangle. The first edit
+/// of degrees after a `compact` builds a table of spans and a table of owners
+/// ([`FaceSpans::Scattered`]) in O(corners).
 ///
 /// # Examples
 ///
@@ -136,10 +132,10 @@ impl<P: Probe> From<FaceVertexMesh<Compact, P>> for FaceVertexMesh<Editable, P> 
     }
 }
 
-/// The vertex in a blank corner; no vertex has this row.
+/// The vertex in a blank corner.
 pub(crate) const BLANK_CORNER: VertexId = VertexId::new(u32::MAX);
 
-/// The face in a blank place of the pool; no face has this row.
+/// The face in a blank place of the pool.
 pub(crate) const BLANK_PLACE: FaceId = FaceId::new(u32::MAX);
 
 /// The range of the pool with the faces around one vertex.
@@ -152,14 +148,14 @@ pub struct Fan {
 }
 
 impl Fan {
-    /// The fan of a deleted vertex. Its range is beyond every pool, so the bounds check of a read
-    /// detects the deletion.
+    /// The fan of a deleted vertex. The range is beyond every pool, so a read fails the bounds
+    /// check.
     pub const DELETED: Self = Self {
         start: u32::MAX,
         len: u32::MAX,
     };
 
-    /// Returns the range of pool rows.
+    /// Returns the rows of the fan in the pool.
     #[inline]
     pub fn range(self) -> Range<usize> {
         let start = self.start as usize;
@@ -173,7 +169,8 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         self.positions.rows()
     }
 
-    /// Returns the vertex of each corner, face by face, as stored; blank for deleted faces.
+    /// Returns the vertex of each corner, face by face, as stored. Corners of deleted faces are
+    /// blank.
     pub fn corners(&self) -> &[VertexId] {
         self.corners.rows()
     }
@@ -188,7 +185,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         self.fans.rows()
     }
 
-    /// Returns the faces around all vertices, as stored; blank outside all fans.
+    /// Returns the faces around all vertices, as stored. Places outside all fans are blank.
     pub fn pool(&self) -> &[FaceId] {
         self.pool.rows()
     }
@@ -207,7 +204,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         face
     }
 
-    /// Returns the vertices of a face that is in a fan, and therefore exists.
+    /// Returns the vertices of a face that exists.
     #[inline(always)]
     pub(crate) fn known_face(&self, f: FaceId) -> &[VertexId] {
         self.corners.read_range(self.spans.range(f))
@@ -223,7 +220,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         self.places(v, *self.fans.read(v.index()))
     }
 
-    /// Returns the part of the pool in `fan`, the fan of `v`.
+    /// Returns the faces in `fan`, the fan of `v`.
     #[inline]
     pub(crate) fn places(&self, v: VertexId, fan: Fan) -> &[FaceId] {
         let range = fan.range();

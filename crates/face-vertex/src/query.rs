@@ -69,8 +69,7 @@ impl<P: Probe, E: Editing> MeshQuery for FaceVertexMesh<E, P> {
         e.ends()
     }
 
-    /// Lists the other edges at both ends. No edge is listed twice, because only `e` has both of
-    /// these ends. If `e` is not an edge, the result is empty.
+    /// Lists the other edges at both ends. If `e` is not an edge, the result is empty.
     #[inline]
     fn edge_edges(&self, e: Pair<VertexId>) -> impl Iterator<Item = Pair<VertexId>> {
         let [a, b] = e.ends();
@@ -143,13 +142,13 @@ mod tests {
         FaceVertexMesh::from_polygons(&polygons).expect("holds every mesh")
     }
 
-    /// Returns a closed wheel: the hub v0 and `sides` triangles around it.
+    /// Returns a closed wheel of `sides` triangles around v0.
     fn wheel(sides: u32) -> FaceVertexMesh {
         let faces = (0..sides).map(|i| [0, i + 1, (i + 1) % sides + 1]);
         build(faces, sides as usize + 1)
     }
 
-    /// Returns two faces of `sides` sides each, back to back.
+    /// Returns two faces with the same corners, back to back.
     fn pillow(sides: u32) -> FaceVertexMesh {
         let faces = [(0..sides).collect::<Vec<_>>(), (0..sides).rev().collect()];
         build(faces, sides as usize)

@@ -11,16 +11,16 @@
 //!    a────── m₀ ──────b
 //! ```
 //!
-//! The middle of a side is found by the [number](EdgeNumbers) of its edge. The pool stores the fans
-//! of the child in the order of its vertices, without gaps:
+//! The [number](EdgeNumbers) of an edge gives the vertex in its middle. The pool stores the fans of
+//! the child in the order of its vertices, without gaps:
 //!
-//! - The fan of an old vertex has one part of each face of its old fan: the part at its corner.
+//! - The fan of an old vertex has the part at the vertex of each face of the old fan.
 //! - The fan of a face point has the parts of the face, in order.
-//! - The fan of an edge point has, for each side along the edge, the parts at both ends of the
-//!   side, and for triangles the middle.
+//! - The fan of an edge point has the parts at both ends of each side along the edge. For
+//!   triangles, the fan also has the middle part.
 //!
-//! The sides of an edge are found in the old fan of its lower end. All edges with the same lower
-//! end have consecutive numbers, so the rows for a range of vertices are a range of rows.
+//! All edges with the same lower end have consecutive numbers. So a range of vertices fills a range
+//! of rows.
 
 use sixfold_core::{
     Counts, FaceId, FaceSpans, MeshQuery, NoHoles, Pair, Point, Refine, RefineError, Split, Table,
@@ -51,7 +51,7 @@ impl Refine for FaceVertexMesh {
         }
     }
 
-    /// O(corners · degree + vertices), because each face of a fan is searched for the vertex.
+    /// O(corners · degree + vertices).
     fn number_edges(&self, numbers: &mut EdgeNumbers) {
         numbers.fill(self);
     }
@@ -87,7 +87,7 @@ impl Refine for FaceVertexMesh {
         numbers.by_corner[side as usize] as usize
     }
 
-    /// O(corners · degree + vertices), because each face of a fan is searched for the vertex.
+    /// O(corners · degree + vertices).
     fn split_into(
         &self,
         split: Split,
@@ -101,7 +101,6 @@ impl Refine for FaceVertexMesh {
             corners: self.corners.len(),
             uniform: matches!(self.spans, FaceSpans::Uniform { .. }),
         };
-        // None of the splits depends on the number of faces per edge.
         let grown = check_split::<Self>(split, &counts, 0)?;
         if split.needs_triangles() {
             self.check_triangles()?;
@@ -146,7 +145,6 @@ impl Refine for FaceVertexMesh {
 }
 
 impl FaceVertexMesh {
-    /// Returns an error for the first face that is not a triangle.
     fn check_triangles(&self) -> Result<(), RefineError> {
         if let FaceSpans::Uniform { degree: 3, .. } = self.spans {
             return Ok(());
@@ -167,7 +165,7 @@ mod tests {
 
     use super::*;
 
-    /// Splits two triangles with a common side: v0 and v1 are its ends, v2 and v3 the others.
+    /// Splits two triangles with a common side from v0 to v1.
     fn split(split: Split) -> FaceVertexMesh {
         let polygons = PolygonMesh::new([Point::ZERO; 4], [[0, 1, 2], [0, 3, 1]]).expect("valid");
         let mesh = FaceVertexMesh::from_polygons(&polygons).expect("holds every mesh");
@@ -193,7 +191,7 @@ mod tests {
     #[test]
     fn a_split_into_quads_gives_the_expected_tables() {
         let child = split(Split::Quads);
-        // Face points 4 and 5; from 6, the middles of 01, 02, 03, 12 and 13.
+        // Face points 4 and 5; the middles of edges 01, 02, 03, 12 and 13 are vertices 6 to 10.
         let parts = [
             [0, 6, 4, 7],
             [1, 9, 4, 6],
@@ -222,7 +220,7 @@ mod tests {
     #[test]
     fn a_split_into_triangles_gives_the_expected_tables() {
         let child = split(Split::Triangles);
-        // From 4, the middles of 01, 02, 03, 12 and 13.
+        // The middles of edges 01, 02, 03, 12 and 13 are vertices 4 to 8.
         let parts = [
             [0, 4, 5],
             [1, 7, 4],
@@ -250,7 +248,6 @@ mod tests {
 
     #[test]
     fn a_fan_longer_than_the_buffer_is_split_correctly() {
-        // More triangles at one edge than the buffer of sides can hold.
         let triangles = (0..1500).map(|i| [0, 1, i + 2]);
         let polygons = PolygonMesh::new(vec![Point::ZERO; 1502], triangles).expect("valid");
         let mesh = FaceVertexMesh::from_polygons(&polygons).expect("holds every mesh");

@@ -1,4 +1,4 @@
-//! Filling of the child's tables; [`refine`](crate::refine) draws the layout.
+//! Filling of the child's tables. [`refine`](crate::refine) draws the layout.
 
 use std::ops::Range;
 
@@ -8,11 +8,11 @@ use crate::FaceVertexMesh;
 use crate::edge_numbers::{EdgeChunk, EdgeNumbers};
 use crate::mesh::Fan;
 
-/// Maximum number of sides that are found before they are added to the fans. Each end of a loop
-/// costs a branch misprediction, so a large batch is faster.
+/// Maximum number of sides in one batch. Each end of a loop costs a branch misprediction, so a
+/// large batch is faster.
 const BATCH: usize = 512;
 
-/// A mesh during its split; `DEGREE` is the degree of all its faces, or 0 if degrees differ.
+/// A mesh during its split. `DEGREE` is the degree of all its faces, or 0 if degrees differ.
 #[derive(Clone, Copy)]
 pub(crate) struct Splitting<'a, const DEGREE: usize, const QUADS: bool> {
     mesh: &'a FaceVertexMesh,
@@ -23,7 +23,8 @@ pub(crate) struct Splitting<'a, const DEGREE: usize, const QUADS: bool> {
 }
 
 impl FaceVertexMesh {
-    /// Returns this mesh prepared for its split; `DEGREE` is the degree of all its faces, or 0.
+    /// Returns this mesh prepared for its split. `DEGREE` is the degree of all its faces, or 0 if
+    /// degrees differ.
     pub(crate) fn splitting<'a, const DEGREE: usize, const QUADS: bool>(
         &'a self,
         numbers: &'a EdgeNumbers,
@@ -49,7 +50,7 @@ struct Chunk<'a> {
     around: &'a mut [FaceId],
     /// The fans of the middles.
     fans: &'a mut [Fan],
-    /// The places of these fans.
+    /// The places of the fans of the middles.
     pool: &'a mut [FaceId],
 }
 
@@ -82,7 +83,7 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
         self.fill_fans(old, around, edge_fans, edge_pool);
     }
 
-    /// Returns the part at corner `corner` of face `f`.
+    /// Returns the part at a corner of face `f`.
     #[inline(always)]
     fn part(self, f: FaceId, corner: u32) -> u32 {
         if QUADS {
@@ -99,7 +100,7 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
             _ => self.mesh.corners_of::<DEGREE>(FaceId::new(row(f))).start,
         };
         let bounds = (0..faces).step_by(CHUNK_ROWS).chain([faces]);
-        // Four rows per corner: a quad, or a triangle and a third of the inner one.
+        // Four rows per corner: a quad, or a triangle and a third of the inner triangle.
         let starts: Vec<usize> = bounds.map(|f| 4 * first(f)).collect();
         map_chunks(child, &starts, |chunk, _, child| {
             let faces = chunk * CHUNK_ROWS..faces.min((chunk + 1) * CHUNK_ROWS);
@@ -138,7 +139,7 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
         }
     }
 
-    /// Fills the fans of the face points: each has the parts of its face, in order.
+    /// Fills the fans of the face points. A face point has the parts of its face, in order.
     fn fill_face_points(self, fans: &mut [Fan], pool: &mut [FaceId]) {
         // The fans of the old vertices come first, with one place for each corner.
         let start = self.by_corner.len();
@@ -191,8 +192,8 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
         });
     }
 
-    /// Finds the sides of the edges of a range of vertices, counts them by edge, and adds them to
-    /// the fans.
+    /// Finds the sides of the edges of a range of vertices, counts the sides of each edge, and adds
+    /// the sides to the fans.
     fn fill_chunk(self, chunk: &mut Chunk<'_>) {
         let mut sides = [Side::default(); BATCH];
         let mut around = std::mem::take(&mut chunk.around);
@@ -214,8 +215,8 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
                 v += 1;
             }
             if known == first && found == 0 && v < chunk.vertices.end {
-                // The fan does not fit into `sides`: process it in pieces, first to count its
-                // sides, then to add them.
+                // If the fan does not fit into `sides`, two loops process its pieces: the first
+                // loop counts the sides, the second loop adds the sides.
                 let vertex = VertexId::new(v as u32);
                 let fan = self.mesh.fan(vertex);
                 let (here, after) = std::mem::take(&mut around).split_at_mut(fan.len());
@@ -239,8 +240,9 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
         }
     }
 
-    /// Finds the sides of `v` in these faces of its fan, if the number of their edge is at least
-    /// `known`. Writes these sides into `sides`. Writes the part of each face at `v` into `around`.
+    /// Finds the sides of `v` in these faces of the fan of `v`, if the number of their edge is at
+    /// least `known`. Writes the sides into `sides`, and the part of each face at `v` into
+    /// `around`.
     #[inline(always)]
     fn find_sides(
         self,
@@ -277,11 +279,11 @@ impl<const DEGREE: usize, const QUADS: bool> Splitting<'_, DEGREE, QUADS> {
             let places = fan.range().end - chunk.start;
             let [first, second] = side.parts;
             let pool = &mut chunk.pool[places..places + Self::PARTS_AT_MIDDLE];
-            // In the order of faces, as in all fans that no edit has changed.
+            // Sorted by face, as in all fans that no edit has changed.
             pool[0] = FaceId::new(first.min(second));
             pool[1] = FaceId::new(first.max(second));
             if !QUADS {
-                // The middle of triangles.
+                // The middle part of a triangle.
                 pool[2] = FaceId::new(first | 3);
             }
             fan.len += Self::PARTS_AT_MIDDLE as u32;
@@ -297,7 +299,7 @@ struct FoundSides {
 }
 
 impl Chunk<'_> {
-    /// Makes the fans of the middles longer, by `parts` for each side.
+    /// Adds `parts` to the length of the fan of each side's edge.
     #[inline(always)]
     fn count(&mut self, sides: &[Side], parts: usize) {
         for side in sides {
@@ -305,8 +307,8 @@ impl Chunk<'_> {
         }
     }
 
-    /// Places the fans of these edges one after another, still empty, from place `start` of the
-    /// pool. Returns the place where the next fan starts.
+    /// Places the empty fans of these edges one after another, from place `start` of the pool.
+    /// Returns the place where the next fan starts.
     #[inline(always)]
     fn place_fans(&mut self, edges: Range<usize>, start: usize) -> usize {
         let mut start = start as u32;

@@ -16,13 +16,13 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         self.check_blanks()
     }
 
-    /// I1, first half: the faces partition the corners, with at least three corners each.
+    /// I1, first part: the faces share no corners, and each face has at least three corners.
     fn check_spans(&self) -> Result<(), InvariantError> {
         let checked = self.spans.check(self.corners.len());
         checked.map_err(|detail| InvariantError::new("I1", detail))
     }
 
-    /// I1, second half: the vertices of a face exist and are distinct.
+    /// I1, second part: the vertices of a face exist and are distinct.
     fn check_faces(&self) -> Result<(), InvariantError> {
         let fails = |detail: String| Err(InvariantError::new("I1", detail));
         for f in self.faces() {
@@ -40,7 +40,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         Ok(())
     }
 
-    /// I2: every vertex has a fan inside the pool that does not overlap another.
+    /// I2: every fan is inside the pool, and no two fans overlap.
     fn check_pool(&self) -> Result<(), InvariantError> {
         let fails = |detail: String| Err(InvariantError::new("I2", detail));
         if self.fans.len() != self.positions.len() {
@@ -91,7 +91,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         Ok(())
     }
 
-    /// I4, first half: the holes are the vertices and faces that are marked as deleted.
+    /// I4, first part: exactly the holes are marked as deleted.
     fn check_holes(&self) -> Result<(), InvariantError> {
         let fails = |detail: String| InvariantError::new("I4", detail);
         self.vertex_holes.check(self.fans.len()).map_err(fails)?;
@@ -112,7 +112,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         Ok(())
     }
 
-    /// I4, second half: entries of no face and of no fan are blank.
+    /// I4, second part: all entries outside faces and fans are blank.
     fn check_blanks(&self) -> Result<(), InvariantError> {
         let fails = |detail: String| Err(InvariantError::new("I4", detail));
         let corners: usize = self.faces().map(|f| self.known_face(f).len()).sum();
@@ -152,7 +152,7 @@ mod tests {
         mesh
     }
 
-    /// Returns faces 0 1 2 and 0 2 3; the fans of v0, v1, v2, v3 start at 0, 2, 3, 5.
+    /// Faces 0 1 2 and 0 2 3. The fans of v0, v1, v2 and v3 start at places 0, 2, 3 and 5.
     fn triangles() -> EditableFaceVertexMesh {
         mesh(&[&[0, 1, 2], &[0, 2, 3]])
     }

@@ -15,11 +15,10 @@ row_id! {
     struct CornerId, "c"
 }
 
-/// The handle of one side, `f3c10`: its face, and the corner where it starts, as a row of
+/// The handle of one side, `f3c10`: its face, and the row of the corner where it starts in
 /// [`corners`](FaceVertexMesh::corners).
 ///
-/// The corner alone would identify the side. The face is stored too, because a search for it would
-/// be needed if degrees differ.
+/// The face is stored to avoid a search for the face of the corner.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FaceSide {
     face: FaceId,
@@ -57,7 +56,7 @@ impl Handle for FaceSide {
     type Map<T: Clone> = CornerMap<T>;
 }
 
-/// Data by side: a vector with one value for each row of the table of corners.
+/// A value for each side, stored by the row of the corner where the side starts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CornerMap<T>(RowMap<CornerId, T>);
 
@@ -93,10 +92,9 @@ impl<T> IndexMut<FaceSide> for CornerMap<T> {
     }
 }
 
-/// The steps along a face are O(1). They read no corner; they read the range of the face if degrees
-/// differ. Twins are not stored. Therefore `twin_side`, `cw_side`, `ccw_side` and `edge_sides` take
-/// O(length · degree): like EF, they search the faces around the end of the edge with fewer faces.
-/// `outgoing_sides` takes O(degree) for each side.
+/// The steps along a face are O(1) and read no corner. Twins are not stored. Therefore `twin_side`,
+/// `cw_side`, `ccw_side` and `edge_sides` take O(length · degree): they search the faces at one end
+/// of the edge. `outgoing_sides` takes O(degree) for each side.
 impl<P: Probe, E: Editing> OrientedWalk for FaceVertexMesh<E, P> {
     type Side = FaceSide;
 
@@ -182,7 +180,6 @@ impl<P: Probe, E: Editing> OrientedWalk for FaceVertexMesh<E, P> {
 }
 
 impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
-    /// Returns the rows of the corners of `f`; panics if there is no such face.
     #[inline]
     fn range_of(&self, f: FaceId) -> Range<usize> {
         let range = self.spans.range(f);
@@ -192,7 +189,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         range
     }
 
-    /// Returns the side of `f` that starts at `v`; the fan of `v` contains `f`.
+    /// Returns the side of `f` that starts at `v`. `v` must be a corner of `f`.
     #[inline]
     fn side_from(&self, f: FaceId, v: VertexId) -> FaceSide {
         let range = self.spans.range(f);

@@ -31,8 +31,8 @@ impl<P: Probe, E: Editing> Iterator for AroundFace<'_, P, E> {
 }
 
 impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
-    /// Iterates over the half-edges that leave `v`, clockwise, starting on the boundary loop if `v`
-    /// is on one.
+    /// Iterates over the half-edges that leave `v`, clockwise. At a boundary vertex, starts on the
+    /// boundary loop.
     ///
     /// # Panics
     ///
@@ -78,11 +78,9 @@ impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
     }
 }
 
-/// The half-edges that leave a vertex (its spokes), each with the record of its twin. A step reads
-/// only this record.
+/// The half-edges that leave a vertex (its spokes), each with the record of its twin.
 ///
-/// The twin starts at the neighbour, has the next face on its left, and its `next` is the next
-/// spoke.
+/// A step reads only this record: the `next` of the twin is the next spoke.
 #[derive(Clone, Debug)]
 pub(crate) struct Spokes<'a, P: Probe, E: Editing> {
     mesh: &'a HalfEdgeMesh<E, P>,
@@ -155,8 +153,7 @@ impl<'a, P: Probe, E: Editing> Iterator for Sides<'a, P, E> {
     }
 }
 
-/// The face across each side of a face. A step reads the two half-edges of an edge, which are
-/// adjacent in memory.
+/// The face across each side of a face. A step reads two half-edges, which are adjacent in memory.
 #[derive(Clone, Debug)]
 pub(crate) struct Across<'a, P: Probe, E: Editing>(Sides<'a, P, E>);
 
@@ -174,15 +171,15 @@ impl<P: Probe, E: Editing> Iterator for Across<'_, P, E> {
     }
 }
 
-/// The edges at both ends of an edge, except the edge itself: one walk around each end, which stops
-/// at the half-edge of the edge itself.
+/// The edges at both ends of an edge, except the edge itself. One walk around each end stops at the
+/// edge itself.
 #[derive(Clone, Debug)]
 pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
     mesh: &'a HalfEdgeMesh<E, P>,
     at: HalfEdgeId,
-    /// The half-edge at which the walk ends.
+    /// The half-edge where the walk stops.
     stop: HalfEdgeId,
-    /// The half-edge at which the walk around the other end stops; `None` during that walk.
+    /// The half-edge where the walk around the other end stops; `None` during that walk.
     next_stop: Option<HalfEdgeId>,
 }
 

@@ -20,8 +20,8 @@ impl<E: Editing> Representation for HalfEdgeMesh<E> {
         }
     }
 
-    /// Pairs the sides, links the half-edges of each face, then links the boundary loops, without
-    /// hashing; O(corners + vertices).
+    /// Pairs the sides, links the half-edges of each face, then links the boundary loops; O(corners
+    /// + vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         let error = || Self::CAPABILITIES.build_error(polygons);
         let faces = polygons.faces();
@@ -117,8 +117,8 @@ const BLANK: Half = Half {
     face: Slot::NONE,
 };
 
-/// Half-edges that are not linked yet. The pairing uses them as scratch rows to sort the sides:
-/// `origin` and `next` of a row hold one side, and `face` stays empty.
+/// Half-edges that are not linked yet. The pairing uses their rows as scratch memory: `origin` and
+/// `next` hold one side.
 struct Unlinked<'a>(&'a mut [Half]);
 
 impl SideRows for Unlinked<'_> {
@@ -138,7 +138,6 @@ impl SideRows for Unlinked<'_> {
     }
 }
 
-/// The tables during construction.
 struct Builder {
     leaving: Vec<Slot<HalfEdgeId>>,
     halves: Vec<Half>,
@@ -162,8 +161,7 @@ impl LinkFaces for Builder {
 }
 
 impl Builder {
-    /// Writes the half-edge of every corner over the rows of `halves`, whose faces are empty.
-    /// Boundary half-edges keep an empty face.
+    /// Writes the half-edge of every corner into its row. Boundary half-edges keep an empty face.
     fn from_faces(vertices: usize, faces: &FaceList, halves: Vec<Half>, pairs: &TwinPairs) -> Self {
         let mut builder = Self {
             leaving: vec![Slot::NONE; vertices],
@@ -172,9 +170,8 @@ impl Builder {
         };
         let half_count = 2 * pairs.edge_count;
         if half_count > builder.halves.len() {
-            // There is a boundary, so some half-edges have no corner. The old rows are freed first.
-            // If the block grew instead, it could be copied, and the table would be in memory
-            // twice.
+            // Some half-edges have no corner, so there are more rows. The old rows are freed before
+            // the new rows are allocated, so that the table is in memory only once.
             builder.halves = Vec::new();
             builder.halves = vec![BLANK; half_count];
         }
@@ -182,7 +179,8 @@ impl Builder {
         builder
     }
 
-    /// Links the blank half-edges into loops. Returns false if two of them leave one vertex.
+    /// Links the blank half-edges into loops. Returns false if two blank half-edges leave one
+    /// vertex.
     fn close_boundary_loops(&mut self) -> bool {
         let blank = |halves: &[Half], h: usize| halves[h].face.get().is_none();
         for h in 0..self.halves.len() {
@@ -202,8 +200,8 @@ impl Builder {
         for h in 0..self.halves.len() {
             if blank(&self.halves, h) {
                 let target = self.halves[h ^ 1].origin;
-                // At each vertex, as many boundary half-edges arrive as leave. One arrives here, so
-                // one leaves.
+                // At each vertex, as many boundary half-edges arrive as leave. So one boundary
+                // half-edge leaves this vertex.
                 let next = self.leaving[target.index()]
                     .get()
                     .expect("a half-edge leaves every target");

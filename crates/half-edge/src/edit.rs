@@ -18,18 +18,14 @@ use sixfold_core::{
 use crate::EditableHalfEdgeMesh;
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh, NO_HALF};
 
-/// The error of an edit; the same type for every probe.
+/// The error of an edit, without the type of the probe.
 type Refusal = sixfold_core::Refusal<EditableHalfEdgeMesh>;
 
-/// Each edit relinks a few half-edges (the operators of Mäntylä 1988, adapted to meshes that do not
-/// store `prev`).
+/// Each edit relinks a few half-edges. The edits are the operators of Mäntylä (1988), without a
+/// stored `prev`.
 ///
-/// An edit reads each row on which its check depends once, and computes from these rows what it
-/// writes. If an edit needs the half-edge before another, it knows this half-edge from a walk, or
-/// it searches for it along the face or around the vertex.
-///
-/// Every edit keeps `leaving` correct at each vertex that it touches (I5). If the boundary
-/// half-edge that leaves the vertex changes, the edit stores the new one in `leaving`.
+/// An edit reads each row of its check once. To find the half-edge before another, an edit searches
+/// along the face or around the vertex. Every edit keeps `leaving` correct (I5).
 impl<P: Probe> MeshEdit for HalfEdgeMesh<Editable, P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
 
@@ -204,7 +200,6 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         }
     }
 
-    /// Returns the records of both half-edges of `e`, or an error if `e` does not exist.
     #[inline]
     fn check_edge(&self, e: EdgeId) -> Result<[Half; 2], Refusal> {
         if e.index() < self.edge_rows() {
@@ -216,7 +211,6 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         Err(EditError::NoSuchEdge { edge: e })
     }
 
-    /// Returns `first(f)`, or an error if `f` does not exist.
     #[inline]
     fn check_face(&self, f: FaceId) -> Result<HalfEdgeId, Refusal> {
         if f.index() < self.face_rows() {
@@ -239,13 +233,11 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
 
 /// Steps that several edits share.
 impl<P: Probe> HalfEdgeMesh<Editable, P> {
-    /// Returns the record of `h`.
     #[inline]
     fn record(&self, h: HalfEdgeId) -> Half {
         *self.halves.read(h.index())
     }
 
-    /// Returns the records of `h` and of its twin.
     #[inline]
     fn record_pair(&self, h: HalfEdgeId) -> [Half; 2] {
         let pair = self.halves.read_pair(h.edge().index());
@@ -253,7 +245,6 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         [pair[side], pair[side ^ 1]]
     }
 
-    /// Returns whether `h` has a face on its left.
     #[inline]
     fn has_face(&self, h: HalfEdgeId) -> bool {
         self.record(h).face != Slot::NONE
@@ -264,7 +255,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         self.halves.write(h.index()).next = next;
     }
 
-    /// Puts `new` in the place of `old`, after `before`, in its face or on its boundary loop.
+    /// Replaces `old` by `new` after `before`, in the face or on the boundary loop.
     #[inline]
     fn replace(&mut self, before: HalfEdgeId, old: HalfEdgeId, new: HalfEdgeId) {
         let Half { next, face, .. } = self.record(old);
@@ -274,7 +265,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         self.replace_first(face, old, new);
     }
 
-    /// Sets `first` of the face to `new` if it was `old`. Does nothing if `face` is empty.
+    /// Sets `first` of the face to `new` if `first` was `old`. Does nothing if `face` is empty.
     #[inline]
     fn replace_first(&mut self, face: Slot<FaceId>, old: HalfEdgeId, new: HalfEdgeId) {
         if let Some(f) = face.get()
@@ -284,7 +275,6 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         }
     }
 
-    /// Sets `leaving(v)` to `new` if it was `old`.
     #[inline]
     fn replace_leaving(&mut self, v: VertexId, old: HalfEdgeId, new: HalfEdgeId) {
         if *self.leaving.read(v.index()) == Slot::some(old) {
@@ -297,7 +287,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         *self.leaving.write(v.index()) = Slot::some(h);
     }
 
-    /// Sets the face of the half-edges from `first` to `last` to `f`.
+    /// Sets the face of all half-edges from `first` to `last`.
     fn relabel(&mut self, first: HalfEdgeId, last: HalfEdgeId, f: FaceId) {
         let mut h = first;
         loop {
@@ -318,7 +308,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         v
     }
 
-    /// Adds an edge with these two half-edges; returns the first of them.
+    /// Adds an edge with these two half-edges. Returns the first half-edge.
     #[inline]
     fn push_edge(&mut self, [one, other]: [Half; 2]) -> HalfEdgeId {
         let h = self.next_half();
@@ -327,26 +317,24 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         h
     }
 
-    /// Returns the first half-edge of the edge that will be added next.
+    /// Returns the first half-edge of the next new edge.
     #[inline]
     fn next_half(&self) -> HalfEdgeId {
         HalfEdgeId::new(row(self.halves.len()))
     }
 
-    /// Returns the face that will be added next.
+    /// Returns the handle of the next new face.
     #[inline]
     fn next_face(&self) -> FaceId {
         FaceId::new(row(self.first.len()))
     }
 
-    /// Deletes `v`: its row becomes a hole.
     #[inline]
     fn delete_vertex(&mut self, v: VertexId) {
         *self.leaving.write(v.index()) = Slot::NONE;
         self.vertex_holes.insert(v.index());
     }
 
-    /// Deletes `e`: its rows become holes.
     #[inline]
     fn delete_edge(&mut self, e: EdgeId) {
         for h in self.halves_of(e) {
@@ -355,7 +343,6 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         self.edge_holes.insert(e.index());
     }
 
-    /// Deletes `f`: its row becomes a hole.
     #[inline]
     fn delete_face(&mut self, f: FaceId) {
         *self.first.write(f.index()) = NO_HALF;

@@ -35,28 +35,28 @@
 //! | `split_face` | O(degree + valence) | the sides of one part, a new edge, the half-edge before it |
 //! | `dissolve_edge` | O(degree) of both faces | the sides of one face, the half-edges before the edge |
 //! | `flip_edge` | O(smaller valence) of the third corners | the six half-edges of two triangles |
-//! | `collapse_edge` | O(valence) of both ends | the half-edges that leave the removed end, and those around its triangles |
+//! | `collapse_edge` | O(valence) of both ends | the half-edges that leave the removed end, and the half-edges around its triangles |
 //! | `split_vertex` | O(valence) | the half-edges that leave the new vertex, up to three new edges |
 //! | `compact` | O(mesh) | all |
 //!
-//! A degree or valence is that of a face or vertex at the edited element. Vertices, edges and faces
-//! keep their handles until `compact`. Until then, the rows of deleted elements are holes.
+//! Here, degree and valence are the degree of a face and the valence of a vertex at the edited
+//! element. Vertices, edges and faces keep their handles until `compact`. Until then, the rows of
+//! deleted elements are holes.
 //!
-//! Vertices, edges and faces are rows. Counting or listing them reads no table; if there are holes,
-//! it reads their bits. `prev` is not stored: finding it costs O(degree) along a face and
-//! O(valence) along a boundary. A stored `prev` makes the record wider, and it slowed every sweep
-//! (one-rings by 6 to 20 %). It made nothing in this crate faster, because the edits already visit
-//! most of the half-edges that they need.
+//! The handles of vertices, edges and faces are row numbers. A loop over all elements reads no
+//! table, except the bits of the holes. `prev` is not stored: finding the half-edge before another
+//! costs O(degree) along a face and O(valence) along a boundary. A stored `prev` makes the record
+//! wider. In a test, it slowed every sweep (one-rings by 6 to 20 %) and made no function of this
+//! crate faster.
 //!
 //! # What limits the speed of the sweeps
 //!
 //! A step around a vertex is about nine instructions and one load. The next step waits for this
 //! load. On 82,000 triangles in a good order, a one-ring sweep takes 12 ns per vertex, 2 ns per
-//! step. The records come from the nearer caches and several walks run at once, so the number of
-//! instructions is the limit. In random order, the sweep takes 26 ns per vertex. Each vertex then
-//! touches about ten cache lines of half-edges and positions that are not in the nearer caches. FF
-//! reads two records per side and tests whether the face was visited before. In a breadth-first
-//! search, this takes about 110 instructions per face, and their number is the limit.
+//! step. The records are then in the nearer caches, and the number of instructions is the limit. In
+//! random order, the sweep takes 26 ns per vertex. Each vertex then touches about ten cache lines
+//! that are not in the nearer caches. FF reads two records per side. In a breadth-first search, FF
+//! takes about 110 instructions per face, and the number of instructions is the limit.
 //!
 //! # Examples
 //!
@@ -88,7 +88,7 @@ mod walk;
 pub use circulate::{AroundFace, Leaving};
 pub use mesh::{Half, HalfEdgeId};
 
-/// The mesh with its type parameters, for code that is generic over them.
+/// The mesh type with its type parameters, for generic code.
 ///
 /// Programs use the two types of the crate root instead.
 pub mod generic {
@@ -102,8 +102,7 @@ pub type HalfEdgeMesh = generic::HalfEdgeMesh;
 /// [`generic::HalfEdgeMesh`] with holes.
 pub type EditableHalfEdgeMesh = generic::HalfEdgeMesh<sixfold_core::Editable>;
 
-/// The traits and types that all Sixfold structures share: `PolygonMesh`, `MeshQuery`, handles,
-/// errors.
+/// The traits and types that all Sixfold structures share.
 pub use sixfold_core;
 
 /// Imports for a program: the types of this structure, and the traits of its queries and edits.

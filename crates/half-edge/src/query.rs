@@ -128,7 +128,7 @@ impl<P: Probe, E: Editing> MeshQuery for HalfEdgeMesh<E, P> {
         self.first.len()
     }
 
-    /// Reverses the walk around `v`, which is clockwise and starts on the boundary.
+    /// Reverses the walk around `v`, which is clockwise.
     fn one_ring(&self, v: VertexId) -> Option<impl Iterator<Item = VertexId>> {
         let mut ring: Vec<VertexId> = self.vertex_vertices(v).collect();
         ring.reverse();
@@ -137,7 +137,6 @@ impl<P: Probe, E: Editing> MeshQuery for HalfEdgeMesh<E, P> {
 }
 
 impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
-    /// Returns the records of both half-edges of `e`.
     #[inline]
     pub(crate) fn pair(&self, e: EdgeId) -> &[Half; 2] {
         let pair = self.halves.read_pair(e.index());

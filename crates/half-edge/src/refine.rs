@@ -15,18 +15,16 @@ use sixfold_core::{
 use crate::HalfEdgeMesh;
 use crate::mesh::{Half, HalfEdgeId};
 
-/// The row of every half-edge of the child is computed from rows of the parent.
+/// Every half-edge row of the child has a formula from rows of the parent.
 ///
-/// A half-edge with a face stands for the corner where it starts. `#h` is the number of the corner
-/// of `h`, in the order of the half-edges. On a closed mesh, `#h` is `h`; on an open mesh,
-/// [`Ranks`] counts. Boundary half-edges have no corner, but they have children like all other
-/// half-edges.
+/// A half-edge with a face stands for the corner where the half-edge starts. `#h` is the number of
+/// the corner of `h`, in the order of the half-edges. On a closed mesh, `#h` is `h`. On an open
+/// mesh, [`Ranks`] counts the corners. Boundary half-edges have no corner, but have children.
 ///
 /// # Complexity
 ///
-/// Numbering the edges and splitting take O(half-edges). Each row of the child is written once. For
-/// each corner of a face, at most eight other half-edges of that face are read. `parent` is O(1),
-/// or O(log half-edges) on an open mesh.
+/// Numbering the edges and splitting take O(half-edges). `parent` is O(1), or O(log half-edges) on
+/// an open mesh.
 impl Refine for HalfEdgeMesh {
     const SPLITS: &'static [Split] = &[
         Split::Quads,
@@ -34,7 +32,7 @@ impl Refine for HalfEdgeMesh {
         Split::Sqrt3 { trisect: false },
     ];
 
-    /// The numbers of the corners; the number of an edge is its row.
+    /// The numbers of the corners. The number of an edge is its row.
     type EdgeNumbers = Ranks;
 
     fn empty() -> Self {
@@ -88,7 +86,7 @@ impl Refine for HalfEdgeMesh {
         child.leaving.resize(grown.vertices, Slot::NONE);
         child.halves.resize(2 * grown.edges, BLANK);
         child.first.resize(grown.faces, HalfEdgeId::new(0));
-        // Compiled separately for closed meshes, which need no lookup of ranks.
+        // A closed mesh needs no lookup of ranks.
         if boundary == 0 {
             self.split_checked(split, &Corners::<true>(numbers), child);
         } else {
@@ -101,9 +99,9 @@ impl Refine for HalfEdgeMesh {
         let (child, corners) = (child.index(), numbers.members());
         let corner = match split {
             _ if child < corners => numbers.select(child),
-            // The two additional triangles of each boundary edge.
+            // The two additional triangles of a boundary edge.
             Split::Sqrt3 { .. } => numbers.select_missing((child - corners) / 2) ^ 1,
-            // The middle triangle of each face.
+            // The middle triangle of a face.
             _ => return FaceId::new(row(child - corners)),
         };
         let face = self.half_rows()[corner].face.get();
@@ -149,8 +147,8 @@ impl HalfEdgeMesh {
         RefineError::NotATriangle { face, degree }
     }
 
-    /// Returns whether the origin of `h` is an inner vertex with two edges. Its two faces then
-    /// share both edges.
+    /// Returns whether the origin of `h` is an inner vertex with two edges. Two faces then share
+    /// both edges.
     fn is_double_edge(&self, h: Slot<HalfEdgeId>) -> bool {
         let after = |h: HalfEdgeId| self.half_rows()[h.twin().index()].next;
         h.get()
@@ -168,13 +166,12 @@ impl HalfEdgeMesh {
     }
 }
 
-/// The numbers of the corners. On a closed mesh, the number of a corner is the row of its
-/// half-edge.
+/// The numbers of the corners.
 #[derive(Clone, Copy)]
 struct Corners<'a, const CLOSED: bool>(&'a Ranks);
 
 impl<const CLOSED: bool> Corners<'_, CLOSED> {
-    /// Returns `#h` of a half-edge that has a face.
+    /// Returns `#h`. `h` must have a face.
     #[inline(always)]
     fn number(&self, h: u32) -> u32 {
         if CLOSED {
@@ -184,20 +181,18 @@ impl<const CLOSED: bool> Corners<'_, CLOSED> {
         }
     }
 
-    /// Returns the face of the child at the corner of `h`, which has the same number.
+    /// Returns the face of the child at the corner of `h`.
     #[inline(always)]
     fn face(&self, h: u32) -> Slot<FaceId> {
         Slot::some(FaceId::new(self.number(h)))
     }
 
-    /// Returns whether `h` has a face.
     #[inline(always)]
     fn has_face(&self, h: u32) -> bool {
         CLOSED || self.0.contains(h as usize)
     }
 }
 
-/// Builds a row of the child.
 #[inline(always)]
 fn half(next: u32, origin: u32, face: Slot<FaceId>) -> Half {
     Half {
@@ -207,20 +202,20 @@ fn half(next: u32, origin: u32, face: Slot<FaceId>) -> Half {
     }
 }
 
-/// The rows of the child for some edges of the parent and for the corners of their half-edges.
+/// The rows of the child for some edges of the parent and the corners at these edges.
 struct Chunk<'a> {
     /// The edges of the parent.
     edges: Range<u32>,
     /// The half-edges along each edge, always the same number.
     along: &'a mut [Half],
-    /// Two half-edges, of one inner edge, for each corner.
+    /// For each corner, the two half-edges of one inner edge.
     inner: &'a mut [Half],
     /// `first` of the face at each corner.
     first: &'a mut [HalfEdgeId],
 }
 
-/// Calls `work` with consecutive chunks of the child's tables that cover the rows of all edges and
-/// corners, on the threads of the current rayon pool. `along_each` half-edges belong to each edge.
+/// Calls `work` with consecutive chunks of the child's tables, on the threads of the current rayon
+/// pool. Each edge has `along_each` half-edges.
 fn for_each_edge_chunk<const CLOSED: bool>(
     edges: usize,
     corners: &Corners<CLOSED>,
@@ -247,12 +242,11 @@ fn for_each_edge_chunk<const CLOSED: bool>(
     });
 }
 
-/// Splits the first `len` rows off `rows` and returns them.
 fn take<'a, T>(rows: &mut &'a mut [T], len: usize) -> &'a mut [T] {
     rows.split_off_mut(..len).expect("the child has these rows")
 }
 
-/// Computes each of `rows` from its number, in chunks that the threads share.
+/// Computes each row from its number, on several threads.
 fn fill<T: Send>(rows: &mut [T], value: impl Fn(usize) -> T + Sync) {
     for_each_chunk(rows, CHUNK_ROWS, |first, rows| {
         for (i, row) in (first..).zip(rows) {

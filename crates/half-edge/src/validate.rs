@@ -6,8 +6,7 @@ use sixfold_core::{Editing, FaceId, HoleSet, InvariantError, MeshQuery, RowId, V
 
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh, NO_HALF};
 
-/// Checks that the half-edges are pairs, then I9, then I1 to I8; each check relies on the earlier
-/// ones.
+/// Checks the pairs of half-edges, then I9, then I1 to I8. Each check relies on the earlier checks.
 pub(crate) fn validate<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     check_pairs(mesh)?;
     check_holes(mesh)?;
@@ -26,7 +25,6 @@ fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> 
     Err(InvariantError::new(invariant, detail))
 }
 
-/// Iterates over the half-edges of all edges that are not deleted.
 fn halves<E: Editing>(mesh: &HalfEdgeMesh<E>) -> impl Iterator<Item = HalfEdgeId> {
     mesh.edges().flat_map(|e| mesh.halves_of(e))
 }
@@ -38,7 +36,7 @@ fn check_pairs<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError>
     }
 }
 
-/// Checks that exactly the rows of deleted elements are marked as deleted.
+/// Checks that exactly the deleted elements are marked as deleted.
 fn check_holes<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     let kinds = [
         (&mesh.vertex_holes, mesh.vertex_rows()),
@@ -69,8 +67,8 @@ fn check_holes<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError>
     Ok(())
 }
 
-/// Checks that every handle in the tables refers to an element that exists. The other checks walk
-/// along these handles, so they rely on this check.
+/// Checks that every handle in the tables refers to an existing element. The later checks rely on
+/// this check.
 fn check_handles<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     let is_vertex =
         |v: VertexId| v.index() < mesh.vertex_rows() && !mesh.vertex_holes.has(v.index());
@@ -218,7 +216,6 @@ mod tests {
     use super::*;
     use crate::EditableHalfEdgeMesh;
 
-    /// Returns a square of two triangles and an isolated vertex.
     fn sound() -> EditableHalfEdgeMesh {
         let corners = [Point::ZERO, Point::X, Point::ONE, Point::Y, Point::Z];
         let polygons = PolygonMesh::new(corners, [[0, 1, 2], [0, 2, 3]]).expect("valid");
@@ -315,7 +312,7 @@ mod tests {
 
     #[test]
     fn a_vertex_with_two_fans_is_found() {
-        // Two triangles that share no vertex; then a vertex of one replaces a vertex of the other.
+        // Two separate triangles; then a vertex of one triangle replaces a vertex of the other.
         let corners = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0].map(Point::splat);
         let polygons = PolygonMesh::new(corners, [[0, 1, 2], [3, 4, 5]]).expect("valid");
         let mut mesh = EditableHalfEdgeMesh::from_polygons(&polygons).expect("manifold");
@@ -330,9 +327,8 @@ mod tests {
 
     #[test]
     fn edges_with_the_same_ends_are_found() {
-        // Merging two opposite corners of a quad would break I7 first. So this test merges the
-        // third corners of two triangles along one edge. The other edges of these triangles then
-        // have the same ends.
+        // The third corners of two triangles along one edge become one vertex. The other edges of
+        // the triangles then have the same ends.
         let corners = [0.0, 1.0, 2.0, 3.0].map(Point::splat);
         let faces = [[0, 1, 2], [1, 0, 3]];
         let polygons = PolygonMesh::new(corners, faces).expect("valid");

@@ -6,14 +6,14 @@ use sixfold_core::{
 
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
-/// A side is the half-edge with its face on the left.
+/// A side is a half-edge with a face on its left.
 ///
 /// `prev_side` and `ccw_side` take O(degree), because `prev` is not stored. Every other method is
-/// O(1) and reads one or two half-edges. `next_side` and `twin_side` are one load each.
+/// O(1) and reads one or two half-edges.
 ///
-/// A half-edge on a boundary loop is not a side, and no method here returns such a half-edge. At a
+/// No method returns a half-edge on a boundary loop, because such a half-edge is not a side. At a
 /// boundary, `twin_side` returns `None`, but [`twin`](HalfEdgeMesh::twin) returns the half-edge on
-/// the loop.
+/// the boundary loop.
 impl<P: Probe, E: Editing> OrientedWalk for HalfEdgeMesh<E, P> {
     type Side = HalfEdgeId;
 
@@ -28,10 +28,10 @@ impl<P: Probe, E: Editing> OrientedWalk for HalfEdgeMesh<E, P> {
         halves.filter_map(|(h, half)| half.face.get().map(|_| h))
     }
 
-    /// Yields the sides clockwise, starting at the boundary if `v` is on one.
+    /// Yields the sides clockwise. At a boundary vertex, starts at the boundary.
     #[inline]
     fn outgoing_sides(&self, v: VertexId) -> impl Iterator<Item = HalfEdgeId> {
-        // Each face at v has one half-edge that arrives at v; the next one leaves v.
+        // Each face at v has one half-edge that arrives at v; the next half-edge leaves v.
         let arriving = self.spokes(v).map_inline(|(_, twin)| twin);
         arriving.filter_map(|half| half.face.get().map(|_| half.next))
     }
@@ -82,8 +82,7 @@ impl<P: Probe, E: Editing> OrientedWalk for HalfEdgeMesh<E, P> {
 }
 
 impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
-    /// Returns the record of `s`. If elements can be deleted, panics if `s` has no face, because
-    /// its face may have been deleted.
+    /// Returns the record of `s`. In an editable mesh, panics if `s` has no face.
     #[inline]
     fn side(&self, s: HalfEdgeId) -> &Half {
         let half = self.halves.read(s.index());
@@ -93,7 +92,7 @@ impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
         half
     }
 
-    /// Panics in the same case as `side`. Reads nothing if elements cannot be deleted.
+    /// Panics in the same case as `side`.
     #[inline]
     fn check_side(&self, s: HalfEdgeId) {
         if E::CAN_DELETE {
@@ -115,7 +114,6 @@ mod tests {
     use super::*;
     use crate::{EditableHalfEdgeMesh, HalfEdgeMesh};
 
-    /// Returns two triangles with a common edge.
     fn square() -> HalfEdgeMesh {
         let polygons = sixfold_shapes::triangle_grid(1, 1).expect("a valid size");
         HalfEdgeMesh::from_polygons(&polygons).expect("manifold")

@@ -1,4 +1,5 @@
-//! Edits: [`ScannedFaces`](sixfold_core::ScannedFaces) edits the faces, this file the vertices.
+//! Edits. [`ScannedFaces`](sixfold_core::ScannedFaces) edits the faces; this file edits the
+//! vertices.
 
 use sixfold_core::{
     Compact, Edit, EditError, EditLog, Editable, FaceId, MAX_ROWS, MeshEdit, MeshQuery, NewRows,
@@ -224,7 +225,7 @@ impl<P: Probe> IndexedFaceSet<Editable, P> {
         }
     }
 
-    /// Returns the handle of the next new vertex, or an error if there are no more handles.
+    /// Returns the handle of the next new vertex, or an error if all handles are in use.
     fn next_vertex(&self) -> Result<VertexId, Refusal<Self>> {
         check_rows("vertices", self.positions.len() + 1, MAX_ROWS)?;
         Ok(VertexId::new(row(self.positions.len())))
@@ -255,7 +256,7 @@ mod tests {
         let [a, b, c, d] = v([0, 1, 2, 3]);
         let turned = mesh.flip_edge(Pair::new(a, c));
         assert_eq!(turned, Ok(Pair::new(b, d)));
-        // The face a b c runs c→a and keeps c; the face a c d runs a→c and keeps a.
+        // Face a b c runs c→a and keeps c. Face a c d runs a→c and keeps a.
         assert_eq!(mesh.corners(), [d, b, c, a, b, d]);
     }
 

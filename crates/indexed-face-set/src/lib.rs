@@ -1,8 +1,7 @@
 //! Indexed face set: shared vertices, a vertex list for each face, and no other tables.
 //!
 //! Files and renderers use this form. Use it to read faces in order, or to keep a mesh in memory
-//! without queries. No structure with shared vertices is smaller. An indexed face set holds every
-//! polygon mesh. FV, FE and EV take O(1) per item. Every query of a neighbourhood scans all
+//! without queries. It is the smallest structure with shared vertices. It holds every polygon mesh. FV, FE and EV take O(1) per item. Every query of a neighbourhood scans all
 //! corners, because no table stores neighbours. Start at [`generic::IndexedFaceSet`]; its three
 //! invariants define the tables.
 //!
@@ -10,23 +9,22 @@
 //!
 //! # What limits the speed of a scan
 //!
-//! A scan reads 4 bytes per corner, once and in order. It compares many corners at a time with the
-//! given vertex, without a branch. In cache, the comparisons are the limit (0.08 ns per corner on
-//! 82,000 triangles, 50 GB/s). In larger meshes, the memory bandwidth is the limit (0.16 ns per
-//! corner on 1.3 million triangles, 0.6 ms per query). There are few hits, and only hits are
-//! examined further. A scan of a polygon soup moves three times as many bytes and compares three
-//! times as many words.
+//! A scan reads 4 bytes per corner, once and in order. A scan compares many corners at a time with
+//! the given vertex, without a branch. In cache, the comparisons are the limit (0.08 ns per corner
+//! on 82,000 triangles, 50 GB/s). In larger meshes, the memory bandwidth is the limit (0.16 ns per
+//! corner on 1.3 million triangles, 0.6 ms per query). A scan of a polygon soup reads three times
+//! as many bytes and compares three times as many words.
 //!
-//! `edges` is limited by the scattered writes of its counting sort: 3.4 ns per corner in cache, 13
-//! ns in larger meshes.
+//! The scattered writes of its counting sort limit `edges`: 3.4 ns per corner in cache, 13 ns per
+//! corner in larger meshes.
 //!
 //! # Editing
 //!
-//! All edits are supported. Edits of one face, and moving or adding a vertex, need no scan. Every
-//! other edit begins with a scan; an edge flip needs two scans. Use the structure to edit a few
-//! places, or to add and remove faces, which takes O(1) per corner. For many edits of edges, use a
-//! structure that stores neighbours. [`ScannedFaces`](sixfold_core::ScannedFaces) implements the
-//! scan and the edits of faces; the polygon soup uses it too.
+//! All edits are supported. Edits of one face need no scan. Moving or adding a vertex needs no
+//! scan. Every other edit begins with a scan; an edge flip needs two scans. Use the structure to
+//! edit a few places, or to add and remove faces, which takes O(1) per corner. For many edits of
+//! edges, use a structure that stores neighbours. [`ScannedFaces`](sixfold_core::ScannedFaces)
+//! implements the scan and the face edits of this structure and of the polygon soup.
 //!
 //! # Examples
 //!
@@ -50,7 +48,7 @@ mod mesh;
 mod query;
 mod validate;
 
-/// The mesh with its type parameters, for code that is generic over them.
+/// The mesh type with its type parameters, for generic code.
 ///
 /// Programs use the two types of the crate root instead.
 pub mod generic {
@@ -64,7 +62,7 @@ pub type IndexedFaceSet = generic::IndexedFaceSet;
 /// [`generic::IndexedFaceSet`] with holes.
 pub type EditableIndexedFaceSet = generic::IndexedFaceSet<sixfold_core::Editable>;
 
-/// The traits and types that all structures share: `PolygonMesh`, `MeshQuery`, handles, errors.
+/// The traits and types that all Sixfold structures share.
 pub use sixfold_core;
 
 /// Imports for a program: the types of this structure, and the traits of its queries and edits.

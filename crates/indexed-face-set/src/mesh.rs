@@ -17,20 +17,20 @@ use sixfold_core::{
 ///
 /// # Invariants
 ///
-/// - I1  Face `f` has the corners `spans.range(f)`, at least three. These ranges are consecutive
-///   and cover the whole table. After an edit has changed a degree, unused corners can be between
-///   them.
+/// - I1  Face `f` has the corners `spans.range(f)`, at least three. The ranges are consecutive and
+///   cover the whole table. After an edit has changed a degree, unused corners can be between the
+///   ranges.
 /// - I2  The vertices at the corners of a face exist and are distinct.
 /// - I3  Holes are rows of vertices and of faces. Exactly two kinds of corners are blank: the
-///   corners of deleted faces, and the unused corners between faces. A blank corner has no vertex,
-///   so no scan finds it. A deleted vertex keeps its last position, which is not used.
-///
+///   corners of deleted faces, and the unused corners between faces. A blank corner has no vertex.
+///   A deleted vertex keeps its last position, which is not used.
 /// # Memory
 ///
 /// A large closed triangle mesh uses 9 words per vertex: 3 for positions and 6 for corners. With
-/// mixed degrees, the offsets add one word per face. Edits that change a degree replace the offsets
-/// by two words per face and one per corner. Deletions add one bit per row.
-/// [`compact`](sixfold_core::MeshEdit::compact) removes both additions.
+/// mixed degrees, the mesh uses one more word per face. After an edit that changes a degree, the
+/// mesh uses two words per face and one word per corner instead. After a deletion, the mesh uses
+/// one more bit per row. [`compact`](sixfold_core::MeshEdit::compact) removes the additions of
+/// edits and deletions.
 ///
 /// # Complexity
 ///
@@ -43,8 +43,8 @@ use sixfold_core::{
 /// | `vertices`, `faces` | the holes, if there are any | O(1) per item |
 /// | `edges`, `edge_count` | all corners | O(corners + vertices), without hashing |
 ///
-/// A hit of a scan costs O(1). With mixed degrees it costs O(log faces), because the face of the
-/// corner must be searched. After an edit of degrees, a table stores the face of each corner.
+/// Each corner that a scan finds costs O(1), or O(log faces) with mixed degrees, to find its face.
+/// After an edit of degrees, a table stores the face of each corner, and the cost is O(1) again.
 ///
 /// # Edits
 ///
@@ -53,7 +53,7 @@ use sixfold_core::{
 /// | `set_position` | the vertex | its position |
 /// | `add_vertex` | nothing | a new position |
 /// | `add_face` | its corners | new corners, a new span |
-/// | `remove_face`, `split_face`, `poke_face` | the corners of the face | these, and the corners of new faces |
+/// | `remove_face`, `split_face`, `poke_face` | the corners of the face | the corners of the face and of new faces |
 /// | `split_edge`, `dissolve_edge` | all corners, in one scan | the faces at the edge, which may move to the end of the table |
 /// | `bisect_edge` | all corners, in one scan | a corner of each face, and a new face for each |
 /// | `flip_edge` | all corners, in two scans | one corner of each face |
@@ -64,8 +64,8 @@ use sixfold_core::{
 /// | `compact` | everything | everything |
 ///
 /// If a log records the edits, `add_face`, `remove_face`, `remove_vertex` and `split_face` need one
-/// more scan, to find the sides that other faces also have. The structure holds every polygon mesh.
-/// So an edit is refused only if its own rule is broken or a handle is not valid.
+/// more scan, to find the sides that remain. The structure holds every polygon mesh. So an edit is
+/// refused only if the edit breaks its own rule or a handle is not valid.
 #[derive(Debug)]
 pub struct IndexedFaceSet<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,
@@ -113,14 +113,12 @@ impl<P: Probe, E: Editing> IndexedFaceSet<E, P> {
         self.faces.face(f)
     }
 
-    /// Returns whether `v` exists.
     #[inline]
     pub(crate) fn has(&self, v: VertexId) -> bool {
         v.index() < self.positions.len() && !self.vertex_holes.has(v.index())
     }
 
-    /// Returns `v` if it exists. Without this check, a scan for a missing vertex would find nothing
-    /// and not panic.
+    /// Returns `v` if `v` exists.
     ///
     /// # Panics
     ///
@@ -133,10 +131,6 @@ impl<P: Probe, E: Editing> IndexedFaceSet<E, P> {
         v
     }
 
-    /// Checks that `v` was not deleted.
-    ///
-    /// # Panics
-    ///
     /// Panics if `v` was deleted.
     #[inline]
     pub(crate) fn check_not_deleted(&self, v: VertexId) {

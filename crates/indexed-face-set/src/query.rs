@@ -136,7 +136,7 @@ mod tests {
     fn edges_of_a_vertex_with_many_faces_are_listed_once() {
         let faces = 1_000;
         let corners = vec![Point::ZERO; faces as usize + 2];
-        // All faces are around v0, the lower end of every spoke; two faces share each inner spoke.
+        // All faces are around v0. Two faces share each inner spoke.
         let fan = (1..=faces).map(|f| [0, f, f + 1]);
         let mesh = PolygonMesh::new(corners, fan).expect("valid");
         let mesh = IndexedFaceSet::from_polygons(&mesh).expect("holds every mesh");

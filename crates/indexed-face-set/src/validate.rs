@@ -5,20 +5,20 @@ use sixfold_core::{Editing, HoleSet, InvariantError, IteratorExt, MeshQuery, Pro
 use crate::mesh::IndexedFaceSet;
 
 impl<P: Probe, E: Editing> IndexedFaceSet<E, P> {
-    /// Checks I1 first, then I3 and I2, which rely on it.
+    /// Checks I1, then I3 and I2, which rely on I1.
     pub(crate) fn check_invariants(&self) -> Result<(), InvariantError> {
         self.check_spans()?;
         self.check_holes()?;
         self.check_faces()
     }
 
-    /// I1: the faces partition the corners, with at least three corners each.
+    /// I1: the faces share no corners, and each face has at least three corners.
     fn check_spans(&self) -> Result<(), InvariantError> {
         let checked = self.spans().check(self.corners().len());
         checked.map_err(|detail| InvariantError::new("I1", detail))
     }
 
-    /// I3: holes are rows, and the blank corners are exactly those of no face.
+    /// I3: holes are rows, and exactly the corners of no face are blank.
     fn check_holes(&self) -> Result<(), InvariantError> {
         let checked = self.vertex_holes.check(self.positions.len());
         let checked = checked.and_then(|()| self.faces.check_holes());
@@ -53,7 +53,7 @@ mod tests {
 
     const CORNERS: [Point; 5] = [Point::ZERO, Point::X, Point::ONE, Point::Y, Point::Z];
 
-    /// Returns the invariant that fails after `break_it` changed a mesh of these faces.
+    /// Returns the invariant that fails after `break_it`.
     fn broken(faces: &[&[u32]], break_it: impl Fn(&mut EditableIndexedFaceSet)) -> &'static str {
         let polygons = PolygonMesh::new(CORNERS, faces).expect("valid");
         let mut mesh = EditableIndexedFaceSet::from_polygons(&polygons).expect("holds every mesh");
@@ -123,7 +123,7 @@ mod tests {
                 mesh.faces.corners.rows_mut()[5] = VertexId::new(0);
             };
             assert_eq!(broken(faces, reused), "I3");
-            // A face that has a deleted vertex breaks I2.
+            // A face with a deleted vertex breaks I2.
             let named = |mesh: &mut EditableIndexedFaceSet| mesh.vertex_holes.insert(2);
             assert_eq!(broken(faces, named), "I2");
         }

@@ -12,14 +12,13 @@ use crate::read::{OpenError, open_file};
 use crate::sharpness::sharpness;
 use crate::write::ShortestDecimal;
 
-/// Maximum length of a line in bytes, much longer than any comment needs.
+/// Maximum length of a line in bytes.
 const MAX_LINE_LENGTH: u64 = 1 << 20;
 
-/// The reason why a file is not a valid crease file of a mesh, with its place and a way to correct
-/// it.
+/// The reason why a crease file cannot be read, with the line and a way to correct the file.
 ///
-/// The first invalid line is reported. If all lines are valid, the first entry with a vertex or an
-/// edge that the mesh does not have is reported; edges are checked before corners.
+/// The first invalid line is reported. If all lines are valid, the first entry with a missing
+/// vertex or edge is reported. Edges are checked before corners.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message shows the meaning of each field")]
@@ -36,7 +35,7 @@ pub enum CreaseFileError {
     /// The text has a byte order mark of UTF-16.
     #[error("{at}: the text is UTF-16: save it as UTF-8")]
     Utf16 { at: Location },
-    /// A line is not valid text.
+    /// A line is not valid UTF-8 text.
     #[error(
         "{at}: the line is not UTF-8 text: a crease file has lines `edge a b sharpness` and `corner v sharpness`"
     )]
@@ -57,7 +56,7 @@ pub enum CreaseFileError {
         found: usize,
         form: &'static str,
     },
-    /// A field is not the number of a vertex.
+    /// A field is not a vertex number of the mesh.
     #[error(
         "{at}: {text:?} is not a vertex number: use whole numbers that count from 0; the mesh has {vertices} vertices"
     )]
@@ -101,10 +100,10 @@ pub fn read_creases(
 /// corner 7 inf       # vertex 7, sharp at all levels
 /// ```
 ///
-/// There is one entry per line, in any order. `#` starts a comment, and empty lines are ignored.
-/// Sharpness is a number from 0, or `inf`. If two entries apply to one edge or vertex, the later
-/// one is used; a sharpness of 0 cancels an earlier entry. Edges are looked up in the mesh before
-/// corners. Lines end in LF, CRLF or CR. A byte order mark is skipped.
+/// Each line has at most one entry. Entries may have any order. `#` starts a comment, and empty
+/// lines are ignored. Sharpness is a number that is 0 or greater, or `inf`. If an edge or vertex
+/// has several entries, the last entry is used; a sharpness of 0 cancels an earlier entry. Lines
+/// end in LF, CRLF or CR. A byte order mark is skipped.
 ///
 /// # Errors
 ///
@@ -133,7 +132,8 @@ pub fn parse_creases(
     polygons: &PolygonMesh,
 ) -> Result<Creases, CreaseFileError> {
     let entries = Entries::read(name, source, polygons.vertex_count())?;
-    // `Creases::new` takes the entries one by one, so the last entry it took is the faulty one.
+    // `Creases::new` takes the entries one by one. If it fails, the last entry that it took is
+    // wrong.
     let line = Cell::new(0);
     let edges = entries.edges.iter().inspect(|entry| line.set(entry.0));
     let corners = entries.corners.iter().inspect(|entry| line.set(entry.0));
@@ -247,7 +247,8 @@ impl Entries {
 const EDGE: &str = "edge a b sharpness";
 const CORNER: &str = "corner v sharpness";
 
-/// Returns the `N` fields of an entry after its first word. Fails if their number is not `N`.
+/// Returns the `N` fields after the first word of an entry. Fails if there are more or fewer
+/// fields.
 fn fields<'a, const N: usize>(
     mut words: impl Iterator<Item = &'a str>,
     form: &'static str,

@@ -5,12 +5,12 @@ use std::io;
 
 use crate::tags::TagFault;
 
-/// A line of a file; printed as `bunny.obj:17`.
+/// A line of a file, printed for example as `bunny.obj:17`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Location {
-    /// Name of the file, as given by the caller.
+    /// Name of the file, as the caller gave it.
     pub file: String,
-    /// Line, counted from 1; for a continued statement, its first line.
+    /// Line, counted from 1. If a statement has several lines, this is its first line.
     pub line: u32,
 }
 
@@ -20,11 +20,11 @@ impl fmt::Display for Location {
     }
 }
 
-/// The reason why a file is not a valid mesh, with its place and a way to correct it.
+/// The reason why an OBJ file cannot be read, with the line and a way to correct the file.
 ///
 /// The first fault of the file is reported. Some faults can be detected only at the end of the
-/// file: first faces with a vertex number that is too high, then coordinates that are not finite,
-/// then tags of missing vertices and edges.
+/// file. They are reported in this order: vertex numbers of faces that are too high, coordinates
+/// that are not finite, tags of missing vertices and edges.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message shows the meaning of each field")]
@@ -41,13 +41,13 @@ pub enum ObjError {
     /// The text has a byte order mark of UTF-16.
     #[error("{at}: the text is UTF-16: save it as UTF-8")]
     Utf16 { at: Location },
-    /// A vertex, face or tag is not valid text.
+    /// A vertex, face or tag is not valid UTF-8 text.
     #[error("{at}: the statement is not UTF-8 text: save the file as UTF-8, or correct the line")]
     NotUtf8 { at: Location },
-    /// The file has no vertex and no face.
+    /// The file has no vertices and no faces.
     #[error("{file}: no vertex and no face: check that it is an OBJ file")]
     Empty { file: String },
-    /// There are more elements than handles, or more lines than can be counted.
+    /// There are more elements or lines than can be counted.
     #[error("{at}: more than {limit} {elements}: split the mesh, because handles have 32 bits")]
     TooMany {
         at: Location,
@@ -79,7 +79,7 @@ pub enum ObjError {
         vertex: usize,
         coordinate: char,
     },
-    /// A corner is not a vertex number, or its number is too large for a vertex.
+    /// A corner is not a valid vertex number.
     #[error(
         "{at}: face corner {text:?} is not a vertex number: use whole numbers that count from 1, or backwards from -1"
     )]
@@ -87,14 +87,14 @@ pub enum ObjError {
     /// A corner has vertex number 0.
     #[error("{at}: face names vertex 0, but OBJ counts from 1: add 1 to the indices of the file")]
     IndexZero { at: Location },
-    /// A face has the number of a vertex that is not in the file.
+    /// The vertex number of a face is too high.
     #[error("{at}: face names vertex {index}, but there {count}: correct the index", count = vertices_phrase(*vertices))]
     IndexOutOfRange {
         at: Location,
         index: u32,
         vertices: usize,
     },
-    /// A face counts backwards beyond the first vertex.
+    /// A negative vertex number of a face is too low.
     #[error("{at}: face names vertex {index}, but before this line there {count}: correct the \
              index", count = vertices_phrase(*before))]
     RelativeIndexOutOfRange {
@@ -105,7 +105,7 @@ pub enum ObjError {
     /// A `t crease` or `t corner` tag is invalid.
     #[error("{at}: {fault}")]
     Tag { at: Location, fault: TagFault },
-    /// The parser rejects a statement for a reason that the normaliser does not detect.
+    /// `tobj` refused a statement for another reason.
     #[error("{at}: the parser rejects {text:?} ({reason}): write the line in a simpler form")]
     Refused {
         at: Location,
@@ -114,7 +114,7 @@ pub enum ObjError {
     },
 }
 
-/// Formats a number of vertices as `is 1 vertex` or `are 12 vertices`.
+/// Returns `is 1 vertex` or `are 12 vertices`, for the given number.
 fn vertices_phrase(vertices: usize) -> String {
     match vertices {
         0 => "is no vertex".to_owned(),
@@ -123,7 +123,7 @@ fn vertices_phrase(vertices: usize) -> String {
     }
 }
 
-/// Shortens `text` to a length that fits into a message.
+/// Shortens `text` for a message.
 pub(crate) fn shortened(text: &str) -> String {
     const MAX_CHARS: usize = 40;
     match text.char_indices().nth(MAX_CHARS) {

@@ -2,21 +2,21 @@
 
 use std::io::{self, BufRead, Read};
 
-/// A reader of the logical lines of a file: without comments, and with continued lines joined by a
-/// blank.
+/// A reader of the logical lines of a file. A logical line has no comment, and its continued lines
+/// are joined by a blank.
 ///
-/// A line ends in LF, CRLF or a lone CR. `\` at its end continues it on the next line; blanks after
-/// the `\` are allowed. In a comment, `\` does not continue the line, because a `\` there is more
-/// likely the end of a path. Names may be in any encoding, so nothing is decoded here.
+/// A line ends in LF, CRLF or a lone CR. `\` at the end of a line continues the line; blanks after
+/// the `\` are allowed. A `\` at the end of a comment does not continue the line. Names may be in
+/// any encoding, so the reader does not decode the bytes.
 pub(crate) struct Lines<R> {
     source: R,
-    /// Bytes up to an LF; holds several lines if some end in a lone CR.
+    /// Bytes up to an LF. Contains several lines if some lines end in a lone CR.
     chunk: Vec<u8>,
-    /// Start of the next line in `chunk`; `None` if no line is left.
+    /// Start of the next line in `chunk`; `None` if `chunk` has no more lines.
     next: Option<usize>,
     /// Number of physical lines that were read.
     count: u64,
-    /// Maximum length of a line in bytes; adjacent lines that end in a lone CR count as one line.
+    /// Maximum length of a line in bytes. Adjacent lines that end in a lone CR count as one line.
     max_length: u64,
 }
 
@@ -29,7 +29,6 @@ pub(crate) enum Start {
 }
 
 impl<R: BufRead> Lines<R> {
-    /// Creates a reader of the lines of `source`.
     pub(crate) fn new(source: R) -> Self {
         Self {
             source,
@@ -40,13 +39,13 @@ impl<R: BufRead> Lines<R> {
         }
     }
 
-    /// Limits the length of lines: if a line is longer than `max_length` bytes, reading fails with
+    /// Sets the maximum length of a line in bytes. If a line is longer, reading fails with
     /// [`io::ErrorKind::FileTooLarge`].
     pub(crate) fn with_max_length(self, max_length: u64) -> Self {
         Self { max_length, ..self }
     }
 
-    /// Reads the first line in advance and checks for a byte order mark.
+    /// Reads the first line and checks for a byte order mark.
     pub(crate) fn start(&mut self) -> io::Result<Start> {
         self.next = self.read_chunk()?.then_some(0);
         if self.chunk.starts_with(b"\xEF\xBB\xBF") {
@@ -102,7 +101,7 @@ impl<R: BufRead> Lines<R> {
         Ok(Some(line))
     }
 
-    /// Reads up to the next LF and removes the line end; returns whether any byte was read.
+    /// Reads up to the next LF and removes the line end. Returns whether any byte was read.
     fn read_chunk(&mut self) -> io::Result<bool> {
         self.chunk.clear();
         let limit = self.max_length.saturating_add(1);

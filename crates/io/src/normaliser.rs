@@ -10,16 +10,17 @@ use crate::notice::{IgnoredKind, Notice, add_notice};
 use crate::obj_mesh::ShortFace;
 use crate::tags::{Tag, Tags};
 
-/// A reader that converts a file into plain text, statement by statement.
+/// A reader that converts a file into plain statements, one at a time.
 ///
 /// # Invariants
 ///
-/// - N1  The text is `v x y z` for every vertex and `f i j k …` for every face of three corners or
-///   more, in file order, with indices from 1. After them comes one polygon through all vertices.
-/// - N2  `fill_buf` returns one statement at a time, so the parser always stops at the last
-///   statement that was returned.
-/// - N3  `vertex_lines` and `face_lines` have one entry for each vertex and face passed on.
-/// - N4  When the last polygon is passed on, every index of every face is in range.
+/// - N1  The text is `v x y z` for every vertex and `f i j k …` for every face with three or more
+///   corners, in file order, with indices from 1. The last statement is one polygon through all
+///   vertices.
+/// - N2  `fill_buf` returns one statement at a time. Therefore the parser always stops at the last
+///   returned statement.
+/// - N3  `vertex_lines` and `face_lines` have one entry for each returned vertex and face.
+/// - N4  When the last polygon is returned, every index of every face is in range.
 /// - N5  There are at most `limit` lines, vertices, and corners of faces.
 pub(crate) struct Normaliser<'a, R> {
     name: &'a str,
@@ -28,21 +29,19 @@ pub(crate) struct Normaliser<'a, R> {
     statement: Vec<u8>,
     /// First physical line of the current logical line, counted from 1.
     line: u32,
-    /// Text of the converted statement; the parser has taken the first `consumed` bytes.
+    /// The converted statement; the parser has read the first `consumed` bytes.
     text: Vec<u8>,
     consumed: usize,
     progress: Progress,
-    /// Vertex numbers that were used before the vertex was read, each higher than the ones before
-    /// it, with the line of the face.
+    /// Vertex numbers that a face used before the vertex was read, with the line of the face. Only
+    /// a number above all earlier entries is added.
     forward_references: Vec<(u32, u32)>,
     corners: usize,
     /// Maximum number of vertices, corners and lines.
     limit: usize,
-    /// The fault at which reading stopped.
+    /// The fault that ended the reading.
     pub(crate) fault: Option<ObjError>,
-    /// Line of each vertex.
     pub(crate) vertex_lines: Vec<u32>,
-    /// Line of each face with three corners or more.
     pub(crate) face_lines: Vec<u32>,
     pub(crate) short_faces: Vec<ShortFace>,
     pub(crate) tags: Tags,
@@ -57,7 +56,6 @@ enum Progress {
 }
 
 impl<'a, R: BufRead> Normaliser<'a, R> {
-    /// Creates a reader of `source`; error messages use `name` as the name of the file.
     pub(crate) fn new(name: &'a str, source: R) -> Self {
         Self {
             name,
@@ -79,7 +77,7 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
         }
     }
 
-    /// Returns the fault at which the parser stopped, in the last statement.
+    /// Returns the fault in the last statement, at which the parser stopped.
     pub(crate) fn diagnose(&self, refusal: &tobj::LoadError) -> ObjError {
         let at = self.location(self.line);
         let text = String::from_utf8_lossy(&self.text);
@@ -99,7 +97,6 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
         ObjError::Refused { at, text, reason }
     }
 
-    /// Returns the location of line `line` in this file.
     pub(crate) fn location(&self, line: u32) -> Location {
         let file = self.name.to_owned();
         Location { file, line }
@@ -184,11 +181,11 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
         })
     }
 
-    /// Passes on the coordinates. The parser checks whether they are three numbers.
+    /// Writes the coordinates into `text`. The parser checks whether there are three numbers.
     fn read_vertex(&mut self, values: &str) -> Result<(), ObjError> {
         self.vertex_lines.push(self.line);
         self.check_limit("vertices", self.vertex_lines.len())?;
-        // Splits the values in the same way as the parser, also at white space outside ASCII.
+        // The parser splits the values in the same way, also at white space outside ASCII.
         let mut words = values.split_whitespace();
         self.text.push(b'v');
         for word in words.by_ref().take(3) {
@@ -202,7 +199,7 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
         Ok(())
     }
 
-    /// Passes on the corners, or stores them in `short_faces` if there are fewer than three.
+    /// Writes the corners into `text`, or into `short_faces` if there are fewer than three corners.
     fn read_face(&mut self, corners: &str) -> Result<(), ObjError> {
         let mut count = 0;
         let mut first_two = [0; 2];
@@ -231,7 +228,7 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
         Ok(())
     }
 
-    /// Returns the vertex number, counted from 1, of a corner such as `7`, `-1` or `7/1/3`.
+    /// Returns the vertex number of a corner such as `7`, `-1` or `7/1/3`, counted from 1.
     fn read_corner(&mut self, word: &str) -> Result<u32, ObjError> {
         let (index, _) = word.split_once('/').unwrap_or((word, ""));
         let before = self.vertex_lines.len();
@@ -266,7 +263,7 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
         Ok(number)
     }
 
-    /// Checks faces that precede their vertices, and passes on the polygon through all vertices.
+    /// Checks faces that come before their vertices, and writes the polygon through all vertices.
     fn finish(&mut self) -> Result<(), ObjError> {
         self.progress = Progress::AtEnd;
         let vertices = self.vertex_lines.len();
@@ -371,7 +368,6 @@ mod tests {
             fault("v 0 0 0\nf 1 1 1 1 1"),
             format!("a.obj:2: more than 4 corners: {rest}")
         );
-        // Lines are checked before vertices, so this part bypasses the lines.
         let mut normaliser = Normaliser::new("a.obj", &b""[..]);
         normaliser.limit = 1;
         normaliser

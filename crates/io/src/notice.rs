@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// A kind of statement, or part of one, that the reader ignores.
+/// A kind of ignored statement or ignored value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum IgnoredKind {
@@ -28,9 +28,9 @@ pub enum IgnoredKind {
     FreeForm,
     /// Display attributes: `bevel`, `lod` and similar statements.
     Display,
-    /// `t interpolateboundary` and similar tags: rules of subdivision for boundaries.
+    /// `t interpolateboundary` and similar tags: boundary rules of subdivision.
     BoundaryTags,
-    /// `t creasemethod`: how sharpness decreases from level to level.
+    /// `t creasemethod`: the rule for the sharpness at the next level.
     CreaseMethodTags,
     /// `t hole`: faces that are not drawn.
     HoleTags,
@@ -41,7 +41,7 @@ pub enum IgnoredKind {
 }
 
 impl IgnoredKind {
-    /// Returns the kind of a statement with this keyword, which is not `v` or `f`.
+    /// Returns the kind of a statement from its keyword. The keyword is not `v` or `f`.
     pub(crate) fn from_keyword(keyword: &[u8]) -> Self {
         match keyword {
             b"vt" => Self::TextureCoordinates,
@@ -61,7 +61,7 @@ impl IgnoredKind {
         }
     }
 
-    /// Returns the kind of a `t` statement with this name, which is not `crease` or `corner`.
+    /// Returns the kind of a `t` statement from its name. The name is not `crease` or `corner`.
     pub(crate) fn from_tag(name: &[u8]) -> Self {
         match name {
             b"interpolateboundary"
@@ -96,15 +96,16 @@ impl IgnoredKind {
     }
 }
 
-/// A kind of ignored statement and how many there are; printed as
-/// `ignored 48612 texture coordinates (first at line 12)`.
+/// A kind of ignored statement and the number of such statements, printed for example as `ignored
+/// 48612 texture coordinates (first at line 12)`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {
     /// Kind of the ignored statements.
     pub kind: IgnoredKind,
-    /// Number of statements; for values after coordinates, the number of vertices with such values.
+    /// Number of ignored statements. For [`IgnoredKind::ExtraValues`], number of vertices with such
+    /// values.
     pub count: usize,
-    /// Line of the first one, counted from 1.
+    /// Line of the first ignored statement, counted from 1.
     pub first_line: u32,
 }
 
@@ -119,7 +120,7 @@ impl fmt::Display for Notice {
     }
 }
 
-/// Counts one more occurrence of `kind`, at `line`; `notices` has one entry for each kind.
+/// Adds a statement of `kind` at `line` to `notices`.
 pub(crate) fn add_notice(notices: &mut Vec<Notice>, kind: IgnoredKind, line: u32) {
     match notices.iter_mut().find(|notice| notice.kind == kind) {
         Some(notice) => notice.count += 1,

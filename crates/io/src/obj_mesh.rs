@@ -7,30 +7,30 @@ use sixfold_core::{Creases, FaceList, Facts, IteratorExt, Point, PolygonMesh, Ve
 use crate::notice::Notice;
 use crate::tags::{CornerTag, CreaseTag, UnusedCrease, creases_on_polygons};
 
-/// The vertices and faces of a file, with the numbering of the file.
+/// The vertices and faces of a file.
 ///
-/// `VertexId` counts from 0 and the file counts from 1: `v0` is vertex 1 of the file.
+/// A `VertexId` counts from 0 and the file counts from 1: `v0` is vertex 1 of the file.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ObjMesh {
-    /// Positions of all vertices of the file, used or not.
+    /// Positions of all vertices of the file, including unused vertices.
     pub positions: Vec<Point>,
-    /// All faces of three corners or more, including faces that use a vertex twice.
+    /// All faces with three corners or more, including faces that use a vertex twice.
     pub faces: FaceList,
-    /// Line of each face, counted from 1.
+    /// Line of each face in `faces`, counted from 1.
     pub face_lines: Vec<u32>,
-    /// Faces of fewer than three corners.
+    /// Faces with fewer than three corners.
     pub short_faces: Vec<ShortFace>,
-    /// Edges that `t crease` tags make sharp, in file order. Each edge is a side of a face,
-    /// possibly of a degenerate or short face.
+    /// Sharp edges from `t crease` tags, in file order. Each edge is a side of a face; this face
+    /// can be degenerate or short.
     pub crease_tags: Vec<CreaseTag>,
-    /// Vertices that `t corner` tags make sharp, in file order.
+    /// Sharp vertices from `t corner` tags, in file order.
     pub corner_tags: Vec<CornerTag>,
-    /// Ignored statements, one entry per kind, ordered by first occurrence.
+    /// Ignored statements, one entry per kind, in the order of the first occurrences.
     pub notices: Vec<Notice>,
 }
 
-/// A face of fewer than three corners.
+/// A face with fewer than three corners.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShortFace {
     /// Line of the face, counted from 1.
@@ -39,12 +39,13 @@ pub struct ShortFace {
     pub corners: Vec<VertexId>,
 }
 
-/// A face that is not a valid polygon; printed as `line 23: face 1 1 2 names vertex 1 twice`.
+/// A face that is not a valid polygon, printed for example as `line 23: face 1 1 2 names vertex 1
+/// twice`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LeftOut {
     /// Line of the face, counted from 1.
     pub line: u32,
-    /// Vertices of the face in the numbering of the file, from 1.
+    /// Vertices of the face, counted from 1 as in the file.
     pub vertices: Vec<u32>,
     /// Reason why the face is left out.
     pub reason: LeftOutReason,
@@ -56,12 +57,13 @@ pub struct LeftOut {
 pub enum LeftOutReason {
     /// The face has fewer than three corners.
     TooFewCorners,
-    /// The face uses this vertex twice; counted from 1.
+    /// The face uses this vertex twice. The number counts from 1.
     RepeatedVertex(u32),
 }
 
 impl ObjMesh {
-    /// Returns the topology of the file; short faces count as degenerate. O(corners) expected.
+    /// Returns the topology of the file. Faces with fewer than three corners count as
+    /// degenerate. O(corners) expected.
     ///
     /// # Panics
     ///
@@ -74,9 +76,9 @@ impl ObjMesh {
     }
 
     /// Returns the sharpness of the edges and vertices of [`into_polygons`](Self::into_polygons),
-    /// which keeps all vertices and their numbers. Also returns the creases that have no edge in
-    /// that mesh, because degenerate and short faces are left out. If two tags apply to one
-    /// element, the later one is used.
+    /// which keeps all vertices and their numbers. Also returns the creases whose edge is not in
+    /// that mesh, because the mesh has no degenerate and no short faces. If several tags name one
+    /// element, the last tag is used.
     ///
     /// O(corners · log tags), or O(1) without tags.
     ///
@@ -93,8 +95,8 @@ impl ObjMesh {
         creases_on_polygons(&self.crease_tags, &self.corner_tags, &self.faces)
     }
 
-    /// Returns the mesh without its degenerate and short faces, and these faces sorted by line;
-    /// O(corners).
+    /// Returns the mesh without its degenerate and short faces. Also returns these faces, sorted by
+    /// line. O(corners).
     ///
     /// # Panics
     ///
@@ -161,12 +163,12 @@ impl fmt::Display for LeftOut {
     }
 }
 
-/// Returns the number of `vertex` in the file.
+/// Returns the number of `vertex` in the file, counted from 1.
 fn number(vertex: VertexId) -> u32 {
     sixfold_core::row(vertex.index() + 1)
 }
 
-/// Returns the first vertex that repeats an earlier corner of `face`; O(corners) expected.
+/// Returns the first vertex that occurs twice in `face`; O(corners) expected.
 pub(crate) fn repeated_vertex(face: &[VertexId]) -> Option<VertexId> {
     let mut distinct = face.iter().copied().distinct();
     face.iter().copied().find(|&v| distinct.next() != Some(v))

@@ -10,7 +10,7 @@ use crate::error::ObjError;
 use crate::normaliser::Normaliser;
 use crate::obj_mesh::ObjMesh;
 
-/// Options that keep faces as they are, use only vertex numbers, and ignore nothing.
+/// Options for `tobj`: do not change faces, and read only vertex numbers.
 const LOAD_OPTIONS: tobj::LoadOptions = tobj::LoadOptions {
     single_index: false,
     triangulate: false,
@@ -34,7 +34,6 @@ pub fn read_obj(path: impl AsRef<Path>) -> Result<ObjMesh, ObjError> {
     }
 }
 
-/// The reason why a file could not be opened.
 pub(crate) enum OpenError {
     /// The path is a directory.
     Directory,
@@ -48,9 +47,8 @@ impl From<io::Error> for OpenError {
     }
 }
 
-/// Opens the file at `path`.
 pub(crate) fn open_file(path: &Path) -> Result<BufReader<File>, OpenError> {
-    // Opening a directory succeeds on some systems and gives a misleading error on others.
+    // Some systems allow opening a directory, and then return an unclear error.
     if fs::metadata(path)?.is_dir() {
         return Err(OpenError::Directory);
     }
@@ -61,8 +59,8 @@ pub(crate) fn open_file(path: &Path) -> Result<BufReader<File>, OpenError> {
 ///
 /// # Errors
 ///
-/// Returns the first fault, in the order documented at [`ObjError`]. A file with vertices and
-/// without faces is valid; a file without vertices and faces is an error.
+/// Returns the first fault, in the order documented at [`ObjError`]. A file may have vertices
+/// without faces. A file without vertices and faces is an error.
 ///
 /// # Examples
 ///
@@ -81,7 +79,7 @@ pub(crate) fn open_file(path: &Path) -> Result<BufReader<File>, OpenError> {
 /// ```
 pub fn parse_obj(name: &str, source: impl BufRead) -> Result<ObjMesh, ObjError> {
     let mut text = Normaliser::new(name, source);
-    // The text for the parser never contains a material library, so this function is not called.
+    // Never called: the text contains no material library.
     let no_library = |_: &Path| Err(tobj::LoadError::OpenFileFailed);
     let loaded = tobj::load_obj_buf(&mut text, &LOAD_OPTIONS, no_library);
     if let Some(fault) = text.fault.take() {
@@ -110,9 +108,9 @@ pub fn parse_obj(name: &str, source: impl BufRead) -> Result<ObjMesh, ObjError> 
     })
 }
 
-/// Restores the numbering of the file; the parser numbers vertices by first use.
+/// Restores the numbering of the file. `tobj` numbers vertices in the order of their first use.
 ///
-/// The last `vertices` corners are the polygon through all vertices in file order.
+/// The last `vertices` corners are a polygon through all vertices in file order.
 fn restore_numbering(models: Vec<tobj::Model>, vertices: usize) -> (Vec<Point>, FaceList) {
     let [model] = <[_; 1]>::try_from(models).expect("N1: one object");
     let tobj::Mesh {
@@ -133,8 +131,7 @@ fn restore_numbering(models: Vec<tobj::Model>, vertices: usize) -> (Vec<Point>, 
         .iter()
         .map(|&tobj_number| numbers[tobj_number as usize])
         .collect();
-    // The list of degrees is empty if all degrees are three, including the degree of the last
-    // polygon.
+    // The list is empty if all polygons have three corners.
     face_arities.pop();
     let degree = face_arities.first().map_or(3, |&degree| degree as usize);
     let faces = if face_arities.iter().all(|&other| other as usize == degree) {

@@ -1,6 +1,6 @@
 //! Parses a sharpness.
 
-/// Parses a sharpness: a number from 0, or `inf`.
+/// Parses a sharpness: a number that is 0 or greater, or `inf`.
 pub(crate) fn sharpness(word: &str) -> Option<f32> {
     let number = word.parse().ok();
     // Converts -0 to 0.

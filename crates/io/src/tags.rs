@@ -8,14 +8,14 @@ use crate::error::shortened;
 use crate::obj_mesh::{ShortFace, repeated_vertex};
 use crate::sharpness::sharpness;
 
-/// One edge of a `t crease` tag. A tag through several vertices gives one entry for each edge.
+/// One edge of a `t crease` tag. A tag can have several edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CreaseTag {
     /// Line of the tag, counted from 1.
     pub line: u32,
-    /// Ends of the edge, in the order of the tag; tags count from 0, unlike faces.
+    /// Ends of the edge, in the order of the tag. The numbers count from 0.
     pub ends: [VertexId; 2],
-    /// Sharpness, from 0 to infinity.
+    /// Sharpness: 0 or greater, or infinity.
     pub sharpness: f32,
 }
 
@@ -24,15 +24,15 @@ pub struct CreaseTag {
 pub struct CornerTag {
     /// Line of the tag, counted from 1.
     pub line: u32,
-    /// The sharp vertex; tags count from 0, unlike faces.
+    /// The sharp vertex. The number counts from 0.
     pub vertex: VertexId,
-    /// Sharpness, from 0 to infinity.
+    /// Sharpness: 0 or greater, or infinity.
     pub sharpness: f32,
 }
 
-/// A crease whose edge belongs only to faces that are left out; printed as
-/// `line 40: crease 3 7 is ignored, because all faces along it are left out`. Its vertices count
-/// from 0, as in the tag.
+/// A crease whose edge belongs only to faces that are left out, printed for example as `line 40:
+/// crease 3 7 is ignored, because all faces along it are left out`. Vertex numbers count from 0, as
+/// in the tag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnusedCrease {
     /// Line of the tag, counted from 1.
@@ -57,7 +57,7 @@ impl fmt::Display for UnusedCrease {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message shows the meaning of each field")]
 pub enum TagFault {
-    /// The tag does not start with three counts.
+    /// The tag does not start with three counts such as `2/1/0`.
     #[error("tag {tag} has invalid counts {text:?}: write the tag like `t {tag} {}`", tag.example())]
     Counts { tag: Tag, text: String },
     /// The number of values does not match the counts.
@@ -69,10 +69,10 @@ pub enum TagFault {
         required: usize,
         found: usize,
     },
-    /// The numbers of vertices and sharpnesses do not match, or the tag has words.
+    /// The counts are not possible for this kind of tag.
     #[error("counts {counts} do not fit tag {tag}: write the tag like `t {tag} {}`; {}", tag.example(), tag.rule())]
     Shape { tag: Tag, counts: String },
-    /// A value is not the number of a vertex.
+    /// A value is not a vertex number.
     #[error("{text:?} in tag {tag} is not a vertex number: use whole numbers that count from 0")]
     Vertex { tag: Tag, text: String },
     /// A value is not a sharpness.
@@ -88,14 +88,14 @@ pub enum TagFault {
 /// A kind of tag that sets sharpness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tag {
-    /// Edges.
+    /// Sharp edges.
     Crease,
-    /// Vertices.
+    /// Sharp vertices.
     Corner,
 }
 
 impl Tag {
-    /// Returns the tag with this name, if it sets sharpness.
+    /// Returns the tag with this name, or `None` for another name.
     pub(crate) fn from_name(name: &[u8]) -> Option<Self> {
         match name {
             b"crease" => Some(Self::Crease),
@@ -130,8 +130,7 @@ impl fmt::Display for Tag {
 
 /// The sharpness tags of a file.
 ///
-/// The format is that of the shapes in OpenSubdiv, `t name counts values`. It follows the tags of a
-/// subdivision mesh in the RenderMan interface:
+/// The format `t name counts values` comes from OpenSubdiv:
 ///
 /// ```text
 /// t crease 4/3/0 7 2 5 9 1 0.5 inf       7 ─1─ 2 ─0.5─ 5 ─inf─ 9
@@ -146,12 +145,11 @@ pub(crate) struct Tags {
 }
 
 impl Tags {
-    /// Returns the number of tagged edges and vertices.
     pub(crate) fn len(&self) -> usize {
         self.creases.len() + self.corners.len()
     }
 
-    /// Parses `values`, the text after the name of a tag at `line`.
+    /// Parses the text after the name of a tag.
     pub(crate) fn read(&mut self, tag: Tag, values: &str, line: u32) -> Result<(), TagFault> {
         let mut words = values.split_whitespace();
         let counts = words.next().unwrap_or("");
@@ -215,8 +213,8 @@ impl Tags {
         Ok(())
     }
 
-    /// Returns the first tag with a vertex or edge that the file does not have, and its line.
-    /// O(corners · log tags), or O(1) without tags.
+    /// Returns the first tag with a missing vertex or edge, and the line of the tag. O(corners ·
+    /// log tags), or O(1) without tags.
     pub(crate) fn check(
         &self,
         vertices: usize,
@@ -251,8 +249,8 @@ impl Tags {
     }
 }
 
-/// Returns the creases of these tags on faces that are valid polygons, and the creases that lie on
-/// other faces only.
+/// Returns the creases on faces that are valid polygons, and the creases that are only on other
+/// faces.
 pub(crate) fn creases_on_polygons(
     creases: &[CreaseTag],
     corners: &[CornerTag],
@@ -281,7 +279,7 @@ pub(crate) fn creases_on_polygons(
 fn are_sides<'a>(tags: &[CreaseTag], faces: impl Iterator<Item = &'a [VertexId]>) -> Vec<bool> {
     let pair = |tag: &CreaseTag| Pair::new(tag.ends[0], tag.ends[1]);
     let mut edges: Vec<Pair<VertexId>> = tags.iter().map(pair).collect();
-    // A face that uses a vertex twice in a row has a side with two equal ends; this is not an edge.
+    // If a face has the same vertex twice in a row, the side between them is not an edge.
     edges.retain(|pair| pair.ends()[0] != pair.ends()[1]);
     edges.sort_unstable();
     edges.dedup();

@@ -7,7 +7,7 @@ use sixfold_core::{Point, PolygonMesh, VertexId};
 
 /// Writes `polygons` as OBJ text; O(corners). Reading the text gives the same mesh, bit for bit.
 ///
-/// This function buffers the output. If OBJ cannot represent the mesh, nothing is written.
+/// This function buffers the output. If a coordinate is not finite, nothing is written.
 ///
 /// # Errors
 ///
@@ -30,8 +30,8 @@ pub fn write_obj(polygons: &PolygonMesh, out: impl Write) -> io::Result<()> {
     write_text(polygons, &[], out)
 }
 
-/// Writes `polygons` like [`write_obj`], with the normals of vertices. A face is written without
-/// normals if one of its corners has no normal.
+/// Writes `polygons` and the normals of vertices. If a corner of a face has no normal, the face is
+/// written without normals.
 ///
 /// # Errors
 ///
@@ -77,7 +77,7 @@ fn write_text(
             ShortestDecimal(p.z)
         )?;
     }
-    // For each vertex, the number of its normal in the file.
+    // For each vertex, the number of the normal in the file.
     let mut numbers = Vec::with_capacity(normals.len());
     let mut number = 0;
     for normal in normals {
@@ -108,7 +108,7 @@ fn write_text(
     out.flush()
 }
 
-/// A number that is formatted with the fewest digits that read back as the same number. Very small
+/// A number that is written with the fewest digits that read back as the same number. Very small
 /// and very large numbers are written with a power of ten.
 pub(crate) struct ShortestDecimal(pub(crate) f32);
 

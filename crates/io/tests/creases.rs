@@ -1,4 +1,4 @@
-//! Reading sharpness from crease files and OBJ tags: each rule, and each error with its message.
+//! Tests for reading sharpness from crease files and OBJ tags.
 
 use std::env;
 use std::io::{self, BufRead, Read};
@@ -12,7 +12,7 @@ use sixfold_io::{
     CreaseFileError, ObjMesh, parse_creases, parse_obj, read_creases, read_obj, write_creases,
 };
 
-/// Two squares side by side: 3 and 5 are opposite corners.
+/// Two squares side by side.
 ///
 /// ```text
 /// 3 ── 4 ── 5
@@ -34,7 +34,7 @@ fn parse(text: impl AsRef<[u8]>) -> Result<Creases, CreaseFileError> {
     parse_creases("a.creases", text.as_ref(), &squares())
 }
 
-/// Edges and corners, as numbers.
+/// Edges and corners with their sharpness.
 type Numbers = (Vec<(usize, usize, f32)>, Vec<(usize, f32)>);
 
 fn numbers(creases: &Creases) -> Numbers {
@@ -109,7 +109,7 @@ fn each_fault_of_a_crease_file_is_named_with_its_line() {
             "1: v2 and v2 are not the ends of an edge: name two vertices that follow each other in a face"
                 .into(),
         ),
-        // Faults of the text are reported before elements that the mesh does not have.
+        // Faults of the text are reported before missing elements.
         ("corner 9 1\nedges", format!("2: \"edges\" is not an entry: {forms}")),
     ] {
         let error = parse(text).expect_err(text);
@@ -134,7 +134,6 @@ fn reading_stops_at_a_line_that_is_too_long() {
     let error = parse_creases("zero", endless, &squares()).expect_err("no line feed");
     let message = "zero:1: the line is longer than 1048576 bytes: end each entry with a line feed";
     assert_eq!(error.to_string(), message);
-    // The same after a valid line.
     let endless = (&b"corner 0 1\n"[..]).chain(io::BufReader::new(io::repeat(b'\\')));
     let error = parse_creases("back", endless, &squares()).expect_err("no line feed");
     assert!(
@@ -187,14 +186,13 @@ fn one_tag_can_have_a_chain_of_edges_or_several_corners() {
         ],
         vec![(0, 1.0), (2, 3.0), (3, 2.0), (5, 3.0)],
     );
-    // Tags may precede the vertices and faces that they refer to.
+    // Tags may come before the vertices and faces that they name.
     for text in [format!("{SQUARES}{tags}"), format!("{tags}{SQUARES}")] {
         let obj = read(&text);
         assert_eq!(obj.notices, []);
         let (creases, unused) = obj.creases();
         assert_eq!(numbers(&creases), expected);
         assert_eq!(unused, []);
-        // The vertex numbers are those of the polygons.
         let (polygons, _) = obj.into_polygons();
         let edges = creases.edges().iter().map(|&(edge, s)| {
             let ends = edge.ends().map(|v| u32::try_from(v.index()).expect("few"));
@@ -227,7 +225,7 @@ fn other_tags_are_ignored_with_a_notice() {
 
 #[test]
 fn creases_of_faces_that_are_left_out_are_unused() {
-    // Only the degenerate first face has the side 3 4, and only the short face has the side 2 5.
+    // Side 3–4 belongs only to the degenerate face, and side 2–5 only to the short face.
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 2 2 2\nv 3 3 3\nf 4 5 5 1\nf 1 2 3\nf 3 6\n\
                 t crease 3/2/0 2 1 0 5 6\nt crease 2/1/0 3 4 7\nt crease 2/1/0 5 2 1\nt corner 1/1/0 4 2\n";
     let obj = read(text);
@@ -350,15 +348,14 @@ fn each_fault_of_a_tag_is_named_with_its_line() {
         let error = parse_obj("a.obj", text.as_bytes()).expect_err(tag);
         assert_eq!(error.to_string(), format!("a.obj:9: {message}"), "{tag}");
     }
-    // The fault that comes first in the file is reported, although creases are looked up before
-    // corners.
+    // Edges are checked before corners, but the first fault in the file is reported.
     let text = format!("{SQUARES}t corner 1/1/0 9 1\nt crease 2/1/0 3 5 1\n");
     let error = parse_obj("a.obj", text.as_bytes()).expect_err("two faults");
     assert!(
         error.to_string().starts_with("a.obj:9: tag corner"),
         "{error}"
     );
-    // A side of a degenerate face from a vertex to itself is not an edge.
+    // A side from a vertex to itself is not an edge.
     let text = format!("{SQUARES}f 1 1 2\nt crease 2/1/0 0 0 1\n");
     let error = parse_obj("a.obj", text.as_bytes()).expect_err("no edge");
     assert!(error.to_string().contains("v0 and v0"), "{error}");
@@ -378,7 +375,7 @@ fn the_torus_with_creases_is_read_completely() {
     );
     let (creases, unused) = obj.creases();
     assert_eq!((creases.corners(), unused.len()), (&[][..], 0));
-    // The creases form a ring through every fourth vertex, once around the hole.
+    // The creases form a ring around the hole.
     let ring = (0..8).map(|i| [4 * i + 1, (4 * i + 5) % 32]);
     let ring = ring.map(|ends| ends.map(VertexId::new));
     let mut ring: Vec<_> = ring.map(|[a, b]| Pair::new(a, b)).collect();
@@ -391,7 +388,7 @@ fn the_torus_with_creases_is_read_completely() {
             .iter()
             .all(|&(_, sharpness)| sharpness == 4.7)
     );
-    // It is the inner ring: all its vertices have the same distance from the axis.
+    // All vertices of the inner ring have the same distance from the axis.
     let (polygons, _) = obj.into_polygons();
     for &(edge, _) in creases.edges() {
         for v in edge.ends() {
@@ -401,13 +398,12 @@ fn the_torus_with_creases_is_read_completely() {
     }
 }
 
-/// Generates any sharpness, including the smallest and largest values.
 fn sharpness() -> impl Strategy<Value = f32> {
     let any = (0_u32..=f32::INFINITY.to_bits()).prop_map(f32::from_bits);
     prop_oneof![any, Just(f32::INFINITY), 0_f32..12.0]
 }
 
-/// Builds a strip of `n` squares: edges from `i` to `i + 1` and from `i` to `i + n + 1`.
+/// Builds a strip of `n` squares. Edges lead from `i` to `i + 1` and from `i` to `i + n + 1`.
 fn strip(n: u32) -> PolygonMesh {
     let row = |y: f32| (0..=n).map(move |x| Point::new(x as f32, y, 0.0));
     let positions: Vec<Point> = row(0.0).chain(row(1.0)).collect();
@@ -416,7 +412,6 @@ fn strip(n: u32) -> PolygonMesh {
 }
 
 proptest! {
-    /// A written file reads back bit for bit.
     #[test]
     fn crease_files_round_trip(
         n in 1_u32..9,
@@ -436,7 +431,6 @@ proptest! {
         prop_assert_eq!(back.map_err(|e| e.to_string()), Ok(creases));
     }
 
-    /// Any bytes give creases or an error with its place and a short message.
     #[test]
     fn any_crease_file_gives_creases_or_an_error(
         pieces in vec(select(&[
@@ -454,7 +448,6 @@ proptest! {
         }
     }
 
-    /// Any tags give creases or an error with its place and a short message.
     #[test]
     fn any_tag_gives_creases_or_an_error(
         pieces in vec(select(&[

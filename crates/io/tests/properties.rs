@@ -1,4 +1,4 @@
-//! Properties of reading and writing that hold for every mesh and every sequence of bytes.
+//! Properties of reading and writing for random meshes and random bytes.
 
 use std::io::BufReader;
 
@@ -8,7 +8,6 @@ use proptest::sample::{select, subsequence};
 use sixfold_core::{FaceList, Point, PolygonMesh};
 use sixfold_io::{ObjMesh, parse_obj, write_obj};
 
-/// Generates any finite `f32`, including those with extreme exponents.
 fn coordinate() -> impl Strategy<Value = f32> {
     let any = any::<u32>()
         .prop_map(f32::from_bits)
@@ -25,8 +24,7 @@ fn point() -> impl Strategy<Value = Point> {
     [coordinate(), coordinate(), coordinate()].prop_map(Point::from_array)
 }
 
-/// Generates random polygons over random points. They need not be manifold, and OBJ can store all
-/// of them.
+/// Generates random polygons. They can be non-manifold.
 fn mesh() -> impl Strategy<Value = PolygonMesh> {
     let only_triangles = any::<bool>();
     (vec(point(), 3..12), only_triangles).prop_flat_map(|(positions, only_triangles)| {
@@ -61,7 +59,7 @@ fn check_same(obj: ObjMesh, mesh: &PolygonMesh) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// Checks that reading gives a consistent mesh, or an error with its place and a short message.
+/// Checks that reading gives a consistent mesh or a short error message with file and line.
 fn check_consistent(bytes: &[u8]) -> Result<(), TestCaseError> {
     match parse_obj("a.obj", bytes) {
         Ok(obj) => {
@@ -88,7 +86,7 @@ fn check_consistent(bytes: &[u8]) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// Generates pieces of OBJ files, valid and invalid ones.
+/// Generates valid and invalid pieces of OBJ files.
 fn piece() -> impl Strategy<Value = &'static [u8]> {
     let pieces: &[&[u8]] = &[
         b"v",
@@ -171,8 +169,8 @@ fn formatting() -> impl Strategy<Value = Formatting> {
     )
 }
 
-/// Writes `mesh` in the given formattings: `vertices_first` vertices, then the faces, then the
-/// other vertices. Returns the text and the lines of the faces.
+/// Writes `vertices_first` vertices, then the faces, then the other vertices. Returns the text and
+/// the lines of the faces.
 fn format_mesh(
     mesh: &PolygonMesh,
     vertices_first: usize,
@@ -196,7 +194,7 @@ fn format_mesh(
         face_lines.push(count_line_ends(&text) + 1);
         text += "f ";
         for v in face {
-            // Counting backwards works only for vertices that precede the face.
+            // A negative number can name only an earlier vertex.
             if m.backwards && v.index() < vertices_first {
                 text += &format!("-{}", vertices_first - v.index());
             } else {
@@ -213,7 +211,6 @@ fn format_mesh(
     (text, face_lines)
 }
 
-/// Returns the number of line ends in `text`.
 fn count_line_ends(text: &str) -> u32 {
     let lone = text.replace("\r\n", "\n").replace('\r', "\n");
     lone.matches('\n').count() as u32
@@ -251,8 +248,7 @@ proptest! {
         check_same(obj, &mesh)?;
     }
 
-    /// If every vertex is used, `tobj` alone gives the same mesh, except that it numbers vertices
-    /// by first use.
+    /// `tobj` alone numbers vertices in the order of their first use.
     #[test]
     fn tobj_alone_agrees(mesh in mesh()) {
         let mut numbers: Vec<Option<u32>> = vec![None; mesh.vertex_count()];

@@ -1,7 +1,7 @@
-//! Every real mesh loads, and its facts are those of `truth.json`.
+//! Checks that every real mesh loads, and that its facts agree with `truth.json`.
 //!
-//! The variable `SIXFOLD_MESHES` contains the path of the folder. If it is not set, these tests
-//! pass without checks; if it is set, a missing file is a failure.
+//! The variable `SIXFOLD_MESHES` contains the path of the folder. If the variable is not set, these
+//! tests check nothing. If the variable is set, a missing file is a failure.
 
 use std::collections::BTreeSet;
 use std::env;
@@ -37,7 +37,6 @@ fn load(folder: &Path, name: &str) -> ObjMesh {
     read_obj(folder.join(name)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Converts a spread to the format of `truth.json`.
 fn spread(spread: &Option<Distribution>) -> Value {
     let Some(spread) = spread else {
         return Value::Null;
@@ -53,7 +52,6 @@ fn histogram(hist: &std::collections::BTreeMap<usize, usize>) -> Value {
         .collect()
 }
 
-/// Returns `facts` with the field names and the format of `truth.json`.
 fn truth_fields(facts: &Facts) -> [(&'static str, Value); 18] {
     [
         ("V", json!(facts.vertices)),
@@ -125,7 +123,7 @@ fn exactly_the_degenerate_faces_are_left_out() {
     }
 }
 
-/// If `tobj` alone reads a file correctly, it gives the same mesh, except for its numbering.
+/// `tobj` may number the vertices in another order.
 #[test]
 fn tobj_alone_agrees_on_files_that_it_reads_correctly() {
     let Some(folder) = folder() else { return };
@@ -136,8 +134,7 @@ fn tobj_alone_agrees_on_files_that_it_reads_correctly() {
             continue;
         };
         let ours = load(&folder, &name);
-        // If there are several objects, or vertices are missing, `tobj` has not read the file
-        // correctly.
+        // `tobj` has not read the file correctly if there are several objects or missing vertices.
         let [model] = models.as_slice() else { continue };
         let used = ours.positions.len() - ours.facts().isolated_vertices;
         let ignores = |kind| ours.notices.iter().any(|notice| notice.kind == kind);

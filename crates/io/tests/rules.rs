@@ -1,4 +1,4 @@
-//! One test for each rule of reading, and one for each error with its message.
+//! Tests for each rule of reading, and for each error message.
 
 use std::fs;
 use std::io::{self, BufReader, Read};
@@ -20,7 +20,7 @@ fn assert_refused(text: impl AsRef<[u8]>, message: &str) {
     assert_eq!(error.to_string(), message);
 }
 
-/// Returns the faces in the vertex numbering of the file.
+/// Returns the faces with the vertex numbers of the file.
 fn faces(obj: &ObjMesh) -> Vec<Vec<usize>> {
     let faces = obj.faces.iter();
     faces
@@ -28,7 +28,6 @@ fn faces(obj: &ObjMesh) -> Vec<Vec<usize>> {
         .collect()
 }
 
-/// A temporary file that is removed when the value is dropped.
 struct TempFile(PathBuf);
 
 impl TempFile {
@@ -41,7 +40,7 @@ impl TempFile {
 
 impl Drop for TempFile {
     fn drop(&mut self) {
-        // If the file cannot be removed, it stays; this does not affect the test.
+        // A file that cannot be removed does not affect the test.
         drop(fs::remove_file(&self.0));
     }
 }
@@ -61,8 +60,7 @@ fn numbers_load_in_every_form() {
 
 #[test]
 fn the_numbering_of_the_file_is_kept() {
-    // Vertices are used in descending order, the second and the last are not used, and an object
-    // statement splits the list.
+    // Vertices 2 and 5 are not used. An object statement separates the vertices.
     let obj = read("v 1 0 0\nv 2 0 0\nv 3 0 0\nv 4 0 0\no b\nf 4 3 1\nv 5 0 0\n");
     let x: Vec<f32> = obj.positions.iter().map(|p| p.x).collect();
     assert_eq!(x, [1.0, 2.0, 3.0, 4.0, 5.0]);
@@ -168,8 +166,7 @@ fn points_alone_have_facts() {
 
 #[test]
 fn small_meshes_of_every_degree_load() {
-    // With one, two or three vertices, the parser reads the final polygon as a point, a line or a
-    // triangle.
+    // If there are fewer than four vertices, the final polygon is a point, a line or a triangle.
     for vertices in 1..6 {
         let text = "v 0 0 0\n".repeat(vertices);
         for degree in 3..6 {

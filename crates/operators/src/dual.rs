@@ -7,8 +7,8 @@ use sixfold_core::{
 
 use crate::error::DualError;
 
-/// Builds the dual of a closed oriented manifold: one vertex for each face, one face for each
-/// vertex.
+/// Builds the dual of a closed oriented manifold. The dual has one vertex for each face and one
+/// face for each vertex.
 ///
 /// ```text
 ///     ╲       │       ╱        vertex i of the dual: the mean of the corners of face i
@@ -20,19 +20,19 @@ use crate::error::DualError;
 ///      ● ─────┼───── ●         dodecahedron ↔ icosahedron
 /// ```
 ///
-/// The vertices of the dual are numbered in the order of `faces()`, and its faces in the order of
-/// `vertices()`. The dual of the dual therefore has the same faces as the mesh, but a face may
-/// start at another corner. If two faces share several edges, the dual has several edges with the
-/// same two ends. Structures for manifolds then reject the dual, although they accept the mesh.
+/// The vertices of the dual have the order of `faces()`, and the faces of the dual have the order
+/// of `vertices()`. In the dual of the dual, a face may start at another corner. If two faces share
+/// several edges, the dual has several edges with the same two ends. Structures for manifolds then
+/// reject the dual.
 ///
 /// # Errors
 ///
-/// Returns a [`DualError`] that names a boundary edge, an isolated vertex, a vertex of valence
-/// below 3, or the reason why the mesh is not an oriented manifold.
+/// Returns a [`DualError`] with a boundary edge, an isolated vertex, a vertex of valence below 3,
+/// or the reason why the mesh is not an oriented manifold.
 ///
 /// # Complexity
 ///
-/// O(corners). FV of each face is queried once.
+/// O(corners).
 ///
 /// # Examples
 ///
@@ -53,14 +53,13 @@ pub fn dual<M: MeshQuery>(mesh: &M) -> Result<PolygonMesh, DualError> {
     Ok(indexed.dual_mesh(faces))
 }
 
-/// A mesh as tables: positions in the order of `vertices()`, faces in the order of `faces()`.
+/// A mesh as tables, in the order of `vertices()` and `faces()`.
 struct IndexedMesh {
     positions: Vec<DVec3>,
     faces: FaceList,
 }
 
 impl IndexedMesh {
-    /// Reads the mesh in one pass over the vertices and one over FV.
     fn new<M: MeshQuery>(mesh: &M) -> Self {
         let mut numbers = mesh.vertex_map(VertexId::new(0));
         let mut positions = Vec::new();
@@ -76,8 +75,7 @@ impl IndexedMesh {
         Self { positions, faces }
     }
 
-    /// Builds the dual from its `faces`; its vertices are the means of the corners of each face of
-    /// `self`.
+    /// Builds the dual with these faces. A vertex of the dual is the mean of the corners of a face.
     fn dual_mesh(&self, faces: FaceList) -> PolygonMesh {
         let centroids = self.faces.iter().map(|(_, corners)| {
             let sum: DVec3 = corners.iter().map(|v| self.positions[v.index()]).sum();
@@ -87,7 +85,7 @@ impl IndexedMesh {
             .expect("a manifold vertex has at least three different faces")
     }
 
-    /// Returns the reason why this mesh is not an oriented manifold. Call it only for such a mesh.
+    /// Returns the reason why this mesh is not an oriented manifold.
     fn non_manifold_error(&self) -> DualError {
         let positions = self.positions.iter().map(|p| p.as_vec3()).collect();
         let polygons = PolygonMesh::from_faces(positions, self.faces.clone())
@@ -100,19 +98,17 @@ impl IndexedMesh {
 
 /// Tables to walk around the vertices of a closed oriented manifold.
 struct Walk {
-    /// By vertex: its corner in the lowest face.
+    /// For each vertex, its corner in the lowest face.
     first: Vec<Option<u32>>,
-    /// By vertex: the number of its corners.
+    /// For each vertex, its number of corners.
     valence: Vec<u32>,
-    /// By corner: its face.
+    /// For each corner, its face.
     face: Vec<FaceId>,
-    /// By corner: the next corner around its vertex, counter-clockwise.
+    /// For each corner, the next corner around its vertex, counter-clockwise.
     next_around: Vec<u32>,
 }
 
 impl Walk {
-    /// Builds the tables.
-    ///
     /// ```text
     ///       ╲  next_around(c)     the side that ends at v starts at prev(c);
     ///        ╲    ╱               its twin leaves v in the next face
@@ -151,7 +147,7 @@ impl Walk {
         Ok(walk)
     }
 
-    /// Walks around every vertex to collect the faces of the dual.
+    /// Returns the faces of the dual: one walk around each vertex.
     fn dual_faces(&self, mesh: &IndexedMesh) -> Result<FaceList, DualError> {
         let mut faces = FaceList::with_capacity(self.face.len());
         let mut ring = Vec::new();
@@ -173,7 +169,7 @@ impl Walk {
         Ok(faces)
     }
 
-    /// Appends the faces around the vertex of corner `first` to `ring`, as vertices of the dual.
+    /// Appends the faces around the vertex of corner `first` to `ring`.
     fn append_ring(&self, first: u32, ring: &mut Vec<VertexId>) {
         let mut corner = first;
         loop {
@@ -186,7 +182,6 @@ impl Walk {
     }
 }
 
-/// Returns the error for the lowest edge with only one side.
 fn boundary_edge_error(faces: &FaceList, pairs: &TwinPairs) -> DualError {
     let mut sides = vec![0_u8; pairs.edge_count];
     for half in &pairs.half_of_corner {
@@ -224,7 +219,7 @@ mod tests {
         PolygonMesh::new(points, faces).expect("valid")
     }
 
-    /// Returns the corners of a face, starting at the lowest.
+    /// Returns the corners of a face, starting at the lowest corner.
     fn cycle(face: &[VertexId]) -> Vec<VertexId> {
         let lowest = (0..face.len()).min_by_key(|&i| face[i]).unwrap_or(0);
         [&face[lowest..], &face[..lowest]].concat()
@@ -262,7 +257,7 @@ mod tests {
                 expected.faces().uniform_degree()
             );
             let built = HalfEdgeMesh::from_polygons(&dual).expect("a manifold");
-            // The dual is regular too: vertices on one sphere, and faces that face outward.
+            // The vertices of the dual are on one sphere.
             let radius = dual.positions()[0].length();
             assert!(
                 dual.positions()

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3, Vec2Swizzles};
 
 use crate::normals::Newell;
 
-/// Cuts one polygon at a time; its tables are reused for the next one.
+/// Cuts polygons into triangles, one polygon at a time.
 ///
 /// ```text
 ///    d ─────── c
@@ -17,25 +17,25 @@ use crate::normals::Newell;
 ///    f ─────── a
 /// ```
 ///
-/// Only corners that are not convex, such as e, need to be tested against a triangle. Cutting
-/// b changes only the ears at a and c.
+/// Only corners that are not convex, such as e, can lie in a triangle. Cutting b changes only the
+/// ears at a and c.
 ///
-/// Corners are projected along the axis nearest to the Newell normal. For a planar polygon this
-/// projection is affine, so ears stay ears. The projection copies coordinates bit by bit, so
+/// Corners are projected along the axis nearest to the Newell normal. For a planar polygon, the
+/// projection is affine and keeps all ears. The projection copies coordinates bit by bit, so
 /// collinear corners stay collinear. The sign of an area is computed in doubles.
 ///
-/// The ear with the best shape is cut first. This ear has the largest area relative to the square
-/// of its longest side. Ears whose diagonal is already an edge of the mesh are cut last.
+/// The ear with the best shape is cut first. The shape is the area of the ear relative to the
+/// square of its longest side. Ears whose diagonal is already an edge of the mesh are cut last.
 #[derive(Default)]
 pub(crate) struct EarClipping {
     points: Vec<DVec3>,
     projected: Vec<DVec2>,
     prev: Vec<u32>,
     next: Vec<u32>,
-    /// By corner: how often it was tested for an ear. Heap entries with an older count are stale.
+    /// For each corner, its number of tests. Heap entries with an older number are outdated.
     version: Vec<u32>,
     removed: Vec<bool>,
-    /// Corners that may obstruct an ear: neither convex nor cut off at their last test.
+    /// Corners that may lie in an ear.
     reflex: Vec<u32>,
     ears: BinaryHeap<Ear>,
 }
@@ -43,7 +43,7 @@ pub(crate) struct EarClipping {
 /// An ear. A better ear compares greater.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ear {
-    /// Whether its diagonal is not yet an edge of the mesh.
+    /// Whether the diagonal of the ear is not yet an edge of the mesh.
     has_new_diagonal: bool,
     quality: f64,
     corner: u32,
@@ -70,14 +70,14 @@ impl Ord for Ear {
 }
 
 impl EarClipping {
-    /// Passes the `n − 2` triangles of the polygon to `cut`, each as three of its corner numbers 0
-    /// to `n − 1`, in the orientation of the polygon. `is_edge` returns whether a diagonal is
-    /// already an edge of the mesh.
+    /// Passes the `n − 2` triangles of the polygon to `cut`. A triangle has three corner numbers
+    /// from 0 to `n − 1`, in the orientation of the polygon. `is_edge` returns whether a diagonal
+    /// is already an edge of the mesh.
     ///
-    /// A polygon that crosses itself or lies on a line may run out of ears. Then all corners are
-    /// tested again, but only if their number has halved since the last such test. If there is
-    /// still no ear, the best convex corner is cut, or the best of all corners if no corner is
-    /// convex. The result is always n − 2 triangles, in O(n²) time.
+    /// If a polygon crosses itself or lies on a line, it may have no ear. All corners are then
+    /// tested again, if their number has halved since the last such test. If there is still no ear,
+    /// the best convex corner is cut. If no corner is convex, the best of all corners is cut. The
+    /// result is always n − 2 triangles, in O(n²) time.
     pub(crate) fn clip(
         &mut self,
         corners: impl Iterator<Item = DVec3>,
@@ -88,8 +88,8 @@ impl EarClipping {
         let mut remaining = self.projected.len();
         let mut last_full_test = usize::MAX;
         while remaining > 3 {
-            // The last cut makes two triangles, and its quality is that of the worse triangle. So
-            // this tests all four corners.
+            // The last cut makes two triangles. The worse triangle determines the quality of the
+            // cut, so all four corners are tested again.
             if remaining == 4 || last_full_test == usize::MAX {
                 self.find_ears(remaining, &is_edge);
                 last_full_test = remaining;
@@ -115,7 +115,6 @@ impl EarClipping {
         }
     }
 
-    /// Fills the tables: all corners are in place, no corner is tested yet.
     fn init(&mut self, corners: impl Iterator<Item = DVec3>) {
         self.points.clear();
         self.points.extend(corners);
@@ -137,7 +136,6 @@ impl EarClipping {
         self.ears.clear();
     }
 
-    /// Finds all ears of the current polygon.
     fn find_ears(&mut self, remaining: usize, is_edge: &impl Fn(usize, usize) -> bool) {
         self.ears.clear();
         self.reflex.clear();
@@ -153,7 +151,7 @@ impl EarClipping {
         }
     }
 
-    /// Tests corner `i` and adds its ear, if it has one now.
+    /// Tests corner `i`. Adds the ear of the corner, if there is an ear.
     fn test_corner(&mut self, i: usize, remaining: usize, is_edge: &impl Fn(usize, usize) -> bool) {
         self.version[i] += 1;
         if !self.is_convex(i) || self.is_obstructed(i) {
@@ -208,7 +206,7 @@ impl EarClipping {
         orient2d(a, b, c) > 0.0
     }
 
-    /// Returns twice the area divided by the square of the longest side: at most √3/2.
+    /// Returns twice the area divided by the square of the longest side.
     fn quality(&self, i: usize) -> f64 {
         let [a, b, c] = self.triangle(i).map(|j| self.points[j]);
         let sides = [b - a, c - b, a - c];
@@ -223,7 +221,7 @@ impl EarClipping {
         }
     }
 
-    /// Returns whether another corner lies in the triangle at the convex corner `i`, or on its
+    /// Returns whether another corner lies in the triangle at the convex corner `i` or on its
     /// diagonal.
     fn is_obstructed(&mut self, i: usize) -> bool {
         let triangle = self.triangle(i);
@@ -242,10 +240,10 @@ impl EarClipping {
         false
     }
 
-    /// Returns whether corner `q` prevents the triangle from being cut off.
+    /// Returns whether corner `q` prevents the cut of the triangle.
     ///
-    /// A corner at exactly the position of `a`, `b` or `c` obstructs only if one of its sides runs
-    /// into the triangle from there. Such corners occur along a bridge to a hole.
+    /// A corner at the position of `a`, `b` or `c` prevents the cut only if one of its sides runs
+    /// into the triangle. Such corners occur along a bridge to a hole.
     fn obstructs(&self, q: usize, triangle: [usize; 3]) -> bool {
         let [a, b, c] = triangle.map(|j| self.projected[j]);
         let at = self.projected[q];
@@ -263,7 +261,7 @@ impl EarClipping {
     }
 }
 
-/// Returns twice the signed area of the triangle: above 0 if a, b, c turn left.
+/// Returns twice the signed area of the triangle. The area is above 0 if a, b, c turn left.
 ///
 /// The difference of two singles is exact in doubles if their sizes differ by a factor below 2²⁹. A
 /// product rounds only in its last bits.
@@ -271,8 +269,8 @@ fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// Returns the projection along the axis nearest to the Newell normal, in which the polygon runs
-/// counter-clockwise.
+/// Returns the projection along the axis nearest to the Newell normal. In the projection, the
+/// polygon runs counter-clockwise.
 fn projection(corners: &[DVec3]) -> impl Fn(DVec3) -> DVec2 + use<> {
     let mut newell = Newell::default();
     corners.iter().for_each(|&p| newell.add(p));

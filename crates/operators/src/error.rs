@@ -1,7 +1,7 @@
-//! Errors of the operators: a mesh or an option that an operator rejects.
+//! Errors of the operators.
 //!
-//! In every structure, an error identifies a vertex by its index in `vertices()` and a face by its
-//! index in `faces()`. `to_polygons()` uses the same numbers.
+//! An error identifies a vertex by its index in `vertices()` and a face by its index in `faces()`.
+//! `to_polygons()` uses the same numbers.
 
 use sixfold_core::{BuildError, FaceId, VertexId};
 
@@ -10,7 +10,7 @@ use sixfold_core::{BuildError, FaceId, VertexId};
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message explains each field")]
 pub enum SmoothingError {
-    /// A face with more than three corners: only triangles have an angle opposite to each edge.
+    /// A face with more than three corners.
     #[error(
         "face {face} has {degree} corners; cotangent weights need triangles: triangulate the mesh, or choose uniform weights"
     )]
@@ -21,7 +21,7 @@ pub enum SmoothingError {
          moves a vertex past its neighbours"
     )]
     Step { step: f64 },
-    /// A step back that is not longer than the step, or that is so long that roughness would grow.
+    /// A step back that is not longer than the step, or a step back that would increase roughness.
     #[error(
         "step back {back} does not fit step {step}: choose a step back below −{step}, with (1 − \
          2·step)·(1 − 2·back) between −1 and 1"
@@ -58,7 +58,7 @@ pub enum DualError {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message explains each field")]
 pub enum OrientationError {
-    /// A closed chain of faces that returns with the opposite orientation, as on a Möbius strip.
+    /// A closed chain of faces that returns with the opposite orientation.
     #[error("the mesh is not orientable, because its faces cannot have the same orientation at \
              edge {0}–{1}: cut the mesh open along this edge, or choose a structure that accepts \
              inconsistent orientation", .ends[0], .ends[1])]
@@ -75,7 +75,7 @@ pub enum SphereError {
         "centre {centre:?} and radius {radius} do not define a sphere: both must be finite, and the radius above 0"
     )]
     InvalidSphere { centre: [f32; 3], radius: f32 },
-    /// A vertex that is at the centre or not finite, so that it has no direction from the centre.
+    /// A vertex at the centre, or a vertex that is not finite.
     #[error(
         "vertex {vertex} is at the centre or not finite, so it has no direction from the centre: \
          move the vertex, or choose another centre"

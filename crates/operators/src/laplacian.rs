@@ -1,4 +1,4 @@
-//! The umbrella operator: the offset of each vertex from the weighted mean of its neighbours.
+//! The umbrella operator: the offset from a vertex to the weighted mean of its neighbours.
 
 use glam::DVec3;
 use sixfold_core::{FaceId, Handle, HandleMap, MeshQuery, VertexMap, row};
@@ -6,8 +6,8 @@ use sixfold_core::{FaceId, Handle, HandleMap, MeshQuery, VertexMap, row};
 use crate::error::SmoothingError;
 use crate::smoothing::{Boundary, Weights};
 
-/// Smallest height of a triangle, relative to its longest side, at which its angles are used. Below
-/// it, the angles are only rounding errors of single-precision coordinates.
+/// Minimum height of a triangle, relative to its longest side, for reliable angles. In flatter
+/// triangles, rounding errors dominate the angles.
 const MIN_HEIGHT: f64 = 1e-8;
 
 /// The weighted sum of the offsets to the neighbours of a vertex, and the sum of the weights.
@@ -18,14 +18,13 @@ pub(crate) struct WeightedSum {
 }
 
 impl WeightedSum {
-    /// Adds a neighbour at `offset` from the vertex.
     #[inline(always)]
     fn add(&mut self, weight: f64, offset: DVec3) {
         self.offset += weight * offset;
         self.weight += weight;
     }
 
-    /// Returns the offset to the weighted mean of the neighbours; zero if the weights are zero.
+    /// Returns the offset to the weighted mean of the neighbours, or zero if the weights are zero.
     #[inline(always)]
     pub(crate) fn mean(self) -> DVec3 {
         if self.weight > 0.0 {
@@ -36,14 +35,14 @@ impl WeightedSum {
     }
 }
 
-/// The neighbours of each vertex, read from a mesh once and used at every step.
+/// The neighbours of each vertex, read once from a mesh.
 pub(crate) struct Laplacian<V> {
     elements: Elements<V>,
     boundary: BoundaryCurves<V>,
 }
 
 impl<V: Handle> Laplacian<V> {
-    /// Reads every face and every edge of `mesh`; O(corners).
+    /// Reads every face and every edge; O(corners).
     pub(crate) fn new<M: MeshQuery<Vertex = V>>(
         mesh: &M,
         weights: Weights,
@@ -60,8 +59,8 @@ impl<V: Handle> Laplacian<V> {
         })
     }
 
-    /// Computes the sum over the neighbours of each vertex, with the vertices at `at`. Before the
-    /// call, all `sums` must be zero.
+    /// Computes the sums of all vertices. `at` has the positions; all `sums` must be zero before
+    /// the call.
     pub(crate) fn apply(&self, at: &V::Map<DVec3>, sums: &mut V::Map<WeightedSum>) {
         match &self.elements {
             Elements::Edges(edges) => add_uniform(edges, at, sums),
@@ -79,7 +78,7 @@ enum Elements<V> {
     Triangles(Vec<[V; 3]>),
 }
 
-/// Adds the neighbours with uniform weights (Field 1988): all have the same weight.
+/// Adds the neighbours with equal weights (Field 1988).
 ///
 /// ```text
 ///      b ─── a                1
@@ -96,8 +95,7 @@ fn add_uniform<V: Handle>(edges: &[[V; 2]], at: &V::Map<DVec3>, sums: &mut V::Ma
     }
 }
 
-/// Adds the neighbours with cotangent weights (Pinkall & Polthier 1993). The mean then lies in the
-/// direction in which the area shrinks fastest.
+/// Adds the neighbours with cotangent weights (Pinkall & Polthier 1993).
 ///
 /// ```text
 ///        k                          Σ wᵢ (pᵢ − v)
@@ -110,8 +108,8 @@ fn add_uniform<V: Handle>(edges: &[[V; 2]], at: &V::Map<DVec3>, sums: &mut V::Ma
 /// ```
 ///
 /// A triangle adds the weight cot β + cot γ = sin α / (sin β sin γ) > 0 to its corner with angle α.
-/// The sum of the weights is therefore never negative, although a single weight may be. A triangle
-/// that is too flat for reliable angles contributes no weight.
+/// So the sum of the weights of a vertex is never negative. A triangle that is too flat for
+/// reliable angles contributes no weight.
 fn add_cotangent<V: Handle>(
     triangles: &[[V; 3]],
     at: &V::Map<DVec3>,
@@ -132,7 +130,7 @@ fn add_cotangent<V: Handle>(
         let cotangent = |u: DVec3, v: DVec3| -u.dot(v) / double_area;
         let (at_a, at_b, at_c) = (cotangent(ca, ab), cotangent(ab, bc), cotangent(bc, ca));
         let [to_a, to_b, to_c] = [bc * at_a, ca * at_b, ab * at_c];
-        // The edge a–b is opposite to c, b–c to a, and c–a to b.
+        // The edge a–b is opposite to c, the edge b–c to a, and the edge c–a to b.
         let mut add = |v: V, offset: DVec3, weight: f64| {
             sums[v].offset += offset;
             sums[v].weight += weight;
@@ -143,7 +141,7 @@ fn add_cotangent<V: Handle>(
     }
 }
 
-/// Returns the corners of every face, or an error if a face does not have three.
+/// Returns the corners of every face, or an error if a face is not a triangle.
 fn triangles<M: MeshQuery>(mesh: &M) -> Result<Vec<[M::Vertex; 3]>, SmoothingError> {
     let mut triangles = Vec::with_capacity(mesh.face_count());
     for (i, f) in mesh.faces().enumerate() {
@@ -159,7 +157,7 @@ fn triangles<M: MeshQuery>(mesh: &M) -> Result<Vec<[M::Vertex; 3]>, SmoothingErr
     Ok(triangles)
 }
 
-/// The boundary of a mesh. Boundary vertices do not depend on interior vertices.
+/// The boundary of a mesh.
 ///
 /// ```text
 ///    ──── a ════ v ════ b ────     a curve:  L(v) = (a + b) / 2 − v
@@ -170,8 +168,7 @@ struct BoundaryCurves<V> {
     vertices: Vec<V>,
     /// The boundary edges, if the boundary is a curve.
     edges: Vec<[V; 2]>,
-    /// Boundary vertices that do not have exactly two boundary edges: the curve ends or crosses
-    /// itself.
+    /// Boundary vertices that do not have exactly two boundary edges.
     irregular: Vec<V>,
 }
 
@@ -199,7 +196,6 @@ impl<V: Handle> BoundaryCurves<V> {
         }
     }
 
-    /// Replaces the sums at the boundary vertices.
     fn apply(&self, at: &V::Map<DVec3>, sums: &mut V::Map<WeightedSum>) {
         let reset = |vertices: &[V], sums: &mut V::Map<WeightedSum>| {
             vertices

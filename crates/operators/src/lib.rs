@@ -1,4 +1,4 @@
-//! Operators on meshes. Each is written once, against the query trait, and runs on every structure.
+//! Operators on meshes. Each operator is written once and runs on every structure.
 //!
 //! | operator | input | output | time, O(…) | source |
 //! |---|---|---|---|---|
@@ -9,14 +9,15 @@
 //! | [`triangulated`] | polygons | polygons | at most degree² per face | Meisters 1975 |
 //! | [`oriented`] | polygons | polygons | corners · log corners | |
 //!
-//! An operator on a structure queries each face once (FV and FE), or each edge once, and sums its
-//! results in maps by handle. Therefore no structure scans the mesh for each vertex, and the time
-//! is O(corners) on every structure. New positions are returned as a [`VertexMap`] for
-//! [`set_positions`]. Two operators, [`triangulated`] and [`oriented`], repair polygons that most
-//! structures reject. They work on a [`PolygonMesh`], before a structure is built.
+//! An operator on a structure queries each face or each edge once, and sums its results in maps by
+//! handle. So no structure scans the mesh for each vertex, and the time is O(corners) on every
+//! structure. New positions are returned as a [`VertexMap`] for [`set_positions`]. Two operators,
+//! [`triangulated`] and [`oriented`], repair polygons that most structures reject. These two
+//! operators work on a [`PolygonMesh`], before a structure is built.
 //!
 //! Sums are computed in double precision, so a product of three coordinates neither overflows nor
-//! underflows. Structures that add in different orders agree up to the last bits of a coordinate.
+//! underflows. Two structures may add in different orders, so their results may differ in the last
+//! bits of a coordinate.
 //!
 //! ```
 //! use sixfold_half_edge::HalfEdgeMesh;

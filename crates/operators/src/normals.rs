@@ -6,12 +6,11 @@ use sixfold_core::{FaceMap, MeshQuery, Point, VertexMap};
 /// The weight of each face around a vertex in the vertex normal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NormalWeights {
-    /// The area of the face. Needs no extra work, because the length of Newell's vector is twice
-    /// the area.
+    /// The area of the face. Needs no extra work.
     #[default]
     Area,
-    /// The angle of the face at the vertex (Thürmer & Wüthrich 1998). The vertex normal then does
-    /// not depend on how the surface is cut into faces.
+    /// The angle of the face at the vertex (Thürmer & Wüthrich 1998). The result does not depend on
+    /// how the surface is cut into faces.
     Angle,
 }
 
@@ -50,9 +49,9 @@ pub fn face_normals<M: MeshQuery>(mesh: &M) -> FaceMap<M, Point> {
 ///       f0  v
 /// ```
 ///
-/// The normal is zero if the vertex has no faces or if its face normals cancel. One pass over the
-/// faces adds the share of each face at its corners, so no structure has to search for the faces of
-/// a vertex.
+/// The normal is zero if the vertex has no faces or if the face normals cancel. One pass over the
+/// faces adds the share of each face to its corners, so no structure searches for the faces of a
+/// vertex.
 pub fn vertex_normals<M: MeshQuery>(mesh: &M, weights: NormalWeights) -> VertexMap<M, Point> {
     let mut sums = mesh.vertex_map(DVec3::ZERO);
     let mut corners = Vec::new();
@@ -84,8 +83,8 @@ pub fn vertex_normals<M: MeshQuery>(mesh: &M, weights: NormalWeights) -> VertexM
     normals
 }
 
-/// Returns the angle from `after` to `before`, counter-clockwise about `normal`: above π at a
-/// reflex corner.
+/// Returns the angle from `after` to `before`, counter-clockwise about `normal`. The angle is above
+/// π at a reflex corner.
 fn angle(before: DVec3, after: DVec3, normal: DVec3) -> f64 {
     let sine = after.cross(before).dot(normal);
     let angle = sine.atan2(after.dot(before));
@@ -96,14 +95,14 @@ fn angle(before: DVec3, after: DVec3, normal: DVec3) -> f64 {
     }
 }
 
-/// Returns `vector` scaled to length 1, or zero if it has no direction.
+/// Returns `vector` scaled to length 1, or zero if `vector` has no direction.
 fn unit(vector: DVec3) -> Point {
     vector.normalize_or_zero().as_vec3()
 }
 
-/// Newell's vector of a polygon, summed corner by corner.
+/// Newell's vector of a polygon.
 ///
-/// Corners are taken relative to the first one, so no accuracy is lost far from the origin.
+/// The vector uses corners relative to the first corner, to stay accurate far from the origin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Newell {
     /// The sum so far. Its length is twice the area.
@@ -113,7 +112,6 @@ pub(crate) struct Newell {
 }
 
 impl Newell {
-    /// Adds the next corner.
     #[inline(always)]
     pub(crate) fn add(&mut self, at: DVec3) {
         let first = *self.first.get_or_insert(at);
@@ -167,9 +165,8 @@ mod tests {
         }
     }
 
-    /// The corner of a cube whose three squares are cut in two. The lower square is cut through
-    /// this corner, so its whole area is incident to the corner. Only one half of each other square
-    /// is incident to it.
+    /// Three unit squares meet at a corner of a cube. Each is cut into two triangles. Both triangles
+    /// of the lower square are incident to the corner, but only one triangle of each other square.
     #[test]
     fn angle_weights_do_not_depend_on_how_a_surface_is_cut() {
         let points = [
@@ -196,7 +193,7 @@ mod tests {
         let diagonal = Point::ONE.normalize();
         let by_angle = vertex_normals(&mesh, NormalWeights::Angle)[v];
         assert!(by_angle.distance(diagonal) < 1e-6, "{by_angle}");
-        // Area 1 of the lower square, and 1/2 of each other square: (1/2, 1/2, 1).
+        // Areas at the corner: 1 of the lower square, 1/2 of each other square.
         let by_area = vertex_normals(&mesh, NormalWeights::Area)[v];
         assert!(
             by_area.distance(Point::new(1.0, 1.0, 2.0).normalize()) < 1e-6,
@@ -204,7 +201,7 @@ mod tests {
         );
     }
 
-    /// An L-shaped face with the reflex angle 3π/2 at v3; the other face there has a right angle.
+    /// The L-shaped face has the angle 3π/2 at v3; the other face has a right angle.
     #[test]
     fn a_reflex_corner_counts_with_its_whole_angle() {
         let points = [
@@ -229,7 +226,7 @@ mod tests {
 
     #[test]
     fn faces_and_vertices_without_direction_have_normal_zero() {
-        // A face on a line and an isolated vertex, then a pillow whose sides cancel.
+        // A face on a line, an isolated vertex, and a pillow whose normals cancel.
         let points = [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let mesh = set_of(&points, &[&[0, 1, 2]]);
         let faces = face_normals(&mesh);
@@ -245,7 +242,7 @@ mod tests {
         }
     }
 
-    /// The squares of these lengths overflow or underflow in singles.
+    /// In single precision, the squares of these lengths overflow or underflow.
     #[test]
     fn huge_tiny_and_distant_meshes_have_correct_normals() {
         let triangle = [Point::ZERO, Point::X, Point::Y];

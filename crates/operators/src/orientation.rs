@@ -8,8 +8,7 @@ use crate::error::OrientationError;
 /// The rule that chooses one of the two orientations of each component.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Facing {
-    /// The orientation of the majority of faces, so that the fewest faces are reversed. In a tie,
-    /// the orientation of the first face.
+    /// The orientation of the majority of faces. In a tie, the orientation of the first face.
     #[default]
     Majority,
     /// Outward if the component is closed and encloses a volume; otherwise as with
@@ -17,12 +16,13 @@ pub enum Facing {
     Outward,
 }
 
-/// A mesh with consistent orientation, and the faces that were reversed for it.
+/// A mesh with consistent orientation, and the reversed faces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Oriented {
-    /// The mesh. The vertices, the order of the faces and their first corners are unchanged.
+    /// The mesh. The vertices, the order of the faces and the first corner of each face are
+    /// unchanged.
     pub polygons: PolygonMesh,
-    /// The faces whose corners were reversed, ascending.
+    /// The reversed faces, ascending.
     pub reversed: Vec<FaceId>,
 }
 
@@ -37,17 +37,17 @@ pub struct Oriented {
 ///                        ──←──
 /// ```
 ///
-/// Each component is oriented independently. With [`Facing::Outward`], the closed wall of a cavity
-/// inside another component therefore also faces away from the cavity.
+/// Each component is oriented independently. With [`Facing::Outward`], the wall of a cavity inside
+/// a solid therefore faces away from the cavity.
 ///
 /// # Errors
 ///
-/// Returns [`OrientationError::NotOrientable`] with an edge at which the faces of a component
-/// cannot agree.
+/// Returns [`OrientationError::NotOrientable`] if the faces of a component cannot agree, with an
+/// edge of the component.
 ///
 /// # Complexity
 ///
-/// O(n log n) for n corners, to sort the sides.
+/// O(n log n) for n corners.
 pub fn oriented(polygons: &PolygonMesh, facing: Facing) -> Result<Oriented, OrientationError> {
     let faces = polygons.faces();
     let neighbours = side_neighbours(faces);
@@ -81,7 +81,7 @@ pub fn oriented(polygons: &PolygonMesh, facing: Facing) -> Result<Oriented, Orie
 /// The face across a side, and whether both faces run along the edge in the same direction.
 type Neighbour = Option<(FaceId, bool)>;
 
-/// Returns, by corner, the neighbour across the side that starts there, if the edge has two faces.
+/// Returns the neighbour across each side, if the edge has two faces.
 fn side_neighbours(faces: &FaceList) -> Vec<Neighbour> {
     struct Side {
         ends: [VertexId; 2],
@@ -114,8 +114,8 @@ fn side_neighbours(faces: &FaceList) -> Vec<Neighbour> {
     neighbours
 }
 
-/// Collects the component of `seed`, and determines for each of its faces whether it is reversed
-/// if `seed` is not.
+/// Collects the component of `seed`. Decides for each face whether to reverse it, with `seed`
+/// unchanged.
 fn orient_component(
     seed: FaceId,
     faces: &FaceList,
@@ -149,11 +149,11 @@ fn orient_component(
     Ok(())
 }
 
-/// Returns whether the component, with the faces in `reverse` reversed, faces inward; `None` if it
-/// is open or encloses no volume.
+/// Returns whether the component faces inward after the faces in `reverse` are reversed. Returns
+/// `None` if the component is open or encloses no volume.
 ///
-/// Uses the signed volume: the sum of det(a, b, c) / 6 over triangles, relative to a vertex of the
-/// component.
+/// The sum of det(a, b, c) / 6 over all triangles is the signed volume. The coordinates are
+/// relative to a vertex of the component.
 fn faces_inward(
     polygons: &PolygonMesh,
     neighbours: &[Neighbour],
@@ -182,11 +182,11 @@ fn faces_inward(
             size += part.abs();
         }
     }
-    // If the terms cancel, the rest is only rounding error.
+    // If the terms cancel, the sum is only a rounding error.
     (volume.abs() > 1e-9 * size).then_some(volume < 0.0)
 }
 
-/// Builds the mesh with the faces in `reverse` reversed; each keeps its first corner.
+/// Builds the mesh with the faces in `reverse` reversed. Each face keeps its first corner.
 fn reverse_faces(polygons: &PolygonMesh, reverse: &[Option<bool>]) -> Oriented {
     let faces = polygons.faces();
     let mut list = FaceList::with_capacity(faces.corners().len());
@@ -214,7 +214,6 @@ mod tests {
 
     use super::*;
 
-    /// Builds the mesh with the faces that `reverse` selects reversed.
     fn with_reversed(polygons: &PolygonMesh, reverse: impl Fn(usize) -> bool) -> PolygonMesh {
         let faces = polygons
             .faces()
@@ -231,8 +230,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// After some faces of a consistent mesh are reversed, the repair makes all faces agree
-        /// again, with the fewest reversals.
+        /// The repair makes all faces agree with the fewest reversals.
         #[test]
         fn reversed_faces_are_reversed_back(
             polygons in manifold_mesh(),
@@ -257,7 +255,7 @@ mod tests {
             prop_assert!(again.reversed.is_empty());
         }
 
-        /// The closed shapes of this project face outward, so the result is the original shape.
+        /// The closed shapes of this project face outward.
         #[test]
         fn closed_shapes_face_outward_again(reverse in collection::vec(any::<bool>(), 1..50)) {
             let torus = sixfold_shapes::torus(6, 5).expect("small");
@@ -285,7 +283,7 @@ mod tests {
         let mixed = with_reversed(&grid, |f| f == 4);
         let repaired = oriented(&mixed, Facing::Outward).expect("orientable");
         assert_eq!(repaired.reversed, [face(4)]);
-        // A pillow is closed, but it is flat.
+        // A pillow is closed, but flat.
         let corners = grid.positions()[..3].to_vec();
         let pillow = PolygonMesh::new(corners, [[0, 1, 2], [0, 1, 2]]).expect("valid");
         let repaired = oriented(&pillow, Facing::Outward).expect("orientable");

@@ -9,22 +9,22 @@ use crate::laplacian::{Laplacian, WeightedSum};
 /// The weight of each neighbour of a vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Weights {
-    /// All weights are equal (Field 1988). This also evens out the shapes of faces.
+    /// Equal weights (Field 1988), which also even out the shapes of faces.
     #[default]
     Uniform,
-    /// The two angles opposite to the edge determine the weight (Pinkall & Polthier 1993). The
-    /// weight depends on the surface only and leaves a plane unchanged. Needs triangles.
+    /// Weights from the two angles opposite to the edge (Pinkall & Polthier 1993). These weights
+    /// leave a plane unchanged. All faces must be triangles.
     Cotangent,
 }
 
 /// The treatment of vertices on boundary edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Boundary {
-    /// They do not move.
+    /// Boundary vertices do not move.
     #[default]
     Fixed,
-    /// Each moves towards the mean of its two neighbours on the boundary, independent of the
-    /// interior. A vertex that does not have exactly two boundary edges does not move.
+    /// A boundary vertex moves towards the mean of its two neighbours on the boundary. A vertex
+    /// that does not have exactly two boundary edges does not move.
     Curve,
 }
 
@@ -37,10 +37,10 @@ pub struct Smoothing {
     pub weights: Weights,
     /// The treatment of the boundary.
     pub boundary: Boundary,
-    /// λ, from 0 to 1: each vertex moves this part of the way to the mean of its neighbours.
+    /// λ, from 0 to 1: the part of the way to the mean of its neighbours that a vertex moves.
     pub step: f64,
-    /// μ < −λ: after each step, a step in the opposite direction keeps the volume (Taubin 1995).
-    /// Taubin's values are λ = 0.33 and μ = −0.34.
+    /// μ < −λ: a step in the opposite direction after each step, which keeps the volume (Taubin
+    /// 1995). Taubin's values are λ = 0.33 and μ = −0.34.
     pub step_back: Option<f64>,
     /// The number of iterations.
     pub iterations: usize,
@@ -65,7 +65,7 @@ impl Smoothing {
         if !(0.0..=1.0).contains(&step) {
             return Err(SmoothingError::Step { step });
         }
-        // The factor by which one iteration scales the roughest wave. For this wave, L(p) = −2p.
+        // The factor of one iteration for the roughest wave, where L(p) = −2p.
         let roughest = |back: f64| (1.0 - 2.0 * step) * (1.0 - 2.0 * back);
         match self.step_back {
             Some(back) if !(back < -step && roughest(back).abs() <= 1.0) => {
@@ -85,25 +85,25 @@ impl Smoothing {
 ///     a ─── b           a step back        p ← p + μ L(p)
 /// ```
 ///
-/// Isolated vertices do not move. With cotangent weights, vertices whose triangles are all too flat
-/// for reliable angles do not move either. An edge with three faces gets its weight from all its
-/// opposite angles. Cotangents are computed again at every step. With obtuse triangles a weight can
-/// be negative, and then steps above 0.5 can overshoot.
+/// Isolated vertices do not move. With cotangent weights, vertices without a triangle that has
+/// reliable angles do not move. Cotangents are computed again at every step. With obtuse triangles,
+/// a weight can be negative, and steps above 0.5 can then overshoot.
 ///
 /// The mesh and its handles do not change. If a structure identifies a vertex by its coordinates, a
-/// later call of [`set_positions`] changes its handle. That call welds vertices that now have the
-/// same position. It returns an error if two corners of one face would be welded.
+/// later call of [`set_positions`] changes the handles, and vertices with the same new position
+/// become one vertex. That call returns an error if two corners of one face have the same new
+/// position.
 ///
 /// # Errors
 ///
 /// Returns [`SmoothingError::Step`] or [`SmoothingError::StepBack`] for steps that would not
-/// smooth. With cotangent weights, returns [`SmoothingError::NotATriangle`] for the first face with
-/// more than three corners.
+/// smooth. With cotangent weights, returns [`SmoothingError::NotATriangle`] for the first face that
+/// is not a triangle.
 ///
 /// # Complexity
 ///
-/// O(corners) to read the mesh, then O(edges) for uniform and O(faces) for cotangent weights in
-/// each iteration.
+/// O(corners) to read the mesh. Each iteration takes O(edges) with uniform weights and O(faces)
+/// with cotangent weights.
 ///
 /// # Examples
 ///

@@ -4,8 +4,7 @@ use sixfold_core::{MeshQuery, Point, VertexId, VertexMap, row};
 
 use crate::error::SphereError;
 
-/// Returns all positions, moved along their rays from `centre` to the sphere of `radius` around it;
-/// O(vertices).
+/// Returns all positions, moved along rays from `centre` to the sphere of `radius`; O(vertices).
 ///
 /// ```text
 ///         ╭───●───╮          p' = c + r (p − c) / |p − c|
@@ -23,9 +22,9 @@ use crate::error::SphereError;
 ///
 /// # Examples
 ///
-/// This example divides an icosahedron with frequency 6 (every edge into 6, every triangle into 36)
-/// and projects it to its sphere, as for a geodesic dome. The points of the division are stored by
-/// their corners and weights, so that faces share the points on their common edges.
+/// This example divides an icosahedron with frequency 6: every edge into 6 parts, every triangle
+/// into 36. The points are then projected to the sphere, as for a geodesic dome. The key of a point
+/// is its corners and weights, so faces share the points on their common edges.
 ///
 /// ```
 /// use std::collections::BTreeMap;

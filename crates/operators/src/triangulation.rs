@@ -4,7 +4,7 @@ use sixfold_core::{FaceList, HandleMap, HashHandleMap, Pair, PolygonError, Polyg
 
 use crate::ear_clipping::EarClipping;
 
-/// The method by which polygons are cut.
+/// The method that cuts polygons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Triangulation {
     /// A fan from the first corner: fast, but correct for convex faces only.
@@ -32,19 +32,18 @@ pub enum Triangulation {
 /// - A polygon that is not simple also gets `n − 2` triangles. These triangles may overlap or be
 ///   flat.
 /// - The ear with the best shape is cut first.
-/// - If a diagonal is already an edge elsewhere in the mesh, this edge would get three or more
-///   faces. An ear with such a diagonal is cut only if the polygon has no other ear at that moment.
-///   Structures for manifolds then reject the mesh and name the edge. Earlier polygons choose their
-///   diagonals first.
+/// - Ear clipping avoids diagonals that are already edges of the mesh, because such an edge would
+///   get three or more faces. If every ear of a polygon has such a diagonal, one of these ears is
+///   cut. Structures for manifolds then reject the mesh and name the edge.
 ///
 /// # Errors
 ///
-/// Returns [`PolygonError::TooMany`] if the triangles have more corners than an index can count.
+/// Returns [`PolygonError::TooMany`] if the triangles have too many corners for an index.
 ///
 /// # Complexity
 ///
-/// O(corners) for fans. Ear clipping of a face with `n` corners, of which `r` are not convex, takes
-/// O(n·(r + log n)), and O(n²) in the worst case.
+/// Fans: O(corners). Ear clipping: O(n·(r + log n)) for a face with `n` corners and `r` corners
+/// that are not convex; O(n²) in the worst case.
 ///
 /// # Examples
 ///
@@ -94,8 +93,7 @@ fn clip_ears(polygons: &PolygonMesh) -> Result<PolygonMesh, PolygonError> {
     PolygonMesh::from_faces(polygons.positions().to_vec(), triangles)
 }
 
-/// Returns the edges that could be diagonals of a polygon: both ends are corners of polygons with
-/// more than three corners.
+/// Returns the edges between two corners of polygons with more than three corners.
 fn possible_diagonals(faces: &FaceList, vertices: usize) -> HashHandleMap<Pair<VertexId>, bool> {
     let mut edges = HashHandleMap::filled(0, false);
     let mut on_polygon = vec![false; vertices];
@@ -135,7 +133,6 @@ mod tests {
         triangulated(polygons, Triangulation::EarClipping).expect("small")
     }
 
-    /// Returns for each face the normal vector whose length is twice the area.
     fn areas(mesh: &PolygonMesh) -> Vec<DVec3> {
         let at = |v: VertexId| mesh.position(v).as_dvec3();
         let area = |face: &[VertexId]| -> DVec3 {
@@ -146,8 +143,7 @@ mod tests {
         mesh.faces().iter().map(|(_, face)| area(face)).collect()
     }
 
-    /// Checks that the triangles have the sides of the polygon, and each diagonal once in each
-    /// direction.
+    /// Checks that each side occurs once, and each diagonal once in each direction.
     fn assert_partition(mesh: &PolygonMesh, triangles: &PolygonMesh) {
         let sides = |mesh: &PolygonMesh| {
             let mut sides = Vec::new();
@@ -174,8 +170,8 @@ mod tests {
         }
     }
 
-    /// Checks that all triangles have the orientation of the polygon, that no triangle is flat if
-    /// `exact`, and that their areas sum to its area. Then they cover it without overlap.
+    /// Checks that the triangles cover the polygon without overlap. If `exact`, no triangle may be
+    /// flat.
     fn assert_covered(mesh: &PolygonMesh, exact: bool) {
         let triangles = ears(mesh);
         let whole: DVec3 = areas(mesh).into_iter().sum();
@@ -198,8 +194,7 @@ mod tests {
         );
     }
 
-    /// A histogram: bars side by side, with a corner at every integer point of the outline. Most
-    /// corners are collinear.
+    /// Bars side by side; most corners are collinear.
     fn histogram() -> impl Strategy<Value = Vec<[f32; 2]>> {
         collection::vec(1..5_u8, 1..9).prop_map(|heights| {
             let width = heights.len();
@@ -219,8 +214,6 @@ mod tests {
         })
     }
 
-    /// A strip that winds `turns` times around the centre, out along one arm and back along the
-    /// other.
     fn spiral(corners: usize, turns: f64) -> Vec<[f32; 2]> {
         let arm = |i: usize, width: f64| {
             let t = i as f64 / corners as f64;
@@ -236,7 +229,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// Integer coordinates in integer planes: nothing is rounded, and no triangle may be flat.
+        /// With integer coordinates, nothing is rounded.
         #[test]
         fn histograms_in_any_plane_are_covered(
             outline in histogram(),
@@ -251,7 +244,6 @@ mod tests {
             assert_covered(&one_face(points), true);
         }
 
-        /// Corners around a centre at rising angles, near and far: simple, and mostly not convex.
         #[test]
         fn stars_are_covered(
             radii in collection::vec(0.05_f64..1.0, 5..40),
@@ -267,8 +259,7 @@ mod tests {
             assert_covered(&one_face(points.collect()), false);
         }
 
-        /// Any polygon, including a polygon that crosses itself, lies on one line or lies in one
-        /// point.
+        /// Includes polygons that cross themselves, lie on a line or lie in a point.
         #[test]
         fn any_polygon_is_partitioned(
             points in collection::vec(prop::array::uniform3(-2..3_i8), 4..30),
@@ -291,7 +282,7 @@ mod tests {
         assert_covered(&polygon(&spiral(1500, 40.0)), false);
     }
 
-    /// A square with a square hole. The outline runs twice along the bridge between them.
+    /// The outline runs twice along the bridge from the square to its hole.
     #[test]
     fn a_polygon_with_a_bridge_to_a_hole_is_covered() {
         let outline = [
@@ -342,14 +333,13 @@ mod tests {
         }
     }
 
-    /// Two squares back to back: the second must not use the diagonal of the first.
     #[test]
     fn a_diagonal_that_is_an_edge_is_not_cut_again() {
         let square = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 0.0), Point::Y];
         let pillow = PolygonMesh::new(square, [[0, 1, 2, 3], [3, 2, 1, 0]]).expect("valid");
         let triangles = ears(&pillow);
         assert_eq!(Capabilities::ORIENTED_MANIFOLDS.check(&triangles), Ok(()));
-        // For a third square both diagonals are already edges, so it uses one of them again.
+        // For a third square, both diagonals are already edges.
         let three = [[0, 1, 2, 3], [3, 2, 1, 0], [0, 1, 2, 3]];
         let three = PolygonMesh::new(square, three).expect("valid");
         assert_eq!(ears(&three).face_count(), 6);

@@ -73,11 +73,11 @@ impl<E: Editing> Representation for PolygonSoup<E> {
         f
     }
 
-    /// Moves every corner to the position that the map has for its vertex; O(corners) expected.
+    /// Moves every corner to the position of its vertex in the map; O(corners) expected.
     fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError> {
         let corners = self.corners().iter();
         let moved = corners.map(|corner| {
-            // Corners of no face stay blank.
+            // A corner of no face stays blank.
             if SoupVertex::BLANK.is_at(corner) {
                 return *corner;
             }
@@ -130,7 +130,7 @@ fn has_isolated_vertex(polygons: &PolygonMesh) -> bool {
     used.contains(&false)
 }
 
-/// Returns whether two corners of a face are at the same position; expects canonical coordinates.
+/// Returns whether two corners of a face are at the same position. The coordinates must not be −0.
 #[inline]
 fn has_coincident_corners(face: &[Point]) -> bool {
     match *face {
@@ -142,7 +142,7 @@ fn has_coincident_corners(face: &[Point]) -> bool {
     }
 }
 
-/// Returns the same for a face of any degree.
+/// Does the same for a face of any degree.
 fn has_repeated_corners(face: &[Point]) -> bool {
     let corners = face.iter().map(|&p| SoupVertex::from_corner(p));
     corners.distinct().count() < face.len()

@@ -1,4 +1,5 @@
-//! Edits: [`ScannedFaces`](sixfold_core::ScannedFaces) does them, because a soup has only faces.
+//! Edits. [`ScannedFaces`](sixfold_core::ScannedFaces) does the edits, because a soup has only
+//! faces.
 
 use sixfold_core::{
     Compact, Edit, EditError, EditLog, Editable, FaceId, MeshEdit, Pair, Point, Probe, QueryCost,
@@ -33,7 +34,7 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         compact.into()
     }
 
-    /// One scan: moves every corner at the vertex. The vertex and its edges get new handles.
+    /// One scan. The vertex and its edges get new handles.
     fn set_position_logged(
         &mut self,
         v: SoupVertex,
@@ -45,7 +46,7 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         Ok(to)
     }
 
-    /// Always returns an error: a vertex is the position of a corner.
+    /// Always returns an error, because a vertex is the position of a corner.
     fn add_vertex_logged(
         &mut self,
         _: Point,
@@ -57,7 +58,7 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         })
     }
 
-    /// O(degree); one scan if the log records events. Corners may be at positions without a vertex.
+    /// O(degree); one scan if the log records events. A corner may be at a new position.
     fn add_face_logged(
         &mut self,
         corners: &[SoupVertex],
@@ -153,8 +154,8 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         self.faces.flip_edge(e, log)
     }
 
-    /// One scan; two if a third corner may have no other face. `to` may be the place of the removed
-    /// end.
+    /// One scan; two if a third corner may have no other face. `to` may be the position of the
+    /// removed end.
     fn collapse_edge_logged(
         &mut self,
         e: Pair<SoupVertex>,
@@ -285,7 +286,7 @@ mod tests {
             assert_eq!(soup.remove_vertex(nan), refusal);
             let edge = Pair::new(nan, a);
             assert_eq!(soup.edge_faces(edge).next(), None);
-            // These positions are valid: a face may have a corner there.
+            // The position is valid, because a face may have a corner there.
             let mut soup = soup.clone();
             let f = soup.add_face(&[a, b, nan]).expect("valid");
             assert_eq!(soup.validate(), Ok(()));

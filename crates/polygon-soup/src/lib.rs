@@ -5,15 +5,14 @@
 //! FE and EV take O(1) per item; the other six relations take O(corners). Start at
 //! [`generic::PolygonSoup`]; its four invariants define the tables.
 //!
-//! A vertex *is* its coordinates here ([`SoupVertex`]). Vertices with the same coordinates
-//! therefore become one vertex, and moving a vertex changes its handle. [`SoupVertex`] explains why
-//! there is no tolerance, and what to do with points that are nearly equal. The structure cannot
-//! hold a face with two corners at one point, or a vertex without faces.
+//! A vertex *is* its coordinates here ([`SoupVertex`]). So vertices with the same coordinates are
+//! one vertex, and moving a vertex changes its handle. [`SoupVertex`] explains how to merge points
+//! that are nearly equal. The structure cannot hold a face with two corners at one point, or a
+//! vertex without faces.
 //!
-//! Adding and removing faces takes O(1) per corner. Nearly every other edit begins with a scan,
-//! which also checks that the position of a new vertex is free. For many edits, use another
-//! structure. [`ScannedFaces`](sixfold_core::ScannedFaces) implements the scan and the edits; the
-//! indexed face set uses it too.
+//! Adding and removing faces takes O(1) per corner. Nearly every other edit begins with a scan of
+//! all corners. For many edits, use another structure. [`ScannedFaces`](sixfold_core::ScannedFaces)
+//! implements the scan and the edits, also for the indexed face set.
 
 mod construct;
 mod edit;
@@ -24,7 +23,7 @@ mod vertex;
 
 pub use vertex::SoupVertex;
 
-/// The mesh with its type parameters, for code that is generic over them.
+/// The mesh type with its type parameters, for generic code.
 ///
 /// Programs use the two types of the crate root instead.
 pub mod generic {
@@ -38,7 +37,7 @@ pub type PolygonSoup = generic::PolygonSoup;
 /// [`generic::PolygonSoup`] with holes.
 pub type EditablePolygonSoup = generic::PolygonSoup<sixfold_core::Editable>;
 
-/// The traits and types that all structures share: `PolygonMesh`, `MeshQuery`, handles, errors.
+/// The traits and types that all Sixfold structures share.
 pub use sixfold_core;
 
 /// Imports for a program: the types of this structure, and the traits of its queries and edits.

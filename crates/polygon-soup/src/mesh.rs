@@ -16,21 +16,22 @@ use crate::vertex::SoupVertex;
 ///        a    a ───── d     the edge a–b is in the table twice; that it is shared is not stored
 /// ```
 ///
-/// - I1  Each corner belongs to one face: face `f` has the corners `spans.range(f)`, at least
-///   three. These ranges are consecutive and cover the whole table. After an edit has changed a
-///   degree, unused corners can be between them.
+/// - I1  Face `f` has the corners `spans.range(f)`, at least three. The ranges are consecutive and
+///   cover the whole table. After an edit has changed a degree, unused corners can be between the
+///   ranges.
 /// - I2  No coordinate is −0; construction, [`set_positions`] and edits write 0 instead.
 /// - I3  The corners of one face are at different positions. [`set_positions`] returns an error if
-///   two of them would coincide. Every edit returns an error if the position of a new vertex is
-///   occupied.
+///   two corners of a face would coincide. Every edit returns an error if the position of a new
+///   vertex is already used.
 /// - I4  Holes are rows of faces. Exactly two kinds of corners are blank: the corners of deleted
 ///   faces, and the unused corners between faces. A blank corner is a NaN that no [`SoupVertex`]
-///   has, so no scan finds it.
+///   has.
 ///
 /// A large closed triangle mesh uses 18 words per vertex, three points per face. With mixed
-/// degrees, the offsets add one word per face. Edits that change a degree replace the offsets by
-/// two words per face and one per corner. Deletions add one bit per face.
-/// [`compact`](sixfold_core::MeshEdit::compact) removes both additions.
+/// degrees, the mesh uses one more word per face. After an edit that changes a degree, the mesh
+/// uses two more words per face and one more per corner. After a deletion, the mesh uses one more
+/// bit per face. [`compact`](sixfold_core::MeshEdit::compact) removes the additions of edits and
+/// deletions.
 ///
 /// # Complexity
 ///
@@ -41,12 +42,11 @@ use crate::vertex::SoupVertex;
 /// | VF, VV, VE, EF, EE | all corners, in one scan | O(corners) |
 /// | FF | all corners, in one scan | O(corners + degree log degree) |
 /// | `vertices`, `edges` | all corners | O(corners) expected, with a hash set |
-/// | `vertex_count`, `edge_count` | as above: they are not stored | O(corners) expected |
+/// | `vertex_count`, `edge_count` | all corners | O(corners) expected, with a hash set |
 ///
-/// A hit of a scan costs O(1). With mixed degrees it costs O(log faces), because the face of the
-/// corner must be searched. A scan reads 12 bytes per corner, once and in order. If the table fits
-/// the cache, the limit is the three comparisons per corner. In larger meshes, the limit is the
-/// memory bandwidth.
+/// Each corner that a scan finds costs O(1), or O(log faces) with mixed degrees, to find its face.
+/// A scan reads 12 bytes per corner, once and in order. If the table fits the cache, the limit is
+/// the three comparisons per corner. In larger meshes, the limit is the memory bandwidth.
 ///
 /// # Edits
 ///
@@ -55,12 +55,12 @@ use crate::vertex::SoupVertex;
 /// | `set_position` | all corners, in one scan | the corners at the vertex, and its handle |
 /// | `add_vertex` | | not supported: a vertex is the position of a corner |
 /// | `add_face` | its corners | new corners, a new span |
-/// | `remove_face`, `split_face` | the corners of the face | these, and the corners of the new face |
+/// | `remove_face`, `split_face` | the corners of the face | the corners of the face and of the new face |
 /// | `poke_face` | all corners, in one scan | the corners of the face, and new faces |
 /// | `split_edge`, `dissolve_edge` | all corners, in one scan | the faces at the edge, which may move to the end of the table |
 /// | `bisect_edge` | all corners, in one scan | a corner of each face, and a new face for each |
 /// | `flip_edge` | all corners, in two scans | one corner of each face |
-/// | `collapse_edge` | all corners, in one scan, rarely two | the corners at the removed vertex; also those at the kept end, if it moves |
+/// | `collapse_edge` | all corners, in one scan, rarely two | the corners at the removed vertex, and the corners at the kept end if the kept end moves |
 /// | `split_vertex` | all corners, in one scan | the corners that the new vertex gets, and two new faces |
 /// | `remove_vertex` | all corners, in one scan | the corners of its faces |
 /// | `remove_isolated_vertices` | nothing | nothing: no vertex is isolated |
@@ -68,8 +68,8 @@ use crate::vertex::SoupVertex;
 ///
 /// The scan for an edge also checks that the position of a new vertex is free. If a log records the
 /// edits, `add_face`, `remove_face`, `remove_vertex` and `split_face` need one more scan, to find
-/// the vertices and sides that other faces also have. An edit is refused if its own rule is broken
-/// or if two vertices would coincide.
+/// the vertices and sides that remain. An edit is refused if the edit breaks its own rule or if two
+/// vertices would coincide.
 ///
 /// [`set_positions`]: sixfold_core::Representation::set_positions
 ///

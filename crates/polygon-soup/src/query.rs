@@ -124,8 +124,7 @@ mod tests {
     use super::*;
     use crate::PolygonSoup;
 
-    /// Returns a pentagon and its mirror image, a triangle at one of their sides, and a quad at
-    /// another side.
+    /// A pentagon and its mirror image, with a triangle and a quad at two sides.
     fn pillow() -> (PolygonMesh, PolygonSoup) {
         let at = [
             (0, 0),

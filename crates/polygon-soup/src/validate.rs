@@ -6,7 +6,7 @@ use crate::mesh::PolygonSoup;
 use crate::vertex::SoupVertex;
 
 impl<P: Probe, E: Editing> PolygonSoup<E, P> {
-    /// Checks I1 first, then I4, which relies on it, then I2 and I3.
+    /// Checks I1, then I4, which relies on I1, then I2 and I3.
     pub(crate) fn check_invariants(&self) -> Result<(), InvariantError> {
         self.check_spans()?;
         self.check_holes()?;
@@ -14,13 +14,13 @@ impl<P: Probe, E: Editing> PolygonSoup<E, P> {
         self.check_faces()
     }
 
-    /// I1: the faces partition the corners, with at least three corners each.
+    /// I1: the faces share no corners, and each face has at least three corners.
     fn check_spans(&self) -> Result<(), InvariantError> {
         let checked = self.spans().check(self.corners().len());
         checked.map_err(|detail| InvariantError::new("I1", detail))
     }
 
-    /// I4: holes are faces, and the blank corners are exactly those of no face.
+    /// I4: holes are faces, and exactly the corners of no face are blank.
     fn check_holes(&self) -> Result<(), InvariantError> {
         let checked = self.faces.check_holes();
         checked.map_err(|detail| InvariantError::new("I4", detail))

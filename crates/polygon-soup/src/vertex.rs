@@ -9,20 +9,19 @@ use sixfold_core::{Handle, HashHandleMap, Point, ScannedVertex};
 
 /// A vertex of a soup: the bits of its coordinates, with −0 as 0.
 ///
-/// Two corners are at one vertex if and only if their coordinates are equal, bit for bit. The order
-/// of handles is that of the bits: a total order without geometric meaning.
+/// Two corners are at one vertex if and only if the bits of their coordinates are equal. The order
+/// of handles has no geometric meaning.
 ///
 /// # Points that are nearly equal
 ///
-/// Vertices that differ only by rounding errors stay different vertices. A tolerance cannot be part
-/// of a handle: with a tolerance of 1, the points 0 and 0.8 are equal and the points 0.8 and 1.6
-/// are equal, but 0 and 1.6 are not. This relation is not transitive, so it cannot be [`Eq`]. A
-/// [`Hash`] that is the same for all pairs of equal points would be the same for all points.
-/// Handles need [`Eq`] and [`Hash`], because they are keys of maps.
+/// Vertices that differ only by rounding errors stay different vertices. Handles are keys of maps,
+/// so they need [`Eq`] and [`Hash`]. A comparison with a tolerance is not transitive, so it cannot
+/// be [`Eq`]: with a tolerance of 1, the points 0 and 0.8 are equal and the points 0.8 and 1.6 are
+/// equal, but the points 0 and 1.6 are not.
 ///
-/// Therefore merge such points before you build the soup. If you round positions to a grid, points
-/// with the same rounded position are merged. Equality of rounded positions is transitive. Two
-/// close points on different sides of a boundary between grid cells stay different.
+/// Merge such points before you build the soup. For example, round the positions to a grid: points
+/// with the same rounded position are then one vertex. Two close points on different sides of a
+/// boundary between grid cells stay different.
 ///
 /// ```
 /// use sixfold_polygon_soup::prelude::*;
@@ -40,17 +39,17 @@ use sixfold_core::{Handle, HashHandleMap, Point, ScannedVertex};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// Building returns an error if two corners of one face have the same rounded position.
+/// If two corners of one face have the same rounded position, building returns an error.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct SoupVertex([u32; 3]);
 
 impl SoupVertex {
-    /// Returns the vertex at `point`, whether or not a face has a corner there.
+    /// Returns the vertex at `point`. A face need not have a corner there.
     #[inline]
     pub fn at(point: Point) -> Self {
-        // −0 + 0 is 0; every other number stays unchanged.
+        // −0 + 0 is 0.
         let [x, y, z] = point.to_array().map(|x| (x + 0.0).to_bits());
-        // One NaN bit pattern marks blank corners. If `point` has it, use another NaN.
+        // One NaN bit pattern marks blank corners. If `point` contains this NaN, use another NaN.
         let x = if x == BLANK { f32::NAN.to_bits() } else { x };
         Self([x, y, z])
     }
@@ -62,10 +61,10 @@ impl SoupVertex {
     }
 }
 
-/// The x of a blank corner, a quiet NaN; [`SoupVertex::at`] never returns it.
+/// The x of a blank corner, a NaN. [`SoupVertex::at`] never returns this NaN.
 const BLANK: u32 = u32::MAX;
 
-/// A corner stores the coordinates with the bits of the handle, because I2 excludes −0.
+/// A corner has the same bits as its handle, because I2 excludes −0.
 impl ScannedVertex for SoupVertex {
     type Corner = Point;
     type Set = FxHashSet<Self>;
@@ -82,8 +81,7 @@ impl ScannedVertex for SoupVertex {
         self.position()
     }
 
-    /// Compares all three coordinates: a branch after the first comparison would cost more than the
-    /// two comparisons that it avoids.
+    /// Always compares all three coordinates: a branch would cost more than the two comparisons.
     #[inline]
     fn is_at(self, corner: &Point) -> bool {
         let [x, y, z] = self.0;
@@ -101,8 +99,7 @@ impl ScannedVertex for SoupVertex {
 }
 
 impl Ord for SoupVertex {
-    /// Compares the three words as one number. This needs no branch and no call of a slice
-    /// comparison.
+    /// Compares the three words as one number, without a branch.
     #[inline]
     fn cmp(&self, other: &Self) -> Ordering {
         let number = |[x, y, z]: [u32; 3]| {
@@ -120,7 +117,7 @@ impl PartialOrd for SoupVertex {
 }
 
 impl Hash for SoupVertex {
-    /// Writes whole words: a slice of numbers would be hashed byte by byte, at twice the cost.
+    /// Hashes whole words. A slice of numbers would be hashed byte by byte, at twice the cost.
     #[inline]
     fn hash<H: Hasher>(&self, state: &mut H) {
         let [x, y, z] = self.0;

@@ -1,10 +1,9 @@
 //! Relation tables: the relations of a mesh that a program queries often, stored as flat tables.
 //!
 //! Use them for many sweeps over a mesh that does not change. A row is a slice, and the rows of a
-//! sweep follow one another in memory. This is true for every structure from which a table is
-//! built. Building a table takes one sweep over that structure. Tables do not follow later edits of
-//! the mesh. Start at [`Numbering`]: it numbers the elements. The tables use these numbers as row
-//! indices and as items.
+//! sweep follow one another in memory. Building a table takes one sweep over the structure. Tables
+//! do not follow later edits of the mesh. Start at [`Numbering`], which numbers the elements. The
+//! tables use these numbers as row indices and as items.
 //!
 //! ```text
 //!   offsets   0     3        7  …        row v of `vertex_faces` is items[offsets[v]..offsets[v + 1]];

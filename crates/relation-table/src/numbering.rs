@@ -8,8 +8,9 @@ use crate::table::{RelationTable, TabulationError};
 
 /// The elements of a mesh, numbered in the order in which the structure lists them.
 ///
-/// If handles are rows and nothing was removed, the number of an element is its row. The elements
-/// of a kind are numbered when the first number of that kind is needed.
+/// If handles are rows and nothing was removed, the number of an element is its row. Vertices,
+/// edges and faces are numbered separately. All elements of one kind are numbered when the first
+/// number of this kind is needed.
 pub struct Numbering<'m, M: MeshQuery> {
     mesh: &'m M,
     vertices: OnceCell<Numbers<M::Vertex>>,
@@ -17,12 +18,12 @@ pub struct Numbering<'m, M: MeshQuery> {
     faces: OnceCell<Numbers<M::Face>>,
 }
 
-/// Defines the method that builds one table, such as `vertex_faces`.
+/// Defines the method for one table, such as `vertex_faces`.
 macro_rules! tabulate {
     ($(#[$doc:meta])+ $name:ident, $relation:ident, $all:ident, $from:ty => $number:ident, $to:ty) => {
         $(#[$doc])+
         ///
-        /// O(rows + items) plus the cost of querying every element once.
+        /// O(rows + items), plus the cost of querying every element once.
         ///
         /// # Errors
         ///
@@ -37,7 +38,7 @@ macro_rules! tabulate {
 }
 
 impl<'m, M: MeshQuery> Numbering<'m, M> {
-    /// Numbers the elements of `mesh`.
+    /// Creates the numbering of `mesh`. The elements are numbered later.
     pub fn new(mesh: &'m M) -> Self {
         Self {
             mesh,
@@ -65,19 +66,19 @@ impl<'m, M: MeshQuery> Numbering<'m, M> {
         self.faces.get_or_init(|| self.mesh.face_numbers())
     }
 
-    /// Returns the row of `v` in the tables. O(1), except the first call, which numbers all vertices.
+    /// Returns the row of `v` in the tables; O(1). The first call numbers all vertices.
     #[inline]
     pub fn vertex(&self, v: M::Vertex) -> VertexId {
         VertexId::new(self.vertices()[v])
     }
 
-    /// Returns the row of `e` in the tables. O(1), except the first call, which numbers all edges.
+    /// Returns the row of `e` in the tables; O(1). The first call numbers all edges.
     #[inline]
     pub fn edge(&self, e: M::Edge) -> EdgeId {
         EdgeId::new(self.edges()[e])
     }
 
-    /// Returns the row of `f` in the tables. O(1), except the first call, which numbers all faces.
+    /// Returns the row of `f` in the tables; O(1). The first call numbers all faces.
     #[inline]
     pub fn face(&self, f: M::Face) -> FaceId {
         FaceId::new(self.faces()[f])

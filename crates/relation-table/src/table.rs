@@ -1,19 +1,19 @@
-//! One relation as rows of items, stored one after the other.
+//! One relation as rows of items.
 
 use std::marker::PhantomData;
 use std::ops::Range;
 
 use sixfold_core::{Relation, RowId};
 
-/// One relation of a whole mesh: for each element of kind `A` a row of elements of kind `B`.
+/// One relation of a whole mesh: a row of elements of kind `B` for each element of kind `A`.
 ///
-/// Rows are in the order in which the structure lists its elements. Items are in the order in which
-/// the query yields them.
+/// The rows have the order of the elements in the structure. The items of a row have the order of
+/// the query.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RelationTable<A, B> {
     /// Index of the first item of each row, then the number of items. Empty if `stride` is not 0.
     offsets: Vec<u32>,
-    /// The length of every row, if all rows have the same length; otherwise 0.
+    /// The length of all rows, or 0 if the lengths differ.
     stride: usize,
     rows: usize,
     items: Vec<B>,
@@ -35,7 +35,7 @@ pub enum TabulationError {
 }
 
 impl<A: RowId, B: RowId> RelationTable<A, B> {
-    /// Builds the table; `ask` appends the row of one element to the list of items.
+    /// Builds the table. `ask` appends the row of one element to the list of items.
     pub(crate) fn collect<E>(
         relation: Relation,
         elements: impl Iterator<Item = E>,
@@ -100,7 +100,7 @@ impl<A: RowId, B: RowId> RelationTable<A, B> {
         (0..self.rows).map(row)
     }
 
-    /// Returns the items of all rows, one row after the other.
+    /// Returns the items of all rows, row after row.
     pub fn items(&self) -> &[B] {
         &self.items
     }

@@ -1,4 +1,4 @@
-//! Checks on random meshes that every table row equals the answer of the structure.
+//! Every table row equals the answer of the structure, on random meshes.
 
 use proptest::prelude::*;
 use sixfold_conformance::strategy::any_mesh;
@@ -8,7 +8,6 @@ use sixfold_indexed_face_set::IndexedFaceSet;
 use sixfold_polygon_soup::PolygonSoup;
 use sixfold_relation_table::Numbering;
 
-/// Queries each element of the structure and compares the answer with its row.
 fn check_tables<M: MeshQuery>(mesh: &M) -> Result<(), TestCaseError> {
     let numbers = Numbering::new(mesh);
     macro_rules! check_table {
@@ -84,8 +83,7 @@ fn removed_elements_get_no_numbers() {
     );
 }
 
-/// A table needs no offsets if all its rows have one length. Other tables store one offset per row,
-/// and one at the end.
+/// Other tables store one offset per row, and one offset at the end.
 #[test]
 fn tables_store_no_offsets_if_all_rows_have_one_length() {
     let ball = sixfold_shapes::icosahedron();

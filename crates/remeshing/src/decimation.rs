@@ -12,16 +12,16 @@ use crate::quadric::{Packed, Quadric};
 use crate::queue::{Entry, Queue};
 use crate::rules::{keeps_orientation, meets_link_condition};
 
-/// The weight of a plane through a boundary edge, relative to a face beside it.
+/// Weight of a plane through a boundary edge, relative to the plane of a face.
 const BOUNDARY_WEIGHT: f64 = 100.0;
 
-/// The number of collapses between two calls of `watch`.
+/// Number of collapses between two calls of `watch`.
 const WATCH_INTERVAL: usize = 1024;
 
 /// The target of a decimation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// This number of faces, or one face fewer, because a collapse can remove two faces.
+    /// This number of faces, or one face fewer: a collapse can remove two faces.
     Faces(usize),
     /// This fraction of the faces of the mesh, from 0 to 1.
     Ratio(f64),
@@ -55,7 +55,7 @@ pub enum Boundary {
     Fixed,
 }
 
-/// Options of a decimation. The default is half of the faces, with the boundary simplified too.
+/// Options of a decimation. By default, half of the faces remain and the boundary is simplified.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decimation {
     /// The target.
@@ -81,31 +81,31 @@ pub struct Decimated {
     pub faces: usize,
     /// The number of collapsed edges.
     pub collapses: usize,
-    /// The number of collapses that were refused, because they were illegal or would turn a face
+    /// The number of refused collapses. A collapse is refused if it is illegal or would turn a face
     /// over.
     pub refused: usize,
-    /// The largest quadric error of a collapse. This error is a sum of squared distances to the
-    /// planes of faces, each weighted by the area of the face.
+    /// The largest quadric error of a collapse: a sum of squared distances to the planes of faces,
+    /// each multiplied by the area of the face.
     pub max_error: f64,
     /// The reason why the decimation ended.
     pub stop: Stop,
 }
 
-/// Collapses edges, the lowest error first, until the target is reached or no legal collapse is
+/// Collapses the edge with the lowest error, until the target is reached or no legal collapse is
 /// left.
 ///
-/// The error of a vertex is the sum of the squared distances to the planes of the faces that it
-/// represents, each weighted by the area of the face. The merged vertex is placed where the sum of
-/// both errors is least. If there is no single such place, the vertex is placed at the best of
-/// three points: the two ends and their midpoint. Boundary edges add planes perpendicular to the
-/// surface, so that outlines keep their shape. A collapse is refused if it would turn a face over
-/// or break the link condition. A refused collapse is tried again after one of its ends has
-/// changed.
+/// The error of a vertex is a sum over the faces that the vertex represents. Each face contributes
+/// the squared distance to its plane, multiplied by the area of the face. The merged vertex is
+/// placed where the sum of both errors is least. If there is no single such place, the best of
+/// three points is used: the two ends and their midpoint. Boundary edges add planes perpendicular
+/// to the surface, which keep the shape of the boundary. A collapse is refused if it would turn a
+/// face over or break the link condition. A refused collapse is tried again after one of its ends
+/// has changed.
 ///
-/// Errors are rounded into buckets; the errors in one bucket differ by at most an eighth. All edges
-/// of the lowest bucket form a round. A round collapses its edges in the order of the mesh. The
-/// queue is updated lazily: if an end of an edge has changed, the entry is dropped when it is taken
-/// out.
+/// Errors are rounded into buckets; the errors in one bucket differ by at most an eighth. A round
+/// collapses all edges of the lowest bucket, in the order of the mesh. If an end of an edge has
+/// changed, the queue entry of the edge is outdated. Outdated entries are dropped when they are
+/// taken out of the queue.
 ///
 /// # Errors
 ///
@@ -115,8 +115,8 @@ pub struct Decimated {
 /// # Complexity
 ///
 /// O(edges log edges), plus the structure's cost of VF, VV and `collapse_edge` for each collapse.
-/// On structures that scan all faces, this cost is O(faces) for each collapse. Every collapse
-/// removes at least one face, so there are fewer collapses than faces.
+/// On structures that scan all faces, each collapse takes O(faces). There are fewer collapses than
+/// faces.
 pub fn decimate<M: MeshEdit>(
     mesh: &mut M,
     decimation: &Decimation,
@@ -172,14 +172,15 @@ pub fn decimate_watched<M: MeshEdit>(
     Ok(report)
 }
 
-/// The data of a vertex: one cache line, because a collapse reads all vertices around it.
+/// The data of a vertex. It fits in one cache line, because a collapse reads all vertices around an
+/// edge.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 struct Vertex {
     /// The quadric in the unit box; its origin is the vertex itself.
     quadric: Packed,
     at: Point,
-    /// Changes whenever the vertex changes.
+    /// Changes when the vertex changes.
     version: u32,
     /// Whether the vertex must not move.
     fixed: bool,
@@ -189,8 +190,7 @@ struct Work<M: MeshEdit> {
     numbering: Numbering<M>,
     vertices: Vec<Vertex>,
     queue: Queue,
-    /// The size of the mesh. Positions are divided by this size, so that the mesh fits in a unit
-    /// box.
+    /// The size of the mesh. Positions are divided by this size.
     size: f64,
 }
 
@@ -219,9 +219,8 @@ impl<M: MeshEdit> Work<M> {
         Ok(work)
     }
 
-    /// Adds to each vertex the planes of its faces and, at a boundary, the planes perpendicular to
-    /// the surface. All these planes contain the vertex, and the vertex is the origin of its
-    /// quadric.
+    /// Adds the planes of the faces and the planes at the boundary to the quadrics of their
+    /// vertices. The origin of each quadric is its vertex.
     fn add_planes(&mut self, mesh: &M, boundary: Boundary) {
         let face_counts = mesh.edge_face_counts();
         let mut quadrics = vec![Quadric::default(); self.vertices.len()];
@@ -326,7 +325,7 @@ impl<M: MeshEdit> Work<M> {
             [false, false] => {}
         }
         let middle = edge / 2.0;
-        // A place far from the edge is an effect of rounding, not of the shape.
+        // A place far from the edge is caused by rounding.
         let max_distance_squared = 4.0 * edge.length_squared();
         let minimizer = sum
             .minimizer()
@@ -334,8 +333,7 @@ impl<M: MeshEdit> Work<M> {
         if let Some(x) = minimizer {
             return Some(at(x));
         }
-        // Chooses only the offset and makes no copies of `sum`. Copies would be written in pieces
-        // of one size and read in pieces of another size, and processors stall on such reads.
+        // Does not copy `sum`: a processor would stall when it reads such a copy.
         let mut best = (sum.value(middle), middle);
         for offset in [DVec3::ZERO, edge] {
             let error = sum.value(offset);
@@ -346,8 +344,7 @@ impl<M: MeshEdit> Work<M> {
         Some(at(best.1))
     }
 
-    /// Collapses the edge of `entry`, if it exists and the collapse is legal; returns the error of
-    /// the collapse.
+    /// Collapses the edge of `entry` if possible, and returns the error of the collapse.
     fn collapse(&mut self, mesh: &mut M, entry: &Entry) -> Option<f64> {
         let [a, b] = entry.ends;
         let e = self.numbering.edge(mesh, entry.ends)?;
@@ -366,7 +363,7 @@ impl<M: MeshEdit> Work<M> {
         let kept = mesh.collapse_edge(e, ends[0], to).ok()?;
         self.numbering.set_handle(a, kept);
         self.numbering.remove(b);
-        // The position as the structure stores it, rounded to f32.
+        // The position is stored as f32, so it is not exactly the best place.
         let offset = (to.as_dvec3() - p.at.as_dvec3()) / self.size;
         self.vertices[a as usize] = Vertex {
             quadric: placement.sum.with_origin(offset).into(),
@@ -374,7 +371,7 @@ impl<M: MeshEdit> Work<M> {
             version: p.version.wrapping_add(1),
             fixed: p.fixed || q.fixed,
         };
-        // Numbers are not reused, so all entries with the removed end stay outdated.
+        // Outdates all entries with the removed end. Numbers are not reused.
         self.vertices[b as usize].version = q.version.wrapping_add(1);
         for v in mesh.vertex_vertices(kept) {
             self.push_edge(a, self.numbering.number(v));
@@ -383,12 +380,12 @@ impl<M: MeshEdit> Work<M> {
     }
 }
 
-/// The best place for the merged vertex, relative to the first end, in the unit box.
+/// The best place for a merged vertex.
 #[derive(Clone, Copy, Debug)]
 struct Placement {
     offset: DVec3,
     error: f64,
-    /// The quadric of both ends, with its origin at the first end.
+    /// The sum of the quadrics of both ends, with its origin at the first end.
     sum: Quadric,
 }
 

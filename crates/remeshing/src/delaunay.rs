@@ -9,12 +9,12 @@ use crate::error::RemeshError;
 use crate::numbering::{Numbering, corners};
 use crate::rules::at;
 
-/// The maximum number of flips per edge. A mesh in a plane needs far fewer flips. On a surface,
-/// flipping might never end without this limit.
+/// Maximum number of flips, divided by the number of edges. Without this limit, flipping on a
+/// surface might never end.
 const FLIPS_PER_EDGE: usize = 16;
 
-/// An edge is flipped if its sum of cotangents is below `-TOLERANCE`, so that rounding errors alone
-/// cause no flips.
+/// An edge is flipped if its sum of cotangents is below `-TOLERANCE`. The tolerance prevents flips
+/// that are caused by rounding errors.
 const TOLERANCE: f64 = 1e-7;
 
 /// The result of [`flip_to_delaunay`].
@@ -23,10 +23,10 @@ const TOLERANCE: f64 = 1e-7;
 pub struct Flipped {
     /// The number of flipped edges.
     pub flips: usize,
-    /// The number of flips that were refused, because they were illegal or would fold the surface.
+    /// The number of refused flips. A flip is refused if it is illegal or would fold the surface.
     pub refused: usize,
-    /// The reason why flipping ended; [`Stop::Done`] if every edge is Delaunay or its flip was
-    /// refused.
+    /// The reason why flipping ended. [`Stop::Done`] means that every edge is Delaunay or its flip
+    /// was refused.
     pub stop: Stop,
 }
 
@@ -41,8 +41,8 @@ pub struct Flipped {
 /// ```
 ///
 /// In a plane, the result is the Delaunay triangulation (Lawson 1977). On a surface, a flip changes
-/// the shape. So a flip is refused if a new triangle would face away from the two old triangles.
-/// There are at most 16 flips per edge of the mesh.
+/// the shape. A flip is refused if a new triangle would face away from the two old triangles. There
+/// are at most 16 flips per edge of the mesh.
 ///
 /// # Errors
 ///
@@ -98,7 +98,7 @@ struct Quad {
 }
 
 impl Quad {
-    /// Returns the quad of the edge between two numbers, or `None` if the edge is missing or does
+    /// Returns the quad of the edge between two vertices, or `None` if the edge is missing or does
     /// not have two faces.
     fn from_edge<M: MeshEdit>(
         mesh: &M,
@@ -112,7 +112,7 @@ impl Quad {
             faces += 1;
             let numbers = corners(mesh, f).map(|v| numbering.number(v));
             let i = numbers.iter().position(|&n| n != a && n != b)?;
-            // Starting at the apex, the face that runs from a to b has b last.
+            // If the face runs from a to b, the corner order is apex, a, b.
             let side = usize::from(numbers[(i + 2) % 3] != b);
             apexes[side] = Some(numbers[i]);
         }
@@ -123,14 +123,12 @@ impl Quad {
         })
     }
 
-    /// Returns the sum of the cotangents of the two angles opposite to the edge.
     fn cotangent_sum(&self) -> f64 {
         let [a, b, c, d] = self.at;
         let cotangent = |apex: DVec3| {
             let (u, v) = (a - apex, b - apex);
             let sine = u.cross(v).length();
-            // A triangle without area: the sign of the dot product shows whether the angle is acute
-            // or obtuse.
+            // The triangle has no area. The sign shows whether the angle is acute or obtuse.
             if sine == 0.0 {
                 u.dot(v).signum() * 1e30
             } else {
@@ -140,7 +138,7 @@ impl Quad {
         cotangent(c) + cotangent(d)
     }
 
-    /// Returns whether both new triangles face in the direction of the sum of the two old normals.
+    /// Returns whether both new triangles face in the direction of the old normals.
     fn flip_keeps_orientation(&self) -> bool {
         let [a, b, c, d] = self.at;
         let normal_sum = (b - a).cross(c - a) + (a - b).cross(d - b);

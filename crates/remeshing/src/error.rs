@@ -4,7 +4,7 @@
 
 use sixfold_core::{FaceId, VertexId};
 
-/// The reason why an operator refuses a mesh or its options. The mesh is then unchanged.
+/// The reason why an operator refuses a mesh or its options. The operator has not changed the mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]

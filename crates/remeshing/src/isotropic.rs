@@ -10,37 +10,33 @@ use crate::error::RemeshError;
 use crate::numbering::{Numbering, corners, corners_from};
 use crate::rules::{at, is_boundary, keeps_orientation, meets_link_condition};
 
-/// Edges longer than `LONG` times the target length are split, and edges shorter than `SHORT` times
-/// the target length are collapsed. With these factors, a later pass does not at once undo a split
-/// or a collapse.
+/// `LONG`: minimum length of edges that are split. `SHORT`: maximum length of edges that are
+/// collapsed. Both are multiples of the target length.
 const LONG: f64 = 4.0 / 3.0;
 const SHORT: f64 = 4.0 / 5.0;
 
-/// The boundary is straight at a vertex if the cosine of its turning angle there is at least this
-/// value.
+/// Minimum cosine of the turning angle at a vertex of a straight boundary.
 const STRAIGHT: f64 = 0.9962; // 5 degrees
 
-/// The minimum edge length, in steps between neighbouring f32 coordinates.
+/// Minimum edge length, in steps between neighbouring f32 coordinates.
 const MIN_STEPS: f64 = 4.0;
 
-/// Remeshing ends early if an iteration changes no edge, and moves no vertex by more than this
-/// fraction of the target edge length.
+/// Maximum movement of a vertex that counts as no movement, as a fraction of the target length.
 const TOLERANCE: f64 = 1e-3;
 
-/// Options of remeshing. Set the length; the default is at most 10 iterations and 10 million faces.
+/// Options of remeshing. By default, at most 10 iterations and 10 million faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remeshing {
     /// The target length of edges, in the units of the mesh.
     pub edge_length: f64,
-    /// The maximum number of iterations; each splits, collapses, flips and smooths.
+    /// The maximum number of iterations.
     pub iterations: usize,
-    /// The maximum number of faces that splits may reach. An edge length that would need more faces
-    /// is an error.
+    /// The maximum number of faces. An edge length that would need more faces is an error.
     pub max_faces: usize,
 }
 
 impl Remeshing {
-    /// Returns the default options with edges of `edge_length`.
+    /// Returns the default options with the target length `edge_length`.
     pub fn with_edge_length(edge_length: f64) -> Self {
         Self {
             edge_length,
@@ -68,38 +64,47 @@ pub struct Remeshed {
     pub stop: Stop,
 }
 
-/// Makes all edges about `edge_length` long and all vertices as regular as possible.
+/// Makes all edges about `edge_length` long, and brings valences closer to six.
 ///
 /// Each iteration has four passes (Botsch & Kobbelt 2004, without the projection back to the
-/// original). It splits edges longer than 4/3 of the length in the middle. It collapses edges
-/// shorter than 4/5 of the length, unless this makes an edge longer than 4/3. It flips edges if
-/// this brings valences closer to six, or to four on a boundary. It moves inner vertices within
-/// their tangent planes to the middle of their neighbours.
+/// original surface):
 ///
-/// Boundary vertices do not move, and are removed only if the boundary is straight there. No edit
-/// turns a face over or breaks the link condition. Sharp inner edges are not kept: they are
-/// rounded, and the mesh shrinks there by about the length.
+/// 1. Split edges longer than 4/3 of the target length in the middle.
+/// 2. Collapse edges shorter than 4/5 of the target length, unless this makes an edge longer than
+///    4/3 of the target length.
+/// 3. Flip edges if this brings valences closer to six, or to four on a boundary.
+/// 4. Move inner vertices within their tangent planes towards the middle of their neighbours.
+///
+/// Boundary vertices do not move. They are removed only if the boundary is straight there. No edit
+/// turns a face over or breaks the link condition. Sharp inner edges are rounded, and the mesh
+/// shrinks there by about the target length.
 ///
 /// Remeshing ends early if an iteration changes almost nothing.
 ///
 /// # Errors
 ///
-/// Returns [`RemeshError`] if a face is not a triangle or a position is not finite. Also returns it
-/// if the edge length is not a finite positive number, is too short for the precision of the
-/// positions, or would need more faces than allowed. The number of faces is estimated from the area
-/// and from the edges to be split. If there is an error, the mesh is unchanged.
+/// Returns [`RemeshError`] in these cases:
+///
+/// - A face is not a triangle.
+/// - A position is not finite.
+/// - The edge length is not a finite positive number.
+/// - The edge length is too short for the precision of the positions.
+/// - The edge length needs more faces than allowed. The number of faces is estimated from the area
+///   and from the edges to be split.
+///
+/// If there is an error, the mesh is unchanged.
 ///
 /// # Complexity
 ///
-/// O(edges log edges) for each iteration, plus the structure's cost of the queries and the edit for
-/// each edge. The maximum number of faces limits the splits. Each of the other passes visits the
-/// edges that exist when the pass begins, each edge once.
+/// O(edges log edges) for each iteration, plus the structure's cost of the queries and of one edit
+/// for each edge. The maximum number of faces limits the number of splits. Each of the other passes
+/// visits each edge once.
 pub fn remesh<M: MeshEdit>(mesh: &mut M, remeshing: &Remeshing) -> Result<Remeshed, RemeshError> {
     remesh_watched(mesh, remeshing, &mut |_| ControlFlow::Continue(()))
 }
 
-/// Remeshes like [`remesh`], and calls `watch` with the number of finished iterations before each
-/// iteration; `watch` can end the remeshing.
+/// Remeshes like [`remesh`], and calls `watch` before each iteration with the number of finished
+/// iterations. `watch` can end the remeshing.
 ///
 /// # Errors
 ///
@@ -118,9 +123,10 @@ pub fn remesh_watched<M: MeshEdit>(
         long: (LONG * length) * (LONG * length),
         short: (SHORT * length) * (SHORT * length),
     };
-    // Uses the larger of two estimates of the number of faces. The first fills the area with
-    // equilateral triangles. The second puts triangles along the long edges, for faces with almost
-    // no area.
+    // Uses the larger of two estimates of the number of faces: the area filled with equilateral
+    // triangles, and triangles along the long edges. The second estimate is for faces with almost
+    // no
+    // area.
     let area: f64 = mesh.faces().map(|f| cross(mesh, f).length() / 2.0).sum();
     let lengths = mesh.edges().map(|e| {
         let [a, b] = mesh.edge_vertices(e).map(|v| at(mesh, v));
@@ -165,7 +171,7 @@ pub fn remesh_watched<M: MeshEdit>(
         } else {
             Stop::LimitReached
         };
-        // Collapses make room for more splits.
+        // A collapse makes room for more splits.
         let converged = splits + collapses + flips == 0 && moved <= TOLERANCE * length;
         if converged || (!complete && collapses == 0) {
             break;
@@ -195,7 +201,7 @@ fn check_precision<M: MeshEdit>(mesh: &M, length: f64) -> Result<(), RemeshError
 
 struct Work<M: MeshEdit> {
     numbering: Numbering<M>,
-    /// Edges with a squared length from `short` to `long` are not changed.
+    /// Squared length above which an edge is split.
     long: f64,
     short: f64,
 }
@@ -210,8 +216,8 @@ impl<M: MeshEdit> Work<M> {
         a.distance_squared(b)
     }
 
-    /// Splits long edges, including new long edges, up to `max_faces` faces. Returns the number of
-    /// splits, and false if the maximum was reached.
+    /// Splits long edges, including new long edges. Returns the number of splits, and false if
+    /// `max_faces` stopped the splits.
     fn split_long(&mut self, mesh: &mut M, max_faces: usize) -> (usize, bool) {
         let mut queue = self.numbering.edges(mesh);
         queue.retain(|&ends| self.length_squared(mesh, ends) > self.long);
@@ -227,7 +233,7 @@ impl<M: MeshEdit> Work<M> {
             }
             let [a, b] = self.ends(mesh, ends);
             let middle = ((a + b) / 2.0).as_vec3();
-            // Rounding must not make a half as long as the whole edge.
+            // Because of rounding, a half can be as long as the whole edge.
             let whole = a.distance_squared(b);
             let halves = [a, b].map(|end| end.distance_squared(middle.as_dvec3()));
             if !halves.iter().all(|&half| half < whole && half > 0.0) {
@@ -249,7 +255,7 @@ impl<M: MeshEdit> Work<M> {
         (splits, true)
     }
 
-    /// Collapses short edges, unless an edge would become too long; returns the number of
+    /// Collapses short edges, unless an edge would become too long. Returns the number of
     /// collapses.
     fn collapse_short(&mut self, mesh: &mut M) -> usize {
         let mut collapses = 0;
@@ -289,8 +295,8 @@ impl<M: MeshEdit> Work<M> {
         collapses
     }
 
-    /// Returns the end that stays and its new position, or `None` if a boundary would change its
-    /// shape.
+    /// Returns the end that remains and its new position, or `None` if the boundary would change
+    /// its shape.
     fn collapse_target(&self, mesh: &M, e: M::Edge, ends: [u32; 2]) -> Option<(u32, DVec3)> {
         let [p, q] = self.ends(mesh, ends);
         let handles = ends.map(|n| self.numbering.handle(n));
@@ -311,7 +317,6 @@ impl<M: MeshEdit> Work<M> {
         }
     }
 
-    /// Returns whether the boundary is straight at a vertex on it.
     fn is_straight(&self, mesh: &M, number: u32) -> bool {
         let v = self.numbering.handle(number);
         let from = at(mesh, v);
@@ -327,8 +332,7 @@ impl<M: MeshEdit> Work<M> {
         matches!(directions[..], [one, other] if one.dot(other) <= -STRAIGHT)
     }
 
-    /// Flips edges if this brings the valences around closer to the regular ones; returns the
-    /// number of flips.
+    /// Flips edges if this improves the valences. Returns the number of flips.
     fn equalize_valences(&mut self, mesh: &mut M) -> usize {
         let mut flips = 0;
         for ends in self.numbering.edges(mesh) {
@@ -362,8 +366,7 @@ impl<M: MeshEdit> Work<M> {
         flips
     }
 
-    /// Moves inner vertices within their tangent planes, all computed from the old positions.
-    /// Returns the longest distance that a vertex moved.
+    /// Moves inner vertices within their tangent planes. Returns the longest movement.
     fn smooth(&mut self, mesh: &mut M) -> f64 {
         let mut moves: Vec<(u32, DVec3)> = Vec::new();
         let mut vertices: Vec<u32> = mesh.vertices().map(|v| self.numbering.number(v)).collect();
@@ -374,7 +377,7 @@ impl<M: MeshEdit> Work<M> {
                 continue;
             }
             let from = at(mesh, v);
-            // In the order of the vertex numbers, so that rounding is the same on every structure.
+            // Sorted by vertex numbers, so that rounding is the same on every structure.
             let mut fan: Vec<([u32; 2], DVec3, DVec3)> = mesh
                 .vertex_faces(v)
                 .map(|f| {
@@ -406,18 +409,18 @@ impl<M: MeshEdit> Work<M> {
     }
 }
 
-/// Returns twice the area of a face along its normal.
+/// Returns the normal of a face; its length is twice the area.
 fn cross<M: MeshEdit>(mesh: &M, f: M::Face) -> DVec3 {
     let [a, b, c] = corners(mesh, f).map(|v| at(mesh, v));
     (b - a).cross(c - a)
 }
 
-/// Returns whether both triangles of the flipped edge would face in the direction of the sum of the
-/// two old normals.
+/// Returns whether both triangles of the flipped edge would face in the direction of the old
+/// normals.
 fn flip_keeps_orientation<M: MeshEdit>(mesh: &M, quad: [M::Vertex; 4], e: M::Edge) -> bool {
     let normal_sum: DVec3 = mesh.edge_faces(e).map(|f| cross(mesh, f)).sum();
     let [a, b, c, d] = quad.map(|v| at(mesh, v));
-    // It does not matter which apex is on the left: both cross products change sign together.
+    // The result is the same if the two new triangles are exchanged.
     let new = [(d - a).cross(c - a), (c - b).cross(d - b)];
     let signs = new.map(|n| n.dot(normal_sum));
     signs.iter().all(|&s| s > 0.0) || signs.iter().all(|&s| s < 0.0)

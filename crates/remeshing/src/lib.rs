@@ -7,12 +7,12 @@
 //! | [`flip_to_delaunay`] | flips edges whose two opposite angles add up to more than π | O(edges log edges + flips) | Lawson 1977 |
 //!
 //! Each operator is written once, with [`MeshEdit`] and the queries, and runs on every structure.
-//! If a structure scans all faces to find neighbours, every step has the cost of such a scan. All
-//! decisions depend on vertex numbers. The numbers follow the order in which the faces list the
-//! vertices, and sums are computed in that order. Therefore **every structure makes the same mesh,
-//! to the bit**, from the same manifold. Only the order of the faces in the result depends on the
-//! structure. A second operator that runs on these results can therefore make different meshes. To
-//! avoid this, first build all structures again from one [`PolygonMesh`].
+//! On a structure that scans all faces to find neighbours, every step scans all faces. All
+//! decisions depend on vertex numbers. Vertices are numbered in the order in which the faces list
+//! them, and sums are computed in this order. Therefore **every structure makes the same mesh, to
+//! the bit**, from the same manifold. Only the order of the faces in the result depends on the
+//! structure. A second operator can therefore make different meshes from these results. To avoid
+//! this, first build all structures again from one [`PolygonMesh`].
 //!
 //! [`PolygonMesh`]: sixfold_core::PolygonMesh
 //!

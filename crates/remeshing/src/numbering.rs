@@ -4,16 +4,15 @@ use sixfold_core::{HandleMap, MeshEdit, Point, VertexId, VertexMap, row};
 
 use crate::error::RemeshError;
 
-/// A number for every vertex, and the vertex of every number, kept up to date through all edits.
+/// The numbers of the vertices, which are updated after every edit.
 ///
-/// Structures list vertices, and walk around them, in different orders. Decisions that depend on
-/// these orders would differ between structures; decisions that depend on the numbers do not. The
-/// numbers follow the order in which the faces list the vertices. Each face is read from the corner
-/// with the least coordinates.
+/// Structures list vertices in different orders, but all structures use the same numbers. Vertices
+/// are numbered in the order in which the faces list them. Each face is read from the corner with
+/// the smallest coordinates.
 pub(crate) struct Numbering<M: MeshEdit> {
     handles: Vec<M::Vertex>,
-    /// By number: whether the vertex has been removed, so that its handle must not be used any
-    /// more.
+    /// For each number: whether the vertex has been removed. The handle of a removed vertex must
+    /// not be used.
     removed: Vec<bool>,
     numbers: VertexMap<M, u32>,
 }
@@ -47,7 +46,7 @@ impl<M: MeshEdit> Numbering<M> {
         };
         for f in mesh.faces() {
             let [a, b, c] = corners(mesh, f);
-            // −0 counts as 0, as in structures where a vertex is its coordinates.
+            // Replaces −0 by 0, because some structures identify a vertex by its coordinates.
             let place = |v| mesh.position(v) + Point::ZERO;
             let bits = |v| place(v).to_array().map(f32::to_bits);
             let least = bits(a).min(bits(b)).min(bits(c));
@@ -67,7 +66,6 @@ impl<M: MeshEdit> Numbering<M> {
         Ok(numbering)
     }
 
-    /// Numbers a new vertex; returns its number.
     pub(crate) fn push(&mut self, v: M::Vertex) -> u32 {
         let number = row(self.handles.len());
         self.numbers.insert(v, number);
@@ -76,13 +74,11 @@ impl<M: MeshEdit> Numbering<M> {
         number
     }
 
-    /// Marks the vertex as removed.
     #[inline]
     pub(crate) fn remove(&mut self, number: u32) {
         self.removed[number as usize] = true;
     }
 
-    /// Sets the handle of the vertex after an edit.
     #[inline]
     pub(crate) fn set_handle(&mut self, number: u32, new: M::Vertex) {
         let old = self.handles[number as usize];
@@ -93,32 +89,30 @@ impl<M: MeshEdit> Numbering<M> {
         }
     }
 
-    /// Moves a vertex to `to`. If the structure identifies vertices by coordinates and another
-    /// vertex is at `to`, the vertex does not move.
+    /// Moves a vertex to `to`. The vertex does not move if the structure identifies vertices by
+    /// coordinates and another vertex is at `to`.
     pub(crate) fn set_position(&mut self, mesh: &mut M, number: u32, to: Point) {
         if let Ok(v) = mesh.set_position(self.handle(number), to) {
             self.set_handle(number, v);
         }
     }
 
-    /// Returns how many numbers are in use, including those of removed vertices.
+    /// Returns the number of all vertices, including removed vertices.
     pub(crate) fn len(&self) -> usize {
         self.handles.len()
     }
 
-    /// Returns the handle of the vertex.
     #[inline]
     pub(crate) fn handle(&self, number: u32) -> M::Vertex {
         self.handles[number as usize]
     }
 
-    /// Returns the number of a vertex.
     #[inline]
     pub(crate) fn number(&self, v: M::Vertex) -> u32 {
         self.numbers[v]
     }
 
-    /// Returns all edges as the numbers of their ends, sorted; O(edges log edges).
+    /// Returns the numbers of the two ends of each edge, sorted. O(edges log edges).
     pub(crate) fn edges(&self, mesh: &M) -> Vec<[u32; 2]> {
         let ends = mesh.edges().map(|e| {
             let [a, b] = mesh.edge_vertices(e).map(|v| self.number(v));
@@ -129,7 +123,6 @@ impl<M: MeshEdit> Numbering<M> {
         edges
     }
 
-    /// Returns the edge between two numbers, if it exists.
     #[inline]
     pub(crate) fn edge(&self, mesh: &M, [a, b]: [u32; 2]) -> Option<M::Edge> {
         if self.removed[a as usize] || self.removed[b as usize] {
@@ -139,7 +132,7 @@ impl<M: MeshEdit> Numbering<M> {
     }
 }
 
-/// Returns the corners of a triangle, starting at any of them.
+/// Returns the corners of a triangle. Any corner can be the first.
 #[inline]
 pub(crate) fn corners<M: MeshEdit>(mesh: &M, f: M::Face) -> [M::Vertex; 3] {
     let mut corners = mesh.face_vertices(f);
@@ -147,7 +140,7 @@ pub(crate) fn corners<M: MeshEdit>(mesh: &M, f: M::Face) -> [M::Vertex; 3] {
     [next(), next(), next()]
 }
 
-/// Returns the corners of a triangle, starting at its corner `v`.
+/// Returns the corners of a triangle, starting at corner `v`.
 #[inline]
 pub(crate) fn corners_from<M: MeshEdit>(mesh: &M, f: M::Face, v: M::Vertex) -> [M::Vertex; 3] {
     let [a, b, c] = corners(mesh, f);

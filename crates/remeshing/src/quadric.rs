@@ -4,20 +4,18 @@ use std::ops::AddAssign;
 
 use glam::{DMat3, DVec3};
 
-/// A weighted sum of squared distances to planes: xᵀ A x − 2 b·x + c, for a point x relative to
-/// some origin.
+/// A weighted sum of squared distances to planes: xᵀ A x − 2 b·x + c. The point x is relative to
+/// the origin of the quadric.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Quadric {
-    /// A: xx, xy, xz, yy, yz, zz.
+    /// The matrix A: xx, xy, xz, yy, yz, zz.
     a: [f64; 6],
     b: DVec3,
     c: f64,
 }
 
-/// A quadric in f32, with half the bytes.
-///
-/// f32 is precise enough because the origin is the vertex of the quadric: the numbers are then as
-/// large as the error. With an origin far away, the error would be a difference of large numbers.
+/// A quadric in f32, with half the bytes. f32 is precise enough, because the vertex is the origin
+/// of its quadric. Coordinates relative to the vertex are small.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Packed {
     a: [f32; 6],
@@ -48,8 +46,8 @@ impl From<Packed> for Quadric {
 }
 
 impl Quadric {
-    /// Returns `weight` times the squared distance to the plane through the origin with the unit
-    /// normal `n`.
+    /// Returns `weight` times the squared distance to a plane through the origin. The unit normal
+    /// of the plane is `n`.
     pub(crate) fn plane(n: DVec3, weight: f64) -> Self {
         let a = [
             n.x * n.x,
@@ -65,7 +63,7 @@ impl Quadric {
         }
     }
 
-    /// Returns the same quadric with the origin moved by `d`.
+    /// Returns the same quadric with its origin moved by `d`.
     #[inline]
     pub(crate) fn with_origin(&self, d: DVec3) -> Self {
         let ad = self.times(d);
@@ -76,7 +74,6 @@ impl Quadric {
         }
     }
 
-    /// Returns A x.
     #[inline]
     fn times(&self, x: DVec3) -> DVec3 {
         let [xx, xy, xz, yy, yz, zz] = self.a;
@@ -87,26 +84,25 @@ impl Quadric {
         )
     }
 
-    /// Returns the sum of two quadrics with the same origin.
     #[inline]
     pub(crate) fn plus(mut self, other: &Self) -> Self {
         self += *other;
         self
     }
 
-    /// Returns the value at `x`; 0 if rounding makes it slightly negative.
+    /// Returns the value at `x`, or 0 if rounding makes the value negative.
     #[inline]
     pub(crate) fn value(&self, x: DVec3) -> f64 {
         let ax = self.times(x);
         (x.dot(ax) - 2.0 * self.b.dot(x) + self.c).max(0.0)
     }
 
-    /// Returns the point with the least value, or `None` if it is not well determined, as on a flat
-    /// or straight part.
+    /// Returns the point with the smallest value, or `None` if there are many such points, for
+    /// example on a flat surface.
     #[inline]
     pub(crate) fn minimizer(&self) -> Option<DVec3> {
         let [xx, xy, xz, yy, yz, zz] = self.a;
-        // Cofactors of a symmetric matrix; its trace gives the scale.
+        // The cofactors of the symmetric matrix. The trace of the matrix gives the scale.
         let c0 = yy * zz - yz * yz;
         let c1 = xz * yz - xy * zz;
         let c2 = xy * yz - xz * yy;
@@ -148,7 +144,7 @@ mod tests {
         let corner = DVec3::new(1.0, -2.0, 3.0);
         let mut sum = Quadric::default();
         for (n, weight) in [(DVec3::X, 1.0), (DVec3::Y, 2.0), (DVec3::Z, 0.5)] {
-            // All three planes contain the corner; then the origin is moved away from it.
+            // All three planes contain the corner. The origin is moved away from the corner.
             sum += Quadric::plane(n, weight).with_origin(-corner);
         }
         let minimizer = sum.minimizer().expect("three planes");

@@ -1,18 +1,18 @@
-//! A queue of edges to collapse, the cheapest first, by rounded costs.
+//! A queue of edges to collapse, sorted by rounded costs.
 
 use std::cmp::Reverse;
 
-/// An edge, by the numbers of its ends.
+/// An edge, given by the numbers of its ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Entry {
     pub(crate) ends: [u32; 2],
-    /// The sum of the versions of both ends when the entry was made. If the sum is different now,
-    /// an end has changed.
+    /// The sum of the versions of both ends when the entry was made. A different sum means that an
+    /// end has changed since then.
     pub(crate) version: u32,
 }
 
 impl Entry {
-    /// Returns the ends and then the version as one number, so that a comparison needs no branch.
+    /// Returns the ends and the version as one number, which is compared without a branch.
     #[inline]
     fn order(&self) -> u128 {
         let [a, b] = self.ends.map(u128::from);
@@ -20,31 +20,30 @@ impl Entry {
     }
 }
 
-/// The number of low bits that are ignored in a cost. A cost is a non-negative f32. Three bits of
-/// the fraction remain, so costs in one bucket differ by at most an eighth.
+/// Number of low bits that are ignored in a cost. A cost is a non-negative f32. Three bits of the
+/// fraction remain, so costs in one bucket differ by at most an eighth.
 const ROUNDED: u32 = 20;
 
-/// One bucket for each rounded cost, for all floats up to infinity.
+/// Number of buckets.
 const BUCKETS: usize = 1 << (31 - ROUNDED);
 
-/// A queue that returns edges in rounds. A round has all edges of the cheapest bucket, sorted by
-/// their ends. The next round has the bucket that is then the cheapest.
+/// A queue that returns edges in rounds. A round contains all edges of the cheapest bucket, sorted
+/// by their ends.
 ///
 /// ```text
 /// costs     1 ── 1⅛ ── 1¼ ── …      a round: one bucket, sorted by the ends
 /// buckets  [ab cf] [ ] [bc] …       new entries wait for the next round
 /// ```
 ///
-/// A heap of exact costs would return edges that are far apart in the mesh, and each edge would
-/// wait for memory. In a round, the edges have the order of their vertices in memory. A collapse
-/// also makes the other entries at its ends stale. Therefore a round collapses no two adjacent
-/// edges, and no vertex absorbs all of its neighbours.
+/// A heap of exact costs would return edges that are far apart in memory, which is slow. A round
+/// returns edges in the order of their vertices in memory. A collapse makes the other entries at
+/// its ends outdated. Therefore a round never collapses two adjacent edges.
 #[derive(Debug)]
 pub(crate) struct Queue {
     buckets: Vec<Vec<Entry>>,
-    /// The bucket at which the search starts; all lower buckets are empty.
+    /// A lower bound of the first bucket with entries.
     lowest: usize,
-    /// The remaining entries of this round; the next entry is last.
+    /// The remaining entries of this round. The next entry is at the end.
     round: Vec<Entry>,
 }
 
@@ -57,7 +56,7 @@ impl Queue {
         }
     }
 
-    /// Adds an edge; O(1) amortised. A cost that is not a number counts as the highest.
+    /// Adds an edge; O(1) amortised. NaN counts as the highest cost.
     #[inline]
     pub(crate) fn push(&mut self, cost: f32, entry: Entry) {
         let bucket = (cost.abs().to_bits() >> ROUNDED) as usize;

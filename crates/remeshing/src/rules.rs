@@ -5,7 +5,7 @@ use sixfold_core::MeshEdit;
 
 use crate::numbering::{corners, corners_from};
 
-/// The minimum cosine of the angle between the normals of a face before and after an edit.
+/// Minimum cosine of the angle between the normals of a face before and after an edit.
 const MIN_COSINE: f64 = 0.2;
 
 /// Returns the position of `v` in f64.
@@ -14,7 +14,8 @@ pub(crate) fn at<M: MeshEdit>(mesh: &M, v: M::Vertex) -> DVec3 {
     mesh.position(v).as_dvec3()
 }
 
-/// Returns whether no remaining triangle is turned over if both ends of an edge move to `to`.
+/// Returns whether all remaining triangles keep their orientation if both ends of an edge move to
+/// `to`.
 pub(crate) fn keeps_orientation<M: MeshEdit>(mesh: &M, [a, b]: [M::Vertex; 2], to: DVec3) -> bool {
     for (end, other) in [(a, b), (b, a)] {
         let from = at(mesh, end);
@@ -26,7 +27,7 @@ pub(crate) fn keeps_orientation<M: MeshEdit>(mesh: &M, [a, b]: [M::Vertex; 2], t
             let [p, q] = [at(mesh, p), at(mesh, q)];
             let before = (p - from).cross(q - from);
             let after = (p - to).cross(q - to);
-            // A face without area has no orientation to keep.
+            // A face without area has no orientation.
             let keeps = before == DVec3::ZERO
                 || before.dot(after) > MIN_COSINE * before.length() * after.length();
             if !keeps {
@@ -37,9 +38,8 @@ pub(crate) fn keeps_orientation<M: MeshEdit>(mesh: &M, [a, b]: [M::Vertex; 2], t
     true
 }
 
-/// Returns whether a collapse meets the link condition (Dey et al. 1999) in a mesh of triangles.
-/// Only structures that hold non-manifold edges need this test; the others refuse the collapse
-/// themselves.
+/// Returns whether a collapse meets the link condition (Dey et al. 1999) in a triangle mesh. Tests
+/// only structures that hold non-manifold edges; other structures refuse the collapse themselves.
 pub(crate) fn meets_link_condition<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
     if !M::CAPABILITIES.non_manifold_edges {
         return true;
@@ -59,7 +59,7 @@ pub(crate) fn meets_link_condition<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
         return false;
     }
     if apexes.len() == 2 {
-        // A tetrahedron would become two triangles with the same corners.
+        // A collapse of a tetrahedron would make two triangles with the same corners.
         let closed = |v| mesh.vertex_faces(v).count() == 3;
         if at_a.len() == 3 && at_b.len() == 3 && closed(a) && closed(b) {
             return false;

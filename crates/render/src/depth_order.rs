@@ -1,4 +1,4 @@
-//! The order in which polygons are painted over each other.
+//! The order in which polygons are painted.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -8,7 +8,7 @@ use sixfold_core::{FaceId, PolygonMesh, row};
 use crate::layout::Panel;
 use crate::rasterise::{Corner, Rasteriser};
 
-/// Number of samples after which further faces are ordered by mean depth alone.
+/// Maximum number of samples. Mean depths order all further faces.
 const MAX_SAMPLES: usize = 1 << 24;
 
 /// Minimum difference in depth, in pixels, at which the nearer face must come later.
@@ -23,15 +23,14 @@ struct Layer {
 
 /// Returns the faces marked `visible`, from back to front; O(samples · log samples).
 ///
-/// Sorting by one depth per face is wrong for long faces next to short ones. Instead, faces are
-/// compared at each pixel that they share: the farther one must come first. The algorithm of Kahn
-/// (1962) finds an order that follows these rules. If several faces can come next, the farthest of
-/// them comes first. Faces that intersect each other may have no valid order. In this case too, the
-/// farthest remaining face comes next.
+/// One depth per face would be wrong for long faces next to short faces. Instead, faces are
+/// compared at each common pixel: the farther face must come first. The algorithm of Kahn (1962)
+/// finds an order for these rules. If several faces can come next, the farthest face comes next. If
+/// intersecting faces make a valid order impossible, the farthest remaining face comes next.
 pub(crate) fn back_to_front(mesh: &PolygonMesh, panel: &Panel, visible: &[bool]) -> Vec<FaceId> {
     let mut layers: Vec<Layer> = Vec::new();
     let mut rasteriser = Rasteriser::new(panel.width, panel.height);
-    // The faces by mean depth. This is their order if no rule applies.
+    // The faces by mean depth.
     let mut ranked: Vec<(f64, FaceId)> = Vec::new();
     for (f, face) in mesh.faces().iter().filter(|(f, _)| visible[f.index()]) {
         let depths = face.iter().map(|&v| panel.position(v).z);
@@ -69,8 +68,8 @@ pub(crate) fn back_to_front(mesh: &PolygonMesh, panel: &Panel, visible: &[bool])
     order.into_iter().map(|rank| ranked[rank].1).collect()
 }
 
-/// Returns the numbers below `count` in an order in which the first number of each rule comes
-/// before the second. If several numbers can come next, the lowest of them comes first.
+/// Orders the numbers below `count`. The first number of each rule comes before the second number.
+/// If several numbers can come next, the lowest number comes next.
 fn topological_order(count: usize, mut rules: Vec<(u32, u32)>) -> Vec<usize> {
     rules.sort_unstable();
     rules.dedup();
@@ -119,7 +118,7 @@ mod tests {
             topological_order(3, vec![(2, 1), (2, 1), (1, 0)]),
             [2, 1, 0]
         );
-        // 1 and 2 wait for each other, and 0 waits for 2.
+        // Numbers 1 and 2 wait for each other, and number 0 waits for number 2.
         assert_eq!(
             topological_order(3, vec![(1, 2), (2, 1), (2, 0)]),
             [0, 1, 2]

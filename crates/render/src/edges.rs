@@ -9,7 +9,7 @@ pub(crate) struct Side {
     pub(crate) edge: Pair<VertexId>,
     /// The face.
     pub(crate) face: u32,
-    /// The corners where the side starts and ends, as rows of the corner table of all faces.
+    /// The start and the end of the side, as rows of the corner table of all faces.
     pub(crate) corners: [u32; 2],
 }
 
@@ -17,7 +17,6 @@ pub(crate) struct Side {
 pub(crate) struct Edges(Vec<Side>);
 
 impl Edges {
-    /// Collects the sides of `mesh`.
     pub(crate) fn new(mesh: &PolygonMesh) -> Self {
         let mut sides = Vec::with_capacity(mesh.corner_count());
         for (f, face) in mesh.faces().iter() {

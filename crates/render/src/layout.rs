@@ -11,30 +11,28 @@ const MARGIN: f64 = 0.07;
 
 /// The part of the picture for one mesh.
 pub(crate) struct Panel {
-    /// The first column of the panel in the picture.
+    /// First column of the panel in the picture.
     pub(crate) left: usize,
     /// Width in pixels.
     pub(crate) width: usize,
     /// Height in pixels.
     pub(crate) height: usize,
-    /// Coordinates by vertex, in pixels: to the right and down from the upper left corner of the
+    /// Coordinates of each vertex, in pixels: right and down from the upper left corner of the
     /// panel, and towards the viewer. Vertices without faces can have any coordinates.
     pub(crate) positions: Vec<DVec3>,
 }
 
 impl Panel {
-    /// Returns the unit of line widths, in pixels. It grows with the size of the panel.
+    /// Returns the unit of line widths, in pixels.
     pub(crate) fn unit(&self) -> f64 {
         (self.width.min(self.height) as f64 / 480.0).max(0.5)
     }
 
-    /// Returns the coordinates of `v` in the panel.
     pub(crate) fn position(&self, v: VertexId) -> DVec3 {
         self.positions[v.index()]
     }
 }
 
-/// The minimum and maximum coordinates of a mesh, in the axes of the picture.
 struct Bounds([DVec3; 2]);
 
 impl Bounds {
@@ -63,7 +61,7 @@ impl Bounds {
     }
 }
 
-/// Returns the panels from left to right, each with a centred mesh, all at one scale; O(corners).
+/// Returns the panels from left to right, all at one scale; O(corners).
 pub(crate) fn layout(
     render_meshes: &[RenderMesh<'_>],
     settings: &Settings,
@@ -80,11 +78,11 @@ pub(crate) fn layout(
     };
     let bounds = render_meshes.iter().enumerate().map(mesh_bounds);
     let bounds = bounds.collect::<Result<Vec<Bounds>, RenderError>>()?;
-    // Uses the width of the narrowest panel for all. Rounding makes some panels one pixel wider.
+    // The narrowest panel determines the scale. Rounding makes some panels one pixel wider.
     let usable = |side: usize| side as f64 * (1.0 - 2.0 * MARGIN);
     let scales = bounds.iter().map(|bounds| {
         let size = bounds.size();
-        // Limits the scale of a mesh that is seen from its edge.
+        // The limit is for a mesh that is seen from its edge.
         let min_size = size.max_element() * 0.01;
         let horizontal = usable(width / render_meshes.len()) / size.x.max(min_size);
         horizontal.min(usable(height) / size.y.max(min_size))

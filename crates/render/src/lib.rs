@@ -1,8 +1,7 @@
 //! A software renderer for meshes with their edges and creases, in parallel projection.
 //!
-//! [`draw`] makes pixels, and [`Picture::write_png`] writes them. [`draw_svg`] makes lines and
-//! polygons. Several [`RenderMesh`]s are drawn in a row, each in its own panel and all at one
-//! scale, for example to compare the levels of a subdivision.
+//! [`draw`] makes pixels, and [`Picture::write_png`] writes the pixels. [`draw_svg`] makes lines
+//! and polygons. Several [`RenderMesh`]s are drawn in a row at one scale, each in its own panel.
 //!
 //! ```text
 //!               ┌ layout: vertex positions     ┐
@@ -10,9 +9,9 @@
 //!               └ normals: for the lighting    ┘                └─ visible strokes ┴─ SVG
 //! ```
 //!
-//! A depth buffer with several samples per pixel determines which lines and surfaces are hidden,
-//! after Catmull (1974). The test of a line uses its centre, so that the faces beside a thick line
-//! do not hide half of its width. The same input gives the same bytes.
+//! A depth buffer (Catmull 1974) with several samples per pixel determines which lines and surfaces
+//! are hidden. The visibility test of a line uses the centre of the line. The same input gives the
+//! same bytes.
 
 mod depth_order;
 mod edges;

@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 
-/// A colour in linear amounts of red, green and blue. Unlike sRGB codes, these amounts can be added
-/// and averaged.
+/// A colour in linear amounts of red, green and blue. Linear amounts can be added and averaged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Colour(pub(crate) DVec3);
 
@@ -11,7 +10,7 @@ pub(crate) struct Colour(pub(crate) DVec3);
 pub(crate) const BACKGROUND: Colour = Colour(DVec3::new(0.965, 0.965, 0.958));
 /// The outer side of a surface.
 const OUTSIDE: Colour = Colour(DVec3::new(0.30, 0.42, 0.60));
-/// The inner side, which a closed mesh never shows.
+/// The inner side of a surface.
 const INSIDE: Colour = Colour(DVec3::new(0.66, 0.47, 0.26));
 /// Edges.
 pub(crate) const EDGE: Colour = Colour(DVec3::new(0.018, 0.030, 0.055));
@@ -19,7 +18,7 @@ pub(crate) const EDGE: Colour = Colour(DVec3::new(0.018, 0.030, 0.055));
 pub(crate) const CREASE: Colour = Colour(DVec3::new(0.86, 0.075, 0.020));
 
 impl Colour {
-    /// Returns the mixture of `share` parts of `other` and `1 - share` parts of this colour.
+    /// Returns the mixture of `share` of `other` and `1 - share` of this colour.
     pub(crate) fn mix(self, other: Self, share: f64) -> Self {
         Self(self.0.lerp(other.0, share))
     }
@@ -37,19 +36,19 @@ impl Colour {
         })
     }
 
-    /// Returns the colour in the form `#9fb4c8`.
+    /// Returns the colour in the form `#rrggbb`.
     pub(crate) fn to_hex(self) -> String {
         let [r, g, b] = self.srgb_codes();
         format!("#{r:02x}{g:02x}{b:02x}")
     }
 }
 
-/// Returns the colour of a surface with this normal, in the axes of the picture. If `inside` is
-/// true, returns the colour of the inner side.
+/// Returns the colour of a surface with this normal, in the axes of the picture. `inside` selects
+/// the colour of the inner side.
 ///
-/// Uses Lambert's law (1760) for a key light from the upper left and for a weak light from the
-/// right. Adds light from the sky above, a soft highlight after Blinn (1977), and light along the
-/// rim, where the surface turns away from the viewer.
+/// The light is the sum of five parts: a key light from the upper left and a weak light from the
+/// right (Lambert 1760), light from the sky, a soft highlight (Blinn 1977), and light along the
+/// rim.
 pub(crate) fn shade(normal: DVec3, inside: bool) -> Colour {
     let normal = normal.normalize_or(DVec3::Z);
     let (normal, base) = if inside {
@@ -75,8 +74,7 @@ mod tests {
     #[test]
     fn linear_light_is_converted_to_srgb() {
         let grey = |light| Colour(DVec3::splat(light)).srgb_codes()[0];
-        // In the sRGB standard, half of the full light has code 188. Values out of range are
-        // clamped.
+        // In sRGB, half of the full light has code 188. Values out of range are clamped.
         let codes = [-1.0, 0.0, 0.002, 0.215_861, 0.5, 1.0, 7.0].map(grey);
         assert_eq!(codes, [0, 0, 7, 128, 188, 255, 255]);
         assert_eq!(Colour(DVec3::X).to_hex(), "#ff0000");

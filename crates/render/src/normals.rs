@@ -6,26 +6,25 @@ use sixfold_core::{Creases, PolygonMesh, VertexId, row};
 use crate::edges::Edges;
 use crate::settings::{Shading, View};
 
-/// The cosine of 40°: faces at a larger angle are not one smooth surface.
+/// The cosine of 40°, the maximum angle between the faces of a smooth surface.
 const MIN_SMOOTH_COSINE: f64 = 0.766_044_443_118_978;
 
-/// Minimum sharpness of an edge across which shading is not smooth. A less sharp edge is rounded
-/// off in the next level.
+/// Minimum sharpness of an edge across which shading is not smooth.
 const MIN_CREASE_SHARPNESS: f32 = 1.0;
 
-/// Unit normals in the axes of the picture; zero for a face without area.
+/// Unit normals in the axes of the picture. A face without area has the normal zero.
 pub(crate) struct Normals {
     /// By face.
     pub(crate) faces: Vec<DVec3>,
-    /// By corner, in the order of the corners of all faces: the normals for the lighting.
+    /// For each corner, the normal for the lighting.
     pub(crate) corners: Vec<DVec3>,
 }
 
 impl Normals {
     /// Computes the normals of `mesh`; O(corners · α), with the inverse Ackermann function α.
     ///
-    /// Corners joined by smooth edges are one surface. Its normal is the mean of its face normals,
-    /// weighted by area.
+    /// Corners joined by smooth edges are one surface. The normal of a surface is the mean of its
+    /// face normals, weighted by area.
     pub(crate) fn new(
         mesh: &PolygonMesh,
         creases: &Creases,
@@ -79,9 +78,9 @@ impl Normals {
     }
 }
 
-/// Returns the normal of a face (Newell's method). Its length is twice the area of the face.
+/// Returns the Newell normal of a face, whose length is twice the area.
 ///
-/// Products of the 32-bit coordinates do not overflow 64-bit floats.
+/// Products of 32-bit coordinates do not overflow 64-bit floats.
 fn area_vector(mesh: &PolygonMesh, face: &[VertexId]) -> DVec3 {
     let position = |v: VertexId| mesh.position(v).as_dvec3();
     let origin = position(face[0]);
@@ -91,7 +90,7 @@ fn area_vector(mesh: &PolygonMesh, face: &[VertexId]) -> DVec3 {
         .sum()
 }
 
-/// The smooth surface of each corner: disjoint sets after Tarjan (1975), with path halving.
+/// The smooth surface of each corner, as disjoint sets (Tarjan 1975) with path halving.
 struct Surfaces(Vec<u32>);
 
 impl Surfaces {
@@ -111,8 +110,7 @@ impl Surfaces {
 
     fn union(&mut self, a: u32, b: u32) {
         let [a, b] = [self.find(a), self.find(b)];
-        // The lowest corner represents the set, so the order in which sets are joined has no
-        // effect.
+        // With the lowest corner as representative, the order of the joins has no effect.
         self.0[a.max(b) as usize] = a.min(b);
     }
 }

@@ -52,7 +52,7 @@ impl Picture {
 
 /// Draws the meshes in a row; O(corners · log corners + samples covered).
 ///
-/// Memory: 14 bytes per sample, at most sixteen samples per pixel, for one panel at a time.
+/// Memory: 14 bytes per sample, for one panel at a time. A pixel has at most sixteen samples.
 ///
 /// # Errors
 ///
@@ -106,7 +106,6 @@ pub fn draw(render_meshes: &[RenderMesh<'_>], settings: &Settings) -> Result<Pic
     Ok(Picture { size, bytes })
 }
 
-/// The visible parts of one mesh.
 pub(crate) struct VisibleParts {
     pub(crate) normals: Normals,
     /// `None` in a wireframe.
@@ -137,14 +136,13 @@ impl VisibleParts {
 }
 
 /// For each pixel of a panel, the share that lines of one colour cover. If several lines cover a
-/// pixel, the largest share counts, so that joints are invisible.
+/// pixel, the largest share counts.
 struct LineCoverage {
     width: usize,
     shares: Vec<u8>,
 }
 
 impl LineCoverage {
-    /// Computes the coverage of strokes of these widths.
     fn new<const N: usize>(
         panel: &Panel,
         strokes: [(&Vec<Stroke>, f64); N],
@@ -167,7 +165,7 @@ impl LineCoverage {
         let (low, high) = (a.min(b) - margin, a.max(b) + margin);
         // The cast turns negative values into 0.
         let pixels = |low: f64, high: f64, count| low as usize..(high.ceil() as usize).min(count);
-        // A line thinner than a pixel is drawn paler.
+        // A line thinner than a pixel is paler.
         let max_cover = (2.0 * radius).min(1.0);
         for row in pixels(low.y, high.y, height) {
             for column in
@@ -175,7 +173,7 @@ impl LineCoverage {
             {
                 let centre = DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
                 let t = (centre - a).dot(along) / along.length_squared();
-                // A dot has no direction: `t` is NaN.
+                // `t` is NaN for a dot, because a dot has no direction.
                 let t = if t.is_finite() {
                     t.clamp(0.0, 1.0)
                 } else {
@@ -189,8 +187,7 @@ impl LineCoverage {
         }
     }
 
-    /// Returns the columns of `row` that a sloping line can reach. These are fewer than the columns
-    /// of its bounding box.
+    /// Returns the columns of `row` that a sloping line can reach.
     fn columns_near_line(
         &self,
         row: usize,
@@ -209,7 +206,7 @@ impl LineCoverage {
         first.max(columns.start)..end.min(columns.end)
     }
 
-    /// Returns `below` covered with lines in `colour`.
+    /// Returns the colour `below`, covered by lines in `colour`.
     fn blend(&self, below: Colour, colour: Colour, column: usize, row: usize) -> Colour {
         let share = self.shares[row * self.width + column];
         below.mix(colour, f64::from(share) / 255.0)

@@ -7,9 +7,9 @@ use glam::DVec3;
 /// A corner of a polygon on the grid of samples.
 #[derive(Clone, Copy)]
 pub(crate) struct Corner {
-    /// Coordinates to the right, down, and towards the viewer, in samples.
+    /// Coordinates in samples: right, down, and towards the viewer.
     pub(crate) position: DVec3,
-    /// The normal of the surface at the corner.
+    /// The surface normal at the corner.
     pub(crate) normal: DVec3,
 }
 
@@ -29,12 +29,11 @@ struct Crossing {
     corner: Corner,
 }
 
-/// Fills polygons on a grid; reuses its scratch memory from one polygon to the next.
+/// Fills polygons on a grid.
 ///
-/// A point is inside a polygon of any shape if a line from the left to the point crosses an odd
-/// number of sides. Coordinates and normals are interpolated along sides and then between sides
-/// (Bouknight 1970). So polygons that share a side leave no gap, even if the polygons are not
-/// planar.
+/// A point is inside a polygon if a line from the left to the point crosses an odd number of sides.
+/// Coordinates and normals are interpolated along sides and then between sides (Bouknight 1970). So
+/// polygons that share a side leave no gap, even if the polygons are not planar.
 ///
 /// ```text
 ///       ╱╲          ╱╲
@@ -48,7 +47,6 @@ pub(crate) struct Rasteriser {
 }
 
 impl Rasteriser {
-    /// Creates a rasteriser for a grid of this size.
     pub(crate) fn new(columns: usize, rows: usize) -> Self {
         Self {
             columns,
@@ -59,7 +57,7 @@ impl Rasteriser {
 
     /// Calls `emit` with every sample inside the polygon; O(crossings · log + samples).
     pub(crate) fn rasterise(&mut self, corners: &[Corner], mut emit: impl FnMut(Sample)) {
-        /// Maximum number of crossings in memory at once, unless one row has more.
+        /// Maximum number of crossings in memory, unless one row has more.
         const MAX_CROSSINGS: usize = 1 << 16;
         let heights = corners.iter().map(|corner| corner.position.y);
         let lowest = heights.clone().fold(f64::INFINITY, f64::min);
@@ -73,14 +71,13 @@ impl Rasteriser {
         }
     }
 
-    /// Stores the points where the sides cross these rows, sorted by row and then from left to
+    /// Finds the points where the sides cross these rows, sorted by row and then from left to
     /// right.
     fn find_crossings(&mut self, corners: &[Corner], rows: &Range<usize>) {
         self.crossings.clear();
         let next = corners.iter().cycle().skip(1);
         for (&a, &b) in corners.iter().zip(next) {
-            // Both faces at a side start at the same end of the side, so that their rounding is the
-            // same.
+            // Both faces at a side use the same direction, so both have the same rounding.
             let (low, high) = if (a.position.y, a.position.x) <= (b.position.y, b.position.x) {
                 (a, b)
             } else {
@@ -100,7 +97,7 @@ impl Rasteriser {
         });
     }
 
-    /// Fills between each pair of crossings of a row; a row has an even number of crossings.
+    /// Fills between each pair of crossings of a row.
     fn emit_spans(&self, emit: &mut impl FnMut(Sample)) {
         for pair in self.crossings.chunks_exact(2) {
             let [from, to] = [pair[0], pair[1]];
@@ -128,9 +125,9 @@ impl Corner {
     }
 }
 
-/// Returns the samples among `count` whose centres are at or after `low` and before `high`.
+/// Returns the samples whose centres are at or after `low` and before `high`.
 fn samples_between(low: f64, high: f64, count: usize) -> Range<usize> {
-    // The first sample whose centre is at or after `x`. The cast turns negative values into 0.
+    // First sample whose centre is at or after `x`. The cast turns negative values into 0.
     let first = |x: f64| ((x - 0.5).ceil() as usize).min(count);
     first(low)..first(high)
 }
@@ -139,7 +136,7 @@ fn samples_between(low: f64, high: f64, count: usize) -> Range<usize> {
 mod tests {
     use super::*;
 
-    /// Returns the grid after filling these polygons: the number of times each sample was filled.
+    /// Returns how often each sample was filled.
     fn rasterised(polygons: &[&[(f64, f64)]]) -> Vec<String> {
         let mut rasteriser = Rasteriser::new(8, 6);
         let mut counts = [[0; 8]; 6];
@@ -216,7 +213,6 @@ mod tests {
 
     #[test]
     fn many_corners_are_filled_in_batches() {
-        // A comb: both sides of every tooth cross every row.
         let teeth = 40_000;
         let mut comb = vec![(8.0, 6.0), (0.0, 6.0)];
         for tooth in 0..teeth {

@@ -10,7 +10,7 @@ use crate::normals::Normals;
 use crate::rasterise::{Corner, Rasteriser, Sample};
 use crate::settings::RenderMesh;
 
-/// The samples of one panel: `per_side` × `per_side` for each pixel.
+/// The samples of one panel. Each pixel has `per_side` × `per_side` samples.
 ///
 /// # Invariants
 ///
@@ -19,16 +19,16 @@ pub(crate) struct Samples {
     pub(crate) per_side: usize,
     pub(crate) columns: usize,
     pub(crate) rows: usize,
-    /// The depth of the nearest surface, as a coordinate towards the viewer, in samples; −∞ if
-    /// there is no surface.
+    /// The depth of the nearest surface: its coordinate towards the viewer, in samples. −∞ if there
+    /// is no surface.
     depths: Vec<f32>,
-    /// The face of this surface.
+    /// The face of the nearest surface.
     faces: Vec<Slot<FaceId>>,
-    /// The colour of this surface, in shares of [`FULL_LIGHT`].
+    /// The colour of the nearest surface, as fractions of [`FULL_LIGHT`].
     lights: Vec<[u16; 3]>,
 }
 
-/// The code of full light. Brighter highlights are clamped, as on a screen.
+/// The code of full light. Brighter light is clamped.
 const FULL_LIGHT: f64 = 65535.0;
 
 impl Samples {
@@ -62,7 +62,7 @@ impl Samples {
     }
 
     fn empty(panel: &Panel) -> Result<Self, RenderError> {
-        // Small pictures have more samples per pixel, because they are viewed closely.
+        // Small pictures are viewed closely, so they have more samples per pixel.
         let per_side = match panel.width * panel.height {
             ..=1_000_000 => 4,
             1_000_001..=3_000_000 => 3,
@@ -91,9 +91,8 @@ impl Samples {
         }
     }
 
-    /// Returns whether at least one of the nine samples around `position` has no surface, or has a
-    /// surface for which `predicate` is true. Calls `predicate` with the depth and the face row of
-    /// the nearest surface.
+    /// Returns whether one of the nine samples around `position` is empty or fulfils `predicate`.
+    /// The arguments of `predicate` are the depth and the face row of the nearest surface.
     pub(crate) fn any_around(&self, position: DVec3, predicate: impl Fn(f32, u32) -> bool) -> bool {
         let neighbours = |at: f64, count: usize| {
             let at = (at.max(0.0) as usize).min(count - 1);
@@ -108,7 +107,7 @@ impl Samples {
         })
     }
 
-    /// Returns for each face whether it is the nearest at any sample.
+    /// For each face, returns whether the face is the nearest surface at a sample.
     pub(crate) fn visible_faces(&self, faces: usize) -> Vec<bool> {
         let mut visible = vec![false; faces];
         for face in self.faces.iter().filter_map(|face| face.get()) {
@@ -117,7 +116,8 @@ impl Samples {
         visible
     }
 
-    /// Returns the mean colour of the samples of a pixel, with `background` for empty samples.
+    /// Returns the mean colour of the samples of a pixel. Empty samples have the colour
+    /// `background`.
     pub(crate) fn pixel(&self, column: usize, row: usize, background: Colour) -> Colour {
         let mut sum = DVec3::ZERO;
         for row in row * self.per_side..(row + 1) * self.per_side {
@@ -133,7 +133,7 @@ impl Samples {
     }
 }
 
-/// Allocates a table of `count` cells, or an error if there is not enough memory.
+/// Allocates a table of `count` cells. Returns an error if there is not enough memory.
 pub(crate) fn allocate<T: Clone>(count: usize, cell: T) -> Result<Vec<T>, RenderError> {
     let mut table = Vec::new();
     let bytes = count.saturating_mul(size_of::<T>());

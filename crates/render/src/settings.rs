@@ -8,7 +8,7 @@ use crate::error::RenderError;
 /// Maximum width and height of a picture, in pixels.
 pub const MAX_SIDE: u32 = 8192;
 
-/// Maximum number of pixels of a picture: a little more than 3840 × 2160.
+/// Maximum number of pixels of a picture.
 pub const MAX_PIXELS: u32 = 1 << 23;
 
 /// Minimum width and height of the panel of one mesh, in pixels.
@@ -44,14 +44,13 @@ impl Size {
         }
     }
 
-    /// Checks the size for `panels` panels in a row.
     pub(crate) fn check(self, panels: usize) -> Result<(), RenderError> {
         let Self { width, height } = self;
         if width.max(height) > MAX_SIDE || u64::from(width) * u64::from(height) > MAX_PIXELS.into()
         {
             return Err(RenderError::TooLarge { width, height });
         }
-        // Both sides are at most `MAX_SIDE` here.
+        // Width and height are at most `MAX_SIDE` here.
         let needed = panels.saturating_mul(MIN_PANEL as usize);
         if height < MIN_PANEL || (width as usize) < needed {
             return Err(RenderError::TooSmall {
@@ -90,14 +89,14 @@ pub struct View {
 }
 
 impl View {
-    /// Azimuth and elevation of the isometric view: all three axes are equally foreshortened.
+    /// Azimuth and elevation of the isometric view, in degrees.
     pub const ISO: [f64; 2] = [45.0, 35.264_389_682_754_66];
 
     /// Creates the view from these angles, in degrees.
     ///
     /// # Errors
     ///
-    /// Returns [`RenderError::View`] if an angle is not finite or the elevation is not within ±90°.
+    /// Returns [`RenderError::View`] if an angle is not finite or the elevation is outside ±90°.
     pub fn new(azimuth: f64, elevation: f64, up: Up) -> Result<Self, RenderError> {
         if !azimuth.is_finite() || !(-90.0..=90.0).contains(&elevation) {
             return Err(RenderError::View { azimuth, elevation });
@@ -114,7 +113,7 @@ impl View {
         Ok(Self { axes })
     }
 
-    /// Returns the position of `p` in the picture: to the right, upwards, and towards the viewer.
+    /// Returns the coordinates of `p` in the picture: right, up, and towards the viewer.
     pub(crate) fn project(&self, p: Point) -> DVec3 {
         self.rotate(p.as_dvec3())
     }
@@ -131,7 +130,7 @@ impl View {
 pub enum Shading {
     /// The normal of each face: every face looks flat.
     Flat,
-    /// Smooth normals: faces at an angle of at most 40° are one smooth surface, except at a crease.
+    /// Smooth normals. Faces at an angle of at most 40° are one smooth surface, except at a crease.
     #[default]
     Smooth,
 }
@@ -145,9 +144,9 @@ pub struct Settings {
     pub view: View,
     /// The normals that the lighting uses.
     pub shading: Shading,
-    /// Whether to draw the edges that are not sharp; sharp edges are always drawn.
+    /// Whether to draw the edges that are not sharp. Sharp edges are always drawn.
     pub edges: bool,
-    /// Whether to draw all edges, including hidden ones, and no faces.
+    /// Whether to draw all edges, including hidden edges, and no faces.
     pub wireframe: bool,
 }
 
@@ -161,14 +160,13 @@ mod tests {
             let view = View::new(azimuth, elevation, up).expect("a view");
             view.project(p).round().to_array()
         };
-        // From the front; from the right; from above, with the front at the bottom.
+        // The views from the front, from the right and from above.
         let p = Point::new(1.0, 2.0, 3.0);
         assert_eq!(at(0.0, 0.0, Up::Y, p), [1.0, 2.0, 3.0]);
         assert_eq!(at(90.0, 0.0, Up::Y, p), [-3.0, 2.0, 1.0]);
         assert_eq!(at(0.0, 90.0, Up::Y, p), [1.0, -3.0, 2.0]);
         assert_eq!(at(0.0, 0.0, Up::Z, p), [1.0, 3.0, -2.0]);
         assert_eq!(at(-630.0, 0.0, Up::Z, p), [2.0, 3.0, 1.0]);
-        // In an isometric view, all axes have the same length.
         let [azimuth, elevation] = View::ISO;
         let view = View::new(azimuth, elevation, Up::Z).expect("a view");
         for axis in [Point::X, Point::Y, Point::Z] {

@@ -17,14 +17,14 @@ const CREASE_WIDTH: f64 = 3.0;
 const CORNER_WIDTH: f64 = 8.0;
 /// Maximum opacity of an edge.
 const EDGE_OPACITY: f64 = 0.62;
-/// Below this mean length, in units of the panel, edges are drawn paler, to keep faces visible.
+/// Mean length of edges, in units of the panel, below which edges are paler.
 const FULL_OPACITY_LENGTH: f64 = 14.0;
 
-/// A straight line with round ends, in pixels of a panel; a dot if both ends are equal.
+/// A straight line with round ends, in pixels of a panel. If both ends are equal, the line is a
+/// dot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stroke {
     pub(crate) ends: [DVec2; 2],
-    /// Opacity; lower for distant strokes in a wireframe.
     pub(crate) opacity: f64,
 }
 
@@ -39,8 +39,8 @@ pub(crate) struct Strokes {
 }
 
 impl Strokes {
-    /// Collects the visible parts of edges and corners. Without `samples`, as in a wireframe, all
-    /// parts are visible. O(corners + pixels along edges).
+    /// Collects the visible parts of edges and corners. Without `samples`, all parts are visible.
+    /// O(corners + pixels along edges).
     pub(crate) fn new(
         render_mesh: &RenderMesh<'_>,
         panel: &Panel,
@@ -81,7 +81,7 @@ impl Strokes {
             stroke.opacity *= opacity;
         }
         for &(v, _) in render_mesh.creases.corners() {
-            // A vertex without faces can have any coordinates, even infinite ones.
+            // A vertex without faces can have infinite coordinates.
             let position = panel.position(v);
             if position.is_finite() && visibility.is_corner_visible(position) {
                 strokes.corners.push(Stroke {
@@ -94,7 +94,6 @@ impl Strokes {
     }
 }
 
-/// The visibility test for edges.
 struct VisibilityTest<'a> {
     samples: Option<&'a Samples>,
     /// The depths of the farthest and the nearest vertex.
@@ -113,9 +112,9 @@ impl<'a> VisibilityTest<'a> {
 
     /// Adds the visible parts of the edge between `ends`. `sides` are the sides of this edge.
     ///
-    /// The centre of the line is tested in steps of at most half a pixel. A point is visible if one
-    /// of the samples around the point has no surface, a surface behind the point, or a face at
-    /// this edge.
+    /// The test takes points along the line, in steps of at most half a pixel. A point is visible
+    /// if one of the samples around the point has no surface, a surface behind the point, or a face
+    /// at this edge.
     fn add_visible_parts(&self, ends: [DVec3; 2], sides: &[Side], into: &mut Vec<Stroke>) {
         let at = |t: f64| ends[0].lerp(ends[1], t);
         let mut add = |from: f64, to: f64| {
@@ -128,7 +127,7 @@ impl<'a> VisibilityTest<'a> {
         let Some(samples) = self.samples else {
             return add(0.0, 1.0);
         };
-        /// Visible or hidden parts up to this length in pixels are ignored as sampling errors.
+        /// Maximum length, in pixels, of a visible or hidden part that is ignored.
         const MIN_LENGTH: f64 = 1.0;
         let pixels = ends[0].truncate().distance(ends[1].truncate());
         let steps = (pixels * samples.per_side as f64).ceil().max(1.0);
@@ -157,7 +156,7 @@ impl<'a> VisibilityTest<'a> {
         samples.is_none_or(|samples| is_visible(samples, position, |_| false))
     }
 
-    /// Returns the opacity of a stroke: lower for distant strokes in a wireframe.
+    /// Returns the opacity of a stroke. In a wireframe, distant strokes have a lower opacity.
     fn opacity(&self, depth: f64) -> f64 {
         let Range { start, end } = self.depths;
         if self.samples.is_some() || start >= end {
@@ -167,11 +166,10 @@ impl<'a> VisibilityTest<'a> {
     }
 }
 
-/// Returns whether `position`, in pixels, is visible. Faces for which `is_own` returns true hide
-/// nothing.
+/// Returns whether `position`, in pixels, is visible. Faces with `is_own` do not hide the position.
 fn is_visible(samples: &Samples, position: DVec3, is_own: impl Fn(u32) -> bool) -> bool {
-    /// A face hides an edge only if the face is nearer by at least this distance, in pixels. A
-    /// smaller distance can come from the slope of the face.
+    /// Minimum distance, in pixels, at which a nearer face hides an edge. The slope of a face can
+    /// cause smaller distances.
     const DEPTH_TOLERANCE: f64 = 1.0;
     let scale = samples.per_side as f64;
     let hiding_depth = ((position.z + DEPTH_TOLERANCE) * scale) as f32;

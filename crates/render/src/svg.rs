@@ -12,14 +12,15 @@ use crate::picture::VisibleParts;
 use crate::settings::{RenderMesh, Settings, Size};
 use crate::strokes::Stroke;
 
-/// Maximum number of visible faces per mesh. With more faces, viewers fail, and a PNG is smaller.
+/// Maximum number of visible faces per mesh. Viewers fail with more faces.
 pub const MAX_SVG_FACES: usize = 50_000;
 
-/// Draws the meshes in a row, as the text of an SVG file; same cost as [`draw`](crate::draw).
+/// Draws the meshes in a row, as the text of an SVG file. The cost is the cost of
+/// [`draw`](crate::draw).
 ///
 /// Visible faces are polygons, each in one colour, painted from back to front. Lines are the
-/// visible parts of edges, with the visibility test of [`draw`](crate::draw). Faces that intersect
-/// each other cannot be painted correctly: one of them appears in front of the other.
+/// visible parts of edges, with the visibility test of [`draw`](crate::draw). If two faces
+/// intersect, one of them wrongly appears in front of the other.
 ///
 /// # Errors
 ///
@@ -57,7 +58,6 @@ pub fn draw_svg(
     Ok(svg)
 }
 
-/// Adds the visible faces.
 fn draw_faces(
     render_mesh: &RenderMesh<'_>,
     panel: &Panel,
@@ -86,7 +86,7 @@ fn draw_faces(
         shapes[f.index()] =
             format!("<path d=\"{outline}Z\" fill=\"{colour}\" stroke=\"{colour}\"/>\n");
     }
-    // A thin line of the same colour closes the seam to the next face.
+    // A thin line in the colour of the face closes the seam to the next face.
     *svg += "<g stroke-width=\"0.6\" fill-rule=\"evenodd\">\n";
     for face in back_to_front(mesh, panel, &visible) {
         *svg += &shapes[face.index()];
@@ -95,10 +95,10 @@ fn draw_faces(
     Ok(())
 }
 
-/// Adds lines of one colour. Lines of the same opacity are one path, so that joints are invisible.
+/// Adds lines of one colour. Lines of equal opacity are one path, so that joints are invisible.
 fn draw_lines(strokes: &[Stroke], width: f64, colour: &str, svg: &mut String) {
     let mut strokes = strokes.to_vec();
-    // Rounds the opacities of a wireframe, because each opacity is a separate path.
+    // Each opacity is a separate path, so the opacities of a wireframe are rounded.
     let step = |stroke: &Stroke| (stroke.opacity * 50.0).round();
     strokes.sort_by(|a, b| step(a).total_cmp(&step(b)));
     for group in strokes.chunk_by(|a, b| step(a) == step(b)) {
@@ -111,8 +111,7 @@ fn draw_lines(strokes: &[Stroke], width: f64, colour: &str, svg: &mut String) {
     }
 }
 
-/// Returns a path such as `M1 2L3 4`. For equal points, the path is `M1 2L1 2`. Round line ends
-/// draw it as a dot.
+/// Returns a path. Example: `M1 2L3 4`. A path between equal points, such as `M1 2L1 2`, is a dot.
 fn path(points: impl IntoIterator<Item = DVec2>) -> String {
     let mut text = String::new();
     for (i, point) in points.into_iter().enumerate() {
@@ -123,7 +122,7 @@ fn path(points: impl IntoIterator<Item = DVec2>) -> String {
     text
 }
 
-/// A number with at most two decimals, and without trailing zeros.
+/// A number with at most two decimals and without trailing zeros.
 struct Number(f64);
 
 impl std::fmt::Display for Number {

@@ -22,8 +22,7 @@ fn cube(half: f32) -> PolygonMesh {
     PolygonMesh::new((0..8).map(position).collect::<Vec<_>>(), CUBE).expect("valid")
 }
 
-/// The view from the front, the right and above; it hides only vertex 0 and the edges and faces
-/// there.
+/// The view hides only vertex 0 and the edges and faces there.
 fn settings() -> Settings {
     Settings {
         size: Size {
@@ -49,7 +48,6 @@ fn svg(mesh: &PolygonMesh, creases: &Creases, settings: &Settings) -> String {
     draw_svg(&[RenderMesh { mesh, creases }], settings).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The content of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PixelContent {
     Background,
@@ -83,7 +81,7 @@ fn count(picture: &Picture, what: PixelContent) -> usize {
         .count()
 }
 
-/// Returns the lines of an SVG in this colour, as the coordinates of their ends.
+/// Returns the coordinates of the ends of all lines in this colour.
 fn lines<'a>(svg: &'a str, colour: &str) -> Vec<&'a str> {
     let stroke = format!("fill=\"none\" stroke=\"{colour}\"");
     let paths = svg.lines().filter(|line| line.contains(&stroke));
@@ -131,7 +129,6 @@ fn a_picture_has_its_size_a_margin_and_is_reproducible() {
         bytes
     };
     assert_eq!(png(), png());
-    // The written PNG has the same pixels when it is read.
     let mut reader = png::Decoder::new(std::io::Cursor::new(png()))
         .read_info()
         .expect("a PNG");
@@ -195,8 +192,8 @@ fn visible_creases_are_red() {
 
 #[test]
 fn a_line_ends_where_a_face_hides_it() {
-    // A small square in front of the middle of a large square. In the view from the front, the
-    // small square hides the middle third of the diagonal of the large square.
+    // In the view from the front, the small square hides the middle third of the diagonal of the
+    // large square.
     let positions = [
         [-3.0, -3.0, 0.0],
         [3.0, -3.0, 0.0],
@@ -221,7 +218,7 @@ fn a_line_ends_where_a_face_hides_it() {
     let text = svg(&mesh, &diagonal, &front);
     let lines = lines(&text, CREASE);
     assert_eq!(lines.len(), 2, "{text}");
-    // The scale is 200 · 0.86 / 6; a visible part starts at the margin of 14 and is 172 / 3 long.
+    // Scale: 200 · 0.86 / 6. A visible part starts at the margin of 14 and is 172 / 3 long.
     let numbers = |line: &str| -> Vec<f64> {
         let numbers = line.split(['L', ' ']);
         numbers
@@ -338,7 +335,6 @@ fn shading_is_smooth_unless_an_angle_or_a_crease_breaks_it() {
     assert_eq!(paths(&sharp, &front), paths(&none, &flat));
     assert_ne!(paths(&none, &front), paths(&none, &flat));
     assert_eq!(paths(&weak, &front), paths(&none, &front));
-    // The edges of a cube are too sharp for smooth shading.
     let cube = cube(1.0);
     let flat = Settings {
         shading: Shading::Flat,
@@ -349,8 +345,8 @@ fn shading_is_smooth_unless_an_angle_or_a_crease_breaks_it() {
 
 #[test]
 fn polygons_are_painted_from_back_to_front() {
-    // A long strip that extends away from the viewer, and a small square just in front of the far
-    // end of the strip. By mean depth, the strip is nearer.
+    // A long strip away from the viewer, and a small square just in front of its far end. By mean
+    // depth, the strip is nearer.
     let positions = [
         [0.0, -0.5, 10.0],
         [1.0, -0.5, 10.0],
@@ -405,7 +401,6 @@ fn extreme_meshes_can_be_drawn() {
         assert!(count(&picture, PixelContent::Crease) > 20, "{scale}");
         assert!(count(&picture, PixelContent::Outside) > 500, "{scale}");
     }
-    // A triangle, also seen from its edge, and a mesh without area.
     let line = [Point::ZERO, Point::X, Point::X * 2.0];
     let line = PolygonMesh::new(line, [[0, 1, 2]]).expect("valid");
     for mesh in [triangle(1.0), line] {
@@ -424,7 +419,6 @@ fn extreme_meshes_can_be_drawn() {
             svg(&mesh, &Creases::default(), &all);
         }
     }
-    // A vertex without faces may have any coordinates, even if it is a sharp corner.
     let corners = [Point::ZERO, Point::X, Point::Y, Point::NAN, Point::MAX];
     let mesh = PolygonMesh::new(corners, [[0, 1, 2]]).expect("valid");
     let creases = Creases::new(&mesh, [], [(3, 1.0), (4, 1.0)]).expect("vertices");

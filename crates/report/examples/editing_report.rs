@@ -1,10 +1,9 @@
-//! Makes `reports/editing`: the cost of edits on each structure, as the mesh grows.
+//! Makes `reports/editing`: the time of edits on each structure.
 //!
 //! `cargo run --release -p sixfold-report --example editing_report -- reports/editing [ROUNDS]`
 //!
-//! Every round runs each edit and each workload once on each structure and mesh, on a fresh copy.
-//! An edit is done at many places of the mesh. The tables show medians of thread-CPU time over the
-//! rounds.
+//! Every round runs each edit and each workload once on each structure and mesh. An edit is done at
+//! many places of a fresh copy. The tables show medians of thread-CPU time over the rounds.
 
 mod common;
 
@@ -22,30 +21,30 @@ use sixfold_study::{
     Backend, EditPass, Editor, Environment, MachineClock, Policy, Series, SingleEdit, pages,
 };
 
-/// Sides of the tori: 1,058, 4,232, 16,200, 64,800, 259,200 and 1,036,800 triangles.
+/// Side lengths of the tori: 1,058, 4,232, 16,200, 64,800, 259,200 and 1,036,800 triangles.
 const SIDES: [usize; 6] = [23, 46, 90, 180, 360, 720];
 
-/// Number of places at which an edit is done if it does not scan.
+/// Number of places of an edit that does not scan.
 const PLACES: usize = 4096;
-/// Number of places at which an edit is done if it scans.
+/// Number of places of an edit that scans.
 const PLACES_SCANNED: usize = 12;
 
-/// Smallest total number of faces of all copies of a mesh.
+/// Minimum number of faces of all copies of a mesh together.
 const MIN_TOTAL_FACES: usize = 64_000;
 
-/// Largest number of faces for a workload of edits on a structure that scans.
+/// Maximum number of faces for a workload of edits on a structure that scans.
 const MAX_SCANNED_FACES: usize = 5_000;
 
-/// Largest number of faces at which the tables of every structure fit into the second-level cache.
+/// Maximum number of faces at which every structure fits into the second-level cache.
 const MAX_CACHED_FACES: usize = 20_000;
 
 /// Conclusions that hold on every machine.
 const CONCLUSIONS: &str = include_str!("common/editing.md");
 
-/// One line of a figure: an edit or a workload, on a structure.
+/// An edit or a workload, on a structure.
 type Line = (&'static str, &'static str);
 
-/// Times in nanoseconds per edit or element, for each line and number of faces.
+/// Times in nanoseconds per edit or element, by line and number of faces.
 type Samples = BTreeMap<(Line, usize), Vec<f64>>;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -80,12 +79,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Returns whether a workload of edits scans on the structure.
 fn scans(info: &StructureInfo) -> bool {
     info.edits[Edit::CollapseEdge as usize] == Some(QueryCost::Scan)
 }
 
-/// Runs all edits and workloads on one mesh, in rounds.
 fn measure(
     polygons: &PolygonMesh,
     rounds: usize,
@@ -100,7 +97,7 @@ fn measure(
                 Some(QueryCost::Scan) => PLACES_SCANNED,
                 Some(_) => PLACES,
             };
-            // The soup and the face set need a search even to find the places.
+            // The soup and the face set need a search to find the places.
             let places = if scans(&backend.info) {
                 PLACES_SCANNED
             } else {
@@ -122,8 +119,7 @@ fn measure(
     let clock = MachineClock::start();
     for _ in 0..rounds {
         for (line, editor) in &mut jobs {
-            // A small mesh has few places: use more runs, so that reading the clock takes a
-            // negligible part of the time.
+            // A small mesh has few places. More runs reduce the error of the clock.
             let copies = (MIN_TOTAL_FACES / faces).max(1);
             let series = Series::with_runs(copies as u32, &clock).with_untimed(1);
             let time = editor.time(&series).scaled(1.0 / copies as f64);
@@ -138,7 +134,7 @@ fn measure(
     Ok(())
 }
 
-/// Returns the points of a line, ascending: the number of faces and the median time.
+/// Returns the points of a line, sorted by the number of faces.
 fn points(samples: &Samples, line: Line) -> Vec<(f64, f64)> {
     let sizes = samples.iter().filter(|((other, _), _)| *other == line);
     sizes
@@ -146,7 +142,7 @@ fn points(samples: &Samples, line: Line) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Returns the exponent of growth: the slope of the least-squares line through the logarithms.
+/// Returns the exponent of growth: the slope of the line through the logarithms.
 fn exponent(points: &[(f64, f64)]) -> Option<f64> {
     let logs: Vec<(f64, f64)> = points
         .iter()

@@ -1,10 +1,10 @@
-//! Makes `reports/subdivision`: the cost of subdivision on each structure, by each method.
+//! Makes `reports/subdivision`: the time of subdivision on each structure, by each method.
 //!
 //! ```text
 //! cargo run --release -p sixfold-report --example subdivision_report -- reports/subdivision
 //! ```
 //!
-//! An optional last argument is the number of rounds.
+//! The optional last argument is the number of rounds.
 //!
 //! Every round runs each scheme, method and structure once at each level, on one thread. The table
 //! and the figure show medians of thread-CPU time over the rounds.
@@ -25,13 +25,13 @@ use sixfold_study::{
     Backend, Clock, Environment, MachineClock, Policy, Refiner, SubdivisionJob, Way, pages,
 };
 
-/// The schemes of the report. Both accept the control mesh, which consists of triangles.
+/// The schemes of the report. Both accept triangles.
 const SCHEMES: [Scheme; 2] = [Scheme::CatmullClark, Scheme::Loop];
 
 /// Largest level.
 const LEVELS: u32 = 4;
 
-/// If a run takes longer than this, the next level is left out.
+/// Maximum time of a run before the next level is left out, in nanoseconds.
 const MAX_RUN_NS: f64 = 4e8;
 
 /// Conclusions that hold on every machine.
@@ -46,7 +46,7 @@ rebuilding, and with it most of the time. Refining into the tables of the previo
 new memory.
 ";
 
-/// One line of the figure: a scheme, a method and a structure.
+/// A scheme, a method and a structure.
 type Line = (&'static str, &'static str, &'static str);
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -79,7 +79,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The faces of one line at one level, and the times of its runs in nanoseconds.
+/// The number of faces and the times of the runs, for one line at one level.
 #[derive(Default)]
 struct Sample {
     faces: usize,
@@ -87,7 +87,7 @@ struct Sample {
 }
 
 impl Sample {
-    /// Returns the median time per face of the last level, in nanoseconds.
+    /// Returns the median time per face in nanoseconds.
     fn ns_per_face(&self) -> f64 {
         common::median(&self.ns) / self.faces as f64
     }
@@ -175,7 +175,7 @@ fn text(
     Ok(text)
 }
 
-/// Draws the time per new face over the faces of the last level, with logarithmic axes.
+/// Draws the time per new face over the number of faces, with logarithmic axes.
 fn figure(path: &Path, samples: &Samples) -> std::io::Result<()> {
     let ways = [Way::Gather, Way::Scatter, Way::Native];
     let line = |scheme: Scheme, way: Way, backend: &'static str| {

@@ -1,19 +1,15 @@
 //! Colours that are distinguishable on white and on black, and with colour blindness.
 //!
-//! Figures are drawn once, in fixed colours. On dark pages, a style sheet replaces these colours.
-//! Style rules override presentation attributes of SVG, so a rule for `[fill="#17181a"]` is enough.
+//! Figures are drawn once, in fixed colours. On dark pages, a style sheet replaces these colours,
+//! because style rules override the presentation attributes of SVG.
 
-/// Colour of text and axes.
 pub(crate) const TEXT_COLOUR: &str = "#17181a";
-/// Colour of the background.
 pub(crate) const BACKGROUND: &str = "#fdfdfc";
-/// Colour of grid lines.
 pub(crate) const GRID_COLOUR: &str = "#dcdcda";
-/// Colour of intervals over bars.
 pub(crate) const INTERVAL_COLOUR: &str = "#33353a";
 
-/// The name of each column, its colour on light pages and its colour on dark pages. The colours
-/// follow Okabe and Ito (2008) and suit all types of colour vision.
+/// For each column, its name and its colours on light pages and on dark pages. The colours follow
+/// Okabe and Ito (2008).
 const COLUMNS: [(&str, &str, &str); 7] = [
     ("polygon-soup", "#7f7f84", "#a3a3a8"),
     ("indexed-face-set", "#d98e04", "#f0b13c"),
@@ -23,13 +19,13 @@ const COLUMNS: [(&str, &str, &str); 7] = [
     ("corner-table", "#c8511b", "#f08553"),
     ("relation-tables", "#b0618f", "#dd93bd"),
 ];
-/// Colours of external programs.
+/// Colours of external programs on light pages and on dark pages.
 const OTHERS: [(&str, &str); 3] = [
     ("#6a5acd", "#a094f0"),
     ("#8c8a1e", "#c9c655"),
     ("#555a60", "#b9bec4"),
 ];
-/// Colours of the tables within a structure, in order.
+/// Colours of the tables of a structure on light pages and on dark pages.
 const TABLES: [(&str, &str); 8] = [
     ("#1f6f9f", "#5fb0de"),
     ("#e0a030", "#f2c063"),
@@ -41,7 +37,6 @@ const TABLES: [(&str, &str); 8] = [
     ("#8f8f8f", "#bcbcbc"),
 ];
 
-/// Returns the colour of a column.
 pub(crate) fn column_colour(name: &str) -> &'static str {
     let ours = COLUMNS.iter().find(|(column, ..)| *column == name);
     let other = || {
@@ -51,12 +46,10 @@ pub(crate) fn column_colour(name: &str) -> &'static str {
     ours.map_or_else(other, |(_, light, _)| light)
 }
 
-/// Returns the colour of table `number` within a structure.
 pub(crate) fn table_colour(number: usize) -> &'static str {
     TABLES[number % TABLES.len()].0
 }
 
-/// Returns the style rules for dark pages.
 pub(crate) fn dark_rules() -> String {
     let page = [
         (TEXT_COLOUR, "#e4e4e2"),

@@ -18,11 +18,11 @@ pub struct Figure {
     pub id: String,
     /// Title.
     pub title: String,
-    /// Explanation of how to read the figure.
+    /// How to read the figure.
     pub caption: String,
-    /// The picture as an SVG element, for a page or a file.
+    /// The picture as an SVG element.
     pub svg: String,
-    /// The numbers that the marks show.
+    /// The numbers of the figure.
     pub table: Table,
     /// The command that reproduces the figure.
     pub command: String,
@@ -31,9 +31,9 @@ pub struct Figure {
 /// A table of numbers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Table {
-    /// Column titles; the first column holds the names of the rows.
+    /// Column titles. The first column has the names of the rows.
     pub header: Vec<String>,
-    /// The rows, each as long as the header.
+    /// The rows. Each row is as long as the header.
     pub rows: Vec<Vec<String>>,
 }
 
@@ -50,8 +50,7 @@ impl Table {
     }
 }
 
-/// Length of the shortest bar, as a part of the axis. Without this minimum, the bar of the ratio 1
-/// would have the length log 1 = 0.
+/// Minimum length of a bar, as a part of the axis. The bar of ratio 1 would have length 0.
 pub(crate) const MIN_BAR_LENGTH: f64 = 0.02;
 
 /// Returns a format that shows logarithms as ratios, for an axis up to `max_log`.
@@ -63,7 +62,7 @@ pub(crate) fn ratio_ticks(max_log: f64) -> TickFormat {
     }))
 }
 
-/// Returns a layout with the colours and fonts of the report, and the given size.
+/// Returns a layout of the given size with the colours and fonts of the report.
 pub(crate) fn base_layout(plots: &[Plot], width: f64, height: f64) -> Layout {
     let theme = Theme {
         background: BACKGROUND.into(),
@@ -86,13 +85,12 @@ pub(crate) fn base_layout(plots: &[Plot], width: f64, height: f64) -> Layout {
         .with_body_size(12)
 }
 
-/// Draws `plots` as SVG.
 pub(crate) fn render_svg(title: &str, plots: Vec<Plot>, layout: Layout) -> String {
     scene_svg(title, &render_multiple(plots, layout))
 }
 
-/// Renders `scene` as an SVG that scales to the page and follows the dark mode of the page. `title`
-/// is the label for screen readers.
+/// Renders `scene` as an SVG that scales to the page and follows its dark mode. `title` is the
+/// label for screen readers.
 pub(crate) fn scene_svg(title: &str, scene: &Scene) -> String {
     let svg = SvgBackend::new().render_scene(scene);
     let Some((head, body)) = svg.split_once('>') else {

@@ -1,4 +1,4 @@
-//! Selection of the figures for each kind of results.
+//! Selects the figures for each kind of results.
 
 mod break_even;
 mod growth;
@@ -13,15 +13,15 @@ use sixfold_study::{Collection, Environment, Labs, MeshReport, Report};
 
 use crate::{Figure, ReportPage, Section};
 
-/// One row of a ranking: a structure or an external program.
+/// One row of a ranking.
 pub(crate) struct Row<'a> {
     pub(crate) backend: &'a str,
-    /// Ratio to the best, with its interval.
+    /// Ratio to the fastest backend, with its interval.
     pub(crate) ratio: f64,
     pub(crate) interval: Option<[f64; 2]>,
     /// Time per element in nanoseconds, if known.
     pub(crate) ns: Option<f64>,
-    /// Time per element of the first run, on fresh memory pages, if known and different from `ns`.
+    /// Time per element of the first run, on fresh pages, if it differs from `ns`.
     pub(crate) first_ns: Option<f64>,
     /// A remark, such as `best` or `tied for best`.
     pub(crate) note: String,
@@ -42,7 +42,7 @@ pub(crate) fn page(collection: &Collection, command: &str) -> ReportPage {
             format!("Mesh data structures on {meshes}")
         }
     };
-    // The recorded command if all results share one.
+    // Show the recorded command if all results have the same command.
     let mut commands =
         environments(collection).map(|environment| recorded_command(environment, command));
     let first = commands.next().unwrap_or(command);
@@ -94,7 +94,6 @@ pub(crate) fn page(collection: &Collection, command: &str) -> ReportPage {
     }
 }
 
-/// Warning about interrupted results.
 const INTERRUPTED: &str = "Interrupted: some results are incomplete. To complete the report, use \
                            `sixfold study --resume`.";
 
@@ -103,18 +102,16 @@ fn is_interrupted(collection: &Collection) -> bool {
     studies.any(|study| study.interrupted) || collection.labs.interrupted()
 }
 
-/// Iterates over the environments of all results.
 fn environments(collection: &Collection) -> impl Iterator<Item = &Environment> {
     let studies = collection.studies.iter().map(|study| &study.environment);
     studies.chain(collection.labs.environments())
 }
 
-/// Returns the recorded command of these results, or the command of the page if none was recorded.
+/// Returns the recorded command of these results, or `command` if none was recorded.
 fn recorded_command<'a>(environment: &'a Environment, command: &'a str) -> &'a str {
     environment.command.as_deref().unwrap_or(command)
 }
 
-/// Returns a section for each result of a lab.
 fn labs(labs: &Labs, command: &str) -> Vec<Section> {
     let Labs {
         orders,
@@ -181,7 +178,7 @@ fn labs(labs: &Labs, command: &str) -> Vec<Section> {
     sections
 }
 
-/// Returns `orders`, `orders-2`, and so on for places 0, 1, …
+/// Returns `orders` for place 0, `orders-2` for place 1, and so on.
 fn numbered_id(name: &str, place: usize) -> String {
     match place {
         0 => name.into(),
@@ -189,7 +186,6 @@ fn numbered_id(name: &str, place: usize) -> String {
     }
 }
 
-/// Draws all figures of a single study.
 fn study_figures(study: &Report, command: &str) -> Vec<Figure> {
     let command = recorded_command(&study.environment, command);
     let mut figures = Vec::new();
@@ -200,10 +196,9 @@ fn study_figures(study: &Report, command: &str) -> Vec<Figure> {
     figures
 }
 
-/// Draws the figures of one of many studies. These are fewer than the figures of a single study, to
-/// keep the page short.
+/// Draws the figures of one of several studies. There are fewer figures than for a single study.
 fn section_figures(study: &Report, place: usize, command: &str) -> Vec<Figure> {
-    // Different names can have the same slug, so add the place.
+    // Different names can have the same slug, so the place is added.
     let id_prefix = format!("mesh-{place}-{}-", slug(&study.mesh.name));
     let command = recorded_command(&study.environment, command);
     let mut figures = Vec::new();
@@ -219,7 +214,6 @@ fn pooled_figures(collection: &Collection, command: &str) -> Vec<Figure> {
     figures
 }
 
-/// Returns `per vertex`, `per edge`, and so on.
 pub(crate) fn per_unit(unit: &str) -> String {
     format!("per {unit}")
 }
@@ -259,7 +253,6 @@ fn facts(mesh: &MeshReport) -> String {
     )
 }
 
-/// Describes machine, program and memory settings in one line.
 fn machine(environment: &Environment) -> String {
     let Environment {
         cpu_model,

@@ -1,4 +1,4 @@
-//! The page as one HTML file without external resources.
+//! The page as one HTML file.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -24,7 +24,7 @@ td:first-child,th:first-child{text-align:left}summary{cursor:pointer;color:var(-
 @media print{body{max-width:none}details::details-content{content-visibility:visible}.scroll{overflow:visible}}";
 
 impl ReportPage {
-    /// Returns the page as HTML; it loads nothing from a network.
+    /// Returns the page as HTML without external resources.
     pub fn html(&self) -> String {
         let dark = format!("@media (prefers-color-scheme:dark){{{}}}", dark_rules());
         let page = html! {
@@ -33,7 +33,7 @@ impl ReportPage {
                 head {
                     meta charset="utf-8";
                     meta name="viewport" content="width=device-width,initial-scale=1";
-                    // Without this, browsers request a favicon.
+                    // Prevents browsers from requesting a favicon.
                     link rel="icon" href="data:,";
                     title { (self.title) }
                     style { (PreEscaped(STYLE)) (PreEscaped(dark)) }
@@ -82,8 +82,7 @@ fn list(sentences: &[String]) -> Markup {
     }
 }
 
-/// Returns the section of one mesh. It is collapsed at first, so that a page with many meshes opens
-/// fast.
+/// Returns the section of one mesh. It is collapsed at first, so that large pages open fast.
 fn mesh_section(section: &Section) -> Markup {
     html! {
         details {
@@ -94,13 +93,13 @@ fn mesh_section(section: &Section) -> Markup {
     }
 }
 
-/// Returns a figure under a heading; `mesh` is the name of its mesh if the page has several meshes.
+/// Returns a figure under a heading. `mesh` is the name of the mesh if the page has several meshes.
 fn figure_section(figure: &Figure, heading: &str, mesh: Option<&str>) -> Markup {
     html! {
         section id=(figure.id) {
             @if heading == "h2" { h2 { (figure.title) } } @else { h3 { (figure.title) } }
             figure data-figure=(figure.id) data-mesh=[mesh] {
-                // Figures are wider than small screens and scroll there.
+                // Wide figures scroll on small screens.
                 div.scroll { (PreEscaped(without_style(&figure.svg))) }
                 figcaption { (figure.caption) }
             }

@@ -1,11 +1,12 @@
 //! Reports on studies: one self-contained HTML page, or Markdown with figures.
 //!
 //! [`ReportPage::new`] draws the figures of a [`Collection`] and of its labs. Each figure has a
-//! table of its numbers, and the command that reproduces it. [`ReportPage::html`] returns one file
-//! that needs no network. The page supports light and dark mode, printing and small screens.
-//! [`ReportPage::markdown`] returns a text for a repository; the figures are SVG files beside the
-//! text. Each mark of a figure has a title with its name and value. A browser shows the title under
-//! the pointer, and programs can read it.
+//! table of numbers and the command that reproduces the figure. Each mark of a figure has a title
+//! with its name and value, which browsers show under the pointer.
+//!
+//! [`ReportPage::html`] returns one file that needs no network. The page supports light and dark
+//! mode, printing and small screens. [`ReportPage::markdown`] returns a text for a repository. Its
+//! figures are separate SVG files.
 
 mod colours;
 mod figure;
@@ -19,24 +20,24 @@ use sixfold_study::Collection;
 pub use figure::{Figure, Table};
 pub use panels::{Panel, panels};
 
-/// A report, before it is written as HTML or Markdown.
+/// A report on studies and labs.
 #[derive(Clone, Debug)]
 pub struct ReportPage {
     /// Title.
     pub title: String,
     /// The command that reproduces the report.
     pub command: String,
-    /// Descriptions of the different machines, one line each.
+    /// Descriptions of the machines, one line each.
     pub machines: Vec<String>,
-    /// Sentences on the figures.
+    /// Sentences about the figures.
     pub sentences: Vec<String>,
     /// Possible problems, with advice.
     pub warnings: Vec<String>,
     /// Figures over all meshes, or of the only mesh.
     pub figures: Vec<Figure>,
-    /// Results of the labs: orders, growth, reads of queries, workloads.
+    /// Sections for the labs: orders, growth, reads of queries, workloads.
     pub labs: Vec<Section>,
-    /// A section for each mesh if there are several.
+    /// Sections for the meshes; empty if there is only one mesh.
     pub meshes: Vec<Section>,
     /// Meshes that could not be studied, with the reasons.
     pub failures: Vec<(String, String)>,
@@ -44,26 +45,26 @@ pub struct ReportPage {
     pub missing: Vec<String>,
 }
 
-/// The part of a report on one mesh or one lab.
+/// The part of a report about one mesh or one lab.
 #[derive(Clone, Debug)]
 pub struct Section {
     /// Title.
     pub title: String,
     /// Facts about the mesh or the lab, in one line.
     pub facts: String,
-    /// Sentences on the figures.
+    /// Sentences about the figures.
     pub sentences: Vec<String>,
-    /// Its figures.
+    /// The figures of the section.
     pub figures: Vec<Figure>,
 }
 
 impl ReportPage {
-    /// Draws `collection`. `command` is used for results that do not record their own command.
+    /// Draws `collection`. Results without a recorded command show `command`.
     pub fn new(collection: &Collection, command: &str) -> Self {
         figures::page(collection, command)
     }
 
-    /// Iterates over all figures, in the order of the page.
+    /// Iterates over all figures in the order of the page.
     pub fn all_figures(&self) -> impl Iterator<Item = &Figure> {
         let sections = self.labs.iter().chain(&self.meshes);
         let section_figures = sections.flat_map(|section| &section.figures);

@@ -1,4 +1,4 @@
-//! The page as Markdown for a repository, with its figures beside it.
+//! The page as Markdown.
 
 use std::fmt::Write as _;
 
@@ -6,7 +6,7 @@ use crate::ReportPage;
 use crate::figure::{Figure, Table};
 
 impl ReportPage {
-    /// Returns the page as Markdown; it links to its figures as `figures/ID.svg`.
+    /// Returns the page as Markdown. The page links to its figures as `figures/ID.svg`.
     pub fn markdown(&self) -> String {
         let mut text = format!(
             "# {}\n\n```sh\n{}\n```\n\n",
@@ -86,7 +86,7 @@ fn write_table(text: &mut String, table: &Table) {
     text.push('\n');
 }
 
-/// Escapes the special characters of Markdown and replaces line breaks by spaces.
+/// Escapes the special characters of Markdown. Replaces line breaks by spaces.
 fn escape(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for c in text.chars() {

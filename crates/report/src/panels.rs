@@ -10,7 +10,7 @@ use crate::figure::{base_layout, scene_svg};
 /// Width and height of one panel.
 const SIZE: [f64; 2] = [400.0, 320.0];
 
-/// One small chart, with logarithmic axes.
+/// One small line chart with logarithmic axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// Title.
@@ -19,11 +19,11 @@ pub struct Panel {
     pub x_label: String,
     /// Label of the vertical axis.
     pub y_label: String,
-    /// Points of each structure; structures without points are left out.
+    /// For each structure, its points. Structures without points are left out.
     pub lines: Vec<(&'static str, Vec<(f64, f64)>)>,
 }
 
-/// Draws `panels` as SVG, in rows of `columns` panels, with one legend for all.
+/// Draws `panels` as one SVG, in rows of `columns` panels, with one legend.
 pub fn panels(title: &str, columns: usize, panels: &[Panel]) -> String {
     let rows = panels.len().div_ceil(columns);
     let (mut plots, mut layouts) = (Vec::new(), Vec::new());
@@ -49,7 +49,6 @@ pub fn panels(title: &str, columns: usize, panels: &[Panel]) -> String {
     scene_svg(title, &grid.render())
 }
 
-/// Returns a line through `points`, and marks for the points.
 fn line(name: &str, points: &[(f64, f64)]) -> [Plot; 2] {
     let colour = column_colour(name);
     let line = LinePlot::new()

@@ -1,5 +1,5 @@
-//! Tests that the marks on pages of small studies show the data, and that these pages load no
-//! external resources.
+//! Tests the pages of small studies: their marks show the data, and they load no external
+//! resources.
 
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -66,7 +66,6 @@ fn every_figure_has_as_many_marks_as_numbers() {
         let id = format!("ranking-{}", operation.name().replace('_', "-"));
         let ranking = figure_by_id(&page, &id);
         assert_eq!(mark_count(ranking), 6, "{id}");
-        // The table is ranked, the fastest first.
         let ratios = ranking.table.rows.iter().map(|row| row[1].parse::<f64>());
         let ratios: Vec<f64> = ratios.map(|ratio| ratio.expect("a number")).collect();
         // The ratio of a tied backend can be below 1, because ratios are computed within rounds.

@@ -1,9 +1,9 @@
 //! Draws every shape of [`sixfold_shapes::GENERATORS`], and the orders of one mesh, into one SVG
 //! file.
 //!
-//! The projection is orthographic. The painter's algorithm draws far faces first and near faces
-//! over them (Newell, Newell and Sancha 1972). Coordinates are rounded to a tenth of a pixel, and
-//! only + − × ÷ √ are used, so the picture is the same on every machine.
+//! The projection is orthographic. Far faces are drawn first (painter's algorithm; Newell, Newell
+//! and Sancha 1972). The picture is the same on every machine, because coordinates are rounded to a
+//! tenth of a pixel and computed with + − × ÷ √ only.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -12,8 +12,8 @@ use std::io::Write as _;
 use sixfold_core::{Facts, PolygonMesh, VertexId};
 use sixfold_shapes::{GENERATORS, Generator, Order};
 
-/// First line of the picture. It is a processing instruction, because an XML comment must not
-/// contain two hyphens in a row.
+/// First line of the picture. An XML comment cannot contain two hyphens in a row, so this line is a
+/// processing instruction.
 const COMMAND: &str = "<?made-by cargo run --release -p sixfold-shapes --example contact_sheet > reports/shapes/contact-sheet.svg?>";
 
 /// Parameters for shapes whose defaults are too dense for a cell or hide details.
@@ -35,12 +35,12 @@ const PARAMETERS: &[(&str, &[(&str, f64)])] = &[
     ("smooth-union", &[("faces", 1_500.0)]),
 ];
 
-/// Maximum number of faces with drawn edges. A cell is too small for the edges of more faces.
+/// Maximum number of faces of a mesh with drawn edges.
 const MAX_FACES_WITH_EDGES: usize = 2_000;
 
 const COLUMNS: usize = 6;
 const CELL: [f64; 2] = [190.0, 226.0];
-/// The square in a cell in which the mesh is drawn: its side, and its centre in the cell.
+/// Side and centre of the square in a cell that contains the mesh.
 const PICTURE: f64 = 158.0;
 const CENTRE: [f64; 2] = [95.0, 94.0];
 const GAP: f64 = 10.0;
@@ -81,8 +81,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Returns the parameters of a shape as drawn, such as `m 8 · n 8`, or the summary if the shape has
-/// no parameters.
+/// Returns the drawn parameters of a shape, or the summary if the shape has no parameters.
 fn settings(generator: &Generator, given: &[(&str, f64)], faces: usize) -> String {
     if faces > MAX_FACES_WITH_EDGES {
         return "edges not drawn".to_owned();
@@ -98,8 +97,7 @@ fn settings(generator: &Generator, given: &[(&str, f64)], faces: usize) -> Strin
     shown.collect::<Vec<_>>().join(" · ")
 }
 
-/// Builds the SVG with all cells, row by row. The background follows the colour theme of the
-/// reader.
+/// Builds the SVG. The background follows the colour theme of the reader.
 fn sheet(cells: &[String]) -> Result<String, std::fmt::Error> {
     let rows = cells.len().div_ceil(COLUMNS);
     let width = COLUMNS as f64 * (CELL[0] + GAP) + GAP;
@@ -129,7 +127,6 @@ fn sheet(cells: &[String]) -> Result<String, std::fmt::Error> {
     Ok(svg)
 }
 
-/// How the faces of a cell are coloured.
 #[derive(Clone, Copy, PartialEq)]
 enum Colouring {
     /// By brightness, from one light.
@@ -138,15 +135,14 @@ enum Colouring {
     Order,
 }
 
-/// The colour ramps: letter, darkest colour and lightest colour of each.
+/// The colour ramps: letter, darkest colour and lightest colour.
 const RAMPS: [(char, [f64; 3], [f64; 3]); 3] = [
     ('a', [44.0, 66.0, 92.0], [190.0, 212.0, 232.0]),
     ('b', [112.0, 72.0, 34.0], [238.0, 208.0, 160.0]),
     ('c', [62.0, 26.0, 84.0], [246.0, 226.0, 170.0]),
 ];
 
-/// Returns the style sheet: one class for each tone of each ramp, and the colours of background and
-/// text in both themes.
+/// Returns the style sheet for the tones, the background and the text.
 fn style() -> Result<String, std::fmt::Error> {
     let mut css = String::from(
         "<style>
@@ -161,7 +157,7 @@ path{stroke-linejoin:round}.fine{stroke-width:3}.bold{stroke-width:6}
             let t = tone as f64 / (TONES - 1) as f64;
             let fill = std::array::from_fn(|i| dark[i] + t * (light[i] - dark[i]));
             let line = fill.map(|channel: f64| 0.62 * channel);
-            // If edges are not drawn, the stroke only closes the hairlines between faces.
+            // This stroke only closes the hairlines between faces.
             writeln!(
                 css,
                 ".{letter}{tone}{{fill:{fill};stroke:{line}}}.plain .{letter}{tone}{{stroke:{fill}}}",
@@ -202,11 +198,11 @@ fn unit(a: Vector) -> Vector {
     }
 }
 
-/// The view: the directions to the right, upwards, and towards the viewer.
+/// The view: the directions right, up, and towards the viewer.
 struct View([Vector; 3]);
 
 impl View {
-    /// Views flat meshes from above, and others from a corner and above.
+    /// Flat meshes are seen from above, other meshes from a corner and above.
     fn new(mesh: &PolygonMesh) -> Self {
         let mut heights = mesh.positions().iter().map(|p| p.z);
         let flat = heights
@@ -215,8 +211,8 @@ impl View {
         if flat {
             return Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
         }
-        // Pythagorean triples give rational cosines and sines: an azimuth of about 62° from the x
-        // axis and an elevation of about 37°.
+        // Pythagorean triples give rational cosines and sines: an azimuth of about 62° and an
+        // elevation of about 37°.
         let [ca, sa] = [8.0 / 17.0, 15.0 / 17.0];
         let [ce, se] = [4.0 / 5.0, 3.0 / 5.0];
         let towards = [ce * ca, ce * sa, se];
@@ -229,7 +225,6 @@ impl View {
     }
 }
 
-/// A projected face: its corners in the picture, its depth, and its tone.
 struct ProjectedFace {
     corners: Vec<[i64; 2]>,
     depth: f64,
@@ -237,7 +232,6 @@ struct ProjectedFace {
     tone: usize,
 }
 
-/// Draws one cell: the mesh, its name, its parameters and its counts.
 fn cell(name: &str, settings: &str, mesh: &PolygonMesh, colouring: Colouring) -> String {
     let facts = Facts::from_polygons(mesh);
     let weight = match mesh.face_count() {
@@ -270,8 +264,8 @@ fn cell(name: &str, settings: &str, mesh: &PolygonMesh, colouring: Colouring) ->
     svg
 }
 
-/// Projects the faces and sorts them from far to near. For a closed mesh, returns only the faces
-/// that look towards the viewer.
+/// Projects the faces and sorts them from far to near. Leaves out the faces of a closed mesh that
+/// face away.
 fn project_faces(mesh: &PolygonMesh, closed: bool, colouring: Colouring) -> Vec<ProjectedFace> {
     let view = View::new(mesh);
     let points: Vec<Vector> = mesh
@@ -316,7 +310,7 @@ fn project_faces(mesh: &PolygonMesh, closed: bool, colouring: Colouring) -> Vec<
     faces
 }
 
-/// Returns the centre of the projected points, and the scale at which they fill the picture.
+/// Returns the centre of the points, and the scale that fills the picture.
 fn fit(points: &[Vector]) -> ([f64; 2], f64) {
     let side = |i: usize| {
         let low = points.iter().map(|p| p[i]).fold(f64::INFINITY, f64::min);
@@ -330,7 +324,7 @@ fn fit(points: &[Vector]) -> ([f64; 2], f64) {
     ([x, y], PICTURE / width.max(high))
 }
 
-/// Returns a vector along the normal of a polygon whose length is twice the area (Newell).
+/// Returns the Newell vector of a polygon, whose length is twice the area.
 fn area(mut corners: impl Iterator<Item = Vector>) -> Vector {
     let Some(first) = corners.next() else {
         return [0.0; 3];
@@ -344,8 +338,7 @@ fn area(mut corners: impl Iterator<Item = Vector>) -> Vector {
     sum
 }
 
-/// Formats a face as a path in tenths of a pixel. Every corner except the first is relative to the
-/// previous one.
+/// Formats a face as a path in tenths of a pixel, with relative coordinates.
 fn path(face: &ProjectedFace) -> String {
     let mut path = format!("<path class=\"{}{}\" d=\"M", face.ramp, face.tone);
     let mut last = [0, 0];

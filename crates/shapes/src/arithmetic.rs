@@ -1,15 +1,14 @@
-//! Sine, cosine and exponential function from + − × ÷ only.
+//! Sine, cosine and exponential function, computed with + − × ÷ only.
 //!
 //! The functions of the platform differ in the last bits between machines; IEEE arithmetic and
-//! square roots do not. So a shape has the same coordinates on every machine, and a checksum can
-//! verify this.
+//! square roots do not differ. So a shape has the same coordinates on every machine.
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, LN_2, LOG2_E};
 
 /// Returns cosine and sine of `k / n` of a full turn; exact at quarter turns. `n` must not be 0.
 ///
-/// Integer arithmetic reduces the turn to one of eight mirrored octants. So points that are mirror
-/// images of each other have the same bits, except for sign and order.
+/// Integer arithmetic reduces the turn to one of eight mirrored octants. So mirrored points have
+/// the same bits, except for sign and order.
 pub(crate) fn unit_circle(k: usize, n: usize) -> [f64; 2] {
     let eighths = 8 * (k % n);
     let (octant, rest) = (eighths / n, eighths % n);
@@ -30,7 +29,7 @@ pub(crate) fn unit_circle(k: usize, n: usize) -> [f64; 2] {
     }
 }
 
-/// Returns cosine and sine of an angle of at most π/4, by their power series.
+/// Returns cosine and sine of an angle of at most π/4.
 fn small_angle(angle: f64) -> [f64; 2] {
     let square = angle * angle;
     let (mut cosine, mut sine) = (1.0, 1.0);
@@ -42,8 +41,7 @@ fn small_angle(angle: f64) -> [f64; 2] {
     [cosine, sine * angle]
 }
 
-/// Returns exp(−`x`) for `x` ≥ 0, or 0 for `x` above 700, so that all nonzero results are normal
-/// numbers.
+/// Returns exp(−`x`) for `x` ≥ 0, or 0 for `x` above 700.
 pub(crate) fn exp_minus(x: f64) -> f64 {
     if x > 700.0 {
         return 0.0;

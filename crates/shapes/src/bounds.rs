@@ -6,7 +6,7 @@ use crate::marching::{Lattice, MARGIN};
 /// Maximum number of cubes of a lattice.
 const MAX_CUBES: f64 = (1_u64 << 29) as f64;
 
-/// Maximum number of lattice points in one layer; two layers are kept in memory.
+/// Maximum number of lattice points in one layer.
 const MAX_LAYER: f64 = (1_u64 << 22) as f64;
 
 /// A box with sides along the axes, from its low corner to its high corner.
@@ -17,8 +17,7 @@ pub(crate) struct Bounds {
 }
 
 impl Bounds {
-    /// Builds the box that extends by `half` in both directions from `centre`; `None` if a side is
-    /// negative.
+    /// Builds the box from `centre` − `half` to `centre` + `half`, or `None` if a side is negative.
     pub(crate) fn from_centre(centre: [f64; 3], half: [f64; 3]) -> Option<Self> {
         half.iter().all(|&side| side >= 0.0).then(|| Self {
             low: std::array::from_fn(|axis| centre[axis] - half[axis]),
@@ -26,7 +25,6 @@ impl Bounds {
         })
     }
 
-    /// Returns the smallest box that contains both boxes.
     pub(crate) fn union(a: Option<Self>, b: Option<Self>) -> Option<Self> {
         match (a, b) {
             (Some(a), Some(b)) => Some(Self {
@@ -37,7 +35,6 @@ impl Bounds {
         }
     }
 
-    /// Returns the intersection of both boxes.
     pub(crate) fn intersection(a: Option<Self>, b: Option<Self>) -> Option<Self> {
         let (a, b) = (a?, b?);
         let low: [f64; 3] = std::array::from_fn(|axis| a.low[axis].max(b.low[axis]));
@@ -47,22 +44,20 @@ impl Bounds {
             .then_some(Self { low, high })
     }
 
-    /// Returns whether a point is in the box.
     #[cfg(test)]
     pub(crate) fn contains(&self, point: [f64; 3]) -> bool {
         (0..3).all(|axis| (self.low[axis]..=self.high[axis]).contains(&point[axis]))
     }
 
-    /// Returns the length of the longest side.
     pub(crate) fn longest_side(&self) -> f64 {
         let [x, y, z]: [f64; 3] = std::array::from_fn(|axis| self.high[axis] - self.low[axis]);
         x.max(y).max(z)
     }
 
-    /// Returns the smallest box of blocks that are not `empty`, out of sixteen blocks along each
-    /// axis; `None` if all are empty.
+    /// Divides the box into sixteen blocks along each axis. Returns the smallest box of the blocks
+    /// that are not `empty`, or `None` if all blocks are empty.
     ///
-    /// `empty(centre, radius)` may return true only if the ball contains no part of the solid.
+    /// `empty(centre, radius)` may be true only if the ball contains no part of the solid.
     pub(crate) fn tightened(&self, empty: impl Fn([f64; 3], f64) -> bool) -> Option<Self> {
         const SLICES: usize = 16;
         let step: [f64; 3] =
@@ -89,9 +84,9 @@ impl Bounds {
         remaining
     }
 
-    /// Builds a lattice of cubes of side `spacing` that extends beyond the box by one or two cubes
-    /// on every side. Each component of `shift`, from 0 to 1, moves the lattice towards the low
-    /// side.
+    /// Builds a lattice of cubes of side `spacing`. On every side, the lattice extends one or two
+    /// cubes beyond the box. `shift` moves the lattice towards the low side, by 0 to 1 cubes along
+    /// each axis.
     pub(crate) fn lattice(&self, spacing: f64, shift: [f64; 3]) -> Result<Lattice, ShapeError> {
         let cells: [f64; 3] =
             std::array::from_fn(|axis| ((self.high[axis] - self.low[axis]) / spacing).ceil() + 3.0);
@@ -102,7 +97,8 @@ impl Bounds {
         }
         let origin: [f64; 3] =
             std::array::from_fn(|axis| self.low[axis] - (1.0 + shift[axis]) * spacing);
-        // Two vertices differ by at least MARGIN · spacing along some axis; f32 must resolve this.
+        // Two vertices differ by at least MARGIN · spacing along some axis; f32 must represent
+        // this.
         let extent = (0..3).fold(0.0_f64, |extent, axis| {
             let end = origin[axis] + cells[axis] * spacing;
             extent.max(origin[axis].abs()).max(end.abs())

@@ -9,7 +9,7 @@ pub(crate) struct MeshBuilder {
 }
 
 impl MeshBuilder {
-    /// Creates an empty builder with capacity for the given numbers of vertices and corners.
+    /// Creates an empty builder with capacity for these numbers of vertices and corners.
     pub(crate) fn with_capacity(vertices: usize, corners: usize) -> Self {
         Self {
             positions: Vec::with_capacity(vertices),
@@ -25,19 +25,16 @@ impl MeshBuilder {
         number
     }
 
-    /// Adds a face.
     pub(crate) fn add_face(&mut self, corners: impl IntoIterator<Item = u32>) {
         let corners = corners.into_iter().map(VertexId::new);
         let pushed = self.faces.push(corners);
         pushed.expect("the number of corners is checked before a builder is created");
     }
 
-    /// Returns the number of faces added so far.
     pub(crate) fn face_count(&self) -> usize {
         self.faces.len()
     }
 
-    /// Returns the finished mesh.
     pub(crate) fn build(self) -> PolygonMesh {
         let mesh = PolygonMesh::from_faces(self.positions, self.faces);
         mesh.expect("the faces of a shape use existing vertices, each at most once per face")

@@ -1,6 +1,6 @@
-//! The errors that a generator returns before it allocates anything.
+//! Errors of the generators.
 
-/// Why a shape cannot be built.
+/// The reason why a shape cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message shows the meaning of each field")]
@@ -13,7 +13,7 @@ pub enum ShapeError {
         min: f64,
         max: f64,
     },
-    /// Each parameter is in its range, but together they give too many corners.
+    /// Each parameter is in its range, but the shape has too many corners.
     #[error("{shape} with {} has {corners} corners, more than {limit}: choose smaller numbers", format_parameters(.parameters))]
     TooManyCorners {
         shape: &'static str,
@@ -21,7 +21,7 @@ pub enum ShapeError {
         corners: u64,
         limit: u64,
     },
-    /// A count is not a whole number.
+    /// A count is not an integer.
     #[error("{parameter} = {value}: choose a whole number from {min} to {max}")]
     NotInteger {
         parameter: &'static str,
@@ -45,7 +45,7 @@ pub enum ShapeError {
     /// The control points do not fill a grid.
     #[error("{points} control points do not fill rows of {columns}: add or remove points")]
     RaggedNet { points: usize, columns: usize },
-    /// The field is not positive far away.
+    /// The field is not positive far away from the origin.
     #[error("the solid is unbounded: raise the level of the blobs, or inflate by less")]
     Unbounded,
     /// The solid is empty, or too thin for the lattice.
@@ -56,22 +56,21 @@ pub enum ShapeError {
         "a lattice of spacing {spacing:e} is too fine for this solid: choose fewer faces, or move the solid to the origin"
     )]
     TooFine { spacing: f64 },
-    /// No lattice gives the requested number of faces, because the number changes in jumps.
+    /// No lattice gives the requested number of faces.
     #[error("no lattice gives {faces} faces: choose about {nearest}")]
     UnreachableFaceCount { faces: usize, nearest: usize },
 }
 
-/// Maximum number of corners of a shape (2³¹ − 1): every structure has handles for this many.
+/// Maximum number of corners of a shape (2³¹ − 1).
 pub(crate) const MAX_CORNERS: u64 = (1 << 31) - 1;
 
-/// Maximum number of cells along a side. `f32` represents all whole and half numbers up to twice
-/// this number.
+/// Maximum number of cells along a side. `f32` represents all integers and halves up to twice this
+/// number.
 pub(crate) const MAX_SIDE: usize = 1 << 22;
 
-/// Maximum number of steps around a circle. With `f32`, adjacent points still differ everywhere.
+/// Maximum number of steps around a circle. Adjacent points still differ in `f32`.
 pub(crate) const MAX_SEGMENTS: usize = 1 << 20;
 
-/// Returns an error if `value` is outside `min..=max`.
 pub(crate) fn check_count(
     parameter: &'static str,
     value: usize,
@@ -90,7 +89,6 @@ pub(crate) fn check_count(
     })
 }
 
-/// Returns an error if `value` is NaN or outside `min..=max`.
 pub(crate) fn check_value(
     parameter: &'static str,
     value: f64,
@@ -108,7 +106,6 @@ pub(crate) fn check_value(
     })
 }
 
-/// Returns an error if there are more than [`MAX_CORNERS`] corners.
 pub(crate) fn check_corners(
     shape: &'static str,
     parameters: &[(&'static str, usize)],
@@ -125,7 +122,7 @@ pub(crate) fn check_corners(
     }
 }
 
-/// Formats parameters as `m = 3, n = 4`.
+/// Formats parameters. Example: `m = 3, n = 4`.
 fn format_parameters(parameters: &[(&'static str, usize)]) -> String {
     let pairs: Vec<String> = parameters
         .iter()
@@ -134,7 +131,7 @@ fn format_parameters(parameters: &[(&'static str, usize)]) -> String {
     pairs.join(", ")
 }
 
-/// Formats the allowed names as `choose from m, n`.
+/// Formats the allowed names. Example: `choose from m, n`.
 fn format_allowed(parameters: &[&'static str]) -> String {
     match parameters {
         [] => "it has no parameters".to_owned(),

@@ -1,4 +1,4 @@
-//! The search for a lattice that gives a surface the requested number of faces.
+//! The search for a lattice that gives the requested number of faces.
 
 use sixfold_core::PolygonMesh;
 
@@ -15,19 +15,18 @@ pub(crate) const MAX_FACES: usize = 4_000_000;
 /// Maximum number of lattices that are tried.
 const MAX_ATTEMPTS: u32 = 24;
 
-/// Maximum number of cubes of a lattice without faces; above it, the solid counts as empty.
+/// Number of cubes of a lattice above which a solid without faces counts as empty.
 const MAX_EMPTY_CUBES: f64 = (1 << 22) as f64;
 
-/// Returns an error if the number of faces is out of range.
 pub(crate) fn check_faces(faces: usize) -> Result<(), ShapeError> {
     check_count("faces", faces, MIN_FACES, MAX_FACES)
 }
 
-/// Builds the surface of `solid`, which lies within `bounds`, from about `faces` triangles.
+/// Builds the surface of `solid` from about `faces` triangles. The solid is within `bounds`.
 ///
 /// The number of faces is inversely proportional to the square of the spacing, so each lattice
-/// gives an estimate for the spacing of the next one. If a surface is parallel to the lattice, the
-/// number of faces changes in jumps. Therefore each lattice also has a different shift.
+/// gives an estimate for the spacing of the next lattice. If a surface is parallel to the lattice,
+/// the number of faces changes in jumps. Therefore each lattice also has a different shift.
 pub(crate) fn polygonised(
     solid: &impl Solid,
     bounds: Bounds,
@@ -60,8 +59,7 @@ pub(crate) fn polygonised(
     }
 }
 
-/// Returns a shift. The shifts fill the cube evenly: they are multiples of the powers of the
-/// inverse plastic ratio in three dimensions (Roberts 2018).
+/// Returns a shift. The shifts fill the cube evenly (Roberts 2018).
 fn shift(attempt: u32) -> [f64; 3] {
     const STEPS: [f64; 3] = [
         0.819_172_513_396_164_4,

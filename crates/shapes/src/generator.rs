@@ -13,7 +13,7 @@ use crate::{b_spline_patch, bezier_patch};
 /// A shape that can be selected by name.
 #[derive(Clone, Copy, Debug)]
 pub struct Generator {
-    /// Name for users, such as `triangle-torus`.
+    /// Name for users. Example: `triangle-torus`.
     pub name: &'static str,
     /// Description in one line.
     pub summary: &'static str,
@@ -33,9 +33,9 @@ pub struct Parameter {
     pub default: f64,
     /// Minimum value.
     pub min: f64,
-    /// Maximum value; in combination with other parameters, a shape may allow less.
+    /// Maximum value. The other parameters of a shape may lower this limit.
     pub max: f64,
-    /// Whether the value must be a whole number.
+    /// Whether the value must be an integer.
     pub is_integer: bool,
 }
 
@@ -57,7 +57,6 @@ impl Parameter {
         }
     }
 
-    /// Returns an error if `value` is out of range, or not whole although it must be.
     fn check(&self, value: f64) -> Result<(), ShapeError> {
         let Self {
             name: parameter,
@@ -78,12 +77,16 @@ impl Parameter {
 }
 
 impl Generator {
-    /// Builds the shape with `values` given by name, and default values for the other parameters.
+    /// Builds the shape. `values` has the names and values of parameters; all other parameters have
+    /// their defaults.
     ///
     /// # Errors
     ///
-    /// Fails if a name is unknown or given twice, if a value is out of range or not whole although
-    /// it must be, or if the shape itself returns an error.
+    /// Fails in these cases:
+    ///
+    /// - A name is unknown or given twice.
+    /// - A value is out of range, or is not the integer that it must be.
+    /// - The shape returns an error.
     pub fn build(&self, values: &[(&str, f64)]) -> Result<PolygonMesh, ShapeError> {
         let mut given: Vec<Option<f64>> = vec![None; self.parameters.len()];
         for &(name, value) in values {
@@ -137,8 +140,7 @@ const TORUS: &[Parameter] = &[
 
 const STEPS_M: Parameter = Parameter::count("m", "cells from left to right", 20, 1, MAX_SEGMENTS);
 const STEPS_N: Parameter = Parameter::count("n", "cells from bottom to top", 20, 1, MAX_SEGMENTS);
-/// The parameter for the number of triangles. With fewer than `min` triangles, the lattice would be
-/// too coarse for the thin parts of the shape.
+/// The number of triangles. With fewer than `min` triangles, thin parts of the shape would be lost.
 const fn faces(min: usize) -> Parameter {
     let meaning = "number of triangles, accurate to 5 % or 20";
     Parameter::count("faces", meaning, 5_000, min, MAX_FACES)
@@ -362,7 +364,6 @@ pub const GENERATORS: &[Generator] = &[
     },
 ];
 
-/// Converts a value that is known to be a whole number in a small range.
 fn count(value: f64) -> usize {
     value as usize
 }

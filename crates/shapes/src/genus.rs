@@ -34,7 +34,7 @@ pub fn genus(g: usize) -> Result<PolygonMesh, ShapeError> {
     }
     let solid = |x: usize, y: usize| x < length && y < width && !(x % 2 == 1 && y == 1);
     let at = |x: usize, y: usize, z: usize| ((x * (width + 1) + y) * 2 + z) as u32;
-    // Adds the vertical wall above a → b; it faces to the right of that direction.
+    // Adds the vertical wall above a → b. The wall faces to the right of a → b.
     let wall = |builder: &mut MeshBuilder, [ax, ay]: [usize; 2], [bx, by]: [usize; 2]| {
         builder.add_face([at(ax, ay, 0), at(bx, by, 0), at(bx, by, 1), at(ax, ay, 1)]);
     };

@@ -12,7 +12,7 @@ pub(crate) const MAX_FREQUENCY: usize = 5_982;
 /// Builds an icosahedron with each edge cut into `frequency` parts, projected to the unit sphere.
 ///
 /// V = 10f² + 2, E = 30f², F = 20f². Twelve vertices have valence 5, all others have valence 6.
-/// This is class I of Buckminster Fuller's spheres, at any frequency.
+/// This is class I of Buckminster Fuller's spheres.
 ///
 /// ```text
 ///          c
@@ -42,7 +42,7 @@ pub fn geodesic(frequency: usize) -> Result<PolygonMesh, ShapeError> {
     }
     for face in ICOSAHEDRON_FACES {
         let mut numbers = FaceLattice::new(f, face, &edges);
-        // Row j lies j steps from the side ab towards c.
+        // Row j is j steps from the side ab towards c.
         for j in 1..f {
             for i in 1..f - j {
                 let [a, b, c] = face;
@@ -63,14 +63,14 @@ pub fn geodesic(frequency: usize) -> Result<PolygonMesh, ShapeError> {
     Ok(builder.build())
 }
 
-/// Vertex numbers of the lattice points of one subdivided face, row by row.
+/// Vertex numbers of the lattice points of one divided face, row by row.
 struct FaceLattice {
     frequency: usize,
     numbers: Vec<u32>,
 }
 
 impl FaceLattice {
-    /// Fills in the points that the face shares with other faces. The inner points are set later.
+    /// Fills in the points on the sides of the face. The inner points are set later.
     fn new(frequency: usize, [a, b, c]: [u32; 3], edges: &[[u32; 2]]) -> Self {
         let f = frequency;
         let numbers = vec![0; (f + 1) * (f + 2) / 2];
@@ -98,7 +98,7 @@ impl FaceLattice {
     }
 }
 
-/// Returns the vertex number of the point `k` steps from `from` towards `to`.
+/// Returns the vertex `k` steps from `from` towards `to`.
 fn on_edge(frequency: usize, from: u32, to: u32, k: usize, edges: &[[u32; 2]]) -> u32 {
     if k == 0 {
         return from;
@@ -111,7 +111,7 @@ fn on_edge(frequency: usize, from: u32, to: u32, k: usize, edges: &[[u32; 2]]) -
     (12 + edge * (frequency - 1) + step - 1) as u32
 }
 
-/// Returns the thirty edges of the icosahedron, sorted, each with its lower end first.
+/// Returns the thirty edges of the icosahedron, sorted. Each edge has its lower end first.
 fn edges() -> Vec<[u32; 2]> {
     let sides = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
     let sides = ICOSAHEDRON_FACES.iter().flat_map(sides);

@@ -11,9 +11,9 @@
 //! | smooth union | (f + g − √(f² + g² − 2αfg)) / (1 + α) |
 //! | blobs | level − Σ a·exp(−b·\|p − c\|²) |
 //!
-//! The smooth union (Rvachev's R-function) is zero on the surface of the union and smooth
-//! everywhere else. Its blend is visible only on other levels, so [inflate](Field::inflated) the
-//! field a little.
+//! The smooth union is Rvachev's R-function. On its surface, it is zero at the same points as the
+//! union, so the blend is visible only on other levels. To see the blend,
+//! [inflate](Field::inflated) the field a little.
 //!
 //! ```
 //! use sixfold_shapes::implicit::Field;
@@ -37,8 +37,8 @@ const MAX_VALUE: f64 = 1e6;
 /// Minimum radius, level and sharpness.
 const MIN_VALUE: f64 = 1e-6;
 
-/// Maximum nesting depth of fields. A chain of unions is as deep as it is long. To join many parts,
-/// join them in pairs, then join the pairs in pairs.
+/// Maximum nesting depth of fields. A chain of n unions has depth n. To join many parts, join them
+/// in pairs, then join the pairs in pairs.
 const MAX_DEPTH: usize = 500;
 
 /// One Gaussian bell of a sum: `strength` · exp(−`sharpness` · |p − `centre`|²).
@@ -56,12 +56,12 @@ pub struct Blob {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
     node: Node,
-    /// Nesting depth; limited because evaluation is recursive and the stack is finite.
+    /// Nesting depth. The limit protects the stack, because evaluation is recursive.
     depth: usize,
 }
 
 impl Field {
-    /// Builds the ball around `centre`. The field is the signed distance from its surface.
+    /// Builds the ball around `centre`. The field is the signed distance from the surface.
     ///
     /// # Errors
     ///
@@ -72,8 +72,8 @@ impl Field {
         Ok(Self::simple(Node::Sphere { centre, radius }))
     }
 
-    /// Builds the tube of radius `tube` around a circle of radius `ring` about `axis`. The field is
-    /// the signed distance from its surface.
+    /// Builds a torus: a tube of radius `tube` around a circle of radius `ring` about `axis`. The
+    /// field is the signed distance from the surface.
     ///
     /// # Errors
     ///
@@ -100,12 +100,12 @@ impl Field {
         }))
     }
 
-    /// Builds the box that extends by `half` in both directions from `centre` along each axis. The
-    /// field is the signed distance from its surface.
+    /// Builds the box from `centre` − `half` to `centre` + `half`. The field is the signed distance
+    /// from the surface.
     ///
     /// # Errors
     ///
-    /// Fails if a coordinate is beyond ±10⁶ or half a side is outside 10⁻⁶ to 10⁶.
+    /// Fails if a coordinate is beyond ±10⁶ or a value of `half` is outside 10⁻⁶ to 10⁶.
     pub fn cuboid(centre: [f64; 3], half: [f64; 3]) -> Result<Self, ShapeError> {
         check_point("centre", centre)?;
         for side in half {
@@ -114,7 +114,7 @@ impl Field {
         Ok(Self::simple(Node::Cuboid { centre, half }))
     }
 
-    /// Builds the solid in which the sum of the blobs is above `level` (Blinn 1982).
+    /// Builds the solid where the sum of the blobs is above `level` (Blinn 1982).
     ///
     /// # Errors
     ///
@@ -159,8 +159,8 @@ impl Field {
         self.combined(other, Node::Difference)
     }
 
-    /// Returns the union with smooth levels around it. The levels are smoothest for `alpha` = 0,
-    /// and not smoothed for `alpha` = 1.
+    /// Returns the union with a smooth blend. The blend is smoothest for `alpha` = 0; for `alpha` =
+    /// 1 there is no blend.
     ///
     /// # Errors
     ///
@@ -190,7 +190,6 @@ impl Field {
         Self::nested(join(Box::new([self.node, other.node])), depth)
     }
 
-    /// Builds a field from parts that are nested at most `depth` deep.
     fn nested(node: Node, depth: usize) -> Result<Self, ShapeError> {
         check_count("depth", depth + 1, 1, MAX_DEPTH)?;
         let depth = depth + 1;
@@ -201,30 +200,32 @@ impl Field {
         Self { node, depth: 1 }
     }
 
-    /// Evaluates the field at a point: negative inside, positive outside.
+    /// Returns the value of the field at a point: negative inside, positive outside.
     pub fn at(&self, point: [f64; 3]) -> f64 {
         self.node.at(point)
     }
 
     /// Builds the surface from about `faces` triangles: closed, manifold, oriented outward.
     ///
-    /// The surface has `faces` triangles within 5 %, or within 20 triangles if that is more. The
-    /// number determines how fine the lattice of the marching tetrahedra is (Doi and Koide 1991).
-    /// Parts that are thinner than the lattice may be missing, and gaps that are thinner may be
-    /// closed. No two vertices share a position. The field is evaluated near the surface only.
+    /// The number of triangles differs from `faces` by at most 5 %, or by at most 20 if that is
+    /// more. The mesh comes from marching tetrahedra (Doi and Koide 1991) on a lattice of cubes.
+    /// Parts and gaps that are thinner than a cube of the lattice may be lost. No two vertices have
+    /// the same position. The field is evaluated near the surface only.
     ///
     /// # Errors
     ///
-    /// Fails if `faces` is outside 100 to 4,000,000, or if the solid is unbounded or contains no
-    /// lattice point. Also fails if no lattice gives that number of faces, or if the lattice is too
-    /// fine for memory or for `f32` at these coordinates.
+    /// Fails in these cases:
+    ///
+    /// - `faces` is outside 100 to 4,000,000.
+    /// - The solid is unbounded, or contains no lattice point.
+    /// - No lattice gives the number of faces.
+    /// - The lattice is too fine for memory, or for `f32` at these coordinates.
     pub fn polygonised(&self, faces: usize) -> Result<PolygonMesh, ShapeError> {
         fitting::check_faces(faces)?;
         let bounds = self.node.bounds()?.ok_or(ShapeError::Empty)?;
         fitting::polygonised(&self.node, bounds, faces)
     }
 
-    /// Builds the surface on a lattice of the given spacing.
     pub(crate) fn polygonised_at(&self, spacing: f64) -> Result<PolygonMesh, ShapeError> {
         let bounds = self.node.bounds()?.ok_or(ShapeError::Empty)?;
         let lattice = bounds.lattice(spacing, [0.0; 3])?;

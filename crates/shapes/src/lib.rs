@@ -24,8 +24,8 @@
 //! | [`implicit`] surfaces, [`default_study`] | F/2 + χ | 3F/2 | F | by topology |
 //!
 //! Faces of closed shapes are oriented outward. Faces of flat shapes run counter-clockwise as seen
-//! from above. No two vertices share a position (for a patch, this depends on the control net). The
-//! code calls no trigonometric function of the platform, so a shape is the same on every machine.
+//! from above. No two vertices have the same position, except possibly in patches. A shape is the
+//! same on every machine, because the code calls no trigonometric function of the platform.
 //! Parameters outside the documented ranges return a [`ShapeError`] before anything is allocated.
 //! [`Order`] changes the order of any mesh; [`GENERATORS`] lists all shapes by name.
 //!

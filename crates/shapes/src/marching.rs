@@ -4,14 +4,13 @@ use crate::builder::MeshBuilder;
 
 /// Minimum distance of a crossing from a lattice point, as a fraction of the lattice edge.
 ///
-/// Nearer crossings are moved away; otherwise the crossings of all edges at the point would
-/// coincide.
+/// Without this limit, the crossings of all edges at a lattice point could coincide.
 pub(crate) const MARGIN: f64 = 0.08;
 
-/// Number of refinement steps after a crossing was found by linear interpolation.
+/// Number of refinement steps after linear interpolation.
 const REFINEMENTS: usize = 2;
 
-/// Number of lattice points along a side of the blocks whose sign is tested as a whole.
+/// Number of lattice points along a side of a block.
 const BLOCK: usize = 8;
 
 /// A solid as a function: negative inside, positive outside.
@@ -19,7 +18,7 @@ pub(crate) trait Solid {
     /// Returns the value at a point.
     fn at(&self, point: [f64; 3]) -> f64;
 
-    /// Returns 1 or −1 if all values in a ball certainly have that sign.
+    /// Returns 1 or −1 if all values in a ball certainly have this sign.
     fn sign_over(&self, centre: [f64; 3], radius: f64) -> Option<f64>;
 }
 
@@ -43,15 +42,13 @@ impl Lattice {
         [0, 1, 2].map(|axis| self.origin[axis] + self.spacing * at[axis] as f64)
     }
 
-    /// Returns whether a lattice point is on the outside of the lattice.
     fn is_outermost(&self, at: [usize; 3]) -> bool {
         (0..3).any(|axis| at[axis] == 0 || at[axis] == self.cells[axis])
     }
 }
 
-/// The paths along the edges of a cube from corner 000 to corner 111 (bits zyx): six tetrahedra.
-///
-/// The first three paths have positive orientation, the last three have negative orientation.
+/// Six tetrahedra of a cube, as paths along edges from corner 000 to corner 111 (bits zyx). The
+/// first three paths have positive orientation, the last three have negative orientation.
 const PATHS: [[usize; 4]; 6] = [
     [0, 1, 3, 7],
     [0, 2, 6, 7],
@@ -61,14 +58,13 @@ const PATHS: [[usize; 4]; 6] = [
     [0, 4, 6, 7],
 ];
 
-/// Builds the surface between the lattice points where `solid` is negative (inside) and all others.
+/// Builds the surface between the lattice points inside `solid` and all others.
 ///
-/// Every cube is divided into six tetrahedra around its diagonal (Kuhn), in the same way in all
-/// cubes, so that adjacent cubes match. In each crossed tetrahedron, the surface is one triangle or
-/// two (Doi and Koide 1991). Each lattice edge with exactly one end inside has one vertex of the
-/// surface. Outermost points count as outside. So the surface is a closed, consistently oriented
-/// manifold for any values. Time: O(lattice points). The solid is evaluated near the surface only,
-/// and two layers of values are kept.
+/// Every cube is divided into six tetrahedra around its diagonal (Kuhn). In each tetrahedron that
+/// the surface crosses, the surface is one triangle or two (Doi and Koide 1991). Each lattice edge
+/// with exactly one end inside has one vertex of the surface. Points at the border of the lattice
+/// count as outside. So the surface is a closed, consistently oriented manifold for any values.
+/// Time: O(lattice points).
 pub(crate) fn polygonised<S: Solid>(solid: &S, lattice: &Lattice) -> MeshBuilder {
     let [nx, ny, nz] = lattice.cells;
     let mut sweep = Sweep {
@@ -86,7 +82,7 @@ pub(crate) fn polygonised<S: Solid>(solid: &S, lattice: &Lattice) -> MeshBuilder
         ],
         touched: [Vec::new(), Vec::new()],
     };
-    // The lowest layer is outermost, so all its points are outside, which is the initial value.
+    // All points of the lowest layer are outside, which is the initial value.
     for z in 0..nz {
         sweep.sample(z + 1);
         for y in 0..ny {
@@ -104,23 +100,21 @@ pub(crate) fn polygonised<S: Solid>(solid: &S, lattice: &Lattice) -> MeshBuilder
     sweep.builder
 }
 
-/// Two layers of the lattice, which move upwards.
+/// Two layers of the lattice.
 struct Sweep<'a, S> {
     solid: &'a S,
     lattice: &'a Lattice,
     builder: MeshBuilder,
-    /// Values on the lower and on the upper layer.
     values: [Vec<f64>; 2],
     /// For each lattice point and direction (bits zyx): the vertex on that lattice edge.
     crossings: [Vec<[Option<u32>; 8]>; 2],
-    /// Lattice points with crossings; a point occurs once per crossing.
+    /// Lattice points with crossings, once per crossing.
     touched: [Vec<usize>; 2],
-    /// For each block of the upper layer's slab: the sign of all its values, if it is certain.
+    /// For each block of the upper layer's slab: the sign of all values, if certain.
     signs: Vec<Option<f64>>,
 }
 
 impl<S: Solid> Sweep<'_, S> {
-    /// Computes the values on the upper layer, which is layer `z`.
     fn sample(&mut self, z: usize) {
         let [nx, ny, _] = self.lattice.cells;
         if z == 1 || z.is_multiple_of(BLOCK) {
@@ -139,9 +133,8 @@ impl<S: Solid> Sweep<'_, S> {
         }
     }
 
-    /// Tests the sign of each block of slab `z`, together with the points next to the block. If all
-    /// these values have one sign, no lattice edge that ends in the block is crossed. The values in
-    /// the block are then not needed.
+    /// Tests the sign of each block of slab `z`, including the points next to the block. If all
+    /// values have one sign, no surface crosses the block, and the values are not needed.
     fn sign_blocks(&mut self, z: usize) {
         let [nx, ny, _] = self.lattice.cells;
         let spacing = self.lattice.spacing;
@@ -168,7 +161,6 @@ impl<S: Solid> Sweep<'_, S> {
         }
     }
 
-    /// Returns the index of corner `bits` of a cube within its layer.
     fn column(&self, [x, y, _]: [usize; 3], bits: usize) -> usize {
         (y + (bits >> 1 & 1)) * (self.lattice.cells[0] + 1) + x + (bits & 1)
     }
@@ -180,8 +172,6 @@ impl<S: Solid> Sweep<'_, S> {
         inside: &[bool; 8],
         is_positive: bool,
     ) {
-        // Sorts the corners that are inside to the front; `is_even` is the orientation of the
-        // result.
         let mut corners = path;
         let mut is_even = is_positive;
         for end in (1..4).rev() {
@@ -193,7 +183,7 @@ impl<S: Solid> Sweep<'_, S> {
             }
         }
         if !is_even {
-            // Swaps two corners on the same side of the surface: the first two, or the last two.
+            // Swaps two corners on the same side of the surface.
             if inside[corners[2]] {
                 corners.swap(0, 1);
             } else {
@@ -221,10 +211,9 @@ impl<S: Solid> Sweep<'_, S> {
         }
     }
 
-    /// Adds two triangles along the diagonal from the vertex with the lowest number.
+    /// Cuts the quad along the diagonal from the vertex with the lowest number.
     ///
-    /// The choice depends on the numbers, not on the lengths. So the faces depend only on which
-    /// lattice points are inside, and the valences vary as they do in meshes from scanners.
+    /// So the faces depend only on which lattice points are inside.
     fn add_quad(&mut self, [a, b, c, d]: [u32; 4]) {
         if a.min(c) < b.min(d) {
             self.builder.add_face([a, b, c]);
@@ -235,10 +224,9 @@ impl<S: Solid> Sweep<'_, S> {
         }
     }
 
-    /// Returns the vertex on the lattice edge between two corners of a cube; one of them is inside.
     fn crossing_vertex(&mut self, cube: [usize; 3], (p, q): (usize, usize)) -> u32 {
-        // Along a path, bits are only added. So the bits of one end are a subset of the bits of the
-        // other end.
+        // Along a path, bits are only added. So the lower end has a subset of the bits of the other
+        // end.
         let (low, high) = (p & q, p | q);
         let (layer, column) = (low >> 2, self.column(cube, low));
         if let Some(vertex) = self.crossings[layer][column][high ^ low] {
@@ -255,13 +243,11 @@ impl<S: Solid> Sweep<'_, S> {
         vertex
     }
 
-    /// Finds a point where the field is zero, between two points on opposite sides of the surface
-    /// and not too near to either.
+    /// Finds a zero of the field between two points on opposite sides of the surface.
     fn root(&self, ends: [[f64; 3]; 2], [mut start, mut end]: [f64; 2]) -> [f64; 3] {
         let (mut low, mut high) = (0.0, 1.0);
         let crossing = |low: f64, high: f64, start: f64, end: f64| {
             let part = start / (start - end);
-            // Uses the middle if the values are too large to divide.
             let part = if part.is_finite() { part } else { 0.5 };
             low + part * (high - low)
         };
@@ -279,12 +265,10 @@ impl<S: Solid> Sweep<'_, S> {
     }
 }
 
-/// Interpolates between two points; `part` is from 0 to 1.
 fn interpolate([a, b]: [[f64; 3]; 2], part: f64) -> [f64; 3] {
     std::array::from_fn(|axis| a[axis] + part * (b[axis] - a[axis]))
 }
 
-/// Returns the lattice point at a corner of a cube.
 fn corner_index([x, y, z]: [usize; 3], bits: usize) -> [usize; 3] {
     [x + (bits & 1), y + (bits >> 1 & 1), z + (bits >> 2)]
 }
@@ -312,8 +296,7 @@ mod tests {
             cells: [9, 7, 8],
         };
         for seed in 0..100_u64 {
-            // A hash of the position, between −1 and 1, so that the values at different points
-            // differ.
+            // A hash of the position, between −1 and 1.
             let noise = |point: [f64; 3]| {
                 let bits = point.iter().fold(seed, |hash, x| {
                     (hash ^ x.to_bits())
@@ -345,8 +328,8 @@ mod tests {
         };
         let inside = |point: [f64; 3]| if point == [0.0; 3] { -1.0 } else { 1.0 };
         let mesh = polygonised(&inside, &lattice).build();
-        // The link of a lattice point: one vertex on each of its 14 edges, and one triangle in each
-        // of its 24 tetrahedra.
+        // The link of a lattice point has one vertex on each of 14 edges and one triangle in each
+        // of 24 tetrahedra.
         assert_eq!((mesh.vertex_count(), mesh.face_count()), (14, 24));
         for (f, face) in mesh.faces().iter() {
             let [a, b, c] = [0, 1, 2].map(|i| mesh.position(face[i]));

@@ -1,4 +1,4 @@
-//! The expression tree of a field: its values, their range over a ball, and bounds of the solid.
+//! The expression tree of a field.
 
 use crate::arithmetic::exp_minus;
 use crate::bounds::Bounds;
@@ -6,8 +6,8 @@ use crate::error::ShapeError;
 use crate::implicit::Blob;
 use crate::marching::Solid;
 
-/// Minimum number of rounds of tightening the bounds. Each further round must shorten the longest
-/// side by at least a quarter.
+/// Minimum number of rounds that tighten the bounds. The rounds then continue while each round
+/// shortens the longest side by more than a quarter.
 const MIN_TIGHTENING_ROUNDS: u32 = 3;
 
 /// A node of the expression tree of a field.
@@ -46,7 +46,7 @@ pub(crate) enum Node {
 }
 
 impl Node {
-    /// Evaluates the field at a point.
+    /// Returns the value of the field at a point.
     pub(crate) fn at(&self, point: [f64; 3]) -> f64 {
         match self {
             Self::Sphere { centre, radius } => {
@@ -60,7 +60,7 @@ impl Node {
             } => {
                 let offset = offset(*centre, point);
                 let along = offset[0] * axis[0] + offset[1] * axis[1] + offset[2] * axis[2];
-                // Rounding may make the difference negative near the axis.
+                // Near the axis, rounding may make the difference negative.
                 let radial = (length_squared(offset) - along * along).max(0.0).sqrt() - ring;
                 (radial * radial + along * along).sqrt() - tube
             }
@@ -107,7 +107,7 @@ impl Node {
                 }
                 range
             }
-            // The other operations are monotonic in their parts.
+            // The other operations are monotonic.
             Self::Union(parts) => {
                 let [f, g] = ranges(parts);
                 [0, 1].map(|end| f[end].min(g[end]))
@@ -128,7 +128,7 @@ impl Node {
         }
     }
 
-    /// Returns bounds of the solid; `None` if the solid is certainly empty.
+    /// Returns bounds of the solid, or `None` if the solid is certainly empty.
     pub(crate) fn bounds(&self) -> Result<Option<Bounds>, ShapeError> {
         let Some(mut bounds) = self.sublevel_bounds(0.0)? else {
             return Ok(None);
@@ -149,8 +149,8 @@ impl Node {
         Ok(Some(bounds))
     }
 
-    /// Returns bounds of the points where the field is at most `level`; `None` if there are no such
-    /// points.
+    /// Returns bounds of the points where the field is at most `level`, or `None` if there are no
+    /// such points.
     fn sublevel_bounds(&self, level: f64) -> Result<Option<Bounds>, ShapeError> {
         Ok(match self {
             Self::Sphere { centre, radius } => Bounds::from_centre(*centre, [radius + level; 3]),
@@ -175,8 +175,7 @@ impl Node {
             ),
             Self::Difference(parts) => parts[0].sublevel_bounds(level)?,
             Self::SmoothUnion { parts, alpha } => {
-                // The smooth union grows with f and with g. Relative to min(f, g), it is smallest
-                // if f and g are equal.
+                // If min(f, g) is given, the smooth union is smallest for f = g.
                 let share = (2.0 - (2.0 - 2.0 * alpha).sqrt()) / (1.0 + alpha);
                 let level = level.max(0.0) / share;
                 Bounds::union(
@@ -203,25 +202,25 @@ impl Solid for Node {
     }
 }
 
-/// Evaluates Rvachev's smooth union, which is monotonically increasing in `f` and in `g`.
+/// Returns Rvachev's smooth union, which increases with `f` and with `g`.
 fn smooth_union(f: f64, g: f64, alpha: f64) -> f64 {
     let radicand = f * f + g * g - 2.0 * alpha * f * g;
     (f + g - radicand.max(0.0).sqrt()) / (1.0 + alpha)
 }
 
-/// Returns bounds of the points where the blobs add up to `sum` or more.
+/// Returns bounds of the points where the sum of the blobs is at least `sum`.
 fn blob_bounds(blobs: &[Blob], sum: f64) -> Result<Option<Bounds>, ShapeError> {
     if sum <= 0.0 {
         return Err(ShapeError::Unbounded);
     }
-    // At a point where the blobs together reach `sum`, at least one of them reaches this share.
+    // If the sum of the blobs is at least `sum`, at least one blob has at least this share.
     let share = sum / blobs.len() as f64;
     let bounds = blobs.iter().map(|blob| {
         let ratio = blob.strength / share;
         if ratio < 1.0 {
             return None;
         }
-        // exp(−x) ≤ (1 + x/8)⁻⁸, and this bound can be solved for x with square roots.
+        // exp(−x) ≤ (1 + x/8)⁻⁸, and square roots solve this bound for x.
         let x = 8.0 * (ratio.sqrt().sqrt().sqrt() - 1.0);
         Bounds::from_centre(blob.centre, [(x / blob.sharpness).sqrt(); 3])
     });
@@ -232,7 +231,6 @@ fn offset(centre: [f64; 3], point: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| point[axis] - centre[axis])
 }
 
-/// Returns the square of the length of a vector.
 pub(crate) fn length_squared([x, y, z]: [f64; 3]) -> f64 {
     x * x + y * y + z * z
 }
@@ -296,7 +294,6 @@ mod tests {
             inflated(&smooth(0.4), -0.1),
             inflated(&blobs, 0.1),
         ];
-        // Tests the points of a lattice, and balls around some of them that contain other points.
         let coordinate = |i: usize, n: usize| 4.0 * i as f64 / n as f64 - 2.0;
         let lattice = |n: usize| {
             let index =
@@ -313,7 +310,6 @@ mod tests {
                 }
             }
             assert!(inside > 0, "{node:?}");
-            // Skipping whole blocks must not change the mesh.
             let fine = bounds.lattice(0.08, [0.3; 3]).expect("a coarse lattice");
             let all = polygonised(&|point: [f64; 3]| node.at(point), &fine).build();
             let some = polygonised(&node, &fine).build();

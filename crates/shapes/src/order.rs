@@ -14,14 +14,14 @@ use sixfold_core::{FaceId, FaceList, Point, PolygonMesh, VertexId, row};
     derive(serde_with::DeserializeFromStr, serde_with::SerializeDisplay)
 )]
 pub enum Order {
-    /// The order of the mesh as it is.
+    /// The order of the given mesh.
     #[default]
     Given,
-    /// Random order: [`shuffled`].
+    /// Random order. See [`shuffled`].
     Shuffled,
-    /// Along a space-filling curve: [`morton`].
+    /// Along a space-filling curve. See [`morton`].
     Morton,
-    /// The order of a breadth-first walk over the faces: [`breadth_first`].
+    /// A breadth-first walk over the faces. See [`breadth_first`].
     BreadthFirst,
 }
 
@@ -34,7 +34,7 @@ impl Order {
         Self::BreadthFirst,
     ];
 
-    /// Returns the name for users, such as `breadth-first`.
+    /// Returns the name for users. Example: `breadth-first`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Given => "given",
@@ -69,9 +69,9 @@ impl Order {
 pub struct Reordered {
     /// The reordered mesh.
     pub mesh: PolygonMesh,
-    /// New handle of each vertex, indexed by its old row.
+    /// New handle of each vertex, indexed by the old row.
     pub vertices: Vec<VertexId>,
-    /// New handle of each face, indexed by its old row.
+    /// New handle of each face, indexed by the old row.
     pub faces: Vec<FaceId>,
 }
 
@@ -85,7 +85,7 @@ impl fmt::Display for Order {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unknown order {given:?}: choose from {}", Order::ALL.map(Order::name).join(", "))]
 pub struct UnknownOrder {
-    /// The name that was given.
+    /// The unknown name.
     pub given: String,
 }
 
@@ -115,12 +115,12 @@ fn shuffle(mesh: &PolygonMesh, seed: u64) -> Reordered {
     reordered(mesh, &vertices, &faces, |degree| below(degree, &mut rng))
 }
 
-/// Returns the mesh in the order of the space-filling curve of Morton (1966): elements that are
-/// near each other in space are mostly near each other in memory.
+/// Returns the mesh in the order of the space-filling curve of Morton (1966). Elements that are
+/// near each other in space are then mostly near each other in memory.
 ///
-/// Positions are mapped to a grid of 2²¹ steps per side, and the bits of the three coordinates
-/// are interleaved. Vertices are sorted by this code; faces by the code of the mean of their
-/// vertices. Elements with equal codes keep their order. O(n log n).
+/// Positions are rounded to a grid of 2²¹ steps per side. The code of a position has the bits of
+/// its three coordinates in turn. Vertices are sorted by their codes, and faces by the codes of
+/// their centres. Elements with equal codes keep their order. O(n log n).
 pub fn morton(mesh: &PolygonMesh) -> PolygonMesh {
     sort_by_morton_code(mesh).mesh
 }
@@ -134,7 +134,7 @@ fn sort_by_morton_code(mesh: &PolygonMesh) -> Reordered {
     let longest = (0..3).fold(0.0_f64, |longest, axis| {
         longest.max(f64::from(high[axis]) - low[axis])
     });
-    // If the mesh has no extent, the scale is not finite; all codes then saturate to one end.
+    // If the mesh is a single point, the scale is not finite, and all codes are equal.
     let scale = f64::from((1 << 21) - 1) / longest;
     let code = |point: [f64; 3]| {
         let spread = |axis: usize| spread_bits(((point[axis] - low[axis]) * scale) as u32);
@@ -158,8 +158,8 @@ fn sort_by_morton_code(mesh: &PolygonMesh) -> Reordered {
 /// Returns the mesh in the order of a breadth-first walk over its faces from vertex 0; O(corners).
 ///
 /// For each vertex in turn, the walk visits the faces around this vertex and appends the new
-/// vertices of these faces. When no vertex is waiting, it continues at the lowest vertex not
-/// reached so far.
+/// vertices of these faces. If all found vertices are processed, the walk continues at the lowest
+/// vertex that is left.
 pub fn breadth_first(mesh: &PolygonMesh) -> PolygonMesh {
     sort_breadth_first(mesh).mesh
 }
@@ -198,7 +198,7 @@ fn sort_breadth_first(mesh: &PolygonMesh) -> Reordered {
 /// The faces around every vertex, in ascending order.
 struct VertexFaces {
     faces: Vec<u32>,
-    /// End of each vertex's range in `faces`.
+    /// For each vertex, the end of its range in `faces`.
     ends: Vec<u32>,
 }
 
@@ -262,7 +262,6 @@ fn reordered(
     }
 }
 
-/// Returns the numbers below `count` in random order.
 fn permutation(count: usize, rng: &mut ChaCha8Rng) -> Vec<u32> {
     let mut numbers: Vec<u32> = (0..row(count)).collect();
     for last in (1..count).rev() {
@@ -271,8 +270,8 @@ fn permutation(count: usize, rng: &mut ChaCha8Rng) -> Vec<u32> {
     numbers
 }
 
-/// Returns a random number below `bound`: the high half of a product. Its bias, bound / 2⁶⁴, is
-/// negligible.
+/// Returns a random number below `bound`: the high half of a product. The bias of this method,
+/// bound / 2⁶⁴, is negligible.
 fn below(bound: usize, rng: &mut ChaCha8Rng) -> usize {
     ((u128::from(rng.next_u64()) * bound as u128) >> 64) as usize
 }
@@ -311,7 +310,7 @@ mod tests {
 
     #[test]
     fn a_seed_gives_a_fixed_order() {
-        // These values must never change: results published with a seed must stay reproducible.
+        // Published results with a seed need these values.
         let mut rng = ChaCha8Rng::seed_from_u64(1);
         assert_eq!(permutation(8, &mut rng), [5, 6, 2, 4, 1, 7, 0, 3]);
     }

@@ -11,11 +11,11 @@ pub(crate) const MAX_DEGREE: usize = 32;
 /// Maximum number of control points along one direction.
 pub(crate) const MAX_CONTROL_POINTS: usize = 1024;
 
-/// A grid of control points, row by row, for a patch.
+/// A grid of control points for a patch, row by row.
 ///
 /// # Invariants
 ///
-/// - N1  Every row has the same number of points; there are 2 to 1024 rows and columns.
+/// - N1  All rows have the same number of points. There are 2 to 1024 rows and columns.
 /// - N2  Every coordinate is finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ControlNet {
@@ -24,12 +24,15 @@ pub struct ControlNet {
 }
 
 impl ControlNet {
-    /// Builds a net from its rows, one after the other; each has `columns` points.
+    /// Builds a net from its rows, one after the other. Each row has `columns` points.
     ///
     /// # Errors
     ///
-    /// Fails if the last row is not full, if there are fewer than 2 or more than 1024 rows or
-    /// columns, or if a coordinate is not finite.
+    /// Fails in these cases:
+    ///
+    /// - The last row is not full.
+    /// - There are fewer than 2 or more than 1024 rows or columns.
+    /// - A coordinate is not finite.
     pub fn new(columns: usize, points: &[Point]) -> Result<Self, ShapeError> {
         check_count("columns", columns, 2, MAX_CONTROL_POINTS)?;
         if !points.len().is_multiple_of(columns) {
@@ -52,7 +55,7 @@ impl ControlNet {
         Ok(Self { columns, points })
     }
 
-    /// Builds a saddle over the square from −1 to 1; the control points have the height x² − y².
+    /// Builds a saddle over the square from −1 to 1. The control points have the height x² − y².
     ///
     /// # Errors
     ///
@@ -61,7 +64,8 @@ impl ControlNet {
         Self::over_square(columns, rows, |_, _, x, y| x * x - y * y)
     }
 
-    /// Builds a net over the square from −1 to 1; every second point of a row is a hill or hollow.
+    /// Builds waves over the square from −1 to 1. Every second point of a row is a hill or a
+    /// hollow.
     ///
     /// # Errors
     ///
@@ -106,11 +110,12 @@ impl ControlNet {
     }
 }
 
-/// Builds the Bézier patch of a net as `m` × `n` quads. It meets the net at its four corners.
+/// Builds the Bézier patch of a net as `m` × `n` quads. The patch passes through the four corners
+/// of the net.
 ///
 /// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn. In each direction, the degree is one less
-/// than the number of control points. Whether vertices coincide depends on the net. Time:
-/// O(degree²) per vertex, by the construction of de Casteljau.
+/// than the number of control points. For some nets, vertices coincide. Time: O(degree²) per vertex
+/// (de Casteljau).
 ///
 /// # Errors
 ///
@@ -124,17 +129,20 @@ pub fn bezier_patch(net: &ControlNet, m: usize, n: usize) -> Result<PolygonMesh,
     })
 }
 
-/// Builds the uniform B-spline patch of a net as `m` × `n` quads, of the same `degree` in both
+/// Builds the uniform B-spline patch of a net as `m` × `n` quads. The `degree` is the same in both
 /// directions.
 ///
-/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn. The patch has (columns − degree) ×
-/// (rows − degree) pieces. In general it does not pass through a control point. Whether vertices
-/// coincide depends on the net. Time: O(degree²) per vertex, by the recurrence of de Boor.
+/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn. The patch has (columns − degree) × (rows −
+/// degree) pieces. Most patches pass through no control point. For some nets, vertices coincide.
+/// Time: O(degree²) per vertex (de Boor).
 ///
 /// # Errors
 ///
-/// Fails if `degree` is outside 1 to 32 or not less than the number of rows and columns, if `m` or
-/// `n` is outside 1 to 2²⁰, or if there are more than 2³¹ − 1 corners.
+/// Fails in these cases:
+///
+/// - `degree` is outside 1 to 32, or not less than the number of rows and columns.
+/// - `m` or `n` is outside 1 to 2²⁰.
+/// - There are more than 2³¹ − 1 corners.
 pub fn b_spline_patch(
     net: &ControlNet,
     degree: usize,
@@ -144,7 +152,7 @@ pub fn b_spline_patch(
     let points = net.columns().min(net.rows());
     check_count("degree", degree, 1, MAX_DEGREE.min(points - 1))?;
     tessellated("b-spline-patch", net, [m, n], |points, k, steps| {
-        // Integer arithmetic selects the piece, so that the ends are reached exactly.
+        // With integer arithmetic, the ends of the patch are exact.
         let pieces = points.len() - degree;
         let piece = (k * pieces / steps).min(pieces - 1);
         let part = (k * pieces - piece * steps) as f64 / steps as f64;
@@ -152,8 +160,8 @@ pub fn b_spline_patch(
     })
 }
 
-/// Builds the grid of points on a patch. `curve` is applied to every column of the net, then to the
-/// row of resulting points. `curve(points, k, steps)` may overwrite the points.
+/// Builds the grid of points on a patch. Applies `curve` to every column of the net, then to the
+/// resulting row of points. `curve(points, k, steps)` may overwrite the points.
 fn tessellated(
     shape: &'static str,
     net: &ControlNet,
@@ -190,8 +198,8 @@ fn de_casteljau(points: &mut [[f64; 3]], t: f64) -> [f64; 3] {
     points[0]
 }
 
-/// Returns the point at `t`, from 0 to 1, of the piece of a uniform B-spline that `points` control.
-/// Overwrites `points`.
+/// Returns the point at `t`, from 0 to 1, on one piece of a uniform B-spline with the control
+/// points `points`. Overwrites `points`.
 fn de_boor(points: &mut [[f64; 3]], t: f64) -> [f64; 3] {
     let degree = points.len() - 1;
     for round in 1..=degree {
@@ -203,7 +211,7 @@ fn de_boor(points: &mut [[f64; 3]], t: f64) -> [f64; 3] {
     points[degree]
 }
 
-/// Interpolates from `a` at `part` = 0 to `b` at `part` = 1; both ends are exact.
+/// Interpolates from `a` at `part` = 0 to `b` at `part` = 1. Both ends are exact.
 fn interpolate(a: [f64; 3], b: [f64; 3], part: f64) -> [f64; 3] {
     std::array::from_fn(|axis| (1.0 - part) * a[axis] + part * b[axis])
 }
@@ -242,8 +250,7 @@ mod tests {
 
     #[test]
     fn a_bezier_patch_of_degree_two_is_the_polynomial_of_its_saddle() {
-        // The control heights x² at −1, 0, 1 give the polynomial (1 + x²) / 2. The heights for x²
-        // itself would be 1, −1, 1.
+        // The control heights 1, 0, 1 give the polynomial (1 + x²) / 2.
         let net = ControlNet::saddle(3, 3).expect("small");
         let mesh = bezier_patch(&net, 8, 8).expect("small");
         for &p in mesh.positions() {
@@ -254,7 +261,7 @@ mod tests {
 
     #[test]
     fn a_cubic_b_spline_passes_through_the_points_of_its_limit_mask() {
-        // At a knot: (p0 + 4 p1 + p2) / 6, the limit mask of the cubic B-spline.
+        // The limit mask of the cubic B-spline at a knot: (p0 + 4 p1 + p2) / 6.
         let points: Vec<Point> = [3.0, -1.0, 4.0, 1.0, 5.0]
             .iter()
             .flat_map(|&z| (0..4).map(move |i| Point::new(i as f32, z, z * i as f32)))

@@ -16,8 +16,7 @@ pub fn grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     quad_grid("grid", m, n, |i, j| [i as f64, j as f64, 0.0])
 }
 
-/// Builds `m` × `n` quads, row by row. The vertex at column `i` and row `j` has the position
-/// `position(i, j)`.
+/// Builds `m` × `n` quads. The vertex at column `i` and row `j` is at `position(i, j)`.
 pub(crate) fn quad_grid(
     shape: &'static str,
     m: usize,
@@ -46,7 +45,7 @@ pub fn triangle_grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     )
 }
 
-/// Builds `m` × `n` unit squares, every second one cut in two, like the squares of a chess board.
+/// Builds `m` × `n` unit squares. Every second square is cut in two triangles, as on a chess board.
 ///
 /// c = ⌊mn/2⌋ squares are cut: V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1) + c, F = mn + c.
 ///
@@ -94,8 +93,8 @@ pub fn triangle_tiling(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     grid_of_cells("triangle-tiling", [m, n], corners, position, cell)
 }
 
-/// Builds a frame: `m` × `n` unit squares without the a × b squares in the middle, with a = ⌊m/3⌋
-/// and b = ⌊n/3⌋.
+/// Builds a frame: `m` × `n` unit squares without the middle a × b squares, with a = ⌊m/3⌋ and b =
+/// ⌊n/3⌋.
 ///
 /// V = (m + 1)(n + 1) − (a − 1)(b − 1), E = m(n + 1) + n(m + 1) − a(b − 1) − b(a − 1), F = mn − ab.
 ///
@@ -115,7 +114,7 @@ pub fn grid_with_hole(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     grid_of_cells("grid-with-hole", [m, n], corners, lattice_position, cell)
 }
 
-/// Builds `m` × `n` unit squares without `holes` of them. No two holes touch.
+/// Builds `m` × `n` unit squares with `holes` missing squares. No two missing squares touch.
 ///
 /// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn − holes; 1 + holes boundary loops.
 ///
@@ -134,7 +133,6 @@ pub fn grid_with_hole(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
 pub fn grid_with_holes(m: usize, n: usize, holes: usize) -> Result<PolygonMesh, ShapeError> {
     let squares = square_count(m, n)?;
     let (max_columns, max_rows) = ((m - 1) / 2, (n - 1) / 2);
-    // If the product overflows, the number of squares is too large as well.
     check_count("holes", holes, 0, max_columns.saturating_mul(max_rows))?;
     let corners = 4 * (squares - holes as u64);
     let cell = |i: usize, j: usize| {
@@ -167,7 +165,7 @@ pub fn hexagon_tiling(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     let corners = check_corners("hexagon-tiling", &[("m", m), ("n", n)], corners)?;
     let mut builder = MeshBuilder::with_capacity(2 * (m + 1) * (n + 1) - 2, corners);
     let half_width = 3.0_f64.sqrt() / 2.0;
-    // For each zigzag, the number to add to the step of a vertex to get the number of the vertex.
+    // Number of a vertex = step along the zigzag + offset of the zigzag.
     let mut offsets = Vec::with_capacity(n + 1);
     let mut count = 0_i64;
     for j in 0..=n {
@@ -197,20 +195,19 @@ pub fn hexagon_tiling(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     Ok(builder.build())
 }
 
-/// How one square of a grid is meshed.
+/// The faces of one square of a grid.
 #[derive(Clone, Copy)]
 enum Cell {
-    /// One quad.
+    /// A quad.
     Quad,
     /// Two triangles along the diagonal from lower left to upper right.
     Rising,
     /// Two triangles along the diagonal from upper left to lower right.
     Falling,
-    /// No face; vertices inside a larger hole are omitted too.
+    /// No face.
     Hole,
 }
 
-/// Returns the number of squares, or an error if a side is out of range.
 fn square_count(m: usize, n: usize) -> Result<u64, ShapeError> {
     check_count("m", m, 1, MAX_SIDE)?;
     check_count("n", n, 1, MAX_SIDE)?;
@@ -221,8 +218,7 @@ fn lattice_position(i: usize, j: usize) -> [f64; 3] {
     [i as f64, j as f64, 0.0]
 }
 
-/// Builds `m` × `n` squares, row by row. `cell(i, j)` selects how each square is meshed; `corners`
-/// is the total number of corners.
+/// Builds the faces `cell(i, j)` of `m` × `n` squares, with `corners` corners in all.
 fn grid_of_cells(
     shape: &'static str,
     [m, n]: [usize; 2],
@@ -233,8 +229,7 @@ fn grid_of_cells(
     let corners = check_corners(shape, &[("m", m), ("n", n)], corners)?;
     let mut builder = MeshBuilder::with_capacity((m + 1) * (n + 1), corners);
     let hole = |i: usize, j: usize| matches!(cell(i, j), Cell::Hole);
-    // The vertex of each column, if it exists, on the line below the current row of cells and on
-    // the line above it.
+    // The vertices on the lower and on the upper line of the current row of squares.
     let mut below = vec![None; m + 1];
     let mut above = vec![None; m + 1];
     for j in 0..=n {

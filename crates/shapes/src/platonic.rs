@@ -12,7 +12,7 @@ use sixfold_core::PolygonMesh;
 
 use crate::builder::MeshBuilder;
 
-/// The golden ratio, (1 + √5) / 2. The standard library has it since Rust 1.94.
+/// The golden ratio, (1 + √5) / 2.
 const PHI: f64 = 1.618_033_988_749_895;
 
 /// Builds a tetrahedron: four triangles, on every second corner of the cube ±1.
@@ -86,8 +86,8 @@ pub fn octahedron() -> PolygonMesh {
     )
 }
 
-/// Builds a dodecahedron: twelve pentagons, with vertices at the corners of the cube ±1, and at
-/// (0, ±φ, ±1/φ) and its cyclic permutations.
+/// Builds a dodecahedron: twelve pentagons. The vertices are the corners of the cube ±1, and the
+/// cyclic permutations of (0, ±φ, ±1/φ).
 pub fn dodecahedron() -> PolygonMesh {
     const Q: f64 = PHI - 1.0;
     solid(
@@ -130,13 +130,12 @@ pub fn dodecahedron() -> PolygonMesh {
     )
 }
 
-/// Builds an icosahedron: twenty triangles, with vertices at (0, ±1, ±φ) and its cyclic
-/// permutations.
+/// Builds an icosahedron: twenty triangles. The vertices are the cyclic permutations of (0, ±1,
+/// ±φ).
 pub fn icosahedron() -> PolygonMesh {
     solid(&ICOSAHEDRON_VERTICES, &ICOSAHEDRON_FACES)
 }
 
-/// The vertices of the icosahedron.
 pub(crate) const ICOSAHEDRON_VERTICES: [[f64; 3]; 12] = [
     [0.0, 1.0, PHI],
     [0.0, 1.0, -PHI],
@@ -152,7 +151,6 @@ pub(crate) const ICOSAHEDRON_VERTICES: [[f64; 3]; 12] = [
     [-1.0, -PHI, 0.0],
 ];
 
-/// The faces of the icosahedron.
 pub(crate) const ICOSAHEDRON_FACES: [[u32; 3]; 20] = [
     [0, 2, 4],
     [0, 5, 2],

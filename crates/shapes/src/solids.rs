@@ -8,7 +8,7 @@ use crate::arithmetic::unit_circle;
 use crate::builder::MeshBuilder;
 use crate::error::{MAX_SEGMENTS, ShapeError, check_corners, check_count};
 
-/// Builds two `n`-gons joined by `n` quads; `n = 4` gives a cube.
+/// Builds two `n`-gons joined by `n` quads. For `n = 4`, this is a cube.
 ///
 /// V = 2n, E = 3n, F = n + 2.
 ///
@@ -29,8 +29,8 @@ pub fn prism(n: usize) -> Result<PolygonMesh, ShapeError> {
     Ok(builder.build())
 }
 
-/// Builds two `n`-gons, one rotated by half a step, joined by `2n` triangles; `n = 3` gives an
-/// octahedron.
+/// Builds two `n`-gons, one rotated by half a step, joined by `2n` triangles. For `n = 3`, this is
+/// an octahedron.
 ///
 /// V = 2n, E = 4n, F = 2n + 2.
 ///
@@ -52,7 +52,7 @@ pub fn antiprism(n: usize) -> Result<PolygonMesh, ShapeError> {
     Ok(builder.build())
 }
 
-/// Builds a sphere of `m` meridians and `n` bands between the poles: triangles at the poles, quads
+/// Builds a sphere of `m` meridians and `n` bands. The faces are triangles at the poles and quads
 /// elsewhere.
 ///
 /// V = m(n − 1) + 2, E = m(2n − 1), F = mn.
@@ -104,7 +104,7 @@ fn ring(builder: &mut MeshBuilder, n: usize, half_steps: usize, z: f64) {
     }
 }
 
-/// Adds the first `n` vertices as a face that looks down, and the next `n` as a face that looks up.
+/// Adds a lower face with the first `n` vertices, and an upper face with the next `n` vertices.
 fn caps(builder: &mut MeshBuilder, n: u32) {
     builder.add_face((0..n).rev());
     builder.add_face(n..2 * n);

@@ -19,14 +19,14 @@ const RINGS: [f64; 3] = [0.14, 0.10, 0.18];
 /// Radii of the two balls on each axis, in positive and negative direction.
 const BALLS: [[f64; 2]; 3] = [[0.36, 0.20], [0.26, 0.42], [0.15, 0.31]];
 
-/// Spacing of the lattice; this value gives 20,000 faces.
+/// Spacing of the lattice, for 20,000 faces.
 const SPACING: f64 = 0.091_83;
 
-/// Builds an irregular closed triangle mesh of genus 7 with 20,000 faces: three intersecting tori
-/// of different thickness, with a ball where two of them meet.
+/// Builds an irregular closed triangle mesh of genus 7 with 20,000 faces. The solid is three
+/// intersecting tori of different thickness, with a ball at each place where two tori meet.
 ///
-/// The mesh is connected, manifold and oriented outward. No two vertices share a position. It is
-/// the same on every machine.
+/// The mesh is connected, manifold and oriented outward. No two vertices have the same position.
+/// The mesh is the same on every machine.
 ///
 /// # Panics
 ///

@@ -6,8 +6,8 @@ use crate::arithmetic::unit_circle;
 use crate::builder::MeshBuilder;
 use crate::error::{MAX_SEGMENTS, ShapeError, check_corners, check_count};
 
-/// Radius of the tube of the torus, and half the width of the strip. The circle along the centre
-/// has radius 1.
+/// Radius of the tube of the torus, and half the width of the strip. The radius of the centre
+/// circle is 1.
 const TUBE: f64 = 0.4;
 
 /// Builds a torus of `m` × `n` quads: `m` around the axis, `n` around the tube.
@@ -23,7 +23,7 @@ pub fn torus(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     })
 }
 
-/// Builds a torus of `m` × `n` quads, each cut in two: every vertex has valence 6.
+/// Builds a torus of `m` × `n` quads, each cut into two triangles. Every vertex has valence 6.
 ///
 /// V = mn, E = 3mn, F = 2mn; χ = 0.
 ///
@@ -37,7 +37,7 @@ pub fn triangle_torus(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     })
 }
 
-/// Builds a torus. `cell` adds the faces of one cell, which have `degrees` corners in total.
+/// Builds a torus. `cell` adds the faces of one cell; these faces have `degrees` corners in all.
 fn build_torus(
     shape: &'static str,
     m: usize,
@@ -68,8 +68,7 @@ fn build_torus(
     Ok(builder.build())
 }
 
-/// Builds a strip of `n` quads that is joined to its start with half a twist: a one-sided surface
-/// with one boundary loop.
+/// Builds a Möbius strip of `n` quads: a one-sided surface with one boundary loop.
 ///
 /// V = 2n, E = 3n, F = n; χ = 0.
 ///

@@ -1,11 +1,10 @@
-//! Every shape has the counts, the topology and the geometry that are documented.
+//! The counts, topology and geometry of every shape.
 
 use sixfold_core::{Facts, Point, PolygonMesh, VertexId};
 use sixfold_shapes::{ControlNet, ShapeError};
 
 type ShapeResult = Result<PolygonMesh, ShapeError>;
 
-/// The expected counts and topology of a shape.
 struct Expected {
     vertices: usize,
     edges: usize,
@@ -34,8 +33,7 @@ impl Expected {
     }
 }
 
-/// Compares `mesh` with `expected`, and checks the properties that all shapes have. Returns the
-/// facts of the mesh.
+/// Compares `mesh` with `expected`, and checks the properties of all shapes.
 fn check(name: &str, mesh: &PolygonMesh, expected: &Expected) -> Facts {
     let facts = Facts::from_polygons(mesh);
     assert_eq!(facts.vertices, expected.vertices, "vertices of {name}");
@@ -72,7 +70,7 @@ fn check(name: &str, mesh: &PolygonMesh, expected: &Expected) -> Facts {
         facts.degenerate_faces,
     ];
     assert_eq!(none, [0; 5], "{name}");
-    // Only a one-sided shape has edges at which the orientations of the faces disagree.
+    // Only the faces of a one-sided shape have inconsistent orientations.
     assert_eq!(
         facts.inconsistent_edges > 0,
         expected.genus.is_none(),
@@ -98,7 +96,7 @@ fn bits(point: &Point) -> [u32; 3] {
     point.to_array().map(|x| (x + 0.0).to_bits())
 }
 
-/// Returns the volume that a closed mesh encloses, negative if the mesh is inside out.
+/// Returns the enclosed volume; negative if the mesh is inside out.
 fn volume(mesh: &PolygonMesh) -> f64 {
     let mut volume = 0.0;
     for (_, face) in mesh.faces().iter() {
@@ -110,7 +108,7 @@ fn volume(mesh: &PolygonMesh) -> f64 {
     volume
 }
 
-/// Checks that every face of a flat shape runs counter-clockwise as seen from above.
+/// Checks that every face runs counter-clockwise as seen from above.
 fn check_flat(name: &str, mesh: &PolygonMesh) {
     for (f, face) in mesh.faces().iter() {
         let mut double_area = 0.0;
@@ -123,7 +121,6 @@ fn check_flat(name: &str, mesh: &PolygonMesh) {
     }
 }
 
-/// Checks that all sides of a mesh have this length.
 fn check_sides(name: &str, mesh: &PolygonMesh, length: f32) {
     for (f, face) in mesh.faces().iter() {
         for (&a, &b) in face.iter().zip(face.iter().cycle().skip(1)) {
@@ -182,7 +179,7 @@ fn platonic_solids_and_their_duals() {
         }
         (name, facts)
     });
-    // The vertices of a solid are the faces of its dual; valence and degree are exchanged.
+    // The dual exchanges vertices and faces, valence and degree.
     for (i, dual) in [0, 2, 1, 4, 3].into_iter().enumerate() {
         let ((name, a), (other, b)) = (&facts[i], &facts[dual]);
         assert_eq!(
@@ -243,7 +240,6 @@ fn spheres() {
             valences[..if f == 1 { 1 } else { 2 }],
             "{name}"
         );
-        // Every triangle faces away from the centre.
         for (face, corners) in mesh.faces().iter() {
             let [a, b, c] = [0, 1, 2].map(|i| mesh.position(corners[i]));
             assert!((b - a).cross(c - a).dot(a) > 0.0, "{face} of {name}");
@@ -423,8 +419,7 @@ fn the_default_study_is_the_same_on_every_machine() {
         let [a, b, c] = [0, 1, 2].map(|i| mesh.position(corners[i]));
         assert!((b - a).cross(c - a).length() > 1e-6, "{face} is a sliver");
     }
-    // FNV-1a over every coordinate and corner. If it is unchanged, results that were published for
-    // this mesh stay comparable.
+    // FNV-1a over every coordinate and corner. Published results need an unchanged mesh.
     let words = mesh.positions().iter().flat_map(bits);
     let words = words.chain(mesh.faces().corners().iter().map(|v| v.index() as u32));
     let hash = words.fold(0xCBF2_9CE4_8422_2325_u64, |hash, word| {

@@ -47,7 +47,7 @@ fn fields_follow_their_formulas() {
             let smooth = f.clone().smooth_union(g.clone(), alpha).expect("alpha");
             let expected = (a + b - (a * a + b * b - 2.0 * alpha * a * b).sqrt()) / (1.0 + alpha);
             assert_close(smooth.at(point), expected);
-            // Outside the union, a blend only adds to the solid.
+            // Outside the union, a blend makes the solid larger.
             assert!(smooth.at(point) <= a.min(b) + 1e-12 || a.min(b) < 0.0);
         }
         assert_close(f.clone().inflated(0.25).expect("by").at(point), a - 0.25);
@@ -63,7 +63,8 @@ fn fields_follow_their_formulas() {
     assert_close(sum.at([1.0, 2.0, 0.0]), expected);
 }
 
-/// Checks for a closed, oriented manifold with about `faces` triangles and distinct positions.
+/// Checks that the mesh is closed, manifold and oriented, with distinct positions and about `faces`
+/// triangles.
 fn check(name: &str, mesh: &PolygonMesh, faces: usize) -> Facts {
     let facts = Facts::from_polygons(mesh);
     let tolerance = (faces / 20).max(20);
@@ -170,8 +171,8 @@ fn recipes_have_their_topology() {
 fn vertices_lie_on_the_surface() {
     let field = ring([1.0, 2.0, -0.5]);
     let mesh = field.polygonised(20_000).expect("a ring");
-    // By Cauchy's formula, a surface of area A crosses about 4.49 A / h² lattice edges. It has
-    // twice as many faces. A crossing is moved away from a lattice point by at most 0.08 √3 h.
+    // By Cauchy's formula, a surface of area A crosses about 4.49 A / h² lattice edges, and has
+    // twice as many faces. A crossing moves by at most 0.08 √3 h.
     let area = 4.0 * std::f64::consts::PI.powi(2) * 0.3;
     let spacing = (8.98 * area / mesh.face_count() as f64).sqrt();
     let distance = |p: &sixfold_core::Point| field.at(p.to_array().map(f64::from)).abs() / spacing;

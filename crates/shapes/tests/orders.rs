@@ -16,8 +16,7 @@ fn meshes() -> Vec<PolygonMesh> {
     meshes.map(|mesh| mesh.expect("small parameters")).into()
 }
 
-/// Returns the sorted positions, and the sorted faces as cycles of positions. Each cycle starts at
-/// its least position.
+/// Returns the sorted positions, and the sorted faces. A face starts at its least position.
 fn content(mesh: &PolygonMesh) -> (Vec<[u32; 3]>, Vec<Vec<[u32; 3]>>) {
     let position = |v: VertexId| mesh.position(v).to_array().map(f32::to_bits);
     let mut positions: Vec<_> = mesh.vertices().map(position).collect();
@@ -81,8 +80,8 @@ fn shuffling_depends_only_on_the_seed() {
     assert_eq!(shuffled(&mesh, 5), shuffled(&mesh, 5));
     assert_ne!(shuffled(&mesh, 5), shuffled(&mesh, 6));
     assert_ne!(shuffled(&mesh, 5), mesh);
-    // Faces are rotated too. In a grid, each face starts at its lower left corner; after shuffling,
-    // about a quarter of them do.
+    // In a grid, each face starts at its lower left corner. After shuffling, about a quarter of the
+    // faces start there.
     let mesh = sixfold_shapes::grid(10, 10).expect("small");
     let mut starts = [0; 4];
     let shuffled_mesh = shuffled(&mesh, 5);
@@ -102,8 +101,7 @@ fn morton_and_breadth_first_improve_a_shuffled_order() {
     let mesh = sixfold_shapes::default_study();
     let sorted = morton(&shuffled(&mesh, 1));
     assert_eq!(sorted.positions(), morton(&mesh).positions());
-    // Vertices that are near on the surface are near in memory. This is the mean distance of the
-    // rows of the two ends of a side.
+    // The mean distance between the rows of the two ends of a side.
     let step = |mesh: &PolygonMesh| {
         let sides = mesh
             .faces()
@@ -135,7 +133,8 @@ fn breadth_first_faces_are_sorted_by_their_lowest_vertex() {
             .iter()
             .map(|(_, face)| face.iter().min().copied());
         assert!(firsts.is_sorted(), "{ordered:?}");
-        // Every vertex is reached through a face of an earlier vertex, except the starts of walks.
+        // Every vertex, except the first vertex of a component, shares a face with an earlier
+        // vertex.
         let components =
             Facts::from_polygons(&mesh).components + Facts::from_polygons(&mesh).isolated_vertices;
         let mut reached = vec![false; ordered.vertex_count()];

@@ -1,10 +1,10 @@
-//! Invalid parameters return an error that names them, before anything is allocated.
+//! Invalid parameters return an error with their names.
 
 use sixfold_core::PolygonMesh;
 use sixfold_shapes::implicit::{Blob, Field};
 use sixfold_shapes::{GENERATORS, ShapeError, generator};
 
-/// Functions that build a shape from one parameter, or from two.
+/// Functions that build a shape from one parameter or from two.
 type OneParameter = fn(usize) -> Result<PolygonMesh, ShapeError>;
 type TwoParameters = fn(usize, usize) -> Result<PolygonMesh, ShapeError>;
 
@@ -45,7 +45,7 @@ fn counts_out_of_range() {
             let error = make(m, value).expect_err("n");
             assert_eq!(error, out_of_range("n", value as f64, n, max));
         }
-        // Each value is allowed, but about 10¹² cells would take terabytes.
+        // About 10¹² cells would take terabytes.
         let error = make(max, max).expect_err("too many");
         let ShapeError::TooManyCorners {
             parameters,
@@ -136,8 +136,8 @@ fn every_recipe_works_and_refuses() {
                 "{}",
                 generator.name
             );
-            // The minimum may be too small for the default of another parameter. Then the error
-            // names that parameter.
+            // If the default of another parameter does not fit the minimum, the error names the
+            // other parameter.
             if let Err(error) = with(parameter.min) {
                 let other = matches!(error, ShapeError::OutOfRange { parameter: p, .. } if p != parameter.name);
                 assert!(other, "{} {}: {error}", generator.name, parameter.name);
@@ -238,7 +238,7 @@ fn invalid_fields_and_empty_solids() {
         .expect_err("too fine for f32 so far from the origin");
     assert!(matches!(error, ShapeError::TooFine { .. }), "{error}");
 
-    // A chain that would overflow the stack returns an error; the same parts in pairs are accepted.
+    // A long chain would overflow the stack. The same parts in pairs are accepted.
     let chain = (0..10_000).try_fold(ball(), |chain, _| chain.union(ball()));
     let error = chain.expect_err("too deep");
     assert_eq!(error, out_of_range("depth", 501.0, 1, 500));

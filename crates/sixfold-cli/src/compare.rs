@@ -14,10 +14,9 @@ use crate::tables::table;
 use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::{duration, grouped};
 
-/// The exit code if a figure is slower, with `--fail-if-slower`.
+/// The exit code of `--fail-if-slower` if a row is slower.
 const SLOWER: u8 = 1;
 
-/// Reads both studies and shows what changed.
 pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     let Compare { before, after, .. } = arguments;
     for study in [before, after] {

@@ -1,4 +1,4 @@
-//! `sixfold edits`: lists the edits of each structure, and how much of the mesh they visit.
+//! `sixfold edits`: lists the edits of each structure and the cost of each edit.
 
 use std::process::ExitCode;
 
@@ -12,7 +12,6 @@ use crate::output::{Output, is_stdout};
 use crate::tables::table_of_backends;
 use crate::text::{TextOutput, hanging_indent};
 
-/// Prints the table of edits and backends.
 pub(crate) fn run(arguments: &Edits) -> Result<ExitCode, Failure> {
     let json = Output::open_if(arguments.json.as_ref())?;
     let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
@@ -73,7 +72,6 @@ fn legend() -> String {
     lines.map(|line| hanging_indent("", &line)).join("\n")
 }
 
-/// Returns the JSON of one edit.
 fn row(edit: Edit) -> Value {
     let backends = structure_infos().into_iter().map(|backend| {
         let cost = backend.edits[edit as usize];

@@ -1,4 +1,4 @@
-//! Text of the facts about a mesh, and of the verdict of each backend.
+//! Text about the facts of a mesh and about the backends that can hold the mesh.
 
 use sixfold::{Distribution, Facts};
 use sixfold_study::{BackendReport, MeshReport};
@@ -6,7 +6,6 @@ use sixfold_study::{BackendReport, MeshReport};
 use crate::text::{hanging_indent, sanitize};
 use sixfold_study::numbers::{counted, grouped};
 
-/// Returns the facts about a mesh as a compact block of lines.
 pub(crate) fn facts_text(mesh: &MeshReport) -> String {
     let facts = &mesh.facts;
     let mut lines = vec![hanging_indent("mesh         ", &sanitize(&mesh.name))];
@@ -110,8 +109,8 @@ fn mesh_defects(facts: &Facts) -> Vec<String> {
         .collect()
 }
 
-/// Returns the list of backends. For each backend it states that the backend can hold the mesh, or
-/// why it cannot.
+/// Returns the list of backends. The list shows which backends can hold the mesh, and the reasons
+/// of the other backends.
 pub(crate) fn verdicts_text(mesh: &MeshReport, backends: &[BackendReport]) -> String {
     let name = backends.iter().map(|b| b.name.chars().count()).max();
     let width = name.unwrap_or(0);

@@ -1,13 +1,12 @@
-//! Errors that end a command without its result.
+//! Errors that end a command without a result.
 
 use std::fmt::Display;
 
-/// An error message with the exit code.
+/// An error message and an exit code.
 #[derive(Debug)]
 pub(crate) struct Failure {
-    /// The exit code.
     pub(crate) code: u8,
-    /// The message, with a hint about what to do next.
+    /// The message, with advice.
     pub(crate) message: String,
 }
 
@@ -20,8 +19,7 @@ impl Failure {
         }
     }
 
-    /// Returns a failure for a mesh that the selected backend cannot hold, but that another backend
-    /// may hold.
+    /// Returns a failure for a mesh that the selected backend cannot hold.
     pub(crate) fn cannot_hold(refusal: impl Display) -> Self {
         Self::unsupported(format!(
             "{refusal}; or choose another --backend: `sixfold inspect` shows which backends can \
@@ -29,7 +27,7 @@ impl Failure {
         ))
     }
 
-    /// Returns a failure for something that the selected backends do not support.
+    /// Returns a failure for work that the selected backends do not support.
     pub(crate) fn unsupported(message: impl Display) -> Self {
         Self {
             code: 3,

@@ -4,8 +4,8 @@ use crate::failure::Failure;
 use sixfold_study::free_memory;
 use sixfold_study::numbers::bytes;
 
-/// Returns an error if `what` needs more than the free memory; `instead` is the alternative that
-/// the message recommends.
+/// Returns an error if `what` needs more than the free memory. `instead` is the recommended
+/// alternative.
 pub(crate) fn check_free_memory(what: &str, needed: u64, instead: &str) -> Result<(), Failure> {
     match free_memory() {
         Some(free) if needed > free => Err(Failure::unsupported(format!(

@@ -13,7 +13,6 @@ use crate::text::{TextOutput, hanging_indent, sanitize};
 use sixfold_study::numbers::counted;
 use sixfold_study::unknown;
 
-/// Writes the selected shape.
 pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
     exit_on_interrupt();
     let shape = &arguments.shape;
@@ -38,7 +37,7 @@ pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Returns the help text after the options: examples and the list of shapes.
+/// Returns the help text after the options.
 pub(crate) fn help() -> String {
     let mut lines: Vec<String> = vec![
         "Examples:".into(),
@@ -60,7 +59,7 @@ pub(crate) fn help() -> String {
     lines.join("\n")
 }
 
-/// Describes a shape in a line, and each of its parameters in another.
+/// Describes a shape in one line, and each of its parameters in another line.
 fn described(generator: &Generator, width: usize) -> Vec<String> {
     let Generator { name, summary, .. } = generator;
     let mut lines = vec![hanging_indent(&format!("  {name:<width$}  "), summary)];

@@ -1,4 +1,4 @@
-//! `sixfold growth`: measures how costs grow with the size of the mesh, and where the caches end.
+//! `sixfold growth`: measures how times grow with the size of the mesh.
 
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
@@ -21,8 +21,7 @@ use crate::tables::styled;
 use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::{counted, grouped};
 
-/// Measures all sizes and shows the result. Text is printed first, so that it is not lost if a file
-/// fails.
+/// Prints the text before the files are written, so that it is not lost if writing a file fails.
 pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
     check_outputs(None, &[("--json", arguments.json.as_ref())])?;
     let settings = GrowthSettings {
@@ -55,7 +54,7 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
     exit_code(done, report.mismatches(), report.interrupted)
 }
 
-/// Measures all sizes, if enough memory is free for the largest.
+/// Measures all sizes, if there is enough free memory for the largest size.
 pub(crate) fn measure(
     settings: &GrowthSettings,
     stop: &AtomicBool,
@@ -78,7 +77,7 @@ pub(crate) fn measure(
     Ok(report)
 }
 
-/// Returns the help text after the options: examples, the method, and the lists of names.
+/// Returns the help text after the options.
 pub(crate) fn help() -> String {
     let width = SCALABLE_SHAPES.iter().map(|shape| shape.name.len()).max();
     let width = width.unwrap_or(0);
@@ -202,7 +201,8 @@ fn right(text: String) -> Cell {
     Cell::new(text).set_alignment(CellAlignment::Right)
 }
 
-/// Formats a cell as `24.9 L2*`: ns per element, the cache that can hold the structure, and a sign.
+/// Formats a cell such as `24.9 L2*`: ns per element, the cache that can hold the structure, and a
+/// sign.
 fn cell(size: &SizeReport, row: &ResultRow, bold: bool) -> Cell {
     let time = match (row.ns_per_element, row.estimated_ns, row.elements) {
         (Some(each), ..) => Some((if row.sampled { "~" } else { "" }, each)),
@@ -227,7 +227,7 @@ fn cell(size: &SizeReport, row: &ResultRow, bold: bool) -> Cell {
     }
 }
 
-/// Returns the table of the number of faces at which each structure outgrows each cache.
+/// Returns the table of the face counts at which structures outgrow caches.
 fn cache_table(report: &GrowthReport, bold: bool) -> String {
     let mut header = vec![Cell::new(
         "faces at which the\nstructure outgrows\nthe cache",

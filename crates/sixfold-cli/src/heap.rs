@@ -6,20 +6,21 @@ use peakmem_alloc::{PeakMemAlloc, PeakMemAllocTrait};
 use sixfold_study::{AllocationCounter, Heap};
 use stats_alloc::StatsAlloc;
 
-/// Counts allocations and deallocations; forwards every request unchanged to the system.
+/// Counts allocations and forwards every request to the system.
 static LIVE: StatsAlloc<System> = StatsAlloc::system();
 
 /// Counts the peak of allocated bytes.
 #[global_allocator]
 static PEAK: PeakMemAlloc<&StatsAlloc<System>> = PeakMemAlloc::new(&LIVE);
 
-/// The counters of the allocator, over all threads.
+/// The counters of the allocator for all threads together.
 pub(crate) struct Counters;
 
 impl Heap for Counters {
     fn live(&self) -> usize {
         let stats = LIVE.stats();
-        // Both counters already include blocks that grow or shrink.
+        // The growth of a block is included in `bytes_allocated`, its shrinkage in
+        // `bytes_deallocated`.
         stats
             .bytes_allocated
             .saturating_sub(stats.bytes_deallocated)
@@ -51,7 +52,7 @@ mod tests {
     /// Each test holds this lock, because the counters count the whole process.
     static COUNTERS: Mutex<()> = Mutex::new(());
 
-    /// Compares with a tolerance so large that small allocations of other tests do not matter.
+    /// The tolerance is large, so that allocations of other tests do not matter.
     fn about(figure: usize, expected: usize) -> bool {
         figure.abs_diff(expected) < BYTES / 8
     }

@@ -12,7 +12,6 @@ use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::exit_on_interrupt;
 use crate::text::TextOutput;
 
-/// Prints the facts and the verdict of each backend.
 pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
     exit_on_interrupt();
     check_outputs(
@@ -26,7 +25,7 @@ pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
     text.print_line(&facts_text(&inspection.mesh));
     text.print_line("");
     text.print_line(&verdicts_text(&inspection.mesh, &inspection.backends));
-    // Text is printed first, so that it is not lost if a file fails.
+    // Print the text first, so that it is not lost if writing a file fails.
     let mut done = text.finish();
     if let Some(output) = json {
         done = done.and(output.finish(|writer| inspection.write_json(writer)));

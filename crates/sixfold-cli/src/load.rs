@@ -13,12 +13,12 @@ use crate::text::print_stderr;
 use crate::triangulate::triangulated;
 use sixfold_study::numbers::counted;
 
-/// Maximum number of omitted faces that are listed with their line.
+/// Maximum number of listed faces that were left out.
 const SHOWN: usize = 5;
 
-/// Reads an OBJ file, and prints a note for each part that is ignored.
+/// Reads an OBJ file. Prints a note for each ignored part.
 pub(crate) fn read(path: &Path) -> Result<ObjMesh, Failure> {
-    // `-` means standard output for other arguments; here it would name a file.
+    // Other arguments accept `-` as standard output. Here `-` would be a file name.
     if is_stdout(path) {
         return Err(Failure::usage(
             "-: standard input is not read: write the mesh to a file and name the file",
@@ -31,15 +31,14 @@ pub(crate) fn read(path: &Path) -> Result<ObjMesh, Failure> {
     Ok(mesh)
 }
 
-/// Returns the mesh in the file at `path` without its degenerate faces, and lists these.
+/// Reads a mesh without its degenerate faces. Lists the degenerate faces.
 pub(crate) fn study_mesh(path: &Path) -> Result<StudyMesh, Failure> {
     let (study_mesh, left_out) = from_file(path)?;
     print_left_out(path, &left_out);
     Ok(study_mesh)
 }
 
-/// Returns the mesh for a study. Refuses degenerate faces if `strict`; cuts polygons if
-/// `triangulate`.
+/// Reads a mesh for a study. `strict` refuses degenerate faces. `triangulate` cuts polygons.
 pub(crate) fn for_study(
     path: &Path,
     strict: bool,
@@ -74,8 +73,7 @@ pub(crate) fn for_study(
     Ok(study_mesh)
 }
 
-/// Returns the mesh in the file at `path` without its degenerate faces, and the creases in the
-/// file.
+/// Reads a mesh without its degenerate faces. Also returns the creases in the file.
 pub(crate) fn with_creases(path: &Path) -> Result<(PolygonMesh, Creases), Failure> {
     let mesh = read(path)?;
     let (creases, unused) = mesh.creases();
@@ -87,7 +85,7 @@ pub(crate) fn with_creases(path: &Path) -> Result<(PolygonMesh, Creases), Failur
     Ok((polygons, creases))
 }
 
-/// Returns the mesh for a command that drops creases, and prints a note if there are any.
+/// Reads a mesh for a command that drops creases. Prints a note if there are creases.
 pub(crate) fn without_creases(path: &Path) -> Result<PolygonMesh, Failure> {
     let (polygons, creases) = with_creases(path)?;
     if !creases.is_empty() {
@@ -99,7 +97,8 @@ pub(crate) fn without_creases(path: &Path) -> Result<PolygonMesh, Failure> {
     Ok(polygons)
 }
 
-/// Returns the file of results: `results.json` if `place` is the folder of a report, else `place`.
+/// Returns the file of results. If `place` is a folder, this is the file `results.json` in the
+/// folder.
 pub(crate) fn results_path(place: &Path) -> PathBuf {
     match place.is_dir() {
         true => place.join("results.json"),
@@ -107,7 +106,6 @@ pub(crate) fn results_path(place: &Path) -> PathBuf {
     }
 }
 
-/// Reads the file at `path` and parses its results with `parse`.
 pub(crate) fn read_results<T>(
     path: &Path,
     parse: impl Fn(&str) -> Result<T, ReadError>,
@@ -121,12 +119,10 @@ pub(crate) fn read_results<T>(
     parse(&text).map_err(|error| Failure::usage(format!("{file}: {error}")))
 }
 
-/// Returns the built-in mesh.
 pub(crate) fn built_in() -> StudyMesh {
     StudyMesh::new("default study (built in)", shapes::default_study())
 }
 
-/// Prints which faces of the file were left out, with their lines.
 fn print_left_out(path: &Path, left_out: &[LeftOut]) {
     if left_out.is_empty() {
         return;

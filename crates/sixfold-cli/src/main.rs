@@ -1,4 +1,4 @@
-//! The `sixfold` command: which mesh data structure fits this mesh and this workload?
+//! The `sixfold` command.
 //!
 //! Only this crate handles arguments, standard output and exit codes:
 //!
@@ -110,8 +110,8 @@ fn print_clap_message(error: &clap::Error) -> Result<ExitCode, Failure> {
     }
     let mut words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
     if error.use_stderr() && words.any(|word| text::sanitize(&word) != word) {
-        // The message repeats the arguments. Print it without colours and with control characters
-        // escaped, so that the arguments cannot control the terminal.
+        // The message repeats the arguments. Escape control characters, so that arguments cannot
+        // control the terminal.
         let plain = error.render().to_string();
         plain.lines().for_each(text::print_stderr);
         return Ok(ExitCode::from(2));

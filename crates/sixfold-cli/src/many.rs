@@ -1,4 +1,4 @@
-//! Studies of many meshes, one after the other; each is saved as soon as it is finished.
+//! Studies many meshes, one after the other.
 
 mod draw;
 mod folder;
@@ -32,11 +32,11 @@ pub(crate) use meshes::Shard;
 use folder::{Folder, StudyRecord};
 use meshes::{Mesh, find_meshes};
 
-/// The reason text of [`FailureKind::NoneHolds`].
+/// The text of [`FailureKind::NoneHolds`].
 const NONE_HOLDS: &str = "none of the selected backends can hold the mesh";
 
-/// Studies the selected meshes, except those that are finished already. If a mesh cannot be loaded,
-/// lists it and continues with the next mesh.
+/// Studies the selected meshes without a finished study. If a mesh cannot be loaded, lists the mesh
+/// and continues.
 pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Failure> {
     let meshes = find_meshes(&arguments.meshes)?;
     let single = meshes.len() == 1;
@@ -91,7 +91,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
     studies_exit_code(written, &collection.studies, mismatches, interrupted)
 }
 
-/// Checks that no output overwrites a mesh, and that `--csv` is not used for several meshes.
+/// Refuses outputs that overwrite a mesh. Refuses `--csv` for several meshes.
 fn check_files(arguments: &Study, meshes: &[Mesh]) -> Result<(), Failure> {
     let outputs = [
         ("--json", arguments.json.as_ref()),
@@ -109,7 +109,7 @@ fn check_files(arguments: &Study, meshes: &[Mesh]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns the meshes of the shard that have no results in `collection` yet.
+/// Returns the meshes of the shard without results in `collection`.
 fn unfinished<'m>(
     meshes: &'m [Mesh],
     shard: Option<Shard>,
@@ -124,7 +124,7 @@ fn unfinished<'m>(
         .collect()
 }
 
-/// Returns whether results are written to the standard output, so that no text is printed there.
+/// Returns whether results are written to standard output. No text is printed in this case.
 fn uses_stdout(arguments: &Study) -> bool {
     let data = [&arguments.json, &arguments.csv];
     data.into_iter().flatten().any(|path| is_stdout(path))
@@ -148,20 +148,20 @@ fn shared_settings(arguments: &Study, settings: &Settings) -> SharedSettings {
     }
 }
 
-/// One run of the command, with the input that all studies share.
+/// The shared input of all studies.
 struct Run<'a> {
     arguments: &'a Study,
     settings: &'a Settings,
-    /// Whether only one mesh is studied. If so, no progress line is printed.
+    /// Whether only one mesh is studied. No progress line is printed in this case.
     single: bool,
-    /// Each study is saved here as soon as it is finished.
+    /// The folder in which finished studies are saved.
     folder: Option<&'a Folder>,
     stop: &'a AtomicBool,
 }
 
 impl Run<'_> {
-    /// Studies `meshes` one after the other, until interrupted, and adds the results to
-    /// `collection`.
+    /// Studies `meshes` one after the other and adds the results to `collection`. Stops if
+    /// interrupted.
     fn study(
         &self,
         meshes: &[&Mesh],
@@ -181,8 +181,7 @@ impl Run<'_> {
             }
             let record = StudyRecord::new(mesh, &collection.settings, result);
             if let Some(folder) = self.folder {
-                // The record is saved between two studies, so that writing does not disturb the
-                // measurements.
+                // Save between two studies, so that writing does not disturb the measurements.
                 folder.save_study(&record)?;
             }
             record.add_to(collection);
@@ -190,7 +189,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Returns the study of one mesh, or the reason why it failed; `None` if interrupted.
+    /// Studies one mesh. Returns `None` if interrupted.
     fn measure_mesh(&self, mesh: &Mesh, position: &str) -> Option<Result<Report, Failed>> {
         let failed = |kind, reason| {
             let mesh = mesh.name.clone();
@@ -225,7 +224,6 @@ impl Run<'_> {
     }
 }
 
-/// Loads the mesh.
 fn load_mesh(mesh: &Mesh, arguments: &Study) -> Result<StudyMesh, Failure> {
     match &mesh.path {
         None => Ok(load::built_in()),
@@ -233,7 +231,7 @@ fn load_mesh(mesh: &Mesh, arguments: &Study) -> Result<StudyMesh, Failure> {
     }
 }
 
-/// Removes the file name from a message, because the list shows it already.
+/// Removes the path from a message, because the list already shows the path.
 fn without_path(message: &str, path: &Path) -> String {
     let Some(rest) = message.strip_prefix(&path.display().to_string()) else {
         return message.to_owned();
@@ -258,7 +256,7 @@ fn progress_line(position: &str, mesh: &Mesh, result: &Result<Report, Failed>) -
     }
 }
 
-/// Prints the results, and writes them to the files that are open.
+/// Prints the results and writes them to the open files.
 fn print_and_write(
     collection: &Collection,
     single: bool,
@@ -281,7 +279,6 @@ fn print_and_write(
     written
 }
 
-/// Prints the results of all meshes together.
 fn print(collection: &Collection, text: &mut TextOutput) {
     let studied = counted(collection.studies.len(), "mesh", "meshes");
     text.print_line("");
@@ -308,7 +305,7 @@ fn print(collection: &Collection, text: &mut TextOutput) {
     }
 }
 
-/// Returns the failure of a run in which no mesh could be studied.
+/// Returns the failure of a run without any finished study.
 fn none_studied(failures: &[Failed]) -> Failure {
     let mut kinds = failures.iter().map(|failed| failed.kind);
     match kinds.all(|kind| kind == FailureKind::NoneHolds) {

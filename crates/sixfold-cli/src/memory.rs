@@ -22,7 +22,6 @@ use sixfold_study::numbers::{counted, grouped};
 /// The exit code if two of the three counts differ.
 const COUNTS_DIFFER: u8 = 1;
 
-/// Counts the memory of the selected backends and shows it.
 pub(crate) fn run(arguments: &Memory) -> Result<ExitCode, Failure> {
     exit_on_interrupt();
     check_outputs(
@@ -56,20 +55,19 @@ pub(crate) fn run(arguments: &Memory) -> Result<ExitCode, Failure> {
         Some(output) => output.finish(|writer| audit.write_json(writer)),
         None => Ok(()),
     };
-    // The list of the selected backends with the reasons why they refuse the mesh is also a result.
+    // If every backend refuses the mesh, the list of reasons is the result.
     if let Some(none) = audit.refusal_error() {
         write(json)?;
         return Err(Failure::unsupported(none));
     }
     let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
     print(&audit, &mut text);
-    // Text is printed first, so that it is not lost if a file fails.
+    // Print the text first, so that it is not lost if writing a file fails.
     let done = text.finish().and(write(json));
     let code = report_faults(&audit.faults());
     done.map(|()| code)
 }
 
-/// Reports the `faults`, and returns the exit code for them.
 fn report_faults(faults: &[String]) -> ExitCode {
     for fault in faults {
         print_stderr(&format!(
@@ -101,8 +99,7 @@ fn print(audit: &Audit, text: &mut TextOutput) {
     }
 }
 
-/// Returns the three counts for each backend that holds the mesh; the rows below a backend are its
-/// tables.
+/// Returns the three counts of each backend that holds the mesh, with a row for each table below.
 fn bytes_table(audit: &Audit) -> String {
     let header = [
         "bytes",
@@ -157,7 +154,7 @@ fn bytes_table(audit: &Audit) -> String {
     table.trim_fmt()
 }
 
-/// Returns bytes and words per vertex, and the words per vertex of a large closed triangle mesh.
+/// Returns the table of bytes and words per vertex.
 fn words_table(audit: &Audit) -> String {
     let header = [
         "per vertex",
@@ -179,9 +176,8 @@ fn words_table(audit: &Audit) -> String {
     table.trim_fmt()
 }
 
-/// Returns the table of bytes that operations allocate per byte of their result: a row for each
-/// operation that at least one structure can run, and a column for each structure. Returns `None`
-/// if nothing was counted.
+/// Returns the table of allocated bytes per byte of the result, with a row per operation and a
+/// column per structure. Returns `None` if nothing was counted.
 fn operations_table(audit: &Audit) -> Option<String> {
     let counted = |entry: &&BackendAudit| !entry.operations.is_empty();
     let columns: Vec<&BackendAudit> = audit.backends.iter().filter(counted).collect();
@@ -209,7 +205,6 @@ fn operations_table(audit: &Audit) -> Option<String> {
     Some(table.trim_fmt())
 }
 
-/// Returns an empty table with `header`, with right-aligned figures.
 fn new_table<const COLUMNS: usize>(header: &[&str; COLUMNS]) -> Table {
     let aligned = |(i, text): (usize, &&str)| Cell::new(text).set_alignment(column_alignment(i));
     table(header.iter().enumerate().map(aligned).collect())
@@ -231,7 +226,6 @@ fn column_alignment(column: usize) -> CellAlignment {
     }
 }
 
-/// Describes the tables in sentences.
 fn sentences(audit: &Audit) -> Vec<String> {
     let holding: Vec<&BackendAudit> = audit.backends.iter().filter(|b| b.backend.holds).collect();
     let mut sentences = Vec::new();
@@ -265,7 +259,7 @@ fn sentences(audit: &Audit) -> Vec<String> {
     sentences
 }
 
-/// Returns the legend of the table of operations; empty without that table.
+/// Returns the legend of the table of operations. The legend is empty if there is no such table.
 fn operation_sentences(audit: &Audit) -> Vec<String> {
     let operations = || audit.backends.iter().flat_map(|entry| &entry.operations);
     let mut sentences = Vec::new();
@@ -302,7 +296,6 @@ mod tests {
     use super::*;
     use crate::text::WIDTH;
 
-    /// An allocator that never counts anything.
     struct ZeroHeap;
 
     impl Heap for ZeroHeap {
@@ -326,7 +319,7 @@ mod tests {
             &ZeroHeap,
             &mut |_| (),
         );
-        // 24 halves of 12 bytes, 8 vertices of 16, and 6 faces.
+        // 24 half-edges of 12 bytes, 8 vertices of 16 bytes, and 6 faces.
         let table = bytes_table(&audit);
         let line = table.lines().find(|line| line.contains("half-edge"));
         let cells: Vec<&str> = line.expect("a row").split_whitespace().collect();

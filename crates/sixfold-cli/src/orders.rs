@@ -23,8 +23,7 @@ use crate::tables::styled;
 use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::figure;
 
-/// Measures the mesh in all orders and shows the result. Text is printed first, so that it is not
-/// lost if a file fails.
+/// Prints the text before the files are written, so that it is not lost if writing a file fails.
 pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     check_outputs(
         arguments.mesh.as_deref(),
@@ -57,7 +56,7 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     exit_code(done, report.mismatches(), report.interrupted)
 }
 
-/// Measures the mesh in all orders, if enough memory is free.
+/// Measures the mesh in all orders, if there is enough free memory.
 pub(crate) fn measure(
     study_mesh: &StudyMesh,
     settings: &Settings,
@@ -80,7 +79,7 @@ pub(crate) fn measure(
     Ok(report)
 }
 
-/// Returns the help text after the options: examples, the method, and the lists of names.
+/// Returns the help text after the options.
 pub(crate) fn help() -> String {
     format!(
         "{ORDERS_EXAMPLES}\n\n{}\n{}",
@@ -89,7 +88,6 @@ pub(crate) fn help() -> String {
     )
 }
 
-/// Lists the operations that are measured by default.
 pub(crate) fn default_operations() -> String {
     hanging_indent("By default:  ", &DEFAULT_OPERATIONS.join(", "))
 }
@@ -160,7 +158,7 @@ fn right(text: String) -> Cell {
     Cell::new(text).set_alignment(CellAlignment::Right)
 }
 
-/// Formats a cell as `24.9 1.52× `: ns per element, the ratio to the best order, and a sign.
+/// Formats a cell such as `24.9 1.52× `: ns per element, the ratio to the best order, and a sign.
 fn cell(OrderRow { row, .. }: &OrderRow, bold: bool) -> Cell {
     let time = match (row.ns_per_element, row.estimated_ns, row.elements) {
         (Some(each), ..) => Some((if row.sampled { "~" } else { "" }, each)),

@@ -1,4 +1,4 @@
-//! Messages and exit codes shared by all commands that measure.
+//! Final messages and exit codes of the commands that measure.
 
 use std::process::ExitCode;
 
@@ -18,7 +18,7 @@ pub(crate) fn warn_of_debug_build() {
     }
 }
 
-/// Returns the command line, quoted so that it can be run again.
+/// Returns the command line with quotes, so that a shell can run it again.
 pub(crate) fn command_line() -> String {
     let words = std::env::args_os().skip(1);
     let words = words.map(|word| word.to_string_lossy().into_owned());
@@ -26,8 +26,8 @@ pub(crate) fn command_line() -> String {
     shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
 }
 
-/// Prints the last messages of a command and returns its exit code. The order of the messages is:
-/// results that differ, errors of writing (`written`), an interruption.
+/// Prints the final messages of a command and returns its exit code. Different results come first,
+/// then errors of writing (`written`), then an interruption.
 pub(crate) fn exit_code(
     written: Result<(), Failure>,
     mismatches: usize,
@@ -51,8 +51,8 @@ pub(crate) fn exit_code(
     Ok(ExitCode::SUCCESS)
 }
 
-/// Prints the last messages of a command and returns its exit code, as [`exit_code`] does. Adds the
-/// mismatches in `studies` to `mismatches`, and also reports external programs with different
+/// Prints the final messages of a command and returns its exit code, as [`exit_code`] does. Adds
+/// the mismatches in `studies` to `mismatches`. Also reports external programs with different
 /// results.
 pub(crate) fn studies_exit_code<'r>(
     written: Result<(), Failure>,
@@ -75,7 +75,7 @@ pub(crate) fn studies_exit_code<'r>(
     })
 }
 
-/// Reports the difference of an external program.
+/// Reports the different result of an external program.
 fn print_different_work(study: &Report, row: &ResultRow) {
     let ours = study.rows(row.operation);
     let mut ours = ours.filter(|other| other.agreement == Agreement::Same);

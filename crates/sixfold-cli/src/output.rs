@@ -1,4 +1,4 @@
-//! Output of data: to files that are written completely or not at all, or to standard output.
+//! Output of data to files or to standard output. A file is written completely or not at all.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -9,15 +9,15 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::failure::Failure;
 
-/// Drafts that are neither renamed to their files nor deleted yet. A thread must hold the lock to
-/// rename or delete a draft.
+/// Drafts that are not renamed or deleted yet. A thread must hold the lock to rename or delete a
+/// draft.
 static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// A place for data. It is opened before the work begins, so that an unusable place gives an error
-/// at once.
+/// A file or standard output. It is opened before the work begins, so that an unusable path gives
+/// an error at once.
 ///
-/// A file is written under a temporary name beside it (the draft) and renamed when it is complete.
-/// If the program ends earlier, an old file at that place is unchanged.
+/// Data is written to a draft, which is a file with a temporary name in the same folder. The draft
+/// is renamed when it is complete. If the program ends earlier, the old file is unchanged.
 pub(crate) struct Output {
     shown: String,
     target: Target,
@@ -25,7 +25,7 @@ pub(crate) struct Output {
 
 enum Target {
     Stdout,
-    /// A device or pipe, which is written to directly.
+    /// A device or pipe. It is written without a draft.
     Stream(File),
     File {
         file: File,
@@ -34,12 +34,11 @@ enum Target {
     },
 }
 
-/// Returns whether `path` means standard output.
 pub(crate) fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Returns an error if an output would overwrite `input`; `what` describes the input.
+/// Returns an error if an output would overwrite `input`. `what` describes the input.
 pub(crate) fn check_not_overwritten(
     what: &str,
     input: &Path,
@@ -58,7 +57,7 @@ pub(crate) fn check_not_overwritten(
     Ok(())
 }
 
-/// Returns an error if two outputs have the same place, or if one would overwrite the mesh.
+/// Returns an error if two outputs have the same path, or if an output would overwrite the mesh.
 pub(crate) fn check_outputs(
     mesh: Option<&Path>,
     outputs: &[(&str, Option<&PathBuf>)],
@@ -82,7 +81,7 @@ pub(crate) fn check_outputs(
     Ok(())
 }
 
-/// Returns the same path for all spellings of a file, whether or not the file exists.
+/// Returns the same path for all spellings of the path of a file. The file need not exist.
 fn canonical_path(path: &Path) -> PathBuf {
     let canonical = || {
         if is_stdout(path) {
@@ -98,10 +97,9 @@ fn canonical_path(path: &Path) -> PathBuf {
     canonical().unwrap_or_else(|| path.to_owned())
 }
 
-/// Deletes all drafts and ends the program. A signal handler may call this while other threads
-/// write.
+/// Deletes all drafts and ends the program. A signal handler can call this function.
 pub(crate) fn exit_without_drafts(code: i32) -> ! {
-    // The lock is held to the end, so that no draft is renamed or created meanwhile.
+    // Hold the lock to the end, so that no draft is renamed or created.
     let drafts = drafts();
     for draft in drafts.iter() {
         let _ = fs::remove_file(draft);
@@ -114,7 +112,7 @@ fn drafts() -> MutexGuard<'static, Vec<PathBuf>> {
 }
 
 impl Output {
-    /// Opens `path`, or standard output for `-`.
+    /// Opens `path`. The path `-` is standard output.
     pub(crate) fn open(path: &Path) -> Result<Self, Failure> {
         let shown = path.display().to_string();
         if is_stdout(path) {
@@ -124,7 +122,7 @@ impl Output {
             });
         }
         let failed = |cause: io::Error| cannot_write(&shown, &cause);
-        // If `path` is a link, the link stays, and the file that it points to is replaced.
+        // If `path` is a link, replace its target, not the link.
         let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let target = match fs::metadata(&path) {
             Ok(metadata) if metadata.is_dir() => {
@@ -136,7 +134,7 @@ impl Output {
             }
             old => {
                 if old.is_ok() {
-                    // A file without write permission must not be replaced either.
+                    // A file without write permission must not be replaced.
                     File::options().write(true).open(&path).map_err(failed)?;
                 }
                 let draft = draft_path(&path);
@@ -147,8 +145,8 @@ impl Output {
                 let target = Target::File { file, draft, path };
                 let output = Self { shown, target };
                 if let (Ok(old), Target::File { file, .. }) = (old, &output.target) {
-                    // The permissions are set before writing, so that users without access to the
-                    // old file never get access to the new file.
+                    // Set the permissions before writing, so that only users with access to the old
+                    // file can read the new file.
                     let set = file.set_permissions(old.permissions());
                     set.map_err(|cause| output.failure(&cause))?;
                 }
@@ -158,12 +156,11 @@ impl Output {
         Ok(Self { shown, target })
     }
 
-    /// Opens `path` if it is given.
     pub(crate) fn open_if(path: Option<&PathBuf>) -> Result<Option<Self>, Failure> {
         path.map(|path| Self::open(path)).transpose()
     }
 
-    /// Writes the data with `write`, and renames the draft to the file.
+    /// Writes the data with `write`, then renames the draft.
     pub(crate) fn finish(
         mut self,
         write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -177,10 +174,10 @@ impl Output {
             }),
         };
         match done {
-            // The reader of standard output closed it early: that is not an error.
+            // It is not an error if the reader of standard output closes it early.
             Err(cause) if cause.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-            // An error of the system would have an error number. Without one, the mesh is the
-            // cause, not the place.
+            // An error of the system has an error number. An error without a number is a fault of
+            // the mesh, not of the path.
             Err(cause)
                 if cause.kind() == io::ErrorKind::InvalidInput
                     && cause.raw_os_error().is_none() =>
@@ -201,7 +198,7 @@ impl Output {
 }
 
 impl Drop for Output {
-    /// Deletes the draft, unless it was renamed to the file.
+    /// Deletes a draft that was not renamed.
     fn drop(&mut self) {
         if let Target::File { draft, .. } = &self.target {
             let mut drafts = drafts();
@@ -211,7 +208,7 @@ impl Drop for Output {
     }
 }
 
-/// Returns the failure of writing to the place `shown`.
+/// Returns the failure for an output that cannot be written.
 pub(crate) fn cannot_write(shown: &str, cause: &io::Error) -> Failure {
     Failure::usage(format!(
         "{shown}: cannot be written ({cause}): choose another file"
@@ -224,7 +221,7 @@ fn written(to: impl Write, write: impl FnOnce(&mut dyn Write) -> io::Result<()>)
     to.flush()
 }
 
-/// Returns a name beside `path` that no other run uses.
+/// Returns a name in the folder of `path` that no other run uses.
 fn draft_path(path: &Path) -> PathBuf {
     let mut name = OsString::from(".");
     name.push(path.file_name().unwrap_or_default());

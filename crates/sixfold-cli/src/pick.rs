@@ -20,14 +20,13 @@ use sixfold_study::numbers::{counted, duration, figure, grouped};
 /// The exit code if no backend qualifies.
 const NONE_QUALIFIES: u8 = 1;
 
-/// Measures and shows the answer. Text is printed first, so that it is not lost if a file fails.
+/// Prints the text before the files are written, so that it is not lost if writing a file fails.
 pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     for mesh in &arguments.meshes {
         check_outputs(Some(mesh), &[("--json", arguments.json.as_ref())])?;
     }
     let workload = workload(&arguments.workload)?;
-    // The handler is set before the draft of the output is opened, so that Ctrl-C cannot leave a
-    // draft behind.
+    // Set the handler before the draft is created, so that Ctrl-C always deletes the draft.
     let stop = interrupt_flag(arguments.heap);
     let json = Output::open_if(arguments.json.as_ref())?;
     let study_meshes = study_meshes(arguments)?;
@@ -126,8 +125,7 @@ fn print(report: &PickReport, study_meshes: &[StudyMesh], text: &mut TextOutput)
     }
 }
 
-/// Returns the table of backends, best first: times, memory, and the number of operations after
-/// which building each backend has paid off.
+/// Returns the table of backends, the fastest first.
 fn ranking(report: &PickReport) -> String {
     let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
     let header = [

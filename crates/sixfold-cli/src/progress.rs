@@ -1,4 +1,4 @@
-//! Progress on a terminal, and the handling of Ctrl-C.
+//! Progress bars on a terminal, and the handling of Ctrl-C.
 
 use std::io::{self, IsTerminal};
 use std::sync::Arc;
@@ -14,11 +14,10 @@ use crate::text::print_stderr;
 /// Number of steps of a full bar.
 const STEPS: u64 = 1000;
 
-/// A progress bar on standard error, if that is a terminal.
+/// A progress bar on standard error. It is shown only on a terminal.
 pub(crate) struct Bar(Option<ProgressBar>);
 
 impl Bar {
-    /// Returns an empty bar.
     pub(crate) fn new() -> Self {
         if !io::stderr().is_terminal() {
             return Self(None);
@@ -28,14 +27,13 @@ impl Bar {
         Self(Some(ProgressBar::new(STEPS).with_style(style)))
     }
 
-    /// Shows which fraction is done, and what is running.
+    /// Shows the finished part, from 0 to 1, and the current step.
     pub(crate) fn set(&self, done: f64, what: &str) {
         let Self(Some(bar)) = self else { return };
         bar.set_position((done * STEPS as f64) as u64);
         bar.set_message(what.to_owned());
     }
 
-    /// Shows the progress of a study.
     pub(crate) fn show(&self, progress: Progress<'_>) {
         let Progress {
             done,
@@ -46,7 +44,6 @@ impl Bar {
         self.set(done, &format!("{stage} {operation} on {backend}"));
     }
 
-    /// Removes the bar.
     pub(crate) fn clear(&self) {
         if let Self(Some(bar)) = self {
             bar.finish_and_clear();
@@ -54,7 +51,7 @@ impl Bar {
     }
 }
 
-/// A progress bar of new faces, on standard error if that is a terminal.
+/// A progress bar for new faces. It is shown only on a terminal.
 pub(crate) struct FaceBar(Option<ProgressBar>);
 
 impl FaceBar {
@@ -70,14 +67,12 @@ impl FaceBar {
         Self(Some(bar))
     }
 
-    /// Adds the `faces` faces of level `level`.
     pub(crate) fn add_level(&self, level: u32, faces: usize) {
         let Self(Some(bar)) = self else { return };
         bar.inc(faces as u64);
         bar.set_message(format!("level {level} done"));
     }
 
-    /// Removes the bar.
     pub(crate) fn clear(&self) {
         if let Self(Some(bar)) = self {
             bar.finish_and_clear();
@@ -85,11 +80,11 @@ impl FaceBar {
     }
 }
 
-/// A progress bar of steps of any kind, on standard error if that is a terminal.
+/// A progress bar for steps. It is shown only on a terminal.
 pub(crate) struct StepBar(Option<ProgressBar>);
 
 impl StepBar {
-    /// Returns a bar for `steps` steps; `what` describes them.
+    /// Returns a bar for `steps` steps. `what` describes the steps.
     pub(crate) fn new(steps: usize, what: &str) -> Self {
         if !io::stderr().is_terminal() {
             return Self(None);
@@ -102,14 +97,12 @@ impl StepBar {
         Self(Some(bar))
     }
 
-    /// Shows that `steps` steps are done.
     pub(crate) fn set_done(&self, steps: usize) {
         if let Self(Some(bar)) = self {
             bar.set_position(steps as u64);
         }
     }
 
-    /// Removes the bar.
     pub(crate) fn clear(&self) {
         if let Self(Some(bar)) = self {
             bar.finish_and_clear();
@@ -117,11 +110,11 @@ impl StepBar {
     }
 }
 
-/// A line with an animated symbol during long work, on standard error if that is a terminal.
+/// A line with an animated symbol during long work. It is shown only on a terminal.
 pub(crate) struct Spinner(Option<ProgressBar>);
 
 impl Spinner {
-    /// Shows a line that describes the work: `what`.
+    /// Shows a line with the text `what`.
     pub(crate) fn start(what: String) -> Self {
         if !io::stderr().is_terminal() {
             return Self(None);
@@ -131,7 +124,6 @@ impl Spinner {
         Self(Some(line))
     }
 
-    /// Removes the line.
     pub(crate) fn clear(&self) {
         if let Self(Some(line)) = self {
             line.finish_and_clear();
@@ -139,18 +131,16 @@ impl Spinner {
     }
 }
 
-/// A line that shows the present step, on standard error if that is a terminal. It does not start a
-/// thread, because the allocations of that thread would be counted.
+/// A line that shows the current step, only on a terminal. It starts no thread, because the
+/// allocations of a thread would be counted.
 pub(crate) struct StatusLine(Option<ProgressBar>);
 
 impl StatusLine {
-    /// Returns an empty line.
     pub(crate) fn new() -> Self {
         let shown = io::stderr().is_terminal();
         Self(shown.then(ProgressBar::new_spinner))
     }
 
-    /// Shows the next step.
     pub(crate) fn show(&self, what: String) {
         if let Self(Some(line)) = self {
             line.set_message(what);
@@ -158,7 +148,6 @@ impl StatusLine {
         }
     }
 
-    /// Removes the line.
     pub(crate) fn clear(&self) {
         if let Self(Some(line)) = self {
             line.finish_and_clear();
@@ -169,26 +158,26 @@ impl StatusLine {
 /// The exit code of an interrupted command.
 pub(crate) const INTERRUPTED: u8 = 4;
 
-/// Ends the program at the first Ctrl-C. For commands that have no partial results to keep.
+/// Ends the program at the first Ctrl-C. Used by commands without partial results.
 pub(crate) fn exit_on_interrupt() {
-    // If no handler can be set, Ctrl-C keeps its default effect.
+    // If the handler cannot be set, Ctrl-C keeps its default effect.
     let _ = ctrlc::set_handler(|| {
         print_stderr("interrupted");
         exit_without_drafts(INTERRUPTED.into());
     });
 }
 
-/// Returns a flag that the first Ctrl-C sets; the second ends the program at once.
+/// Returns a flag that the first Ctrl-C sets. The second Ctrl-C ends the program.
 ///
-/// Applies the policy `heap` first, because the handler starts a thread, and the number of heaps is
-/// fixed when the first thread starts.
+/// The policy `heap` is applied first: the handler starts a thread, and glibc reads the number of
+/// heaps when the first thread starts.
 pub(crate) fn interrupt_flag(heap: Policy) -> Arc<AtomicBool> {
     pages::set_policy(heap);
     /// The exit code that shells use for an interrupted program.
     const SIGINT_CODE: i32 = 130;
     let flag = Arc::new(AtomicBool::new(false));
     let handler_flag = Arc::clone(&flag);
-    // If no handler can be set, Ctrl-C keeps its default effect.
+    // If the handler cannot be set, Ctrl-C keeps its default effect.
     let _ = ctrlc::set_handler(move || {
         if handler_flag.swap(true, Ordering::Relaxed) {
             exit_without_drafts(SIGINT_CODE);

@@ -21,10 +21,9 @@ use crate::progress::{StepBar, exit_on_interrupt};
 use crate::text::{TextOutput, print_stderr, sanitize};
 use sixfold_study::numbers::{counted, grouped};
 
-/// Number of faces from which a note explains why a structure that scans is slow.
+/// Minimum number of faces for a note about a structure that scans.
 const MIN_WARNED_FACES: usize = 1000;
 
-/// Decimates the mesh and writes it.
 pub(crate) fn decimate(arguments: &Decimate) -> Result<ExitCode, Failure> {
     let decimation = Decimation {
         target: arguments.goal.target(),
@@ -34,7 +33,6 @@ pub(crate) fn decimate(arguments: &Decimate) -> Result<ExitCode, Failure> {
     edit_file(place, &arguments.backend, &decimation)
 }
 
-/// Remeshes the mesh and writes it.
 pub(crate) fn remesh(arguments: &Remesh) -> Result<ExitCode, Failure> {
     let remeshing = Remeshing {
         edge_length: arguments.edge_length,
@@ -45,15 +43,13 @@ pub(crate) fn remesh(arguments: &Remesh) -> Result<ExitCode, Failure> {
     edit_file(place, &arguments.backend, &remeshing)
 }
 
-/// Reads a mesh, edits it on `backend`, and writes the result.
 fn edit_file([from, to]: [&Path; 2], backend: &str, work: &impl Work) -> Result<ExitCode, Failure> {
     check_outputs(Some(from), &[("--output", Some(&to.to_owned()))])?;
     exit_on_interrupt();
     let polygons = load::without_creases(from)?;
-    // This check is here, because the error of a structure that holds only triangles would not name
-    // the command that helps.
+    // Check here, because the error of a structure would not name the command that helps.
     check_triangles(&polygons)?;
-    // The output is opened before the work, so that an unusable place gives an error at once.
+    // Open the output before the work, so that an unusable path gives an error at once.
     let output = Output::open(to)?;
     let mut job = EditJob {
         polygons: &polygons,
@@ -77,7 +73,7 @@ fn edit_file([from, to]: [&Path; 2], backend: &str, work: &impl Work) -> Result<
     Ok(ExitCode::SUCCESS)
 }
 
-/// Explains that `backend` has no edits, and lists the backends that have them.
+/// Explains that `backend` has no edits, and lists the backends with edits.
 fn not_editable(backend: &str) -> String {
     let infos = structure_infos().into_iter();
     let editable = infos.filter(|info| info.is_editable());
@@ -96,7 +92,7 @@ fn check_triangles(polygons: &PolygonMesh) -> Result<(), Failure> {
     }
 }
 
-/// Converts an error, and adds the command or the option that helps.
+/// Converts an error and adds the command or the option that helps.
 fn remesh_failure(error: RemeshError) -> Failure {
     match error {
         RemeshError::NotATriangle { .. } => {
@@ -121,7 +117,7 @@ fn remesh_failure(error: RemeshError) -> Failure {
     }
 }
 
-/// Prints a note if edits on the structure scan all faces, because that is slow on a large mesh.
+/// Prints a note if edits on the structure scan all faces and the mesh is large.
 fn warn_of_scans<M: MeshEdit + Representation>(faces: usize) {
     let scans = |edits: &[Option<QueryCost>]| {
         [Edit::CollapseEdge, Edit::BisectEdge, Edit::FlipEdge]
@@ -143,16 +139,13 @@ fn warn_of_scans<M: MeshEdit + Representation>(faces: usize) {
     ));
 }
 
-/// Edits on a structure.
 trait Work {
-    /// Does the edits, and describes them.
     fn run<M: MeshEdit + Representation>(&self, mesh: &mut M) -> Result<EditSummary, RemeshError>;
 }
 
-/// A description of the edits.
 struct EditSummary {
     edits: String,
-    /// The reason if the target was not reached.
+    /// Why the target was not reached.
     shortfall: Option<String>,
 }
 
@@ -213,7 +206,7 @@ impl Work for Remeshing {
     }
 }
 
-/// Work on a structure that is selected at run time.
+/// Edits on a structure that is selected at run time.
 struct EditJob<'a, W> {
     polygons: &'a PolygonMesh,
     work: &'a W,

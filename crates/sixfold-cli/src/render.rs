@@ -17,7 +17,6 @@ use crate::progress::{Spinner, exit_on_interrupt};
 use crate::text::{TextOutput, sanitize};
 use sixfold_study::numbers::counted;
 
-/// Draws the meshes into one picture.
 pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     exit_on_interrupt();
     let format = Format::from_path(&arguments.output)?;
@@ -33,7 +32,7 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     let render_mesh = |(mesh, creases)| RenderMesh { mesh, creases };
     let render_meshes: Vec<RenderMesh<'_>> =
         loaded.iter().map(|(m, c)| render_mesh((m, c))).collect();
-    // The output is opened before the work, so that an unusable place gives an error at once.
+    // Open the output before the work, so that an unusable path gives an error at once.
     let output = Output::open(&arguments.output)?;
     let faces: usize = loaded.iter().map(|(mesh, _)| mesh.face_count()).sum();
     let spinner = Spinner::start(format!("drawing {}", counted(faces, "face", "faces")));
@@ -97,7 +96,7 @@ fn settings(arguments: &Render) -> Result<Settings, Failure> {
     })
 }
 
-/// Loads the meshes, each with the creases in its file and in its crease file.
+/// Loads the meshes with the creases in their files and in their crease files.
 fn load_meshes(arguments: &Render) -> Result<Vec<(PolygonMesh, Creases)>, Failure> {
     let (meshes, files) = (&arguments.meshes, &arguments.creases);
     if files.len() > meshes.len() {
@@ -119,7 +118,7 @@ fn load_meshes(arguments: &Render) -> Result<Vec<(PolygonMesh, Creases)>, Failur
     Ok(loaded)
 }
 
-/// Converts an error; a mesh is named by its file.
+/// Converts an error. The message contains the file name of the mesh.
 fn failure(arguments: &Render, error: &RenderError) -> Failure {
     match error {
         RenderError::Mesh { mesh, fault } => {

@@ -1,4 +1,4 @@
-//! `sixfold smooth`, `dual` and `triangulate`: changes positions or faces without refinement.
+//! `sixfold smooth`, `dual` and `triangulate`: change positions or faces without refinement.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -15,7 +15,6 @@ use crate::progress::{Spinner, exit_on_interrupt};
 use crate::text::{TextOutput, sanitize};
 use sixfold_study::numbers::counted;
 
-/// Smooths the mesh and writes it.
 pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
     let work = SmoothWork(Smoothing {
         weights: arguments.weights,
@@ -30,7 +29,6 @@ pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
     })
 }
 
-/// Builds the dual and writes it.
 pub(crate) fn make_dual(arguments: &Dual) -> Result<ExitCode, Failure> {
     let place = [arguments.mesh.as_path(), &arguments.output];
     reshape_file(place, "the dual", |polygons| {
@@ -38,7 +36,6 @@ pub(crate) fn make_dual(arguments: &Dual) -> Result<ExitCode, Failure> {
     })
 }
 
-/// Cuts all polygons and writes the triangles.
 pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> {
     let place = [arguments.mesh.as_path(), &arguments.output];
     reshape_file(place, "triangles", |polygons| {
@@ -54,7 +51,6 @@ pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> 
     })
 }
 
-/// Reads a mesh, applies `change`, and writes the result.
 fn reshape_file(
     [from, to]: [&Path; 2],
     what: &str,
@@ -63,7 +59,7 @@ fn reshape_file(
     check_outputs(Some(from), &[("--output", Some(&to.to_owned()))])?;
     exit_on_interrupt();
     let polygons = load::without_creases(from)?;
-    // The output is opened before the work, so that an unusable place gives an error at once.
+    // Open the output before the work, so that an unusable path gives an error at once.
     let output = Output::open(to)?;
     let faces = counted(polygons.face_count(), "face", "faces");
     let spinner = Spinner::start(format!("working on {faces}"));
@@ -80,7 +76,6 @@ fn reshape_file(
     Ok(ExitCode::SUCCESS)
 }
 
-/// Work on a structure.
 trait Work {
     fn run<M: Representation>(&self, mesh: M) -> Result<PolygonMesh, Failure>;
 }
@@ -107,7 +102,6 @@ impl Work for DualWork {
     }
 }
 
-/// Does `work` on the structure with the name `backend`.
 fn on_backend(
     backend: &str,
     polygons: &PolygonMesh,

@@ -1,4 +1,4 @@
-//! The table of a study: a row per operation, a column per backend.
+//! The table of a study, with a row per operation and a column per backend.
 
 use comfy_table::{
     Attribute, Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle,
@@ -11,14 +11,13 @@ use sixfold_study::{
 use crate::text::{WIDTH, hanging_indent, wrap};
 use sixfold_study::numbers::{duration, figure};
 
-/// Two spaces between columns, and a line under the header.
+/// The style of tables: two spaces between columns, and a line under the header.
 pub(crate) const STYLE: TableStyle =
     TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
-/// Returns the table of times and bytes, with a legend of its signs.
 pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     let columns: Vec<&BackendReport> = report.backends.iter().filter(|b| b.holds).collect();
-    // Intervals fit only beside a few columns; the JSON has all of them.
+    // Intervals fit into the table only if there are few columns.
     let intervals = columns.len() <= 4;
     let mut table = Table::new();
     table
@@ -30,7 +29,7 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
         table.force_no_tty();
     }
     let mut signs = Signs::default();
-    // Warnings to be printed below a row of the table.
+    // Warnings and the table rows below which they are printed.
     let mut warnings: Vec<(usize, String)> = Vec::new();
     let mut header = vec![Cell::new("nanoseconds"), Cell::new("per")];
     header.extend(columns.iter().map(|backend| {
@@ -72,12 +71,12 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
         warnings.extend(noise_warning(report, operation).map(|warning| (row, warning)));
     }
     add_bytes(&mut table, &columns, intervals, bold, &mut signs);
-    // With this padding all six backends fit into 100 columns.
+    // With this padding, six backends fit into 100 columns of text.
     if let Some(names) = table.column_mut(0) {
         names.set_padding((0, 1));
     }
     let table_text = table.trim_fmt();
-    // Each row is one line; the header may have several.
+    // Each row has one line. The header may have several lines.
     let header = table_text.lines().count() - table.row_count();
     let mut lines: Vec<String> = Vec::new();
     for (number, line) in table_text.lines().enumerate() {
@@ -93,8 +92,8 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     text
 }
 
-/// Returns the row of first times below an operation, if they differ from the medians on some
-/// backend.
+/// Returns the row of first times below an operation. Returns `None` if no first time differs from
+/// the median.
 fn first_times(
     rows: &[&ResultRow],
     columns: &[&BackendReport],
@@ -132,8 +131,7 @@ fn noise_warning(report: &Report, operation: Operation) -> Option<String> {
     })
 }
 
-/// Adds two rows with bytes per vertex: those held by the tables, and those computed from the
-/// layout.
+/// Adds two rows of bytes per vertex: the actual size of the tables, and the theoretical size.
 fn add_bytes(
     table: &mut Table,
     columns: &[&BackendReport],
@@ -176,7 +174,6 @@ fn add_bytes(
     table.add_row(table_bytes).add_row(layout_bytes);
 }
 
-/// Formats a figure, followed by its interval if `intervals`.
 fn with_interval(figure: String, half_width: &str, intervals: bool) -> String {
     match intervals {
         true => format!("{figure} {half_width:>5}"),
@@ -184,7 +181,7 @@ fn with_interval(figure: String, half_width: &str, intervals: bool) -> String {
     }
 }
 
-/// Returns the cell of a figure with its signs, bold if it is the best.
+/// Returns the cell of a figure with its signs. The cell of the best figure can be bold.
 fn marked_cell(figure: String, standing: char, note: char, bold: bool) -> Cell {
     let cell = Cell::new(format!("{figure} {standing}{note}")).set_alignment(CellAlignment::Right);
     if bold && standing == '*' {
@@ -223,7 +220,7 @@ fn cell(row: &ResultRow, intervals: bool, bold: bool, signs: &mut Signs) -> Cell
     marked_cell(text, standing, note, bold)
 }
 
-/// Formats the half-width of the interval in percent of the median: `±3%`.
+/// Formats the half-width of the interval in percent of the median, as in `±3%`.
 fn half_width(row: &ResultRow, signs: &mut Signs) -> String {
     let known = (row.median_ns, row.ci_low_ns, row.ci_high_ns);
     let (Some(median), Some(low), Some(high)) = known else {
@@ -238,11 +235,10 @@ fn half_width(row: &ResultRow, signs: &mut Signs) -> String {
     }
 }
 
-/// The signs that occur in the table; the legend explains only these.
+/// The signs that occur in the table. The legend explains only these signs.
 #[derive(Default)]
 struct Signs {
     used: Vec<char>,
-    /// Whether the table has rows of first times.
     first_times: bool,
 }
 
@@ -276,7 +272,7 @@ impl Signs {
         let first_times = "first time: one run on fresh pages, with tables without spare capacity";
         let first_times = self.first_times.then(|| first_times.to_owned());
         let parts = used.map(|(sign, meaning)| format!("{sign} {meaning}"));
-        // Lines are broken only between two signs of the legend.
+        // A legend line may end only between two signs.
         let mut lines: Vec<String> = Vec::new();
         for part in parts.chain(first_times) {
             match lines.last_mut() {
@@ -294,7 +290,7 @@ impl Signs {
     }
 }
 
-/// Explains why a row is only estimated, and what to do about it.
+/// Explains why an operation is only estimated.
 fn not_run_note(row: &ResultRow) -> Option<String> {
     let time = duration(row.estimated_ns?);
     let ResultRow {
@@ -312,7 +308,7 @@ fn not_run_note(row: &ResultRow) -> Option<String> {
     })
 }
 
-/// Lists the reasons for missing figures: one line per reason, with its operations and backends.
+/// Lists the reasons for missing figures, one line per reason.
 fn refusal_notes(report: &Report) -> Vec<String> {
     let mut lines: Vec<(&str, Vec<&str>, Vec<&str>)> = Vec::new();
     for backend in &report.backends {

@@ -13,7 +13,6 @@ use crate::output::{Output, is_stdout};
 use crate::tables::{table, table_of_backends};
 use crate::text::TextOutput;
 
-/// Prints the classification and the table of schemes and backends.
 pub(crate) fn run(arguments: &Schemes) -> Result<ExitCode, Failure> {
     let json = Output::open_if(arguments.json.as_ref())?;
     let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));

@@ -19,7 +19,7 @@ use crate::results_table::results_table;
 use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::counted;
 
-/// Measures and shows the result. Text is printed first, so that it is not lost if a file fails.
+/// Prints the text before the files are written, so that it is not lost if writing a file fails.
 pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     let settings = Settings {
         backends: arguments.backends.clone(),
@@ -44,8 +44,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
             ("--csv", arguments.csv.as_ref()),
         ],
     )?;
-    // The handler is set before the drafts of the outputs are opened, so that Ctrl-C cannot leave a
-    // draft behind.
+    // Set the handler before the drafts are created, so that Ctrl-C always deletes the drafts.
     let stop = interrupt_flag(settings.heap);
     let json = Output::open_if(arguments.json.as_ref())?;
     let csv = Output::open_if(arguments.csv.as_ref())?;
@@ -62,8 +61,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
             report.environment.command = Some(command_line());
             report
         }
-        // The list of the selected backends with the reasons why they refuse the mesh is also a
-        // result.
+        // If every backend refuses the mesh, the list of reasons is the result.
         Err(error @ StudyError::NoneHolds { .. }) => {
             let refusals = refusals(&study_mesh, &settings)?;
             write_files(&refusals, json, csv)?;
@@ -81,12 +79,11 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     studies_exit_code(done, [&report], 0, report.interrupted)
 }
 
-/// Returns the help text after the options: examples, the method, and the lists of names.
+/// Returns the help text after the options.
 pub(crate) fn help() -> String {
     format!("{STUDY_EXAMPLES}\n\n{}", name_lists())
 }
 
-/// Lists the names of all backends and operations.
 pub(crate) fn name_lists() -> String {
     let backends = sixfold::structure_infos();
     let backends: Vec<&str> = backends.iter().map(|backend| backend.name).collect();
@@ -96,7 +93,7 @@ pub(crate) fn name_lists() -> String {
     format!("{backends}\n{operations}")
 }
 
-/// Writes the selected files. If the first file fails, writes the second one anyway.
+/// Writes the selected files. If the first file fails, writes the second file anyway.
 pub(crate) fn write_files(
     report: &Report,
     json: Option<Output>,
@@ -112,8 +109,7 @@ pub(crate) fn write_files(
     done
 }
 
-/// Returns the report on a mesh that none of the selected backends can hold: reasons but no
-/// results.
+/// Returns the report on a mesh that every selected backend refuses.
 fn refusals(study_mesh: &StudyMesh, settings: &Settings) -> Result<Report, Failure> {
     let selected = settings.chosen_backends().map_err(Failure::usage)?;
     let inspection = sixfold_study::inspect(study_mesh, &selected);
@@ -133,7 +129,6 @@ fn refusals(study_mesh: &StudyMesh, settings: &Settings) -> Result<Report, Failu
     })
 }
 
-/// Prints the facts, the verdicts, the table, and the findings in words.
 pub(crate) fn print(report: &Report, text: &mut TextOutput) {
     text.print_line(&facts_text(&report.mesh));
     text.print_line("");
@@ -156,7 +151,6 @@ pub(crate) fn print(report: &Report, text: &mut TextOutput) {
     }
 }
 
-/// Describes the overhead of the clock.
 fn clock_text(timer: Timer) -> String {
     let error = timer.largest_share.map_or("unknown".into(), |share| {
         format!("at most {:.2} % of the shortest sample", 100.0 * share)
@@ -168,7 +162,7 @@ fn clock_text(timer: Timer) -> String {
     )
 }
 
-/// Describes the machine and the settings in a line.
+/// Describes the machine and the settings in one line.
 pub(crate) fn describe_environment(environment: &Environment, most_rounds: usize) -> String {
     let Environment {
         rustc,

@@ -27,7 +27,6 @@ use forecast::Forecast;
 use limit::Limits;
 use sixfold_study::numbers::{counted, duration, figure, grouped};
 
-/// Refines the mesh and writes it.
 pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     exit_on_interrupt();
     let places = [
@@ -61,7 +60,7 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         arguments.limit.is_some(),
     )?;
     forecast.check(arguments.force)?;
-    // The output is opened before the work, so that an unusable place gives an error at once.
+    // Open the output before the work, so that an unusable path gives an error at once.
     let output = Output::open(&arguments.output)?;
     let limit = Output::open_if(arguments.limit.as_ref())?;
     let left = Output::open_if(arguments.creases_left.as_ref())?;
@@ -79,8 +78,7 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     for level in &job.finished {
         text.print_line(&level.describe());
     }
-    // The limits are computed before the first file is written, so that either all files are
-    // written or none.
+    // Compute the limits before writing, so that either all files are written or none.
     let limits = match limit {
         Some(output) => Some((output, Limits::new(&subdivision, &step, arguments.levels)?)),
         None => None,
@@ -107,7 +105,7 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Returns the scheme with its options; refuses an option that the scheme does not have.
+/// Returns the scheme with its options. Refuses options that the scheme does not have.
 fn options(arguments: &Subdivide) -> Result<Subdivision, Failure> {
     let scheme = arguments.scheme;
     let kind = scheme.kind();
@@ -146,7 +144,7 @@ fn options(arguments: &Subdivide) -> Result<Subdivision, Failure> {
     })
 }
 
-/// Refuses a mesh file with creases if the scheme has no rules for creases.
+/// Refuses creases in the mesh file if the scheme has no rules for creases.
 fn check_tags(arguments: &Subdivide, creases: &Creases) -> Result<(), Failure> {
     let scheme = arguments.scheme;
     if creases.is_empty() || scheme.kind().creases {
@@ -159,8 +157,7 @@ fn check_tags(arguments: &Subdivide, creases: &Creases) -> Result<(), Failure> {
     )))
 }
 
-/// Returns the selected method, or the best that the backend supports for the scheme. Checks it
-/// before the work begins.
+/// Returns the selected method, or the best method that the backend supports for the scheme.
 fn method(arguments: &Subdivide) -> Result<Method, Failure> {
     let Subdivide {
         scheme, backend, ..
@@ -207,7 +204,6 @@ struct Job<'a> {
     finished: Vec<FinishedLevel>,
 }
 
-/// One finished level.
 struct FinishedLevel {
     level: u32,
     faces: usize,
@@ -249,7 +245,6 @@ impl Job<'_> {
         }
     }
 
-    /// Returns a callback that records each finished level.
     fn record_levels<'b>(
         bar: &'b FaceBar,
         finished: &'b mut Vec<FinishedLevel>,

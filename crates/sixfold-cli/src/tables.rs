@@ -5,7 +5,7 @@ use sixfold::structure_infos;
 
 use crate::results_table::STYLE;
 
-/// Returns an empty table with `header`, without line breaks in cells.
+/// Returns an empty table with `header`. Cells have no line breaks.
 pub(crate) fn table(header: Vec<Cell>) -> Table {
     let mut table = Table::new();
     table
@@ -16,7 +16,7 @@ pub(crate) fn table(header: Vec<Cell>) -> Table {
     table
 }
 
-/// Returns an empty table with `header` for figures, some of them bold if `bold`.
+/// Returns an empty table of figures with `header`. If `bold` is set, cells can be bold.
 pub(crate) fn styled(header: Vec<Cell>, bold: bool) -> Table {
     let mut table = table(header);
     if bold {
@@ -28,7 +28,7 @@ pub(crate) fn styled(header: Vec<Cell>, bold: bool) -> Table {
     table
 }
 
-/// Returns an empty table with a column per backend; `rows` is the heading of the first column.
+/// Returns an empty table with a column per backend. `rows` is the heading of the first column.
 pub(crate) fn table_of_backends(rows: &str) -> Table {
     let backends = structure_infos();
     let names = backends.iter().map(|backend| backend.name);

@@ -1,4 +1,4 @@
-//! Text for users: on standard output, or suppressed if data is written there.
+//! Text for users. It is suppressed if data is written to standard output.
 
 use std::io::{self, IsTerminal, Write};
 
@@ -7,10 +7,9 @@ use crate::output::cannot_write;
 
 pub(crate) use sixfold_study::sanitize;
 
-/// Maximum width of text in columns.
+/// Maximum width of text, in columns.
 pub(crate) const WIDTH: usize = 100;
 
-/// The text output of a command.
 pub(crate) struct TextOutput {
     enabled: bool,
     bold: bool,
@@ -18,7 +17,7 @@ pub(crate) struct TextOutput {
 }
 
 impl TextOutput {
-    /// Returns the text output, which prints only if `enabled`.
+    /// Returns a text output that prints only if `enabled` is set.
     pub(crate) fn new(enabled: bool) -> Self {
         let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
         let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
@@ -29,13 +28,12 @@ impl TextOutput {
         }
     }
 
-    /// Returns whether bold text is allowed.
     pub(crate) fn bold(&self) -> bool {
         self.bold
     }
 
-    /// Prints `text` as a line. After a failure it prints nothing more, so that files can still be
-    /// written; [`TextOutput::finish`] returns the failure.
+    /// Prints `text` as a line. After a failure, nothing more is printed, so that files can still
+    /// be written. [`TextOutput::finish`] returns the failure.
     pub(crate) fn print_line(&mut self, text: &str) {
         if self.enabled
             && let Err(cause) = writeln!(io::stdout().lock(), "{text}")
@@ -52,7 +50,7 @@ impl TextOutput {
     }
 }
 
-/// Converts an error of printing. A reader that closed the pipe early is not an error.
+/// Converts an error of printing. A reader that closes the pipe early is not an error.
 pub(crate) fn ignore_closed_pipe(done: io::Result<()>) -> Result<(), Failure> {
     match done {
         Err(cause) if cause.kind() != io::ErrorKind::BrokenPipe => {
@@ -62,13 +60,13 @@ pub(crate) fn ignore_closed_pipe(done: io::Result<()>) -> Result<(), Failure> {
     }
 }
 
-/// Prints a line on standard error; ignores errors. Control characters and line breaks in it, such
-/// as from file names, are escaped.
+/// Prints a line on standard error and ignores errors. Control characters and line breaks are
+/// escaped.
 pub(crate) fn print_stderr(line: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", sanitize(line));
 }
 
-/// Breaks `text` at spaces into lines of at most `width` columns; a longer word gets its own line.
+/// Breaks `text` at spaces into lines of at most `width` columns. A longer word gets its own line.
 pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {
@@ -83,7 +81,7 @@ pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// Returns `first` and the lines of `text`, where all but the first are indented by the width of
+/// Returns `first` and the lines of `text`. All lines except the first are indented by the width of
 /// `first`.
 pub(crate) fn hanging_indent(first: &str, text: &str) -> String {
     let indent = first.chars().count();

@@ -1,4 +1,4 @@
-//! `--triangulate`: cuts polygons into fans, and reports how that changes the mesh.
+//! The option `--triangulate`: cuts polygons into triangles.
 
 use sixfold::{Facts, PolygonMesh, VertexId};
 use sixfold_study::StudyMesh;
@@ -7,8 +7,7 @@ use crate::failure::Failure;
 use crate::text::print_stderr;
 use sixfold_study::numbers::{counted, grouped};
 
-/// Returns the mesh with every polygon cut into a fan. Records and prints all other changes of the
-/// mesh.
+/// Cuts every polygon into a fan of triangles. Records and prints all other changes of the mesh.
 pub(crate) fn triangulated(study_mesh: StudyMesh) -> Result<StudyMesh, Failure> {
     let old = &study_mesh.polygons;
     let polygons = old
@@ -49,8 +48,8 @@ pub(crate) fn triangulated(study_mesh: StudyMesh) -> Result<StudyMesh, Failure> 
     })
 }
 
-/// Lists the counts that the cut should not change but did. The reason can be a diagonal that was
-/// an edge already.
+/// Lists the counts that changed although the cut should not change them. For example, a diagonal
+/// may already be an edge.
 fn differences(old: &Facts, new: &Facts) -> Vec<String> {
     let counts = [
         (
@@ -78,8 +77,7 @@ fn differences(old: &Facts, new: &Facts) -> Vec<String> {
         .collect()
 }
 
-/// Counts the faces whose fan has a triangle with the opposite orientation, which overlaps others.
-/// O(corners).
+/// Counts the faces whose fan has a triangle with the opposite orientation; O(corners).
 fn folded_fans(mesh: &PolygonMesh) -> usize {
     let faces = mesh.faces().iter();
     faces.filter(|(_, face)| folds(mesh, face)).count()
@@ -91,14 +89,15 @@ fn folds(mesh: &PolygonMesh, face: &[VertexId]) -> bool {
         return false;
     };
     let first = at(first);
-    // The sum of the cross products is the normal of the face; its length is twice the area.
+    // The sum of the cross products is the normal of the face. The length of the normal is twice
+    // the area.
     let triangles = || {
         rest.windows(2)
             .map(|pair| cross(minus(at(pair[0]), first), minus(at(pair[1]), first)))
     };
     let normal = triangles().fold([0.0; 3], |sum, n| [0, 1, 2].map(|i| sum[i] + n[i]));
     let squared_length = dot(normal, normal);
-    // Collinear corners give triangles with area 0; the tolerance allows for rounding errors.
+    // Collinear corners give triangles with area 0. The tolerance allows for rounding errors.
     triangles().any(|triangle| dot(triangle, normal) < -1e-6 * squared_length)
 }
 

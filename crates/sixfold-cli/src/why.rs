@@ -18,15 +18,13 @@ use crate::progress::{Bar, Spinner, interrupt_flag};
 use crate::text::{TextOutput, hanging_indent};
 use crate::why_text::{legend, memory_text, relation_text, sentence};
 
-/// Counts, measures unless `--counts-only`, and shows the result. Text is printed first, so that it
-/// is not lost if a file fails.
+/// Prints the text before the files are written, so that it is not lost if writing a file fails.
 pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     check_outputs(
         arguments.mesh.as_deref(),
         &[("--json", arguments.json.as_ref())],
     )?;
-    // The handler is set before the draft of the output is opened, so that Ctrl-C cannot leave a
-    // draft behind.
+    // Set the handler before the draft is created, so that Ctrl-C always deletes the draft.
     let stop = interrupt_flag(Policy::Kept);
     let json = Output::open_if(arguments.json.as_ref())?;
     let study_mesh = match &arguments.mesh {
@@ -56,7 +54,7 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     exit_code(done, why.mismatches(), why.interrupted)
 }
 
-/// Counts reads, and measures times if there is a `budget`.
+/// Counts reads. If there is a `budget`, also measures times.
 pub(crate) fn measure(
     study_mesh: &StudyMesh,
     mut settings: WhySettings,
@@ -77,7 +75,7 @@ pub(crate) fn measure(
     Ok(why)
 }
 
-/// Measures the speed of memory; returns `None` if interrupted.
+/// Measures the speed of memory. Returns `None` if interrupted.
 fn timing(budget: Duration, stop: &AtomicBool) -> Option<Timing> {
     let spinner = Spinner::start("measuring the speed of memory".into());
     let memory = MemorySpeed::measure(&MachineClock::start(), stop);

@@ -1,4 +1,4 @@
-//! The tables of `sixfold why`: one per relation, with a row per backend.
+//! The tables of `sixfold why`, one per relation, with a row per backend.
 
 use comfy_table::{Cell, CellAlignment};
 use sixfold::Relation;
@@ -8,12 +8,11 @@ use crate::tables::table;
 use crate::text::{hanging_indent, wrap};
 use sixfold_study::numbers::{bytes, figure, grouped};
 
-/// Width of the column `reads by table` in characters: the space beside the figures.
+/// Width of the column `reads by table`, in characters.
 const TABLES_WIDTH: usize = 36;
-/// A space at which lines are not broken.
+/// A space that does not allow a line break.
 const NO_BREAK: char = '\u{a0}';
 
-/// Describes what a relation yields, in a few words.
 fn meaning(relation: Relation) -> &'static str {
     match relation {
         Relation::VertexVertices => "the other ends of the edges at a vertex",
@@ -28,7 +27,6 @@ fn meaning(relation: Relation) -> &'static str {
     }
 }
 
-/// Returns the speed of memory for each size of the buffer.
 pub(crate) fn memory_text(buffers: &[BufferSpeed]) -> String {
     let line = |name: &str, what: &str, of: &dyn Fn(&BufferSpeed) -> String| {
         let figures: String = buffers
@@ -110,7 +108,7 @@ fn cells(row: &WhyRow, timed: bool) -> Vec<Cell> {
     cells.into_iter().map(Cell::new).collect()
 }
 
-/// Formats reads as `halves 6.00, leaving 1.00`, the most read table first.
+/// Formats reads as `halves 6.00, leaving 1.00`. The table with the most reads comes first.
 fn by_table(tables: &[TableReads]) -> String {
     if tables.is_empty() {
         return "none: the handle is the answer".into();
@@ -137,7 +135,6 @@ fn short_figure(number: f64) -> String {
     }
 }
 
-/// Describes a row in a sentence.
 pub(crate) fn sentence(row: &WhyRow) -> String {
     let WhyRow {
         backend,
@@ -172,8 +169,7 @@ pub(crate) fn sentence(row: &WhyRow) -> String {
     }
 }
 
-/// Describes the times for the bytes and for the jumps, the measured time, and the bound of this
-/// time.
+/// Describes the measured time and its limiting factor.
 fn describe_times(timed: &Timed) -> String {
     let Timed {
         ns_per_element,
@@ -200,7 +196,6 @@ fn describe_times(timed: &Timed) -> String {
     )
 }
 
-/// Explains the columns.
 pub(crate) fn legend(why: &Why) -> String {
     let Model {
         line_bytes,
@@ -317,7 +312,7 @@ mod tests {
         };
         let text = by_table(&[read("leaving", 1.0), read("halves", 6.0)]);
         assert_eq!(text, "halves 6.00, leaving 1.00");
-        // No line is broken between a table and its figure.
+        // No line ends between a table name and its figure.
         let many = ["vertex", "opposite", "corner"].map(|table| read(table, 1.0));
         let text = by_table(&many);
         assert_eq!(text, "vertex 1.00, opposite 1.00,\ncorner 1.00");

@@ -1,4 +1,4 @@
-//! `sixfold workloads`: lists the built-in workloads, and the operations that a mix may contain.
+//! `sixfold workloads`: lists the built-in workloads and the operations of a mix.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -11,10 +11,9 @@ use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
 use crate::text::{TextOutput, hanging_indent};
 
-/// Maximum size of a workload file in bytes; larger files are refused without reading them.
+/// Maximum size of a workload file in bytes.
 const MAX_FILE_BYTES: u64 = 1 << 20;
 
-/// Lists the workloads, shows the file of one workload, or lists operations.
 pub(crate) fn run(arguments: &Workloads) -> Result<ExitCode, Failure> {
     if let Some(name) = &arguments.show {
         let file = built_ins().find(|(known, _)| known == name);
@@ -42,7 +41,7 @@ pub(crate) fn run(arguments: &Workloads) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Returns the built-in workload `word`, or the workload in the file of that name.
+/// Returns the built-in workload `word`. If there is none, reads the workload file `word`.
 pub(crate) fn workload(word: &str) -> Result<Workload, Failure> {
     let path = Path::new(word);
     let is_file = path.extension().is_some_and(|ending| ending == "toml");

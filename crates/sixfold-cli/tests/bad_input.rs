@@ -1,4 +1,4 @@
-//! Bad input: one clear error, the documented exit code, nothing written, no panic.
+//! Tests of bad input: the error, the exit code and the written files.
 
 use crate::run::{Run, Sixfold, TETRAHEDRON};
 
@@ -139,7 +139,6 @@ fn a_mesh_that_no_selected_backend_can_hold_has_its_own_exit_code() {
     sixfold.file("book.obj", book);
     let arguments = ["study", "book.obj", "--backends", "half-edge"];
     assert_refused(&sixfold, &arguments, 3, "f0, f1, f2");
-    // Other backends can hold it, and that is not an error.
     let run = sixfold.run(&["study", "book.obj", "--budget", "50ms"]);
     assert_eq!(run.code, Some(0), "{run:?}");
     let mut refusals = run.stdout.lines().filter(|line| line.contains("refuses"));

@@ -1,11 +1,11 @@
-//! Tests of `sixfold compare` with the real binary.
+//! Tests of `sixfold compare`.
 
 use serde_json::Value;
 
 use crate::bad_input::assert_refused;
 use crate::run::{Sixfold, TETRAHEDRON, run_ok, text};
 
-/// Writes a study of a tetrahedron to `a.json`, and the same study with all half-edge times doubled
+/// Writes a study of a tetrahedron to `a.json`. Writes the same study with doubled half-edge times
 /// to `b.json`.
 fn two_studies() -> Sixfold {
     let sixfold = Sixfold::new();
@@ -78,7 +78,7 @@ fn a_change_is_shown_and_can_set_the_exit_code() {
     assert!(all.stdout.contains("corner-table"), "{}", all.stdout);
     let failing = ["compare", "a.json", "b.json", "--fail-if-slower"];
     assert_eq!(sixfold.run(&failing).code, Some(1));
-    // Nothing is slower in a comparison with itself, or if the second study is the faster one.
+    // No row is slower if the studies are equal or if the second study is faster.
     let same = ["compare", "a.json", "a.json", "--fail-if-slower"];
     assert!(!run_ok(&sixfold, &same).stdout.contains("Only in the"));
     run_ok(

@@ -1,4 +1,4 @@
-//! Tests of `sixfold orders` and `growth`: JSON, refusals, and Ctrl-C.
+//! Tests of `sixfold orders` and `growth`.
 
 use serde_json::Value;
 
@@ -9,13 +9,12 @@ fn parsed(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
-/// Returns the members of a list in an object.
 fn list<'v>(value: &'v Value, name: &str) -> &'v [Value] {
     let list = value[name].as_array();
     list.unwrap_or_else(|| panic!("no list {name} in {value}"))
 }
 
-/// Returns the keys of an object, sorted.
+/// Returns the sorted keys of an object.
 fn names(value: &Value) -> Vec<&str> {
     let object = value.as_object();
     let object = object.unwrap_or_else(|| panic!("no object: {value}"));
@@ -127,7 +126,7 @@ fn growth_writes_json() {
         "growth.json",
     ];
     let run = run_ok(&sixfold, &arguments);
-    // The faces are quads: one structure refuses them, the others have a column.
+    // The faces are quads. One structure refuses them.
     assert!(run.stdout.contains("corner-table refuses"), "{run:?}");
     assert!(run.stdout.contains("power"), "{run:?}");
     let report = parsed(&crate::run::text(&sixfold, "growth.json"));
@@ -243,7 +242,7 @@ fn invalid_arguments_are_refused() {
             3,
             "corner-table",
         ),
-        // Hundreds of gigabytes: refused before anything is built.
+        // These sizes need hundreds of gigabytes.
         (&["growth", "--to", "500000000"], 3, "smaller --to"),
     ] {
         assert_refused(&sixfold, arguments, code, message);

@@ -1,4 +1,4 @@
-//! External programs as columns: their results, and their failures.
+//! Tests of external programs as columns of a study.
 
 use std::path::Path;
 use std::process::Command;
@@ -8,7 +8,6 @@ use serde_json::Value;
 
 use crate::run::{Run, Sixfold, TETRAHEDRON};
 
-/// Returns whether Python is installed, which the programs need.
 fn has_python() -> bool {
     let found = Command::new("python3").arg("--version").output();
     let there = found.is_ok_and(|output| output.status.success());
@@ -24,7 +23,7 @@ fn repository() -> &'static Path {
     here.parent().and_then(Path::parent).expect("two floors up")
 }
 
-/// Studies a tetrahedron with an external program that fails in the way that `mode` names.
+/// Studies a tetrahedron with an external program. `mode` selects how the program fails.
 fn study_with_program(mode: &str, more: &[&str]) -> (Sixfold, Run) {
     let sixfold = Sixfold::new();
     sixfold.file("t.obj", TETRAHEDRON);
@@ -214,7 +213,7 @@ fn child_processes_of_a_program_end_with_the_study() {
     assert_eq!(run.code, Some(0), "{run:?}");
     let child = crate::run::text(&sixfold, "pid.txt");
     let stat = std::fs::read_to_string(format!("/proc/{child}/stat"));
-    // The process has ended, or is a zombie that is not reaped yet.
+    // The process has ended, or is a zombie.
     assert!(
         stat.as_ref().map_or(true, |stat| stat.contains(") Z ")),
         "{stat:?}"

@@ -1,5 +1,5 @@
-//! Compares text that does not depend on the clock with golden files; `SIXFOLD_GOLDEN=write`
-//! rewrites them.
+//! Compares text that does not depend on the clock with golden files. `SIXFOLD_GOLDEN=write`
+//! rewrites the golden files.
 
 use std::fs;
 use std::path::Path;
@@ -20,7 +20,7 @@ fn golden(name: &str, text: &str) {
     );
 }
 
-/// Returns what a command prints; asserts that no line is wider than 100 columns.
+/// Returns the text that a command prints. Asserts that no line is wider than 100 columns.
 fn printed(sixfold: &Sixfold, arguments: &[&str]) -> String {
     let run = sixfold.run(arguments);
     assert_eq!(run.code, Some(0), "{run:?}");
@@ -81,12 +81,11 @@ fn workloads() {
     );
 }
 
-/// The bytes of building are the same in each run, so the whole text is compared.
 #[test]
 fn memories() {
     let sixfold = Sixfold::new();
     golden("memory.txt", &printed(&sixfold, &["memory"]));
-    // Mixed degrees, and two vertices at the same position, which a polygon soup merges.
+    // The mesh has mixed degrees, and two vertices at the same position.
     let seam =
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nf 1 2 3 4\nf 5 6 7\n";
     sixfold.file("seam.obj", seam);
@@ -99,7 +98,6 @@ fn memories() {
     golden("memory_seam.txt", &printed(&sixfold, &some));
 }
 
-/// The counts of reads on the built-in mesh do not depend on the clock.
 #[test]
 fn counts() {
     let why = ["why", "--counts-only"];

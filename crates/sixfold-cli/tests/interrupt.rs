@@ -1,4 +1,4 @@
-//! Ctrl-C: a command stops between two steps, keeps its finished results, and prints a message.
+//! Tests of Ctrl-C.
 #![cfg(unix)]
 
 use std::thread::sleep;
@@ -67,7 +67,7 @@ fn an_interrupted_decimation_writes_nothing() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 100);
     sixfold.file("out.obj", "precious");
-    // A polygon soup scans all faces for each collapse, so this would take minutes.
+    // A polygon soup scans all faces for each collapse, so this command would take minutes.
     let arguments = [
         "decimate",
         "grid.obj",
@@ -93,7 +93,7 @@ fn no_draft_is_left_after_two_interrupts_of_a_study() {
     ];
     let start = Instant::now();
     let mut child = sixfold.start(&arguments, 2);
-    // Two signals may be delivered as one, so signals are sent until the program ends.
+    // Two signals may arrive as one signal, so signals are sent until the program ends.
     let status = loop {
         if let Some(status) = child.try_wait().expect("our child") {
             break status;
@@ -102,7 +102,7 @@ fn no_draft_is_left_after_two_interrupts_of_a_study() {
         assert!(start.elapsed() < Duration::from_secs(120), "still runs");
         sleep(Duration::from_millis(1));
     };
-    // The first signal may have been enough.
+    // One signal may be enough.
     assert!(matches!(status.code(), Some(4 | 130)), "{status}");
     let names = sixfold.names();
     assert!(

@@ -1,4 +1,4 @@
-//! JSON and CSV: the schema of `reports/SCHEMA.md`, and checksums that agree.
+//! Tests of the JSON and CSV of a study: the schema of `reports/SCHEMA.md`, and the checksums.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -141,7 +141,8 @@ fn a_study_follows_its_schema_and_all_backends_agree() {
         let close = |sum: &f64| (sum - sums[0]).abs() <= 1e-4 * sums[0].abs();
         assert!(sums.iter().all(close), "{operation}: {sums:?}");
     }
-    // The grid has 4 · 11 boundary edges, 242 faces and 3 · 242 corners, which are visited twice.
+    // The grid has 4 · 11 boundary edges, 242 faces and 3 · 242 corners. The corners are visited
+    // twice.
     assert_eq!(
         checksums["boundary"],
         vec![44.0; checksums["boundary"].len()]
@@ -200,7 +201,7 @@ fn the_selected_rows_are_measured() {
     let rows: Vec<_> = rows
         .map(|row| (&row["operation"], &row["backend"]))
         .collect();
-    // In the order of the table and of the structures, not of the arguments.
+    // The rows have the order of the table, not the order of the arguments.
     let expected = [
         ("build", "face-vertex"),
         ("build", "half-edge"),
@@ -220,7 +221,7 @@ fn the_selected_rows_are_measured() {
 #[test]
 fn merged_vertices_are_reported_and_are_not_a_failure() {
     let sixfold = Sixfold::new();
-    // Two triangles that touch along an edge in space, but share no vertex.
+    // Two triangles touch along an edge in space, but share no vertex.
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 5 4 6\n";
     sixfold.file("seam.obj", text);
     let run = sixfold.run(&["study", "seam.obj", "--budget", "100ms", "--json", "-"]);

@@ -1,4 +1,4 @@
-//! Studies of many meshes: failures are listed, finished studies are kept, shards are merged.
+//! Tests of studies of many meshes.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use crate::run::{Run, Sixfold, TETRAHEDRON, run_ok, text};
 
 const QUICK_ARGUMENTS: [&str; 4] = ["--budget", "60ms", "--operations", "boundary,edge_length"];
 
-/// Writes three meshes, one of them in a subfolder, and a broken one.
+/// Writes three valid meshes, one of them in a subfolder, and a broken mesh.
 fn scans() -> Sixfold {
     let sixfold = Sixfold::new();
     fs::create_dir_all(sixfold.folder().join("scans/deep")).expect("a folder");
@@ -74,7 +74,6 @@ fn all_meshes_of_a_folder_are_studied_and_failures_are_listed() {
     assert!(reason.contains("line 2"), "{reason}");
     assert_eq!(report["missing"], Value::Array(Vec::new()));
     assert!(run.stderr.contains("broken.obj"), "{}", run.stderr);
-    // Every row is pooled over all three meshes.
     let pooled = report["pooled"].as_array().expect("rows");
     assert_eq!(pooled.len(), 12);
     for row in pooled {
@@ -83,7 +82,7 @@ fn all_meshes_of_a_folder_are_studied_and_failures_are_listed() {
             ["ci_low", "ratio_to_best", "ci_high"].map(|name| row[name].as_f64());
         assert!(mean > Some(0.5) && low <= mean && mean <= high, "{row}");
     }
-    // One line per sample, including those of the control.
+    // Each sample has one line. The samples of the control are included.
     let studies = report["studies"].as_array().expect("studies");
     let raw = studies
         .iter()
@@ -131,7 +130,7 @@ fn finished_studies_are_not_repeated() {
     assert_eq!(again.code, Some(0), "{again:?}");
     assert_eq!(text(&sixfold, "out/results.json"), before);
 
-    // One file is deleted, one is truncated, and one is of a mesh that has changed since.
+    // One file is deleted, one file is truncated, and the mesh of one file is changed.
     let paths = study_files(&sixfold, "out");
     let name = |path: &Path| {
         path.file_name()
@@ -290,7 +289,6 @@ fn invalid_places_are_refused_before_anything_is_measured() {
     );
 }
 
-/// Also after `--resume`, which reads the failures from files.
 #[test]
 fn meshes_that_no_selected_backend_can_hold_have_their_own_exit_code() {
     let sixfold = Sixfold::new();
@@ -339,7 +337,8 @@ fn an_interrupted_study_can_be_resumed() {
         "out",
     ];
     let child = sixfold.start(&arguments, 1);
-    // When the first study is saved, the second one is running: it takes two seconds.
+    // When the first study is saved, the second study is running. The second study takes two
+    // seconds.
     let start = Instant::now();
     let kept = || {
         let studies = fs::read_dir(sixfold.folder().join("out/studies"));
@@ -368,7 +367,7 @@ fn an_interrupted_study_can_be_resumed() {
     assert_eq!(whole["studies"][0], kept["studies"][0]);
 }
 
-/// Runs the documented script as Slurm does: once per job of the array.
+/// Runs the documented script as Slurm does, once per job of the array.
 #[cfg(unix)]
 #[test]
 fn the_script_for_a_cluster_studies_all_meshes() {

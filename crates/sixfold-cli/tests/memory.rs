@@ -1,4 +1,4 @@
-//! Tests of `sixfold memory`: text, JSON and exit codes.
+//! Tests of `sixfold memory`.
 
 use serde_json::Value;
 
@@ -63,15 +63,16 @@ fn json_has_the_three_counts_and_the_tables() {
         assert_eq!(Some(sum), backend["bytes"].as_u64(), "{name}");
         assert!(backend["peak_bytes"].as_u64() >= Some(sum), "{name}");
     }
-    // 4 positions and 4 corners: 12 · 4 + 4 · 4; half-edges: 4 · 2 of 12 bytes, 4 · 16, and 4.
+    // Indexed face set: 4 positions of 12 bytes and 4 corners of 4 bytes. Half-edge: 4 · 2
+    // half-edges of 12 bytes, 4 vertices of 16 bytes, and 1 face of 4 bytes.
     assert_eq!(backends["indexed-face-set"]["counted_bytes"], 64);
     assert_eq!(backends["half-edge"]["counted_bytes"], 164);
     assert_eq!(backends["half-edge"]["layout_words_per_vertex"], 10.25);
 }
 
-/// Maximum of the bytes that building a structure allocates per byte of the result. Besides the
-/// result there is scratch memory: 4 bytes per corner and 8 per vertex for a corner table and for
-/// half-edges, 12 per corner and 8 per vertex for winged edges.
+/// Maximum number of bytes that building a structure allocates, per byte of the result. Building
+/// needs scratch memory in addition to the result. A corner table and half-edges need 4 bytes per
+/// corner and 8 per vertex. Winged edges need 12 bytes per corner and 8 per vertex.
 const BUILD_LIMITS: [(&str, f64); 6] = [
     ("polygon-soup", 1.02),
     ("indexed-face-set", 1.0),
@@ -81,11 +82,11 @@ const BUILD_LIMITS: [(&str, f64); 6] = [
     ("corner-table", 1.5),
 ];
 
-/// The same maximum for a subdivision, by the suffix of the operation's name.
+/// Maximum number of bytes that a subdivision allocates, per byte of the result. The key is the
+/// suffix of the operation.
 const SUBDIVISION_LIMITS: [(&str, f64); 3] =
     [("_gather", 3.0), ("_scatter", 3.0), ("_native", 1.2)];
 
-/// Asserts that the figures do not exceed the values to which they were last reduced.
 #[test]
 fn operations_on_the_built_in_mesh_allocate_little_besides_their_result() {
     let run = run_ok(&Sixfold::new(), &["memory", "--json", "-"]);
@@ -116,7 +117,6 @@ fn operations_on_the_built_in_mesh_allocate_little_besides_their_result() {
     assert!(counted > 40, "{counted} operations were run");
 }
 
-/// On a small mesh no operation is left out because of scans.
 #[test]
 fn operations_that_scan_are_run_on_small_meshes_only() {
     let sixfold = Sixfold::new();

@@ -1,8 +1,7 @@
-//! Reads and counts the mesh in an OBJ file without using Sixfold.
+//! Reads an OBJ file without Sixfold.
 
 use std::collections::BTreeMap;
 
-/// The mesh in the text of an OBJ file.
 pub(crate) struct Obj {
     pub(crate) positions: Vec<[f32; 3]>,
     pub(crate) faces: Vec<Vec<usize>>,
@@ -42,13 +41,11 @@ impl Obj {
         self.edges().values().filter(|&&faces| faces == 1).count()
     }
 
-    /// Returns V − E + F.
     pub(crate) fn euler_characteristic(&self) -> isize {
         let [vertices, faces] = self.counts().map(usize::cast_signed);
         vertices - self.edges().len().cast_signed() + faces
     }
 
-    /// Returns the lengths of all edges.
     pub(crate) fn lengths(&self) -> Vec<f32> {
         let at = |v: usize| self.positions[v - 1];
         let length = |(a, b): (usize, usize)| {
@@ -58,8 +55,9 @@ impl Obj {
         self.edges().into_keys().map(length).collect()
     }
 
-    /// Returns the faces as the positions of their corners, each starting at its smallest corner,
-    /// sorted. The result does not depend on the numbering of the vertices.
+    /// Returns the positions of the corners of each face. The result does not depend on the
+    /// numbering of the vertices: each face starts at its smallest corner, and the faces are
+    /// sorted.
     pub(crate) fn canonical_faces(&self) -> Vec<Vec<[u32; 3]>> {
         let faces = self.faces.iter().map(|face| {
             let bits = |&v: &usize| self.positions[v - 1].map(f32::to_bits);
@@ -73,7 +71,7 @@ impl Obj {
         faces
     }
 
-    /// Returns the ends of all edges, the lower first, with the number of faces of each.
+    /// Returns the ends of each edge, the lower end first, with the number of its faces.
     fn edges(&self) -> BTreeMap<(usize, usize), usize> {
         let mut uses = BTreeMap::new();
         for face in &self.faces {

@@ -1,4 +1,4 @@
-//! Standard output has text or data, never both; files are complete or absent.
+//! Tests of standard output and of output files.
 
 use std::fs;
 use std::io::Read;

@@ -1,4 +1,4 @@
-//! Tests of `sixfold pick` and `workloads`: text, JSON, exit codes and refusals.
+//! Tests of `sixfold pick` and `workloads`.
 
 use serde_json::Value;
 

@@ -1,4 +1,4 @@
-//! Tests of `sixfold decimate`, `remesh` and `edits`: the topology is kept; refusals.
+//! Tests of `sixfold decimate`, `remesh` and `edits`.
 
 use serde_json::Value;
 
@@ -18,18 +18,18 @@ const QUAD: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
 const BOOK: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
 
-/// Runs the command with these arguments and returns the mesh that it writes.
+/// Runs the command and returns the written mesh.
 fn written_mesh(sixfold: &Sixfold, arguments: &[&str]) -> Obj {
     run_ok(sixfold, &[arguments, &["-o", "out.obj"]].concat());
     Obj::parse(&text(sixfold, "out.obj"))
 }
 
-/// Writes a shape of `sixfold generate` to the file `name`.
 fn generate(sixfold: &Sixfold, name: &str, shape: &[&str]) {
     run_ok(sixfold, &[&["generate"], shape, &["-o", name]].concat());
 }
 
-/// Returns the signed area of a triangle mesh in the plane z = 0: flipped faces count as negative.
+/// Returns the signed area of a triangle mesh in the plane z = 0. Flipped faces have a negative
+/// area.
 fn flat_area(obj: &Obj) -> f64 {
     let areas = obj.faces.iter().map(|face| {
         let [a, b, c] = [0, 1, 2].map(|i| obj.positions[face[i] - 1].map(f64::from));

@@ -1,4 +1,4 @@
-//! Tests of `sixfold render`: pictures are complete, follow the options, and are reproducible.
+//! Tests of `sixfold render`.
 
 use std::fs;
 
@@ -69,7 +69,7 @@ fn creases_come_from_tags_and_from_files() {
     let tagged = svg(&["tagged.obj"]);
     assert_ne!(plain, tagged);
     assert_eq!(tagged, svg(&["plain.obj", "--creases", "sharp.txt"]));
-    // A crease file belongs to the mesh at the same position in the list.
+    // The first crease file belongs to the first mesh.
     let of_first = svg(&["plain.obj", "plain.obj", "--creases", "sharp.txt"]);
     assert_eq!(of_first, svg(&["tagged.obj", "plain.obj"]));
     assert_ne!(of_first, svg(&["plain.obj", "tagged.obj"]));
@@ -142,7 +142,7 @@ fn invalid_input_gives_one_error_and_no_picture() {
     ] {
         assert_refused(&sixfold, &[&["render"], arguments].concat(), 2, message);
     }
-    // A picture does not overwrite its input.
+    // A picture must not overwrite the mesh.
     sixfold.file("mesh.png", TETRAHEDRON);
     assert_refused(
         &sixfold,

@@ -1,4 +1,4 @@
-//! Reports: all results on one page, and the command that reproduces each figure.
+//! Tests of report pages and of the commands that they show.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::bad_input::assert_refused;
 use crate::run::{Run, Sixfold, TETRAHEDRON, run_ok, text};
 
-/// Studies half-edge and corner table on one mesh, with the additional arguments `more`.
+/// Studies half-edge and corner table on one mesh. `more` are additional arguments.
 fn study(sixfold: &Sixfold, more: &[&str]) -> Run {
     let mut arguments = vec!["study", "grid.obj", "--budget", "300ms"];
     arguments.extend(["--backends", "half-edge,corner-table"]);
@@ -26,7 +26,6 @@ fn json(sixfold: &Sixfold, name: &str) -> Value {
     serde_json::from_str(&text(sixfold, name)).expect("JSON")
 }
 
-/// Returns the names of the figures of a page.
 fn figures(page: &str) -> Vec<&str> {
     let parts = page.split("data-figure=\"").skip(1);
     parts.filter_map(|part| part.split('"').next()).collect()
@@ -82,7 +81,7 @@ fn the_report_of_one_mesh_has_orders_growth_and_a_roofline() {
         );
     }
 
-    // Finished labs are not measured again; missing labs are.
+    // Finished labs are not measured again. Missing labs are measured.
     fs::remove_file(sixfold.folder().join("out/labs/growth.json")).expect("it is there");
     let again = study(&sixfold, &["--report", "out", "--resume"]);
     assert_eq!(again.code, Some(0), "{again:?}");
@@ -192,7 +191,7 @@ fn results_of_several_commands_are_drawn_on_one_page() {
     ] {
         assert!(drawn.contains(&id), "{id}: {drawn:?}");
     }
-    // Each figure has the command that measured it, not the one that drew it.
+    // Each figure shows the command that measured it, not the command that drew it.
     assert!(page.contains("sixfold pick grid.obj --workload smoothing"));
     assert!(page.contains("sixfold why grid.obj --relations face_faces"));
 

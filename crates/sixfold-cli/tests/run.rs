@@ -1,4 +1,4 @@
-//! Runs the binary, and writes meshes for it.
+//! Runs the binary in a temporary folder.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,11 +8,9 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
-/// A small tetrahedron.
 pub(crate) const TETRAHEDRON: &str =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
-/// The result of a run.
 #[derive(Debug)]
 pub(crate) struct Run {
     pub(crate) code: Option<i32>,
@@ -31,7 +29,7 @@ impl Run {
     }
 }
 
-/// The binary, with a scratch folder as the current folder.
+/// The binary, with a temporary folder as the current folder.
 pub(crate) struct Sixfold {
     folder: TempDir,
 }
@@ -46,7 +44,6 @@ impl Sixfold {
         self.folder.path()
     }
 
-    /// Writes a file into the folder.
     pub(crate) fn file(&self, name: &str, text: &str) -> PathBuf {
         let path = self.folder.path().join(name);
         fs::write(&path, text).expect("a scratch file");
@@ -70,19 +67,18 @@ impl Sixfold {
         self.file(name, &text)
     }
 
-    /// Returns the command of the binary with these arguments.
+    /// Returns the command that runs the binary with `arguments`.
     pub(crate) fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_sixfold"));
         command.args(arguments).current_dir(self.folder.path());
         command
     }
 
-    /// Runs the binary to its end.
     pub(crate) fn run(&self, arguments: &[&str]) -> Run {
         Run::from_output(self.command(arguments).output().expect("the binary runs"))
     }
 
-    /// Starts the binary, and waits until it has opened `drafts` files for writing.
+    /// Starts the binary and waits until it has created `drafts` new files.
     pub(crate) fn start(&self, arguments: &[&str], drafts: usize) -> Child {
         let before = self.names().len();
         let mut command = self.command(arguments);
@@ -95,7 +91,7 @@ impl Sixfold {
         child
     }
 
-    /// Runs the binary, and sends it a signal at the time `after` after it has opened its file.
+    /// Runs the binary. Sends a signal when the time `after` has passed since its file was opened.
     pub(crate) fn run_interrupted(&self, arguments: &[&str], signal: &str, after: Duration) -> Run {
         let child = self.start(arguments, 1);
         sleep(after);
@@ -106,7 +102,7 @@ impl Sixfold {
         run
     }
 
-    /// Returns the file names in the folder, sorted.
+    /// Returns the sorted file names in the folder.
     pub(crate) fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(self.folder.path()).expect("the folder");
         let name = |entry: fs::DirEntry| entry.file_name().to_string_lossy().into_owned();
@@ -116,7 +112,7 @@ impl Sixfold {
     }
 }
 
-/// Sends the signal with this name to a program that the test has started.
+/// Sends a signal to a program.
 pub(crate) fn send(signal: &str, child: &Child) {
     let sent = Command::new("kill")
         .args(["-s", signal, &child.id().to_string()])
@@ -124,12 +120,10 @@ pub(crate) fn send(signal: &str, child: &Child) {
     assert!(sent.expect("kill runs").success());
 }
 
-/// Returns the text of a file in the folder.
 pub(crate) fn text(sixfold: &Sixfold, name: &str) -> String {
     fs::read_to_string(sixfold.folder().join(name)).expect("the file")
 }
 
-/// Runs the binary and asserts success.
 pub(crate) fn run_ok(sixfold: &Sixfold, arguments: &[&str]) -> Run {
     let run = sixfold.run(arguments);
     assert_eq!(run.code, Some(0), "{arguments:?}: {run:?}");

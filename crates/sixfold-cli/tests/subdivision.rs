@@ -1,18 +1,14 @@
-//! Tests of `sixfold subdivide`, `smooth`, `dual` and `triangulate`: counts of the results,
-//! refusals.
+//! Tests of `sixfold subdivide`, `smooth`, `dual` and `triangulate`.
 
 use crate::bad_input::assert_refused;
 use crate::obj::Obj;
 use crate::run::{Sixfold, TETRAHEDRON, run_ok, text};
 
-/// Four vertices at the corners of a square, and one face.
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
-/// Two triangles that make a square.
 const TRIANGLES: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
-/// Three faces at one edge.
 const BOOK: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
 
-/// Runs `sixfold subdivide` with these arguments and returns the mesh that it writes.
+/// Runs `sixfold subdivide` with `arguments` and returns the written mesh.
 fn subdivided(sixfold: &Sixfold, arguments: &[&str]) -> Obj {
     run_ok(
         sixfold,
@@ -25,7 +21,7 @@ fn subdivided(sixfold: &Sixfold, arguments: &[&str]) -> Obj {
 fn results_have_the_size_of_the_closed_forms() {
     let sixfold = Sixfold::new();
     sixfold.file("t.obj", TETRAHEDRON);
-    // V, E, F = 4, 6, 4 with 12 corners, closed.
+    // The input has 4 vertices, 6 edges, 4 faces and 12 corners.
     for (scheme, levels, counts) in [
         ("catmull-clark", "1", [14, 12]),
         ("catmull-clark", "2", [50, 48]),
@@ -92,7 +88,7 @@ fn creases_of_files_and_tags_stay_sharp() {
 fn limits_lie_on_the_surface() {
     let sixfold = Sixfold::new();
     sixfold.file("square.obj", SQUARE);
-    // The boundary curve of a square: later levels are closer to it.
+    // Later levels are closer to the boundary curve of the square.
     let arguments = [
         "--levels",
         "2",
@@ -137,14 +133,14 @@ fn a_part_of_a_mesh_is_refined_without_gaps() {
     let sixfold = Sixfold::new();
     sixfold.file("t.obj", TETRAHEDRON);
     sixfold.file("first.txt", "0 # the first\n");
-    // One face is cut into four, and its three neighbours are halved.
+    // One face is cut into four faces. Each of its three neighbours is cut into two faces.
     let part = ["--scheme", "midpoint", "--select", "faces:first.txt"];
     let one = subdivided(&sixfold, &[&part[..], &["t.obj"]].concat());
     assert_eq!(one.counts(), [4 + 3, 4 + 3 * 2]);
     let deep = subdivided(&sixfold, &[&part[..], &["--levels", "3", "t.obj"]].concat());
     for obj in [one, deep] {
         assert_eq!(obj.boundary_edges(), 0, "a T-junction is a gap");
-        // A closed surface of genus 0.
+        // The surface is closed and has genus 0.
         assert_eq!(obj.faces.len(), 2 * obj.positions.len() - 4);
     }
     sixfold.file(
@@ -352,14 +348,14 @@ fn a_mesh_that_the_structure_or_the_scheme_does_not_support_is_refused() {
         ),
         (&["huge.obj"], 2, "scale the mesh down"),
     ] {
-        // The expected size may have been printed before the refusal.
+        // The expected size may be printed before the refusal.
         let run = sixfold.run(&[&["subdivide", "-o", "x.obj"], arguments].concat());
         assert_eq!(run.code, Some(code), "{arguments:?}: {run:?}");
         assert_eq!(run.stderr.lines().count(), 1, "{run:?}");
         assert!(run.stderr.contains(message), "{arguments:?}: {run:?}");
         assert_eq!(sixfold.names(), ["book.obj", "huge.obj", "square.obj"]);
     }
-    // Other structures hold it; an edge with three faces is treated as a crease.
+    // A face-vertex mesh holds the book. The edge with three faces is treated as a crease.
     let obj = subdivided(&sixfold, &["--backend", "face-vertex", "book.obj"]);
     assert_eq!(obj.counts(), [5 + 7 + 3, 9]);
     assert!(obj.positions.contains(&[0.5, 0.0, 0.0]));
@@ -372,7 +368,7 @@ fn boundary_none_leaves_out_the_faces_at_the_boundary() {
     let loops = ["--scheme", "loop", "grid.obj", "--boundary"];
     let kept = subdivided(&sixfold, &[&loops[..], &["edge-only"]].concat());
     let fewer = subdivided(&sixfold, &[&loops[..], &["none"]].concat());
-    // Of the 32 triangles, 8 have no corner on the boundary: the two of each inner cell.
+    // Of the 32 triangles, 8 have no corner on the boundary.
     assert_eq!(kept.faces.len(), 32 * 4);
     assert_eq!(fewer.faces.len(), 8 * 4);
 }

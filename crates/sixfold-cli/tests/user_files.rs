@@ -1,4 +1,4 @@
-//! Files of the user are kept: the mesh, a finished study, the mode of a file.
+//! Tests that commands do not damage files of the user.
 
 use std::fs;
 
@@ -18,7 +18,7 @@ fn no_output_overwrites_the_mesh_or_another_output() {
         (&["study", "./ok.obj", "--json", &same], "overwrite"),
         (&["inspect", "ok.obj", "--json", &same], "overwrite"),
         (&["memory", "ok.obj", "--json", &same], "overwrite"),
-        // The budget is a week: the command is refused before it measures.
+        // The budget is a week, so the command must be refused before it measures.
         (
             &[
                 "study", "ok.obj", "--budget", "10000m", "--json", "new", "--csv", "./new",
@@ -61,7 +61,6 @@ fn text_that_cannot_be_written_is_an_error() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
         assert!(stderr.contains("standard output: cannot be written"));
     }
-    // The files are written nevertheless.
     assert_eq!(
         sixfold.names(),
         ["cube.obj", "ok.obj", "small.obj", "x.json"]
@@ -171,7 +170,7 @@ fn a_triangulation_that_changes_more_than_faces_is_reported() {
     let shared =
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 2 1\nv 2 2 -1\nf 1 2 3 4\nf 1 3 5\nf 3 1 6\n";
     sixfold.file("shared.obj", shared);
-    // A dart: a fan from the reflex corner or its opposite corner is valid; other fans fold over.
+    // A fan from the reflex corner or from the opposite corner is valid. The other fans fold over.
     sixfold.file(
         "fold.obj",
         "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nf 2 3 4 1\n",

@@ -1,10 +1,9 @@
-//! Tests of `sixfold why`: counts that can be computed by hand, times, and refusals.
+//! Tests of `sixfold why`.
 
 use serde_json::Value;
 
 use crate::run::{Sixfold, TETRAHEDRON, run_ok, text};
 
-/// Two triangles that share an edge, so that there is a boundary.
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
 
 fn row<'a>(why: &'a Value, backend: &str, relation: &str) -> &'a Value {
@@ -25,7 +24,7 @@ fn counts_equal_those_computed_by_hand() {
     assert_eq!(why["environment"], Value::Null);
     assert_eq!(why["model"]["line_bytes"], 64);
 
-    // Three corners of 4 bytes, all in one cache line.
+    // Three corners of 4 bytes lie in one cache line.
     let corners = row(&why, "indexed-face-set", "face_vertices");
     for (field, value) in [
         ("reads", 3.0),
@@ -35,7 +34,7 @@ fn counts_equal_those_computed_by_hand() {
     ] {
         assert_eq!(corners[field], value, "{field}");
     }
-    // Five edges of two halves, 24 bytes each; one of them lies in two cache lines.
+    // Five edges of two halves take 24 bytes each. One edge lies in two cache lines.
     let ends = row(&why, "half-edge", "edge_vertices");
     for (field, value) in [
         ("reads", 2.0),
@@ -47,7 +46,7 @@ fn counts_equal_those_computed_by_hand() {
     }
     assert_eq!(ends["tables"][0]["table"], "halves");
     assert_eq!(ends["timed"], Value::Null);
-    // The handle of an edge of a polygon soup contains its ends.
+    // The handle of an edge of a polygon soup contains the ends of the edge.
     assert_eq!(row(&why, "polygon-soup", "edge_vertices")["reads"], 0.0);
 }
 
@@ -88,7 +87,7 @@ fn times_come_with_what_bounds_them() {
         assert_eq!(timed["bound"], expected, "{row}");
         assert_eq!(timed["agreement"], "same");
     }
-    // Relations that are named are described in sentences.
+    // Named relations are described in sentences.
     assert!(run.stdout.contains("- half-edge: "), "{}", run.stdout);
     assert!(run.stdout.contains("GB/s"), "{}", run.stdout);
 }
@@ -136,7 +135,7 @@ fn invalid_input_is_refused_with_a_hint() {
         assert!(run.stderr.contains(message), "{message}: {run:?}");
         assert_eq!(run.stdout, "");
     }
-    // Structures that cannot hold the mesh are named; the others are counted.
+    // Structures that cannot hold the mesh are listed.
     let run = run_ok(&sixfold, &["why", "book.obj", "--counts-only"]);
     assert!(run.stdout.contains("half-edge         refuses"), "{run:?}");
     let rows = |name: &str| {

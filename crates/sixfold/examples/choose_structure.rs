@@ -1,5 +1,5 @@
-//! Chooses the mesh data structure at run time: `visit` calls a generic function for the structure
-//! with the given name.
+//! Chooses the structure at run time: `visit` calls a generic function for the structure with the
+//! given name.
 //!
 //! ```sh
 //! cargo run --example choose_structure -- corner-table mesh.obj
@@ -12,7 +12,7 @@ use sixfold::io::read_obj;
 use sixfold::prelude::*;
 use sixfold::{Visitor, visit};
 
-/// Computes the mean valence of the vertices of a mesh with any structure.
+/// Computes the mean valence of the vertices of a mesh.
 pub struct MeanValence<'a> {
     /// The mesh as polygons.
     pub polygons: &'a PolygonMesh,

@@ -12,12 +12,12 @@ use sixfold::prelude::*;
 
 mod common;
 
-/// Returns the length of the shortest path along edges from `source` to every vertex; infinity if
-/// there is no path. O(E log E) if the structure answers `vertex_vertices` locally.
+/// Returns for every vertex the length of the shortest path from `source` along edges, or infinity
+/// if there is no path. O(E log E) if the structure answers `vertex_vertices` locally.
 pub fn distances<M: MeshQuery>(mesh: &M, source: M::Vertex) -> VertexMap<M, f64> {
     let mut distances = mesh.vertex_map(f64::INFINITY);
     distances[source] = 0.0;
-    // Non-negative floats have the same order as their bits, and bits can be compared with `Ord`.
+    // Non-negative floats have the same order as their bits. Bits implement `Ord`.
     let mut queue = BinaryHeap::from([Reverse((0.0_f64.to_bits(), source))]);
     while let Some(Reverse((bits, v))) = queue.pop() {
         let distance = f64::from_bits(bits);

@@ -1,5 +1,5 @@
-//! Feature edges, chained into polylines: sharp edges and boundary edges, from one branching vertex
-//! to the next.
+//! Feature edges, chained into polylines. Feature edges are sharp edges and boundary edges. A
+//! polyline ends at a branching vertex.
 //!
 //! ```sh
 //! cargo run --example feature_lines -- mesh.obj
@@ -13,8 +13,8 @@ use sixfold::prelude::*;
 mod common;
 
 /// Returns the polylines of all feature edges, as lists of vertices. A closed polyline ends with
-/// its first vertex. An edge is a feature if it does not have exactly two faces, or if the normals
-/// of its faces differ by more than `degrees`.
+/// its first vertex. An edge is a feature if it does not have exactly two faces, or if the angle
+/// between the normals of its faces is above `degrees`.
 pub fn feature_lines<M: MeshQuery>(mesh: &M, degrees: f32) -> Vec<Vec<M::Vertex>> {
     let features = feature_edges(mesh, degrees);
     let mut lines = Lines {
@@ -52,7 +52,7 @@ fn feature_edges<M: MeshQuery>(mesh: &M, degrees: f32) -> Vec<M::Edge> {
     mesh.edges().filter(is_feature).collect()
 }
 
-/// The feature edges at each vertex, and the edges that are already part of a line.
+/// The feature edges at each vertex, and the edges that are already part of a polyline.
 struct Lines<'m, M: MeshQuery> {
     mesh: &'m M,
     features_at: VertexMap<M, Vec<M::Edge>>,
@@ -60,14 +60,15 @@ struct Lines<'m, M: MeshQuery> {
 }
 
 impl<M: MeshQuery> Lines<'_, M> {
-    /// Returns the lines that start at `v` and are not found yet.
+    /// Returns the new polylines that start at `v`.
     fn lines_from(&mut self, v: M::Vertex) -> Vec<Vec<M::Vertex>> {
         let edges = self.features_at[v].clone();
         let lines = edges.into_iter().filter_map(|e| self.line_from(v, e));
         lines.collect()
     }
 
-    /// Returns the line that starts at `start` with edge `first`; `None` if the edge is used.
+    /// Returns the polyline that starts at `start` with edge `first`, or `None` if the edge is
+    /// already used.
     fn line_from(&mut self, start: M::Vertex, first: M::Edge) -> Option<Vec<M::Vertex>> {
         let mut line = vec![start];
         let mut at = start;

@@ -12,21 +12,21 @@ use sixfold::prelude::*;
 
 mod common;
 
-/// An entry of a sparse matrix: row, column and value. Values with the same row and column are
-/// added.
+/// An entry of a sparse matrix: row, column and value. If two entries have the same row and column,
+/// their values are added.
 pub type Triplet = (u32, u32, f64);
 
-/// A matrix, and the numbers of the vertices: its rows and columns.
+/// A matrix. Each vertex has one row and one column.
 pub struct Laplacian<M: MeshQuery> {
-    /// The number of each vertex.
+    /// The row and column of each vertex.
     pub numbers: Numbers<M::Vertex>,
-    /// The entries.
+    /// The entries of the matrix.
     pub triplets: Vec<Triplet>,
 }
 
-/// Returns the matrix L. The row of vertex i has (cot α + cot β) / 2 in the column of each
-/// neighbour j. Here α and β are the angles opposite the edge i–j. The diagonal has the negative
-/// sum of these values.
+/// Returns the matrix L. The entry for vertex i and its neighbour j is (cot α + cot β) / 2. Here α
+/// and β are the angles opposite the edge i–j. The entry of vertex i on the diagonal is the
+/// negative sum of the other entries in its row.
 ///
 /// # Errors
 ///
@@ -79,7 +79,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         .iter()
         .map(|&v| mesh.position(v).z.into())
         .collect();
-    // The product with the coordinates is the mean curvature normal, times twice the area.
     let energy: f64 = multiply(&triplets, &heights)
         .iter()
         .zip(&heights)

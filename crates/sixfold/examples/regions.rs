@@ -1,5 +1,5 @@
-//! Regions of nearly equal normals. A region starts at one face. It grows by neighbours whose
-//! normals differ from the normal of the first face by less than an angle.
+//! Regions of nearly equal normals. A region starts at one face. An adjacent face is added if the
+//! angle between its normal and the normal of the first face is small.
 //!
 //! ```sh
 //! cargo run --example regions -- mesh.obj
@@ -12,8 +12,8 @@ use sixfold::prelude::*;
 
 mod common;
 
-/// Returns the number of the region of each face, from 0, and the number of regions. The normals of
-/// a region differ by at most `degrees` from the normal of its first face.
+/// Returns the number of the region of each face, from 0, and the number of regions. The angle
+/// between the normals of a face and of the first face of its region is at most `degrees`.
 pub fn regions<M: MeshQuery>(mesh: &M, degrees: f32) -> (FaceMap<M, Option<usize>>, usize) {
     let normals = face_normals(mesh);
     let least_cosine = degrees.to_radians().cos();

@@ -13,10 +13,10 @@ use sixfold::prelude::*;
 mod common;
 
 /// Cuts edges that are longer than 4/3 of `length`, then collapses edges that are shorter than 4/5
-/// of it (Botsch and Kobbelt 2004). Returns the numbers of cut and of collapsed edges.
+/// of `length` (Botsch and Kobbelt 2004). Returns the number of cut edges and the number of
+/// collapsed edges.
 ///
-/// Each list of edges is made before the edits begin. `contains_edge` skips edges that an edit has
-/// removed since then.
+/// Each list of edges is made before the edits. `contains_edge` finds the edges that still exist.
 pub fn remesh<M: MeshEdit>(mesh: &mut M, length: f32) -> [usize; 2] {
     let mut cut = 0;
     let edges: Vec<_> = mesh.edges().collect();
@@ -32,14 +32,14 @@ pub fn remesh<M: MeshEdit>(mesh: &mut M, length: f32) -> [usize; 2] {
         if mesh.contains_edge(e) && edge_length(mesh, e) < 4.0 / 5.0 * length {
             let [kept, _] = mesh.edge_vertices(e);
             let middle = middle(mesh, e);
-            // A collapse that would make the mesh non-manifold is refused and changes nothing.
+            // A collapse that would make the mesh non-manifold is refused.
             collapsed += usize::from(mesh.collapse_edge(e, kept, middle).is_ok());
         }
     }
     [cut, collapsed]
 }
 
-/// Adds materials to a mesh: faces that an edit creates get the material of a face that was cut.
+/// Adds materials to a mesh. A new face gets the material of the face that was cut.
 pub fn with_materials<M: MeshEdit>(
     mesh: M,
     material: impl Fn(&M, M::Face) -> u32,

@@ -15,12 +15,12 @@ use sixfold::{CreaseError, Creases};
 mod common;
 
 /// Returns `polygons` after `levels` steps of Catmull–Clark subdivision. Calls `watch` with each
-/// level and its creases. The sharpness of a crease decreases by 1 with each level, until the edge
-/// is smooth.
+/// level and its creases. The sharpness of a crease decreases by 1 with each level, until the
+/// crease is smooth.
 ///
 /// # Errors
 ///
-/// Returns an error if `M` cannot hold the mesh, or the scheme cannot subdivide it.
+/// Returns an error if `M` cannot hold the mesh, or if the scheme cannot subdivide the mesh.
 pub fn subdivide<M: Representation>(
     polygons: &PolygonMesh,
     creases: &Creases,
@@ -36,7 +36,7 @@ pub fn subdivide<M: Representation>(
         let mesh = M::from_polygons(&step.polygons)?;
         let creases = match level {
             0 => scheme.control_creases(&mesh, &step.polygons, &step.creases)?,
-            // A structure that identifies vertices by coordinates has its own order of vertices.
+            // Structures that identify vertices by coordinates have another order of vertices.
             _ => renumbered(&mesh, &step.polygons, &step.creases),
         };
         step = scheme.gather(&mesh, &creases, level)?;

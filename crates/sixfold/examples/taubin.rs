@@ -1,5 +1,6 @@
-//! Smoothing without shrinking (Taubin 1995): each step first moves every vertex towards the mean
-//! of its neighbours, then away from that mean by a slightly larger factor.
+//! Smoothing without shrinking (Taubin 1995). Each step first moves every vertex towards the mean
+//! of its neighbours. Then the step moves every vertex away from the mean, by a slightly larger
+//! factor.
 //!
 //! ```sh
 //! cargo run --example taubin -- mesh.obj > smooth.obj
@@ -13,7 +14,7 @@ use sixfold::prelude::*;
 
 mod common;
 
-/// The published factors: towards the mean of the neighbours, and away from it.
+/// The published factors. The second factor is negative: it moves a vertex away from the mean.
 const FACTORS: [f32; 2] = [0.33, -0.34];
 
 /// Smooths `mesh` in `steps` steps. Vertices on a boundary do not move.

@@ -31,7 +31,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Or from arrays. A mesh that the structure cannot hold returns an error that names the elements:
+//! Or build a mesh from arrays. If the structure cannot hold the mesh, the error names the
+//! elements:
 //!
 //! ```
 //! use sixfold::prelude::*;
@@ -66,7 +67,8 @@
 //!
 //! # Flip an edge
 //!
-//! Edits need an editable mesh. A refused edit changes nothing, and its error names the reason:
+//! Edits need an editable mesh. A refused edit does not change the mesh, and its error names the
+//! reason:
 //!
 //! ```
 //! use sixfold::prelude::*;
@@ -105,16 +107,16 @@
 //! | [`IndexedFaceSet`] | any polygons | 36 | store, convert, visit all faces |
 //! | [`PolygonSoup`] | any polygons, vertices by coordinates | 72 | transfer faces, as STL does |
 //!
-//! The last two structures scan all faces to find neighbours. The bytes per vertex apply to large
-//! closed triangle meshes. If you do not know which structure to choose, use [`HalfEdgeMesh`] for
-//! manifolds and [`FaceVertexMesh`] for other meshes. The command `sixfold pick` measures a
-//! workload on your mesh. [`structures!`] lists all structures, and [`visit`] selects one at run
-//! time.
+//! Polygon soups and indexed face sets scan all faces to find neighbours. The bytes per vertex
+//! apply to large closed triangle meshes. If you do not know which structure to choose, use
+//! [`HalfEdgeMesh`] for manifolds and [`FaceVertexMesh`] for other meshes. The command `sixfold
+//! pick` measures a workload on your mesh. [`structures!`] lists all structures, and [`visit`]
+//! selects one structure at run time.
 //!
 //! # Require local queries
 //!
 //! Polygon soups and indexed face sets answer most queries by a scan of all faces. An algorithm
-//! rejects these structures if it has the bound [`LocalQueries`]:
+//! with the bound [`LocalQueries`] does not accept these structures:
 //!
 //! ```
 //! use sixfold::prelude::*;
@@ -141,9 +143,9 @@
 //!
 //! # Walk in order
 //!
-//! Most queries yield sets, without an order. [`OrientedWalk`] steps from side to side in order:
-//! along a face, around a vertex, or straight across quads as in this example. Four of the
-//! structures have it.
+//! Most queries yield elements without an order. [`OrientedWalk`] steps from side to side in order:
+//! along a face, around a vertex, or straight across quads as in this example. Four structures
+//! implement [`OrientedWalk`].
 //!
 //! ```
 //! use sixfold::prelude::*;
@@ -190,7 +192,7 @@ pub use sixfold_core::{
     BoundaryLoop, Creases, Distribution, EdgeUse, FaceList, Facts, MemoryFootprint, Point,
     PolygonMesh, SHARPNESS_INFINITE, TableBytes,
 };
-// The crate that defines `Point`, in the version that Sixfold uses.
+// The crate that defines `Point`.
 #[doc(no_inline)]
 pub use sixfold_core::glam;
 // Handles of elements, data stored by handle, and types to update both after edits.

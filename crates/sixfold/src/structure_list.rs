@@ -6,10 +6,10 @@ use sixfold_core::{
 
 /// Calls a macro with the list of all structures: `structures!([callback] arguments…)`.
 ///
-/// All structures are registered in this list only. A seventh structure needs one more line here. A
-/// line starts with the type for queries. Two types for optional capabilities may follow: `edit` is
-/// the type that can be edited, and `refine` is the type that splits its own tables. All types of a
-/// line have the same name ([`Representation::NAME`](sixfold_core::Representation::NAME)).
+/// This is the only list of structures: a seventh structure needs one more line here. A line starts
+/// with the type for queries. Two other types may follow: `edit` is the type that can be edited,
+/// and `refine` is the type that splits its own tables. All types of a line have the same name
+/// ([`Representation::NAME`](sixfold_core::Representation::NAME)).
 ///
 /// The callback gets its arguments, followed by the lines. If you need only one type of each line,
 /// use [`for_each_representation!`](crate::for_each_representation),
@@ -29,8 +29,7 @@ macro_rules! structures {
     };
 }
 
-/// The callback of the `for_each_…` macros: repeats a body for each line that has the requested
-/// type.
+/// Repeats a body for each line that has the requested type.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! repeat_for_structures {
@@ -86,29 +85,30 @@ macro_rules! for_each_refinable {
     };
 }
 
-/// A generic function for any structure that is selected at run time.
+/// A generic function that is called with a structure selected at run time.
 ///
-/// One call selects the type; everything inside uses static dispatch.
+/// A call selects the type; the function itself uses static dispatch.
 pub trait Visitor {
-    /// Result of a visit.
+    /// The result of a visit.
     type Output;
 
     /// Visits the structure `M`.
     fn visit<M: Representation + 'static>(&mut self) -> Self::Output;
 }
 
-/// A generic function for any structure that can be edited and is selected at run time.
+/// A generic function that is called with an editable structure selected at run time.
 pub trait EditVisitor {
-    /// Result of a visit.
+    /// The result of a visit.
     type Output;
 
     /// Visits the structure `M`.
     fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output;
 }
 
-/// A generic function for any structure that refines its own tables and is selected at run time.
+/// A generic function that is called with a refinable structure selected at run time. A refinable
+/// structure splits its own tables.
 pub trait RefineVisitor {
-    /// Result of a visit.
+    /// The result of a visit.
     type Output;
 
     /// Visits the structure `M`.
@@ -118,22 +118,21 @@ pub trait RefineVisitor {
 /// Properties of one structure that do not depend on a mesh.
 #[derive(Clone, Copy, Debug)]
 pub struct StructureInfo {
-    /// Name for users.
+    /// The name of the structure.
     pub name: &'static str,
-    /// The meshes that it can hold.
+    /// The meshes that the structure can hold.
     pub capabilities: Capabilities,
     /// How much of the mesh each relation reads.
     pub costs: [QueryCost; 9],
-    /// How much of the mesh each edit reads, in the order of [`Edit::ALL`]; `None` if the edit is
-    /// not available.
+    /// How much of the mesh each edit reads, in the order of [`Edit::ALL`]; `None` for an edit that
+    /// is not available.
     pub edits: [Option<QueryCost>; Edit::ALL.len()],
-    /// The splits that it can apply to its own tables ([`Refine::SPLITS`]); empty if there are
-    /// none.
+    /// The splits that the structure can apply to its own tables ([`Refine::SPLITS`]).
     pub splits: &'static [Split],
 }
 
 impl StructureInfo {
-    /// Returns the properties of `M`, without edits and without refinement.
+    /// Returns the properties of `M` without its edits and its splits.
     pub const fn new<M: Representation>() -> Self {
         Self {
             name: M::NAME,
@@ -177,7 +176,6 @@ impl StructureInfo {
     }
 }
 
-/// Makes a vector of [`StructureInfo`] from the lines of [`structures!`](crate::structures).
 macro_rules! infos {
     ($({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? })+) => {
         vec![$(
@@ -200,7 +198,7 @@ pub fn visit_all<V: Visitor>(visitor: &mut V) -> Vec<V::Output> {
     outputs
 }
 
-/// Calls `visitor` for the structure called `name`; `None` if the name is unknown.
+/// Calls `visitor` for the structure with this name; `None` if the name is unknown.
 pub fn visit<V: Visitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
     for_each_representation!(M => {
         if name == M::NAME {
@@ -210,8 +208,8 @@ pub fn visit<V: Visitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
     None
 }
 
-/// Calls `visitor` for the structure called `name`; `None` if the name is unknown or the structure
-/// does not refine its own tables.
+/// Calls `visitor` for the structure with this name. Returns `None` if the name is unknown or the
+/// structure does not refine its own tables.
 pub fn visit_refinable<V: RefineVisitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
     for_each_refinable!(M => {
         if name == M::NAME {
@@ -221,8 +219,8 @@ pub fn visit_refinable<V: RefineVisitor>(name: &str, visitor: &mut V) -> Option<
     None
 }
 
-/// Calls `visitor` for the structure called `name`; `None` if the name is unknown or the structure
-/// cannot be edited.
+/// Calls `visitor` for the structure with this name. Returns `None` if the name is unknown or the
+/// structure cannot be edited.
 pub fn visit_editable<V: EditVisitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
     for_each_editable!(M => {
         if name == M::NAME {

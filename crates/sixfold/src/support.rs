@@ -1,11 +1,11 @@
-//! A table of which subdivision scheme runs on which structure.
+//! Which subdivision scheme runs on which structure.
 
 use sixfold_core::Split;
 use sixfold_subdivision::{Method, Scheme};
 
 use crate::structure_list::{StructureInfo, structure_infos};
 
-/// How one structure supports one scheme.
+/// Whether and how one structure supports one scheme.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Support {
@@ -13,24 +13,23 @@ pub struct Support {
     pub backend: &'static str,
     /// The scheme.
     pub scheme: Scheme,
-    /// Available methods. They include [`Method::Native`] if the structure can split its own tables
+    /// Available methods. [`Method::Native`] is available if the structure can split its own tables
     /// as the scheme requires.
     pub methods: Vec<Method>,
-    /// Whether the structure can hold the result of a step. If it cannot, one step is still
-    /// possible, and its result is polygons. A second step is not possible, because the structure
-    /// would have to hold these polygons.
+    /// Whether the structure can hold the result of a step. If this is false, one step is possible
+    /// and returns polygons, but no second step is possible.
     pub holds_result: bool,
 }
 
 impl Support {
-    /// Returns the default method: the last available one.
+    /// Returns the default method: the last available method.
     pub fn default_method(&self) -> Option<Method> {
         self.methods.last().copied()
     }
 }
 
 impl StructureInfo {
-    /// Returns how the structure supports `scheme`.
+    /// Returns how this structure supports `scheme`.
     pub fn support(&self, scheme: Scheme) -> Support {
         let kind = scheme.kind();
         let mut methods = vec![Method::Gather];

@@ -1,12 +1,10 @@
-//! Conversions under the names of the standard library, on all structures and their editable forms.
+//! Tests `From` and `TryFrom` on all structures and their editable forms.
 
 use sixfold::{
     BuildError, MeshQuery, PolygonMesh, Representation, for_each_editable, for_each_representation,
     shapes,
 };
 
-/// Builds an octahedron by both conversions, converts it back, and compares with the functions of
-/// [`Representation`].
 fn converts<M>()
 where
     M: Representation + Default + for<'a> TryFrom<&'a PolygonMesh, Error = BuildError>,
@@ -43,7 +41,7 @@ fn a_refused_mesh_returns_the_error_of_the_structure() {
     });
 }
 
-/// Compiler messages and type names omit parameters that have their default values.
+/// Compiler messages omit type parameters that have their default values.
 #[test]
 fn the_names_of_mesh_types_show_no_parameters() {
     for_each_representation!(M => {

@@ -1,4 +1,5 @@
-//! The examples give the same results on every structure, and the expected ones on simple meshes.
+//! Checks that the examples give the same results on every structure, and expected results on
+//! simple meshes.
 
 use sixfold::prelude::*;
 use sixfold::shapes::{cube, geodesic, tetrahedron, torus};
@@ -52,8 +53,7 @@ fn distances_along_edges_are_those_of_the_tetrahedron_and_equal_on_all_structure
         let found = dijkstra::distances(&mesh, M::vertex_handle(&polygons, VertexId::new(0)));
         let lengths = polygons.vertices().map(|v| found[M::vertex_handle(&polygons, v)]);
         let lengths: Vec<f64> = lengths.collect();
-        // A path along edges to the opposite pole is longer than the chords and shorter than twice
-        // the arc.
+        // The path along edges is longer than the chords and shorter than twice the arc.
         let farthest = lengths.iter().copied().fold(0.0, f64::max);
         assert!((2.9..6.3).contains(&farthest), "{farthest}");
         assert_eq!(*expected.get_or_insert(lengths.clone()), lengths, "{}", M::NAME);
@@ -205,7 +205,7 @@ fn the_laplacian_of_constants_is_zero_and_that_of_coordinates_points_inwards() {
         for (&v, (&l, &z)) in handles.iter().zip(product.iter().zip(&heights)) {
             assert!(l * z <= 1e-9, "{}: {v:?}", M::NAME);
         }
-        // Half the integral of |grad z|² over the sphere: 4π/3.
+        // Half the integral of |grad z|² over the sphere is 4π/3.
         let energy: f64 = product.iter().zip(&heights).map(|(l, z)| -l * z).sum::<f64>() / 2.0;
         let exact = 4.0 / 3.0 * std::f64::consts::PI;
         assert!((energy / exact - 1.0).abs() < 0.05, "{}: {energy}", M::NAME);

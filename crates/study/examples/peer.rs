@@ -1,15 +1,14 @@
-//! Runs Sixfold for a comparison with other libraries, with the same arguments and output as their
-//! programs.
+//! Runs Sixfold for a comparison with other libraries. The programs of these libraries have the
+//! same arguments and the same output.
 //!
 //! `peer --mesh FILE.obj [--op NAME …] [--reps N] [--budget SECONDS] [--backend NAME]` prints one
 //! JSON object per line. Every operation is warmed up and then measured `N` times, alone, by the
-//! code of a study. A short operation is repeated until 200 µs have passed between two readings of
-//! the clock. An operation that changes the mesh works on a copy that is restored while the clock
-//! is stopped. Freed pages stay with the process. Processor time is that of the only thread.
-//!
-//! The name of a subdivision is the scheme and the number of steps: `catmull_clark_2`, `loop_1`,
-//! `sqrt3_1`. `--way` is gather, scatter, native_fresh or native. With `--threads` above 1 all
-//! times of a subdivision are wall times.
+//! code of a study. A short operation is repeated until 200 µs have passed. An operation that
+//! changes the mesh works on a copy. The copy is restored while the clock is stopped. Freed pages
+//! stay with the process.
+//! The name of a subdivision contains the scheme and the number of steps: `catmull_clark_2`,
+//! `loop_1`, `sqrt3_1`. The values of `--way` are `gather`, `scatter`, `native_fresh` and `native`.
+//! If `--threads` is above 1, the times of a subdivision are wall times.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -23,7 +22,7 @@ use sixfold_study::{
     timed,
 };
 
-/// A sample is repeated until this much time has passed.
+/// Minimum time of a sample, in nanoseconds.
 const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
 
 struct Arguments {
@@ -110,7 +109,7 @@ fn run(arguments: &Arguments) -> Result<(), String> {
         );
     }
     for operation in Operation::ALL {
-        // Operations that make or edit a mesh are run only if they are named; subdivisions by
+        // Operations that make or edit a mesh are run only if they are named. Subdivisions by
         // levels are run below.
         let unnamed = operation.creates_mesh() && arguments.operations.is_empty();
         if unnamed || !wanted(operation.name()) {
@@ -132,7 +131,7 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns the scheme and the number of steps of `catmull_clark_2`.
+/// Returns the scheme and the number of steps of a name such as `catmull_clark_2`.
 fn subdivision(name: &str) -> Option<(Scheme, u32)> {
     let (scheme, levels) = name.rsplit_once('_')?;
     let scheme = Scheme::from_name(&scheme.replace('_', "-"))?;
@@ -149,7 +148,7 @@ fn refined(
     levels: u32,
 ) -> Result<Row, String> {
     let mut job = SubdivisionJob::new(scheme, arguments.way, levels);
-    // The boundary rule of the other libraries.
+    // The other libraries use this boundary rule.
     job.subdivision.boundary = Boundary::EdgeOnly;
     let backend = find(&arguments.backend)?;
     let refiner = job.prepare(&backend, polygons, &Creases::default());
@@ -159,7 +158,7 @@ fn refined(
     let pool = pool.build().map_err(|e| e.to_string())?;
     pool.install(|| {
         refiner.run().map_err(|e| e.to_string())?;
-        // With one thread, the clock of the pool's thread measures all the work.
+        // With one thread, the clock of that thread measures all the work.
         let clock = MachineClock::start();
         let mut runs = 1;
         Ok(Row::measure(arguments, name, || {
@@ -177,7 +176,6 @@ fn refined(
     })
 }
 
-/// The times and the result of one operation.
 struct Row {
     operation: String,
     wall: Vec<f64>,
@@ -187,8 +185,7 @@ struct Row {
 }
 
 impl Row {
-    /// Runs the operation once to warm up, then the number of times given in the arguments, or
-    /// until the budget is spent.
+    /// Warms up the operation. Then runs it as often as the arguments say, within the budget.
     fn measure(
         arguments: &Arguments,
         operation: &str,

@@ -1,13 +1,13 @@
-//! Repeats one study, and reports how often each backend is best and how often the intervals
-//! contain the median of all studies.
+//! Repeats one study many times. For each operation, counts the studies in which each backend is
+//! best or tied. Also reports how many 95 % intervals contain the median of all studies.
 //!
 //! ```sh
 //! cargo run --release -p sixfold-study --example repeatability_report -- \
 //!     reports/repeatability 20 45
 //! ```
 //!
-//! Arguments: the output folder, the number of studies, and the budget of each in seconds. The mesh
-//! is a shuffled torus of 100,352 triangles, with all structures and all nine relations.
+//! Arguments: the output folder, the number of studies, and the budget of each study in seconds.
+//! The mesh is a shuffled torus of 100,352 triangles.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -21,7 +21,7 @@ use sixfold_study::{
     Environment, Operation, Report, ResultRow, Settings, Standing, StudyMesh, study,
 };
 
-/// Ratio of two backends above which their order should be the same in all studies.
+/// Minimum ratio of two backends whose order should be the same in all studies.
 const GAP: f64 = 1.1;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -61,7 +61,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Returns the report: best backends, orders of pairs, coverage, noise.
 fn report_text(reports: &[Report], environment: &Environment, seconds: u64, each: f64) -> String {
     let runs = reports.len();
     let Environment {
@@ -91,7 +90,6 @@ fn report_text(reports: &[Report], environment: &Environment, seconds: u64, each
     text
 }
 
-/// Returns how often each backend was best or tied.
 fn winners(reports: &[Report]) -> String {
     let mut text = String::from(
         "## Best backends\n\n| operation | number of studies in which a backend is best or tied with the best |\n|---|---|\n",
@@ -120,7 +118,7 @@ fn winners(reports: &[Report]) -> String {
     text + "\n"
 }
 
-/// Returns the times of one backend in one operation, one per study.
+/// Returns the time of one backend in one operation, for each study.
 fn series(reports: &[Report], operation: Operation, backend: &str) -> Vec<f64> {
     let of = |report: &Report| {
         let row = report.rows(operation).find(|row| row.backend == backend)?;
@@ -129,7 +127,7 @@ fn series(reports: &[Report], operation: Operation, backend: &str) -> Vec<f64> {
     reports.iter().filter_map(of).collect()
 }
 
-/// Returns whether pairs that differ by more than 10 % have the same order in all studies.
+/// Reports whether pairs that differ by more than 10 % have the same order in all studies.
 fn orders(reports: &[Report]) -> String {
     let (mut pairs, mut apart, mut steady) = (0, 0, 0);
     let mut unsteady = String::new();
@@ -185,7 +183,7 @@ fn orders(reports: &[Report]) -> String {
     text
 }
 
-/// Returns how often the interval of one study contains the median of all studies.
+/// Reports how often the interval of one study contains the median of all studies.
 fn coverage(reports: &[Report]) -> String {
     let mut text = String::from(
         "## Coverage of the intervals\n\nThe share of 95 % intervals that contain the median over all studies, and their width (upper minus lower end,\n\
@@ -262,7 +260,7 @@ fn coverage(reports: &[Report]) -> String {
     text
 }
 
-/// Returns how far a figure varies between studies. The interval of one study cannot include this
+/// Reports how far a figure varies between studies. The interval of one study does not include this
 /// variation.
 fn drift(reports: &[Report]) -> String {
     let ratios = |operation: Operation, backend: &str| -> Vec<f64> {
@@ -303,7 +301,6 @@ fn drift(reports: &[Report]) -> String {
     text
 }
 
-/// Returns the standard deviation divided by the mean.
 fn spread(values: &[f64]) -> f64 {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;

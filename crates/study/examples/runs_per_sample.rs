@@ -1,15 +1,14 @@
-//! Checks whether the time of an operation that changes the mesh depends on the number of runs in a
-//! sample.
+//! Checks whether the time of an operation depends on the number of runs in a sample.
 //!
 //! ```sh
 //! cargo run --release -p sixfold-study --example runs_per_sample -- 21
 //! ```
 //!
-//! Argument: the number of rounds. In each round, every operation that changes the mesh, and the
-//! mix of a workload with edits, is run in samples of 1 and of 50 runs. The rounds are in five
-//! passes. Each pass builds the structures again, because addresses and the speed of the machine
-//! can stay the same for seconds. The program prints the medians of the ratios. The exit code is 1
-//! if a median differs from 1 by more than 5 %.
+//! Argument: the number of rounds. Each round runs every operation that changes the mesh, and a mix
+//! with edits, in samples of 1 run and of 50 runs. The rounds are divided into five passes. Each
+//! pass builds the structures again, because addresses and machine speed can stay the same for
+//! seconds. The program prints the medians of the ratios. The exit code is 1 if a median differs
+//! from 1 by more than 5 %.
 
 use std::collections::BTreeMap;
 use std::process::ExitCode;
@@ -71,8 +70,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Returns, for each operation that the structure can do, the time in samples of 1 run divided by
-/// the time in samples of 50 runs, in each round.
+/// Returns for each operation and round the time in samples of 1 run divided by the time in samples
+/// of 50 runs.
 fn operations(
     structure: &str,
     polygons: &PolygonMesh,
@@ -102,7 +101,7 @@ fn operations(
     lines
 }
 
-/// Returns the same ratios for the edits of a workload, as `sixfold pick` runs them.
+/// Returns the same ratios for a workload with edits.
 fn mix(
     structure: &str,
     polygons: &PolygonMesh,
@@ -122,7 +121,7 @@ fn mix(
     let mut mixer = prepared.expect("it can be edited");
     let turns = turns_in_a_run(&schedule, mixer.as_ref());
     let mut time = |runs| {
-        // Untimed runs for as long as the longer sample, as in a pick.
+        // The untimed runs take as long as the longer sample.
         mixer.run(0, turns, MANY as usize, clock);
         let run = mixer.run(turns, turns, runs, clock);
         run.time.ns() / run.operations as f64
@@ -131,8 +130,7 @@ fn mix(
     (format!("mix of {name}"), ratios.collect())
 }
 
-/// Returns the number of turns that `sixfold pick` runs on one copy, if no sample is long enough:
-/// as many as there are places for edits, and at most 16.
+/// Returns the number of turns on one copy in `sixfold pick`, at most 16.
 fn turns_in_a_run(schedule: &Schedule, mixer: &dyn MixBackend) -> u64 {
     let fits = |part: usize, turns: u64| {
         schedule.operations_within(part, turns) <= mixer.cycle_length(part)

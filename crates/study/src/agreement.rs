@@ -1,4 +1,4 @@
-//! Checks by checksum that all backends did the same work.
+//! Compares checksums to prove that all backends did the same work.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -11,15 +11,14 @@ use sixfold_workload::Operation;
 use sixfold_workload::field_sum;
 use sixfold_workload::{Job, Outcome, Series, TimedBackend};
 
-/// Largest relative difference of two `f32` sums that add the same terms in different orders.
+/// Maximum relative difference of two `f32` sums of the same terms in different orders.
 const TOLERANCE: f64 = 1e-4;
 
-/// Compares the checksum of every entry with that of a reference: a backend of Sixfold that merges
-/// no vertices.
+/// Compares the checksum of every entry with a reference. The reference is a backend of Sixfold
+/// without merged vertices.
 ///
-/// If the jobs of the two entries differ, the smaller job is also run, untimed, on the other
-/// backend. A full run counts as larger than any sample, so a sampled operation is never run in
-/// full. Nothing more is run after `stop` is set.
+/// If the jobs of the two entries differ, the smaller job is also run on the other backend, without
+/// timing. A sampled operation is never run in full. After `stop` is set, no more jobs are run.
 pub(crate) fn compare_checksums(
     entries: &[Entry],
     subjects: &mut [Box<dyn TimedBackend + '_>],
@@ -42,8 +41,7 @@ pub(crate) fn compare_checksums(
                 && other.outcome.is_some()
                 && is_reference(subjects, other.subject)
         });
-        // Compare with a full run if there is one: its backend can also run the sample in little
-        // time.
+        // Prefer a full run as the reference: its backend can also run the sample in little time.
         let mut others: Vec<&Entry> = others.collect();
         others.sort_by_key(|other| other.job.sample.is_some());
         let Some(other) = others.first() else {
@@ -64,7 +62,7 @@ pub(crate) fn compare_checksums(
         };
         let operation = entry.job.operation;
         if agree(operation, outcome.checksum, reference.checksum, polygons) {
-            // Merged vertices can give the same checksum from fewer elements.
+            // After a merge, fewer elements can give the same checksum.
             match outcome.elements == reference.elements {
                 true => Agreement::Same,
                 false if subjects[entry.subject].is_external() => Agreement::Mismatch,
@@ -82,7 +80,7 @@ pub(crate) fn compare_checksums(
     entries.iter().map(agreement).collect()
 }
 
-/// Returns the sample size of `job`; `usize::MAX` for a full run.
+/// Returns the sample size of `job`. A full run has the size `usize::MAX`.
 fn size(job: &Job) -> usize {
     job.sample.map_or(usize::MAX, |sample| sample.size)
 }
@@ -95,7 +93,7 @@ fn rerun(
     subject.run(job, &Series::once(clock).with_result()).outcome
 }
 
-/// Returns whether two checksums are of the same work.
+/// Returns whether two checksums can come from the same work.
 pub(crate) fn agree(operation: Operation, a: f64, b: f64, polygons: &PolygonMesh) -> bool {
     if operation.has_exact_checksum() {
         return a == b;
@@ -109,7 +107,7 @@ pub(crate) fn agree(operation: Operation, a: f64, b: f64, polygons: &PolygonMesh
     difference <= noise(operation, polygons) + TOLERANCE * size
 }
 
-/// Returns the largest error of the checksum if terms cancel; O(corners).
+/// Returns the maximum error of the checksum if terms cancel; O(corners).
 fn noise(operation: Operation, polygons: &PolygonMesh) -> f64 {
     match operation {
         Operation::VertexNormal => 12.0 * cancelled_normals(polygons) as f64,
@@ -124,7 +122,7 @@ fn noise(operation: Operation, polygons: &PolygonMesh) -> f64 {
     }
 }
 
-/// Counts the vertices whose face normals cancel, so that the direction of their sum is noise.
+/// Counts the vertices whose face normals cancel. The direction of their sum is noise.
 fn cancelled_normals(polygons: &PolygonMesh) -> usize {
     let mut sums = vec![(Point::ZERO, 0.0_f32); polygons.vertex_count()];
     for (_, face) in polygons.faces().iter() {
@@ -166,11 +164,10 @@ mod tests {
         assert!(!agree(Operation::EdgeLength, 1e9, 1.001e9, &mesh));
     }
 
-    /// A backend with a fixed result.
     struct Fixed {
         checksum: f64,
         merged: usize,
-        /// A full run would not end.
+        /// Whether a full run causes a panic.
         samples_only: bool,
     }
 
@@ -241,13 +238,13 @@ mod tests {
             agreements(&[(9.0, 0, true), (8.0, 0, false)]),
             [Mismatch; 2]
         );
-        // Merging explains a difference, and a merged mesh is never the reference.
+        // Merged vertices explain a difference. A merged mesh is never the reference.
         assert_eq!(
             agreements(&[(7.0, 2, false), (8.0, 0, false)]),
             [Merged, Unchecked]
         );
         assert_eq!(agreements(&[(8.0, 0, false)]), [Unchecked]);
-        // The same checksum from fewer elements.
+        // The checksum is the same, but it comes from fewer elements.
         assert_eq!(
             agreements(&[(8.0, 2, false), (8.0, 0, false), (8.0, 0, false)]),
             [Merged, Same, Same]

@@ -1,9 +1,9 @@
 //! The memory audit: layout formula, table sizes and allocator count of each backend.
 //!
-//! The three numbers are independent and must be equal. The formula of a layout uses only the
-//! element counts of the mesh. The sum over the tables uses their capacities. The allocator counts
-//! the bytes it hands out. If two of them differ, Sixfold has a fault: a wrong formula, spare
-//! capacity that was not released, or memory that no table reports.
+//! The three numbers are found independently and must be equal. The formula of a layout uses only
+//! the element counts of the mesh. The sum over the tables uses the capacities of the tables. The
+//! allocator counts the bytes that it hands out. A difference is a fault in Sixfold: a wrong
+//! formula, spare capacity, or memory that no table reports.
 
 use std::io;
 
@@ -19,11 +19,10 @@ use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::report::{BackendReport, MeshReport, SCHEMA, write_json};
 use crate::study::StudyError;
 
-/// Bytes of a word (an index or a coordinate), the unit of the lectures.
+/// Bytes of a word: an index or a coordinate.
 const WORD: f64 = 4.0;
 
-/// Largest number of counts of the bytes of a backend. Two equal counts in a row end the counting
-/// earlier.
+/// Maximum number of counts per backend. Counting ends earlier if two counts in a row are equal.
 const MAX_COUNTS: usize = 8;
 
 /// The memory of each backend, counted in three ways.
@@ -34,7 +33,7 @@ pub struct Audit {
     pub schema: u32,
     /// Name and facts of the mesh.
     pub mesh: MeshReport,
-    /// The backends by name, in the order requested.
+    /// The backends, in the order requested.
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendAudit>,
 }
@@ -42,25 +41,25 @@ pub struct Audit {
 /// The memory of one backend.
 #[derive(Clone, Debug, Serialize)]
 pub struct BackendAudit {
-    /// Whether the backend holds the mesh; its layout bytes and table bytes.
+    /// Layout bytes, table bytes, and whether the backend holds the mesh.
     #[serde(flatten)]
     pub backend: BackendReport,
     /// Layout words per vertex of this mesh; `None` if the backend does not hold the mesh.
     pub layout_words_per_vertex: Option<f64>,
-    /// Layout words per vertex of a very large closed triangle mesh: 2 faces and 3 edges per
-    /// vertex.
+    /// Layout words per vertex of a very large closed triangle mesh. Such a mesh has 2 faces and 3
+    /// edges per vertex.
     pub closed_triangles_words_per_vertex: f64,
     /// Bytes that the allocator counted; `None` if the mesh is refused.
     pub counted_bytes: Option<usize>,
     /// Counted bytes per vertex of the mesh.
     pub counted_bytes_per_vertex: Option<f64>,
-    /// Maximum number of bytes in use during building, without the input polygons.
+    /// Peak memory while the backend is built, in bytes. The input polygons are not included.
     pub peak_bytes: Option<usize>,
     /// Peak bytes divided by counted bytes.
     pub peak_to_counted: Option<f64>,
     /// Whether the three numbers are equal; `None` if the mesh is refused.
     pub agrees: Option<bool>,
-    /// The bytes that operations allocate; empty if the mesh is refused or they were not counted.
+    /// The bytes that operations allocate; empty if they were not counted.
     pub operations: Vec<OperationBytes>,
 }
 
@@ -69,23 +68,22 @@ pub struct BackendAudit {
 pub struct OperationBytes {
     /// The operation.
     pub operation: Operation,
-    /// Bytes requested from the allocator during the timed part; `None` if it was not run.
+    /// Bytes requested from the allocator during the timed part; `None` if nothing was run.
     pub allocated_bytes: Option<usize>,
-    /// Bytes of the result; `None` if it was not run.
+    /// Bytes of the result; `None` if nothing was run.
     pub result_bytes: Option<usize>,
     /// Allocated bytes divided by the bytes of the result.
     pub allocated_to_result: Option<f64>,
-    /// Why it was not run.
+    /// Why the operation was not run.
     pub reason: Option<String>,
-    /// Whether it was not run because the structure scans all faces for each element.
+    /// Whether the operation was not run because the structure scans all faces for each element.
     pub scans: bool,
 }
 
 /// Builds each of `backends` from the mesh, one at a time, and counts its bytes with `heap`.
 ///
-/// The bytes of each backend are counted until two counts in a row are equal, because other threads
-/// may allocate at the same time. `counting` is called with each backend before its bytes are
-/// counted.
+/// Each backend is counted until two counts in a row are equal, because other threads may allocate
+/// at the same time. `counting` is called before each backend.
 pub fn audit(
     study_mesh: &StudyMesh,
     backends: &[Backend],
@@ -105,9 +103,9 @@ pub fn audit(
     }
 }
 
-/// Runs each operation that allocates on each backend of `audit` that holds the mesh, and adds the
-/// bytes that `counter` counts to the audit. `audit` must be the result for `backends` and
-/// `study_mesh`.
+/// Counts the bytes that operations allocate, and adds the counts to `audit`. Every operation that
+/// allocates is run on every backend that holds the mesh. `audit` must be the result for `backends`
+/// and `study_mesh`.
 ///
 /// A run is repeated until two runs agree on the smallest number of bytes, because other threads
 /// may allocate at the same time.
@@ -169,7 +167,6 @@ impl OperationBytes {
     }
 }
 
-/// Counts the bytes of `backend` until two counts in a row are equal.
 fn count_bytes(
     backend: &Backend,
     polygons: &PolygonMesh,
@@ -187,7 +184,7 @@ fn count_bytes(
 }
 
 impl Audit {
-    /// Describes each difference between the three numbers: the backend and the bytes.
+    /// Describes each difference between the three numbers.
     pub fn faults(&self) -> Vec<String> {
         self.backends
             .iter()
@@ -253,7 +250,6 @@ impl BackendAudit {
         }
     }
 
-    /// Describes each difference between the three numbers.
     fn faults(&self) -> Vec<String> {
         let BackendReport {
             name,
@@ -282,7 +278,7 @@ impl BackendAudit {
     }
 }
 
-/// Returns the words per vertex of a closed triangle mesh so large that its genus does not matter.
+/// Returns the layout words per vertex of a very large closed triangle mesh.
 fn closed_triangles_words(backend: &Backend) -> f64 {
     const VERTICES: usize = 1 << 20;
     let counts = Counts {
@@ -304,7 +300,6 @@ mod tests {
 
     use super::*;
 
-    /// A scripted allocator: `[live, peak]` of each count.
     struct Scripted {
         counts: Vec<[usize; 2]>,
         calls: Cell<usize>,
@@ -325,7 +320,7 @@ mod tests {
     }
 
     impl Heap for Scripted {
-        /// A count calls this twice: before and after building.
+        /// One count reads `live` twice: before and after building.
         fn live(&self) -> usize {
             let [live, _] = self.now();
             let calls = self.calls.replace(self.calls.get() + 1);
@@ -339,7 +334,6 @@ mod tests {
         }
     }
 
-    /// Returns the audit of one backend on a torus of 12 vertices, 36 edges and 24 triangles.
     fn audited(backend: Backend, heap: &Scripted) -> Audit {
         let torus = shapes::triangle_torus(4, 3).expect("a small torus");
         audit(
@@ -394,7 +388,7 @@ mod tests {
         let audit = audited(Backend::new::<HalfEdgeMesh>(), &Scripted::new(disturbed));
         assert_eq!(audit.faults(), Vec::<String>::new());
         assert_eq!(audit.backends[0].peak_bytes, Some(2 * BYTES));
-        // If no two counts agree, the audit ends with the last one.
+        // No two counts agree here, so the audit ends with the last count.
         let changing = (0..100).map(|i| [BYTES + i, BYTES]);
         let audit = audited(Backend::new::<HalfEdgeMesh>(), &Scripted::new(changing));
         assert_eq!(audit.faults().len(), 1);

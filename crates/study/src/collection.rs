@@ -1,7 +1,7 @@
 //! Studies of many meshes: one by one, and pooled.
 //!
-//! Results differ far more between meshes than between rounds. A pooled figure is therefore the
-//! geometric mean of one ratio for each mesh: the ratio to the fastest backend on that mesh. Its
+//! Results differ more between meshes than between rounds. A pooled figure is the geometric mean of
+//! one ratio per mesh. The ratio compares a backend with the fastest backend on the same mesh. The
 //! interval is found by resampling the meshes (bootstrap).
 
 use std::io;
@@ -21,19 +21,19 @@ use crate::statistics::geometric_mean;
 pub struct Collection {
     /// Version of the JSON schema.
     pub schema: u32,
-    /// Names of all meshes. `studies`, `failures` and `missing` have the same order as this list.
+    /// Names of all meshes. `studies`, `failures` and `missing` have the same order.
     pub meshes: Vec<String>,
     /// The settings that all studies share.
     pub settings: SharedSettings,
     /// The finished studies.
     pub studies: Vec<Report>,
-    /// The meshes that could not be studied, with the reasons.
+    /// The meshes that could not be studied.
     pub failures: Vec<Failed>,
-    /// The meshes still to be studied: they belong to another shard, or the run was interrupted.
+    /// The meshes without a result so far.
     pub missing: Vec<String>,
-    /// Figures over all meshes, sorted by operation, then by backend.
+    /// Figures over all meshes, by operation, then by backend.
     pub pooled: Vec<Pooled>,
-    /// Sentences on the pooled figures.
+    /// Sentences about the pooled figures.
     #[serde(rename = "words")]
     pub sentences: Vec<String>,
     /// Results of the other labs.
@@ -44,20 +44,21 @@ pub struct Collection {
 /// Settings that must be equal for studies to be merged.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct SharedSettings {
-    /// The backends; empty for all.
+    /// The backends; an empty list means all backends.
     pub backends: Vec<String>,
     /// External programs, by the names of their columns.
     pub externals: Vec<String>,
-    /// The operations; empty for all.
+    /// The operations; an empty list means all operations.
     pub operations: Vec<Operation>,
     /// Time budget of each study, in seconds.
     pub budget_s: f64,
     /// Seed of the random samples and orders.
     pub seed: u64,
-    /// Heap policy for freed pages; older versions measured on the system's heap.
+    /// The policy for freed pages. Files of older versions have no policy; they used the system's
+    /// policy.
     #[serde(default = "system_heap")]
     pub heap: Policy,
-    /// State of the caches when a sample began.
+    /// State of the caches at the start of a sample.
     #[serde(default)]
     pub caches: CacheState,
     /// Whether polygons were cut into triangles first.
@@ -77,7 +78,7 @@ pub struct Failed {
     pub mesh: String,
     /// Why it could not be studied.
     pub reason: String,
-    /// The kind of reason; older versions did not save it.
+    /// The kind of reason. Files of older versions do not have this field.
     #[serde(default)]
     pub kind: FailureKind,
 }
@@ -93,16 +94,16 @@ pub enum FailureKind {
     NoneHolds,
 }
 
-/// One operation on one backend, over all meshes on which it was measured.
+/// The pooled results of one operation on one backend.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Pooled {
     /// The backend.
     pub backend: String,
     /// The operation.
     pub operation: Operation,
-    /// Number of meshes on which it was measured.
+    /// Number of meshes with a measurement.
     pub meshes: usize,
-    /// Number of meshes on which this backend alone is the fastest.
+    /// Number of meshes on which only this backend is the fastest.
     pub best: usize,
     /// Number of meshes on which this backend is tied with the fastest.
     pub tied: usize,
@@ -110,13 +111,13 @@ pub struct Pooled {
     pub ratio_to_best: f64,
     /// Lower end of the 95 % bootstrap interval of that mean; `None` with fewer than three meshes.
     pub ci_low: Option<f64>,
-    /// Upper end of that interval.
+    /// Upper end of the 95 % bootstrap interval of that mean.
     pub ci_high: Option<f64>,
     /// Geometric mean of the time per element, in nanoseconds.
     pub ns_per_element: Option<f64>,
 }
 
-/// The error for adding a second study to a page. A page can show only one study.
+/// The error for adding a second study to a page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "is a second study, but a page can show only one: to study several meshes, use `sixfold \
@@ -145,7 +146,7 @@ pub enum MergeError {
 }
 
 impl Collection {
-    /// Creates a collection of `meshes`; all of them are still to be studied.
+    /// Creates a collection of `meshes` without results.
     pub fn new(meshes: Vec<String>, settings: SharedSettings) -> Self {
         Self {
             schema: SCHEMA,
@@ -165,8 +166,8 @@ impl Collection {
         Self::new(Vec::new(), SharedSettings::default())
     }
 
-    /// Adds results of one file: a study, a collection or a lab. To combine the studies of several
-    /// meshes use [`merge`](Self::merge), which checks that their settings agree.
+    /// Adds the results of one file: a study, a collection or a lab. For studies of several meshes,
+    /// use [`merge`](Self::merge), which compares the settings.
     ///
     /// # Errors
     ///
@@ -193,7 +194,7 @@ impl Collection {
         Ok(())
     }
 
-    /// Adds the study of one of the meshes; replaces an older one.
+    /// Adds the study of a mesh. Replaces an older study of the same mesh.
     pub fn add_study(&mut self, study: Report) {
         let mesh = study.mesh.name.clone();
         self.remove(&mesh);
@@ -201,24 +202,23 @@ impl Collection {
         self.sort_and_pool();
     }
 
-    /// Records that one of the meshes could not be studied.
+    /// Records that a mesh could not be studied.
     pub fn add_failure(&mut self, failed: Failed) {
         self.remove(&failed.mesh);
         self.failures.push(failed);
         self.sort_and_pool();
     }
 
-    /// Removes the study or the failure of `mesh`.
     fn remove(&mut self, mesh: &str) {
         self.studies.retain(|study| study.mesh.name != mesh);
         self.failures.retain(|failed| failed.mesh != mesh);
     }
 
-    /// Adds the studies and failures of `other` for meshes that this collection does not have yet.
+    /// Adds the results of `other` for meshes without a study in this collection.
     ///
     /// # Errors
     ///
-    /// Returns an error if the meshes or the settings differ. The figures can then not be compared.
+    /// Returns an error if the lists of meshes or the settings differ.
     pub fn merge(&mut self, other: Self) -> Result<(), MergeError> {
         if other.meshes != self.meshes {
             let unknown = |mesh: &&String| !self.meshes.contains(mesh);
@@ -235,7 +235,7 @@ impl Collection {
         self.settings.check(&other.settings)?;
         self.check_memory(&other)?;
         for study in other.studies {
-            // A study finished in `other` replaces a failure here.
+            // A finished study replaces a failure.
             let mesh = study.mesh.name.clone();
             let known = self.studies.iter().any(|study| study.mesh.name == mesh);
             if self.meshes.contains(&mesh) && !known {
@@ -253,8 +253,8 @@ impl Collection {
         Ok(())
     }
 
-    /// Returns an error if the studies of `other` ran with another heap policy or cache state.
-    /// These can differ from the settings: if memory was short, the system's heap was used instead.
+    /// Returns an error if the studies of `other` used another heap policy or cache state. With
+    /// little free memory, a study uses the system's heap instead of the policy in the settings.
     fn check_memory(&self, other: &Self) -> Result<(), MergeError> {
         let memory = |study: &Report| study.environment.memory_settings();
         let Some(ours) = self.studies.first().map(memory) else {
@@ -274,7 +274,6 @@ impl Collection {
         }
     }
 
-    /// Sorts everything by the order of the meshes, and pools the studies.
     fn sort_and_pool(&mut self) {
         let index = |mesh: &str| self.meshes.iter().position(|other| other == mesh);
         self.studies.sort_by_key(|study| index(&study.mesh.name));
@@ -333,7 +332,7 @@ impl Collection {
     ///
     /// # Errors
     ///
-    /// Returns an error if the text is truncated, is not JSON, or has results of another program,
+    /// Returns an error if the text is truncated, is not JSON, or comes from another program,
     /// schema or command.
     pub fn read_json(text: &str) -> Result<Self, ReadError> {
         check_schema(text)?;
@@ -377,7 +376,7 @@ impl SharedSettings {
     }
 }
 
-/// Pools each pair of an operation and a backend that was measured on at least one mesh.
+/// Pools each operation on each backend over the meshes with a measurement.
 fn pooled(studies: &[Report]) -> Vec<Pooled> {
     let mut backends: Vec<&str> = Vec::new();
     for study in studies {
@@ -425,7 +424,6 @@ fn pooled(studies: &[Report]) -> Vec<Pooled> {
     pooled
 }
 
-/// Describes the leading backend of each operation.
 fn sentences(pooled: &[Pooled]) -> Vec<String> {
     let mut sentences = Vec::new();
     for rows in pooled.chunk_by(|a, b| a.operation == b.operation) {

@@ -1,8 +1,8 @@
 //! Comparison of two studies of one mesh: what changed between machines, compilers or commits.
 //!
-//! Samples of two studies share no rounds. Each ratio is therefore a ratio of two medians, and its
-//! interval is found by resampling both studies (bootstrap). The samples of one study cannot show
-//! how far a machine drifts from one study to the next; [`DRIFT`] is the default limit for that.
+//! Two studies have no common rounds. A ratio is therefore the quotient of two medians. The
+//! interval is found by resampling both studies (bootstrap). A machine may also drift from one
+//! study to the next, which the samples do not show. [`DRIFT`] is the default limit for the drift.
 
 use std::io;
 
@@ -15,17 +15,17 @@ use crate::ranking::CLEAR_DIFFERENCE;
 use crate::report::{RawSamples, Report, ResultRow, SCHEMA, Standing, write_json};
 use crate::statistics::{Median, quotient};
 
-/// Largest ratio of two studies on an unchanged machine: about twice the typical drift of a virtual
-/// machine that shares its host (reports/repeatability). A dedicated machine drifts less.
+/// Default limit for the drift of an unchanged machine, as a ratio of times. It is about twice the
+/// typical drift of a virtual machine (reports/repeatability).
 pub const DRIFT: f64 = 1.2;
 
 /// Options of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompareSettings {
-    /// Whether each ratio is divided by the median ratio of all rows before its row is judged. This
-    /// is useful for two machines of different speed.
+    /// Whether to divide each ratio by the median ratio of all rows. This is useful for two
+    /// machines of different speed.
     pub relative: bool,
-    /// Ratios up to this are ignored, even if the samples show a difference.
+    /// Maximum ratio that is ignored, even if the samples show a difference.
     pub drift: f64,
 }
 
@@ -43,25 +43,25 @@ impl Default for CompareSettings {
 pub struct Changes {
     /// Version of the JSON schema.
     pub schema: u32,
-    /// Names of the two meshes if their facts differ; the rows then compare different work.
+    /// Names of the two meshes if their facts differ. The rows then compare different work.
     pub meshes: Option<[String; 2]>,
-    /// Differences of machines, programs and settings.
+    /// Differences between the studies in machine, program and settings.
     pub environment: Vec<SettingChange>,
-    /// Median over all rows of the second time divided by the first.
+    /// Median over all rows of the second time divided by the first time.
     pub overall: Option<f64>,
-    /// Whether rows are judged after division by `overall`.
+    /// Whether each ratio was divided by `overall`.
     pub relative: bool,
-    /// Ratios up to this are ignored.
+    /// Maximum ratio that is ignored.
     pub drift: f64,
-    /// The rows that both studies measured, in the order of the first.
+    /// The rows that both studies measured, in the order of the first study.
     pub rows: Vec<Change>,
-    /// Backends whose bytes changed: name, before, after.
+    /// Backends whose size in bytes changed: name, size before, size after.
     pub bytes: Vec<(String, usize, usize)>,
-    /// Operations whose single fastest backend changed.
+    /// Operations whose fastest backend changed.
     pub winners: Vec<NewWinner>,
-    /// Rows of the first study only, as `operation on backend`.
+    /// Rows that only the first study has, as `operation on backend`.
     pub only_before: Vec<String>,
-    /// Rows of the second study only.
+    /// Rows that only the second study has, as `operation on backend`.
     pub only_after: Vec<String>,
     /// The differences as sentences.
     #[serde(rename = "words")]
@@ -73,9 +73,9 @@ pub struct Changes {
 pub struct SettingChange {
     /// Name of the setting.
     pub what: &'static str,
-    /// Its value in the first study.
+    /// The value in the first study.
     pub before: String,
-    /// Its value in the second study.
+    /// The value in the second study.
     pub after: String,
 }
 
@@ -92,16 +92,15 @@ pub struct Change {
     pub after_ns: f64,
     /// The second median divided by the first.
     pub ratio: f64,
-    /// Lower end of the 95 % interval of the ratio; `None` if either study has fewer than three
-    /// samples.
+    /// Lower end of the 95 % interval of `ratio`; `None` if a study has fewer than three samples.
     pub ci_low: Option<f64>,
-    /// Upper end of that interval.
+    /// Upper end of the 95 % interval of `ratio`.
     pub ci_high: Option<f64>,
-    /// Ratios up to this are noise.
+    /// Maximum ratio that is noise.
     pub noise: f64,
     /// The conclusion.
     pub verdict: Verdict,
-    /// Whether the checksums differ. If they do, the two studies did different work.
+    /// Whether the checksums differ. The two studies then did different work.
     pub other_checksum: bool,
 }
 
@@ -149,7 +148,7 @@ pub enum CompareError {
 ///
 /// # Errors
 ///
-/// Returns an error if the heap policies or the cache states of the studies differ.
+/// Returns an error if the heap policies or the cache states differ.
 pub fn compare(
     before: &Report,
     after: &Report,
@@ -206,7 +205,6 @@ fn row_name(row: &ResultRow) -> String {
     format!("{} on {}", row.operation, row.backend)
 }
 
-/// Returns the row of `report` with the same operation and backend, if it was measured.
 fn matching_row<'r>(row: &ResultRow, report: &'r Report) -> Option<&'r ResultRow> {
     let mut rows = report.rows(row.operation);
     rows.find(|other| other.backend == row.backend && other.median_ns.is_some())
@@ -243,13 +241,12 @@ fn change(
     })
 }
 
-/// Returns whether two checksums may be of the same work: `f32` sums in different orders differ by
-/// at most 10⁻⁴ of their size.
+/// Returns whether two checksums may be of the same work. Sums of `f32` in different orders differ
+/// by at most 10⁻⁴ of their size.
 fn nearly_equal(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-4 * a.abs().max(b.abs())
 }
 
-/// Returns the samples of a row, without those of the control.
 fn samples(report: &Report, row: &ResultRow) -> Vec<f64> {
     let mut raw = report.raw.iter();
     let found = raw
@@ -273,7 +270,6 @@ fn verdict(row: &Change, divisor: f64) -> Verdict {
     }
 }
 
-/// Returns the differences between two environments that can affect times.
 fn differences(before: &Environment, after: &Environment) -> Vec<SettingChange> {
     fn shown<T: ToString>(value: Option<&T>) -> String {
         value.map_or_else(|| "not known".into(), ToString::to_string)
@@ -343,13 +339,13 @@ fn winners(before: &Report, after: &Report) -> Vec<NewWinner> {
 }
 
 impl Changes {
-    /// Iterates over the rows that are faster or slower, or have another checksum.
+    /// Iterates over the rows that are faster or slower, or have a different checksum.
     pub fn changed(&self) -> impl Iterator<Item = &Change> {
         let changed = |row: &&Change| row.verdict != Verdict::Same || row.other_checksum;
         self.rows.iter().filter(changed)
     }
 
-    /// Counts the rows with this verdict.
+    /// Counts the rows with `verdict`.
     pub fn count(&self, verdict: Verdict) -> usize {
         self.rows
             .iter()
@@ -366,7 +362,6 @@ impl Changes {
         write_json(self, writer)
     }
 
-    /// Returns the differences as sentences.
     fn describe(&self) -> Vec<String> {
         let mut sentences = Vec::new();
         if let Some([before, after]) = &self.meshes {

@@ -1,4 +1,4 @@
-//! The control: one backend measured as two columns, which shows the noise of this run.
+//! The control: one backend measured as two columns, to find the noise.
 
 use sixfold::QueryCost;
 
@@ -9,15 +9,14 @@ use crate::statistics::Median;
 use sixfold_workload::Operation;
 use sixfold_workload::TimedBackend;
 
-/// Returns the subject to measure twice: the first that never scans all faces, because scans are
-/// slow and steady.
+/// Returns the subject to measure twice: the first subject that never scans.
 pub(crate) fn measured_twice(subjects: &[Box<dyn TimedBackend + '_>]) -> usize {
     let scans = |subject: &dyn TimedBackend| subject.costs().contains(&QueryCost::Scan);
     let found = subjects.iter().position(|subject| !scans(subject.as_ref()));
     found.unwrap_or(0)
 }
 
-/// Compares the two columns of `backend`: subjects `first` and `second` in `entries`.
+/// Compares the two columns of `backend`: the subjects `first` and `second`.
 pub(crate) fn control(
     entries: &[Entry],
     first: usize,
@@ -34,7 +33,7 @@ pub(crate) fn control(
         let Some(once) = find(first, operation) else {
             continue;
         };
-        // A time of zero, on a coarse clock, has no ratio.
+        // A coarse clock may measure zero, which has no ratio.
         let ratio = ratio(&again.times(), &once.times());
         let known = |ratio: &Median| ratio.value.is_finite() && ratio.value > 0.0;
         if let Some(ratio) = ratio.filter(known) {
@@ -57,8 +56,8 @@ pub(crate) fn control(
     })
 }
 
-/// Returns the ratio up to which a difference is noise: the difference of the control in this
-/// operation, at least [`NO_DIFFERENCE`].
+/// Returns the maximum ratio that is noise: the difference of the control in this operation, at
+/// least [`NO_DIFFERENCE`].
 pub(crate) fn noise(control: Option<&Control>, operation: Operation) -> f64 {
     let rows = control.map_or(&[][..], |control| &control.operations);
     let row = rows.iter().find(|row| row.operation == operation);

@@ -1,51 +1,49 @@
-//! Detects whether other programs slow the machine down at this moment.
+//! Detects whether other programs slow the machine down.
 //!
-//! On a shared machine another program may run on the same core at any time. A sample then takes up
-//! to twice as long, in phases of milliseconds to seconds. To detect this, a small fixed piece of
-//! work is timed before and after each sample. If that work takes longer than usual, the sample is
-//! *disturbed*. A disturbed sample is taken again, within limits, and does not count if enough
-//! other samples are undisturbed. The time of the fixed work does not depend on the sample, so this
-//! method prefers no backend and no result.
+//! On a shared machine, another program may run on the same core. A sample then takes up to twice
+//! as long. Such phases last from milliseconds to seconds.
+//!
+//! To detect such a phase, a small fixed piece of work is timed before and after each sample. If
+//! the fixed work takes too long, the sample is *disturbed*. A disturbed sample is taken again,
+//! within limits. It does not count if there are enough undisturbed samples. The fixed work does
+//! not depend on the backend, so the method prefers no backend.
 
 use std::hint::black_box;
 
 use sixfold_workload::{Clock, Time, timed};
 
-/// Largest number of times a sample is taken again.
+/// Maximum number of times a sample is taken again.
 const MAX_RETAKEN: u32 = 3;
-/// Words of the table that the fixed work reads: half of a typical first-level cache.
+/// Number of words that the fixed work reads: half of a typical first-level cache.
 const WORDS: usize = 2048;
-/// Passes over the table in one reference run, a timing of the fixed work: about 10 µs.
+/// Number of passes over the words in one reference run. A reference run takes about 10 µs.
 const PASSES: usize = 12;
-/// The machine is disturbed if the fixed work takes more than this multiple of its undisturbed
-/// time. A lower limit would mostly find phases of another processor frequency. Such phases last
-/// longer than a round and affect all backends equally. Each retaken sample also leaves time for
-/// fewer rounds.
+/// Maximum slowdown of an undisturbed machine, as a ratio of times. A lower value would also detect
+/// changes of the processor frequency. These last longer than a round and affect all backends
+/// equally.
 const DISTURBED: f64 = 1.3;
-/// The undisturbed time is this quantile of the times of all reference runs.
+/// The quantile of all reference times that counts as the undisturbed time.
 const UNDISTURBED: f64 = 0.05;
-/// Longest wait for an undisturbed moment before a sample, in nanoseconds.
+/// Maximum wait for an undisturbed moment before a sample, in nanoseconds.
 const LONGEST_WAIT_NS: f64 = 10_000_000.0;
 /// Part of the budget for waiting and for disturbed samples.
 const FOR_DISTURBED: f64 = 0.3;
-/// Part of the budget for samples that are taken again because of page faults.
+/// Part of the budget for samples taken again because of page faults.
 const FOR_FAULTS: f64 = 0.1;
-/// Only undisturbed samples count if they are at least this part of all samples.
+/// Minimum part of undisturbed samples. If there are fewer, all samples count.
 const MIN_UNDISTURBED: f64 = 0.25;
 
-/// The fixed work, its past times, and the time left for waiting and for samples taken again.
 pub(crate) struct DisturbanceDetector {
     words: Vec<u64>,
-    /// Times of the reference runs, one before and one after each sample; ascending.
+    /// Times of the reference runs, ascending.
     reference_ns: Vec<f64>,
-    /// Time left for waiting and for disturbed samples.
+    /// Time left for waiting and for disturbed samples, in nanoseconds.
     disturbed_left_ns: f64,
-    /// Time left for samples that are taken again because of page faults.
+    /// Time left for samples with page faults, in nanoseconds.
     faults_left_ns: f64,
 }
 
 impl DisturbanceDetector {
-    /// Creates a detector for measurements with a budget of `budget_ns`.
     pub(crate) fn new(budget_ns: f64) -> Self {
         let word = |i: u64| i.wrapping_mul(0x9e37_79b9_7f4a_7c15) % WORDS as u64;
         Self {
@@ -56,9 +54,9 @@ impl DisturbanceDetector {
         }
     }
 
-    /// Takes a sample by calling `sample`. Takes it again if `verdict` is [`Verdict::Again`], or if
-    /// the machine was disturbed before or after it. Repeats this at most three times, and only
-    /// while there is time left for that reason.
+    /// Takes a sample by calling `sample`. Takes the sample again if `verdict` returns
+    /// [`Verdict::Again`] or if the machine was disturbed. Repeats this at most three times, and
+    /// only while time is left for that reason.
     pub(crate) fn take_sample<T>(
         &mut self,
         clock: &dyn Clock,
@@ -92,12 +90,11 @@ impl DisturbanceDetector {
         }
     }
 
-    /// Returns whether time is left for waiting and for disturbed samples.
     fn has_time_left(&self) -> bool {
         self.disturbed_left_ns > 0.0
     }
 
-    /// Waits up to 10 ms for an undisturbed moment. Returns the slowdown after that.
+    /// Waits up to 10 ms for an undisturbed moment. Returns the slowdown after the wait.
     fn wait(&mut self, clock: &dyn Clock) -> f64 {
         let start = clock.now().wall_ns;
         loop {
@@ -106,23 +103,21 @@ impl DisturbanceDetector {
             let disturbed = self.slowdown_at(ns) > DISTURBED;
             if !disturbed || waited > LONGEST_WAIT_NS || !self.has_time_left() {
                 self.disturbed_left_ns -= waited;
-                // Keeps only one reference run of a wait. If a wait recorded hundreds of disturbed
-                // runs, their times would pass for undisturbed.
+                // Record only one reference run of a wait. Hundreds of disturbed runs would change
+                // the undisturbed time.
                 return self.record(ns);
             }
         }
     }
 
-    /// Returns the time of the fixed work now, divided by its undisturbed time; 1 if the clock does
-    /// not advance meanwhile.
+    /// Times the fixed work and returns the slowdown. Returns 1 if the clock does not advance.
     fn slowdown(&mut self, clock: &dyn Clock) -> f64 {
         let ns = self.time_reference(clock);
         self.record(ns)
     }
 
-    /// Times the fixed work once; in nanoseconds.
     fn time_reference(&self, clock: &dyn Clock) -> f64 {
-        // The first pass brings the table into the cache.
+        // The first pass brings the words into the cache.
         black_box(self.pass());
         let time = timed(clock, || {
             for _ in 0..PASSES {
@@ -132,15 +127,14 @@ impl DisturbanceDetector {
         time.ns()
     }
 
-    /// Records the time of a reference run and returns its slowdown.
+    /// Records the time of a reference run and returns the slowdown.
     fn record(&mut self, ns: f64) -> f64 {
         let index = self.reference_ns.partition_point(|&other| other < ns);
         self.reference_ns.insert(index, ns);
         self.slowdown_at(ns)
     }
 
-    /// Returns `ns` divided by the undisturbed time; 1 if either is zero or there are no reference
-    /// runs yet.
+    /// Returns `ns` divided by the undisturbed time. Returns 1 if a time is zero or unknown.
     fn slowdown_at(&self, ns: f64) -> f64 {
         let undisturbed = (self.reference_ns.len() as f64 * UNDISTURBED) as usize;
         match self.reference_ns.get(undisturbed) {
@@ -149,8 +143,8 @@ impl DisturbanceDetector {
         }
     }
 
-    /// Adds up four independent sums. This uses the whole core, so it takes longer if another
-    /// thread shares the core.
+    /// Adds up four independent sums, which use the whole core. The work then takes longer if
+    /// another thread shares the core.
     fn pass(&self) -> u64 {
         let words = black_box(&self.words);
         let mut sums = [0_u64; 4];
@@ -166,17 +160,16 @@ impl DisturbanceDetector {
 /// The decision of [`DisturbanceDetector::take_sample`] about a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
-    /// Keep it, unless the machine was disturbed.
+    /// Keep the sample, unless the machine was disturbed.
     Good,
-    /// Take it again because of page faults.
+    /// Take the sample again because of page faults.
     Again,
-    /// Keep it in any case: the run was refused, or the study is to stop.
+    /// Keep the sample in any case, because the run was refused or the study is to stop.
     Final,
 }
 
 impl Verdict {
-    /// Returns the verdict on a sample of `time`. If pages are `kept`, a sample should have no
-    /// faults.
+    /// Returns the verdict on a sample of `time`. Page faults matter only if pages are `kept`.
     pub(crate) fn on_faults(time: Time, kept: bool) -> Self {
         match kept && time.faults.is_some_and(|faults| faults > 0) {
             true => Self::Again,
@@ -185,18 +178,18 @@ impl Verdict {
     }
 }
 
-/// A sample, and the conditions under which it was taken.
 pub(crate) struct TakenSample<T> {
     pub(crate) value: T,
     /// The larger of the slowdowns before and after the sample.
     pub(crate) slowdown: f64,
-    /// Number of times it was taken again.
+    /// Number of times the sample was taken again.
     pub(crate) retaken: u32,
     /// Whether the machine was disturbed and time is left for another sample.
     pub(crate) disturbed: bool,
 }
 
-/// Returns the samples that count: the undisturbed ones if they are at least a quarter, else all.
+/// Returns the samples that count. These are the undisturbed samples if they are at least a quarter
+/// of all samples, else all samples.
 pub(crate) fn undisturbed<T: Copy>(samples: &[T], slowdowns: &[f64]) -> Vec<T> {
     let quiet = samples.iter().zip(slowdowns);
     let quiet = quiet.filter(|(_, slowdown)| **slowdown <= DISTURBED);
@@ -213,8 +206,7 @@ mod tests {
 
     use super::*;
 
-    /// A clock on which the reference runs take the listed times in order, then always the last
-    /// one.
+    /// A clock on which each reference run takes the next of the listed times.
     struct Scripted(Mutex<(f64, Vec<f64>, bool)>);
 
     impl Clock for Scripted {
@@ -232,7 +224,6 @@ mod tests {
         }
     }
 
-    /// A clock that advances by [`TICK_NS`] with each reading.
     #[derive(Default)]
     struct Ticking(Mutex<f64>);
 
@@ -260,7 +251,6 @@ mod tests {
             1.0
         );
 
-        // If no time is left, the detector does not wait for an undisturbed moment.
         detector.disturbed_left_ns = 0.0;
         let slow = Ticking::default();
         assert!(detector.wait(&slow) > 1.9);
@@ -291,7 +281,6 @@ mod tests {
         assert_eq!(tries(Verdict::Good, disturbed, 1e9), (4, true));
         assert_eq!(tries(Verdict::Final, disturbed, 1e9), (1, true));
         assert_eq!(tries(Verdict::Good, disturbed, 0.0), (1, false));
-        // Page faults have a budget of their own.
         assert_eq!(tries(Verdict::Again, quiet, 0.0), (4, false));
     }
 

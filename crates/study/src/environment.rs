@@ -12,24 +12,23 @@ use crate::numbers::bytes;
 use sixfold_workload::pages::{HeapReport, Policy};
 use sixfold_workload::{Cache, caches};
 
-/// Machine, program and settings that figures depend on.
+/// The machine, the program and the settings of a measurement.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Environment {
-    /// The command that reproduces the figures, if the calling program recorded it.
+    /// The command that reproduces the figures, if it was recorded.
     #[serde(default)]
     pub command: Option<String>,
     /// Version of Sixfold.
     pub sixfold: String,
-    /// Commit that the program was built from, with `-dirty` if files differed from it; `None` if
-    /// it was not built from a repository.
+    /// Commit of the program, with `-dirty` if files were changed. `None` without a repository.
     pub commit: Option<String>,
     /// Version of the compiler.
     pub rustc: String,
-    /// Build profile: `release`, Rust's default; `dist`, with link-time optimisation; `debug`.
+    /// Build profile: `release`, `dist` (with link-time optimisation) or `debug`.
     pub profile: String,
-    /// Optimisation level: `3`.
+    /// Optimisation level: `0` to `3`, `s` or `z`.
     pub opt_level: String,
-    /// Further flags of the compiler.
+    /// Additional flags of the compiler.
     pub rustflags: String,
     /// Target triple of the build.
     pub target: String,
@@ -41,7 +40,7 @@ pub struct Environment {
     pub arch: String,
     /// Model of the processor; `None` if unknown.
     pub cpu_model: Option<String>,
-    /// Number of threads that can run at once.
+    /// Number of threads that can run at the same time.
     pub cores: Option<usize>,
     /// Caches of the first core; empty if unknown.
     pub caches: Vec<Cache>,
@@ -49,18 +48,17 @@ pub struct Environment {
     pub memory_bytes: Option<u64>,
     /// Frequency governor of the processor, such as `performance`; `None` if unknown.
     pub governor: Option<String>,
-    /// Whether the processor may temporarily exceed its nominal frequency; `None` if unknown.
+    /// Whether the processor may exceed its nominal frequency for a time; `None` if unknown.
     pub boost: Option<bool>,
-    /// Runnable threads, averaged over the minute before the study; `None` if unknown.
+    /// Mean number of runnable threads in the minute before the study; `None` if unknown.
     pub load_average: Option<f64>,
-    /// Clock of the figures: `thread-cpu` or `wall`.
+    /// Clock of the times: `thread-cpu` or `wall`.
     pub clock: String,
-    /// Heap that operations allocate from; `None` in results of older versions, which used the
-    /// system's heap.
+    /// The heap. `None` in results of older versions, which used the system's heap.
     #[serde(default)]
     pub heap: Option<HeapReport>,
-    /// Preparation of the caches before each sample; `None` in results of older versions, which
-    /// prepared nothing.
+    /// How the caches were prepared before each sample. `None` in results of older versions, which
+    /// did not prepare the caches.
     #[serde(default)]
     pub cache_state: Option<CachesReport>,
     /// Start of the study, in seconds since 1970.
@@ -72,7 +70,7 @@ pub struct Environment {
 }
 
 impl Environment {
-    /// Describes this machine and program now.
+    /// Describes the machine and the program.
     pub fn detect(seed: u64, budget_s: f64) -> Self {
         let what = RefreshKind::nothing()
             .with_cpu(CpuRefreshKind::nothing())
@@ -111,7 +109,6 @@ impl Environment {
         }
     }
 
-    /// Sets the heap and the cache state of the measurements.
     pub(crate) fn with_memory(self, memory: &Memory) -> Self {
         Self {
             heap: Some(memory.heap.clone()),
@@ -120,7 +117,7 @@ impl Environment {
         }
     }
 
-    /// Returns phrases on heap and caches, for a line about the measurement.
+    /// Returns phrases about heap and caches.
     pub fn memory_phrases(&self) -> Vec<String> {
         let mut phrases = Vec::new();
         if let Some(heap) = &self.heap {
@@ -143,8 +140,8 @@ impl Environment {
         phrases
     }
 
-    /// Returns the names of the heap policy and of the cache state. Figures with different names
-    /// must not be mixed.
+    /// Returns the names of the heap policy and of the cache state. Times with different settings
+    /// cannot be compared.
     pub fn memory_settings(&self) -> [&'static str; 2] {
         let heap = self
             .heap
@@ -158,14 +155,13 @@ impl Environment {
     }
 }
 
-/// Reads from the Linux drivers whether the processor may exceed its nominal frequency.
+/// Reads from Linux whether the processor may exceed its nominal frequency.
 fn boost() -> Option<bool> {
     let of_acpi = line("/sys/devices/system/cpu/cpufreq/boost").map(|text| text == "1");
     let of_intel = || line("/sys/devices/system/cpu/intel_pstate/no_turbo").map(|text| text == "0");
     of_acpi.or_else(of_intel)
 }
 
-/// Reads a one-line file of the Linux kernel, without surrounding space.
 fn line(path: &str) -> Option<String> {
     let text = fs::read_to_string(path).ok()?;
     Some(text.trim().to_owned())

@@ -1,4 +1,4 @@
-//! External programs as columns of a study: any program that follows the line protocol can take
+//! External programs as columns of a study. Every program that follows the line protocol can take
 //! part.
 //!
 //! ```text
@@ -10,9 +10,8 @@
 //!    │ ─── end of input ───────────────────────▶ │   it ends
 //! ```
 //!
-//! The program reads one JSON object per line and answers each with one line. It times its own
-//! runs, so no figure includes the pipe. `benches/external/README.md` describes the protocol in
-//! full.
+//! The program reads one JSON object per line and answers with one line. It times its own runs, so
+//! the times do not include the pipe. `benches/external/README.md` describes the protocol.
 
 mod program;
 mod subject;
@@ -43,7 +42,7 @@ const MESH: &str = "{mesh}";
 /// Default time limit for an answer.
 pub const EXTERNAL_TIMEOUT: Duration = Duration::from_secs(60);
 
-/// A program that takes part in a study as one more column.
+/// A program that is measured as one more column.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct External {
     /// The name of the column.
@@ -52,15 +51,15 @@ pub struct External {
     pub command: Vec<String>,
 }
 
-/// Facts about an external program beside its figures.
+/// Facts about an external program.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct ExternalReport {
     /// The program and its arguments, with `{mesh}` for the path of the mesh.
     pub command: Vec<String>,
-    /// Library and version that the program reports.
+    /// The library that the program measures, with its version.
     pub library: Option<String>,
     /// Whether freed pages are kept for Sixfold's backends but not for this program. Allocations of
-    /// the program may then cause page faults, unlike those of the backends.
+    /// this program may then cause page faults.
     #[serde(default)]
     pub own_heap: bool,
 }
@@ -73,7 +72,7 @@ pub enum ExternalError {
     /// The equals sign is missing.
     #[error("`{given}` has no name: write NAME='COMMAND {{mesh}}'")]
     NoName { given: String },
-    /// Tables and files cannot show the name.
+    /// The name contains a character that tables or files cannot show.
     #[error(
         "`{name}` is not a column name: use up to 32 letters, digits, dots, hyphens and underscores"
     )]
@@ -92,8 +91,7 @@ pub enum ExternalError {
 impl FromStr for External {
     type Err = ExternalError;
 
-    /// Parses `NAME=COMMAND`. The command is split into words as a shell would do, but it is run
-    /// without a shell.
+    /// Parses `NAME=COMMAND`. Splits the command into words as a shell does.
     fn from_str(given: &str) -> Result<Self, ExternalError> {
         let no_name = || ExternalError::NoName {
             given: given.into(),
@@ -118,7 +116,6 @@ impl FromStr for External {
 }
 
 impl External {
-    /// Returns the program and its arguments for a mesh at `path`.
     fn arguments(&self, path: &Path) -> Vec<String> {
         let path = path.to_string_lossy();
         let word = |word: &String| word.replace(MESH, &path);
@@ -126,7 +123,7 @@ impl External {
     }
 }
 
-/// The mesh of a study as a file for external programs; deleted on drop.
+/// The mesh of a study in a file for external programs. The file is deleted on drop.
 pub(crate) struct MeshFile {
     folder: TempDir,
 }
@@ -145,7 +142,7 @@ impl MeshFile {
     }
 }
 
-/// Starts `external` on the mesh and reads whether it holds the mesh.
+/// Starts `external` on the mesh and reads its first line.
 pub(crate) fn prepare<'a>(
     external: &External,
     mesh: &MeshFile,

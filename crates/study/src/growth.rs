@@ -1,11 +1,12 @@
-//! The growth lab: how the cost of every operation on every structure grows with the mesh.
+//! The growth lab: measures how the time of an operation grows with the mesh.
 //!
-//! One shape is made in several sizes, each larger than the previous one by the same factor. At
-//! each size all structures are measured in interleaved rounds, as in a study. A straight line
-//! through the logarithms gives the exponent of the total time. Exponent 1 means a constant time
-//! per element, exponent 2 a scan of all faces per element. The time per element also depends on
-//! the caches, so one line is fitted to the sizes that fit into the last cache, and another line to
-//! the larger sizes.
+//! One shape is made in several sizes. The ratio of two successive sizes is constant. At each size
+//! all structures are measured in rounds, as in a study. A straight line is fitted to the
+//! logarithms of size and time. The slope of the line is the exponent. Exponent 1 means a constant
+//! time per element. Exponent 2 means a scan of all faces per element.
+//!
+//! The time per element also depends on the caches. Therefore a second line is fitted to the sizes
+//! that fit into the last cache, and a third line to the larger sizes.
 
 mod budgets;
 mod fits;
@@ -42,35 +43,35 @@ use settings::Plan;
 use sixfold_workload::{Backend, Draw, MachineClock, TimedBackend};
 use sixfold_workload::{Cache, caches, last_level_bytes};
 
-/// The results of a sweep over sizes.
+/// The results for one shape in several sizes.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct GrowthReport {
     /// Version of the JSON schema.
     pub schema: u32,
     /// Name of the shape.
     pub shape: String,
-    /// Order of its elements in memory.
+    /// Order of the elements in memory.
     pub order: Order,
-    /// The measured backends, in the order of tables.
+    /// The measured backends, as tables list them.
     pub backends: Vec<String>,
     /// The backends that cannot hold the shape.
     #[serde(rename = "unheld")]
     pub refused_by: Vec<BackendRefusal>,
     /// The finished sizes, smallest first.
     pub sizes: Vec<SizeReport>,
-    /// Approximate face counts of the sizes left out for lack of time.
+    /// Approximate face counts of the sizes that were left out for lack of time.
     pub left_out: Vec<usize>,
-    /// The fitted lines, sorted by operation, then by backend.
+    /// The fitted lines, by operation, then by backend.
     pub fits: Vec<Fit>,
     /// The caches of this machine; empty if unknown.
     pub caches: Vec<Cache>,
-    /// The sizes at which layouts outgrow caches, sorted by cache, then by backend.
+    /// The sizes at which layouts outgrow caches, by cache, then by backend.
     #[serde(rename = "cache_ends")]
     pub cache_limits: Vec<CacheLimit>,
-    /// Sentences on the tables.
+    /// Sentences about the tables.
     #[serde(rename = "words")]
     pub sentences: Vec<String>,
-    /// Whether the sweep was interrupted before the last size.
+    /// Whether the command was interrupted before the last size.
     pub interrupted: bool,
     /// The machine and the program.
     pub environment: Environment,
@@ -81,11 +82,11 @@ pub struct GrowthReport {
 pub struct BackendRefusal {
     /// Name of the backend.
     pub backend: String,
-    /// Why it cannot hold the shape.
+    /// Why the backend cannot hold the shape.
     pub reason: String,
 }
 
-/// The results at one size, as in a study.
+/// The results at one size.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct SizeReport {
     /// Number of vertices.
@@ -94,30 +95,30 @@ pub struct SizeReport {
     pub edges: usize,
     /// Number of faces.
     pub faces: usize,
-    /// Bytes of each backend.
+    /// Size of each backend in bytes.
     #[serde(rename = "weights")]
     pub backend_bytes: Vec<BackendBytes>,
     /// The rows of a study.
     pub results: Vec<ResultRow>,
-    /// Operations that a backend cannot do at this size.
+    /// Operations that a backend cannot do.
     pub refusals: Vec<Refusal>,
     /// The backend that was measured twice.
     pub control: Option<Control>,
 }
 
-/// The bytes of a backend at one size.
+/// The size of a backend in bytes.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct BackendBytes {
     /// The backend.
     pub backend: String,
-    /// Bytes held, including spare capacity.
+    /// Allocated bytes, including spare capacity.
     pub bytes: usize,
-    /// Lowest cache level with room for these bytes; `None` if no known cache is large enough.
+    /// Smallest cache level that can hold these bytes; `None` if no known cache can.
     pub fits_in: Option<u8>,
 }
 
 impl GrowthReport {
-    /// Counts the results that contradict those of other backends.
+    /// Counts the results that differ from those of other backends without a known reason.
     pub fn mismatches(&self) -> usize {
         let rows = self.sizes.iter().flat_map(|size| &size.results);
         rows.filter(|row| row.agreement == Agreement::Mismatch)
@@ -134,15 +135,15 @@ impl GrowthReport {
     }
 }
 
-/// Measures all sizes within the budget of `settings`. Exceeds the budget only if one run of
-/// everything at each size takes longer. Sizes whose meshes and structures cannot be built in the
-/// remaining time are left out.
+/// Measures all sizes within the budget of `settings`. Everything is run at least once at each
+/// size, even if this exceeds the budget. Sizes that cannot be built in the remaining time are left
+/// out.
 ///
-/// Setting `stop` ends the sweep early; the report contains the finished sizes.
+/// Setting `stop` ends the command early. The report then contains the finished sizes.
 ///
 /// # Errors
 ///
-/// Returns an error if the settings are invalid, or no requested backend can hold the shape.
+/// Returns an error if the settings are invalid or if no requested backend can hold the shape.
 pub fn growth(
     settings: &GrowthSettings,
     stop: &AtomicBool,
@@ -165,7 +166,7 @@ pub fn growth(
     let time = SizeBudgets::new(&plan.sizes, budget);
     let mut sizes: Vec<SizeReport> = Vec::new();
     let mut left_out = Vec::new();
-    // Seconds per face to build everything at the previous size.
+    // Time per face for building everything at the previous size, in seconds.
     let mut building = 0.0;
     for (step, &faces) in plan.sizes.iter().enumerate() {
         if building * faces as f64 > time.left().as_secs_f64() {
@@ -235,7 +236,6 @@ pub fn growth(
     })
 }
 
-/// The state of a sweep that all sizes share.
 struct Sweep<'s> {
     settings: &'s GrowthSettings,
     plan: &'s Plan,
@@ -247,7 +247,7 @@ struct Sweep<'s> {
 }
 
 impl Sweep<'_> {
-    /// Measures one size; `None` if interrupted before the end.
+    /// Measures one size. Returns `None` if interrupted.
     fn size(
         &mut self,
         mesh: &PolygonMesh,
@@ -334,7 +334,6 @@ impl Sweep<'_> {
         }))
     }
 
-    /// Returns the bytes of a backend with the lowest cache level that has room for them.
     fn bytes_with_cache(&self, backend: String, bytes: usize) -> BackendBytes {
         let data = self.caches.iter().filter(|cache| cache.holds_data());
         let room = data.filter(|cache| cache.bytes >= bytes as u64);

@@ -1,4 +1,4 @@
-//! The heap of the measurements: its policy, and protection against running out of memory.
+//! The heap of the measurements, and protection against running out of memory.
 
 use serde::{Deserialize, Serialize};
 use sixfold_workload::pages::{self, HeapReport, Policy};
@@ -9,21 +9,20 @@ use crate::numbers::bytes;
 
 /// Part of all memory that must stay free.
 const MIN_FREE: f64 = 0.05;
-/// Largest factor by which keeping pages increases the memory of a study. The memory grows because
-/// a freed block does not always fit a later request.
+/// Maximum factor by which keeping pages increases the memory of a study. The memory grows because
+/// a freed block may not fit a later request.
 const KEPT_FACTOR: u64 = 2;
-/// The resident memory divided by this number is touched in advance, because later blocks may lie
-/// elsewhere.
+/// Divisor of the resident memory that gives the number of bytes to touch in advance.
 const RESERVE_PART: u64 = 4;
 
 /// Whether the caches hold the mesh when a sample begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CacheState {
-    /// The caches are as the previous runs left them.
+    /// The caches keep the data of the previous runs.
     #[default]
     Warm,
-    /// The caches hold other data, and a sample is one run.
+    /// The caches hold other data. A sample is one run.
     Cold,
 }
 
@@ -40,18 +39,17 @@ impl CacheState {
     }
 }
 
-/// Preparation of the caches before each sample.
+/// How the caches are prepared before each sample.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct CachesReport {
     /// Whether the caches hold the mesh.
     pub state: CacheState,
-    /// Bytes written before each sample; 0 if warm.
+    /// Number of bytes written before each sample; 0 if warm.
     pub written_bytes: usize,
-    /// Last cache level whose content this replaces; `None` if warm or unknown.
+    /// Last cache level whose content is replaced; `None` if warm or unknown.
     pub defeats_level: Option<u8>,
 }
 
-/// The memory of the measurements, from the first sample to the last.
 pub(crate) struct Memory {
     /// The active policy.
     pub(crate) heap: HeapReport,
@@ -59,8 +57,8 @@ pub(crate) struct Memory {
 }
 
 impl Memory {
-    /// Sets the heap policy. Uses the system's policy instead if keeping pages could use up the
-    /// free memory; `needed` is the approximate number of bytes that the measurements hold at once.
+    /// Sets the heap policy. If keeping pages could use up the free memory, sets the system's
+    /// policy. `needed` is the approximate peak memory of the measurements in bytes.
     pub(crate) fn start(policy: Policy, state: CacheState, needed: u64) -> Self {
         let heap = match shortage_reason(needed, free_memory()).filter(|_| policy == Policy::Kept) {
             None => pages::set_policy(policy),
@@ -75,7 +73,6 @@ impl Memory {
         }
     }
 
-    /// Returns the state of the caches in which timed runs start.
     pub(crate) fn start_of_runs(&self) -> Start<'_> {
         match &self.flusher {
             Some(flusher) => Start::Cold(flusher),
@@ -83,23 +80,23 @@ impl Memory {
         }
     }
 
-    /// Returns whether samples start with cold caches.
     pub(crate) fn is_cold(&self) -> bool {
         self.flusher.is_some()
     }
 
-    /// Returns whether freed pages are kept, so that samples should have no page faults.
+    /// Returns whether freed pages are kept. Samples then have no page faults.
     pub(crate) fn keeps_pages(&self) -> bool {
         self.heap.policy == Policy::Kept
     }
 
-    /// Touches the pages of freed blocks, plus a quarter of the resident memory, if pages are kept
-    /// and there is room. Later allocations then cause no page faults.
+    /// Touches the pages of freed blocks, so that later allocations cause no page faults. Also
+    /// touches a quarter of the resident memory as a reserve. Does nothing if pages are not kept.
     pub(crate) fn reserve(&self) {
         self.reserve_for(pages::resident_bytes().unwrap_or(0) / RESERVE_PART);
     }
 
-    /// Touches the pages of freed blocks, plus a block of `bytes`, or less if there is little room.
+    /// Touches the pages of freed blocks and a block of `bytes`. The block is smaller if there is
+    /// little memory.
     pub(crate) fn reserve_for(&self, bytes: u64) {
         if let Some(bytes) = self.reservable(bytes) {
             pages::reserve(bytes);
@@ -113,27 +110,28 @@ impl Memory {
         }
     }
 
-    /// Returns `bytes`, or less if there is little room; `None` if pages are not kept.
+    /// Returns `bytes`, or less if there is little memory. Returns `None` if pages are not kept.
     fn reservable(&self, bytes: u64) -> Option<usize> {
         let free = free_memory().filter(|_| self.keeps_pages())?;
         let most = free.saturating_sub(min_free_bytes()) / RESERVE_PART;
         Some(usize::try_from(bytes.min(most)).unwrap_or(0))
     }
 
-    /// Returns whether enough memory stays free after allocating `bytes`; true if unknown.
+    /// Returns whether enough memory stays free after an allocation of `bytes`. Returns true if the
+    /// free memory is unknown.
     pub(crate) fn has_room_for(&self, bytes: u64) -> bool {
         free_memory().is_none_or(|free| free > min_free_bytes().saturating_add(bytes))
     }
 
-    /// Returns kept pages of freed blocks to the kernel. Until [`Memory::reserve`], allocations get
-    /// fresh pages.
+    /// Returns the pages of freed blocks to the kernel. Allocations then get fresh pages until
+    /// [`Memory::reserve`] is called.
     pub(crate) fn release_pages(&self) {
         if self.keeps_pages() {
             pages::release_pages();
         }
     }
 
-    /// Stops keeping pages if memory runs out; later measurements use the system's heap.
+    /// Stops keeping pages if memory runs out.
     pub(crate) fn check_free_memory(&mut self) {
         if !self.keeps_pages() {
             return;
@@ -147,7 +145,6 @@ impl Memory {
         }
     }
 
-    /// Describes the preparation of the caches.
     pub(crate) fn caches(&self) -> CachesReport {
         let flusher = self.flusher.as_ref();
         CachesReport {
@@ -161,7 +158,7 @@ impl Memory {
     }
 }
 
-/// Returns a reason if pages cannot be kept because the needed memory may exceed the free memory.
+/// Returns the reason why pages cannot be kept, if the needed memory may exceed the free memory.
 fn shortage_reason(needed: u64, free: Option<u64>) -> Option<String> {
     let kept = needed.saturating_mul(KEPT_FACTOR);
     let free = free.filter(|&free| kept > free)?;
@@ -175,7 +172,6 @@ fn shown(amount: u64) -> String {
     bytes(usize::try_from(amount).unwrap_or(usize::MAX))
 }
 
-/// Returns the number of bytes that must stay free.
 fn min_free_bytes() -> u64 {
     let mut system = System::new();
     system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());
@@ -186,14 +182,15 @@ fn min_free_bytes() -> u64 {
     (all as f64 * MIN_FREE) as u64
 }
 
-/// Returns the bytes of memory that this program can still allocate; `None` if unknown. This is the
-/// minimum of the free memory, the limit of its control group and the limit of its address space.
+/// Returns the bytes that this program can still allocate; `None` if unknown. This is the minimum
+/// of three values: the free memory, the limit of the control group, and the limit of the address
+/// space.
 pub fn free_memory() -> Option<u64> {
     let mut system = System::new();
     system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());
-    // 0 means unknown.
+    // The value 0 means unknown.
     let free = Some(system.available_memory()).filter(|&free| free > 0);
-    // Use `rss`: cached files count as used memory of the group, but are dropped when needed.
+    // `rss` leaves out cached files, which the kernel drops when it needs memory.
     let group = system.cgroup_limits();
     let group = group.map(|limits| limits.total_memory.saturating_sub(limits.rss));
     let limits = [free, group, pages::address_space_left()];

@@ -11,16 +11,16 @@ use sixfold_workload::Backend;
 pub struct StudyMesh {
     /// Origin of the mesh, such as its file name.
     pub name: String,
-    /// Facts of the file, including degenerate faces, which have no edges.
+    /// Facts of the file. Degenerate faces are counted.
     pub facts: Facts,
-    /// Mesh to build structures from, without the degenerate faces of the file.
+    /// The mesh without the degenerate faces of the file.
     pub polygons: PolygonMesh,
     /// Differences between `polygons` and the file, as phrases.
     pub changes: Vec<String>,
 }
 
 impl StudyMesh {
-    /// Makes an unchanged mesh ready for studies, with its facts; O(corners) expected.
+    /// Computes the facts of a mesh; O(corners) expected.
     pub fn new(name: impl Into<String>, polygons: PolygonMesh) -> Self {
         Self {
             name: name.into(),
@@ -39,8 +39,8 @@ impl StudyMesh {
     }
 }
 
-/// Checks for each of `backends` whether it can hold the mesh, without building it; O(corners)
-/// expected per backend.
+/// Finds the backends that can hold the mesh, without building them; O(corners) expected per
+/// backend.
 pub fn inspect(study_mesh: &StudyMesh, backends: &[Backend]) -> Inspection {
     let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
     let backends = backends.iter().map(|backend| {
@@ -54,7 +54,7 @@ pub fn inspect(study_mesh: &StudyMesh, backends: &[Backend]) -> Inspection {
     }
 }
 
-/// Returns the report of a backend that is not built yet, or that refused the mesh.
+/// Returns the report of a backend that is not built.
 pub(crate) fn unbuilt(
     backend: &Backend,
     counts: &Counts,
@@ -78,7 +78,6 @@ pub(crate) fn unbuilt(
     }
 }
 
-/// Returns `bytes` divided by the number of vertices; `None` if there are no vertices.
 pub(crate) fn per_vertex(bytes: usize, counts: &Counts) -> Option<f64> {
     (counts.vertices > 0).then(|| bytes as f64 / counts.vertices as f64)
 }

@@ -9,7 +9,7 @@ use crate::pick::PickReport;
 use crate::read::Results;
 use crate::why::Why;
 
-/// Results of other commands than `sixfold study`.
+/// Results of the measuring commands besides `sixfold study`.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(default)]
 pub struct Labs {
@@ -24,7 +24,7 @@ pub struct Labs {
 }
 
 impl Labs {
-    /// Counts the results that contradict those of other backends.
+    /// Counts the results that differ from those of other backends without a known reason.
     pub fn mismatches(&self) -> usize {
         let orders = self.orders.iter().map(OrdersReport::mismatches);
         let growth = self.growth.iter().map(GrowthReport::mismatches);
@@ -33,7 +33,7 @@ impl Labs {
         orders.chain(growth).chain(why).chain(picks).sum()
     }
 
-    /// Returns whether any of them was interrupted.
+    /// Returns whether a lab was interrupted.
     pub fn interrupted(&self) -> bool {
         let orders = self.orders.iter().map(|orders| orders.interrupted);
         let growth = self.growth.iter().map(|growth| growth.interrupted);

@@ -1,15 +1,16 @@
 //! Workloads, interleaved measurement and reports: which structure fits this mesh and this work?
 //!
-//! [`study()`] builds every requested backend, runs the [`Operation`]s on them in interleaved
-//! rounds until the budget is spent, compares checksums to prove that all did the same work, and
-//! returns a [`Report`]. [`orders`] does this for one mesh in several orders, and [`growth`] does
-//! it for one shape in many sizes. [`inspect`] describes a mesh and the backends that can hold it,
-//! and measures nothing. [`pick`] ranks the backends for a workload. [`compare`] compares two
-//! studies. A [`Collection`] pools the studies of many meshes. [`audit`] counts the bytes of each
-//! backend in three ways. The three counts must agree. [`why`] counts the bytes that relations
-//! read, and compares their times with the speed of memory.
+//! [`study()`] builds every requested backend and runs the [`Operation`]s on them in interleaved
+//! rounds. It compares checksums to prove that all backends did the same work, and returns a
+//! [`Report`]. [`orders`] does this for one mesh in several orders. [`growth`] does this for one
+//! shape in many sizes.
 //!
-//! `reports/SCHEMA.md` explains the figures. This crate has no command line and prints nothing: it
+//! [`inspect`] describes a mesh and the backends that can hold it. [`pick`] ranks the backends for
+//! a workload. [`compare`] compares two studies. A [`Collection`] pools the studies of many meshes.
+//! [`audit`] counts the bytes of each backend in three ways, which must agree. [`why`] counts the
+//! bytes that relations read, and compares their times with the speed of memory.
+//!
+//! `reports/SCHEMA.md` explains the figures. This crate has no command line and prints nothing. It
 //! reports progress to a closure and stops when a flag is set.
 
 mod agreement;

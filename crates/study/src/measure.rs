@@ -1,12 +1,14 @@
 //! The measuring loop: a warm-up that plans the samples, then rounds until the budget is spent.
 //!
-//! In every round each operation runs on every structure, one right after the other, in random
-//! order. Slow changes (frequency, heat, other programs) therefore affect all structures alike, and
-//! hardly affect ratios within a round. A sample repeats a short operation until the clock can
-//! resolve the time. About as much untimed work comes before it, so that the caches hold the data
-//! of this structure. If time allows, all structures are built again elsewhere in memory between
-//! rounds, so that the addresses of their tables vary. Operations that allocate are measured again
-//! at the end, on fresh pages.
+//! In every round each operation runs on every structure, in random order. Slow changes of the
+//! machine (frequency, heat, other programs) then affect all structures alike. They hardly affect
+//! the ratios within a round.
+//!
+//! A sample repeats a short operation until the clock can resolve the time. Untimed runs come
+//! before the sample. They bring the data of the structure into the caches.
+//!
+//! If there is time, all structures are built again between rounds, at other addresses. Operations
+//! that allocate are also measured on fresh pages, after the last round.
 
 use std::hint::black_box;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -26,61 +28,56 @@ use sixfold_workload::{
     Job, MIN_TIMED_NS, Outcome, Run, Series, Start, TimedBackend, exceeds_second_level,
 };
 
-/// Largest number of rounds; more would hardly narrow the intervals.
+/// Maximum number of rounds.
 const MAX_ROUNDS: u32 = 200;
-/// Part of the budget for samples on fresh pages.
+/// Part of the budget for the samples on fresh pages.
 const FIRST_TIMES_SHARE: f64 = 0.1;
-/// Largest number of samples on fresh pages; more would hardly improve the figures.
+/// Maximum number of samples on fresh pages.
 const MAX_FIRST_TIMES: u32 = 9;
 /// Part of the elapsed time for building the structures again.
 const REBUILDING_SHARE: f64 = 0.04;
-/// Largest gap in bytes that is allocated before a structure is built again.
+/// Maximum size of the gap allocated before a structure is built again, in bytes.
 const LARGEST_GAP: usize = 64 << 10;
-/// Largest number of runs in one sample.
+/// Maximum number of runs in one sample.
 pub(crate) const MAX_RUNS: f64 = 1e7;
-/// Runs longer than this fill the caches without untimed runs.
+/// Minimum time of a run that fills the caches without untimed runs, in nanoseconds.
 pub(crate) const LONG_RUN_NS: f64 = 10_000_000.0;
-/// Limits for the additional untimed runs of a structure larger than the second-level cache: their
-/// number, and their time in nanoseconds.
+/// Limits of the additional untimed runs for a structure larger than the second-level cache.
 const LARGE_WARM_UP_RUNS: u32 = 4;
 const LARGE_WARM_UP_NS: f64 = 20_000_000.0;
 
 /// One operation on one structure: the plan of its measurement, and the results.
 #[derive(Clone, Debug)]
 pub(crate) struct Entry {
-    /// Index of the subject.
     pub(crate) subject: usize,
-    /// The operation, and its sample of elements.
     pub(crate) job: Job,
     /// Number of runs before the clock starts.
     pub(crate) untimed: u32,
     /// Number of timed runs in one sample.
     pub(crate) runs: u32,
-    /// The entry takes part in every n-th round; never if 0.
+    /// The entry takes part in every n-th round; never if `every` is 0.
     pub(crate) every: u32,
     /// Expected wall time of one sample, in nanoseconds.
     pub(crate) cost_ns: f64,
-    /// Time of the warm-up run; `None` until it is over.
+    /// Time of the warm-up run; `None` before the warm-up.
     pub(crate) warm_up: Option<Time>,
-    /// The results of the operation.
     pub(crate) outcome: Option<Outcome>,
-    /// Estimated time if a run would take too long. The operation is then not measured.
+    /// Estimated time of an operation that takes too long to be measured.
     pub(crate) estimate: Option<Time>,
-    /// Whether the time is only estimated because the operation was not requested by name. The
-    /// budget has room for a run.
+    /// Whether the time is an estimate because the user did not name the operation.
     pub(crate) by_name_only: bool,
-    /// Why it cannot be done on this structure or mesh.
+    /// Why the operation cannot be done on this structure or mesh.
     pub(crate) refusal: Option<String>,
-    /// Round and time of one run, for each sample.
+    /// For each sample, its round and the time of one run.
     pub(crate) samples: Vec<(u32, Time)>,
-    /// For each sample, the slowdown that the [`DisturbanceDetector`] measured before or after it,
-    /// whichever is larger.
+    /// For each sample, the larger of the slowdowns before and after the sample, as measured by
+    /// [`DisturbanceDetector`].
     pub(crate) slowdowns: Vec<f64>,
-    /// Whether the last sample was disturbed. The entry then takes part in the next round, too.
+    /// Whether the last sample was disturbed. If so, the entry takes part in the next round.
     pub(crate) repeat_next: bool,
     /// Number of samples taken again because of page faults or disturbance.
     pub(crate) retaken: u32,
-    /// Pairs of times: of one run on fresh pages and tables, and of a normal run right after it.
+    /// Pairs of times: a run on fresh pages, and a normal run directly after it.
     pub(crate) first_times: Vec<[Time; 2]>,
 }
 
@@ -110,26 +107,26 @@ impl Entry {
         }
     }
 
-    /// Returns the time of a first run: the median time multiplied by the median ratio of first
-    /// runs to the runs right after them.
+    /// Returns the time of a first run. This is the median time, multiplied by the median ratio of
+    /// a first run to the run after it.
     pub(crate) fn first_ns(&self) -> Option<f64> {
         let median = Median::from_samples(self.times().iter().map(|(_, time)| time.ns()))?;
         let ratio = |[first, later]: &[Time; 2]| first.ns() / later.ns().max(1.0);
         Some(median.value * Median::from_samples(self.first_times.iter().map(ratio))?.value)
     }
 
-    /// Returns the expected time to measure one first run, in nanoseconds: that of three runs.
     fn first_time_cost_ns(&self) -> f64 {
         3.0 * self.cost_ns / f64::from(self.runs + self.untimed)
     }
 
-    /// Returns whether first runs can be measured: the operation allocates, and was run in full.
+    /// Returns whether first runs can be measured. The operation must allocate and must not be
+    /// sampled.
     fn has_first_time(&self) -> bool {
         let measured = !self.samples.is_empty() && self.job.sample.is_none();
         measured && self.job.operation.allocates()
     }
 
-    /// Returns the samples that count, or the warm-up run if there was no time for samples.
+    /// Returns the samples that count. If there are no samples, returns the warm-up run.
     pub(crate) fn times(&self) -> Vec<(u32, Time)> {
         match (&self.samples[..], self.warm_up) {
             ([], Some(time)) if self.estimate.is_none() => vec![(0, time)],
@@ -137,10 +134,9 @@ impl Entry {
         }
     }
 
-    /// Returns the shortest interval between two readings of the clock, in nanoseconds: a sample,
-    /// or a part of it if the clock stops between runs.
+    /// Returns the shortest time between two readings of the clock, in nanoseconds.
     pub(crate) fn shortest_sample_ns(&self) -> Option<f64> {
-        // Times of sampled elements are scaled to all elements; the original time is not kept.
+        // Times of sampled elements are scaled to the whole mesh. The original time is not kept.
         let whole = self.samples.iter().filter(|_| self.job.sample.is_none());
         let shortest = whole.map(|(_, time)| time.ns()).min_by(f64::total_cmp)?;
         let sample = shortest * f64::from(self.runs);
@@ -151,14 +147,15 @@ impl Entry {
     }
 }
 
-/// Returns the number of untimed runs of `operation` before a sample, if one run takes `ns`. There
-/// is at least one, and together they take up to `most_ns`. They fill caches, branch predictors and
-/// tables as in a program that does nothing else. A run longer than 10 ms does this by itself. It
-/// gets one untimed run if tables grow, else none.
+/// Returns the number of untimed runs of `operation` before a sample, if one run takes `ns`.
 ///
-/// If the structure is `large`, that is, larger than the second-level cache, there may be up to
-/// four runs even if they take longer than `most_ns`. The third-level cache keeps data only after
-/// it was read several times.
+/// The untimed runs fill the caches, the branch predictors and the tables. There is at least one,
+/// and together they take up to `most_ns`. A run longer than 10 ms fills the caches by itself. It
+/// gets one untimed run if the tables grow, else none.
+///
+/// `large` means larger than the second-level cache. A large structure gets up to four untimed
+/// runs, even if they take longer than `most_ns`. The third-level cache keeps only data that was
+/// read several times.
 pub(crate) fn untimed_runs(operation: Operation, ns: f64, most_ns: f64, large: bool) -> u32 {
     if ns > LONG_RUN_NS {
         return u32::from(operation.grows_tables());
@@ -174,40 +171,38 @@ pub(crate) fn untimed_runs(operation: Operation, ns: f64, most_ns: f64, large: b
 /// Progress of a study, for display.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress<'a> {
-    /// The part that is done, from 0 to 1.
+    /// The finished part, from 0 to 1.
     pub done: f64,
-    /// Name of the current stage.
+    /// The name of the current stage.
     pub stage: &'a str,
-    /// Operation that is measured now.
+    /// The operation that is measured now.
     pub operation: Operation,
-    /// Backend that is measured now.
+    /// The backend that is measured now.
     pub backend: &'a str,
 }
 
 /// The measurement of several subjects, with its clock and budget.
 pub(crate) struct Measurement<'b, 's> {
     pub(crate) subjects: &'b mut [Box<dyn TimedBackend + 's>],
-    /// Index of the subject that repeats another one, for the control.
+    /// Index of the control: a second subject of a backend that is measured twice.
     pub(crate) control: Option<usize>,
     /// Numbers of vertices, edges and faces of the mesh.
     pub(crate) population: [usize; 3],
-    /// Whether some valence or degree is so large that walking around it is as slow as a scan.
+    /// Whether some valence or degree is very large. Visiting all neighbours is then as slow as a
+    /// scan.
     pub(crate) skewed: bool,
     pub(crate) clock: &'b dyn Clock,
-    /// The heap and the caches.
     pub(crate) memory: &'b mut Memory,
     pub(crate) budget: Duration,
     /// Whether the operations were requested by name.
     pub(crate) named: bool,
     pub(crate) random: ChaCha8Rng,
-    /// Ends the measurement when set.
     pub(crate) stop: &'b AtomicBool,
     pub(crate) progress: &'b mut dyn FnMut(Progress<'_>),
 }
 
 impl Measurement<'_, '_> {
-    /// Measures `operations` on all subjects. Returns early, with the finished part, if `stop` is
-    /// set.
+    /// Measures `operations` on all subjects. If `stop` is set, returns the finished part.
     pub(crate) fn measure(&mut self, operations: &[Operation]) -> Vec<Entry> {
         let start = self.clock.now().wall_ns;
         let deadline = start + self.budget.as_nanos() as f64;
@@ -215,7 +210,7 @@ impl Measurement<'_, '_> {
         for &operation in operations {
             entries.extend((0..self.subjects.len()).map(|s| Entry::new(s, operation)));
         }
-        // Reserve for the warm-up: its runs may be the only ones that fit the budget.
+        // Reserve memory before the warm-up: its runs may be the only runs that fit the budget.
         let largest = self.subjects.iter().map(|subject| subject.bytes()).max();
         self.memory.reserve_for(2 * largest.unwrap_or(0) as u64);
         self.warm_up(&mut entries, deadline);
@@ -227,20 +222,19 @@ impl Measurement<'_, '_> {
             false => 0.0,
         };
         self.rounds(&mut entries, start, deadline - for_first_times);
-        // This comes last, because it returns pages to the kernel that samples would otherwise
-        // reuse.
+        // First runs come last, because they return pages to the kernel. Other samples would reuse
+        // these pages.
         if for_first_times > 0.0 {
             self.first_times(&mut entries, deadline);
         }
         entries
     }
 
-    /// Returns whether `stop` is set.
     pub(crate) fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Runs `job` in the cache state of the settings: `untimed` runs, then `runs` timed ones.
+    /// Runs `job` `untimed` times without the clock, then `runs` times with the clock.
     pub(crate) fn run(
         &mut self,
         subject: usize,
@@ -258,12 +252,12 @@ impl Measurement<'_, '_> {
         self.subjects[subject].run(job, &series)
     }
 
-    /// Runs rounds until the next one would not end in time. The first round always starts, but
-    /// leaves out entries that would not end in time.
+    /// Runs rounds until the next round would exceed the time. The first round always starts, but
+    /// leaves out entries that would exceed the time.
     fn rounds(&mut self, entries: &mut [Entry], start: f64, deadline: f64) {
         let mut groups = groups(entries);
         let mut detector = DisturbanceDetector::new(self.budget.as_nanos() as f64);
-        // First guess: building and touching a structure takes about 1 ns per byte.
+        // First estimate: building and touching a structure takes 1 ns per byte.
         let mut rebuild_ns: f64 = self.subjects.iter().map(|s| s.bytes() as f64).sum();
         let mut rebuilding_ns = 0.0;
         for round in 0..MAX_ROUNDS {
@@ -285,7 +279,7 @@ impl Measurement<'_, '_> {
             groups.shuffle(&mut self.random);
             for group in &mut groups {
                 group.shuffle(&mut self.random);
-                // Repeats all entries of an operation together, because ratios are formed within
+                // Repeat all entries of an operation together, because ratios are formed within
                 // rounds.
                 let repeat_next = group.iter().any(|&entry| entries[entry].repeat_next);
                 for &entry in &*group {
@@ -310,17 +304,13 @@ impl Measurement<'_, '_> {
         }
     }
 
-    /// Returns whether another copy of the largest structure, with its outputs, fits into free
-    /// memory.
     fn has_room_to_rebuild(&self) -> bool {
         let largest = self.subjects.iter().map(|subject| subject.bytes()).max();
         self.memory.has_room_for(2 * largest.unwrap_or(0) as u64)
     }
 
-    /// Builds all structures again, each elsewhere in memory. If pages are kept, returns them to
-    /// the kernel first, so that the kernel chooses new ones. For large structures it chooses them
-    /// in random order. The addresses and the pages of the tables affect times and do not change
-    /// between two rebuilds.
+    /// Builds all structures again, at other addresses. If pages are kept, returns them to the
+    /// kernel first, so that the kernel chooses new pages. Addresses and pages affect the times.
     fn rebuild(&mut self) {
         let mut order: Vec<usize> = (0..self.subjects.len()).collect();
         order.shuffle(&mut self.random);
@@ -340,7 +330,7 @@ impl Measurement<'_, '_> {
         self.memory.reserve();
     }
 
-    /// Takes a sample and records it, or records a refusal: an external program may refuse at any
+    /// Takes and records a sample, or records a refusal. An external program can refuse at any
     /// time.
     fn sample(&mut self, detector: &mut DisturbanceDetector, entry: &mut Entry, round: u32) {
         let (stop, kept) = (self.stop, self.memory.keeps_pages());
@@ -367,9 +357,9 @@ impl Measurement<'_, '_> {
         }
     }
 
-    /// Measures on fresh pages the operations that allocate: one run per sample, in rounds, while
-    /// there is time. A normal run follows each such run. The ratio of the two does not depend on
-    /// the current speed of the machine.
+    /// Measures the allocating operations on fresh pages: one run per sample, in rounds, while
+    /// there is time. A normal run follows each of these runs. The ratio of the two does not depend
+    /// on the current speed of the machine.
     fn first_times(&mut self, entries: &mut [Entry], deadline: f64) {
         let control = self.control;
         let mut entries: Vec<&mut Entry> = entries
@@ -415,13 +405,11 @@ fn takes_part(entry: &Entry, round: u32) -> bool {
     can_take_part(entry) && round.is_multiple_of(entry.every)
 }
 
-/// Returns whether `entry` runs in rounds at all.
 fn can_take_part(entry: &Entry) -> bool {
     let can = entry.warm_up.is_some() && entry.refusal.is_none();
     can && entry.every > 0 && entry.estimate.is_none()
 }
 
-/// Returns the indices of the entries, grouped by operation.
 fn groups(entries: &[Entry]) -> Vec<Vec<usize>> {
     let numbers: Vec<usize> = (0..entries.len()).collect();
     let same = |&a: &usize, &b: &usize| entries[a].job.operation == entries[b].job.operation;

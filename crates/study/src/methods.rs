@@ -1,16 +1,15 @@
-//! Sentences on subdivision methods: which method is faster on which structure.
+//! Sentences about subdivision methods.
 
 use sixfold::subdivision::Method;
 
 use crate::report::{BackendReport, ResultRow};
 use sixfold_workload::Operation;
 
-/// The smallest ratio of two methods that is reported.
+/// Minimum ratio of two methods that is reported.
 const MIN_RATIO: f64 = 1.1;
-/// Assumed error factor of a figure without an interval: an estimate, or one with few samples.
+/// Assumed error factor of a time without an interval.
 const ASSUMED_ERROR: f64 = 1.5;
 
-/// A time in nanoseconds, with its interval.
 #[derive(Clone, Copy)]
 struct MeasuredTime {
     low: f64,
@@ -28,15 +27,14 @@ impl MeasuredTime {
         })
     }
 
-    /// Returns the ratio of this time to `other`, if this time is clearly longer.
+    /// Returns the ratio of this time to `other` if this time is clearly longer.
     fn ratio_if_longer(self, other: Self) -> Option<f64> {
         let ratio = self.ns / other.ns;
         (self.low > other.high && ratio > MIN_RATIO).then_some(ratio)
     }
 }
 
-/// Returns one sentence per scheme: the structures on which scatter is faster than gather, those on
-/// which it is slower, and those on which native steps are faster than both. `times` formats a
+/// Returns one sentence per scheme about the fastest method on each structure. `times` formats a
 /// ratio.
 pub(crate) fn methods(
     backends: &[BackendReport],

@@ -1,9 +1,9 @@
-//! The order lab: one mesh in several orders, on every structure, measured in one interleaved run.
+//! The order lab: measures one mesh in several orders on every structure.
 //!
-//! An order changes only the places of elements in memory, so two columns differ only in how well
-//! caches and prefetchers work. This can matter more than the choice of a structure. A study of one
-//! file does not show it, because the file has a single order. All orders use samples of the same
-//! elements, so that checksums can be compared.
+//! An order changes only the places of elements in memory. Two columns of one structure therefore
+//! differ only in how well caches and prefetchers work. This effect can be larger than the effect
+//! of the structure. A study of one file cannot show the effect, because a file has one order. All
+//! orders use the same sampled elements, so that their checksums can be compared.
 
 mod effects;
 mod meshes;
@@ -37,8 +37,7 @@ use effects::OrderSamples;
 use meshes::OrderedMeshes;
 use sixfold_workload::{Backend, MachineClock, Operation, TimedBackend};
 
-/// Operations that are measured by default: queries around vertices, faces and edges, a sum over
-/// faces, and a traversal of the whole mesh.
+/// Operations that are measured by default.
 pub const DEFAULT_OPERATIONS: [&str; 6] = [
     "vertex_vertices",
     "vertex_faces",
@@ -48,7 +47,7 @@ pub const DEFAULT_OPERATIONS: [&str; 6] = [
     "ff_bfs",
 ];
 
-/// Smallest budget.
+/// Minimum budget.
 const MIN_BUDGET: Duration = Duration::from_millis(100);
 
 /// The reason why orders cannot be compared.
@@ -56,7 +55,7 @@ const MIN_BUDGET: Duration = Duration::from_millis(100);
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum OrdersError {
-    /// There is nothing to study.
+    /// The study is not possible.
     #[error(transparent)]
     Study(#[from] StudyError),
     /// The budget is too short.
@@ -70,25 +69,26 @@ pub enum OrdersError {
 pub struct OrdersReport {
     /// Version of the JSON schema.
     pub schema: u32,
-    /// Name and facts of the mesh in its given order.
+    /// Name and facts of the mesh in its original order.
     pub mesh: MeshReport,
-    /// The orders, in the order of tables.
+    /// The orders, as tables list them.
     pub orders: Vec<Order>,
-    /// The requested backends, in the order of [`Backend::structures`], built from the mesh in its given order.
+    /// The requested backends, in the order of [`Backend::structures`], built from the original
+    /// order.
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
-    /// The rows, sorted by operation, then structure, then order.
+    /// The rows, by operation, then structure, then order.
     pub results: Vec<OrderRow>,
-    /// Requested operations that cannot be done.
+    /// Requested operations that a backend cannot do.
     pub refusals: Vec<Refusal>,
     /// The effects of order and structure, for each operation.
     pub comparisons: Vec<Comparison>,
-    /// One structure in the given order, measured twice.
+    /// One structure in the original order, measured twice.
     pub control: Option<Control>,
-    /// Sentences on the tables.
+    /// Sentences about the tables.
     #[serde(rename = "words")]
     pub sentences: Vec<String>,
-    /// Whether the run was interrupted before the end.
+    /// Whether the run was interrupted.
     pub interrupted: bool,
     /// The machine and the program.
     pub environment: Environment,
@@ -99,7 +99,7 @@ pub struct OrdersReport {
 pub struct OrderRow {
     /// The order.
     pub order: Order,
-    /// The times. `standing` and the ratio to the best compare the orders of this structure.
+    /// The times. `standing` and `ratio_to_best` compare the orders of this structure.
     #[serde(flatten)]
     pub row: ResultRow,
 }
@@ -111,7 +111,7 @@ impl OrdersReport {
         self.results.iter().filter(of_it)
     }
 
-    /// Counts the results that contradict those of other structures.
+    /// Counts the results that differ from those of other structures without a known reason.
     pub fn mismatches(&self) -> usize {
         let wrong = |row: &&OrderRow| row.row.agreement == Agreement::Mismatch;
         self.results.iter().filter(wrong).count()
@@ -127,7 +127,7 @@ impl OrdersReport {
     }
 }
 
-/// Returns the requested operations, or [`DEFAULT_OPERATIONS`] by default, in the order of tables.
+/// Returns the requested operations. If none is requested, returns [`DEFAULT_OPERATIONS`].
 pub(crate) fn chosen_operations(settings: &Settings) -> Vec<Operation> {
     let requested = |operation: &Operation| match settings.operations.is_empty() {
         true => DEFAULT_OPERATIONS.contains(&operation.name()),
@@ -136,15 +136,16 @@ pub(crate) fn chosen_operations(settings: &Settings) -> Vec<Operation> {
     Operation::ALL.into_iter().filter(requested).collect()
 }
 
-/// Measures the mesh in every order on every requested backend. `settings` are those of a study. If
-/// they name no operations, [`DEFAULT_OPERATIONS`] are measured.
+/// Measures the mesh in every order on every requested backend. If `settings` name no operations,
+/// [`DEFAULT_OPERATIONS`] are measured.
 ///
-/// Setting `stop` ends the run between two samples; the report contains the finished part.
+/// Setting `stop` ends the run after the current sample. The report then contains the finished
+/// part.
 ///
 /// # Errors
 ///
-/// Returns an error if a backend is unknown, the mesh has no faces, no requested backend can hold
-/// the mesh, or the budget is too short.
+/// Returns an error if a backend is unknown, if the mesh has no faces, if no requested backend can
+/// hold the mesh, or if the budget is too short.
 pub fn orders(
     study_mesh: &StudyMesh,
     settings: &Settings,
@@ -193,7 +194,6 @@ pub fn orders(
         let refusals = backends.into_iter().map(reason).collect();
         return Err(StudyError::NoneHolds { refusals }.into());
     }
-    // The first subject that never scans; its given order comes first.
     let first = measured_twice(&subjects);
     let second = subjects.len();
     let again = meshes.iter().next().and_then(|(_, mesh, draw)| {
@@ -261,21 +261,18 @@ pub fn orders(
     })
 }
 
-/// The backend and the order of a subject.
 struct Column {
     backend: Backend,
     order: Order,
 }
 
-/// Returns whether the result depends on the order of the input: the operation starts at the first
-/// face, or edits the elements one after another.
+/// Returns whether the result depends on the order of the input.
 fn depends_on_order(operation: Operation) -> bool {
     matches!(operation, Operation::FfBfs | Operation::EditPass(_))
 }
 
-/// Returns the agreement of every entry according to `compare`. The results of all orders are
-/// compared with each other. If the result of an operation depends on the order, the comparison is
-/// made only within each order.
+/// Compares the checksums of all orders. If the result of an operation depends on the order,
+/// compares the checksums only within each order.
 fn agreements(
     entries: &[Entry],
     columns: &[Column],
@@ -300,7 +297,8 @@ fn agreements(
     agreements
 }
 
-/// Returns a row for each entry with a time, compared among the orders of its structure.
+/// Returns a row for each entry with a time. A row is compared with the other orders of its
+/// structure.
 fn rows(
     entries: &[Entry],
     agreements: &[Agreement],
@@ -335,7 +333,6 @@ fn rows(
     rows
 }
 
-/// Removes duplicates: all orders of a structure give the same refusal.
 fn deduplicated(refusals: Vec<Refusal>) -> Vec<Refusal> {
     let mut kept: Vec<Refusal> = Vec::new();
     for refusal in refusals {
@@ -361,19 +358,18 @@ pub fn orders_bytes(study_mesh: &StudyMesh, settings: &Settings) -> Result<u64, 
     let (all, most) = bytes.fold((0, 0), |(all, most): (u64, u64), one| {
         (all + one, most.max(one))
     });
-    // Plus the control, and temporary memory for building one structure.
+    // Three times the largest structure: the control, and memory for building one structure.
     Ok(copies * (all + draw_bytes(&counts)) + 3 * most)
 }
 
-/// Estimates the bytes of a structure and of the outputs of operations on it.
+/// Estimates the bytes of a structure and of its outputs.
 pub(crate) fn prepared_bytes(backend: &Backend, counts: &Counts) -> u64 {
-    /// Bytes of one position, for each vertex and face.
+    /// Bytes of one position.
     const OUTPUTS: u64 = 12;
     let outputs = OUTPUTS * (counts.vertices + counts.faces) as u64;
     (backend.layout_bytes)(counts) as u64 + outputs
 }
 
-/// Estimates the bytes of a [`PolygonMesh`] and of a draw of its elements.
 pub(crate) fn draw_bytes(counts: &Counts) -> u64 {
     let polygons = 12 * counts.vertices + 4 * counts.corners;
     let draw = 4 * (counts.vertices + counts.faces) + 12 * counts.edges;

@@ -1,9 +1,9 @@
 //! Picks the fastest backend for a mesh and a workload, with intervals and reasons.
 //!
-//! Every backend that qualifies runs the mix of the workload, in its access order, in interleaved
-//! rounds as in a study. After the rounds each part of the mix is timed alone, to explain the
-//! result. If the mix does not change connectivity, relation tables take part as one more backend.
-//! They contain only the relations that the mix queries.
+//! Every backend that qualifies runs the mix of the workload in its access order. The backends run
+//! in interleaved rounds, as in a study. After the rounds, each part of the mix is timed alone to
+//! explain the result. If the mix does not change connectivity, relation tables are measured as one
+//! more backend. These tables contain only the relations that the mix queries.
 
 mod backend;
 mod break_even;
@@ -41,24 +41,23 @@ use measurement::PickMeasurement;
 pub struct PickSettings {
     /// The workload of the program.
     pub workload: Workload,
-    /// Names of the backends to compare; empty for all.
+    /// The names of the backends. If the list is empty, all backends are compared.
     pub backends: Vec<String>,
-    /// Additional structures beside those of Sixfold.
+    /// Additional structures that are not part of Sixfold.
     pub extra: Vec<Backend>,
     /// Capabilities that the structure must have.
     pub needs: Vec<Need>,
     /// The maximum size of the structure, in bytes.
     pub max_memory: Option<u64>,
-    /// Time limit of the measurement, for all meshes together.
+    /// Time limit of the measurement of all meshes together.
     pub budget: Duration,
-    /// Seed of the routes and of the random order in which backends are measured.
+    /// Seed of the routes and of the measurement order.
     pub seed: u64,
-    /// The policy for pages that operations free.
+    /// The policy for freed pages.
     pub heap: Policy,
 }
 
 impl PickSettings {
-    /// Returns the backends to compare.
     fn chosen_backends(&self) -> Result<Vec<Backend>, StudyError> {
         let settings = Settings {
             backends: self.backends.clone(),
@@ -74,7 +73,7 @@ impl PickSettings {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum PickError {
-    /// The mesh has no faces, or a name is unknown.
+    /// The mesh has no faces or a name is unknown.
     #[error(transparent)]
     Study(#[from] StudyError),
     /// The workload cannot be run on this mesh.
@@ -83,8 +82,8 @@ pub enum PickError {
         mesh: String,
         reason: EditPlaceError,
     },
-    /// The budget is too short for three rounds. `needed_ms` is rounded up and is for all meshes
-    /// together.
+    /// The budget is too short for three rounds. `needed_ms` is the budget for all meshes, rounded
+    /// up.
     #[error(
         "{mesh}: a budget of {} ms is too small to measure anything, because three rounds take \
          longer: use --budget {needed_ms}ms or more", .budget.as_millis()
@@ -99,16 +98,16 @@ pub enum PickError {
     NoMesh,
 }
 
-/// Ranks the backends for the workload of `settings` by running it on each of `study_meshes`.
+/// Runs the workload of `settings` on each of `study_meshes`, and ranks the backends.
 ///
 /// If no backend qualifies, the ranking is empty and `excluded` has the reasons. Setting `stop`
-/// ends the measurement between two samples; the report contains what is finished. `progress` is
-/// called with the finished part, from 0 to 1, and the current step.
+/// ends the measurement after the current sample. The report then contains the finished part.
+/// `progress` is called with the finished part, from 0 to 1, and the current step.
 ///
 /// # Errors
 ///
-/// Returns [`PickError`] for unknown names, a mesh without faces, a workload that cannot be run on
-/// a mesh, or a budget that is too small.
+/// Returns an error if a name is unknown, if a mesh has no faces, if the workload cannot be run on
+/// a mesh, or if the budget is too small.
 pub fn pick(
     study_meshes: &[StudyMesh],
     settings: &PickSettings,
@@ -154,16 +153,14 @@ pub fn pick(
     ))
 }
 
-/// Estimates how many bytes the measurement on one mesh holds at once.
 fn needed(study_mesh: &StudyMesh, settings: &PickSettings) -> u64 {
     let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
-    // Unknown names are refused later.
+    // Unknown names cause an error later.
     let backends = settings.chosen_backends().unwrap_or_default();
-    // Doubled to include the relation tables and the allocations of edits and subdivision.
+    // The factor 2 includes relation tables and the allocations of edits and subdivision.
     2 * needed_bytes(&backends, &Operation::ALL, &counts)
 }
 
-/// Budget, clock, memory and callbacks of the measurement on one mesh.
 pub(crate) struct MeasureContext<'m> {
     budget: Duration,
     clock: &'m MachineClock,
@@ -172,7 +169,7 @@ pub(crate) struct MeasureContext<'m> {
     progress: &'m mut dyn FnMut(f64, &str),
 }
 
-/// Converts an error about the budget of one mesh to the budget of all meshes.
+/// Converts the budget in an error from one mesh to all meshes.
 fn for_all_meshes(error: PickError, settings: &PickSettings, meshes: usize) -> PickError {
     match error {
         PickError::BudgetTooSmall {

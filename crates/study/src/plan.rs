@@ -1,43 +1,41 @@
-//! The warm-up runs everything once, and plans samples that fit the budget.
+//! Runs every operation once, and plans samples that fit the budget.
 
 use crate::measure::{Entry, MAX_RUNS, Measurement, untimed_runs};
 use sixfold_workload::Time;
 use sixfold_workload::{ElementKind, Operation};
 use sixfold_workload::{ElementSample, Job, Run, exceeds_second_level};
 
-/// The number of rounds that the plan aims at.
+/// Planned number of rounds.
 const ROUNDS: u32 = 20;
-/// The shortest sample. In a shorter sample the resolution of the clock would matter.
+/// Minimum time of a sample. The clock cannot resolve shorter samples well.
 pub(crate) const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
-/// The longest sample of several runs. More samples are better than longer ones.
+/// Maximum time of a sample of several runs. Many short samples are better than a few long ones.
 const LONGEST_SAMPLE_NS: f64 = 2_000_000.0;
-/// An entry whose sample costs up to this many slots takes part in every third round. A slot is the
-/// time of one entry in one round, if all entries get equal time.
+/// Maximum cost of a sample that takes part in every third round, in slots. A slot is the time of
+/// one entry in one round, if all entries get equal time.
 const MEDIUM_COST_SLOTS: f64 = 6.0;
 const MEDIUM_COST_EVERY: u32 = 3;
-/// An entry whose sample costs more than [`MEDIUM_COST_SLOTS`] takes part in every sixth round.
+/// Interval of rounds for entries that cost more than [`MEDIUM_COST_SLOTS`].
 const HIGH_COST_EVERY: u32 = 6;
-/// The longest run in rounds of an operation that was named in the settings, as a part of the time
-/// left.
+/// Maximum time of a run in the rounds, as a part of the time left.
 const LONGEST_IN_ROUNDS: f64 = 0.1;
-/// The part of the time left for backends that scan, if other backends do not scan. Backends that
-/// scan are hundreds of times slower, so wide intervals are enough to rank them.
+/// Part of the time left for backends that scan. Their intervals may be wide, because they are
+/// hundreds of times slower than backends that do not scan.
 const SCANS_PART: f64 = 0.25;
-/// The smallest number of elements in a sample, for any budget.
+/// Minimum number of elements in a sample.
 pub(crate) const MIN_ELEMENTS: usize = 16;
-/// The longest single run outside the rounds of an operation that cannot be sampled, as a part of
-/// the time left.
+/// Maximum time of a single run outside the rounds, as a part of the time left.
 const LONGEST_ONCE: f64 = 0.5;
-/// The longest such run of an operation that makes or edits a mesh and was not named in the
-/// settings.
+/// Maximum time of a single run of an unnamed operation that makes a mesh, as a part of the time
+/// left.
 const LONGEST_UNNAMED: f64 = 0.02;
-/// Faces in the first patch of the mesh on which subdividing or editing is timed.
+/// Number of faces of the first patch on which an operation is timed.
 const FIRST_PATCH: usize = 1024;
 
 impl Measurement<'_, '_> {
     /// Runs everything once and plans samples that fit the budget. Operations that do not scan come
-    /// first. The time left is for operations that scan, or that may scan on a skewed mesh. At the
-    /// end, operations that were only estimated are run once if there is time.
+    /// first, then operations that scan. At the end, operations without a run are run once if there
+    /// is time.
     pub(crate) fn warm_up(&mut self, entries: &mut [Entry], deadline: f64) {
         let scans: Vec<[bool; 3]> = entries.iter().map(|entry| self.scans(entry)).collect();
         let count = entries.len() as f64;
@@ -74,9 +72,8 @@ impl Measurement<'_, '_> {
         self.run_estimated(entries, deadline);
     }
 
-    /// Runs once each operation that was only estimated, if it fits into the time left; the
-    /// shortest first. The limit is lower for an operation that makes a mesh and was not named in
-    /// the settings.
+    /// Runs once each operation that was only estimated, if the run fits into the time left. The
+    /// shortest operation comes first.
     fn run_estimated(&mut self, entries: &mut [Entry], deadline: f64) {
         let budget = self.budget.as_nanos() as f64;
         let mut estimated: Vec<(f64, &mut Entry)> = entries
@@ -106,8 +103,7 @@ impl Measurement<'_, '_> {
         }
     }
 
-    /// Returns for each kind of element whether a query may take far longer than its results
-    /// justify.
+    /// Returns the kinds of elements whose queries may scan.
     fn scans(&self, entry: &Entry) -> [bool; 3] {
         if self.subjects[entry.subject].is_external() {
             return [false; 3];
@@ -121,7 +117,7 @@ impl Measurement<'_, '_> {
         })
     }
 
-    /// Plans runs on all elements, with as many runs in a sample as its time allows.
+    /// Plans runs on all elements.
     fn plan_whole(&mut self, entry: &mut Entry, slot_ns: f64) {
         let (run, mut overhead_ns) = self.run_with_overhead(entry, [0, 1], true);
         let mut ns = run.time.ns().max(1.0);
@@ -130,19 +126,19 @@ impl Measurement<'_, '_> {
             return;
         }
         if ns < SHORTEST_SAMPLE_NS {
-            // The first run includes cold caches and page faults; a second series is more accurate.
+            // The first run includes cold caches and page faults. A second series is more accurate.
             let runs = (SHORTEST_SAMPLE_NS / 4.0 / ns).clamp(1.0, MAX_RUNS);
             let (run, overhead) = self.run_with_overhead(entry, [1, runs as u32], false);
             (ns, overhead_ns) = (run.time.ns().max(0.1), overhead);
         }
-        // A quarter of the slot is for the sample, a quarter for the untimed runs before it, and
-        // the rest for waiting and for work between runs.
+        // A quarter of the slot is for the sample, and a quarter for the untimed runs. The rest is
+        // for waiting and for work between runs.
         let target = (slot_ns / 4.0).clamp(SHORTEST_SAMPLE_NS, LONGEST_SAMPLE_NS);
         entry.runs = match self.memory.is_cold() {
             true => 1,
             false => (target / ns).ceil().clamp(1.0, MAX_RUNS) as u32,
         };
-        // An operation that makes or changes a mesh has many branches: it needs a longer warm-up.
+        // An operation that makes a mesh has many branches, so it needs a longer warm-up.
         let before = match entry.job.operation.creates_mesh() {
             true => LONGEST_SAMPLE_NS,
             false => target,
@@ -153,7 +149,7 @@ impl Measurement<'_, '_> {
         self.plan_rounds(entry, cost, slot_ns);
     }
 
-    /// Returns the run, and the wall time that passed outside its timing, in nanoseconds.
+    /// Returns the run, and the wall time that passed outside the timed part, in nanoseconds.
     fn run_with_overhead(&mut self, entry: &Entry, runs: [u32; 2], check: bool) -> (Run, f64) {
         let start = self.clock.now().wall_ns;
         let run = self.run(entry.subject, &entry.job, runs, check);
@@ -163,7 +159,6 @@ impl Measurement<'_, '_> {
         (run, outside.max(0.0))
     }
 
-    /// Plans in which rounds an entry takes part.
     fn plan_rounds(&self, entry: &mut Entry, cost_ns: f64, slot_ns: f64) {
         entry.cost_ns = cost_ns;
         // Operations that make a mesh are long. If they were not named, they take part in fewer
@@ -177,11 +172,11 @@ impl Measurement<'_, '_> {
         };
     }
 
-    /// Times more and more elements until the cost of the whole operation is known. Then plans
-    /// whether to run the operation in full, on a sample, or not at all.
+    /// Times increasing numbers of elements until the cost of the whole operation is known. Then
+    /// plans a full run, a sample, or no run.
     fn plan_scan(&mut self, entry: &mut Entry, scanned: [bool; 3], slot_ns: f64, left: f64) {
         let operation = entry.job.operation;
-        // An operation that cannot be sampled is estimated by the relation that it queries.
+        // An operation that cannot be sampled is estimated from the relation that it queries.
         let probed = match operation.relations(ElementKind::Face) {
             &[relation] if !operation.can_be_sampled() => Operation::Relation(relation),
             _ => operation,
@@ -190,7 +185,7 @@ impl Measurement<'_, '_> {
         let Probe { whole, cost, size } = self.probe(entry.subject, probed, scanned, slot_ns);
         let fits = match operation.can_be_sampled() {
             true => whole.ns() <= slot_ns || all <= MIN_ELEMENTS,
-            // A run no longer than one sample is always allowed.
+            // A run as short as one sample is always allowed.
             false => whole.ns() <= (LONGEST_IN_ROUNDS * left).max(LONGEST_SAMPLE_NS),
         };
         if self.stopped() {
@@ -203,7 +198,7 @@ impl Measurement<'_, '_> {
             entry.estimate = Some(whole);
             return;
         }
-        // `cost` includes the kinds that are not sampled, so this size tends to be too small.
+        // `cost` includes kinds that are not sampled, so the size tends to be too small.
         let each = cost / size.min(all).max(1) as f64;
         let size = ((slot_ns / each) as usize).clamp(MIN_ELEMENTS, all.max(MIN_ELEMENTS));
         entry.job.sample = Some(ElementSample { scanned, size });
@@ -215,13 +210,12 @@ impl Measurement<'_, '_> {
         self.plan_rounds(entry, cost, slot_ns);
     }
 
-    /// Returns the largest number of elements among the kinds that are scanned.
     fn max_elements(&self, scanned: [bool; 3]) -> usize {
         let counts = (0..3).filter(|&k| scanned[k]);
         counts.map(|k| self.population[k]).max().unwrap_or(0)
     }
 
-    /// Times more and more elements, until one run takes as long as a sample may take.
+    /// Times increasing numbers of elements until one run takes as long as a sample.
     fn probe(
         &mut self,
         subject: usize,
@@ -245,8 +239,8 @@ impl Measurement<'_, '_> {
         }
     }
 
-    /// Plans an operation that makes or edits a mesh. Its time is estimated first, from patches and
-    /// from its searches. It is then run in rounds, once, or not at all.
+    /// Plans an operation that makes or edits a mesh. Its time is first estimated from patches and
+    /// searches. The operation is then run in rounds, once, or not at all.
     fn plan_mesh_operation(
         &mut self,
         entry: &mut Entry,
@@ -254,7 +248,7 @@ impl Measurement<'_, '_> {
         slot_ns: f64,
         left: f64,
     ) {
-        // A single face shows whether the operation is refused.
+        // One face is enough to find out whether the operation is refused.
         let run = self.run(entry.subject, &patch_job(entry, 1), [0, 1], false);
         entry.refusal = run.refusal;
         if self.stopped() || entry.refusal.is_some() {
@@ -283,14 +277,12 @@ impl Measurement<'_, '_> {
         }
     }
 
-    /// Runs the operation of `entry` on a patch of `size` faces, with tables of the same size as in
-    /// a later run.
+    /// Runs the operation on a patch of `size` faces.
     fn run_patch(&mut self, entry: &Entry, size: usize) -> Run {
         let untimed = u32::from(entry.job.operation.grows_tables());
         self.run(entry.subject, &patch_job(entry, size), [untimed, 1], false)
     }
 
-    /// Returns the time of all searches of an operation that makes a mesh, estimated from samples.
     fn search_time(&mut self, entry: &Entry, scanned: [bool; 3], slot_ns: f64) -> Time {
         let mut total = Time::zero_like(self.clock.now());
         for kind in ElementKind::ALL
@@ -307,8 +299,8 @@ impl Measurement<'_, '_> {
         total
     }
 
-    /// Runs the operation on larger and larger patches, and returns its time scaled to the whole
-    /// mesh; `None` if the next patch would be the whole mesh. Patches fit the cache, so the
+    /// Runs the operation on growing patches, and returns the time scaled to the whole mesh.
+    /// Returns `None` if the next patch would be the whole mesh. A patch fits the cache, so the
     /// estimate tends to be too low.
     fn time_by_patches(&mut self, entry: &mut Entry, slot_ns: f64) -> Option<Time> {
         let all = self.population[ElementKind::Face.index()];
@@ -330,17 +322,15 @@ impl Measurement<'_, '_> {
     }
 }
 
-/// The result of timing some elements.
 struct Probe {
-    /// The time on all elements, scaled from the sample.
+    /// The time for all elements, scaled from the sample.
     whole: Time,
     /// The wall time of the probe, in nanoseconds.
     cost: f64,
-    /// The number of elements.
+    /// The number of timed elements.
     size: usize,
 }
 
-/// Returns the operation of `entry` on a patch of `size` faces.
 fn patch_job(entry: &Entry, size: usize) -> Job {
     let scanned = [false; 3];
     Job {
@@ -349,7 +339,7 @@ fn patch_job(entry: &Entry, size: usize) -> Job {
     }
 }
 
-/// Stores the result of the run as the warm-up; stores no time if the run was refused.
+/// Records the run as the warm-up. A refused run has no time.
 fn record_warm_up(entry: &mut Entry, run: Run) {
     entry.warm_up = run.refusal.is_none().then_some(run.time);
     entry.outcome = run.outcome;

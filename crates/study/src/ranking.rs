@@ -1,30 +1,31 @@
-//! Ranks backends: which is fastest, and which are tied with it.
+//! Ranks backends by their times.
 
 use crate::report::Standing;
 use crate::statistics::Median;
 use sixfold_workload::Time;
 
-/// Ratios up to this are a tie, regardless of their intervals.
+/// Maximum ratio that always counts as a tie.
 pub(crate) const NO_DIFFERENCE: f64 = 1.02;
 
-/// If there are too few samples for an interval, a ratio of this or more is not a tie.
+/// Minimum ratio of a clear difference if there are too few samples for an interval.
 pub(crate) const CLEAR_DIFFERENCE: f64 = 2.0;
 
-/// The comparison of one backend with the fastest.
+/// The comparison of one backend with the fastest backend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rank {
-    /// The median, over rounds, of its time divided by that of the fastest.
+    /// The median ratio to the fastest backend, over the rounds.
     pub(crate) ratio: Median,
-    /// The standing that follows from the ratio.
     pub(crate) standing: Standing,
 }
 
-/// Ranks the backends of one operation by their samples, each with the number of its round. The
-/// rank of a backend without samples is `None`.
+/// Ranks the backends of one operation by their samples. Each sample has the number of its round. A
+/// backend without samples has the rank `None`.
 ///
-/// The fastest has the smallest median. Another backend is tied with it if the interval of its
-/// ratio includes 1 or less, or if its ratio is at most `noise`. If there are too few samples for
-/// an interval, it is tied if its ratio is below 2.
+/// The fastest backend has the smallest median. Another backend is tied with it in three cases:
+///
+/// - The interval of the ratio includes 1 or less.
+/// - The ratio is at most `noise`.
+/// - There are too few samples for an interval, and the ratio is below 2.
 pub(crate) fn rank(backends: &[Vec<(u32, Time)>], noise: f64) -> Vec<Option<Rank>> {
     let medians = backends
         .iter()
@@ -72,8 +73,8 @@ pub(crate) fn rank(backends: &[Vec<(u32, Time)>], noise: f64) -> Vec<Option<Rank
     ranks
 }
 
-/// Returns the median ratio over the rounds in common, or the ratio of the medians if there are no
-/// such rounds.
+/// Returns the median ratio over the common rounds. Without common rounds, returns the ratio of the
+/// medians.
 pub(crate) fn ratio(samples: &[(u32, Time)], best: &[(u32, Time)]) -> Option<Median> {
     let of_round = |round: u32| best.iter().find(|(r, _)| *r == round);
     let pairs = samples

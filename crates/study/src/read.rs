@@ -1,4 +1,4 @@
-//! Reads results from JSON that may be of another version or another program.
+//! Reads results from JSON. The JSON may come from another version or another program.
 
 use std::io;
 
@@ -29,16 +29,16 @@ pub enum ReadError {
         column: usize,
         cause: String,
     },
-    /// The text is JSON of another program.
+    /// The text is JSON, but not of Sixfold.
     #[error("is JSON, but has no `schema`: choose a file that sixfold wrote")]
     Foreign,
-    /// The schema is of another version.
+    /// The schema has another version.
     #[error(
         "has schema {found}, expected {SCHEMA}: use the version of sixfold that wrote the file, \
          or measure again"
     )]
     OtherSchema { found: u64 },
-    /// The results are of another command.
+    /// The results come from another command.
     #[error("is {found}, expected {wanted}")]
     OtherKind {
         found: &'static str,
@@ -49,7 +49,7 @@ pub enum ReadError {
     Malformed { cause: String },
 }
 
-/// The results of one of the measuring commands.
+/// The results of a measuring command.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Results {
@@ -68,7 +68,7 @@ pub enum Results {
 }
 
 impl Results {
-    /// Writes the results as JSON, for [`read_json`](Self::read_json).
+    /// Writes the results as JSON.
     ///
     /// # Errors
     ///
@@ -84,11 +84,11 @@ impl Results {
         }
     }
 
-    /// Reads the results of any of these commands.
+    /// Reads the results of any measuring command.
     ///
     /// # Errors
     ///
-    /// Returns an error if the text is truncated, is not JSON, or has results of another program,
+    /// Returns an error if the text is truncated, is not JSON, or comes from another program,
     /// schema or command.
     pub fn read_json(text: &str) -> Result<Self, ReadError> {
         check_schema(text)?;
@@ -114,7 +114,7 @@ impl Report {
     ///
     /// # Errors
     ///
-    /// Returns an error if the text is truncated, is not JSON, or has results of another program,
+    /// Returns an error if the text is truncated, is not JSON, or comes from another program,
     /// schema or command.
     pub fn read_json(text: &str) -> Result<Self, ReadError> {
         check_schema(text)?;
@@ -129,7 +129,6 @@ impl Report {
                 report.check()?;
                 Ok(report)
             }
-            // A collection may contain one mesh only.
             Kind::Collection => {
                 let studies = Collection::read_json(text)?.studies;
                 let [study] = <[Self; 1]>::try_from(studies).map_err(|_| other())?;
@@ -139,7 +138,7 @@ impl Report {
         }
     }
 
-    /// Refuses values that no study can produce.
+    /// Returns an error for values that no study can produce.
     pub(crate) fn check(&self) -> Result<(), ReadError> {
         let wrong = |what: String| Err(ReadError::Malformed { cause: what });
         let time = |ns: &f64| *ns >= 0.0 && ns.is_finite();
@@ -175,7 +174,7 @@ impl Report {
     }
 }
 
-/// Refuses text that this version of Sixfold cannot have written.
+/// Returns an error if this version of Sixfold cannot have written the text.
 pub(crate) fn check_schema(text: &str) -> Result<(), ReadError> {
     #[derive(Deserialize)]
     struct Head {
@@ -231,7 +230,7 @@ fn kind(text: &str) -> Result<Kind, ReadError> {
 
     let fields: Fields = parse_json(text)?;
     let found = [
-        // A comparison has `rows`, too.
+        // A comparison also has the field `rows`.
         (fields.drift.is_some(), Kind::Other),
         (fields.ranking.is_some(), Kind::Pick),
         (fields.sizes.is_some(), Kind::Growth),
@@ -246,7 +245,7 @@ fn kind(text: &str) -> Result<Kind, ReadError> {
 
 pub(crate) fn parse_json<T: DeserializeOwned>(text: &str) -> Result<T, ReadError> {
     serde_json::from_str(text).map_err(|error| {
-        // Text that is cut off within a number or a word is a syntax error to the parser.
+        // The parser reports a syntax error if the text ends within a number or a word.
         let lines = text.lines().count();
         let last = text.lines().last().map_or(0, str::len);
         let at_the_end = error.line() >= lines && error.column() >= last;

@@ -14,10 +14,10 @@ use crate::external::ExternalReport;
 use crate::timer::Timer;
 use sixfold_workload::Operation;
 
-/// The version of the format. It changes if a reader of the old version would misread the new one.
+/// The version of the format. A new version means that old readers would misread the file.
 pub const SCHEMA: u32 = 1;
 
-/// The result of an inspection: facts of the mesh, and whether each backend can hold it.
+/// The facts of a mesh, and the backends that can hold it.
 #[serde_as]
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Inspection {
@@ -25,7 +25,7 @@ pub struct Inspection {
     pub schema: u32,
     /// Name and topology of the mesh.
     pub mesh: MeshReport,
-    /// The backends by name, in the order of [`Backend::structures`](crate::Backend::structures).
+    /// The backends, in the order of [`Backend::structures`](crate::Backend::structures).
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
 }
@@ -38,64 +38,63 @@ pub struct Report {
     pub schema: u32,
     /// Name and topology of the mesh.
     pub mesh: MeshReport,
-    /// The backends by name, in the order of [`Backend::structures`](crate::Backend::structures).
+    /// The backends, in the order of [`Backend::structures`](crate::Backend::structures).
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
-    /// The results, sorted by operation, then in the order of [`Backend::structures`](crate::Backend::structures).
+    /// The results, by operation, then in the order of
+    /// [`Backend::structures`](crate::Backend::structures).
     pub results: Vec<ResultRow>,
-    /// The operations that a backend cannot do, in the same order.
+    /// The operations that a backend cannot do, in the order of `results`.
     pub refusals: Vec<Refusal>,
-    /// The noise: the difference between two columns of one backend; `None` if nothing was
+    /// The noise: the difference between two measurements of one backend. `None` if no backend was
     /// measured twice.
     pub control: Option<Control>,
     /// The main results, as sentences.
     #[serde(rename = "words")]
     pub sentences: Vec<String>,
-    /// Possible faults of the measurement with remedies, as sentences.
+    /// Sentences about possible faults of the measurement and their remedies.
     pub warnings: Vec<String>,
     /// All samples.
     pub raw: Vec<RawSamples>,
-    /// Whether the study was stopped early, so that rows are missing or have fewer samples.
+    /// Whether the study was stopped early. Rows may then be missing or have fewer samples.
     pub interrupted: bool,
-    /// The costs of reading the clock; `None` if nothing was run.
+    /// The cost of reading the clock; `None` if nothing was run.
     pub timer: Option<Timer>,
     /// The machine and the program version.
     pub environment: Environment,
 }
 
-/// The samples of one operation on one backend, as columns of equal length.
+/// All samples of one operation on one backend. The lists have equal length.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct RawSamples {
     /// The backend.
     pub backend: String,
     /// The operation.
     pub operation: Operation,
-    /// Whether it is the second entry of the backend, for the control.
+    /// Whether these samples belong to the control: the second measurement of a backend.
     pub control: bool,
-    /// The round of each sample: samples of the same round can be compared.
+    /// For each sample, the number of its round.
     pub rounds: Vec<u32>,
-    /// Processor time of one run, in nanoseconds; `None` if the platform does not report it.
+    /// For each sample, the processor time of one run, in nanoseconds. `None` if unknown.
     pub cpu_ns: Option<Vec<f64>>,
-    /// Wall time of one run, in nanoseconds.
+    /// For each sample, the wall time of one run, in nanoseconds.
     pub wall_ns: Vec<f64>,
-    /// Page faults in each sample; `None` if they were not counted.
+    /// For each sample, the number of page faults; `None` if they were not counted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub faults: Option<Vec<u64>>,
-    /// For each sample, the slowdown of the machine: the time of a small fixed piece of work
-    /// divided by its undisturbed time. This work is timed before and after the sample, and the
-    /// longer time is used. If at least a quarter of the samples have a slowdown of at most 1.3,
-    /// samples with a larger slowdown do not count.
+    /// For each sample, the slowdown of the machine. A small fixed piece of work is timed before
+    /// and after the sample. The slowdown is the longer time divided by the undisturbed time. If a
+    /// quarter of the samples have a slowdown of at most 1.3, the slower samples do not count.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub slowdowns: Vec<f64>,
-    /// Times of one run on fresh pages and tables, in nanoseconds: separate samples, not part of a
+    /// Times of one run on fresh pages and tables, in nanoseconds. These samples belong to no
     /// round.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub first_ns: Vec<f64>,
 }
 
 impl RawSamples {
-    /// Returns the times of the samples that count. These are processor times if known, else wall
-    /// times.
+    /// Returns the times of the samples that count: processor times if known, else wall times.
     pub fn counted_ns(&self) -> Vec<f64> {
         undisturbed(
             self.cpu_ns.as_ref().unwrap_or(&self.wall_ns),
@@ -107,44 +106,44 @@ impl RawSamples {
 /// A mesh as read from its file.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct MeshReport {
-    /// Its name: a file or a description.
+    /// The name: a file or a description.
     pub name: String,
-    /// Its topology.
+    /// The topology.
     #[serde(flatten)]
     pub facts: Facts,
-    /// Changes before the study: `triangulated`, faces left out.
+    /// Changes made before the study, as phrases.
     pub changes: Vec<String>,
 }
 
 /// A backend, whether it can hold the mesh, and its memory.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct BackendReport {
-    /// The name that users write. It is the key of the map.
+    /// The name of the backend. This name is the key in the JSON map.
     #[serde(rename = "$key$")]
     pub name: String,
-    /// Whether it can hold the mesh.
+    /// Whether the backend can hold the mesh.
     pub holds: bool,
-    /// The reason if it cannot hold the mesh.
+    /// Why the backend cannot hold the mesh.
     pub reason: Option<String>,
-    /// Actual size in bytes; `None` if it was not built.
+    /// Actual size in bytes; `None` if the backend was not built.
     pub bytes: Option<usize>,
-    /// That size per vertex of the mesh.
+    /// Actual size per vertex of the mesh, in bytes.
     pub bytes_per_vertex: Option<f64>,
-    /// Theoretical size of the layout in bytes; `None` if it cannot hold the mesh.
+    /// Theoretical size in bytes; `None` if the backend cannot hold the mesh.
     pub layout_bytes: Option<usize>,
-    /// That size per vertex of the mesh.
+    /// Theoretical size per vertex of the mesh, in bytes.
     pub layout_bytes_per_vertex: Option<f64>,
-    /// Actual size in bytes, by table.
+    /// Actual size of each table, in bytes.
     pub tables: Vec<TableBytes>,
-    /// Number of vertices that are merged with another vertex, because their coordinates are equal.
+    /// Number of vertices merged with another vertex of equal coordinates.
     pub merged_vertices: Option<usize>,
-    /// Its capabilities; `None` for an external program.
+    /// The capabilities of a structure; `None` for an external program.
     pub capabilities: Option<Capabilities>,
     /// The external program; `None` for a structure.
     pub external: Option<ExternalReport>,
 }
 
-/// The result of one operation on one backend. Times are of one whole run, in nanoseconds.
+/// The result of one operation on one backend. All times are of one whole run, in nanoseconds.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct ResultRow {
     /// The backend.
@@ -157,74 +156,70 @@ pub struct ResultRow {
     pub min_ns: Option<f64>,
     /// The lower end of the 95 % interval of the median; `None` with fewer than three samples.
     pub ci_low_ns: Option<f64>,
-    /// The upper end of that interval.
+    /// The upper end of the 95 % interval of the median.
     pub ci_high_ns: Option<f64>,
     /// The number of elements that a whole run visits.
     pub elements: Option<u64>,
-    /// The kind of these elements: `vertex`, `edge`, `face`, `new face`, or `visit`.
+    /// The kind of the elements: `vertex`, `edge`, `face`, `new face`, or `visit`.
     pub per: String,
-    /// `median_ns` per element.
+    /// The median time per element.
     pub ns_per_element: Option<f64>,
-    /// The median on the wall clock.
+    /// The median of the wall times.
     pub wall_median_ns: Option<f64>,
-    /// The smallest sample on the wall clock.
+    /// The smallest wall time.
     pub wall_min_ns: Option<f64>,
-    /// Whether only a sample of the elements was run: times and elements are scaled to the whole.
+    /// Whether only some of the elements were run. Times and elements are scaled to the whole mesh.
     pub sampled: bool,
-    /// The number of sampled elements of each kind that is scanned.
+    /// The number of sampled elements of each kind.
     pub sample_size: Option<usize>,
-    /// The estimated time of a whole run that was not measured.
+    /// The estimated time of a whole run, if no run was measured.
     pub estimated_ns: Option<f64>,
-    /// A number that depends on all results, or on those of the sample; `None` if nothing was
-    /// measured or the arithmetic overflows.
+    /// A checksum of all results of the operation, for comparison with other backends. `None` if
+    /// nothing was measured or if the sum overflows.
     pub checksum: Option<f64>,
-    /// Whether other backends have the same results.
+    /// Whether the checksum is the same as for other backends.
     pub agreement: Agreement,
     /// The comparison with the other backends; `None` if nothing was measured.
     pub standing: Option<Standing>,
-    /// The median, over rounds, of the time of this backend divided by the time of the fastest; 1
-    /// for the fastest itself.
+    /// The median ratio to the fastest backend, over the rounds. The fastest backend has ratio 1.
     pub ratio_to_best: Option<f64>,
-    /// The lower end of the 95 % interval of that ratio.
+    /// The lower end of the 95 % interval of `ratio_to_best`.
     pub ratio_ci_low: Option<f64>,
-    /// The upper end of that interval.
+    /// The upper end of the 95 % interval of `ratio_to_best`.
     pub ratio_ci_high: Option<f64>,
     /// The number of samples.
     pub samples: usize,
     /// The number of consecutive runs in one sample.
     pub runs_per_sample: u32,
-    /// Whether there was time only for the warm-up. The sample is then the one warm-up run, with
-    /// cold caches.
+    /// Whether the only sample is the warm-up run, with cold caches.
     pub warm_up_only: bool,
-    /// Whether the time is only estimated because the settings do not name the operation. The
-    /// budget has room for a run.
+    /// Whether the time is an estimate because the user did not name the operation.
     pub by_name_only: bool,
     /// The largest number of page faults in a sample; `None` if they were not counted.
     #[serde(default)]
     pub faults: Option<u64>,
-    /// The number of samples that were taken again because of page faults, or because other work
-    /// disturbed the machine.
+    /// The number of samples taken again because of page faults or other programs.
     #[serde(default)]
     pub retaken: u32,
-    /// The number of samples that do not count, because other work disturbed the machine.
+    /// The number of samples that do not count because other programs disturbed them.
     #[serde(default)]
     pub disturbed: usize,
-    /// The time of a first run, on fresh pages and with tables of exact size, as in a program that
-    /// runs the operation once. It is `median_ns` multiplied by the median ratio of first runs to
-    /// the runs directly after them. `None` if the operation does not allocate, or if there was no
-    /// time.
+    /// The time of a first run, on fresh pages and with tables of exact size. A program that runs
+    /// the operation once needs this time. The value is `median_ns` multiplied by the median ratio
+    /// of a first run to the run after it. `None` if the operation does not allocate, or if there
+    /// was no time.
     #[serde(default)]
     pub first_ns: Option<f64>,
     /// The number of samples of first runs.
     #[serde(default)]
     pub first_samples: usize,
-    /// The largest number of page faults in a sample of a first run.
+    /// The largest number of page faults in a first run.
     #[serde(default)]
     pub first_faults: Option<u64>,
 }
 
 impl ResultRow {
-    /// Returns a row of `operation` on `backend` without measurements.
+    /// Returns a row without measurements.
     pub fn new(backend: &str, operation: Operation) -> Self {
         Self {
             backend: backend.into(),
@@ -260,62 +255,61 @@ impl ResultRow {
         }
     }
 
-    /// Returns the first time divided by the median, if both are known.
+    /// Returns the time of the first run divided by the median, if both are known.
     pub fn first_ratio(&self) -> Option<f64> {
         let (first, median) = self.first_ns.zip(self.median_ns)?;
         (median > 0.0).then(|| first / median)
     }
 }
 
-/// Ratio of the first time to the median above which the first time is shown.
+/// Ratio of the first time to the median above which tables show the first time.
 pub const FIRST_TIME_SHOWN: f64 = 1.1;
 
-/// One backend that was measured twice (an A/A control). Only the machine and the clock cause the
-/// difference between its two columns.
+/// One backend measured twice (an A/A control). The difference between its two columns is noise of
+/// the machine and of the clock.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Control {
     /// The backend.
     pub backend: String,
-    /// The operations for which both columns have samples.
+    /// The operations with samples in both columns.
     pub operations: Vec<ControlRow>,
-    /// The median difference, as a ratio of 1 or more.
+    /// The median difference over the operations: the slower time divided by the faster time.
     pub typical: f64,
-    /// The largest difference, as a ratio of 1 or more.
+    /// The maximum difference over the operations: the slower time divided by the faster time.
     pub worst: f64,
 }
 
-/// The largest acceptable ratio between the two columns of a control.
+/// Maximum acceptable ratio between the two columns of a control.
 const UNSTEADY: f64 = 1.05;
 
-/// The difference between the columns of a control in one operation.
+/// The difference between the two columns in one operation.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct ControlRow {
     /// The operation.
     pub operation: Operation,
-    /// The median, over rounds, of the time of the second column divided by that of the first.
+    /// The median ratio of the second column to the first, over the rounds.
     pub ratio: f64,
-    /// The lower end of the 95 % interval of that ratio; `None` with fewer than three rounds.
+    /// The lower end of the 95 % interval of `ratio`; `None` with fewer than three rounds.
     pub ci_low: Option<f64>,
-    /// The upper end of that interval.
+    /// The upper end of the 95 % interval of `ratio`.
     pub ci_high: Option<f64>,
 }
 
 impl ControlRow {
-    /// Returns whether the two columns differ by more than 5 %, and not by chance. If so, smaller
-    /// differences between backends are not significant.
+    /// Returns whether the two columns differ by more than 5 %, and not by chance.
     pub fn is_unsteady(&self) -> bool {
         let interval = self.ci_low.zip(self.ci_high);
         let beyond_chance = interval.is_some_and(|(low, high)| low > 1.0 || high < 1.0);
         self.difference() > UNSTEADY && beyond_chance
     }
 
-    /// Returns the ratio of the slower to the faster column, 1 or more.
+    /// Returns the time of the slower column divided by the time of the faster column.
     pub fn difference(&self) -> f64 {
         self.ratio.max(self.ratio.recip())
     }
 }
 
-/// An operation that a backend cannot do on this mesh: it has no row among the results.
+/// An operation that a backend cannot do on this mesh.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Refusal {
     /// The backend.
@@ -326,7 +320,6 @@ pub struct Refusal {
     pub reason: String,
 }
 
-/// The fields of a row, for a file without rows.
 const COLUMNS: [&str; 30] = [
     "backend",
     "operation",
@@ -366,21 +359,21 @@ const COLUMNS: [&str; 30] = [
 pub enum Agreement {
     /// All backends did the same work.
     Same,
-    /// The checksum differs. This is possible because vertices with equal coordinates are merged.
+    /// The checksum differs because vertices with equal coordinates were merged.
     Merged,
-    /// The checksum differs without such a reason: this is a fault in Sixfold.
+    /// The checksum differs without a known reason. This is a fault.
     Mismatch,
-    /// There is no other result to compare with.
+    /// No other backend has a result.
     Unchecked,
 }
 
-/// The comparison of a result with those of other backends.
+/// The comparison of the time of a backend with the times of the other backends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Standing {
-    /// Faster than all others.
+    /// The backend is faster than all other backends.
     Best,
-    /// No backend is measurably faster, and at least one other is equally fast.
+    /// No backend is measurably faster, and at least one backend is equally fast.
     Tied,
     /// Another backend is faster.
     Slower,
@@ -396,7 +389,8 @@ impl Report {
             .filter(move |row| row.operation == operation)
     }
 
-    /// Returns the results of Sixfold's backends that differ without a known reason.
+    /// Returns the wrong results of Sixfold's backends: the checksum differs without a known
+    /// reason.
     pub fn mismatches(&self) -> impl Iterator<Item = &ResultRow> {
         let wrong = |row: &&ResultRow| row.agreement == Agreement::Mismatch;
         self.results
@@ -405,7 +399,7 @@ impl Report {
             .filter(|row| !self.is_external(&row.backend))
     }
 
-    /// Returns the results of external programs that differ from those of Sixfold's backends.
+    /// Returns the results of external programs that differ from the results of Sixfold.
     pub fn external_mismatches(&self) -> impl Iterator<Item = &ResultRow> {
         let wrong = |row: &&ResultRow| row.agreement == Agreement::Mismatch;
         self.results
@@ -428,7 +422,7 @@ impl Report {
         write_json(self, writer)
     }
 
-    /// Writes one line for each result, under a line with the names of the fields.
+    /// Writes a header line and one CSV line for each result.
     ///
     /// # Errors
     ///
@@ -456,7 +450,7 @@ impl Inspection {
     }
 }
 
-/// Returns the I/O error inside a CSV error, so that a closed pipe can be recognised by its kind.
+/// Returns the I/O error inside a CSV error, so that a closed pipe can be detected.
 pub(crate) fn into_io_error(error: csv::Error) -> io::Error {
     match error.into_kind() {
         csv::ErrorKind::Io(cause) => cause,
@@ -470,8 +464,8 @@ pub(crate) fn write_json(value: &impl Serialize, mut writer: impl io::Write) -> 
     writeln!(writer)
 }
 
-/// A JSON formatter with one line per field, and arrays on one line: columns of samples have
-/// thousands of values.
+/// A JSON formatter with one field per line. An array takes one line, because arrays of samples
+/// have thousands of values.
 #[derive(Default)]
 struct RowFormatter<'a>(PrettyFormatter<'a>);
 

@@ -15,33 +15,32 @@ use sixfold_workload::pages::{self, Policy};
 use sixfold_workload::{Clock, Time};
 use sixfold_workload::{Job, Series, TimedBackend, exceeds_second_level};
 
-/// One backend, ready to run: the same code as in a study, without its rounds.
+/// One backend that is ready to run, with the code of a study but without rounds.
 ///
-/// Freed pages stay with the process as in a study, if the allocator supports that.
+/// If the allocator supports it, freed pages stay with the process.
 pub struct BackendRunner<'a> {
     subject: Box<dyn TimedBackend + 'a>,
-    /// The operation of the last run, and the numbers of untimed and timed runs in a sample of it.
+    /// The last operation, and the numbers of its untimed and timed runs per sample.
     last: Option<(Operation, [u32; 2])>,
     detector: DisturbanceDetector,
-    /// Whether freed pages stay with the process: then samples should have no page faults.
+    /// Whether freed pages stay with the process.
     kept: bool,
     /// The number of samples taken.
     samples: usize,
 }
 
-/// Time for which an operation is run untimed before each sample, in nanoseconds.
+/// Time of the untimed runs before each sample, in nanoseconds.
 const UNTIMED_NS: f64 = 2_000_000.0;
 
-/// The number of different sizes of the gap in front of a structure that is built again.
+/// Number of different gaps in front of a rebuilt structure.
 const GAPS: usize = 16;
-/// The difference between one size of the gap and the next, in bytes.
+/// Difference between two successive gaps, in bytes.
 const GAP_STEP: usize = 4160;
 
-/// The shortest sample of a structure larger than the second-level cache: single runs vary by up to
-/// a third.
+/// Minimum time of a sample of a structure larger than the second-level cache, in nanoseconds.
 const SHORTEST_LARGE_SAMPLE_NS: f64 = 1_000_000.0;
 
-/// The budget, in nanoseconds. The detector may use a part of it for waiting.
+/// Budget in nanoseconds. The detector may use a part of it for waiting.
 const BUDGET_NS: f64 = 10e9;
 
 /// The result of one run.
@@ -49,8 +48,7 @@ const BUDGET_NS: f64 = 10e9;
 pub struct BackendRun {
     /// The time of the run.
     pub time: Time,
-    /// A number that depends on all results, but not on the order of neighbours; NaN if the backend
-    /// cannot do the operation on this mesh.
+    /// A checksum of all results; NaN if the backend cannot do the operation on this mesh.
     pub checksum: f64,
     /// The number of elements visited.
     pub elements: u64,
@@ -61,7 +59,7 @@ impl<'a> BackendRunner<'a> {
     ///
     /// # Errors
     ///
-    /// Returns [`StudyError::NoneHolds`] if the structure cannot hold this mesh.
+    /// Returns [`StudyError::NoneHolds`] if the structure cannot hold the mesh.
     pub fn new(backend: &Backend, polygons: &'a PolygonMesh) -> Result<Self, StudyError> {
         let kept = pages::set_policy(Policy::Kept).policy == Policy::Kept;
         let draw: Option<&Draw> = None;
@@ -85,13 +83,13 @@ impl<'a> BackendRunner<'a> {
         self.subject.bytes()
     }
 
-    /// Runs `operation` on the whole mesh. A short operation is repeated until 200 µs have passed,
-    /// or 1 ms if the structure is larger than the second-level cache. Untimed runs come first, as
-    /// in a study. The sample is taken again if other work disturbs the machine. The returned time
-    /// is that of one run.
+    /// Runs `operation` on the whole mesh and returns the time of one run. A short operation is
+    /// repeated until 200 µs have passed. If the structure is larger than the second-level cache,
+    /// it is repeated until 1 ms has passed. Untimed runs come first. The sample is taken again if
+    /// other programs disturb it.
     ///
-    /// A structure larger than the second-level cache is first built again on other pages, as
-    /// between the rounds of a study: times differ by up to 20 % from one set of pages to another.
+    /// A structure larger than the second-level cache is first built again on other pages. Its
+    /// times differ by up to 20 % between pages.
     pub fn run(&mut self, operation: Operation, clock: &dyn Clock) -> BackendRun {
         if exceeds_second_level(self.subject.bytes()) {
             self.rebuild();
@@ -110,7 +108,6 @@ impl<'a> BackendRunner<'a> {
         detector.take_sample(clock, sample, verdict).value
     }
 
-    /// Builds the structure again, on new pages from the kernel.
     fn rebuild(&mut self) {
         if self.kept {
             pages::release_pages();
@@ -125,7 +122,7 @@ impl<'a> BackendRunner<'a> {
         }
     }
 
-    /// Returns how many untimed and timed runs make a sample that is long enough.
+    /// Returns the numbers of untimed and timed runs in a sample.
     fn plan_runs(&mut self, operation: Operation, clock: &dyn Clock) -> [u32; 2] {
         let large = exceeds_second_level(self.subject.bytes());
         let shortest_ns = match large {
@@ -144,7 +141,7 @@ impl<'a> BackendRunner<'a> {
         }
     }
 
-    /// Runs `operation` `runs` times, after an untimed run. The returned time is that of one run.
+    /// Runs `operation` once without timing, then `runs` times. Returns the time of one run.
     pub fn run_times(&mut self, operation: Operation, runs: u32, clock: &dyn Clock) -> BackendRun {
         run_times(self.subject.as_mut(), operation, [1, runs], clock)
     }

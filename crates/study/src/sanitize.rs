@@ -1,7 +1,7 @@
-//! Makes text from outside safe to print: names of files, output of other programs.
+//! Makes text from outside safe to print.
 
-/// Returns `text` on one line. Characters that control a terminal or change the direction of
-/// writing are replaced by escapes such as `\u{1b}`.
+/// Returns `text` on one line. Replaces characters that control a terminal or change the writing
+/// direction by escapes such as `\u{1b}`.
 pub fn sanitize(text: &str) -> String {
     let is_unsafe = |c: char| {
         c.is_control()

@@ -8,7 +8,7 @@ use crate::report::{Agreement, BackendReport, Control, ControlRow, ResultRow, St
 use crate::statistics::Median;
 use sixfold_workload::Operation;
 
-/// Returns sentences on speed, scans, memory and merging. Ties have no winner.
+/// Returns sentences about speed, scans, memory and merged vertices.
 pub(crate) fn sentences(
     backends: &[BackendReport],
     results: &[ResultRow],
@@ -93,7 +93,7 @@ fn speed(backends: &[BackendReport], results: &[ResultRow]) -> Option<String> {
     Some(format!("Of {count} {operations}, {}.", parts.join(", ")))
 }
 
-/// Describes the difference between the two columns of the backend that is measured twice.
+/// Describes the difference between the two columns of the control.
 fn noise(control: &Control) -> Option<String> {
     let difference = |row: &&ControlRow| row.difference();
     let worst = control
@@ -112,8 +112,7 @@ fn noise(control: &Control) -> Option<String> {
     ))
 }
 
-/// Returns the time of the next backend in this row divided by that of `backend`, if `backend` is
-/// the single fastest.
+/// If `backend` is the only fastest backend, returns the ratio of the next fastest to it.
 fn ratio_to_next(row: &[ResultRow], backend: &str) -> Option<f64> {
     let best = |r: &&ResultRow| r.standing == Some(Standing::Best) && r.backend == backend;
     row.iter().find(best)?;
@@ -185,7 +184,6 @@ fn merging(backend: &BackendReport, results: &[ResultRow]) -> Option<String> {
     ))
 }
 
-/// Returns a row for tests.
 #[cfg(test)]
 pub(crate) fn row(
     backend: &str,

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use sixfold_workload::{Clock, Time};
 
-/// A machine with slow drift (±50 %), jumps (1.8×) and stutters (1.6×); time advances only in
+/// A machine with slow drift (±50 %), jumps (1.8×) and stutters (1.6×). Time advances only in
 /// [`work`](Self::work).
 #[derive(Clone, Default)]
 pub(crate) struct SimulatedMachine {
@@ -27,7 +27,6 @@ impl SimulatedMachine {
         *time += ns * drift * stutter * jump;
     }
 
-    /// Returns the time in nanoseconds.
     pub(crate) fn ns(&self) -> f64 {
         self.state.lock().expect("no panics").0
     }

@@ -1,4 +1,4 @@
-//! The growth of a time with the size of the mesh: a straight line through their logarithms.
+//! The growth of a time with the size of the mesh, as a power law.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,18 +7,15 @@ use serde::{Deserialize, Serialize};
 pub struct Slope {
     /// The exponent.
     pub exponent: f64,
-    /// The standard error of the exponent, from the distances of the points to the line; `None`
-    /// with fewer than three points.
+    /// The standard error of the exponent; `None` with fewer than three points.
     pub standard_error: Option<f64>,
-    /// The number of points that it is fitted to.
+    /// The number of fitted points.
     pub sizes: usize,
 }
 
 impl Slope {
-    /// Fits the line by least squares on logarithms, with equal weights; `None` with fewer than two
-    /// sizes.
-    ///
-    /// Points are (size, time); points without a logarithm are left out.
+    /// Fits a line to the logarithms of (size, time) by least squares. Leaves out points without a
+    /// logarithm. Returns `None` with fewer than two sizes.
     pub(crate) fn fit(points: impl IntoIterator<Item = (f64, f64)>) -> Option<Self> {
         let valid = points.into_iter().filter(|&(size, time)| {
             let has_log = |x: f64| x > 0.0 && x.is_finite();
@@ -68,7 +65,7 @@ mod tests {
 
     #[test]
     fn a_bend_changes_the_slopes_of_the_parts_and_the_error_of_the_whole() {
-        // Linear up to 1e5, then with the power 1.5, and continuous.
+        // The time is linear up to 1e5, and then grows with the power 1.5.
         let time = |n: f64| {
             if n <= 1e5 {
                 n
@@ -91,8 +88,8 @@ mod tests {
         assert!(1.1 < all.0 && all.0 < 1.4 && all.1 > 0.02, "{all:?}");
     }
 
-    /// The slope and its error for a textbook line: x 1 to 5, y 2, 4, 5, 4, 5 (slope 0.6, sum of
-    /// squared residuals 2.4, spread 10: error √(2.4 / 3 / 10)).
+    /// The textbook line has slope 0.6. The sum of squared residuals is 2.4 and the spread is 10,
+    /// so the error is √(2.4 / 3 / 10).
     #[test]
     fn the_standard_error_agrees_with_the_textbook() {
         let points = [(1.0, 2.0), (2.0, 4.0), (3.0, 5.0), (4.0, 4.0), (5.0, 5.0)];

@@ -6,10 +6,9 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 /// Number of resamples for an interval.
 const RESAMPLES: usize = 1000;
 
-/// The median of samples, with an interval that contains the true median in 95 % of cases.
+/// The median of samples and its 95 % confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Median {
-    /// The median.
     pub(crate) value: f64,
     /// The smallest sample.
     pub(crate) least: f64,
@@ -20,12 +19,14 @@ pub(crate) struct Median {
 impl Median {
     /// Returns the median of `samples`; `None` if `samples` is empty.
     ///
-    /// The interval is the percentile bootstrap of the median (Efron 1979), expanded for few
-    /// samples (Hesterberg 2015). The samples are drawn with replacement, [`RESAMPLES`] times from
-    /// a fixed seed, and the interval is the middle part of the medians. This needs no assumption
-    /// about the distribution of the samples. With fewer than six samples no method can reach 95 %.
-    /// The interval is then from the smallest to the largest sample. It contains the true median
-    /// with a probability of 93.75 % for five samples, 87.5 % for four, and 75 % for three.
+    /// The interval is the percentile bootstrap of the median (Efron 1979), widened for few samples
+    /// (Hesterberg 2015). It makes no assumption about the distribution of the samples. The samples
+    /// are drawn [`RESAMPLES`] times with replacement, from a fixed seed. The interval contains the
+    /// middle part of the resulting medians.
+    ///
+    /// With fewer than six samples no method can reach 95 %. The interval then reaches from the
+    /// smallest to the largest sample. It contains the true median with a probability of 93.75 %
+    /// for five samples, 87.5 % for four samples, and 75 % for three samples.
     pub(crate) fn from_samples(samples: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut sorted: Vec<f64> = samples.into_iter().collect();
         sorted.sort_unstable_by(f64::total_cmp);
@@ -44,14 +45,14 @@ impl Median {
     }
 }
 
-/// Returns the median of sorted samples; at least one sample is required.
+/// Returns the median of sorted samples. At least one sample is required.
 fn median_of_sorted(sorted: &[f64]) -> f64 {
     let count = sorted.len();
     f64::midpoint(sorted[(count - 1) / 2], sorted[count / 2])
 }
 
-/// Returns the geometric mean and its 95 % interval, found by resampling. Returns `None` without
-/// values, and no interval for fewer than three values.
+/// Returns the geometric mean and its 95 % interval. Returns `None` without values. The interval
+/// needs at least three values.
 pub(crate) fn geometric_mean(values: &[f64]) -> Option<(f64, Option<[f64; 2]>)> {
     let logs: Vec<f64> = values.iter().map(|value| value.ln()).collect();
     let count = logs.len();
@@ -71,15 +72,13 @@ pub(crate) fn geometric_mean(values: &[f64]) -> Option<(f64, Option<[f64; 2]>)> 
     Some((mean.exp(), interval.map(|ends| ends.map(f64::exp))))
 }
 
-/// Draws an index below `count`, with equal probabilities.
 fn draw_index(random: &mut ChaCha8Rng, count: usize) -> usize {
-    // The high half of the product is uniform, except for a bias of at most `count` / 2³².
+    // The high half of the product is uniform, with a bias of at most `count` / 2³².
     ((u64::from(random.next_u32()) * count as u64) >> 32) as usize
 }
 
-/// Returns the median of `samples` divided by the median of `others`, and the 95 % interval of this
-/// ratio. The two are independent, so the interval is found by resampling both. Returns `None` if
-/// either is empty, and no interval if either has fewer than three samples.
+/// Returns the ratio of the two medians and its 95 % interval. The interval is found by resampling
+/// both lists. Returns `None` if a list is empty. The interval needs three samples in each list.
 pub(crate) fn quotient(samples: &[f64], others: &[f64]) -> Option<(f64, Option<[f64; 2]>)> {
     let sorted = [samples, others].map(|samples| {
         let mut sorted = samples.to_vec();
@@ -101,13 +100,13 @@ pub(crate) fn quotient(samples: &[f64], others: &[f64]) -> Option<(f64, Option<[
     Some((a / b, interval))
 }
 
-/// Returns the middle part of the medians of resampled `sorted`; O(resamples · samples).
+/// Returns the middle part of the resampled medians; O(resamples · samples).
 fn bootstrap_interval(sorted: &[f64]) -> [f64; 2] {
     let mut resampling = Resampling::new(sorted, 0);
     resampled_interval(sorted.len(), || resampling.median())
 }
 
-/// Returns the interval of a figure over resamples of `count` samples, without the tails.
+/// Returns the middle part of the values that `figure` returns.
 fn resampled_interval(count: usize, mut figure: impl FnMut() -> f64) -> [f64; 2] {
     let mut figures: Vec<f64> = (0..RESAMPLES).map(|_| figure()).collect();
     figures.sort_unstable_by(f64::total_cmp);
@@ -119,12 +118,12 @@ fn resampled_interval(count: usize, mut figure: impl FnMut() -> f64) -> [f64; 2]
 struct Resampling<'s> {
     sorted: &'s [f64],
     random: ChaCha8Rng,
-    /// How often each of the samples was drawn: with these counts a resample need not be sorted.
+    /// How often each sample was drawn. With these counts a resample need not be sorted.
     drawn: Vec<u32>,
 }
 
 impl<'s> Resampling<'s> {
-    /// `stream` makes parallel sequences independent.
+    /// Different values of `stream` give independent sequences.
     fn new(sorted: &'s [f64], stream: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(sorted.len() as u64);
         random.set_stream(stream);
@@ -135,7 +134,6 @@ impl<'s> Resampling<'s> {
         }
     }
 
-    /// Returns the median of the next resample.
     fn median(&mut self) -> f64 {
         let count = self.sorted.len();
         self.drawn.fill(0);
@@ -149,15 +147,14 @@ impl<'s> Resampling<'s> {
     }
 }
 
-/// Returns the part of the medians that is left out at each end: 2.5 % for many samples. It is less
-/// for few samples, because the spread within a sample is smaller than that of its population. It
-/// is Φ(−√(n / (n − 1)) · t), where t is the 97.5 % quantile of Student's distribution with n − 1
-/// degrees of freedom.
+/// Returns the part of the medians that is left out at each end. It is 2.5 % for many samples, and
+/// less for few samples. The value is Φ(−√(n / (n − 1)) · t). Here t is the 97.5 % quantile of
+/// Student's distribution with n − 1 degrees of freedom.
 fn tail_probability(count: usize) -> f64 {
     let n = count as f64;
     let freedom = n - 1.0;
-    // Cornish and Fisher's expansion about the normal quantile; its error is below 1 % for 5
-    // degrees of freedom or more.
+    // The expansion of Cornish and Fisher about the normal quantile. Its error is below 1 % for 5
+    // or more degrees of freedom.
     let z = 1.959_964_f64;
     let t = z
         + (z.powi(3) + z) / (4.0 * freedom)
@@ -178,8 +175,7 @@ fn tail_probability(count: usize) -> f64 {
     sum * (-x * x / 2.0).exp() / std::f64::consts::TAU.sqrt()
 }
 
-/// Returns the index of the sample with `rank` in a resample. `drawn` is how often each sample was
-/// drawn.
+/// Returns the index of the sample that has `rank` in a resample.
 fn index_of_rank(drawn: &[u32], rank: usize) -> usize {
     let mut below = 0;
     let at = drawn.iter().position(|&times| {
@@ -193,9 +189,8 @@ fn index_of_rank(drawn: &[u32], rank: usize) -> usize {
 mod tests {
     use super::*;
 
-    /// For an odd number of samples the bootstrap of the median is known in closed form: the median
-    /// is at most the k-th smallest with the probability that more than half of n draws are among
-    /// the first k.
+    /// The exact distribution is known for an odd number of samples. The median is at most the k-th
+    /// smallest sample if more than half of the n draws are among the first k samples.
     #[test]
     fn the_interval_agrees_with_the_binomial_distribution() {
         for n in [7_usize, 15, 25, 51] {
@@ -216,7 +211,7 @@ mod tests {
             let [low, high] = Median::from_samples(samples)
                 .and_then(|m| m.interval)
                 .expect("many");
-            // If a rank is close to the quantile, the random draws may give its neighbour instead.
+            // The random draws may give a neighbouring rank if a rank is close to the quantile.
             let out = tail_probability(n);
             let (below, above) = (at_most(low as usize - 1), at_most(low as usize));
             assert!(
@@ -232,7 +227,7 @@ mod tests {
         }
     }
 
-    /// Values from tables of Student's and of the normal distribution.
+    /// The expected values come from tables of Student's distribution and the normal distribution.
     #[test]
     fn few_samples_have_smaller_tails() {
         for (n, percent) in [
@@ -283,7 +278,7 @@ mod tests {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let mut covered = 0;
         for _ in 0..2000 {
-            // Uniform in [0, 1), squared: skewed, with the median at 1/4.
+            // The square of a uniform number in [0, 1): a skewed distribution with median 1/4.
             let mut draw = || (random.next_u32() as f64 / 2_f64.powi(32)).powi(2);
             let samples: Vec<f64> = (0..25).map(|_| draw()).collect();
             let [low, high] = Median::from_samples(samples)

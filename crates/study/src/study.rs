@@ -32,34 +32,33 @@ use sixfold_workload::pages::Policy;
 use sixfold_workload::unknown;
 use sixfold_workload::{MachineClock, Time};
 
-/// The largest valence or degree of a mesh that is not skewed. Walking around such an element once
-/// for each neighbour takes about a millisecond.
+/// Maximum valence or degree of a mesh that counts as not skewed.
 const MAX_NEIGHBOURS: usize = 1000;
 
 /// The settings of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// The names of the backends; empty for all.
+    /// The names of the backends. If the list is empty, all backends are measured.
     pub backends: Vec<String>,
-    /// Additional structures beside those of Sixfold.
+    /// Additional structures that are not part of Sixfold.
     pub extra: Vec<Backend>,
-    /// External programs that take part in the study.
+    /// The external programs to measure.
     pub externals: Vec<External>,
     /// Time limit for one answer of an external program.
     pub external_timeout: Duration,
-    /// The operations; empty for all. A subdivision that takes a large part of the budget is run
-    /// only if it is named here; otherwise its time is estimated.
+    /// The operations. If the list is empty, all operations are measured. A subdivision that takes
+    /// a large part of the budget is then only estimated.
     pub operations: Vec<Operation>,
-    /// Time limit for measuring. Each operation is run at least once, even if this exceeds the
-    /// limit. If a whole run may take long, only a small sample is run.
+    /// Time limit for the measurement. Each operation is run at least once, even if the run exceeds
+    /// the limit. A long operation is run on a small sample of the elements.
     pub budget: Duration,
-    /// Seed of the order in which elements are drawn for samples, and of the order of measurement.
-    /// The size of samples depends on the clock.
+    /// Seed of the sampled elements and of the measurement order. The size of a sample depends on
+    /// the clock.
     pub seed: u64,
-    /// The policy for pages that operations free. Keeping pages takes more memory. If there is too
-    /// little memory, the system's policy is used.
+    /// The policy for freed pages. Keeping pages takes more memory. If there is too little memory,
+    /// the policy of the system is used.
     pub heap: Policy,
-    /// Whether the caches hold the mesh when a sample begins.
+    /// Whether the caches hold the mesh when a sample starts.
     pub caches: CacheState,
 }
 
@@ -102,10 +101,10 @@ pub enum StudyError {
     /// Two columns have the same name.
     #[error("two columns are called `{name}`: give each program its own name")]
     RepeatedExternal { name: String },
-    /// The file of the mesh for external programs cannot be written.
+    /// The mesh file for the external programs cannot be written.
     #[error("the mesh file for the external programs cannot be written: {cause}")]
     NoMeshFile { cause: String },
-    /// None of the chosen backends can hold the mesh.
+    /// None of the selected backends can hold the mesh.
     #[error("none of the selected backends can hold the mesh: {}", reasons(.refusals))]
     NoneHolds { refusals: Vec<(String, String)> },
 }
@@ -119,11 +118,11 @@ fn reasons(refusals: &[(String, String)]) -> String {
 }
 
 impl Settings {
-    /// Returns the chosen backends in the order of [`Backend::structures`], then the extra ones.
+    /// Returns the selected backends: first the structures of Sixfold, then the extra structures.
     ///
     /// # Errors
     ///
-    /// Returns [`StudyError::UnknownBackend`] for the first unknown name, and
+    /// Returns [`StudyError::UnknownBackend`] for an unknown name. Returns
     /// [`StudyError::RepeatedBackend`] if an extra backend has the name of another backend.
     pub fn chosen_backends(&self) -> Result<Vec<Backend>, StudyError> {
         let mut all = Backend::structures();
@@ -147,7 +146,6 @@ impl Settings {
         Ok(all.into_iter().filter(requested).collect())
     }
 
-    /// Refuses two columns with the same name.
     fn check_externals(&self) -> Result<(), StudyError> {
         let ours = Backend::structures()
             .into_iter()
@@ -162,7 +160,6 @@ impl Settings {
         Ok(())
     }
 
-    /// Returns the chosen operations, each once, in the order in which tables show them.
     fn chosen_operations(&self) -> Vec<Operation> {
         let requested = |operation: &Operation| {
             self.operations.is_empty() || self.operations.contains(operation)
@@ -173,12 +170,12 @@ impl Settings {
 
 /// Measures the operations on the backends that can hold the mesh.
 ///
-/// Setting `stop` ends the study between two samples; the report contains what is finished.
-/// `progress` is called with the current step.
+/// Setting `stop` ends the study after the current sample. The report then contains the finished
+/// part. `progress` is called with the current step.
 ///
 /// # Errors
 ///
-/// Returns an error if a backend is unknown, the mesh has no faces, or none of the chosen backends
+/// Returns an error if a backend is unknown, if the mesh has no faces, or if no selected backend
 /// can hold the mesh.
 pub fn study(
     study_mesh: &StudyMesh,
@@ -235,7 +232,7 @@ pub fn study(
         });
     }
 
-    // Builds one backend a second time, for the control. It holds these polygons, as before.
+    // The control: the same polygons in the same backend, built a second time.
     let first = measured_twice(&subjects);
     let is_first = |backend: &&Backend| backend.name() == subjects[first].name();
     let again = chosen.iter().find(is_first);
@@ -295,9 +292,9 @@ pub fn study(
     })
 }
 
-/// Estimates how many bytes the measurement holds at once: the structures with their outputs, one
-/// more for the control, and the allocations of the largest operation. A refined mesh has four
-/// times the faces, and exists both as polygons and as a structure.
+/// Estimates the peak memory of the measurement in bytes. The sum includes the structures with
+/// their outputs, the control, and the largest operation. A refined mesh has four times the faces.
+/// It exists as polygons and as a structure.
 pub(crate) fn needed_bytes(backends: &[Backend], operations: &[Operation], counts: &Counts) -> u64 {
     let bytes = backends
         .iter()
@@ -307,14 +304,11 @@ pub(crate) fn needed_bytes(backends: &[Backend], operations: &[Operation], count
     all + most * if makes { 10 } else { 3 }
 }
 
-/// Returns whether some valence or degree is very large. Walking around such an element once for
-/// each of its neighbours can exceed any budget.
 pub(crate) fn is_skewed(facts: &Facts) -> bool {
     let most = |spread: &Option<Distribution>| spread.as_ref().map_or(0, |s| s.max);
     most(&facts.valence).max(most(&facts.face_degree)) > MAX_NEIGHBOURS
 }
 
-/// Returns whether at least one of the operations scans on this backend.
 pub(crate) fn scans(backend: &Backend, operations: &[Operation]) -> bool {
     let costs = &backend.info.costs;
     costs.contains(&QueryCost::Scan)
@@ -323,7 +317,6 @@ pub(crate) fn scans(backend: &Backend, operations: &[Operation]) -> bool {
             .any(|operation| operation.scans(costs).contains(&true))
 }
 
-/// Builds a backend, and reports its memory or why it refuses the mesh.
 pub(crate) fn prepare<'a>(
     backend: &Backend,
     polygons: &'a PolygonMesh,
@@ -346,7 +339,6 @@ pub(crate) fn prepare<'a>(
     }
 }
 
-/// Returns one row for each entry that was measured or estimated.
 pub(crate) fn results(
     entries: &[Entry],
     agreements: Vec<Agreement>,
@@ -360,7 +352,6 @@ pub(crate) fn results(
         let times: Vec<Vec<(u32, Time)>> = group.iter().map(Entry::times).collect();
         let noise = noise(control, group[0].job.operation);
         let verdicts: Vec<Agreement> = agreements.by_ref().take(group.len()).collect();
-        // A backend with a mismatch may have done different work, so it is not ranked.
         let mut ranked = times.clone();
         for (verdict, times) in verdicts.iter().zip(&mut ranked) {
             if *verdict == Agreement::Mismatch {
@@ -368,7 +359,7 @@ pub(crate) fn results(
             }
         }
         let ranks = rank(&ranked, noise);
-        // The number of elements of a whole run is known if at least one backend made a whole run.
+        // The largest count comes from a whole run, if any backend made a whole run.
         let counted = group
             .iter()
             .filter(|e| e.job.sample.is_none() && subjects[e.subject].merged_vertices() == 0)
@@ -433,13 +424,10 @@ pub(crate) fn results(
     rows
 }
 
-/// Returns the largest number of page faults in a sample; `None` if they were not counted.
 fn most_faults<'t>(samples: impl IntoIterator<Item = &'t Time>) -> Option<u64> {
     samples.into_iter().filter_map(|time| time.faults).max()
 }
 
-/// Returns the samples of all entries. Entries of the subject `control` are the second ones of a
-/// backend.
 fn raw(
     entries: &[Entry],
     subjects: &[Box<dyn TimedBackend + '_>],
@@ -464,7 +452,6 @@ fn raw(
     columns.collect()
 }
 
-/// Returns the operations that backends refuse, in the order of the entries.
 pub(crate) fn refusals(entries: &[Entry], subjects: &[Box<dyn TimedBackend + '_>]) -> Vec<Refusal> {
     let refusal = |entry: &Entry| {
         let reason = entry.refusal.clone()?;

@@ -1,4 +1,4 @@
-//! The costs of reading the clock, to check that every measured time is much longer.
+//! The cost of reading the clock.
 
 use std::hint::black_box;
 
@@ -7,7 +7,7 @@ use sixfold_workload::Clock;
 
 use crate::measure::Entry;
 
-/// The number of readings.
+/// Number of readings.
 const TRIALS: usize = 1001;
 
 /// The resolution and the overhead of the clock, measured at the start of a study.
@@ -15,23 +15,22 @@ const TRIALS: usize = 1001;
 pub struct Timer {
     /// The smallest observed step of the clock, in nanoseconds.
     pub resolution_ns: f64,
-    /// The time for reading the clock during measurement, in nanoseconds. It is subtracted from
-    /// every stretch between two readings.
+    /// The time for reading the clock, in nanoseconds. It is subtracted from every measured time.
     pub overhead_ns: f64,
-    /// The uncertainty of `overhead_ns`, in nanoseconds. It is the larger of two values from an
-    /// empty loop of readings: the difference between `overhead_ns` and the median time of a
-    /// reading, and the difference between the 95 % quantile and the median.
+    /// The uncertainty of `overhead_ns`, in nanoseconds. It is computed from readings with no work
+    /// between them. It is the larger of two differences: `overhead_ns` minus the median reading,
+    /// and the 95 % quantile minus the median reading.
     #[serde(default, rename = "left_ns")]
     pub uncertainty_ns: f64,
     /// `uncertainty_ns` divided by `shortest_ns`; `None` if nothing was measured.
     pub largest_share: Option<f64>,
-    /// The shortest stretch between two readings, in nanoseconds.
+    /// The shortest time between two readings, in nanoseconds.
     #[serde(default)]
     pub shortest_ns: Option<f64>,
 }
 
 impl Timer {
-    /// Reads `clock` repeatedly, with nothing between the readings.
+    /// Reads `clock` repeatedly, without work between the readings.
     pub(crate) fn measure(clock: &dyn Clock) -> Self {
         let runs = black_box(1_u32);
         let empty = || {
@@ -45,7 +44,7 @@ impl Timer {
         times.sort_by(f64::total_cmp);
         let (usual, longest) = (times[TRIALS / 2], times[TRIALS * 95 / 100]);
         let overhead_ns = clock.overhead().ns();
-        // The overhead may be as in this empty loop, or reading may take longer than usual.
+        // The overhead may be as in this empty loop, or a reading may take longer.
         let uncertainty_ns = (overhead_ns - usual).abs().max(longest - usual);
         let steps = times.iter().copied().filter(|&ns| ns > 0.0);
         Self {
@@ -57,13 +56,11 @@ impl Timer {
         }
     }
 
-    /// Adds the shortest of the samples that were taken.
     pub(crate) fn with_entries(self, entries: &[Entry]) -> Self {
         let shortest = entries.iter().filter_map(Entry::shortest_sample_ns);
         self.with_shortest(shortest.min_by(f64::total_cmp))
     }
 
-    /// Adds the shortest stretch between two readings.
     pub(crate) fn with_shortest(self, shortest_ns: Option<f64>) -> Self {
         Self {
             largest_share: shortest_ns.map(|ns| self.uncertainty_ns / ns),

@@ -6,20 +6,20 @@ use crate::statistics::Median;
 use crate::timer::Timer;
 use sixfold_workload::pages::Policy;
 
-/// The machine is busy if its load at the start is above this part of its cores.
+/// Maximum load of an idle machine at the start, as a part of the cores.
 const BUSY: f64 = 0.5;
-/// The processor was shared if wall time is more than this multiple of processor time.
+/// Maximum ratio of wall time to processor time on an unshared processor.
 const INTERRUPTED: f64 = 1.05;
-/// An interval is wide if it extends further from its median than this part of the median.
+/// Maximum half-width of a narrow interval, as a part of the median.
 const WIDE: f64 = 0.1;
-/// The largest acceptable error of the clock, as a part of the shortest sample.
+/// Maximum acceptable error of the clock, as a part of the shortest sample.
 const COARSE: f64 = 0.01;
-/// The largest acceptable typical ratio between two columns of one backend.
+/// Maximum acceptable typical ratio between the two columns of a control.
 const NOISY: f64 = 1.05;
-/// The smallest number of samples for a 95 % interval.
+/// Minimum number of samples for a 95 % interval.
 const FEW: usize = 6;
 
-/// Returns one or two sentences for each fault, the most serious first.
+/// Returns the warnings, the most serious first.
 pub(crate) fn warnings(
     environment: &Environment,
     timer: &Timer,
@@ -42,7 +42,6 @@ pub(crate) fn warnings(
     all.into_iter().flatten().collect()
 }
 
-/// Returns the warnings about the machine itself.
 pub(crate) fn machine_warnings(environment: &Environment) -> Vec<String> {
     let all = [
         pages_not_kept(environment),
@@ -83,7 +82,7 @@ fn pages_not_kept(environment: &Environment) -> Option<String> {
     }
 }
 
-/// Warns about samples with page faults if pages are kept.
+/// Warns about samples with page faults, if pages are kept.
 fn page_faults(environment: &Environment, results: &[ResultRow]) -> Option<String> {
     let heap = environment.heap.as_ref()?;
     let has_faults = |row: &&ResultRow| row.faults.is_some_and(|faults| faults > 0);

@@ -1,8 +1,8 @@
 //! Explains the times of the relations on a structure by the memory that they read.
 //!
-//! The counts of reads ([`Reads`]) need no clock and have no noise. A study of the same relations
-//! gives the times of these relations. [`MemorySpeed`] gives the time on this machine for moving
-//! the bytes, or for waiting for them. [`Bound::from_times`] compares the three.
+//! The counts of reads ([`Reads`]) need no clock and have no noise. A study measures the times of
+//! the same relations. [`MemorySpeed`] is the time in which this machine moves bytes or waits for
+//! them. [`Bound::from_times`] compares these values.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -25,13 +25,13 @@ use crate::study::{Settings, StudyError, study};
 /// The settings of [`why`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WhySettings {
-    /// The names of the backends; empty for all.
+    /// The names of the backends. If the list is empty, all backends are used.
     pub backends: Vec<String>,
-    /// Additional structures beside those of Sixfold.
+    /// Additional structures that are not part of Sixfold.
     pub extra: Vec<Backend>,
-    /// The relations; empty for all nine.
+    /// The relations. If the list is empty, all nine relations are used.
     pub relations: Vec<Relation>,
-    /// The settings of the measurement; `None` to count only.
+    /// The settings of the measurement. `None` means that reads are only counted.
     pub timing: Option<Timing>,
 }
 
@@ -52,16 +52,16 @@ pub struct Why {
     pub schema: u32,
     /// Name and topology of the mesh.
     pub mesh: MeshReport,
-    /// The backends by name, in the order of [`Backend::structures`].
+    /// The backends, in the order of [`Backend::structures`].
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
     /// The model of memory that the counts use.
     pub model: Model,
-    /// The speed of reading buffers of growing size; `None` if nothing was measured.
+    /// The reading speed for buffers of growing size; `None` if nothing was measured.
     pub memory: Option<Vec<BufferSpeed>>,
-    /// The results, sorted by relation, then in the order of [`Backend::structures`].
+    /// The rows, by relation, then in the order of [`Backend::structures`].
     pub rows: Vec<WhyRow>,
-    /// Whether it was stopped early, so that some rows or times are missing.
+    /// Whether the command was stopped early. Some rows or times may then be missing.
     pub interrupted: bool,
     /// The machine and the program version; `None` if nothing was measured.
     pub environment: Option<Environment>,
@@ -72,18 +72,18 @@ pub struct Why {
 pub struct Model {
     /// Size of a cache line, in bytes.
     pub line_bytes: usize,
-    /// Number of lines in the model of a small cache, first in, first out.
+    /// Number of lines in the modelled cache. A full cache drops the line that came in first.
     pub cache_lines: u64,
-    /// A fetch within this many lines of a cached line, on either side, is not a jump.
+    /// Maximum distance of a fetch from a cached line, in lines. A more distant fetch is a jump.
     pub reach: usize,
     /// Number of elements in a sample.
     pub sample: usize,
-    /// A sample is used if a query reads more rows than this on average.
+    /// Maximum mean number of rows per query without sampling.
     pub most_reads: u64,
 }
 
 impl Model {
-    /// The model of this version.
+    /// The model that this version uses.
     pub const CURRENT: Self = Self {
         line_bytes: LINE_BYTES,
         cache_lines: CACHE_LINES,
@@ -100,27 +100,27 @@ pub struct WhyRow {
     pub backend: String,
     /// The kind of the elements that are queried: `vertex`, `edge` or `face`.
     pub per: String,
-    /// The counts of its reads.
+    /// The counts of reads.
     #[serde(flatten)]
     pub reads: Reads,
-    /// Its time; `None` if it was not measured.
+    /// The time; `None` if it was not measured.
     pub timed: Option<Timed>,
 }
 
-/// The time of a sweep over all elements, per element, and what explains it.
+/// The time of a sweep over all elements, and the explanation of this time.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Timed {
-    /// The median of the study per element, in nanoseconds.
+    /// The median time per element, in nanoseconds.
     pub ns_per_element: f64,
     /// Whether only a sample of the elements was timed.
     pub sampled: bool,
-    /// Whether other backends have the same results.
+    /// Whether the checksum is the same as for other backends.
     pub agreement: Agreement,
-    /// The speed of reading memory of the size of the sweep.
+    /// The reading speed for a buffer of the size of the sweep.
     pub speed: BufferSpeed,
-    /// The time per element for moving its bytes at that speed, in nanoseconds.
+    /// The time for moving the bytes of one element, in nanoseconds.
     pub floor_ns: f64,
-    /// The time per element for its jumps at that speed, one after the other, in nanoseconds.
+    /// The time for the jumps of one element, one jump after the other, in nanoseconds.
     pub waits_ns: f64,
     /// The limiting factor.
     pub bound: Bound,
@@ -130,24 +130,22 @@ pub struct Timed {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
-    /// Moving its bytes.
+    /// Moving the bytes.
     Bandwidth,
     /// Waiting for lines that a prefetcher cannot predict.
     Latency,
-    /// The steps themselves: reading data that is in the cache, comparing, branching.
+    /// Computation on data in the cache.
     Work,
 }
 
 impl Bound {
-    /// Returns the limiting factor of a sweep of `ns`, whose bytes take `floor_ns` to move and
-    /// whose jumps take `waits_ns`, one after the other.
+    /// Returns the limiting factor of a sweep of `ns` nanoseconds. `floor_ns` is the time for
+    /// moving the bytes. `waits_ns` is the time for all jumps, one after the other.
     ///
-    /// - `Bandwidth` if moving the bytes takes half of the time or more. Only a sweep of fewer
-    ///   bytes could then be twice as fast.
-    /// - `Latency` if moving the bytes takes less, but the jumps, one after the other, take half of
-    ///   the time or more. A processor overlaps several jumps, so they may take less. The jumps can
-    ///   be the reason, but not necessarily the only reason.
-    /// - `Work` if neither explains half of the time.
+    /// - `Bandwidth` if moving the bytes takes at least half of the time.
+    /// - `Latency` if moving the bytes takes less, but the jumps take at least half of the time. A
+    ///   processor overlaps jumps, so the jumps may take less time than `waits_ns`.
+    /// - `Work` in all other cases.
     pub fn from_times(ns: f64, floor_ns: f64, waits_ns: f64) -> Self {
         if 2.0 * floor_ns >= ns {
             Self::Bandwidth
@@ -158,7 +156,7 @@ impl Bound {
         }
     }
 
-    /// Returns the name that users write: `bandwidth`.
+    /// Returns the name in files: `bandwidth`, `latency` or `work`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Bandwidth => "bandwidth",
@@ -169,7 +167,7 @@ impl Bound {
 }
 
 impl Why {
-    /// Returns the number of results that differ between the backends without a known reason.
+    /// Returns the number of results that differ between backends without a known reason.
     pub fn mismatches(&self) -> usize {
         let timed = self.rows.iter().filter_map(|row| row.timed);
         timed
@@ -187,10 +185,10 @@ impl Why {
     }
 }
 
-/// Counts the reads of relations on the backends that can hold the mesh, and measures their times.
+/// Counts the reads of relations on the backends that can hold the mesh, and measures the times.
 ///
-/// Setting `stop` ends the measurement early; the result contains the finished part. `progress` is
-/// called with the current step.
+/// Setting `stop` ends the measurement early. The result then contains the finished part.
+/// `progress` is called with the current step.
 ///
 /// # Errors
 ///
@@ -215,7 +213,7 @@ pub fn why(
         return Err(StudyError::NoFaces);
     }
     let (backends, mut rows) = count_all(study_mesh, &study_settings, &relations, stop, progress)?;
-    // The sort is stable: rows of one relation stay in the order of the backends.
+    // The sort is stable: the rows of one relation stay in the order of the backends.
     rows.sort_by_key(|row| row.reads.relation);
     let mut environment = None;
     if let Some(Timing { budget, memory }) = &settings.timing
@@ -241,7 +239,6 @@ pub fn why(
     })
 }
 
-/// Counts the reads of each backend, and reports whether it can hold the mesh.
 fn count_all(
     study_mesh: &StudyMesh,
     settings: &Settings,
@@ -276,7 +273,6 @@ fn count_all(
     Ok((backends, rows))
 }
 
-/// The rows of one backend, collected while counting.
 struct RowCollector<'a> {
     backend: &'static str,
     done: f64,
@@ -306,7 +302,7 @@ impl ReadsObserver for RowCollector<'_> {
     }
 }
 
-/// Returns the time of a row in the report, compared with the speed of memory.
+/// Returns the time from the report, compared with the speed of memory.
 fn timed(row: &WhyRow, report: &Report, memory: &MemorySpeed) -> Option<Timed> {
     let mut results = report.rows(Operation::Relation(row.reads.relation));
     let result = results.find(|result| result.backend == row.backend)?;

@@ -1,4 +1,4 @@
-//! Runs the labs `orders` and `growth` with small time budgets, so that scans must be sampled.
+//! Runs the order lab and the growth lab with small budgets, so that scans are sampled.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -10,7 +10,7 @@ use sixfold_study::{
     Settings, StudyError, StudyMesh, growth, orders,
 };
 
-/// Returns a mesh of irregular triangles, so that different elements give different sums.
+/// Returns a mesh of irregular triangles. Different elements then give different sums.
 fn blobs() -> PolygonMesh {
     let generator = shapes::generator("blobs").expect("a known shape");
     generator.build(&[("faces", 1500.0)]).expect("a valid size")
@@ -63,9 +63,8 @@ fn every_order_does_the_same_work_on_every_structure() {
         };
         assert_eq!(row.row.elements, Some(elements as u64), "{context}");
     }
-    // Scanning operations were sampled, with the same elements in every order.
     assert!(sampled >= 8, "{sampled} sampled");
-    // The result of a walk depends on which face is first; the structures agree for each order.
+    // The result of `ff_bfs` depends on the first face, so structures are compared for each order.
     let walked = |order: Order| {
         let rows = report.rows(Operation::FfBfs);
         let sums = rows
@@ -108,8 +107,7 @@ fn orders_are_ranked_within_a_structure_and_compared_between_them() {
         panic!("two operations")
     };
     let scanning = |c: &sixfold_study::Comparison| c.orders.iter().filter(|o| o.scans).count();
-    // The polygon soup and the indexed face set scan all faces around a vertex; no structure scans
-    // for the vertices of a face.
+    // Two structures scan all faces around a vertex. No structure scans for the vertices of a face.
     assert_eq!((scanning(vertex_faces), scanning(face_vertices)), (2, 0));
     for comparison in &report.comparisons {
         assert_eq!(comparison.orders.len(), 6);
@@ -145,7 +143,6 @@ fn unsuitable_meshes_and_budgets_are_refused() {
         refused,
         OrdersError::Study(StudyError::NoneHolds { .. })
     ));
-    // Other backends can hold the mesh, and the backend that cannot hold it is listed.
     let report =
         quick_orders(shapes::cube(), &brief(100, &["face_vertices"])).expect("five hold it");
     assert_eq!(report.results.len(), 5 * 4);
@@ -194,7 +191,7 @@ fn scans_grow_quadratically_and_local_queries_linearly() {
         let (v, f) = (size.vertices as i64, size.faces as i64);
         assert_eq!(v - size.edges as i64 + f, 0, "a torus");
     }
-    // Each structure has one row for each data cache that the platform reports.
+    // Each of the six structures has one row for each data cache.
     let data = report.caches.iter().filter(|cache| cache.holds_data());
     assert_eq!(report.cache_limits.len(), 6 * data.count());
     let sentences = report.sentences.join(" ");
@@ -234,7 +231,7 @@ fn sizes_beyond_the_budget_are_left_out_and_listed() {
     (settings.from, settings.to) = (400, 40_000_000);
     let start = std::time::Instant::now();
     let report = quick_growth(&settings).expect("it holds triangles");
-    // Making the largest mesh alone takes several seconds.
+    // Making the largest mesh takes several seconds.
     assert!(
         start.elapsed() < Duration::from_secs(8),
         "{:?}",
@@ -267,7 +264,7 @@ fn growth_of_a_quad_shape_excludes_corner_tables() {
         refused,
         Some(GrowthError::Study(StudyError::NoneHolds { .. }))
     ));
-    // These limits are so close that all sizes are the same.
+    // All sizes between these limits give the same mesh.
     settings = small();
     (settings.from, settings.to) = (400, 401);
     assert_eq!(

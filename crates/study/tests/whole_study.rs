@@ -1,4 +1,4 @@
-//! Runs whole studies with small budgets, so that scans have to be sampled or estimated.
+//! Runs whole studies with small budgets, so that scans are sampled or estimated.
 
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -26,14 +26,14 @@ fn scans_are_sampled_and_long_operations_are_estimated() {
     let report = quick(&study_mesh, &settings).expect("all backends hold it");
     let expected_rows = Operation::ALL.len() * report.backends.len();
     assert_eq!(report.results.len() + report.refusals.len(), expected_rows);
-    // Two structures cannot split their own tables, and corner tables cannot hold quads.
+    // Two structures cannot split their own tables. Corner tables cannot hold quads.
     assert_eq!(report.refusals.len(), 2 * 2 + 3, "{:?}", report.refusals);
     for row in &report.results {
         let context = format!("{} on {}", row.operation, row.backend);
         let estimated = row.estimated_ns.is_some();
         match row.operation {
             Operation::FfBfs if estimated => assert_eq!(row.agreement, Agreement::Unchecked),
-            // In this short time, an operation may be run on only one structure.
+            // In this short time, only one structure may have run the operation.
             operation if operation.creates_mesh() => {
                 assert!(row.agreement != Agreement::Mismatch, "{context}: {row:?}");
             }
@@ -93,7 +93,7 @@ fn a_vertex_with_many_faces_stays_within_the_time_limit() {
     };
     let start = std::time::Instant::now();
     let report = quick(&study_mesh, &settings).expect("all backends hold it");
-    // A full run visits 10⁸ adjacent edges at that vertex on each backend.
+    // A full run visits 10⁸ adjacent edges at one vertex.
     assert!(start.elapsed() < Duration::from_secs(15));
     assert_eq!(report.mismatches().count(), 0, "{:?}", report.sentences);
     let edges = Operation::Relation(Relation::EdgeEdges);
@@ -104,7 +104,7 @@ fn a_vertex_with_many_faces_stays_within_the_time_limit() {
     for row in report.rows(Operation::EdgeLength) {
         assert!(!row.sampled, "{row:?}");
     }
-    // A structure that is sampled does not necessarily scan.
+    // A structure may be sampled although it does not scan.
     for walker in ["half-edge", "winged-edge", "corner-table", "face-vertex"] {
         let scans = format!("{walker} scans all");
         let found = report
@@ -154,8 +154,7 @@ fn unknown_backends_and_unsuitable_meshes_are_refused() {
     assert!(refused.to_string().contains("v0→v1"), "{refused}");
 }
 
-/// Returns the result of a study for one subdivision on the polygon soup, which scans all faces for
-/// each vertex.
+/// Studies one subdivision on the polygon soup. The soup scans all faces for each vertex.
 fn searched(operations: Vec<Operation>, budget: Duration) -> sixfold_study::ResultRow {
     let mesh = shapes::triangle_grid(40, 35).expect("a grid");
     let settings = Settings {
@@ -183,7 +182,7 @@ fn a_scanning_subdivision_is_run_if_it_is_named() {
         !run.by_name_only && run.agreement == Agreement::Same,
         "{run:?}"
     );
-    // A tenth of the budget is too much for an operation that is not named.
+    // An operation that is not named may not take a tenth of the budget.
     let tight = Duration::from_nanos(10 * measured_ns as u64);
     let left_out = searched(Vec::new(), tight);
     let estimate = left_out.estimated_ns.expect("only estimated");
@@ -192,7 +191,7 @@ fn a_scanning_subdivision_is_run_if_it_is_named() {
         (0.2..5.0).contains(&(estimate / measured_ns)),
         "estimate {estimate}, measured {measured_ns}"
     );
-    // The operation takes longer than the budget, so it is not run even if it is named.
+    // An operation longer than the budget is not run, even if it is named.
     let too_long = searched(named, tight / 1000);
     assert!(too_long.estimated_ns.is_some() && !too_long.by_name_only);
 }

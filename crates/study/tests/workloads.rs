@@ -8,11 +8,10 @@ use sixfold::{EditableHalfEdgeMesh, Point, PolygonMesh, Relation, Representation
 use sixfold_conformance::edit::{Action, Model, Rules};
 use sixfold_study::{Backend, BackendRunner, EditPass, MachineClock, Operation};
 
-/// The expected results of the operations, computed by brute force.
 struct Oracle<'a> {
     mesh: &'a PolygonMesh,
     faces: Vec<Vec<usize>>,
-    /// By edge, the lower end first: its faces.
+    /// The faces of each edge. The lower end of the edge comes first.
     edges: BTreeMap<[usize; 2], BTreeSet<usize>>,
 }
 
@@ -34,7 +33,6 @@ impl<'a> Oracle<'a> {
         self.mesh.positions()[vertex].to_array().map(f64::from)
     }
 
-    /// Returns the adjacent vertices of each vertex.
     fn neighbours(&self) -> Vec<BTreeSet<usize>> {
         let mut sets = vec![BTreeSet::new(); self.mesh.vertex_count()];
         for &[a, b] in self.edges.keys() {
@@ -44,7 +42,6 @@ impl<'a> Oracle<'a> {
         sets
     }
 
-    /// Returns the adjacent faces of each face.
     fn adjacent_faces(&self) -> Vec<BTreeSet<usize>> {
         let mut sets = vec![BTreeSet::new(); self.faces.len()];
         for faces in self.edges.values() {
@@ -116,8 +113,8 @@ impl<'a> Oracle<'a> {
         depths.into_iter().flatten().sum()
     }
 
-    /// Returns the points after one step, by the published rules. The boundary becomes a cubic
-    /// B-spline, and a vertex with a single face keeps its position.
+    /// Returns the points after one step of the published rules. The boundary becomes a cubic
+    /// B-spline. A vertex with a single face keeps its position.
     fn refined(&self, scheme: Scheme) -> Vec<[f64; 3]> {
         let quads = scheme == Scheme::CatmullClark;
         let centre = |f: &usize| self.mean(self.faces[*f].iter().copied());
@@ -203,8 +200,8 @@ impl<'a> Oracle<'a> {
         }
     }
 
-    /// Returns the sum of the edge lengths after flipping every edge twice, by the model of
-    /// `sixfold-conformance`.
+    /// Flips every edge twice in the model of `sixfold-conformance`. Returns the sum of the edge
+    /// lengths.
     fn flipped(&self) -> f64 {
         let mut model = Model::from_polygons(self.mesh);
         let rules = Rules::new::<EditableHalfEdgeMesh>();
@@ -232,7 +229,6 @@ impl<'a> Oracle<'a> {
         Oracle::new(&model.to_polygons()).checksum(Operation::EdgeLength)
     }
 
-    /// Returns the sum of the edge lengths of the decimated mesh; the operator has its own tests.
     fn decimated(&self, ratio: f64) -> f64 {
         let mut mesh = EditableHalfEdgeMesh::from_polygons(self.mesh).expect("a manifold");
         let to = Decimation {
@@ -285,7 +281,6 @@ fn field(vectors: impl Iterator<Item = [f64; 3]>) -> f64 {
         .sum()
 }
 
-/// Returns a mesh with a boundary, faces of three to six corners, and two components.
 fn patchwork() -> PolygonMesh {
     let at = |x: f32, y: f32| Point::new(x, y, 0.3 * x * y - 0.1 * x);
     let positions = vec![
@@ -305,8 +300,7 @@ fn patchwork() -> PolygonMesh {
     PolygonMesh::new(positions, faces).expect("valid")
 }
 
-/// Returns whether the operation can run, by the table of schemes and structures and the degrees of
-/// the mesh.
+/// Returns whether the operation can run on this backend and mesh.
 fn can_run(operation: Operation, backend: &Backend, mesh: &PolygonMesh) -> bool {
     let Some(job) = operation.subdivision_job() else {
         return !operation.creates_mesh() || mesh.faces().uniform_degree() == Some(3);

@@ -12,7 +12,6 @@ use sixfold_core::{Point, Split};
 
 use crate::mask::{Mask, midpoint};
 
-/// Splits every face into quads and does not move the old vertices.
 #[derive(Clone, Copy)]
 pub(crate) struct Bilinear;
 
@@ -46,7 +45,6 @@ mod tests {
     use super::*;
     use crate::{Method, Scheme, Subdivision, subdivide, subdivide_native};
 
-    /// Boundaries do not become curves here: no vertex moves, so the corners stay.
     #[test]
     fn a_square_keeps_its_corners() {
         let corners = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 1.0), Point::Y];

@@ -18,11 +18,12 @@
 //!
 //! At boundaries:
 //!
-//! - The point of a boundary edge depends on boundary vertices only: (−1/16, 9/16, 9/16, −1/16)
-//!   along the boundary (Dyn, Gregory & Levin 1987). Two pieces with the same boundary therefore
+//! - The point of a boundary edge depends only on boundary vertices: (−1/16, 9/16, 9/16, −1/16)
+//!   along the boundary (Dyn, Gregory & Levin 1987). Two meshes with the same boundary therefore
 //!   still fit together.
-//! - If a corner of the regular stencil would lie beyond a boundary edge, it is replaced by the
-//!   reflection of the third vertex of the triangle there (Zorin, Schröder & Sweldens 1996):
+//! - If a corner of the regular stencil lies beyond a boundary edge, the corner is replaced by a
+//!   ghost. The ghost is the reflection of the third vertex of the triangle at this edge (Zorin,
+//!   Schröder & Sweldens 1996):
 //!
 //! ```text
 //!        a ───── b      a boundary edge, c inside:  ghost = a + b − c
@@ -32,8 +33,8 @@
 //! ```
 //!
 //! - An extraordinary boundary vertex, with k ≠ 3 triangles, has the masks of Zorin & Schröder
-//!   (2000). Their leading eigenvectors are those of a half-plane ([`boundary_weights`]).
-//! - The paper has no mask for an inner vertex of valence 2; its edges get their midpoints.
+//!   (2000), see [`boundary_weights`].
+//! - The paper has no mask for an inner vertex of valence 2. The points of its edges are midpoints.
 
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
@@ -48,10 +49,9 @@ use crate::native::{compute_rows, copy_rows};
 use crate::scheme::Scheme;
 use crate::step::{Step, StepBuilder};
 
-/// Number of valences with precomputed weights, from 0; few vertices have a higher valence.
+/// Number of valences with precomputed weights.
 const PRECOMPUTED: usize = 16;
 
-/// The weights around extraordinary vertices.
 struct Butterfly {
     rings: [Vec<f32>; PRECOMPUTED],
 }
@@ -103,7 +103,7 @@ pub(crate) fn native<M: Refine>(
     Ok(Creases::default())
 }
 
-/// Returns whether a vertex with one fan has six triangles around it, or three at a boundary.
+/// Returns whether a vertex has six triangles around it, or three triangles at a boundary.
 fn is_regular<M: MeshQuery>(mesh: &M, v: M::Vertex) -> bool {
     let sizes = (
         mesh.vertex_vertices(v).count(),
@@ -119,8 +119,7 @@ impl Butterfly {
         }
     }
 
-    /// Returns the point of `e`, an edge with one face, or with two that run along it in opposite
-    /// directions.
+    /// Returns the point of edge `e`.
     fn edge<M: MeshQuery>(
         &self,
         mesh: &M,
@@ -145,7 +144,7 @@ impl Butterfly {
         }
     }
 
-    /// Returns the point of the inner edge from `v` to `to`, computed from the neighbours of `v`;
+    /// Returns the point of the inner edge from `v` to `to`, computed from the neighbours of `v`.
     /// O(valence) plus the cost of the ring.
     fn extraordinary_point<M: MeshQuery>(&self, mesh: &M, v: M::Vertex, to: M::Vertex) -> Point {
         let ring = ring(mesh, v);
@@ -158,8 +157,7 @@ impl Butterfly {
             (false, None) => (Cow::Owned(ring_weights(ring.len())), start),
         };
         let rotated = ring[start..].iter().chain(&ring[..start]);
-        // Adding differences gives `v` the remaining weight, and equal positions stay exactly
-        // equal.
+        // A sum of differences gives `v` the remaining weight. Equal positions stay exactly equal.
         rotated.zip(&*weights).fold(at, |point, (&w, &weight)| {
             point + (mesh.position(w) - at) * weight
         })
@@ -172,7 +170,6 @@ fn ring<M: MeshQuery>(mesh: &M, v: M::Vertex) -> Vec<M::Vertex> {
     ring.expect("checked to be one fan").collect()
 }
 
-/// Returns the point of the edge between two regular vertices.
 fn regular_point<M: MeshQuery>(mesh: &M, e: M::Edge, faces: [M::Face; 2]) -> Point {
     let ends = mesh.edge_vertices(e).map(|v| mesh.position(v));
     let (mut sides, mut wings) = (Point::ZERO, Point::ZERO);
@@ -197,7 +194,6 @@ fn regular_point<M: MeshQuery>(mesh: &M, e: M::Edge, faces: [M::Face; 2]) -> Poi
     (ends[0] + ends[1]) * 0.5 + sides * 0.125 - wings * 0.0625
 }
 
-/// Returns the point of a boundary edge.
 fn boundary_point<M: MeshQuery>(mesh: &M, [a, b]: [M::Vertex; 2]) -> Point {
     // The ring runs from one boundary edge to the other.
     let beyond = |v, to| match ring(mesh, v)[..] {
@@ -209,8 +205,8 @@ fn boundary_point<M: MeshQuery>(mesh: &M, [a, b]: [M::Vertex; 2]) -> Point {
     (mesh.position(a) + mesh.position(b)) * 0.5625 - far * 0.0625
 }
 
-/// Returns the weights of the neighbours of an inner vertex, starting at the other end of the edge.
-/// The weight of the vertex itself is 1 minus their sum.
+/// Returns the weights of the neighbours of an inner vertex. The first neighbour is the other end
+/// of the edge. The weight of the vertex is 1 minus the sum of these weights.
 fn ring_weights(valence: usize) -> Vec<f32> {
     let n = valence as f64;
     let weight = |j: usize| {
@@ -226,9 +222,9 @@ fn ring_weights(valence: usize) -> Vec<f32> {
 }
 
 /// Returns the weights for the point of the edge from a boundary vertex to its neighbour `i` (Zorin
-/// & Schröder 2000). The vertex has k `triangles` and k + 1 neighbours. The weights have the order
-/// of the neighbours, from one boundary edge to the other. The weight of the vertex itself is 1
-/// minus their sum. With θ = π/k:
+/// & Schröder 2000). The vertex has k `triangles` and k + 1 neighbours. The neighbours are ordered
+/// from one boundary edge to the other boundary edge. The weight of the vertex is 1 minus the sum
+/// of these weights. With θ = π/k:
 ///
 /// ```text
 ///   first, last  ±(cos iθ)/4 ∓ sin 2θ sin 2iθ / (4k (cos θ − cos 2θ))
@@ -287,7 +283,6 @@ mod tests {
         assert_eq!(weights(3), [5.0 / 12.0, -1.0 / 12.0]);
         assert_eq!(weights(4), [0.375, 0.0]);
         assert!((ring_weights(5)[0] - 0.35).abs() < 1e-6);
-        // On a half-disc, the point of each spoke lies half-way out.
         for triangles in 2..=12 {
             let angle = |i: usize| PI * i as f64 / triangles as f64;
             for i in 1..triangles {
@@ -305,7 +300,6 @@ mod tests {
 
     #[test]
     fn solids_match_values_computed_by_hand() {
-        // 5/6 v + 1/2 w around v on a tetrahedron, 3/4 v + 1/2 w on an octahedron.
         for (solid, weight) in [
             (sixfold_shapes::tetrahedron(), 2.0 / 3.0),
             (sixfold_shapes::octahedron(), 0.625),
@@ -343,7 +337,6 @@ mod tests {
                 kept += 1;
             }
         }
-        // The number of edges of a grid of (m − 2) × (n − 2).
         let (m, n) = (m - 2, n - 2);
         assert_eq!(kept, 3 * m * n + m + n);
     }
@@ -375,13 +368,12 @@ mod tests {
             between(0, 1),
             (c[0] + c[1]) * 0.5625 - (c[3] + c[2]) * 0.0625,
         );
-        // 1 and 4 have three triangles each, so both are regular. Wings: 0 across 1–3, 5 across 2–4,
-        // and ghosts beyond 3–4 and 1–2.
+        // Vertices 1 and 4 are regular. Other corners: 0, 5, and ghosts beyond 3–4 and 1–2.
         let ghosts = (c[3] + c[4] - c[1]) + (c[1] + c[2] - c[4]);
         let expected =
             (c[1] + c[4]) * 0.5 + (c[3] + c[2]) * 0.125 - (c[0] + c[5] + ghosts) * 0.0625;
         assert_near(between(1, 4), expected);
-        // 3 has two triangles: the crease mask with k = 2, i = 1 on the ring 0, 1, 4.
+        // Vertex 3 has two triangles and the ring 0, 1, 4.
         let weights = boundary_weights(2, 1);
         let expected = weights.iter().zip([c[0], c[1], c[4]]);
         let expected = expected.fold(c[3], |p, (&w, at)| p + (at - c[3]) * w);

@@ -1,7 +1,7 @@
 //! Catmull–Clark: splits every face into quads; approximating, C² except at extraordinary vertices.
 //!
-//! Catmull & Clark (1978). The input may have any polygons. After one step all faces are quads, and
-//! each face of degree n has become a vertex of valence n. Creases follow DeRose, Kass & Truong
+//! Catmull & Clark (1978). The input may have any polygons. After one step, all faces are quads,
+//! and each old face of degree n is a vertex of valence n. Creases follow DeRose, Kass & Truong
 //! (1998).
 //!
 //! ```text
@@ -57,7 +57,6 @@ mod tests {
     use crate::test_support::assert_near;
     use crate::{Boundary, Method, Scheme, Subdivision, subdivide, subdivide_native};
 
-    /// Builds a cube from −1 to 1; the bits of `i` give the coordinates of corner `i`.
     fn cube() -> PolygonMesh {
         let corners: [Point; 8] = std::array::from_fn(|bits| {
             let axis = |bit: usize| (bits >> bit & 1) as f32 * 2.0 - 1.0;
@@ -89,7 +88,6 @@ mod tests {
             for (corner, point) in cube().positions().iter().zip(points) {
                 assert!(near(*point, *corner * (5.0 / 9.0)), "{point}");
             }
-            // Face points are at the centres, edge points at (3/4, 3/4, 0) and symmetric positions.
             assert!(points[8..14].iter().all(|p| p.length() == 1.0));
             for p in &points[14..] {
                 let mut sizes = p.abs().to_array();
@@ -123,7 +121,6 @@ mod tests {
         let creases = Creases::new(&grid, crease, []).expect("inner edges");
         for (boundary, corner) in [
             (Boundary::EdgeAndCorner, Point::ZERO),
-            // (1, 6, 1)/8 of (0, 1), (0, 0) and (1, 0).
             (Boundary::EdgeOnly, Point::new(0.125, 0.125, 0.0)),
         ] {
             let scheme = Subdivision {
@@ -139,9 +136,7 @@ mod tests {
             for step in steps.into_iter().chain(native) {
                 let points = step.polygons.positions();
                 assert_near(points[0], corner);
-                // Boundary vertices use (1, 6, 1)/8. The crease ends at vertex 3. This vertex has
-                // three sharp edges, so it keeps its position. Vertex 4 follows the crease: 6/8 of
-                // 64.
+                // The crease ends at vertex 3, which has three sharp edges and does not move.
                 assert_near(points[1], Point::new(1.0, 0.0, 0.0));
                 assert_near(points[3], Point::new(0.0, 1.0, 0.0));
                 assert_near(points[4], Point::new(1.0, 1.0, 48.0));
@@ -149,8 +144,8 @@ mod tests {
                     let near = |p: &Point| p.distance(Point::new(x, y, z)) < 1e-5;
                     assert!(points.iter().any(near), "{x} {y} {z}, {boundary:?}");
                 };
-                // A face point: 64/4. The edge 1–4, between two faces: (64 + 0 + 16 + 16)/4. The creased
-                // edge 3–4: its midpoint. The boundary edge 0–1: its midpoint.
+                // A face point, then the points of edge 1–4, of the crease 3–4 and of the boundary
+                // edge 0–1.
                 has(0.5, 0.5, 16.0);
                 has(1.0, 0.5, 24.0);
                 has(0.5, 1.0, 32.0);

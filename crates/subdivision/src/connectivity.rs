@@ -1,7 +1,6 @@
-//! A mesh as tables of numbers: its corners, and the sides of each edge.
+//! A mesh as tables of numbers: the corners, and the sides of each edge.
 //!
-//! These tables are for schemes that make faces across old edges and need the face on the other
-//! side of an edge.
+//! These tables are for schemes that make new faces across old edges.
 //!
 //! ```text
 //!          b
@@ -19,38 +18,34 @@ use sixfold_core::{MeshQuery, VertexId, VertexMap};
 use crate::error::SubdivisionError;
 use crate::scheme::Scheme;
 
-/// The corners of all faces in their order, and how the faces are connected.
 pub(crate) struct Connectivity {
     /// The vertex at each corner.
     pub(crate) corners: Vec<u32>,
     /// The next corner of the same face.
     next: Vec<u32>,
-    /// The edge of each side.
     sides: Vec<u32>,
     edges: Vec<EdgeSides>,
 }
 
-/// An edge by its sides.
 #[derive(Clone, Copy)]
 pub(crate) struct EdgeSides {
-    /// The side of one of its faces.
+    /// The side of the first face.
     pub(crate) first: u32,
-    /// The side of the other face; `None` at a boundary.
+    /// The side of the second face; `None` at a boundary.
     pub(crate) second: Option<u32>,
 }
 
-/// Marks an edge that has no number yet.
 const UNNUMBERED: u32 = u32::MAX;
 
 impl Connectivity {
-    /// Builds the tables of `mesh` for `scheme` with queries for the faces of each edge; edges have
-    /// the order of `edges()`. Queries FV, EV and EF. Takes O(sum of the squares of the degrees)
-    /// plus the cost of the queries.
+    /// Builds the tables of `mesh` with queries for the faces of each edge. The edges have the
+    /// order of `edges()`. Queries FV, EV and EF. Takes O(sum of the squares of the degrees) plus
+    /// the cost of the queries.
     ///
     /// # Errors
     ///
-    /// Returns an error for an edge with three faces, or with two that run along it in the same
-    /// direction.
+    /// Returns an error for an edge with three faces, or an edge along which two faces run in the
+    /// same direction.
     pub(crate) fn gathered<M: MeshQuery>(
         mesh: &M,
         scheme: Scheme,
@@ -88,13 +83,13 @@ impl Connectivity {
         Ok(connectivity)
     }
 
-    /// Builds the tables from one pass over the faces, with FV and FE only; edges have the order in
-    /// which the faces list them. O(corners) expected.
+    /// Builds the tables from one pass over the faces, with FV and FE only. The edges have the
+    /// order in which the faces list them. O(corners) expected.
     ///
     /// # Errors
     ///
-    /// Returns an error for an edge with three faces, or with two that run along it in the same
-    /// direction.
+    /// Returns an error for an edge with three faces, or an edge along which two faces run in the
+    /// same direction.
     pub(crate) fn scattered<M: MeshQuery>(
         mesh: &M,
         scheme: Scheme,
@@ -158,8 +153,8 @@ impl Connectivity {
         self.next.extend(next.chain([first as u32]));
     }
 
-    /// Returns the direction and the side of a face between `ends`. The direction is 0 from the
-    /// first to the second end, 1 from the second to the first.
+    /// Returns the side of a face between `ends`, and its direction. Direction 0 runs from the
+    /// first end to the second end; direction 1 runs back.
     fn side_between(&self, corner_of_face: u32, ends: [u32; 2]) -> (usize, u32) {
         let mut side = corner_of_face;
         loop {
@@ -172,7 +167,6 @@ impl Connectivity {
         }
     }
 
-    /// Returns the next corner of the same face.
     #[inline]
     pub(crate) fn next(&self, corner: u32) -> u32 {
         self.next[corner as usize]
@@ -190,7 +184,8 @@ impl Connectivity {
         self.sides[side as usize] as usize
     }
 
-    /// Returns the side that runs along the same edge in the other direction; `None` at a boundary.
+    /// Returns the side that runs along the same edge in the opposite direction; `None` at a
+    /// boundary.
     #[inline]
     pub(crate) fn twin(&self, side: u32) -> Option<u32> {
         let edge = self.edges[self.edge_of(side)];
@@ -201,12 +196,12 @@ impl Connectivity {
         }
     }
 
-    /// Returns all edges.
     pub(crate) fn edges(&self) -> &[EdgeSides] {
         &self.edges
     }
 
-    /// Calls `fan` with the corners around each inner vertex, counter-clockwise; O(corners).
+    /// Calls `fan` for each inner vertex with the corners around the vertex, counter-clockwise.
+    /// O(corners).
     ///
     /// ```text
     ///      f  w  g      c is the corner of v in f, whose side runs v → w; its twin is the side w → v
@@ -217,14 +212,14 @@ impl Connectivity {
     ///
     /// # Errors
     ///
-    /// Returns an error for a vertex whose faces are several fans, or an error that `fan` returns.
+    /// Returns an error for a vertex whose faces are several fans, and any error of `fan`.
     pub(crate) fn for_each_inner_fan(
         &self,
         vertices: usize,
         scheme: Scheme,
         mut fan: impl FnMut(&[u32]) -> Result<(), SubdivisionError>,
     ) -> Result<(), SubdivisionError> {
-        // By vertex: a corner of it, and whether the fan begins there, at a boundary; the number of
+        // For each vertex: one corner, whether the fan begins at this corner, and the number of
         // corners.
         let mut starts = vec![(None, false); vertices];
         let mut counts = vec![0_usize; vertices];
@@ -265,7 +260,7 @@ impl Connectivity {
     }
 }
 
-/// Returns the number of each vertex: its index in `vertices()`.
+/// Returns the index of each vertex in `vertices()`.
 pub(crate) fn vertex_numbers<M: MeshQuery>(mesh: &M) -> VertexMap<M, u32> {
     let mut numbers = mesh.vertex_map(0_u32);
     let mut number = 0;
@@ -276,8 +271,6 @@ pub(crate) fn vertex_numbers<M: MeshQuery>(mesh: &M) -> VertexMap<M, u32> {
     numbers
 }
 
-/// Returns the error for an edge that does not have one face, or two that run along it in opposite
-/// directions.
 pub(crate) fn non_manifold_edge(scheme: Scheme, ends: [u32; 2], faces: usize) -> SubdivisionError {
     SubdivisionError::NonManifoldEdge {
         scheme,
@@ -286,7 +279,6 @@ pub(crate) fn non_manifold_edge(scheme: Scheme, ends: [u32; 2], faces: usize) ->
     }
 }
 
-/// Returns the error for a vertex whose faces are several fans.
 pub(crate) fn non_manifold_vertex(scheme: Scheme, v: u32) -> SubdivisionError {
     let vertex = VertexId::new(v);
     SubdivisionError::NonManifoldVertex { scheme, vertex }

@@ -9,13 +9,13 @@ use crate::options::Boundary;
 use crate::subdivision::Subdivision;
 
 impl Subdivision {
-    /// Returns the sharpness before the first step of `mesh`, which was built from `polygons`. This
-    /// is the sharpness in `creases`, and infinite sharpness for the elements listed below. The
+    /// Returns the sharpness before the first step of `mesh`, which was built from `polygons`. The
+    /// result contains `creases`. The elements in the list below also get infinite sharpness. The
     /// result uses the numbers of `mesh.to_polygons()`. Takes O(corners) expected time.
     ///
     /// - With [`Boundary::EdgeAndCorner`], vertices with exactly one face.
-    /// - Edges with three or more faces, and edges whose two faces run along them in the same
-    ///   direction. Boundary edges are not listed: every step finds them.
+    /// - Edges with three or more faces, and edges with two faces that run along the edge in the
+    ///   same direction. Boundary edges are not in the list: every step finds them.
     /// - Vertices at such edges, and vertices with several fans. Exception: a vertex inside a curve
     ///   of such edges moves along the curve, as on a crease. Such a vertex has two of these edges,
     ///   no boundary edge, and more faces than edges.
@@ -46,7 +46,7 @@ impl Subdivision {
         Ok(self.sharpened::<M>(&welded, &creases))
     }
 
-    /// Returns `creases` with the elements that the rules make sharp in `polygons`.
+    /// Returns `creases` with the elements that become sharp because of the topology.
     fn sharpened<M: Representation>(&self, polygons: &PolygonMesh, creases: &Creases) -> Creases {
         let (mut edges, mut corners) = (creases.edges().to_vec(), creases.corners().to_vec());
         let infinite = |v: VertexId| (v, f32::INFINITY);
@@ -82,9 +82,10 @@ impl Subdivision {
         Creases::from_entries(edges, corners)
     }
 
-    /// Returns, by face of the control mesh, whether the boundary rule leaves it out of the result.
-    /// With [`Boundary::None`], these are the faces at a vertex with a boundary edge that is not
-    /// infinitely sharp in `creases`. Returns `None` if all faces stay. O(corners) expected.
+    /// Returns for each face of the control mesh whether the boundary rule leaves out the face.
+    /// With [`Boundary::None`], a face is left out if one of its vertices has a boundary edge that
+    /// is not infinitely sharp in `creases`. Returns `None` if no face is left out. O(corners)
+    /// expected.
     pub fn left_out(&self, polygons: &PolygonMesh, creases: &Creases) -> Option<Vec<bool>> {
         if self.boundary != Boundary::None || !self.scheme.kind().creases {
             return None;
@@ -112,13 +113,12 @@ impl Subdivision {
     }
 }
 
-/// The number of faces and edges at a vertex.
 #[derive(Clone, Copy, Debug, Default)]
 struct VertexCounts {
     faces: usize,
     edges: usize,
     boundary_edges: usize,
-    /// Edges with three or more faces, or with two that run in the same direction.
+    /// Edges with three or more faces, or with two faces that run in the same direction.
     non_manifold_edges: usize,
 }
 
@@ -129,14 +129,14 @@ impl VertexCounts {
         self.non_manifold_edges += usize::from(!edge.is_manifold());
     }
 
-    /// Returns whether the sheets at this vertex meet along one curve that passes through it.
+    /// Returns whether the faces at this vertex meet along one curve through the vertex.
     fn is_on_non_manifold_curve(&self) -> bool {
         self.non_manifold_edges == 2 && self.boundary_edges == 0 && self.faces > self.edges
     }
 }
 
-/// Renumbers the creases of `polygons` to those of `mesh.to_polygons()`, for structures that
-/// identify a vertex by its coordinates. If two edges or vertices have become one, the greater
+/// Converts the creases of `polygons` to the numbers of `mesh.to_polygons()`. Needed for structures
+/// that identify a vertex by its coordinates. If two edges or vertices have become one, the higher
 /// sharpness is used.
 pub fn renumbered<M: Representation>(
     mesh: &M,
@@ -157,7 +157,7 @@ pub fn renumbered<M: Representation>(
     for (v, _) in &mut corners {
         *v = number(*v);
     }
-    // Of several entries for one element, `from_entries` keeps the last.
+    // `from_entries` uses the last of several entries for one element.
     edges.sort_by(|a, b| a.1.total_cmp(&b.1));
     corners.sort_by(|a, b| a.1.total_cmp(&b.1));
     Creases::from_entries(edges, corners)
@@ -188,7 +188,7 @@ mod tests {
         PolygonMesh::new(points, lower.map(quad)).expect("nine quads")
     }
 
-    /// Returns the faces that are kept with boundary `none`, and the number of faces after a step.
+    /// Returns the faces that remain with boundary `none`, and the number of faces after a step.
     fn kept_faces(sharp: impl Fn([u32; 2]) -> f32, corner_sharpness: f32) -> (Vec<usize>, usize) {
         let mesh = nine_quads();
         let uses = mesh.edge_uses();
@@ -217,12 +217,11 @@ mod tests {
     #[test]
     fn faces_at_an_open_boundary_are_left_out() {
         assert_eq!(kept_faces(|_| 0.0, 0.0), (vec![4], 4));
-        // Neither finite sharpness nor sharp corners close a boundary.
+        // Finite sharpness and sharp corners have no effect here.
         assert_eq!(kept_faces(|_| 9.99, f32::INFINITY), (vec![4], 4));
-        // All boundary edges are infinitely sharp.
         let all: Vec<usize> = (0..9).collect();
         assert_eq!(kept_faces(|_| 10.0, 0.0), (all, 36));
-        // Only the left side is sharp: 4 and 8 have two sharp boundary edges, 0 and 12 only one.
+        // Only the left side is sharp: vertices 4 and 8 have two sharp boundary edges.
         let left = |[a, b]: [u32; 2]| if a % 4 == 0 && b % 4 == 0 { 10.0 } else { 0.0 };
         assert_eq!(kept_faces(left, 0.0), (vec![3, 4], 8));
     }
@@ -238,8 +237,7 @@ mod tests {
         }
     }
 
-    /// Returns the elements that the rules make sharp in a mesh without creases: edges by their
-    /// ends, and vertices.
+    /// Returns the edges and vertices that are sharp in a mesh without creases.
     fn sharp(points: u32, faces: &[&[u32]], boundary: Boundary) -> (Vec<[usize; 2]>, Vec<usize>) {
         let points: Vec<Point> = (0..points).map(|i| Point::splat(i as f32)).collect();
         let polygons = PolygonMesh::new(points, faces).expect("faces");
@@ -268,14 +266,14 @@ mod tests {
 
     #[test]
     fn non_manifold_edges_and_vertices_are_sharp() {
-        // Two faces that both run 1 → 2.
+        // Both faces run from 1 to 2.
         let same_way: [&[u32]; 2] = [&[0, 1, 2, 3], &[1, 2, 5, 4]];
         let expected = (vec![[1, 2]], vec![1, 2]);
         assert_eq!(sharp(6, &same_way, Boundary::EdgeOnly), expected);
-        // Two fans at 0.
+        // There are two fans at vertex 0.
         let bow_tie: [&[u32]; 2] = [&[0, 1, 2], &[0, 3, 4]];
         assert_eq!(sharp(5, &bow_tie, Boundary::EdgeOnly), (vec![], vec![0]));
-        // Three pages along 0, 1, 2: the ends are corners, 1 is not.
+        // Three pages meet along vertices 0, 1 and 2. Vertex 1 is not a corner.
         let book: [&[u32]; 6] = [
             &[0, 3, 4, 1],
             &[1, 4, 5, 2],
@@ -289,8 +287,8 @@ mod tests {
             sharp(12, &book, Boundary::EdgeOnly),
             (spine.clone(), vec![0, 2])
         );
-        // Without the last page, 1 has a boundary edge and is a corner; 1–2 has two faces now,
-        // which run in opposite directions.
+        // Without the last page, vertex 1 has a boundary edge and is a corner. Edge 1–2 has only
+        // two faces.
         assert_eq!(
             sharp(12, &book[..5], Boundary::EdgeOnly),
             (vec![[0, 1]], vec![0, 1])

@@ -1,8 +1,8 @@
-//! Sharpness: its effect on points, and the sharpness that remains at the next level.
+//! Sharpness: its effect on the points of a step, and the sharpness at the next level.
 //!
-//! The rules are those of DeRose, Kass & Truong (1998), with fractional sharpness as used in film
-//! production. A step first places all points as if nothing were sharp. This module then places the
-//! points at sharp edges and vertices again, in the same way for every scheme and method.
+//! The rules are the rules of DeRose, Kass & Truong (1998), with fractional sharpness. A step first
+//! places all points as if nothing were sharp. This module then places the points at sharp edges
+//! and vertices again. Every scheme and method uses the same rules.
 //!
 //! ```text
 //!   sharp edges at a vertex       kind         new position
@@ -12,35 +12,30 @@
 //!   more, or a sharp vertex       corner       unchanged
 //! ```
 //!
-//! Sharpness decreases by one per level. If a vertex has another kind at the next level, its new
+//! Sharpness decreases by one per level. If the kind of a vertex changes at the next level, its new
 //! position is w · (position of the current kind) + (1 − w) · (position of the next kind). Here w
-//! is the mean of the sharpnesses that reach zero.
+//! is the mean of the sharpnesses that become zero.
 
 use sixfold_core::{Creases, Pair, Point, SHARPNESS_INFINITE, VertexId};
 
 use crate::mask::midpoint;
 use crate::options::Creasing;
 
-/// An edge that is sharp at this level, with the numbers of a step.
+/// A sharp edge.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SharpEdge {
-    /// Its index among all edges.
     pub(crate) edge: usize,
-    /// Its two ends.
     pub(crate) ends: [u32; 2],
-    /// Above 0.
     pub(crate) sharpness: f32,
-    /// Whether it is sharp because of its number of faces, as a boundary edge or an edge with three
-    /// faces. Its halves have the same number of faces, and need no entry.
+    /// Whether the edge is sharp because it is a boundary edge or has three faces or more. The
+    /// halves of such an edge need no entry at the next level.
     pub(crate) by_topology: bool,
 }
 
 /// The sharp elements of one level.
 #[derive(Debug, Default)]
 pub(crate) struct SharpLevel {
-    /// In any order, each once.
     pub(crate) edges: Vec<SharpEdge>,
-    /// In the order of the vertices.
     pub(crate) corners: Vec<(VertexId, f32)>,
 }
 
@@ -50,13 +45,13 @@ struct Spoke {
     at: u32,
     far: u32,
     sharpness: f32,
-    /// The index of the edge in the level, and which of its ends this is.
+    /// The index of the edge in the level, and the index of the end.
     edge: (usize, usize),
-    /// The sharpness of the half at this end, at the next level.
+    /// The sharpness at the next level of the half at this end.
     child: f32,
 }
 
-/// The kind of a vertex, by its own sharpness and its number of sharp edges.
+/// The kind of a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Rule {
     Smooth,
@@ -68,7 +63,6 @@ impl Rule {
     pub(crate) fn new(own: f32, sharp_edges: usize) -> Self {
         match sharp_edges {
             _ if own > 0.0 => Self::Corner,
-            // A dart moves like a smooth vertex.
             0 | 1 => Self::Smooth,
             2 => Self::Crease,
             _ => Self::Corner,
@@ -76,7 +70,7 @@ impl Rule {
     }
 }
 
-/// Returns the sharpness one level later, without the influence of other edges.
+/// Returns the sharpness at the next level, without the influence of other edges.
 fn next_sharpness(sharpness: f32) -> f32 {
     if sharpness >= SHARPNESS_INFINITE {
         f32::INFINITY
@@ -90,15 +84,14 @@ pub(crate) fn is_semi_sharp(sharpness: f32) -> bool {
 }
 
 impl SharpLevel {
-    /// Returns whether nothing is sharp.
     pub(crate) fn is_empty(&self) -> bool {
         self.edges.is_empty() && self.corners.is_empty()
     }
 
     /// Places the points at sharp elements, and returns the creases of the next level.
     ///
-    /// `points` holds the vertex points from 0 and the edge points from `first_edge`, all placed as
-    /// if nothing were sharp. `old` returns the old position of a vertex. O(s log s) for s sharp
+    /// `points` contains the vertex points, and from `first_edge` the edge points, all placed as if
+    /// nothing were sharp. `old` returns the old position of a vertex. O(s log s) for s sharp
     /// elements.
     pub(crate) fn place(
         &self,
@@ -161,7 +154,7 @@ impl SharpLevel {
         }
     }
 
-    /// Places every vertex that is sharp or has a sharp edge; returns the sharp vertices of the
+    /// Places every sharp vertex and every end of a sharp edge. Returns the sharp vertices of the
     /// next level.
     fn place_vertices(
         &self,
@@ -190,13 +183,13 @@ impl SharpLevel {
         next.collect()
     }
 
-    /// Returns the halves of the edges, from each end to the edge point, with their sharpness.
+    /// Returns the two halves of each edge, with their sharpness.
     fn halves(&self, children: &[[f32; 2]], first_edge: usize) -> Vec<(Pair<VertexId>, f32)> {
         let explicit = self.edges.iter().zip(children);
         explicit
             .filter(|(edge, _)| !edge.by_topology)
             .flat_map(|(edge, children)| {
-                // This number fits; otherwise the step has returned an error before.
+                // The step has already checked that this number fits.
                 let middle = VertexId::new((first_edge + edge.edge) as u32);
                 let half = |end: usize| {
                     let ends = Pair::new(VertexId::new(edge.ends[end]), middle);
@@ -255,8 +248,8 @@ fn new_position(
     at(next, &mut still_sharp()).lerp(parent, blend_weight(own, around))
 }
 
-/// Returns the weight of the current kind for a vertex that changes its kind: the mean of the
-/// sharpnesses that reach zero, at most 1.
+/// Returns the weight of the current kind if the kind of a vertex changes: the mean of the
+/// sharpnesses that become zero, at most 1.
 fn blend_weight(own: f32, around: &[Spoke]) -> f32 {
     let edges = around.iter().filter(|spoke| spoke.child == 0.0);
     let vertex = (own > 0.0 && next_sharpness(own) == 0.0).then_some(own);
@@ -289,8 +282,8 @@ mod tests {
         PolygonMesh::new(points, [0, 1, 3, 4].map(quad)).expect("four quads")
     }
 
-    /// Runs a step of the hill. `spokes` are the sharpnesses of the edges from 4 to 1, 3, 5, 7;
-    /// `own` is that of 4.
+    /// Runs a step of the hill. `spokes` contains the sharpnesses of the edges from vertex 4 to
+    /// vertices 1, 3, 5 and 7. `own` is the sharpness of vertex 4.
     fn step(creasing: Creasing, spokes: &[f32], own: f32) -> Step {
         let hill = hill();
         let mesh = IndexedFaceSet::from_polygons(&hill).expect("quads");
@@ -307,8 +300,7 @@ mod tests {
         step.expect("quads")
     }
 
-    /// Returns the point of the edge from 4 to `far`: by symmetry it is above the middle of the
-    /// edge.
+    /// Returns the point of the edge from vertex 4 to vertex `far`.
     fn edge_point(step: &Step, far: usize) -> VertexId {
         let middle = midpoint([hill().positions()[4], hill().positions()[far]]);
         let above = |p: Point| p.truncate().distance(middle.truncate()) < 1e-6;
@@ -328,31 +320,30 @@ mod tests {
         }
     }
 
-    /// w · (position of the current kind) + (1 − w) · (position of the next kind), computed by
-    /// hand.
     #[test]
     fn a_vertex_blends_between_its_current_and_next_kind() {
         assert_heights(
             Creasing::Uniform,
             &[
                 (0.0, &[], 0.5625),
-                // A dart moves like a smooth vertex, without a blend.
                 (0.0, &[0.3], 0.5625),
                 (0.0, &[INF], 0.5625),
-                // Crease to smooth or to dart: 0.3 · 0.75 + 0.7 · 0.5625; the mean of 0.3, 0.7.
+                // Crease to smooth or to dart: 0.3 · 0.75 + 0.7 · 0.5625, or w = mean of 0.3 and
+                // 0.7.
                 (0.0, &[0.3, 0.3], 0.61875),
                 (0.0, &[0.3, 1.5], 0.61875),
                 (0.0, &[0.3, INF], 0.61875),
                 (0.0, &[0.3, 0.7], 0.65625),
                 (0.0, &[1.0, 1.0], 0.75),
                 (0.0, &[1.5, 1.5], 0.75),
-                // Corner to dart: 0.4 + 0.6 · 0.5625; to crease: 0.3 + 0.7 · 0.75, 0.45 + 0.55 · 0.75.
+                // Corner to dart: 0.4 + 0.6 · 0.5625. Corner to crease: 0.3 + 0.7 · 0.75, 0.45 +
+                // 0.55 · 0.75.
                 (0.0, &[0.3, 0.5, INF], 0.7375),
                 (0.0, &[0.3, INF, INF], 0.825),
                 (0.0, &[0.3, 0.6, 2.0, 2.0], 0.8625),
                 // Corner to corner.
                 (0.0, &[0.3, 2.0, 2.0, 2.0], 1.0),
-                // A sharp vertex: its own sharpness is part of the mean.
+                // A sharp vertex: the mean contains its own sharpness.
                 (0.4, &[], 0.7375),
                 (0.4, &[0.8], 0.825),
                 (0.4, &[3.0], 0.7375),
@@ -372,7 +363,7 @@ mod tests {
         }
     }
 
-    /// Returns the sharpness of the halves of the spokes, at vertex 4 and at the far end.
+    /// Returns the sharpness of the two halves of each spoke: at vertex 4, then at the far end.
     fn halves(creasing: Creasing, spokes: &[f32]) -> Vec<[f32; 2]> {
         let step = step(creasing, spokes, 0.0);
         let spokes = [1, 3, 5, 7].into_iter().zip(spokes);
@@ -405,8 +396,8 @@ mod tests {
         uniform(&[1.0, 1.25], &[[0.0; 2], [0.25; 2]]);
     }
 
-    /// At vertex 4, the result is 3/4 of the own sharpness plus 1/4 of the mean of the other edges,
-    /// minus 1. The far end has no other sharp edges, so the result is the sharpness minus 1.
+    /// At vertex 4: 3/4 of the edge's own sharpness, plus 1/4 of the mean of the other edges, minus
+    /// 1. At the far end, which has no other sharp edge: the sharpness minus 1.
     #[test]
     fn chaikin_averages_sharpness() {
         let chaikin = |spokes: &[f32], expected: &[[f32; 2]]| {
@@ -421,13 +412,13 @@ mod tests {
         assert_heights(
             Creasing::Chaikin,
             &[
-                // Both halves at 4 stay sharp, so the vertex stays a crease vertex.
+                // Both halves at vertex 4 stay sharp.
                 (0.0, &[0.8, 4.0], 0.75),
-                // 1.2 reaches zero here too: w is the mean of 1.2 and 0.1.
+                // The sharpness 1.2 becomes zero: w is the mean of 1.2 and 0.1.
                 (0.0, &[1.2, 0.1], 0.65 * 0.75 + 0.35 * 0.5625),
             ],
         );
-        // One half of the edge with sharpness 0.8 is not sharp: w = 0.8.
+        // One half of the edge with sharpness 0.8 becomes smooth: w = 0.8.
         let step = step(Creasing::Chaikin, &[0.8, 4.0], 0.0);
         let z = step.polygons.position(edge_point(&step, 1)).z;
         assert!((z - 0.475).abs() < 1e-6, "{z}");

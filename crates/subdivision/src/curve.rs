@@ -25,26 +25,30 @@ use crate::mask::midpoint;
 pub enum Ends {
     /// There are no ends: the last point is joined to the first.
     Closed,
-    /// The ends stay, like a boundary with fixed corners. The curve is that of a polygon with one
-    /// more point beyond each end. For the cubic, this point is the neighbour of the end, mirrored
-    /// at the end. For Chaikin, it is the end itself.
+    /// The ends stay, like a boundary with fixed corners. The curve is computed as if the polygon
+    /// had one more point beyond each end. For the cubic B-spline, this point is the neighbour of
+    /// the end, mirrored at the end. For Chaikin, this point equals the end.
     #[default]
     Kept,
-    /// The ends are dropped because they lack a neighbour. The result is the B-spline of the given
-    /// points only.
+    /// The ends are dropped because they have only one neighbour. The limit is the B-spline of the
+    /// given points.
     Dropped,
 }
 
-/// Returns the points of a polygon after `levels` steps of "add midpoints, add struts". They
-/// converge to the uniform cubic B-spline.
+/// Returns the points of a polygon after `levels` steps of "add midpoints, add struts". The points
+/// converge to the uniform cubic B-spline. O(points of the result).
 ///
-/// A step makes 2n points from n if the polygon is closed, 2n − 1 if the ends are kept, and 2n − 3
-/// if they are dropped. O(points of the result).
+/// From n points, a step makes:
+///
+/// - 2n points if the polygon is closed
+/// - 2n − 1 points if the ends are kept
+/// - 2n − 3 points if the ends are dropped
 ///
 /// # Errors
 ///
-/// Returns an error for fewer than 3 points if the polygon is closed, 2 if the ends are kept, or 4
-/// if they are dropped. Also returns an error for more than [`MAX_ROWS`] points in the result.
+/// Returns an error for more than [`MAX_ROWS`] points in the result, or too few points in `points`.
+/// The minimum is 3 points if the polygon is closed, 2 points if the ends are kept, and 4 points if
+/// the ends are dropped.
 ///
 /// # Examples
 ///
@@ -67,15 +71,15 @@ pub fn cubic_b_spline(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<P
     )
 }
 
-/// Returns the points of a polygon after its corners are cut `levels` times. They converge to the
-/// uniform quadratic B-spline (Chaikin 1974).
+/// Returns the points of a polygon after its corners are cut `levels` times. The points converge to
+/// the uniform quadratic B-spline (Chaikin 1974). O(points of the result).
 ///
-/// A step makes 2n points from n, or 2n − 2 if the ends are dropped. O(points of the result).
+/// From n points, a step makes 2n points, or 2n − 2 points if the ends are dropped.
 ///
 /// # Errors
 ///
-/// Returns an error for fewer than 3 points, or 2 if the ends are kept. Also returns an error for
-/// more than [`MAX_ROWS`] points in the result.
+/// Returns an error for more than [`MAX_ROWS`] points in the result, or too few points in `points`.
+/// The minimum is 3 points, or 2 points if the ends are kept.
 pub fn chaikin(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<Point>, CurveError> {
     let (loss, least) = match ends {
         Ends::Closed => (0, 3),
@@ -88,10 +92,13 @@ pub fn chaikin(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<Point>, 
 }
 
 /// Returns the point of the uniform cubic B-spline of `points` at the parameter `t`: the limit of
-/// [`cubic_b_spline`]. Control point i has the parameter i.
+/// [`cubic_b_spline`]. Control point i has the parameter i. O(1).
 ///
-/// `t` runs from 0 to n − 1 if the ends are kept, and from 1 to n − 2 if they are dropped; it is
-/// periodic if the polygon is closed. Returns `None` outside, and for too few points. O(1).
+/// Returns `None` if there are too few points, or if `t` is outside the domain for n points:
+///
+/// - ends kept: from 0 to n − 1
+/// - ends dropped: from 1 to n − 2
+/// - closed: every `t`, because the curve is periodic
 pub fn cubic_b_spline_at(points: &[Point], ends: Ends, t: f64) -> Option<Point> {
     let n = points.len();
     if n < min_points(ends) {
@@ -102,7 +109,7 @@ pub fn cubic_b_spline_at(points: &[Point], ends: Ends, t: f64) -> Option<Point> 
         Ends::Closed => t.rem_euclid(last),
         _ => t,
     };
-    // False for NaN.
+    // Also returns `None` if `t` is NaN.
     if !(first <= t && t <= last) {
         return None;
     }
@@ -122,7 +129,8 @@ pub(crate) fn cubic_domain(points: usize, ends: Ends) -> (f64, f64) {
     }
 }
 
-/// Returns the four weights at `s`, 0 to 1, of a piece of the uniform cubic B-spline.
+/// Returns the weights of four control points at `s` in a piece of the cubic B-spline; `s` is from
+/// 0 to 1.
 fn cubic_basis(s: f64) -> [f64; 4] {
     let r = 1.0 - s;
     [
@@ -133,7 +141,7 @@ fn cubic_basis(s: f64) -> [f64; 4] {
     ]
 }
 
-/// Returns control point `number` − 1, also beyond the ends.
+/// Returns control point `number` − 1. One more point exists beyond each end.
 fn control(points: &[Point], ends: Ends, number: usize) -> Point {
     let n = points.len();
     match ends {
@@ -144,7 +152,7 @@ fn control(points: &[Point], ends: Ends, number: usize) -> Point {
     }
 }
 
-/// Returns the smallest number of points of a cubic.
+/// Returns the minimum number of points of a cubic B-spline.
 pub(crate) fn min_points(ends: Ends) -> usize {
     match ends {
         Ends::Closed => 3,
@@ -153,7 +161,7 @@ pub(crate) fn min_points(ends: Ends) -> usize {
     }
 }
 
-/// Returns twice the number of points before a step, minus the number after it.
+/// Returns 2n minus the number of points after a step from n points.
 fn cubic_loss(ends: Ends) -> usize {
     match ends {
         Ends::Closed => 0,
@@ -207,7 +215,7 @@ fn chaikin_step(points: &[Point], ends: Ends) -> Vec<Point> {
     refined
 }
 
-/// Runs `levels` steps; each makes 2n − `loss` points from n.
+/// Runs `levels` steps. Each step makes 2n − `loss` points from n points.
 fn run_steps(
     points: &[Point],
     levels: u32,
@@ -219,7 +227,7 @@ fn run_steps(
     if given < least {
         return Err(CurveError::TooFewPoints { given, least });
     }
-    // The result has loss + (n − loss)·2^levels points, and n is above the loss.
+    // The result has loss + (n − loss)·2^levels points.
     let growth = 1_usize.checked_shl(levels);
     let last = growth.and_then(|growth| (given - loss).checked_mul(growth));
     if last.is_none_or(|last| last > MAX_ROWS - loss) {
@@ -258,7 +266,8 @@ mod tests {
         prop::collection::vec(point.prop_map(Point::from), 4..9)
     }
 
-    /// Returns a point of the quadratic B-spline; corner i of the polygon has the parameter i.
+    /// Returns the point of the quadratic B-spline at `t`. Corner i of the polygon has the
+    /// parameter i.
     fn quadratic(points: &[Point], t: f64) -> Point {
         let i = (t + 0.5).floor();
         let s = (t + 0.5 - i) as f32;
@@ -318,7 +327,7 @@ mod tests {
                 let refined = cubic_b_spline(&points, ends, levels).expect("enough points");
                 let step = f64::from(1 << levels).recip();
                 let (first, last) = cubic_domain(points.len(), ends);
-                // With ends dropped, each step halves the part before the first parameter.
+                // With dropped ends, the first point comes one step before the first parameter.
                 let start = if ends == Ends::Dropped { first - step } else { first };
                 prop_assert_eq!(refined.len(), ((last - start) / step).round() as usize
                     + match ends { Ends::Closed => 0, Ends::Kept => 1, Ends::Dropped => 2 });
@@ -337,15 +346,12 @@ mod tests {
             let cut = chaikin(&points, Ends::Closed, levels).expect("enough points");
             let step = f64::from(1 << levels).recip();
             for (i, &point) in cut.iter().enumerate() {
-                // The points of the first edge stay half a step before and after its middle.
                 let t = 0.5 + (i as f64 - 0.5) * step;
                 let near = quadratic(&points, t);
                 prop_assert!(point.distance(near) < 5e-3, "{}: {} {}", i, point, near);
             }
         }
 
-        /// Kept ends give the same points as dropped ends of a polygon with one more point at each
-        /// end.
         #[test]
         fn kept_ends_are_dropped_ones_of_a_longer_polygon(points in polygon()) {
             let n = points.len();
@@ -364,7 +370,6 @@ mod tests {
             }
         }
 
-        /// Steps commute with affine maps, so the weights sum to 1; equal points stay equal.
         #[test]
         fn affine_maps_commute_with_steps(points in polygon(), shift in -9.0_f32..9.0) {
             let map = |p: Point| Point::new(p.x - 2.0 * p.y + shift, 0.5 * p.z, p.y + p.x - shift);

@@ -1,6 +1,6 @@
-//! Doo–Sabin: corners become vertices; faces, inner edges and inner vertices become faces; C¹.
+//! Doo–Sabin: corners become vertices; faces, inner edges and inner vertices become faces. C¹.
 //!
-//! Doo & Sabin (1978). The input may have any polygons. After one step all inner vertices have
+//! Doo & Sabin (1978). The input may have any polygons. After one step, all inner vertices have
 //! valence 4, except next to a vertex of valence 2.
 //!
 //! ```text
@@ -13,9 +13,9 @@
 //!   │ •───────• │ •            inner edge, one around each inner vertex
 //! ```
 //!
-//! Boundary edges and boundary vertices do not become faces, so an open mesh shrinks. An inner
-//! vertex of valence 2 does not become a face either: its two edge faces meet there. Isolated
-//! vertices are removed.
+//! Boundary edges and boundary vertices do not become faces, so a mesh with a boundary shrinks. An
+//! inner vertex of valence 2 does not become a face; the faces of its two edges meet there.
+//! Isolated vertices are removed.
 //!
 //! # Sizes
 //!
@@ -37,15 +37,13 @@ use crate::error::SubdivisionError;
 use crate::scheme::Scheme;
 use crate::step::Step;
 
-/// Number of degrees with precomputed roots of unity, from 0; few faces have more corners.
+/// Number of degrees with precomputed weights.
 const PRECOMPUTED: usize = 16;
 
-/// The weights of Doo & Sabin (1978).
-///
-/// Because cos(i − j) = cos i cos j + sin i sin j, three sums serve all n corners of a face:
+/// The weights of Doo & Sabin (1978), as three sums for all n corners of a face:
 /// vᵢ' = vᵢ/4 + 3/4 · mean + (cos(2πi/n) Σ cos(2πj/n) vⱼ + sin(2πi/n) Σ sin(2πj/n) vⱼ)/(2n).
 struct DooSabin {
-    /// By degree, cos and sin of 2πi/n.
+    /// Cos and sin of 2πi/n, by degree n.
     unit_roots: [Vec<[f32; 2]>; PRECOMPUTED],
 }
 
@@ -87,8 +85,7 @@ impl DooSabin {
     }
 }
 
-/// Runs one step with queries for the faces of each edge, and for the ring and the faces of each
-/// vertex. O(sum of the squares of the degrees) plus the cost of the queries.
+/// Runs one step with queries. O(sum of the squares of the degrees) plus the cost of the queries.
 pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
     let connectivity = Connectivity::gathered(mesh, Scheme::DooSabin)?;
     let mut builder = Builder::new(mesh, &connectivity)?;
@@ -102,7 +99,7 @@ pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
     let numbers = vertex_numbers(mesh);
     let (mut spokes, mut around) = (Vec::new(), Vec::new());
     for v in mesh.vertices() {
-        // Each corner at v, keyed by the neighbour after v in its face.
+        // The corners at v, each with the neighbour that follows v in the face.
         spokes.clear();
         mesh.vertex_faces(v).for_each(|f| {
             let mut corner = first_corners[f];
@@ -130,7 +127,7 @@ pub(crate) fn gather<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
     builder.finish()
 }
 
-/// Runs one step with one pass over the faces. The corners are then linked around the vertices.
+/// Runs one step with one pass over the faces.
 pub(crate) fn scatter<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> {
     let connectivity = Connectivity::scattered(mesh, Scheme::DooSabin)?;
     let mut builder = Builder::new(mesh, &connectivity)?;
@@ -141,14 +138,13 @@ pub(crate) fn scatter<M: MeshQuery>(mesh: &M) -> Result<Step, SubdivisionError> 
     builder.finish()
 }
 
-/// The faces and points computed so far.
 struct Builder {
     points: Vec<Point>,
     faces: FaceList,
 }
 
 impl Builder {
-    /// Adds the moved corners of the old faces, and the faces that they form.
+    /// Adds the moved corners of the old faces, and one face for each old face.
     fn new<M: MeshQuery>(mesh: &M, connectivity: &Connectivity) -> Result<Self, SubdivisionError> {
         let scheme = DooSabin::new();
         let mut builder = Self {
@@ -185,7 +181,7 @@ impl Builder {
         Ok(())
     }
 
-    /// Adds the face of an inner vertex from the corners around it; two corners give no face.
+    /// Adds the face of an inner vertex, unless the vertex has only two corners.
     fn add_vertex_face(&mut self, around: &[u32]) -> Result<(), SubdivisionError> {
         if around.len() > 2 {
             self.push(around.iter().copied())?;
@@ -251,7 +247,6 @@ mod tests {
         for method in [Method::Gather, Method::Scatter] {
             let step = step_of::<IndexedFaceSet>(method, &cube);
             assert_eq!([step.vertex_count(), step.face_count()], [24, 26]);
-            // 9/16 + 3/16 − 3/16 − 1/16 = 1/2 across the face, and 1 out of it.
             for p in step.positions() {
                 let mut sizes = ((*p - centre).abs() / half).to_array();
                 sizes.sort_by(f32::total_cmp);
@@ -286,7 +281,6 @@ mod tests {
         let grid = sixfold_shapes::grid(3, 2).expect("a small grid");
         for method in [Method::Gather, Method::Scatter] {
             let step = step_of::<IndexedFaceSet>(method, &grid);
-            // 6 faces, 7 inner edges, 2 inner vertices.
             assert_eq!([step.vertex_count(), step.face_count()], [24, 15]);
             let facts = Facts::from_polygons(&step);
             assert_eq!((facts.boundary_loops, facts.boundary_edges), (Some(1), 16));
@@ -338,7 +332,6 @@ mod tests {
         let all: Vec<u32> = (0..corners).collect();
         let polygon = PolygonMesh::new(around.collect::<Vec<_>>(), [all]).expect("one face");
         let step = step_of::<IndexedFaceSet>(Method::Scatter, &polygon);
-        // In a regular polygon, each corner keeps 1/4 + 1/2 of its distance from the centre.
         for (p, old) in step.positions().iter().zip(polygon.positions()) {
             assert!(
                 p.distance(*old * 0.5) < 1e-4 || p.distance(*old * 0.75) < 1e-4,
@@ -353,8 +346,7 @@ mod tests {
             let list = step_of::<IndexedFaceSet>(Method::Gather, &mesh);
             let known = list.vertex_count();
             assert_equivalent(&list, &step_of::<IndexedFaceSet>(Method::Scatter, &mesh), known);
-            // A structure may start a face at another corner, so compare with its own order of
-            // corners.
+            // A structure may start a face at another corner. Its own faces are the reference here.
             let halves = HalfEdgeMesh::from_polygons(&mesh).expect("a manifold").to_polygons();
             let list = step_of::<IndexedFaceSet>(Method::Gather, &halves);
             for method in [Method::Gather, Method::Scatter] {

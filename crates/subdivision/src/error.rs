@@ -4,12 +4,12 @@ use sixfold_core::{BuildError, FaceId, Point, PolygonError, RefineError, VertexI
 
 use crate::scheme::{Method, Scheme};
 
-/// The reason why a step, or a whole subdivision, failed. The meshes are then unchanged.
+/// The reason why a subdivision failed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message explains each field")]
 pub enum SubdivisionError {
-    /// A face with more than three corners, but the scheme splits only triangles.
+    /// A face has more than three corners, but the scheme splits only triangles.
     #[error(
         "face {face} has {degree} corners, and {scheme} splits only triangles: triangulate the mesh, or choose catmull-clark, doo-sabin or bilinear"
     )]
@@ -18,22 +18,22 @@ pub enum SubdivisionError {
         face: FaceId,
         degree: usize,
     },
-    /// Creases, but the scheme has no rule for them.
+    /// There are creases, but the scheme has no rule for creases.
     #[error(
         "{scheme} has no rule for creases: remove the creases, or choose catmull-clark or loop"
     )]
     NoCreases { scheme: Scheme },
-    /// A scheme for which this crate has no limit masks.
+    /// The crate has no limit masks for this scheme.
     #[error("{scheme} has no limit masks: choose catmull-clark or loop, or use more levels")]
     NoLimit { scheme: Scheme },
-    /// A method that the scheme does not have.
+    /// The scheme does not have this method.
     #[error("{scheme} has no {method} method: choose {choice}")]
     NoMethod {
         scheme: Scheme,
         method: Method,
         choice: &'static str,
     },
-    /// An edge that the scheme has no rule for.
+    /// The scheme has no rule for this edge.
     #[error("edge {0}–{1} has {faces} faces, but {scheme} needs one face, or two faces that run \
              along the edge in opposite directions: split the edge, or choose catmull-clark or \
              loop", .ends[0], .ends[1])]
@@ -42,7 +42,7 @@ pub enum SubdivisionError {
         ends: [VertexId; 2],
         faces: usize,
     },
-    /// A vertex that the scheme has no rule for.
+    /// The scheme has no rule for this vertex.
     #[error(
         "the faces at vertex {vertex} are not one fan, but {scheme} needs one fan: duplicate the \
          vertex, or choose catmull-clark or loop"
@@ -51,7 +51,7 @@ pub enum SubdivisionError {
     /// The structure cannot be refined.
     #[error(transparent)]
     Refine(#[from] RefineError),
-    /// More elements than a 32-bit handle can number.
+    /// There are more elements than 32-bit handles can number.
     #[error(transparent)]
     Polygons(#[from] PolygonError),
     /// The structure cannot hold the refined mesh.
@@ -68,13 +68,13 @@ pub enum SubdivisionError {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message explains each field")]
 pub enum CurveError {
-    /// Too few points in one direction.
+    /// A direction has too few points.
     #[error(
         "{given} points are too few, because ends of this kind need at least {least}: add points, \
          or keep the ends"
     )]
     TooFewPoints { given: usize, least: usize },
-    /// More points than a 32-bit handle can number.
+    /// There are more points than 32-bit handles can number.
     #[error(
         "{levels} levels of {given} points make too many points, because 32-bit handles allow at \
          most {limit}: refine fewer levels"
@@ -84,7 +84,7 @@ pub enum CurveError {
         levels: u32,
         limit: usize,
     },
-    /// An incomplete last row.
+    /// The last row is incomplete.
     #[error("{given} points do not fill rows of {columns}: add or remove points")]
     RaggedGrid { given: usize, columns: usize },
 }
@@ -94,24 +94,24 @@ pub enum CurveError {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message explains each field")]
 pub enum LocalError {
-    /// A face with more than three corners: local refinement needs triangles.
+    /// A face has more than three corners, but local refinement needs triangles.
     #[error(
         "face {face} has {degree} corners, and local refinement needs triangles: triangulate the mesh"
     )]
     NotATriangle { face: FaceId, degree: usize },
-    /// A chosen face that does not exist.
+    /// A chosen face does not exist.
     #[error("face {face} does not exist: the mesh has {faces} faces, counted from 0")]
     MissingFace { face: FaceId, faces: usize },
-    /// A box with NaN or with swapped bounds.
+    /// A box has NaN or swapped bounds.
     #[error("{min} to {max} is not a box: give the lower coordinates first")]
     BadBox { min: Point, max: Point },
-    /// An angle outside 0 to 180 degrees.
+    /// An angle is outside 0 to 180 degrees.
     #[error("{degrees} is not an angle between two faces: give degrees from 0 to 180")]
     BadAngle { degrees: f32 },
-    /// An edge so short that no coordinate lies between its ends.
+    /// An edge is so short that no coordinate lies between its ends.
     #[error("edge {0}–{1} is too short to be halved with 32-bit coordinates: refine fewer levels", .ends[0], .ends[1])]
     TooShort { ends: [VertexId; 2] },
-    /// More elements than a 32-bit handle can number.
+    /// There are more elements than 32-bit handles can number.
     #[error(transparent)]
     Polygons(#[from] PolygonError),
     /// The structure cannot hold the mesh.

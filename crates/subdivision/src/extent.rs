@@ -1,22 +1,22 @@
-//! The size of a refined mesh, computed in advance.
+//! Computes the size of a refined mesh in advance.
 
 use sixfold_core::{Counts, PolygonMesh, Split};
 
 use crate::scheme::Scheme;
 use crate::subdivision::Subdivision;
 
-/// The sizes of a mesh from which the sizes at the next level follow in closed form.
+/// The size of a mesh: the numbers that determine the size at the next level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Extent {
-    /// Vertices, edges, faces and corners.
+    /// Numbers of vertices, edges, faces and corners.
     pub counts: Counts,
-    /// Edges with one face.
+    /// Number of edges with one face.
     pub boundary_edges: usize,
-    /// Corners at vertices of boundary edges.
+    /// Number of corners at vertices with boundary edges.
     pub boundary_corners: usize,
-    /// Vertices without a face.
+    /// Number of vertices without a face.
     pub isolated_vertices: usize,
-    /// Inner vertices with exactly two faces.
+    /// Number of inner vertices with exactly two faces.
     pub valence_two_vertices: usize,
 }
 
@@ -46,7 +46,7 @@ impl Extent {
         }
     }
 
-    /// Returns the extent after a Doo–Sabin step; the formulas are in `doo_sabin.rs`.
+    /// Returns the extent after a Doo–Sabin step. The formulas are in `doo_sabin.rs`.
     fn vertex_split(&self) -> Self {
         let &Self {
             counts,
@@ -82,7 +82,7 @@ impl Extent {
     /// Returns the extent after every face is split.
     fn face_split(&self, split: Split) -> Self {
         let boundary = self.boundary_edges;
-        // For each boundary edge: the number of edges it becomes, and of corners added at the
+        // For each boundary edge: its number of parts, and the number of new corners at the
         // boundary.
         let (edges, corners) = match split {
             Split::Quads => (2, 2),
@@ -101,12 +101,12 @@ impl Extent {
 }
 
 impl Subdivision {
-    /// Returns the extent of a mesh after step `level`, counted from 0; O(1).
+    /// Returns the extent of a mesh after step `level`; O(1). The first step has level 0.
     ///
     /// The sizes are exact for manifolds. They include faces that the boundary rule leaves out
-    /// later. If an edge has three or more faces, the numbers of vertices, edges and faces are
-    /// still exact for Catmull–Clark, Loop, bilinear and midpoint. Sizes above `usize` saturate. A
-    /// Doo–Sabin result is reported with mixed degrees.
+    /// later. For Catmull–Clark, Loop, bilinear and midpoint, the numbers of vertices, edges and
+    /// faces are also exact if an edge has three or more faces. Sizes above `usize::MAX` saturate.
+    /// A Doo–Sabin result is reported with mixed degrees.
     pub fn refined_extent(&self, extent: &Extent, level: u32) -> Extent {
         match self.split(level) {
             Some(split) => extent.face_split(split),
@@ -128,7 +128,6 @@ mod tests {
     use crate::test_support::triangle_mesh;
     use crate::{Method, subdivide};
 
-    /// Asserts that two steps of a scheme have the sizes computed in advance.
     fn assert_predicted(scheme: Scheme, polygons: &PolygonMesh) {
         let subdivision = Subdivision::new(scheme);
         let mut extent = Extent::from_polygons(polygons);

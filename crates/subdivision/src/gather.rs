@@ -23,7 +23,7 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
     corners: usize,
 ) -> Result<Step, SubdivisionError> {
     let mut builder = StepBuilder::new(K::SPLIT, mesh, corners);
-    // The map stays empty if no face value is read.
+    // The map is needed only if face values are used.
     let mut values: FaceMap<M, Point> = HandleMap::filled(0, Point::ZERO);
     if K::EDGES_USE_FACES || K::VERTICES_USE_FACES || builder.has_face_points() {
         values = mesh.face_map(Point::ZERO);
@@ -80,20 +80,19 @@ pub(crate) fn step<M: MeshQuery, K: Mask>(
     builder.finish(creases)
 }
 
-/// Collects the positions of the vertices; returns a function from number to position.
+/// Returns a function from the number of a vertex to its position.
 pub(crate) fn positions_by_number<M: MeshQuery>(mesh: &M) -> impl Fn(u32) -> Point {
     let positions: Vec<Point> = mesh.vertices().map(|v| mesh.position(v)).collect();
     move |v| positions[v as usize]
 }
 
-/// Returns the face value of `f`.
 #[inline(always)]
 pub(crate) fn face_value<M: MeshQuery, K: Mask>(mesh: &M, mask: K, f: M::Face) -> Point {
     let (sum, degree) = corner_sum(mesh, f);
     mask.face(sum, degree)
 }
 
-/// Returns the sum of the corners of `f`, and their number.
+/// Returns the sum of the corners of `f` and the number of corners.
 #[inline(always)]
 pub(crate) fn corner_sum<M: MeshQuery>(mesh: &M, f: M::Face) -> (Point, usize) {
     let (mut sum, mut degree) = (Point::ZERO, 0);
@@ -104,7 +103,7 @@ pub(crate) fn corner_sum<M: MeshQuery>(mesh: &M, f: M::Face) -> (Point, usize) {
     (sum, degree)
 }
 
-/// Returns the sum of the neighbours of `v`, and their number.
+/// Returns the sum of the neighbours of `v` and the number of neighbours.
 #[inline(always)]
 pub(crate) fn neighbour_sum<M: MeshQuery>(mesh: &M, v: M::Vertex) -> (Point, usize) {
     let (mut sum, mut valence) = (Point::ZERO, 0);
@@ -115,8 +114,8 @@ pub(crate) fn neighbour_sum<M: MeshQuery>(mesh: &M, v: M::Vertex) -> (Point, usi
     (sum, valence)
 }
 
-/// Returns the point of edge `e` as if it were not sharp, and its number of faces. If this number
-/// is not 2, the point is the midpoint.
+/// Returns the point of edge `e` as if `e` were not sharp, and the number of its faces. If this
+/// number is not 2, the point is the midpoint.
 #[inline(always)]
 pub(crate) fn edge_point<M: MeshQuery, K: Mask>(
     mesh: &M,
@@ -138,7 +137,8 @@ pub(crate) fn edge_point<M: MeshQuery, K: Mask>(
     }
 }
 
-/// Returns the new position of vertex `v` as if nothing were sharp there; an isolated vertex stays.
+/// Returns the new position of vertex `v` as if nothing were sharp at `v`. An isolated vertex does
+/// not move.
 #[inline(always)]
 pub(crate) fn vertex_point<M: MeshQuery, K: Mask>(
     mesh: &M,

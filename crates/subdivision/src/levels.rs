@@ -8,13 +8,12 @@ use crate::scheme::Method;
 use crate::step::Step;
 use crate::subdivision::Subdivision;
 
-/// Runs `levels` steps with a structure of type `M`, which is built again for each step. Calls
-/// `watch` with the level and its number of faces after every step. With 0 levels, returns the mesh
-/// itself.
+/// Runs `levels` steps. A structure of type `M` is built for each step. Calls `watch` with the
+/// level and its number of faces after every step. With 0 levels, returns the mesh itself.
 ///
 /// # Errors
 ///
-/// Returns an error if the scheme cannot split the mesh, or if `M` cannot hold it. Returns
+/// Returns an error if the scheme cannot split the mesh, or if `M` cannot hold the mesh. Returns
 /// [`SubdivisionError::NoMethod`] for [`Method::Native`]: use [`subdivide_native`].
 pub fn subdivide<M: Representation>(
     subdivision: &Subdivision,
@@ -44,7 +43,7 @@ pub fn subdivide<M: Representation>(
             Method::Scatter => subdivision.scatter(&mesh, &creases, level)?,
             Method::Native => return Err(subdivision.native_error()),
         };
-        // The parts of one face are consecutive: as many as it has corners, or four.
+        // The parts of one face are consecutive.
         left_out = left_out.map(|left_out| {
             let degrees = step.polygons.faces().iter().map(|(_, face)| face.len());
             let parts = degrees.map(|degree| subdivision.parts_of(degree));
@@ -59,13 +58,16 @@ pub fn subdivide<M: Representation>(
 }
 
 /// Runs `levels` steps in the tables of a structure of type `M`, which is built once. With the
-/// feature `rayon`, steps use the threads of the current rayon pool. The result is the same as that
+/// feature `rayon`, steps use the threads of the current rayon pool. The result equals the result
 /// of [`subdivide`], except that faces and edge points have the order of the structure.
 ///
 /// # Errors
 ///
-/// Returns an error if the scheme cannot split the mesh, or if `M` cannot hold it or cannot split
-/// its own tables.
+/// Returns an error in these cases:
+///
+/// - The scheme cannot split the mesh.
+/// - `M` cannot hold the mesh.
+/// - `M` cannot split its own tables.
 pub fn subdivide_native<M: Refine>(
     subdivision: &Subdivision,
     polygons: &PolygonMesh,
@@ -99,11 +101,10 @@ pub fn subdivide_native<M: Refine>(
     Ok(without_faces(Step { polygons, creases }, left_out))
 }
 
-/// Builds the structure of a level from its polygons.
 ///
 /// # Errors
 ///
-/// Returns [`SubdivisionError::Build`] with the reason and the level; the control mesh is level 0.
+/// Returns [`SubdivisionError::Build`] with the reason and the level. The control mesh has level 0.
 pub fn build_level<M: Representation>(
     polygons: &PolygonMesh,
     level: u32,
@@ -116,7 +117,7 @@ pub fn build_level<M: Representation>(
 }
 
 /// Returns the mesh without the faces that are left out, and without the vertices that belong only
-/// to such faces.
+/// to these faces.
 fn without_faces(step: Step, left_out: Option<Vec<bool>>) -> Step {
     let Some(left_out) = left_out.filter(|left_out| left_out.contains(&true)) else {
         return step;
@@ -139,7 +140,7 @@ fn without_faces(step: Step, left_out: Option<Vec<bool>>) -> Step {
     let mut positions = Vec::new();
     let mut new_ids = vec![None; polygons.vertex_count()];
     for v in polygons.vertices() {
-        // Vertices that had no face before are kept as isolated vertices.
+        // Vertices that were isolated before are kept.
         if on_kept[v.index()] || !on_removed[v.index()] {
             new_ids[v.index()] = Some(VertexId::new(positions.len() as u32));
             positions.push(polygons.position(v));

@@ -1,19 +1,18 @@
-//! Subdivision schemes. Each scheme is written once and runs on any structure, by up to three
-//! methods.
+//! Subdivision schemes. The code of each scheme runs on any structure, by up to three methods.
 //!
-//! - [`Scheme`]: the schemes; [`Kind`]: the classification of each.
-//! - [`Subdivision`]: a scheme with its options; one step by [`gather`](Subdivision::gather),
+//! - [`Scheme`]: the schemes. [`Kind`]: the classification of a scheme.
+//! - [`Subdivision`]: a scheme with its options. Runs one step by [`gather`](Subdivision::gather),
 //!   [`scatter`](Subdivision::scatter) or [`refine_into`](Subdivision::refine_into).
 //! - [`subdivide`], [`subdivide_native`]: several steps from polygons to polygons.
 //! - [`Extent`]: the size of the result, computed in advance.
 //! - [`limit`](Subdivision::limit): the limit positions and normals of the vertices, as
 //!   [`LimitPoint`]s.
-//! - [`cubic_b_spline`], [`chaikin`]: subdivision of curves; [`ControlGrid`]: subdivision of
+//! - [`cubic_b_spline`], [`chaikin`]: subdivision of curves. [`ControlGrid`]: subdivision of
 //!   tensor-product patches.
 //! - [`refine_locally`]: splits the triangles of a [`Selection`] and keeps the mesh conforming.
 //!
-//! Each scheme has its weights in its own file. A later pass places the points at sharp edges and
-//! vertices. Its code is in one file for all schemes and methods (`crease.rs`).
+//! Each scheme has its weights in its own file. A later pass, in `crease.rs`, places the points at
+//! sharp edges and vertices for all schemes and methods.
 
 mod bilinear;
 mod butterfly;

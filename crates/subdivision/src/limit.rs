@@ -1,9 +1,9 @@
 //! Limit positions and normals of the vertices of Catmull–Clark and Loop, after infinitely many
 //! levels.
 //!
-//! A step is a matrix on the neighbourhood of a vertex. Its left eigenvectors are the same at every
-//! level. The eigenvector of the eigenvalue 1 gives the limit position. The eigenvectors of the
-//! next two eigenvalues give tangents.
+//! A step multiplies the neighbourhood of a vertex by a matrix. The matrix has the same left
+//! eigenvectors at every level. The eigenvector of the eigenvalue 1 gives the limit position. The
+//! eigenvectors of the next two eigenvalues give tangents.
 //!
 //! ```text
 //!   smooth, Catmull–Clark       smooth, Loop          crease            corner
@@ -31,7 +31,7 @@ use crate::tangent::{Fan, Surface, far_corner, normal, rounding};
 /// The limit of a vertex after infinitely many levels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitPoint {
-    /// The limit follows directly from the neighbourhood of the vertex.
+    /// The neighbourhood of the vertex gives the limit.
     Defined {
         /// The position on the limit surface.
         position: Point,
@@ -42,19 +42,23 @@ pub enum LimitPoint {
     Undefined(NoLimit),
 }
 
-/// The normal of the limit surface at a vertex. Normals have length 1 and point to the side from
-/// which faces run counter-clockwise.
+/// The normal of the limit surface at a vertex. Normals have length 1. From the side to which the
+/// normal points, faces run counter-clockwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitNormal {
     /// One normal.
     One(Point),
     /// A crease passes through the vertex, and each side of the crease has its own normal. The two
-    /// crease edges lead to two neighbours. The first normal is that of the faces that follow
+    /// crease edges lead to two neighbours. The first normal belongs to the faces that follow
     /// counter-clockwise after the neighbour with the lower number.
     TwoSides([Point; 2]),
-    /// No mask gives a normal. The possible reasons are: a corner with several faces, an adjacent
-    /// face that is not a quad (Catmull–Clark), an inner vertex of valence 2, faces that are not
-    /// one oriented fan, or a neighbourhood without area.
+    /// No mask gives a normal. The possible reasons are:
+    ///
+    /// - The vertex is a corner with several faces.
+    /// - An adjacent face is not a quad (Catmull–Clark only).
+    /// - The vertex is an inner vertex of valence 2.
+    /// - The faces are not one oriented fan.
+    /// - The neighbourhood has no area.
     Undefined,
 }
 
@@ -62,13 +66,12 @@ pub enum LimitNormal {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum NoLimit {
-    /// The vertex, or one of its edges, has finite sharpness: the limit is defined at a later
-    /// level.
+    /// The vertex or one of its edges has finite sharpness. The limit is defined at a later level.
     SemiSharp,
-    /// A face at the vertex is not a quad, and the Catmull–Clark mask needs quads: the limit is
+    /// A face at the vertex is not a quad, and the Catmull–Clark mask needs quads. The limit is
     /// defined at the next level.
     NotAllQuads,
-    /// One crease ends at the vertex. The rules of a step have no limit mask for this case.
+    /// Exactly one crease edge meets the vertex. There is no limit mask for this case.
     Dart,
 }
 
@@ -81,14 +84,14 @@ impl LimitPoint {
         }
     }
 
-    /// Returns the normal, if it is defined; on a crease the mean of both sides.
+    /// Returns the normal, if it is defined. On a crease, returns the mean of both sides.
     pub fn normal(self) -> Option<Point> {
         match self {
             Self::Defined { normal, .. } => match normal {
                 LimitNormal::One(normal) => Some(normal),
                 LimitNormal::TwoSides([a, b]) => {
                     let sum = a + b;
-                    // If the sides are back to back, the sum is only rounding error.
+                    // If the normals are opposite, the sum is only rounding error.
                     (sum.length() > 1e-3).then(|| sum.normalize())
                 }
                 LimitNormal::Undefined => None,
@@ -102,15 +105,16 @@ impl Subdivision {
     /// Returns the limit of each vertex of `mesh` after infinitely many levels, for Catmull–Clark
     /// and Loop.
     ///
-    /// `creases` are the creases of `mesh.to_polygons()`, from
+    /// `creases` are the creases of `mesh.to_polygons()`. They come from
     /// [`control_creases`](Self::control_creases) or from the step that made the mesh. Next to
-    /// faces that are not quads, Catmull–Clark has limits only on creases and at corners; after one
-    /// step, this restriction ends. Takes O(valence log valence) per vertex, plus the costs of EF,
+    /// faces that are not quads, Catmull–Clark has limits only on creases and at corners. After one
+    /// step, all faces are quads. Takes O(valence log valence) per vertex, plus the costs of EF,
+    /// VV, VF and FV.
     /// VV, VF and FV.
     ///
     /// # Errors
     ///
-    /// Returns [`SubdivisionError::NoLimit`] for other schemes, and
+    /// Returns [`SubdivisionError::NoLimit`] for other schemes. Returns
     /// [`SubdivisionError::NotATriangle`] for a face that Loop cannot split.
     pub fn limit<M: MeshQuery>(
         &self,
@@ -128,7 +132,6 @@ impl Subdivision {
     }
 }
 
-/// Checks that every face has three corners.
 fn check_triangles<M: MeshQuery>(mesh: &M, scheme: Scheme) -> Result<(), SubdivisionError> {
     let degrees = mesh.faces().map(|f| mesh.face_vertices(f).count());
     match (0..).zip(degrees).find(|&(_, degree)| degree != 3) {
@@ -184,10 +187,8 @@ fn limits<M: MeshQuery>(mesh: &M, creases: &Creases, surface: Surface) -> Vertex
     limits
 }
 
-/// Returns the limit of `v` with the sharpness `own` and the sharp edges `around`.
-///
-/// Edges that do not end at `v` have no influence, even if they are sharp. The reason is that the
-/// next ring around `v` consists only of the points of the edges and faces at `v`.
+/// Returns the limit of `v` with the sharpness `own` and the sharp edges `around`. Edges that do
+/// not end at `v` do not change its limit.
 fn limit_of<M: MeshQuery>(
     mesh: &M,
     v: M::Vertex,
@@ -222,8 +223,7 @@ fn limit_of<M: MeshQuery>(
     }
 }
 
-/// Returns the normal of a corner with one face: the rules keep the directions of its two edges.
-/// With more faces, the normal is undefined, because the faces need not lie in one plane.
+/// Returns the normal of a corner. It is defined only if the corner has one face.
 fn corner_normal<M: MeshQuery>(mesh: &M, v: M::Vertex) -> LimitNormal {
     let mut faces = mesh.vertex_faces(v);
     let (Some(face), None) = (faces.next(), faces.next()) else {
@@ -246,7 +246,7 @@ fn smooth_limit<M: MeshQuery>(mesh: &M, v: M::Vertex, surface: Surface) -> Limit
         valence += 1;
     });
     if valence == 0 {
-        // Every step leaves an isolated vertex unchanged.
+        // A step does not move an isolated vertex.
         return LimitPoint::Defined {
             position: at,
             normal: LimitNormal::Undefined,

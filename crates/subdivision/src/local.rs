@@ -1,9 +1,9 @@
-//! Local refinement: splits only chosen triangles and keeps the mesh conforming. In a conforming
-//! mesh, no corner lies inside a side.
+//! Local refinement: splits only chosen triangles, and the other triangles that must be split to
+//! keep the mesh conforming. In a conforming mesh, no corner lies inside a side.
 //!
-//! Red-green refinement after Bank, Sherman & Weiser (1983). Chosen faces are split in four, *red*.
-//! Faces with two or three split sides then become red as well, until nothing changes. Faces with
-//! one split side are halved, *green*.
+//! Red-green refinement after Bank, Sherman & Weiser (1983). A chosen face becomes *red*: it is
+//! split in four. A face with two or three split sides also becomes red, until there are no more
+//! such faces. A face with one split side becomes *green*: it is split in two halves.
 //!
 //! ```text
 //!    red             green            green that must be split again: its parent becomes red
@@ -16,7 +16,8 @@
 //! ```
 //!
 //! Every face therefore has the shape of a face of the first mesh, or of half of such a face. So
-//! the angles do not become smaller with each level. New points are midpoints; old points stay.
+//! the angles do not become smaller with each level. New vertices are midpoints of edges; old
+//! vertices do not move.
 
 use sixfold_core::{
     EdgeMap, FaceId, FaceList, MAX_ROWS, MeshQuery, Numbers, Point, PolygonError, PolygonMesh,
@@ -27,11 +28,11 @@ use crate::error::LocalError;
 use crate::mask::midpoint;
 use crate::select::{Selection, triangle};
 
-/// Runs `levels` steps of local refinement with a structure of type `M`, which is built again for
-/// each step.
+/// Runs `levels` steps of local refinement. A structure of type `M` is built for each step.
 ///
 /// If the selection is a list of faces, the parts of these faces are chosen at the next level. A
-/// box or an angle is evaluated again at every level. Takes O(faces) per level, plus the costs of
+/// box or an angle selects faces again at every level. Takes O(faces) per level, plus the costs of
+/// FE, EF and FV.
 /// FE, EF and FV.
 ///
 /// # Errors
@@ -77,7 +78,7 @@ pub fn refine_locally<M: Representation>(
     Ok(local)
 }
 
-/// A triangle mesh after local refinement, and how each face was made.
+/// A triangle mesh after local refinement, with the origin of each face.
 ///
 /// # Invariants
 ///
@@ -90,13 +91,13 @@ pub struct LocalMesh {
     kinds: Vec<Kind>,
 }
 
-/// How a face was made.
+/// The origin of a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Kind {
-    /// The face of the first mesh that it is part of.
+    /// The face of the first mesh that contains this face.
     origin: FaceId,
     half: Option<Half>,
-    /// Whether it is part of a face that was chosen in the last step.
+    /// Whether this face is part of a face that was chosen in the last step.
     chosen: bool,
 }
 
@@ -127,19 +128,19 @@ impl LocalMesh {
         Ok(Self { polygons, kinds })
     }
 
-    /// Returns the mesh. Its vertices are first the vertices of the previous mesh in their order,
-    /// then the midpoints. The parts of a face are consecutive.
+    /// Returns the mesh. The vertices of the previous mesh come first, then the midpoints. The
+    /// parts of a face are consecutive.
     pub fn polygons(&self) -> &PolygonMesh {
         &self.polygons
     }
 
-    /// Returns for each face, in order, the face of the first mesh that it is part of.
+    /// Returns for each face the face of the first mesh that contains it.
     pub fn origins(&self) -> impl ExactSizeIterator<Item = FaceId> {
         self.kinds.iter().map(|kind| kind.origin)
     }
 
-    /// Returns whether `f` is half of a face. A half is not split again. Instead, its pair is
-    /// joined again to the face that was halved, and this face is split in four.
+    /// Returns whether `f` is half of a face. A half is not split. Instead, the two halves are
+    /// joined again, and the whole face is split in four.
     ///
     /// # Panics
     ///
@@ -155,10 +156,10 @@ impl LocalMesh {
         chosen.map(|(f, _)| f).collect()
     }
 
-    /// Runs one step: splits the faces `chosen`, and the faces that must be split with them. `mesh`
-    /// is any structure that was built from [`polygons`](Self::polygons). `chosen` has the numbers
-    /// of faces, in the order of the mesh. If an edge has more than two faces, the rules apply to
-    /// all its faces.
+    /// Runs one step: splits the faces `chosen`, and other faces to keep the mesh conforming.
+    /// `mesh` is any structure that was built from [`polygons`](Self::polygons). `chosen` contains
+    /// face numbers in the order of the mesh. If an edge has more than two faces, the rules apply
+    /// to all these faces.
     ///
     /// # Errors
     ///
@@ -167,7 +168,7 @@ impl LocalMesh {
     ///
     /// # Panics
     ///
-    /// Panics if `mesh` has another number of faces than `self`.
+    /// Panics if `mesh` and `self` have different numbers of faces.
     pub fn refined<M: MeshQuery>(&self, mesh: &M, chosen: &[FaceId]) -> Result<Self, LocalError> {
         let faces = self.kinds.len();
         assert_eq!(mesh.face_count(), faces, "the mesh has other polygons");
@@ -187,12 +188,12 @@ struct Step<'a, M: MeshQuery> {
     before: &'a [Kind],
     mesh: &'a M,
     numbers: Numbers<M::Face>,
-    /// The first corner of a green face is the one that the other half does not have: (a, m, c) and
-    /// (b, c, m).
+    /// Each green face starts at the corner that its other half does not have: (a, m, c) and (b, c,
+    /// m).
     faces: Vec<Triangle<M::Vertex, M::Edge>>,
     split: EdgeMap<M, bool>,
-    /// By face: the number of its split sides; whether it is red, or half of a face that is red;
-    /// whether it was chosen.
+    /// For each face: the number of split sides, whether the face becomes red, and whether
+    /// the face was chosen.
     split_sides: Vec<u8>,
     red: Vec<bool>,
     chosen: Vec<bool>,
@@ -231,7 +232,7 @@ impl<'a, M: MeshQuery> Step<'a, M> {
         })
     }
 
-    /// Makes faces red until no other face must be red; splits every side at most once.
+    /// Makes faces red until no other face must be red.
     fn propagate(&mut self) {
         while let Some(f) = self.queue.pop() {
             if self.red[f] {
@@ -241,7 +242,7 @@ impl<'a, M: MeshQuery> Step<'a, M> {
             let sides = self.faces[f].sides;
             match self.before[f].half {
                 None => sides.into_iter().for_each(|side| self.split(side)),
-                // The unsplit side of the whole face: c–a of (a, m, c), b–c of (b, c, m).
+                // The side of the whole face that is not split: c–a of (a, m, c), b–c of (b, c, m).
                 Some(Half::First) => {
                     self.split(sides[2]);
                     self.queue.push(f + 1);
@@ -261,7 +262,7 @@ impl<'a, M: MeshQuery> Step<'a, M> {
         for f in self.mesh.edge_faces(side) {
             let f = self.numbers[f] as usize;
             self.split_sides[f] += 1;
-            // A half is not halved again.
+            // A half is not split.
             if self.split_sides[f] > 1 || self.before[f].half.is_some() {
                 self.queue.push(f);
             }
@@ -326,8 +327,7 @@ impl<'a, M: MeshQuery> Step<'a, M> {
         Ok(LocalMesh { polygons, kinds })
     }
 
-    /// Returns the number of parts of a face; if a green pair is joined again, each half counts the
-    /// parts in its own area.
+    /// Returns the number of new faces in the area of face `f`.
     fn parts(&self, f: usize) -> usize {
         let is_red = self.red[f];
         match self.before[f].half {
@@ -339,7 +339,7 @@ impl<'a, M: MeshQuery> Step<'a, M> {
     }
 }
 
-/// A face: its corners, and the sides that start there.
+/// A face: its corners, and the sides that start at these corners.
 #[derive(Clone, Copy)]
 struct Triangle<V, E> {
     corners: [V; 3],
@@ -373,8 +373,8 @@ impl Parts {
         self.faces.push(corners)
     }
 
-    /// Adds the parts of a face. `middles` has the middles of its split sides: of no side, one
-    /// side, or all three.
+    /// Adds the parts of a face. `middles` contains the middles of the split sides. No side, one
+    /// side or all three sides are split.
     fn split(
         &mut self,
         kind: Kind,
@@ -399,7 +399,7 @@ impl Parts {
         }
     }
 
-    /// Adds the halves of a face whose first side has the middle `m`.
+    /// Adds the two halves of a face whose first side has the middle `m`.
     fn halve(
         &mut self,
         kind: Kind,
@@ -414,9 +414,8 @@ impl Parts {
         self.push(half(Half::Second), [m, b, c])
     }
 
-    /// Joins the two halves (a, m, c) and (b, c, m), and adds the parts of the whole face, which is
-    /// now red. The part at a is halved if a–m is split again, and the part at b if m–b is split
-    /// again.
+    /// Joins the two halves (a, m, c) and (b, c, m), and splits the whole face in four. The part at
+    /// a is halved if a–m is split. The part at b is halved if m–b is split.
     fn split_pair(
         &mut self,
         kind: Kind,

@@ -1,7 +1,7 @@
 //! Loop: splits every triangle into four; approximating, C² except at extraordinary vertices.
 //!
-//! Loop (1987), with Loop's weights or Warren's (Warren 1995; 3/16 at valence 3, 3/(8n) at higher
-//! valence). The file is not called `loop.rs` because `loop` is a keyword.
+//! Loop (1987), with the weights of Loop or of Warren (1995). Warren's weights are 3/16 at valence
+//! 3 and 3/(8n) at other valences. The file is not called `loop.rs` because `loop` is a keyword.
 //!
 //! ```text
 //!     edge point                  vertex point, valence n
@@ -20,7 +20,7 @@ use sixfold_core::{Point, Split};
 use crate::mask::Mask;
 use crate::options::LoopWeights;
 
-/// Number of valences with precomputed β, from 0; few vertices have a higher valence.
+/// Number of valences with precomputed β.
 const PRECOMPUTED: usize = 16;
 
 /// The weights of Loop (1987), or of Warren.
@@ -31,7 +31,6 @@ pub(crate) struct Loop {
 }
 
 impl Loop {
-    /// Builds the scheme with these weights.
     pub(crate) fn new(weights: LoopWeights) -> Self {
         let betas = std::array::from_fn(|n| beta(weights, n.max(1)) as f32);
         Self { weights, betas }
@@ -45,7 +44,7 @@ impl Loop {
     }
 }
 
-/// Returns the weight of each of `valence` neighbours.
+/// Returns β, the weight of each of `valence` neighbours.
 pub(crate) fn beta(weights: LoopWeights, valence: usize) -> f64 {
     let n = valence as f64;
     match weights {
@@ -64,8 +63,8 @@ impl Mask for Loop {
     const EDGES_USE_FACES: bool = true;
     const VERTICES_USE_FACES: bool = false;
 
-    /// Returns the sum of the corners. The sums of both faces together contain the ends twice and
-    /// the two far corners once, so no corner has to be distinguished from another.
+    /// Returns the sum of the corners. The sums of the two faces at an edge contain each end twice
+    /// and each far corner once.
     #[inline(always)]
     fn face(self, corners: Point, _: usize) -> Point {
         corners
@@ -107,7 +106,6 @@ mod tests {
         assert_eq!(scheme.beta(40), (3.0_f64 / 320.0) as f32);
     }
 
-    /// Returns the points of a step, by gather and by scatter.
     fn steps(weights: LoopWeights, polygons: &PolygonMesh) -> [Vec<Point>; 2] {
         let scheme = Subdivision {
             loop_weights: weights,
@@ -120,12 +118,9 @@ mod tests {
         })
     }
 
-    /// Relative to the centre, the four neighbours of a vertex v sum to 0, and so do the far
-    /// corners of an edge: v moves to (1 − 4β) v, an edge point is 3/8 (a + b).
     #[test]
     fn an_octahedron_matches_the_paper() {
         let octahedron = octahedron();
-        // β = (5/8 − (3/8)²)/4 = 31/256, and Warren's 3/32.
         let of_loop = steps(LoopWeights::Loop, &octahedron).map(|points| (points, 33.0 / 64.0));
         let of_warren = steps(LoopWeights::Warren, &octahedron).map(|points| (points, 5.0 / 8.0));
         for (points, shrunk) in of_loop.into_iter().chain(of_warren) {
@@ -144,7 +139,6 @@ mod tests {
     fn octahedron() -> PolygonMesh {
         let axes = [Point::X, Point::Y, Point::Z];
         let corners = axes.map(|axis| [axis, -axis]).concat();
-        // Corner 2k is +, 2k + 1 is − on axis k; a face with an odd number of minuses is reversed.
         let faces = (0..8_u32).map(|signs| {
             let [x, y, z] = [0, 1, 2].map(|axis| 2 * axis + (signs >> axis & 1));
             if signs.count_ones() % 2 == 0 {
@@ -156,9 +150,6 @@ mod tests {
         PolygonMesh::new(corners, faces.collect::<Vec<_>>()).expect("eight triangles")
     }
 
-    /// Relative to the centre, the other three corners of a tetrahedron sum to −v, and with
-    /// β = 3/16 v moves to 7/16 v − 3/16 v = v/4. The far corners of an edge sum to −(a + b), and
-    /// its point is 3/8 (a + b) − 1/8 (a + b) = (a + b)/4.
     #[test]
     fn a_tetrahedron_matches_the_paper() {
         let corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]];
@@ -171,7 +162,6 @@ mod tests {
             for (old, new) in corners.iter().zip(points) {
                 assert_near(*new, *old * 0.25);
             }
-            // Half-way along an axis of the surrounding cube.
             for p in &points[4..] {
                 let mut sizes = p.abs().to_array();
                 sizes.sort_by(f32::total_cmp);

@@ -1,5 +1,4 @@
-//! Checks that a mesh is an oriented manifold, for schemes that look across edges or around
-//! vertices.
+//! Checks that a mesh is an oriented manifold.
 
 use sixfold_core::{MeshQuery, Refine, map_chunks};
 
@@ -7,7 +6,7 @@ use crate::connectivity::{non_manifold_edge, non_manifold_vertex};
 use crate::error::SubdivisionError;
 use crate::scheme::Scheme;
 
-/// Returns whether `f` has `b` after `a`.
+/// Returns whether face `f` has the side from `a` to `b`.
 pub(crate) fn has_side<M: MeshQuery>(mesh: &M, f: M::Face, [a, b]: [M::Vertex; 2]) -> bool {
     let (mut first, mut last, mut found) = (None, None, false);
     mesh.face_vertices(f).for_each(|v| {
@@ -18,8 +17,8 @@ pub(crate) fn has_side<M: MeshQuery>(mesh: &M, f: M::Face, [a, b]: [M::Vertex; 2
     found || (last == Some(a) && first == Some(b))
 }
 
-/// Checks that `e` has one face, or two that run along it in opposite directions; otherwise the
-/// error is the number of its faces.
+/// Checks that `e` has one face, or two faces that run along `e` in opposite directions. The error
+/// is the number of faces.
 fn check_edge<M: MeshQuery>(mesh: &M, e: M::Edge) -> Result<(), usize> {
     let ends = mesh.edge_vertices(e);
     let mut along = [0, 0];
@@ -32,13 +31,13 @@ fn check_edge<M: MeshQuery>(mesh: &M, e: M::Edge) -> Result<(), usize> {
     }
 }
 
-/// Checks that every edge has one face, or two that run along it in opposite directions, and that
-/// the faces at every vertex are one fan.
+/// Checks that every edge has one face, or two faces that run along the edge in opposite
+/// directions. Also checks that the faces at every vertex are one fan.
 ///
 /// # Errors
 ///
-/// Returns an error for the first edge that fails. If no edge fails, returns an error for the first
-/// vertex that fails.
+/// Returns an error for the first invalid edge. If all edges are valid, returns an error for the
+/// first invalid vertex.
 pub(crate) fn check<M: MeshQuery>(mesh: &M, scheme: Scheme) -> Result<(), SubdivisionError> {
     let number_of = |v: M::Vertex| mesh.vertices().position(|w| w == v).unwrap_or(0) as u32;
     for e in mesh.edges() {
@@ -63,13 +62,12 @@ pub(crate) fn is_always_manifold<M: Refine>() -> bool {
         || capabilities.inconsistent_orientation)
 }
 
-/// Returns the boundary edges in their order, each in the direction of its face. Threads share the
-/// chunks.
+/// Returns the boundary edges in order, each in the direction of its face. Uses several threads.
 ///
 /// # Errors
 ///
-/// Returns an error for the first edge with three faces, or with two that run along it in the same
-/// direction.
+/// Returns an error for the first edge with three faces, or with two faces that run along the edge
+/// in the same direction.
 pub(crate) fn boundary_edges<M: Refine>(
     mesh: &M,
     numbers: &M::EdgeNumbers,

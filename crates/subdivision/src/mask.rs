@@ -1,36 +1,33 @@
-//! The rules of a scheme that splits faces, for new points at which nothing is sharp.
+//! The rules of a scheme for new points at which nothing is sharp.
 
 use sixfold_core::{Point, Split};
 
 /// The weights of a scheme, as functions of sums over a neighbourhood.
 ///
-/// Gather, scatter and native compute the sums in different ways, but the rules are only here. A
-/// *face value* is the value that the scheme needs of a face, for example its centroid or the sum
-/// of its corners.
+/// Gather, scatter and native compute the sums in different ways, but use the same rules. A *face
+/// value* is what the scheme needs to know about a face, for example the centroid.
 pub(crate) trait Mask: Copy + Sync {
-    /// The way faces are split.
     const SPLIT: Split;
-    /// Whether old vertices move. If they do not, `vertex` is not called. Boundaries and creases
-    /// then need no rules, because all edge points are midpoints.
+    /// Whether old vertices move. If this is false, all edge points are midpoints, and `vertex` is
+    /// not called.
     const APPROXIMATES: bool;
     /// Whether `edge` uses face values.
     const EDGES_USE_FACES: bool;
     /// Whether `vertex` uses face values.
     const VERTICES_USE_FACES: bool;
 
-    /// Returns the face value of a face with `degree` corners, whose sum is `corners`. If the split
-    /// has face points, this value is the face point.
+    /// Returns the face value of a face with `degree` corners. `corners` is the sum of the corners.
+    /// If the split has face points, the face value is the face point.
     fn face(self, corners: Point, degree: usize) -> Point;
 
-    /// Returns the point of an edge `[a, b]` between two faces, whose values have the sum `faces`.
+    /// Returns the point of an edge between two faces. `faces` is the sum of the two face values.
     fn edge(self, ends: [Point; 2], faces: Point) -> Point;
 
-    /// Returns the new position of an inner vertex from its position, its valence, and the sums of
-    /// its neighbours and of the values of its faces.
+    /// Returns the new position of an inner vertex at position `at`. `neighbours` is the sum of the
+    /// adjacent vertices, and `faces` is the sum of the face values.
     fn vertex(self, at: Point, valence: usize, neighbours: Point, faces: Point) -> Point;
 }
 
-/// Returns the midpoint of an edge, for boundaries, creases and schemes that do not smooth.
 pub(crate) fn midpoint([a, b]: [Point; 2]) -> Point {
     (a + b) * 0.5
 }

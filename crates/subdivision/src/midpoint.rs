@@ -12,7 +12,6 @@ use sixfold_core::{Point, Split};
 
 use crate::mask::{Mask, midpoint};
 
-/// Splits every triangle into four and does not move the old vertices.
 #[derive(Clone, Copy)]
 pub(crate) struct Midpoint;
 
@@ -44,7 +43,6 @@ mod tests {
     use crate::Scheme;
     use crate::test_support::all_methods;
 
-    /// Boundaries do not become curves here: no vertex moves, so the corners stay.
     #[test]
     fn a_triangle_keeps_its_corners() {
         let corners = [Point::ZERO, Point::X, Point::Y];

@@ -1,8 +1,8 @@
 //! Native: the structure splits its own tables, and the new points are computed with queries.
 //!
-//! The structure is not built again: [`Refine`] defines the place of each new record. Each point is
-//! computed independently, with the queries and rules of a gather, so the points are the same on
-//! any number of threads.
+//! The structure is not built again: [`Refine`] defines the place of each new record. Points are
+//! computed independently of each other, with the queries and rules of a gather. So the points are
+//! the same on any number of threads.
 
 use sixfold_core::{
     CHUNK_ROWS, Creases, FaceId, Point, Refine, RowId, Split, for_each_chunk, map_chunks,
@@ -14,7 +14,7 @@ use crate::gather::{edge_point, face_value, vertex_point};
 use crate::mask::Mask;
 use crate::options::Creasing;
 
-/// Runs one step of a scheme that splits faces, into `child`; returns the creases of the child.
+/// Runs one step of a scheme that splits faces. Stores the mesh in `child` and returns its creases.
 pub(crate) fn step<M: Refine, K: Mask>(
     mesh: &M,
     mask: K,
@@ -33,8 +33,7 @@ pub(crate) fn step<M: Refine, K: Mask>(
     let face_points = &*face_points;
     let value = |f: FaceId| match K::SPLIT {
         Split::Quads => face_points[f.index()],
-        // Stored values would be faster, but would take more than a tenth of the memory of a corner
-        // table.
+        // Stored face values would be faster, but would need too much memory.
         _ => face_value(mesh, mask, f),
     };
     if K::APPROXIMATES {
@@ -46,7 +45,7 @@ pub(crate) fn step<M: Refine, K: Mask>(
     let sharp = map_chunks(edge_points, &chunks, |chunk, range, points| {
         let mut by_topology = Vec::new();
         let edges = mesh.edges_of_chunk(numbers, chunk);
-        // `fold` passes the place by value, so that it stays in registers.
+        // `fold` passes the place by value, so that the place stays in registers.
         let mut rest = edges.fold(range.zip(points), |mut places, e| {
             let (number, point) = places.next().expect("a row for each edge");
             let faces;
@@ -76,7 +75,7 @@ pub(crate) fn step<M: Refine, K: Mask>(
     Ok(level.place(old, child.positions_mut(), first_edge, creasing))
 }
 
-/// Computes the value of each row; threads share the chunks.
+/// Computes the value of each row, on several threads.
 pub(crate) fn compute_rows<H: RowId, T: Send>(rows: &mut [T], value: impl Fn(H) -> T + Sync) {
     for_each_chunk(rows, CHUNK_ROWS, |first, rows| {
         for (row, name) in rows.iter_mut().zip(first as u32..) {
@@ -85,14 +84,14 @@ pub(crate) fn compute_rows<H: RowId, T: Send>(rows: &mut [T], value: impl Fn(H) 
     });
 }
 
-/// Copies `old`; threads share the chunks.
+/// Copies `old`, on several threads.
 pub(crate) fn copy_rows(points: &mut [Point], old: &[Point]) {
     for_each_chunk(points, CHUNK_ROWS, |first, points| {
         points.copy_from_slice(&old[first..first + points.len()]);
     });
 }
 
-/// Returns the edges with an entry in `creases` that are not sharp by topology.
+/// Returns the edges with an entry in `creases` and exactly two faces.
 fn crease_edges<M: Refine>(
     mesh: &M,
     creases: &Creases,

@@ -1,6 +1,6 @@
 //! The options besides the scheme.
 
-/// The treatment of the boundary of an open mesh.
+/// The treatment of the boundary.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -9,14 +9,14 @@
 )]
 #[non_exhaustive]
 pub enum Boundary {
-    /// Boundary edges are infinitely sharp, and so are vertices with exactly one face.
+    /// Boundary edges and vertices with exactly one face are infinitely sharp.
     #[default]
     EdgeAndCorner,
-    /// Boundary edges are infinitely sharp: the boundary becomes a B-spline curve with rounded
+    /// Boundary edges are infinitely sharp. The boundary becomes a B-spline curve with rounded
     /// corners.
     EdgeOnly,
     /// Faces at a boundary vertex are left out of the result, unless all boundary edges of the
-    /// vertex are given infinite sharpness. The faces that are left out still influence the
+    /// vertex have infinite sharpness in the input. The faces that are left out still influence the
     /// adjacent faces.
     None,
 }
@@ -35,7 +35,7 @@ impl Boundary {
     }
 }
 
-/// The rule by which the halves of an edge get their sharpness.
+/// The rule for the sharpness of the halves of an edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -47,9 +47,9 @@ pub enum Creasing {
     /// Each half gets the sharpness of the edge minus 1.
     #[default]
     Uniform,
-    /// At each end, the half gets 3/4 of the sharpness of the edge plus 1/4 of the mean of the
-    /// other semi-sharp edges there, minus 1. Sharpness then varies along a crease as smoothly as
-    /// Chaikin's curve.
+    /// The half at an end gets 3/4 of the sharpness of the edge, plus 1/4 of the mean of the other
+    /// semi-sharp edges at this end, minus 1. Sharpness then varies along a crease like Chaikin's
+    /// curve.
     Chaikin,
 }
 

@@ -11,8 +11,8 @@
 //!   c ─── i ─── d
 //! ```
 //!
-//! All three are products of the rules of the curve: the midpoint, (1, 1)/2, and the strut,
-//! (1, 6, 1)/8. A step therefore runs the step of the curve along every row, then every column.
+//! The three rules are products of the two rules of a curve: the midpoint (1, 1)/2 and the strut
+//! (1, 6, 1)/8. A step therefore runs a curve step along every row, and then along every column.
 
 use sixfold_core::{FaceList, MAX_ROWS, Point, PolygonError, PolygonMesh, VertexId};
 
@@ -22,15 +22,15 @@ use crate::error::CurveError;
 /// Control points in rows, and the uniform bicubic B-spline patch that they define.
 ///
 /// With [`Ends::Dropped`] in both directions, m × n points define (m − 3) × (n − 3) bicubic pieces,
-/// and grids shrink towards them. With [`Ends::Kept`], the four corners stay, and the boundary
-/// becomes B-spline curves between them, as with Catmull–Clark and `edge-and-corner`.
-/// [`Ends::Closed`] makes tubes and tori.
+/// and the grid shrinks towards them. With [`Ends::Kept`], the four corners do not move. The
+/// boundary then consists of B-spline curves between the corners, like Catmull–Clark with
+/// `edge-and-corner`. [`Ends::Closed`] makes tubes and tori.
 ///
 /// # Invariants
 ///
 /// - G1  Every row has the same number of points.
-/// - G2  Rows and columns have at least as many points as their ends need: 2 kept, 3 closed, 4
-///   dropped.
+/// - G2  The minimum number of points in a row or column is 2 for kept ends, 3 for closed ends, and
+///   4 for dropped ends.
 ///
 /// # Examples
 ///
@@ -53,12 +53,12 @@ pub struct ControlGrid {
 }
 
 impl ControlGrid {
-    /// Builds a grid from rows of `columns` points, row after row; `ends` are those of the rows and
-    /// of the columns.
+    /// Builds a grid from rows of `columns` points, row after row. `ends` contains the ends of the
+    /// rows, then the ends of the columns.
     ///
     /// # Errors
     ///
-    /// Returns an error for an incomplete last row, or for too few points in one direction.
+    /// Returns an error if the last row is incomplete, or if a direction has too few points.
     pub fn new(
         columns: usize,
         points: impl Into<Vec<Point>>,
@@ -102,16 +102,14 @@ impl ControlGrid {
         &self.points
     }
 
-    /// Returns the grid after `levels` steps. In each direction, the number of points is that of a
-    /// curve after as many steps. O(points of the result).
+    /// Returns the grid after `levels` steps. O(points of the result).
     ///
     /// # Errors
     ///
     /// Returns an error for more than [`MAX_ROWS`] points in the result.
     pub fn refined(&self, levels: u32) -> Result<Self, CurveError> {
         let mut sizes = [self.columns, self.rows()];
-        // Checked before the first step. By G2 sizes grow with every level, so this loop ends
-        // early.
+        // Checked before the first step. Sizes grow with every level (G2), so this loop ends early.
         for _ in 0..levels.min(usize::BITS) {
             let next: [usize; 2] = std::array::from_fn(|direction| {
                 cubic_count(sizes[direction], self.ends[direction])
@@ -157,11 +155,13 @@ impl ControlGrid {
     }
 
     /// Returns the point of the patch at (`u`, `v`): the limit of [`refined`](Self::refined). The
-    /// control point in column i of row j has the parameters (i, j).
+    /// control point in column i of row j has the parameters (i, j). O(rows).
     ///
-    /// In each direction, the parameter is in 0 to n − 1 if the ends are kept, and in 1 to n − 2 if
-    /// they are dropped; it is periodic if the ends are joined. Returns `None` for parameters
-    /// outside. O(rows).
+    /// Returns `None` for parameters outside the domain of a direction with n points:
+    ///
+    /// - ends kept: from 0 to n − 1
+    /// - ends dropped: from 1 to n − 2
+    /// - ends joined: every parameter, because the patch is periodic
     pub fn evaluate(&self, u: f64, v: f64) -> Option<Point> {
         let [of_rows, of_columns] = self.ends;
         let rows = self.points.chunks(self.columns);
@@ -170,14 +170,14 @@ impl ControlGrid {
         cubic_b_spline_at(&column?, of_columns, v)
     }
 
-    /// Returns the first and last parameters, along rows and along columns.
+    /// Returns the first and the last parameter along the rows, then along the columns.
     pub fn domain(&self) -> [(f64, f64); 2] {
         let sizes = [self.columns, self.rows()];
         std::array::from_fn(|direction| cubic_domain(sizes[direction], self.ends[direction]))
     }
 
-    /// Returns the grid as quads, counter-clockwise if rows run to the right and columns up. Vertex
-    /// j · columns + i is the point in column i of row j. O(points).
+    /// Returns the grid as quads. They are counter-clockwise if rows run to the right and columns
+    /// run up. Vertex j · columns + i is the point in column i of row j. O(points).
     ///
     /// # Errors
     ///
@@ -229,7 +229,6 @@ mod tests {
         })
     }
 
-    /// Returns sorted coordinates, so that points can be compared in any order.
     fn sorted(points: impl IntoIterator<Item = Point>) -> Vec<[i64; 3]> {
         // Coordinates of a refined grid of integers are multiples of 1/64.
         let keys = points
@@ -262,7 +261,6 @@ mod tests {
         }
     }
 
-    /// The boundary agrees too: kept ends are the edges and corners of Catmull–Clark.
     #[test]
     fn a_step_equals_that_of_catmull_clark() {
         let points: Vec<Point> = (0..42)
@@ -282,7 +280,6 @@ mod tests {
                 let all = step.polygons.positions();
                 let refined = grid.refined(1).expect("small");
                 if ends.contains(&Ends::Dropped) {
-                    // The refined grid is inside the refined mesh.
                     for &point in refined.points() {
                         assert!(all.iter().any(|p| p.distance(point) < 1e-6), "{point}");
                     }
@@ -292,7 +289,6 @@ mod tests {
                         let near = |p: &&Point| p.distance(point) < 1e-6;
                         assert!(refined.points().iter().any(|p| near(&p)), "{point}");
                     }
-                    // The faces agree too: the same number, with the same centres.
                     let centres = |mesh: &PolygonMesh| {
                         let centre = |face: &[VertexId]| -> Point {
                             face.iter().map(|&v| mesh.position(v)).sum()
@@ -337,7 +333,7 @@ mod tests {
             let step = f64::from(1 << levels).recip();
             let place = |direction: usize, i: usize| {
                 let (first, last) = grid.domain()[direction];
-                // Dropped ends leave one point before the first parameter, where there is no patch.
+                // With dropped ends, one point comes before the first parameter.
                 let shift = f64::from(u8::from(grid.ends()[direction] == Ends::Dropped));
                 let at = first + (i as f64 - shift) * step;
                 (first <= at && at <= last).then_some(at)
@@ -353,7 +349,6 @@ mod tests {
             prop_assert!(compared >= (1 << levels) * (1 << levels));
         }
 
-        /// A grid and its refinement define the same patch.
         #[test]
         fn a_step_does_not_change_the_patch(grid in grid(), at in prop::array::uniform2(0.0..1.0)) {
             let refined = grid.refined(1).expect("small");

@@ -6,8 +6,7 @@
 //! ```
 //!
 //! Only FV and FE are queried, and every structure answers them without a search. The time is
-//! near-linear on all structures; edges and vertices whose handles are not rows are found in hash
-//! maps.
+//! near-linear on all structures. Hash maps find edges and vertices whose handles are not rows.
 
 use sixfold_core::{Creases, HandleMap, MeshQuery, Point, VertexMap};
 
@@ -32,13 +31,12 @@ struct EdgeSum {
     count: u32,
 }
 
-/// Marks an edge that has no number yet.
 const UNNUMBERED: u32 = u32::MAX;
 
 /// Runs one step of a scheme that splits faces.
 ///
-/// Until the points of the result are placed, they store the old positions and, for each edge, the
-/// sum of its face values.
+/// The points of the result first store old positions, and for each edge the sum of its face
+/// values.
 pub(crate) fn step<M: MeshQuery, K: Mask>(
     mesh: &M,
     mask: K,
@@ -87,16 +85,14 @@ fn number_vertices<M: MeshQuery>(mesh: &M, builder: &mut StepBuilder) -> VertexM
     numbers
 }
 
-/// The data that the pass over the faces collects, besides the sums in the edge points.
 struct FaceSums {
-    /// The edges, in the order in which they are found.
+    /// The edges in the order in which they are found.
     edges: Vec<EdgeSum>,
-    /// The sum of the face values at each vertex; empty if the scheme does not use it.
+    /// The sum of the face values at each vertex. Empty if the scheme does not use this sum.
     vertex_faces: Vec<Point>,
 }
 
-/// Adds the value of each face to its corners and sides, and splits the face. All points up to the
-/// face points exist already; this adds the edge points.
+/// Adds the value of each face to its corners and sides, adds the edge points, and splits the face.
 #[inline(always)]
 fn scatter_faces<M: MeshQuery, K: Mask>(
     mesh: &M,
@@ -112,7 +108,7 @@ fn scatter_faces<M: MeshQuery, K: Mask>(
     edge_numbers.reserve(builder.expected_edges());
     let mut edges: Vec<EdgeSum> = Vec::with_capacity(builder.expected_edges());
     let first_edge = builder.points.len();
-    // For one face: its vertices, and the edge points of the sides that start there.
+    // For one face: its vertices, and the edge points of its sides.
     let (mut own, mut middles) = (Vec::new(), Vec::new());
     for (face_point, f) in (builder.vertices()..).zip(mesh.faces()) {
         own.clear();
@@ -153,7 +149,6 @@ fn scatter_faces<M: MeshQuery, K: Mask>(
     }
 }
 
-/// Returns the ends of the side of a face that starts at `corner`.
 #[inline(always)]
 fn side_ends(corners: &[u32], corner: usize) -> [u32; 2] {
     let next = if corner + 1 == corners.len() {
@@ -164,7 +159,6 @@ fn side_ends(corners: &[u32], corner: usize) -> [u32; 2] {
     [corners[corner], corners[next]]
 }
 
-/// Returns the sums over the edges of each vertex; `old` are the positions of the vertices.
 fn neighbour_sums(edges: &[EdgeSum], old: &[Point]) -> Vec<VertexSum> {
     let mut sums = vec![VertexSum::default(); old.len()];
     for edge in edges {
@@ -177,8 +171,7 @@ fn neighbour_sums(edges: &[EdgeSum], old: &[Point]) -> Vec<VertexSum> {
     sums
 }
 
-/// Places the edge points, which store sums of face values, as if no edge were sharp. Returns the
-/// sharp elements.
+/// Places the edge points as if no edge were sharp. Returns the sharp elements.
 #[inline(always)]
 fn place_edge_points<K: Mask>(
     mask: K,
@@ -212,7 +205,7 @@ fn place_edge_points<K: Mask>(
     level
 }
 
-/// Moves the vertices that have edges to their new positions, as if nothing were sharp there.
+/// Places the vertices that have edges, as if nothing were sharp.
 fn place_vertex_points<K: Mask>(
     mask: K,
     sums: &[VertexSum],

@@ -34,40 +34,40 @@ pub enum Scheme {
 pub enum Primitive {
     /// New vertices divide the faces.
     FaceSplit,
-    /// Every vertex becomes a face, and so does every edge.
+    /// Every vertex and every edge becomes a face.
     VertexSplit,
 }
 
-/// The classification of a scheme: a row of the table.
+/// The classification of a scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Kind {
     /// The elements that are split.
     pub primitive: Primitive,
-    /// The input: `triangles` or `polygons`.
+    /// The accepted input: `triangles` or `polygons`.
     pub takes: &'static str,
     /// The output: `triangles`, `quads`, or `polygons`.
     pub makes: &'static str,
-    /// Whether old vertices stay where they are.
+    /// Whether old vertices keep their positions.
     pub interpolating: bool,
-    /// The smoothness of the limit surface: at regular and at extraordinary vertices.
+    /// The smoothness of the limit surface at regular vertices and at extraordinary vertices.
     pub continuity: &'static str,
-    /// The number of faces that a step makes from one face, in the long run.
+    /// The factor by which the number of faces grows per step, after several steps.
     pub growth: &'static str,
     /// The behaviour at boundaries.
     pub boundary: &'static str,
-    /// Whether it has rules for creases.
+    /// Whether the scheme has rules for creases.
     pub creases: bool,
-    /// The split of faces in the tables of a structure, if the scheme has one.
+    /// The split of faces in the tables of a structure; `None` if the scheme does not split faces.
     pub split: Option<Split>,
-    /// Whether it can run as a pass over the faces.
+    /// Whether the scheme can run as one pass over the faces.
     pub scatter: bool,
     /// The publication.
     pub source: &'static str,
 }
 
 impl Scheme {
-    /// All schemes, in the order of tables.
+    /// All schemes.
     pub const ALL: [Self; 7] = [
         Self::CatmullClark,
         Self::Loop,
@@ -192,12 +192,12 @@ impl serde::Serialize for Scheme {
     serde(rename_all = "kebab-case")
 )]
 pub enum Method {
-    /// Queries the neighbourhood of every new point: VV, VF, EF of each element.
+    /// Queries VV, VF and EF for the neighbourhood of every new point.
     Gather,
-    /// One pass over the faces adds their values to data stored by handle: FV and FE only.
+    /// Runs one pass over the faces and adds their values to data at vertices and edges. Queries
+    /// only FV and FE.
     Scatter,
-    /// Computes points with queries, but the structure splits its own tables and is not built
-    /// again.
+    /// Computes points with queries. The structure splits its own tables and is not built again.
     Native,
 }
 

@@ -8,21 +8,21 @@ use crate::error::LocalError;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Selection {
-    /// These faces; at later levels, their parts.
+    /// These faces. At later levels, the parts of these faces.
     Faces(Vec<FaceId>),
-    /// The faces that share at least one point with a box, including its surface. Even a small box
-    /// inside a face selects this face. Bounds may be infinite. The box is evaluated again at every
-    /// level.
+    /// The faces that share at least one point with a box. The surface of the box belongs to the
+    /// box, and a box inside a face selects the face. Bounds may be infinite. The box selects faces
+    /// again at every level.
     Box {
-        /// The lowest coordinates.
+        /// The minimum coordinates.
         min: Point,
-        /// The highest coordinates.
+        /// The maximum coordinates.
         max: Point,
     },
-    /// The faces that bend from an adjacent face by more than this angle, in degrees from 0 to 180.
-    /// The faces along edges of three or more faces are selected too. Faces without area are
-    /// ignored. The angle is evaluated again at every level. New points lie on the old faces, so
-    /// the faces along the same folds are selected again.
+    /// The faces at sharp folds. At a fold, the angle between the normals of two adjacent faces is
+    /// above this angle in degrees, from 0 to 180. Faces at edges with three or more faces are
+    /// selected too. Faces without area are ignored. The angle selects faces again at every level.
+    /// New points lie on the old faces, so the faces at the same folds are selected again.
     Angle(f32),
 }
 
@@ -32,11 +32,11 @@ impl Selection {
     /// # Errors
     ///
     /// Returns an error for a face that does not exist, a box with NaN or swapped bounds, or an
-    /// angle outside 0 to 180.
+    /// angle outside 0 to 180 degrees.
     pub fn check(&self, faces: usize) -> Result<(), LocalError> {
         match self {
             Self::Faces(list) => Self::check_faces(list, faces),
-            // False for NaN.
+            // This test is false for NaN.
             Self::Box { min, max } if min.cmple(*max).all() => Ok(()),
             &Self::Box { min, max } => Err(LocalError::BadBox { min, max }),
             Self::Angle(degrees) if (0.0..=180.0).contains(degrees) => Ok(()),
@@ -51,8 +51,8 @@ impl Selection {
         }
     }
 
-    /// Returns the selected faces of `mesh`, as numbers in the order of [`MeshQuery::faces`].
-    /// O(faces), or O(edges) for an angle, plus the costs of FV and EF.
+    /// Returns the numbers of the selected faces, in the order of [`MeshQuery::faces`]. O(faces),
+    /// or O(edges) for an angle, plus the costs of FV and EF.
     ///
     /// # Errors
     ///
@@ -78,7 +78,7 @@ impl Selection {
     }
 }
 
-/// Returns the corners of the face with the number `face`, or an error if it is not a triangle.
+/// Returns the corners of face number `face`, or an error if the face is not a triangle.
 pub(crate) fn triangle<M: MeshQuery>(
     mesh: &M,
     f: M::Face,
@@ -95,11 +95,11 @@ pub(crate) fn triangle<M: MeshQuery>(
     }
 }
 
-/// Returns whether a triangle and a box have a point in common. They have no common point if their
-/// projections on some line are apart. It is enough to test thirteen lines (Akenine-Möller 2001).
+/// Returns whether a triangle and a box have a point in common. Tests the projections on thirteen
+/// lines (Akenine-Möller 2001).
 fn intersects_box(corners: [Point; 3], min: Point, max: Point) -> bool {
     let [a, b, c] = corners;
-    // Cuts the box to the bounds of the triangle; this tests the three lines along the axes.
+    // Cuts the box to the bounds of the triangle, which tests the three lines along the axes.
     let (min, max) = (min.max(a.min(b).min(c)), max.min(a.max(b).max(c)));
     if !min.cmple(max).all() {
         return false;
@@ -117,21 +117,21 @@ fn intersects_box(corners: [Point; 3], min: Point, max: Point) -> bool {
         let (low, high) = (line * min, line * max);
         let least = low.min(high).element_sum();
         let most = low.max(high).element_sum();
-        // Allows for rounding in sums of products of three differences: contact must not be missed.
+        // Allows for rounding errors, so that no contact is missed.
         let tolerance = 1e-12 * line.abs().dot(min.abs().max(max.abs()));
         projections.iter().any(|&at| at >= least - tolerance)
             && projections.iter().any(|&at| at <= most + tolerance)
     })
 }
 
-/// Returns the faces along edges that bend by more than `degrees`.
+/// Returns the faces at edges where adjacent faces form an angle above `degrees`.
 fn faces_along_folds<M: MeshQuery>(mesh: &M, degrees: f32) -> Result<Vec<FaceId>, LocalError> {
     let numbers = mesh.face_numbers();
     let mut chosen = vec![false; numbers.len()];
     for (number, &f) in (0..).zip(numbers.handles()) {
         triangle(mesh, f, FaceId::new(number))?;
     }
-    // The normal of a face, and whether it runs from `a` to `b`.
+    // The normal of a face, and whether the face runs from `a` to `b`.
     let normal_and_direction = |f: M::Face, a: M::Vertex, b: M::Vertex| {
         let corners: Vec<M::Vertex> = mesh.face_vertices(f).collect();
         let forward = (0..3).any(|i| corners[i] == a && corners[(i + 1) % 3] == b);
@@ -145,7 +145,7 @@ fn faces_along_folds<M: MeshQuery>(mesh: &M, degrees: f32) -> Result<Vec<FaceId>
             [f, g] => {
                 let (m, along) = normal_and_direction(f, a, b);
                 let (n, other) = normal_and_direction(g, a, b);
-                // If both run in the same direction, one of the normals points to the other side.
+                // If both faces run in the same direction, one normal points to the wrong side.
                 let n = if along == other { -n } else { n };
                 let angle = m.cross(n).length().atan2(m.dot(n));
                 angle.to_degrees() > f64::from(degrees)

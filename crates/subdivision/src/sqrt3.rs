@@ -1,8 +1,8 @@
 //! √3: splits every triangle into three; approximating, C² except at extraordinary vertices.
 //!
-//! Kobbelt (2000). A step adds a face point in each triangle, then flips every old inner edge; the
-//! number of faces grows by the factor 3. Two steps cut each old edge in three and each triangle
-//! into nine. These nine triangles are aligned with the old triangle again.
+//! Kobbelt (2000). A step adds a face point in each triangle, then flips every old inner edge. A
+//! step triples the number of faces. Two steps cut each old edge in three and each triangle in
+//! nine.
 //!
 //! ```text
 //!    c ─────── d        c ─────── d        face point     the mean of the corners
@@ -21,8 +21,8 @@
 //!        •  •  •  •               before it (10 p₀ + 16 p₁ + p₂)/27, after it (p₀ + 16 p₁ + 10 p₂)/27
 //! ```
 //!
-//! A boundary vertex that does not have exactly two boundary edges stays, and a new point next to
-//! it lies at a third of its edge. An isolated vertex stays.
+//! A boundary vertex with more than two boundary edges does not move. A new point next to this
+//! vertex is at a third of its edge. An isolated vertex does not move.
 
 use std::f64::consts::TAU;
 
@@ -37,7 +37,7 @@ use crate::native::compute_rows;
 use crate::scheme::Scheme;
 use crate::step::Step;
 
-/// Number of valences with precomputed α, from 0; few vertices have a higher valence.
+/// Number of valences with precomputed α.
 const PRECOMPUTED: usize = 16;
 
 /// The weights of Kobbelt (2000).
@@ -45,7 +45,7 @@ struct Sqrt3 {
     alphas: [f32; PRECOMPUTED],
 }
 
-/// Returns the total weight of all `valence` neighbours.
+/// Returns α, the total weight of all `valence` neighbours.
 fn alpha(valence: usize) -> f64 {
     (4.0 - 2.0 * (TAU / valence as f64).cos()) / 9.0
 }
@@ -131,7 +131,6 @@ pub(crate) fn native<M: Refine>(
     Ok(Creases::default())
 }
 
-/// Places the boundary, and builds the triangles.
 fn finish(
     connectivity: &Connectivity,
     old: &[Point],
@@ -156,7 +155,7 @@ fn finish(
     let (vertices, rest) = points.split_at_mut(old.len());
     let (_, cuts) = rest.split_at_mut(connectivity.corners.len() / 3);
     boundary.place(trisect, old, vertices, cuts);
-    // By side: the first of the two points of a boundary side.
+    // For each boundary side: the first of its two points.
     let mut cut_of = vec![
         0;
         if trisect {
@@ -190,11 +189,11 @@ fn finish(
     Ok(Step { polygons, creases })
 }
 
-/// The boundary of a mesh, as curves.
+/// The boundary curves of a mesh.
 struct BoundaryCurves {
-    /// Its edges in their order, each in the direction of its face.
+    /// The boundary edges, each in the direction of its face.
     sides: Vec<[u32; 2]>,
-    /// The same edges from both ends, sorted.
+    /// The boundary edges in both directions, sorted.
     spokes: Vec<[u32; 2]>,
 }
 
@@ -206,8 +205,8 @@ impl BoundaryCurves {
         Self { sides, spokes }
     }
 
-    /// Places the vertices of the boundary and, if it is cut, the two points of each edge.
-    /// O(b log b) for b boundary edges.
+    /// Places the boundary vertices. If `trisect` is true, also places the two points of each
+    /// boundary edge. O(b log b) for b boundary edges.
     fn place(&self, trisect: bool, old: &[Point], vertices: &mut [Point], cuts: &mut [Point]) {
         let at = |v: u32| old[v as usize];
         for around in self.spokes.chunk_by(|a, b| a[0] == b[0]) {
@@ -224,7 +223,7 @@ impl BoundaryCurves {
         }
     }
 
-    /// Returns the point between `near` and `far` that is nearer to `near`.
+    /// Returns the point at a third of the edge from `near` to `far`.
     fn third_point(&self, near: u32, far: u32, at: impl Fn(u32) -> Point) -> Point {
         let first = self.spokes.partition_point(|spoke| spoke[0] < near);
         let around = self.spokes[first..].iter();
@@ -283,7 +282,6 @@ mod tests {
             assert_eq!([mesh.vertex_count(), mesh.face_count()], [8, 12]);
             let centre = tetrahedron.positions().iter().sum::<Point>() * 0.25;
             for (v, &old) in tetrahedron.positions().iter().enumerate() {
-                // The neighbours of v have the sum 3c − (v − c) with c the centre.
                 let expected = centre + (old - centre) * (7.0 / 27.0);
                 assert_near(mesh.positions()[v], expected);
             }
@@ -308,7 +306,6 @@ mod tests {
         for (&got, expected) in second.positions().iter().zip(vertices) {
             assert_near(got, expected);
         }
-        // From 0 to 1: (16 p₀ + 10 p₁ + p₂)/27, and (10 p₀ + 16 p₁ + p₂)/27.
         let cuts = &second.positions()[7..];
         for expected in [at(10.0, 1.0), at(16.0, 1.0), at(16.0, 10.0), at(1.0, 16.0)] {
             assert!(
@@ -336,15 +333,6 @@ mod tests {
         );
     }
 
-    /// ```text
-    ///              c
-    ///             ╱ ╲
-    ///           ca1 ─ bc2        m is the face point of the first step; the face points of the
-    ///           ╱ ╲ ╱ ╲          second step in its three triangles are at a third of the edges
-    ///         ca2 ─ m ─ bc1
-    ///         ╱ ╲ ╱ ╲ ╱ ╲
-    ///        a ─ ab1 ─ ab2 ─ b
-    /// ```
     #[test]
     fn two_steps_cut_every_edge_in_three() {
         let torus = sixfold_shapes::triangle_torus(4, 5).expect("a small torus");

@@ -1,28 +1,29 @@
-//! The refined mesh of one step, built from polygons.
+//! The refined mesh of one step.
 
 use sixfold_core::{Creases, FaceList, MeshQuery, Point, PolygonMesh, Split, VertexId};
 
 use crate::SubdivisionError;
 
-/// A refined mesh, and its remaining creases.
+/// A refined mesh with its remaining creases.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// The refined mesh. Its vertices are the old vertices, then the face points, then the edge
-    /// points, each in the order of the structure that was refined. The parts of one face are
-    /// consecutive. After a vertex split, the vertices are the corners of the old faces. The faces
-    /// are then made first from faces, then from edges, then from vertices, each in their order.
+    /// The refined mesh. The parts of one face are consecutive.
+    ///
+    /// After a face split, the vertices are the old vertices, then the face points, then the edge
+    /// points, each in the order of the old structure. After a vertex split, the vertices are the
+    /// corners of the old faces. The faces come first from old faces, then from old edges, then
+    /// from old vertices.
     pub polygons: PolygonMesh,
     /// The creases of [`polygons`](Self::polygons).
     pub creases: Creases,
 }
 
-/// The points and corners made so far.
 pub(crate) struct StepBuilder {
     split: Split,
     vertices: usize,
     expected_edges: usize,
     corners: Vec<VertexId>,
-    /// Vertex points, face points, edge points.
+    /// Vertex points, then face points, then edge points.
     pub(crate) points: Vec<Point>,
 }
 
@@ -31,8 +32,7 @@ impl StepBuilder {
     /// corners in total.
     pub(crate) fn new<M: MeshQuery>(split: Split, mesh: &M, corners: usize) -> Self {
         let (vertices, faces) = (mesh.vertex_count(), mesh.face_count());
-        // This number is exact on a closed mesh and, by Euler's formula, close on a mesh with
-        // boundaries. If there are more edges, the tables grow.
+        // Exact for closed meshes, approximate for meshes with boundaries. The tables can grow.
         let expected_edges = (corners / 2).max(vertices + faces).min(corners);
         let (points, corners) = match split {
             Split::Quads => (vertices + faces + expected_edges, 4 * corners),
@@ -52,7 +52,6 @@ impl StepBuilder {
         self.vertices
     }
 
-    /// Returns the approximate number of edges of the mesh that is split.
     pub(crate) fn expected_edges(&self) -> usize {
         self.expected_edges
     }
@@ -61,8 +60,8 @@ impl StepBuilder {
         self.split == Split::Quads
     }
 
-    /// Splits all faces; `number` returns the number of a vertex, `edge_point` that of the point of
-    /// an edge.
+    /// Splits all faces. `number` returns the number of a vertex. `edge_point` returns the number
+    /// of the point of an edge.
     pub(crate) fn split_faces<M: MeshQuery>(
         &mut self,
         mesh: &M,
@@ -82,7 +81,8 @@ impl StepBuilder {
         Ok(())
     }
 
-    /// Splits a face with these corners; `middles` are the points of the sides that start there.
+    /// Splits a face with these corners. `middles` contains the points of the sides, in the order
+    /// of the corners.
     #[inline(always)]
     pub(crate) fn split_face(&mut self, corners: &[u32], middles: &[u32], face_point: u32) {
         let mut prev = middles[middles.len() - 1];
@@ -100,7 +100,6 @@ impl StepBuilder {
         }
     }
 
-    /// Builds the refined mesh.
     pub(crate) fn finish(self, creases: Creases) -> Result<Step, SubdivisionError> {
         let degree = match self.split {
             Split::Quads => 4,
@@ -112,7 +111,7 @@ impl StepBuilder {
     }
 }
 
-/// The vertices with a crease. Only edges between such vertices are looked up.
+/// The vertices with a crease.
 pub(crate) struct CreaseVertices(Vec<bool>);
 
 impl CreaseVertices {
@@ -127,7 +126,6 @@ impl CreaseVertices {
         Self(has_crease)
     }
 
-    /// Returns the sharpness of the edge between two vertices.
     pub(crate) fn sharpness(&self, creases: &Creases, ends: [u32; 2], by_topology: bool) -> f32 {
         if by_topology {
             return f32::INFINITY;

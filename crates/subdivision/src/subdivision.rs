@@ -12,8 +12,7 @@ use crate::scheme::{Method, Scheme};
 use crate::step::Step;
 use crate::{butterfly, doo_sabin, gather, native, scatter, sqrt3};
 
-/// Runs a step with the mask of the scheme, if the scheme is defined by a mask. The arms for other
-/// schemes follow in the call.
+/// Runs a step with the mask of the scheme. The call lists the other schemes, which have no mask.
 macro_rules! by_mask {
     ($self:ident, $mask:ident => $step:expr, { $($others:tt)* }) => {
         match $self.scheme {
@@ -52,7 +51,7 @@ impl Subdivision {
 
     /// Runs one step with queries for each new point.
     ///
-    /// `creases` are the creases of `mesh.to_polygons()`, from
+    /// `creases` are the creases of `mesh.to_polygons()`. They come from
     /// [`control_creases`](Self::control_creases) or from the previous step. `level` is the number
     /// of previous steps.
     ///
@@ -73,13 +72,13 @@ impl Subdivision {
         })
     }
 
-    /// Runs one step with one pass over the faces. The result is the same as that of
-    /// [`gather`](Self::gather), except that edge points have the order in which the faces list the
-    /// edges.
+    /// Runs one step with one pass over the faces. The result equals the result of
+    /// [`gather`](Self::gather), except for the order of the edge points. The edge points have the
+    /// order in which the faces list the edges.
     ///
     /// # Errors
     ///
-    /// Returns an error if the scheme cannot split the mesh, or cannot run as a pass over the
+    /// Returns an error if the scheme cannot split the mesh, or cannot run as one pass over the
     /// faces.
     pub fn scatter<M: MeshQuery>(
         &self,
@@ -95,16 +94,16 @@ impl Subdivision {
         })
     }
 
-    /// Runs one step in the tables of the structure, into `child`; returns the creases of the
-    /// child. The tables of `child` are reused if they are large enough. Runs on the threads of the
-    /// current rayon pool; the result has the same bytes on any number of threads.
+    /// Runs one step in the tables of the structure, stores the result in `child`, and returns the
+    /// creases of `child`. The tables of `child` are reused if they are large enough. Runs on the
+    /// threads of the current rayon pool. The result has the same bytes on any number of threads.
     ///
-    /// This function fills `numbers` for `mesh`. They may be reused for other meshes.
+    /// This function overwrites `numbers`. `numbers` may be reused for other meshes.
     ///
     /// # Errors
     ///
     /// Returns an error if the scheme cannot split the mesh, or if the structure cannot split its
-    /// own tables; `child` is then unchanged.
+    /// own tables. If there is an error, `child` is unchanged.
     pub fn refine_into<M: Refine>(
         &self,
         mesh: &M,
@@ -121,8 +120,8 @@ impl Subdivision {
         })
     }
 
-    /// Returns how step `level`, counted from 0, splits faces; `None` if the step does not split
-    /// faces.
+    /// Returns how step `level` splits faces; `None` if the step does not split faces. The first
+    /// step has level 0.
     pub fn split(&self, level: u32) -> Option<Split> {
         match self.scheme.kind().split? {
             Split::Sqrt3 { .. } => Some(Split::Sqrt3 {
@@ -140,8 +139,7 @@ impl Subdivision {
         }
     }
 
-    /// Returns the error for a native step that starts from polygons or that the scheme does not
-    /// have.
+    /// Returns the error for a native step that is not possible.
     pub(crate) fn native_error(&self) -> SubdivisionError {
         self.method_error(Method::Native, "gather or scatter")
     }
@@ -155,7 +153,7 @@ impl Subdivision {
     }
 
     /// Checks that the scheme can split the faces of `mesh`, and that 32-bit handles can number the
-    /// result; O(faces). Returns the total number of corners of the faces.
+    /// result. Returns the total number of corners of the faces. O(faces).
     fn check<M: MeshQuery>(&self, mesh: &M) -> Result<usize, SubdivisionError> {
         let kind = self.scheme.kind();
         let (mut corners, mut non_triangle) = (0, None);
@@ -175,7 +173,7 @@ impl Subdivision {
             });
         }
         // A step makes at most four corners from one corner, and at most as many edges as corners.
-        // The exception is √3 when it cuts boundaries; that step checks its own size.
+        // The only exception is √3 at boundaries; that step checks its own size.
         let limit = MAX_ROWS;
         if corners.saturating_mul(4) > limit {
             let elements = "corners";
@@ -185,7 +183,7 @@ impl Subdivision {
     }
 }
 
-/// Returns whether √3 cuts boundary edges in step `level`, counted from 0.
+/// Returns whether √3 cuts boundary edges in step `level`. The first step has level 0.
 fn trisects(level: u32) -> bool {
     level % 2 == 1
 }

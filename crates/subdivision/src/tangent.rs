@@ -1,9 +1,9 @@
 //! Two tangents of the limit surface of Catmull–Clark and Loop at a vertex.
 //!
-//! At smooth vertices, the tangents are those of Halstead, Kass & DeRose (1993) and Loop (1987):
-//! sums of the neighbours, weighted with cosines and with sines. The tangents across creases were
-//! derived for the step rules of this crate, because Biermann, Levin & Zorin (2000) change the
-//! rules next to a crease; see [`Sector`].
+//! At smooth vertices, the tangents are sums of the neighbours, weighted with cosines and with
+//! sines (Halstead, Kass & DeRose 1993; Loop 1987). Next to a crease, the tangents were derived for
+//! the step rules of this crate; see [`Sector`]. The tangents of Biermann, Levin & Zorin (2000) do
+//! not apply, because their step rules are different.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,24 +11,23 @@ use sixfold_core::{Handle, MeshQuery, Point};
 
 use crate::options::LoopWeights;
 
-/// Returns the direction perpendicular to both vectors; `None` if errors of size `rounding` make it
-/// uncertain.
+/// Returns the direction perpendicular to both vectors, or `None` if rounding errors of size
+/// `rounding` make the direction uncertain.
 pub(crate) fn normal([a, b]: [Point; 2], rounding: f32) -> Option<Point> {
     let tilt = rounding / a.length() + rounding / b.length();
     let across = a.try_normalize()?.cross(b.try_normalize()?);
     (across.length() > 8.0 * tilt).then(|| across.normalize())
 }
 
-/// Estimates the error of a weighted sum of the points around `at`. The error comes from rounded
-/// positions.
+/// Estimates the rounding error of a weighted sum of the points `around`.
 pub(crate) fn rounding(at: Point, around: &[Point]) -> f32 {
     let radius = around.iter().map(|p| p.length()).fold(0.0, f32::max);
-    // The weights are at most six.
+    // No weight is above six.
     6.0 * f32::EPSILON * around.len() as f32 * (at.length() + radius)
 }
 
-/// Returns the neighbour after `v` in `f`, and the position of the corner opposite to `v`, if `f`
-/// is a quad.
+/// Returns the neighbour after `v` in `f`. If `f` is a quad, also returns the position of the
+/// corner opposite to `v`.
 pub(crate) fn far_corner<M: MeshQuery>(
     mesh: &M,
     v: M::Vertex,
@@ -49,7 +48,7 @@ pub(crate) fn far_corner<M: MeshQuery>(
         .then_some((quad[(place + 1) % 4], far))
 }
 
-/// The faces around a vertex in their order, with positions relative to it.
+/// The faces around a vertex in order, with positions relative to the vertex.
 ///
 /// ```text
 ///     o₁ ── e₁ ── o₀        e  the neighbours, counter-clockwise
@@ -66,8 +65,8 @@ pub(crate) struct Fan<V> {
 }
 
 impl<V: Handle> Fan<V> {
-    /// Builds the fan; `None` if the faces have no such order, or if `surface` has no mask for a
-    /// face.
+    /// Builds the fan. Returns `None` if the faces are not one fan, or if `surface` has no mask for
+    /// a face.
     pub(crate) fn new<M: MeshQuery<Vertex = V>>(mesh: &M, v: V, surface: Surface) -> Option<Self> {
         let at = mesh.position(v);
         let neighbours: Vec<V> = mesh.one_ring(v)?.collect();
@@ -95,7 +94,7 @@ impl<V: Handle> Fan<V> {
         })
     }
 
-    /// Returns the tangents of a smooth vertex, the second counter-clockwise from the first.
+    /// Returns two tangents of a smooth vertex. The second is counter-clockwise from the first.
     pub(crate) fn tangents(&self, surface: Surface) -> [Point; 2] {
         let n = self.edges.len();
         if !self.is_closed || n < 3 {
@@ -127,11 +126,11 @@ impl<V: Handle> Fan<V> {
 
 /// The faces of a vertex between two edges of a crease or boundary.
 ///
-/// With k faces let θ = π/k, and let e₀ … eₖ be the neighbours. The first and the last neighbour
-/// are on the crease. The matrix of a step decomposes into the crease and k − 1 inner modes. The
-/// crease is a cubic B-spline with the eigenvalues 1, 1/2 and 1/4. Mode j is sin(ijθ) along the
-/// edges; its eigenvalue falls as j rises. The tangents are inner mode 1 and the part with the next
-/// eigenvalue:
+/// With k faces let θ = π/k, and let e₀ … eₖ be the neighbours. The edges to e₀ and eₖ are the
+/// crease. The matrix of a step has two parts: the crease, and k − 1 inner modes. The crease is a
+/// cubic B-spline with the eigenvalues 1, 1/2 and 1/4. Mode j is sin(ijθ) at the edge to eᵢ; its
+/// eigenvalue is smaller for a larger j. There are two tangents. The first is inner mode 1. The
+/// second is the crease or mode 2:
 ///
 /// ```text
 ///   across  Σ a·sin(iθ) eᵢ + Σ b·(sin(iθ) + sin((i + 1)θ)) oᵢ + l (e₀ + eₖ)   mode 1
@@ -139,16 +138,17 @@ impl<V: Handle> Fan<V> {
 ///      or   the same sums of sin(2iθ) + m (e₀ − eₖ)                          mode 2, if above 1/2
 /// ```
 ///
-/// One face has no inner mode; then e₀ + eₖ − 2v is the tangent across.
+/// With one face there is no inner mode, and e₀ + eₖ − 2v is the tangent across.
 pub(crate) struct Sector {
-    /// The neighbours, relative to the vertex; at least two.
+    /// The neighbours, relative to the vertex.
     edges: Vec<Point>,
     /// The far corners of quads.
     far: Vec<Point>,
 }
 
 impl Sector {
-    /// Returns the tangents along and across, the second counter-clockwise from the first.
+    /// Returns the tangent along the crease and the tangent across. The second is counter-clockwise
+    /// from the first.
     pub(crate) fn tangents(&self, surface: Surface) -> [Point; 2] {
         let k = self.edges.len() - 1;
         let (first, last) = (self.edges[0], self.edges[k]);
@@ -166,8 +166,7 @@ impl Sector {
             };
             mode.sum(&self.edges, &self.far, wave)
         };
-        // Computes the weight l from the columns of e₀ and of the vertex. The weight of the vertex
-        // makes the sum zero.
+        // The columns of e₀ and of the vertex give the weight l. All weights add up to zero.
         let mode = surface.mode(angle);
         let ends = (8.0 * mode.neighbour_weight * angle.sin()
             - mode.weight() / (angle / 2.0).tan())
@@ -185,7 +184,7 @@ impl Sector {
     }
 }
 
-/// A scheme with known limit masks.
+/// A scheme with limit masks.
 #[derive(Clone, Copy)]
 pub(crate) enum Surface {
     CatmullClark,
@@ -206,12 +205,12 @@ struct Mode {
 }
 
 impl Surface {
-    /// Returns the mode with the greater eigenvalue for neighbours `angle` apart.
+    /// Returns the mode with the larger eigenvalue for neighbours that are `angle` apart.
     fn mode(self, angle: f64) -> Mode {
         let cos = angle.cos();
         match self {
             Self::CatmullClark => {
-                // At π the radicand is zero, but rounding may make it negative.
+                // Rounding can make the radicand negative at π.
                 let edge = 1.0 + cos + ((cos + 9.0) * (cos + 1.0)).max(0.0).sqrt();
                 let value = (edge + 4.0) / 16.0;
                 Mode {
@@ -232,12 +231,13 @@ impl Surface {
 }
 
 impl Mode {
-    /// Returns the amplitude of an edge, including its part of the far corners.
+    /// Returns the amplitude of an edge plus its share of the far corners.
     fn weight(self) -> f64 {
         self.edge + 2.0 * self.far
     }
 
-    /// Returns the sum over edges and far corners, with `wave` along the edges.
+    /// Returns the weighted sum of the edges and the far corners. `wave` is the weight along the
+    /// edges.
     fn sum(self, edges: &[Point], far: &[Point], wave: impl Fn(usize) -> f64) -> Point {
         let edges = (0..).zip(edges);
         let edges: Point = edges.map(|(i, &e)| e * (self.edge * wave(i)) as f32).sum();

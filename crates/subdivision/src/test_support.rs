@@ -1,4 +1,4 @@
-//! Test helpers: compare meshes up to the order of their faces and of some vertices.
+//! Test helpers that compare meshes with different orders of faces and vertices.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use sixfold_indexed_face_set::IndexedFaceSet;
 
 use crate::{Scheme, Step, Subdivision, SubdivisionError};
 
-/// Generates oriented manifolds of triangles, in which no two triangles have the same corners.
+/// Generates oriented manifolds of triangles without repeated triangles.
 pub(crate) fn triangle_mesh() -> impl Strategy<Value = PolygonMesh> {
     let fans = sixfold_conformance::strategy::manifold_mesh()
         .prop_map(|mesh| mesh.fan_triangulated().expect("few corners"));
@@ -26,7 +26,6 @@ pub(crate) fn triangle_mesh() -> impl Strategy<Value = PolygonMesh> {
     })
 }
 
-/// Builds a structure from `polygons`.
 pub(crate) fn build<M: Representation>(polygons: &PolygonMesh) -> M {
     M::from_polygons(polygons).expect("the structure accepts it")
 }
@@ -57,7 +56,6 @@ pub(crate) fn all_methods(
     Ok(meshes)
 }
 
-/// Runs a native step.
 pub(crate) fn native<M: Refine>(
     scheme: Scheme,
     polygons: &PolygonMesh,
@@ -69,7 +67,6 @@ pub(crate) fn native<M: Refine>(
     Ok(child.to_polygons())
 }
 
-/// Asserts that a native step gives the same bits on one thread and on three threads.
 pub(crate) fn assert_same_on_threads(scheme: Scheme, level: u32) {
     let specimens = [
         sixfold_shapes::geodesic(24).expect("thousands of triangles"),
@@ -101,8 +98,8 @@ pub(crate) fn assert_same_on_threads(scheme: Scheme, level: u32) {
     }
 }
 
-/// Asserts that `other` equals `one` up to the order of its faces and of the vertices from `known`
-/// on, with positions equal to 1e-5 of the coordinates.
+/// Asserts that two meshes are equal. The orders of the faces and of the vertices from `known` on
+/// may differ.
 pub(crate) fn assert_equivalent(one: &PolygonMesh, other: &PolygonMesh, known: usize) {
     assert_eq!(one.vertex_count(), other.vertex_count(), "vertices");
     assert_eq!(one.face_count(), other.face_count(), "faces");
@@ -138,7 +135,7 @@ pub(crate) fn assert_equivalent(one: &PolygonMesh, other: &PolygonMesh, known: u
     assert_eq!(faces(one, &|v| v), faces(other, &|v| matching[v]), "faces");
 }
 
-/// Returns a key for each vertex: the known vertices before and after it in its faces.
+/// Returns a key for each vertex: the known vertices before and after the vertex in its faces.
 fn keys(mesh: &PolygonMesh, known: usize) -> Vec<Vec<[Option<usize>; 2]>> {
     let mut keys = vec![Vec::new(); mesh.vertex_count()];
     for (_, face) in mesh.faces().iter() {
@@ -153,7 +150,7 @@ fn keys(mesh: &PolygonMesh, known: usize) -> Vec<Vec<[Option<usize>; 2]>> {
     keys
 }
 
-/// Asserts that a step commutes with an affine map, so that the weights of every point sum to 1.
+/// Asserts that a step commutes with an affine map, so the weights of every point sum to 1.
 pub(crate) fn assert_affine(scheme: Scheme, polygons: &PolygonMesh, level: u32) {
     let map = |p: Point| {
         Point::new(
@@ -183,7 +180,6 @@ pub(crate) fn assert_affine(scheme: Scheme, polygons: &PolygonMesh, level: u32) 
     assert_eq!(before.faces(), after.faces());
 }
 
-/// Asserts that a point is `expected`, to 1e-6.
 pub(crate) fn assert_near(got: Point, expected: Point) {
     assert!(got.distance(expected) < 1e-6, "{got}, expected {expected}");
 }

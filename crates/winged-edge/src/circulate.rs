@@ -6,8 +6,8 @@ use crate::edge::Run;
 use crate::mesh::WingedEdgeMesh;
 
 impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
-    /// Iterates over the runs that leave `v`, counter-clockwise, starting on the boundary if `v` is
-    /// on one.
+    /// Iterates over the runs that leave `v`, counter-clockwise. At a boundary vertex, starts on
+    /// the boundary.
     #[inline]
     pub(crate) fn runs_from(&self, v: VertexId) -> RunsFrom<'_, P, E> {
         let at = self.spoke(v);
@@ -107,24 +107,22 @@ impl<'a, P: Probe, E: Editing> Iterator for RunsAlong<'a, P, E> {
     }
 }
 
-/// The edges at both ends of an edge, except the edge itself: one walk around each end, which
-/// starts and stops at the edge itself.
+/// The edges at both ends of an edge, except the edge itself. One walk around each end starts and
+/// stops at the edge itself.
 #[derive(Clone, Debug)]
 pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
     mesh: &'a WingedEdgeMesh<E, P>,
     e: EdgeId,
     v: VertexId,
     at: EdgeId,
-    /// The start of the walk around the other end: this end and the first edge there. `None` during
-    /// that walk.
+    /// The other end and its first edge; `None` during the walk around the other end.
     next_walk: Option<(VertexId, EdgeId)>,
 }
 
 impl<'a, P: Probe, E: Editing> EdgeEdges<'a, P, E> {
     #[inline]
     pub(crate) fn new(mesh: &'a WingedEdgeMesh<E, P>, e: EdgeId) -> Self {
-        // The sides of e itself are known: the left run leaves the start, the right run leaves the
-        // end.
+        // The left run of e leaves the start, and the right run leaves the end.
         let edge = mesh.edge(e);
         let ([v, other], [at, there]) = (edge.ends(), edge.prev());
         Self {
@@ -180,8 +178,7 @@ mod tests {
     use super::*;
     use crate::WingedEdgeMesh;
 
-    /// Builds a polygon with `3 * count` sides, and `count` neighbours. Each neighbour shares three
-    /// sides with the polygon.
+    /// Builds a polygon and `count` neighbours. Each neighbour shares three sides with the polygon.
     fn polygon_with_neighbours(count: u32) -> WingedEdgeMesh {
         let sides = 3 * count;
         let corners = vec![Point::ZERO; (sides + count) as usize];
@@ -205,7 +202,7 @@ mod tests {
                 faces
             });
             assert_eq!(folded, expected);
-            // The first item by `next`, the others by `fold`.
+            // The test calls `next` for the first item and `fold` for all other items.
             let mut faces = mesh.face_faces(middle);
             let first = faces.next();
             let rest = faces.fold(first.into_iter().collect(), |mut faces: Vec<_>, f| {

@@ -23,14 +23,14 @@ impl<E: Editing> Representation for WingedEdgeMesh<E> {
         }
     }
 
-    /// Pairs the sides, writes each side into its edge, then links the boundary loops, without
-    /// hashing; O(corners + vertices).
+    /// Pairs the sides, writes each side into its edge, then links the boundary loops; O(corners +
+    /// vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         let error = || Self::CAPABILITIES.build_error(polygons);
         let faces = polygons.faces();
-        // Uses separate scratch memory. The rows of the edges are four times as large, and do not
-        // fit in the caches. With the sides sorted in these rows, building 392,000 triangles took
-        // 1.5× the time.
+        // The pairing uses separate scratch memory, because the rows of the edges are four times as
+        // large. With the sides sorted in these rows, building 392,000 triangles took 1.5× the
+        // time.
         let pairs = TwinPairs::new(polygons.vertex_count(), faces).ok_or_else(error)?;
         let mut builder = Builder::from_faces(polygons.vertex_count(), faces, &pairs);
         let closed = faces.corners().len() == 2 * pairs.edge_count;
@@ -112,7 +112,6 @@ impl<E: Editing> Measured for WingedEdgeMesh<E> {
 }
 
 impl<E: Editing> WingedEdgeMesh<E> {
-    /// Builds a mesh from these tables, without holes.
     pub(crate) fn from_tables(
         positions: Vec<Point>,
         spokes: Vec<Slot<EdgeId>>,
@@ -131,7 +130,6 @@ impl<E: Editing> WingedEdgeMesh<E> {
     }
 }
 
-/// The tables during construction.
 struct Builder {
     spokes: Vec<Slot<EdgeId>>,
     edges: Vec<Edge>,
@@ -163,8 +161,7 @@ impl LinkFaces for Builder {
 }
 
 impl Builder {
-    /// Writes the side of every corner into its edge. Sides without a face stay blank, except for
-    /// their ends.
+    /// Writes the side of every corner into its edge. A side without a face stays blank.
     fn from_faces(vertices: usize, faces: &FaceList, pairs: &TwinPairs) -> Self {
         let mut builder = Self {
             spokes: vec![Slot::NONE; vertices],
@@ -175,7 +172,7 @@ impl Builder {
         builder
     }
 
-    /// Links the blank sides into loops. Returns false if two of them arrive at one vertex.
+    /// Links the blank sides into loops. Returns false if two blank sides arrive at one vertex.
     fn close_boundary_loops(&mut self) -> bool {
         for e in 0..self.edges.len() {
             let Some(side) = self.edges[e].blank_side() else {
@@ -183,8 +180,8 @@ impl Builder {
             };
             let target = self.edges[e].ends[side.other().index()];
             let spoke = &mut self.spokes[target.index()];
-            // If the blank side of an edge arrives at a vertex, it is on the right of the run that
-            // leaves this vertex.
+            // If the blank side of an edge arrives at a vertex, the run that leaves this vertex has
+            // the blank side on its right.
             let arrives = |other: EdgeId| {
                 let run = Run::from(&self.edges[other.index()], target);
                 run.across() == Slot::NONE
@@ -202,7 +199,8 @@ impl Builder {
             let Some(side) = self.edges[e].blank_side() else {
                 continue;
             };
-            // At each vertex, as many blank sides arrive as leave. One leaves here, so one arrives.
+            // At each vertex, as many blank sides arrive as leave. So one blank side arrives at
+            // this vertex.
             let origin = self.edges[e].ends[side.index()];
             let before = self.spokes[origin.index()].get();
             let before = before.expect("a side arrives at every origin");
@@ -214,7 +212,7 @@ impl Builder {
         true
     }
 
-    /// Returns whether the walks around all vertices visit every edge twice, once from each end.
+    /// Returns whether the walks around all vertices visit every edge twice.
     fn every_vertex_is_one_fan(&self) -> bool {
         let mut visited = 0;
         for (v, spoke) in (0..).map(VertexId::new).zip(&self.spokes) {

@@ -8,11 +8,11 @@ use crate::wings::{Side, Wings};
 
 /// One edge: a row of the table `edges`.
 ///
-/// It runs from start to end along its left face, and from end to start along its right face.
-/// `next` and `prev` of a side follow the direction of the face there.
+/// The edge runs from start to end along its left face, and from end to start along its right face.
+/// `next` and `prev` of a side follow this direction.
 ///
 /// The record has 32 bytes and is aligned to 32 bytes, so every step of a walk touches one cache
-/// line. Without the alignment, every second record of a large table would lie across two lines.
+/// line. Without the alignment, every second record would lie across two cache lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(align(32))]
 pub struct Edge {
@@ -26,14 +26,14 @@ pub struct Edge {
     pub(crate) prev: Wings,
 }
 
-/// The value of both ends of a deleted edge; no vertex has this row.
+/// The value of both ends of a deleted edge.
 const NO_VERTEX: VertexId = VertexId::new(u32::MAX);
 
-/// The value of the side of a deleted face; no edge has this row.
+/// The value of the side of a deleted face.
 pub(crate) const NO_EDGE: EdgeId = EdgeId::new(u32::MAX);
 
 impl Edge {
-    /// A record that is not linked yet, from the first vertex to itself.
+    /// A record that is not linked yet.
     pub(crate) const BLANK: Self = Self {
         ends: [VertexId::new(0); 2],
         faces: [Slot::NONE; 2],
@@ -41,19 +41,16 @@ impl Edge {
         prev: Wings::BLANK,
     };
 
-    /// The row of a deleted edge.
     pub(crate) const DELETED: Self = Self {
         ends: [NO_VERTEX; 2],
         ..Self::BLANK
     };
 
-    /// Returns whether the edge is deleted.
     #[inline(always)]
     pub(crate) fn is_deleted(&self) -> bool {
         self.ends[0] == NO_VERTEX
     }
 
-    /// Returns the side without a face, if there is one.
     #[inline(always)]
     pub(crate) fn blank_side(&self) -> Option<Side> {
         let mut sides = [Side::LEFT, Side::RIGHT].into_iter();
@@ -66,7 +63,7 @@ impl Edge {
         self.ends
     }
 
-    /// Returns the faces on the left and on the right; `None` on the outer side of a boundary edge.
+    /// Returns the faces on the left and on the right; `None` if there is no face.
     #[inline]
     pub fn faces(&self) -> [Option<FaceId>; 2] {
         self.faces.map(Slot::get)
@@ -85,9 +82,9 @@ impl Edge {
     }
 }
 
-/// An edge as it runs along one of its sides: the cursor of every walk, never stored.
+/// An edge along one of its sides. A run is the cursor of every walk.
 ///
-/// Along the left side it runs from start to end, along the right side from end to start.
+/// A left run goes from start to end, a right run from end to start.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Run<'a> {
     edge: &'a Edge,
@@ -95,42 +92,38 @@ pub(crate) struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// Returns the run of `edge` along `side`.
     #[inline(always)]
     pub(crate) fn new(edge: &'a Edge, side: Side) -> Self {
         Self { edge, side }
     }
 
-    /// Returns the run of `edge` that leaves its end `v`: the side test of a walk around a vertex.
+    /// Returns the run of `edge` that leaves `v`.
     #[inline(always)]
     pub(crate) fn from(edge: &'a Edge, v: VertexId) -> Self {
         let side = Side::right_if(edge.ends[0] != v);
         Self { edge, side }
     }
 
-    /// Returns the run of `edge` with its face `f` on the left: the side test of a walk along a
-    /// face.
+    /// Returns the run of `edge` with `f` on its left.
     #[inline(always)]
     pub(crate) fn along(edge: &'a Edge, f: FaceId) -> Self {
         let side = Side::right_if(edge.faces[0] != Slot::some(f));
         Self { edge, side }
     }
 
-    /// Returns the side.
     #[inline(always)]
     pub(crate) fn side(self) -> Side {
         self.side
     }
 
-    /// Returns the run of the same edge along its other side.
+    /// Returns the run of the same edge in the opposite direction.
     #[inline(always)]
     pub(crate) fn twin(self) -> Self {
         Self::new(self.edge, self.side.other())
     }
 
-    // No step waits for the values of these four functions. If the side test has already read a
-    // value, the function selects that value; this costs one more instruction. The other values are
-    // read by index; this loads one value instead of two.
+    // No step waits for these four values. `target` and `across` select between two loaded values;
+    // `origin` and `face` load one value by index.
 
     /// Returns the vertex where the run starts.
     #[inline(always)]
@@ -170,23 +163,20 @@ impl<'a> Run<'a> {
         self.edge.prev.on(self.side)
     }
 
-    /// Returns the next edge around the origin, counter-clockwise: the previous edge along the face
-    /// on the left.
+    /// Returns the next edge around the origin, counter-clockwise.
     #[inline(always)]
     pub(crate) fn ccw(self) -> EdgeId {
         self.prev()
     }
 
-    /// Returns the next edge around the origin, clockwise: the next edge along the face on the
-    /// right.
+    /// Returns the next edge around the origin, clockwise.
     #[inline(always)]
     pub(crate) fn cw(self) -> EdgeId {
         self.edge.next.on(self.side.other())
     }
 }
 
-/// A run, stored as an edge and a side. It can be kept while the records are written, and
-/// corresponds to a half-edge of a half-edge mesh.
+/// A run, stored as an edge and a side. Records can change while a `RunId` exists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct RunId {
     pub(crate) edge: EdgeId,
@@ -194,13 +184,12 @@ pub(crate) struct RunId {
 }
 
 impl RunId {
-    /// Returns the run of `edge` along `side`.
     #[inline(always)]
     pub(crate) const fn new(edge: EdgeId, side: Side) -> Self {
         Self { edge, side }
     }
 
-    /// Returns the run of the same edge along its other side.
+    /// Returns the run of the same edge in the opposite direction.
     #[inline(always)]
     pub(crate) fn twin(self) -> Self {
         Self::new(self.edge, self.side.other())

@@ -1,11 +1,11 @@
 //! Edits in place: the implementation of [`MeshEdit`], after Baumgart (1975).
 //!
-//! Both wings of both sides are stored, so that an edge is linked and unlinked without a search.
-//! Only two steps of an edit cost O(valence): to check that an edit is legal, and to change the
-//! ends of the edges at a vertex.
+//! Both wings of both sides are stored, so an edit links and unlinks an edge without a search. Two
+//! steps of an edit cost O(valence): the check of the edit, and the change of the ends of the edges
+//! at a vertex.
 //!
-//! Every edit checks before it writes. Below, a run `a→b` is the edge between `a` and `b` along the
-//! side where it runs from `a` to `b`.
+//! Every edit checks before it writes. Below, a run `a→b` is the edge between `a` and `b`, along
+//! the side where the edge runs from `a` to `b`.
 
 use sixfold_core::{
     Compact, EdgeId, Edit, EditLog, Editable, FaceId, MeshEdit, NoHoles, Point, Probe, QueryCost,
@@ -72,7 +72,7 @@ impl<P: Probe> MeshEdit for WingedEdgeMesh<Editable, P> {
         Ok(self.push_vertex(at, log))
     }
 
-    /// O(corners), plus the valence of each corner that a new edge leaves.
+    /// O(corners), plus the valence of each corner where a new edge starts.
     fn add_face_logged(
         &mut self,
         corners: &[VertexId],
@@ -90,7 +90,7 @@ impl<P: Probe> MeshEdit for WingedEdgeMesh<Editable, P> {
         self.remove(f, log)
     }
 
-    /// O(n) for n corners of its faces; O(n log n) if some faces are not triangles.
+    /// O(n) for n corners of the faces of `v`; O(n log n) if some of these faces are not triangles.
     fn remove_vertex_logged(
         &mut self,
         v: VertexId,
@@ -107,7 +107,7 @@ impl<P: Probe> MeshEdit for WingedEdgeMesh<Editable, P> {
             .insert_unused(end, is_isolated, |v| log.removed_vertex(v))
     }
 
-    /// O(1). The old edge keeps its start; the new edge continues to the old end.
+    /// O(1). The old edge keeps its start; the new edge has the old end.
     fn split_edge_logged(
         &mut self,
         e: EdgeId,

@@ -1,9 +1,10 @@
 //! Winged-edge mesh: one record for every edge, with two ends, two faces and four wings.
 //!
 //! Use it if most queries are about edges, or if an edge must be one object with one record. It
-//! does not hold edges with three faces: building from them returns an error. It is the oldest
-//! structure that finds a neighbour in constant time. Start at [`generic::WingedEdgeMesh`]; its
-//! numbered invariants define the tables. The structure follows Baumgart (1972, 1975).
+//! does not hold edges with three faces: building a mesh with such edges returns an error. It is
+//! the oldest structure that finds a neighbour in constant time. Start at
+//! [`generic::WingedEdgeMesh`]; its numbered invariants define the tables. The structure follows
+//! Baumgart (1972, 1975).
 //!
 //! | holds | |
 //! |---|---|
@@ -14,19 +15,19 @@
 //! |---|---|---|
 //! | VV, VE, VF | O(valence) | `spokes`, then one edge per neighbour |
 //! | EV, EF | O(1) | one edge |
-//! | EE | O(valence) of both ends | its edge, then one edge per neighbour |
+//! | EE | O(valence) of both ends | the edge, then one edge per neighbour |
 //! | FV, FE, FF | O(degree) | `sides`, then one edge per side |
 //! | refining (quads, triangles) | O(edges + vertices) | each edge and its four wings, in closed form |
 //!
-//! Vertices, edges and faces are rows. Counting or listing them reads no table; if there are holes,
-//! it reads their bits.
+//! The handles of vertices, edges and faces are row numbers. A loop over all elements reads no
+//! table, except the bits of the holes.
 //!
 //! | edit ([`MeshEdit`](sixfold_core::MeshEdit)) | cost | rows that change |
 //! |---|---|---|
 //! | `set_position`, `add_vertex` | O(1) | one vertex |
-//! | `add_face` | O(degree), plus the valence of each corner that a new edge leaves | its sides, and at each corner the boundary edges |
+//! | `add_face` | O(degree), plus the valence of each corner where a new edge starts | its sides, and at each corner the boundary edges |
 //! | `remove_face` | O(degree) | its sides, and at each corner the boundary edges |
-//! | `remove_vertex` | O(corners of its faces) | its faces and edges, their outline, the boundary edges there |
+//! | `remove_vertex` | O(corners of its faces) | its faces and edges, the outline of these faces, the boundary edges at the outline |
 //! | `split_edge` | O(1) | the edge, a new edge, the two wings at its end |
 //! | `bisect_edge` | O(1) | as for `split_edge`, and all sides of its triangles |
 //! | `poke_face` | O(degree) | its sides, one new edge per side |
@@ -34,24 +35,24 @@
 //! | `dissolve_edge` | O(degree) of both faces | the edge, its four wings, the sides of the smaller face |
 //! | `flip_edge` | O(smaller valence) of the third corners | the edge and its four wings |
 //! | `collapse_edge` | O(valence) of both ends; O(1) if the removed end has three triangles | the edges at the removed end, the sides of its triangles |
-//! | `split_vertex` | O(valence) | the edges that move, the edges to the sides, up to three new edges |
+//! | `split_vertex` | O(valence) | the edges that get the new vertex, the edges to the sides, up to three new edges |
 //! | `remove_isolated_vertices`, `compact` | O(rows) | all |
 //!
-//! Both wings of both sides are stored, so that an edge is linked and unlinked without a search.
-//! Only two steps of an edit need a walk: to check that an edit is legal, and to change the ends of
-//! the edges at a vertex.
+//! Both wings of both sides are stored, so an edit links and unlinks an edge without a search. Two
+//! steps of an edit need a walk: the check of the edit, and the change of the ends of the edges at
+//! a vertex.
 //!
 //! # The side test
 //!
-//! An edge is part of the walks around both of its ends and along both of its faces. So every step
-//! must test on which side of the edge it is. A walk around a vertex tests whether the edge starts
-//! there; a walk along a face tests whether the face is on the left of the edge. The walk keeps its
-//! vertex or face, so the test is one comparison with the record that the step has just read. The
-//! result depends on the numbering: on a mesh in random order, a branch would be mispredicted every
-//! second time. Therefore the result selects between two loaded values, without a branch.
+//! The walks around both ends of an edge and along both faces of the edge visit the same record. So
+//! every step must test on which side of the edge the walk is. A walk around a vertex tests whether
+//! the edge starts at this vertex. A walk along a face tests whether the face is on the left of the
+//! edge. The test is one comparison with the record that the step has just read. On a mesh in
+//! random order, a branch would be mispredicted every second time. Therefore the result selects
+//! between two loaded values, without a branch.
 //!
-//! The half-edge mesh of this workspace needs no side test. The cost of the test is the time
-//! relative to that mesh (82,000 triangles):
+//! The half-edge mesh of this workspace needs no side test. The table shows the time relative to
+//! the half-edge mesh (82,000 triangles):
 //!
 //! | operation | in order | shuffled |
 //! |---|---|---|
@@ -61,18 +62,17 @@
 //! | all nine relations | 1.3× | 1.2× |
 //! | breadth-first search over FF | 1.1× | 1.0× |
 //!
-//! The cost is smallest if a walk waits for memory or for a queue, because a step reads only one
-//! record, in one cache line.
+//! The test costs least if a walk waits for memory. A step reads only one record, in one cache
+//! line.
 //!
 //! # What limits the speed of the sweeps
 //!
-//! If the mesh is in the cache, latency limits VV, VE, VF, FV, FE and FF. A step can begin only
-//! after the previous step has loaded its record, compared and selected. This takes about 8 cycles,
-//! and 6 cycles in the half-edge mesh. If a walk has six steps, the processor can work on two or
-//! three vertices at once. If the mesh is not in the cache, each step waits for one cache line. The
-//! order of these lines depends on the numbering of the edges. Bandwidth limits EV and EF: they
-//! read the records in order and use 8 of 32 bytes. Building has two limits: the counting sort that
-//! pairs the sides, which takes half of the time, and the writes of one record per side.
+//! If the mesh is in the cache, latency limits VV, VE, VF, FV, FE and FF. Each step waits for the
+//! record of the previous step, for the comparison and for the selection. This takes about 8
+//! cycles, and 6 cycles in the half-edge mesh. If the mesh is not in the cache, each step waits for
+//! one cache line. Bandwidth limits EV and EF: they read the records in order and use 8 of 32
+//! bytes. Building has two limits: the counting sort that pairs the sides, which takes half of the
+//! time, and the writes of one record per side.
 //!
 //! # Examples
 //!
@@ -105,7 +105,7 @@ mod wings;
 pub use edge::Edge;
 pub use walk::EdgeSide;
 
-/// The mesh with its type parameters, for code that is generic over them.
+/// The mesh type with its type parameters, for generic code.
 ///
 /// Programs use the two types of the crate root instead.
 pub mod generic {
@@ -119,8 +119,7 @@ pub type WingedEdgeMesh = generic::WingedEdgeMesh;
 /// [`generic::WingedEdgeMesh`] with holes.
 pub type EditableWingedEdgeMesh = generic::WingedEdgeMesh<sixfold_core::Editable>;
 
-/// The traits and types that all Sixfold structures share: `PolygonMesh`, `MeshQuery`, handles,
-/// errors.
+/// The traits and types that all Sixfold structures share.
 pub use sixfold_core;
 
 /// Imports for a program: the types of this structure, and the traits of its queries and edits.

@@ -23,19 +23,18 @@ use crate::edge::{Edge, NO_EDGE, Run};
 ///     left_prev(e)         right_next(e)
 /// ```
 ///
-/// A boundary edge also has wings on its side without a face. These wings follow the boundary loop
-/// as if it were a face. So every walk returns to its start, and a boundary adds no cost to a
-/// query.
+/// A boundary edge also has wings on its side without a face. These wings follow the boundary loop,
+/// so every walk returns to its start.
 ///
 /// # Invariants
 ///
-/// Below, a *run* is an edge along one of its sides. It goes from its origin to its target: on the
-/// left side from start to end, on the right side from end to start.
+/// A *run* is an edge along one of its sides, from its origin to its target. The run on the left
+/// side goes from start to end. The run on the right side goes from end to start.
 ///
-/// - I1  The two ends of an edge differ, and its two faces differ (one may be empty). So one
-///   comparison finds the side. Every handle in the tables refers to an existing row.
-/// - I2  The next wing of a run starts at the target of the run; the previous wing ends at its
-///   origin.
+/// - I1  The two ends of an edge differ. The two faces of an edge differ; one of them may be empty.
+///   Every handle in the tables refers to an existing row.
+/// - I2  The next wing of a run starts at the target of the run. The previous wing of a run ends at
+///   the origin of the run.
 /// - I3  A run and its next wing have the same face; along a boundary loop, this face is empty.
 /// - I4  `next` and `prev` are inverse to each other.
 /// - I5  `spoke(v)` is an edge with the end `v`, or empty if `v` is isolated. If `v` is on a
@@ -50,9 +49,9 @@ use crate::edge::{Edge, NO_EDGE, Run};
 ///
 /// # Memory
 ///
-/// The tables use 12 bytes per vertex for its position and 4 for its spoke, 32 bytes per edge and 4
-/// per face. A large closed triangle mesh uses 120 bytes, or 30 words, per vertex. After the first
-/// deletion, the tables also use one bit per row up to the last hole.
+/// The tables use 16 bytes per vertex, 32 bytes per edge and 4 bytes per face. A large closed
+/// triangle mesh uses 120 bytes, or 30 words, per vertex. After the first deletion, the tables also
+/// use one bit per row up to the last hole.
 #[derive(Debug)]
 pub struct WingedEdgeMesh<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,
@@ -82,8 +81,8 @@ impl<P: Probe> From<WingedEdgeMesh<Compact, P>> for WingedEdgeMesh<Editable, P> 
     }
 }
 
-/// The fields of an edge. Each function is O(1) and reads one record. It panics if the edge does
-/// not exist; the message names the handle of the edge.
+/// The fields of an edge. Each function is O(1), reads one record, and panics if the edge does not
+/// exist.
 impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
     /// Returns the record of `e`.
     #[inline]
@@ -95,7 +94,7 @@ impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
         edge
     }
 
-    /// Returns the record of `e` without a check, for walks, which never reach a deleted edge.
+    /// Returns the record of `e` without a check; a walk never reaches a deleted edge.
     #[inline]
     pub(crate) fn record(&self, e: EdgeId) -> &Edge {
         self.edges.read(e.index())
@@ -113,13 +112,13 @@ impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
         self.edge(e).ends()[1]
     }
 
-    /// Returns the face on the left of `e`, or `None` on the outer side of a boundary edge.
+    /// Returns the face on the left of `e`, or `None` if there is no face.
     #[inline]
     pub fn left(&self, e: EdgeId) -> Option<FaceId> {
         self.edge(e).faces()[0]
     }
 
-    /// Returns the face on the right of `e`, or `None` on the outer side of a boundary edge.
+    /// Returns the face on the right of `e`, or `None` if there is no face.
     #[inline]
     pub fn right(&self, e: EdgeId) -> Option<FaceId> {
         self.edge(e).faces()[1]
@@ -155,8 +154,8 @@ impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
         self.edge(e).faces().contains(&None)
     }
 
-    /// Returns an edge at `v`, or `None` if `v` is isolated. If `v` is on a boundary, the edge is
-    /// the first counter-clockwise.
+    /// Returns an edge at `v`, or `None` if `v` is isolated. If `v` is on a boundary, returns the
+    /// first edge counter-clockwise.
     ///
     /// # Panics
     ///
@@ -204,8 +203,8 @@ fn no_such_face(f: FaceId) -> ! {
 }
 
 /// Steps from an edge around a vertex or a face: Baumgart's ECCW, ECW and OTHER. Each step is O(1)
-/// and reads one record. It panics if the vertex is not an end of the edge, or if the edge is not a
-/// side of the face.
+/// and reads one record. A step panics in two cases: the vertex is not an end of the edge, or the
+/// edge is not a side of the face.
 impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
     /// Returns the end of `e` that is not `v`.
     #[inline]
@@ -301,10 +300,9 @@ mod tests {
 
     #[test]
     fn the_lecture_mesh_has_the_expected_rows() {
-        // The first three rows of the lecture notes. v3 is the other end of the edges e3, e4 and
-        // e12 of the notes, and v4 is the other end of e16 and e18. The notes give e2 the faces f0
-        // and f1, but then f1 would have v0 twice. So the second face of e2 is a separate face
-        // here, f3.
+        // The first three rows of the lecture notes. Edges e3, e4 and e12 of the notes end at v3;
+        // edges e16 and e18 end at v4. In the notes, the faces of e2 are f0 and f1; f1 would then
+        // have v0 twice. So the second face of e2 is f3 here.
         let mesh = mesh(
             5,
             &[
@@ -338,7 +336,6 @@ mod tests {
                 assert_eq!(got, wings, "the wings of {ends:?}");
                 assert_eq!([mesh.left(e), mesh.right(e)], [Some(left), Some(right)]);
             } else {
-                // Stored in the other direction: left and right are exchanged.
                 assert_eq!([mesh.end(e), mesh.start(e)], [start, end]);
                 let got = [
                     mesh.right_next(e),
@@ -376,7 +373,7 @@ mod tests {
     #[test]
     fn wings_without_a_face_follow_the_boundary() {
         let open = mesh(5, &[&[0, 1, 2, 3], &[1, 0, 4]]);
-        // Clockwise around the outline from v0: 3, 2, 1, 4.
+        // The outline, clockwise from v0.
         let outline = [[0, 3], [3, 2], [2, 1], [1, 4], [4, 0]].map(|ends| between(&open, ends));
         for (i, &e) in outline.iter().enumerate() {
             let next = outline[(i + 1) % outline.len()];

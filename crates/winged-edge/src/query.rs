@@ -51,7 +51,7 @@ impl<P: Probe, E: Editing> MeshQuery for WingedEdgeMesh<E, P> {
         *position
     }
 
-    /// Counter-clockwise, starting on the boundary if `v` is on one.
+    /// Counter-clockwise. At a boundary vertex, starts on the boundary.
     #[inline]
     fn vertex_vertices(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
         self.runs_from(v).map_inline(|(_, run)| run.target())
@@ -132,7 +132,7 @@ impl<P: Probe, E: Editing> MeshQuery for WingedEdgeMesh<E, P> {
         self.sides.len()
     }
 
-    /// Returns the walk around `v` unchanged: it is counter-clockwise and starts on the boundary.
+    /// Returns the walk around `v`, which is counter-clockwise and starts on the boundary.
     #[inline]
     fn one_ring(&self, v: VertexId) -> Option<impl Iterator<Item = VertexId>> {
         Some(self.vertex_vertices(v))

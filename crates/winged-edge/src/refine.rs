@@ -1,9 +1,9 @@
 //! Refinement: splits every face in the structure's own tables, in closed form.
 //!
-//! A *run* is an edge along one of its sides. A run with a face stands for the corner where it
-//! starts. The runs with a face have the ranks 0, 1, 2 …, edge by edge, left before right. The rank
-//! of a corner determines the rows that the corner adds to the child. Below, h₀ and h₁ are the
-//! halves of a run that starts at `o`, and `r` is the edge that the run adds inside its face.
+//! A *run* is an edge along one of its sides. The runs with a face have the ranks 0, 1, 2 …, edge
+//! by edge, left before right. A run with a face stands for the corner where the run starts; the
+//! rank gives the rows of this corner in the child. Below, `o` is the origin of a run, h₀ and h₁
+//! are the halves of the run, and `r` is the edge that the run adds inside its face.
 //!
 //! ```text
 //!              Quads                               Triangles
@@ -17,10 +17,10 @@
 //!                                               o ─h₀─► m ─h₁─► ·
 //! ```
 //!
-//! Edge `e` becomes the edges 2e, from its start to its middle, and 2e + 1, from its middle to its
-//! end. Both keep the direction of `e`. The run on side s (0 left, 1 right) has h₀ = 2e + s and h₁
-//! = 2e + 1 − s. In the table, the parent has E edges and C corners, f is the number of the face, k
-//! the rank of the run, and k₋ and k₊ are the ranks of the runs before and after:
+//! Edge `e` becomes two edges: 2e from its start to its middle, and 2e + 1 from its middle to its
+//! end. The run on side s (0 left, 1 right) has h₀ = 2e + s and h₁ = 2e + 1 − s. In the table, the
+//! parent has E edges and C corners. f is the number of the face, k the rank of the run, k₋ the
+//! rank of the run before, and k₊ the rank of the run after:
 //!
 //! | | face | next | prev |
 //! |---|---|---|---|
@@ -32,8 +32,7 @@
 //! | r = 2E + k, triangles: left, m to m₋ | k | h₁ of the run before | h₀ |
 //! | and right, m₋ to m | C + f | 2E + k₊ | 2E + k₋ |
 //!
-//! Along a side without a face, h₀ and h₁ follow each other. For each edge, the code reads the four
-//! wings, to find on which of their sides they run, and then writes the children.
+//! If a side has no face, h₁ follows h₀ there.
 
 use std::ops::Range;
 
@@ -50,7 +49,7 @@ use crate::wings::{Side, Wings};
 impl Refine for WingedEdgeMesh {
     const SPLITS: &'static [Split] = &[Split::Quads, Split::Triangles];
 
-    /// The ranks of the runs with a face; the number of an edge is its row.
+    /// The ranks of the runs with a face. The number of an edge is its row.
     type EdgeNumbers = Ranks;
 
     fn empty() -> Self {
@@ -122,7 +121,7 @@ impl Refine for WingedEdgeMesh {
         };
         child.edges.resize(grown.edges, blank);
         child.sides.resize(grown.faces, EdgeId::new(0));
-        // Compiled separately for closed meshes, where the rank of a run is its number.
+        // Closed meshes have their own compiled version, because their ranks need no lookup.
         match (split, numbers.missing() == 0) {
             (Split::Quads, true) => self.splitting::<true, true>(numbers).fill(child),
             (Split::Quads, false) => self.splitting::<true, false>(numbers).fill(child),
@@ -154,8 +153,7 @@ impl Refine for WingedEdgeMesh {
 }
 
 impl WingedEdgeMesh {
-    /// Refuses a face that is not a triangle. All faces are triangles if there are three corners
-    /// per face.
+    /// Refuses faces that are not triangles.
     fn check_triangles(&self, counts: &Counts) -> Result<(), RefineError> {
         if counts.corners == 3 * counts.faces {
             return Ok(());
@@ -167,8 +165,7 @@ impl WingedEdgeMesh {
         }
     }
 
-    /// Refuses two triangles that share two edges: the vertex between these edges has no other
-    /// edge.
+    /// Refuses two triangles that share two edges.
     fn check_double_edges(&self) -> Result<(), RefineError> {
         let is_double = |edge: &Edge| {
             let alone = edge.next.on(Side::LEFT) == edge.prev.on(Side::RIGHT);
@@ -200,30 +197,29 @@ impl WingedEdgeMesh {
     }
 }
 
-/// The number of edges whose wings are read together.
+/// Number of edges whose wings are read together.
 const BLOCK: usize = 64;
 
-/// A mesh during a split: its tables, and the first rows of some elements in the child.
+/// A mesh during a split.
 #[derive(Clone, Copy)]
 struct Splitting<'a, const QUADS: bool, const CLOSED: bool> {
     spokes: &'a [Slot<EdgeId>],
     edges: &'a [Edge],
     sides: &'a [EdgeId],
     ranks: &'a Ranks,
-    /// The middle vertex of the first edge.
+    /// The vertex in the middle of edge 0.
     middle: u32,
-    /// The edge that the first corner adds.
+    /// The edge that the corner of rank 0 adds.
     inner: u32,
 }
 
-/// The rows of the child that come from consecutive edges: two halves for each, and one edge for
-/// each corner.
+/// The rows of the child for consecutive edges of the parent.
 struct Chunk<'a> {
     halves: &'a mut [Edge],
     inner: &'a mut [Edge],
 }
 
-/// A run and the child edges along it. If the run has no face, the ranks have no meaning.
+/// A run and the child edges along the run. Without a face, the ranks have no meaning.
 struct SplitRun {
     face: Slot<FaceId>,
     has_face: bool,
@@ -269,8 +265,8 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         });
     }
 
-    /// Fills the rows block by block. The wings of a block are read first, in a short loop. The
-    /// wings may be anywhere in memory, and the processor runs more reads at once in a short loop.
+    /// Fills the rows block by block. A short loop first reads the wings of a block, so that the
+    /// processor runs many of these reads at once.
     fn fill_chunk(self, edges: Range<usize>, chunk: &mut Chunk<'_>) {
         let mut rank = self.ranks.rank(2 * edges.start) as u32;
         let mut inner = chunk.inner.iter_mut();
@@ -302,19 +298,17 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         }
     }
 
-    /// Returns the sides on which two wings run: the wings before and after `edge` along `side`.
+    /// Returns the sides of the wings before and after `edge` along `side`.
     #[inline(always)]
     fn sides_of_wings(self, edge: &Edge, side: Side) -> [Side; 2] {
         let [before, after] = [edge.prev.on(side), edge.next.on(side)];
         let [origin, target] = [edge.ends[side.index()], edge.ends[side.other().index()]];
-        // The run before ends at the origin, the run after starts at the target.
         [
             Side::right_if(self.edges[before.index()].ends[0] == origin),
             Side::right_if(self.edges[after.index()].ends[0] != target),
         ]
     }
 
-    /// Returns the run of `e` along `side`, with rank `rank`. Its wings run on the sides `wings`.
     #[inline(always)]
     fn run(self, e: EdgeId, edge: &Edge, side: Side, wings: [Side; 2], rank: u32) -> SplitRun {
         let [before, after] = [edge.prev.on(side), edge.next.on(side)];
@@ -350,13 +344,11 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         VertexId::new(self.middle + e.row())
     }
 
-    /// Returns the edge that a corner adds.
     #[inline(always)]
     fn inner(self, rank: u32) -> EdgeId {
         EdgeId::new(self.inner + rank)
     }
 
-    /// Returns the two halves of `e`, from start to middle and from middle to end.
     #[inline(always)]
     fn halves(self, e: EdgeId, edge: &Edge, left: &SplitRun, right: &SplitRun) -> [Edge; 2] {
         let ([start, end], m) = (edge.ends, self.middle(e));
@@ -368,7 +360,7 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         ]
     }
 
-    /// Returns the face and the wings of h₀ and h₁ along the side of a run.
+    /// Returns the face and the wings of h₀ and of h₁.
     #[inline(always)]
     fn links(self, run: &SplitRun) -> [Links; 2] {
         let [first, second] = run.halves;
@@ -394,8 +386,7 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         ]
     }
 
-    /// Returns the edge that `run` adds inside its face; it starts at the middle of `e`. The run
-    /// must have a face.
+    /// Returns the edge that `run` adds inside its face. This edge starts at the middle of `e`.
     #[inline(always)]
     fn inner_edge(self, e: EdgeId, run: &SplitRun) -> Edge {
         let face = run.face.get().expect("a run with a face");
@@ -424,21 +415,16 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         edge_record([self.middle(e), end], left, right)
     }
 
-    /// Returns the vertex in the middle of `face`; for quads only.
     #[inline(always)]
     fn face_point(self, face: FaceId) -> VertexId {
         VertexId::new(self.spokes.len() as u32 + face.row())
     }
 
-    /// Returns the middle triangle of `face`; for triangles only. The middle triangles have the
-    /// numbers after the faces of the corners.
     #[inline(always)]
     fn middle_face(self, face: FaceId) -> FaceId {
         FaceId::new(self.ranks.members() as u32 + face.row())
     }
 
-    /// Sets the sides. The edge that a corner adds is a side of the face of the corner and of the
-    /// middle triangle.
     fn fill_sides(self, child: &mut [EdgeId]) {
         let (of_corners, of_middles) = child.split_at_mut(self.ranks.members());
         for_each_chunk(of_corners, CHUNK_ROWS, |first, sides| {
@@ -453,16 +439,14 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
         });
     }
 
-    /// Returns an edge that a corner of `face` adds; `e` is a side of `face`.
+    /// Returns an edge that a corner of `face` adds. `e` is a side of `face`.
     #[inline(always)]
     fn edge_inside(self, face: FaceId, e: EdgeId) -> EdgeId {
         let on = Side::right_if(self.edges[e.index()].faces[0] != Slot::some(face));
         self.inner(self.rank(e, on))
     }
 
-    /// Sets the spokes. An old vertex gets the near half of its spoke. A face point gets an edge
-    /// that ends there. A middle gets a half of its own edge: if possible, the half whose run from
-    /// the middle has no face on the right.
+    /// Sets the spokes. A spoke on a boundary must run so that its right side has no face.
     fn fill_spokes(self, child: &mut [Slot<EdgeId>]) {
         let (old, new) = child.split_at_mut(self.spokes.len());
         let (of_faces, of_edges) = new.split_at_mut(if QUADS { self.sides.len() } else { 0 });
@@ -487,8 +471,8 @@ impl<const QUADS: bool, const CLOSED: bool> Splitting<'_, QUADS, CLOSED> {
                 return;
             }
             for ((e, edge), spoke) in (first as u32..).zip(&self.edges[first..]).zip(spokes) {
-                // In the run from the middle to the start, the right face of the edge is on the
-                // left; in the run to the end, it is on the right.
+                // The run from the middle to the start of the edge has the right face of the edge
+                // on its left.
                 let on = Side::right_if(edge.faces[1] == Slot::NONE);
                 *spoke = Slot::some(half(EdgeId::new(e), on));
             }
@@ -514,8 +498,7 @@ fn edge_record(ends: [VertexId; 2], left: Links, right: Links) -> Edge {
     }
 }
 
-/// Returns the half of `e` with which the run along `side` begins. Its row is also the number of
-/// the run.
+/// Returns the first half of the run. The row of this half is also the number of the run.
 #[inline(always)]
 fn half(e: EdgeId, side: Side) -> EdgeId {
     EdgeId::new(2 * e.row() + side.index() as u32)

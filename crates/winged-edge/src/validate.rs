@@ -10,7 +10,7 @@ use sixfold_core::{EdgeId, Editing, HoleSet, InvariantError, MeshQuery, Slot};
 use crate::edge::{Edge, NO_EDGE, Run};
 use crate::mesh::WingedEdgeMesh;
 
-/// Checks I9, then I1 to I8; each check relies on the earlier ones.
+/// Checks I9, then I1 to I8. Each check relies on the earlier checks.
 pub(crate) fn validate<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
     check_holes(mesh)?;
     check_handles(mesh)?;
@@ -28,7 +28,6 @@ fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> 
     Err(InvariantError::new(invariant, detail))
 }
 
-/// Iterates over both runs of every edge that is not deleted.
 fn runs<E: Editing>(mesh: &WingedEdgeMesh<E>) -> impl Iterator<Item = (EdgeId, Run<'_>)> {
     mesh.edges().flat_map(|e| {
         let edge = mesh.edge(e);
@@ -36,12 +35,11 @@ fn runs<E: Editing>(mesh: &WingedEdgeMesh<E>) -> impl Iterator<Item = (EdgeId, R
     })
 }
 
-/// Iterates over the edges that are not deleted, with their records.
 fn records<E: Editing>(mesh: &WingedEdgeMesh<E>) -> impl Iterator<Item = (EdgeId, &Edge)> {
     mesh.edges().map(|e| (e, mesh.edge(e)))
 }
 
-/// Checks the first part of I9: exactly the rows of deleted elements are marked as deleted.
+/// Checks the first part of I9: exactly the deleted elements are marked as deleted.
 fn check_holes<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
     let [vertices, edges, faces] = [mesh.spokes.len(), mesh.edges.len(), mesh.sides.len()];
     for (holes, rows) in [
@@ -68,8 +66,8 @@ fn check_holes<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantErro
     }
 }
 
-/// Checks the second part of I1 and of I9: every handle in the tables refers to an element that
-/// exists. The other checks walk along these handles, so they rely on this check.
+/// Checks the second part of I1 and of I9: every handle refers to an existing element. The later
+/// checks rely on this check.
 fn check_handles<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
     let [vertices, edges, faces] = [mesh.positions.len(), mesh.edges.len(), mesh.sides.len()];
     if vertices != mesh.spokes.len() {
@@ -145,8 +143,7 @@ fn check_cycle_faces<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), Invaria
 
 fn check_inverse_wings<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
     for (e, run) in runs(mesh) {
-        // The previous wing arrives at the origin, and `e` is the next edge clockwise from it
-        // there.
+        // The previous wing arrives at the origin of the run.
         let next = Run::from(mesh.edge(run.next()), run.target());
         let prev = Run::from(mesh.edge(run.prev()), run.origin());
         if next.prev() != e || prev.cw() != e {

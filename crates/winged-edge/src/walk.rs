@@ -22,13 +22,12 @@ impl EdgeSide {
         EdgeId::new(self.index() as u32 >> 1)
     }
 
-    /// Returns the other side of the edge; on a boundary it has no face.
+    /// Returns the other side of the edge.
     #[inline]
     const fn other(self) -> Self {
         Self::new(self.index() as u32 ^ 1)
     }
 
-    /// Returns the handle of one side of `e`.
     #[inline]
     fn from_edge(e: EdgeId, side: Side) -> Self {
         Self::new(e.row() << 1 | u32::from(side.is_right()))
@@ -40,8 +39,8 @@ impl EdgeSide {
     }
 }
 
-/// Every method is O(1). `next_side` and `prev_side` read two edges, because the record of the other
-/// edge states which of its sides has the face. All other methods read one edge.
+/// Every method is O(1). `next_side` and `prev_side` read two edges; all other methods read one
+/// edge.
 impl<P: Probe, E: Editing> OrientedWalk for WingedEdgeMesh<E, P> {
     type Side = EdgeSide;
 
@@ -58,7 +57,7 @@ impl<P: Probe, E: Editing> OrientedWalk for WingedEdgeMesh<E, P> {
         sides.filter_map(move |(side, face)| face.get().map(|_| EdgeSide::from_edge(e, side)))
     }
 
-    /// Yields the sides counter-clockwise, starting at the boundary if `v` is on one.
+    /// Yields the sides counter-clockwise. At a boundary vertex, starts at the boundary.
     #[inline]
     fn outgoing_sides(&self, v: VertexId) -> impl Iterator<Item = EdgeSide> {
         let runs = self.runs_from(v);
@@ -112,8 +111,7 @@ impl<P: Probe, E: Editing> OrientedWalk for WingedEdgeMesh<E, P> {
 }
 
 impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
-    /// Returns the run along `s`. If elements can be deleted, panics if the side has no face,
-    /// because its face may have been deleted.
+    /// Returns the run along `s`. In an editable mesh, panics if the side has no face.
     #[inline]
     fn run_of(&self, s: EdgeSide) -> Run<'_> {
         let run = Run::new(self.record(s.edge()), s.side());
@@ -123,7 +121,7 @@ impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
         run
     }
 
-    /// Returns the side of `e` with this face; the right side if neither side has it.
+    /// Returns the side of `e` with this face, or the right side if no side has this face.
     #[inline]
     fn side_along(&self, e: EdgeId, face: Slot<FaceId>) -> EdgeSide {
         let is_right = self.record(e).faces[0] != face;

@@ -1,4 +1,4 @@
-//! Two wings in one word: the edges along the left and along the right side of an edge.
+//! Two wings in one word: the edges along the left and the right side of an edge.
 
 use std::fmt;
 use std::hint::select_unpredictable;
@@ -37,14 +37,17 @@ impl Side {
     }
 }
 
-/// A left and a right wing in the two halves of one word, the left wing in the lower half.
+/// A left and a right wing in one word. The left wing is in the lower half.
 ///
 /// The next step of a walk waits for the wing, so the selection must be fast. One load reads both
-/// wings, at the same time as the values for the side test. The result of the test then selects
-/// between two registers. With two fields, the compiler selects between two addresses, and a load
-/// must wait for this selection. Time of one-ring sweeps over 82,000 triangles, in ns per vertex,
-/// in order and shuffled: this word 11 and 22, two fields indexed by the side 13 and 24, two fields
-/// and a selection 16 and 28, a branch 10 and 36.
+/// wings, while the values for the side test are loaded. The test then selects between two
+/// registers. Times of one-ring sweeps over 82,000 triangles, in ns per vertex, in order and
+/// shuffled:
+///
+/// - this word: 11 and 22
+/// - two fields, indexed by the side: 13 and 24
+/// - two fields and a selection: 16 and 28
+/// - a branch: 10 and 36
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Wings(u64);
 
@@ -52,7 +55,6 @@ impl Wings {
     /// No wing is linked yet.
     pub(crate) const BLANK: Self = Self(0);
 
-    /// Packs the left wing and the right wing.
     #[inline(always)]
     pub(crate) fn new([left, right]: [EdgeId; 2]) -> Self {
         Self(u64::from(left.row()) | u64::from(right.row()) << 32)
@@ -64,13 +66,13 @@ impl Wings {
         EdgeId::new(select_unpredictable(side.right, swapped, self.0) as u32)
     }
 
-    /// Returns the left wing, then the right wing.
+    /// Returns the left wing and the right wing.
     #[inline(always)]
     pub(crate) fn both(self) -> [EdgeId; 2] {
         [self.on(Side::LEFT), self.on(Side::RIGHT)]
     }
 
-    /// Links a blank side. This takes one instruction; overwriting any other value takes four.
+    /// Links a blank side. Takes one instruction; `set` takes four.
     #[inline(always)]
     pub(crate) fn link(&mut self, side: Side, wing: EdgeId) {
         debug_assert_eq!(self.on(side).row(), 0, "the side is already linked");
@@ -80,8 +82,7 @@ impl Wings {
     /// Overwrites the wing of a side.
     #[inline(always)]
     pub(crate) fn set(&mut self, side: Side, wing: EdgeId) {
-        // Writes the whole word: if only one half were written, the next load of the whole word
-        // would wait.
+        // After a write of half a word, the next load of the whole word would wait.
         let shift = u32::from(side.right) << 5;
         let other = self.0 & !(u64::from(u32::MAX) << shift);
         self.0 = other | u64::from(wing.row()) << shift;

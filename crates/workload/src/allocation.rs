@@ -1,4 +1,4 @@
-//! The number of bytes that an operation requests from the allocator, and the bytes of its result.
+//! The bytes that an operation allocates, and the bytes of its result.
 
 use sixfold::remeshing::{Decimation, Target, decimate};
 use sixfold::subdivision::Method;
@@ -12,11 +12,11 @@ use crate::operation::Operation;
 use crate::series::Series;
 use crate::timed_structure::Job;
 
-/// The counter of an allocator that adds up all requests. The program that installs such an
-/// allocator implements it.
+/// A counter of all bytes requested from the allocator. The program that installs the allocator
+/// implements it.
 pub trait AllocationCounter: Sync {
-    /// Returns the bytes requested since the program started. If a block grows, only its growth is
-    /// added; a freed block stays counted.
+    /// Returns the bytes requested since the program started. If a block grows, only the growth is
+    /// added. Freed blocks stay counted.
     fn allocated(&self) -> usize;
 }
 
@@ -29,20 +29,19 @@ pub struct Allocated {
     pub result_bytes: usize,
 }
 
-/// The reason why an operation was not counted.
+/// Why an operation was not counted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NotCounted {
     /// The structure or the scheme refuses the mesh, or the structure lacks the method.
     Refused(String),
-    /// The structure scans all faces for each element, and the mesh has too many faces for that.
+    /// The structure scans all faces for each element, and the mesh is too large for scans.
     Scans,
 }
 
 /// The maximum number of faces of a mesh on which operations that scan are run.
 pub const MAX_SCANNED_FACES: usize = 2_000;
 
-/// A clock that returns allocated bytes instead of time. It excludes set-up, as time measurements
-/// do.
+/// A clock that returns allocated bytes instead of time. Set-up is excluded.
 struct ByteClock<'a>(&'a dyn AllocationCounter);
 
 impl Clock for ByteClock<'_> {
@@ -52,12 +51,17 @@ impl Clock for ByteClock<'_> {
 }
 
 impl Backend {
-    /// Runs `operation` once and counts the bytes that it requests. For a native step, the first
-    /// run is counted, because later runs reuse its tables.
+    /// Runs `operation` once and counts the bytes that it requests. `edges` is the number of edges
+    /// of `polygons`.
     ///
-    /// The result is the structure for `build`, the structure of the refined mesh for a
-    /// subdivision, the mesh after the edits for a pass of edits, and the depth of each face for
-    /// `ff_bfs`. `edges` is the number of edges of `polygons`.
+    /// The result of an operation depends on its kind:
+    ///
+    /// - `build`: the structure
+    /// - subdivision: the structure of the refined mesh
+    /// - edits: the mesh after the edits
+    /// - `ff_bfs`: the depth of each face
+    ///
+    /// For a native subdivision, the first run counts, because later runs reuse its tables.
     ///
     /// # Errors
     ///
@@ -118,7 +122,7 @@ impl Backend {
     }
 }
 
-/// Returns the counts of the mesh after `pass` on the structure of `backend`.
+/// Returns the counts of the mesh after `pass`.
 fn counts_after(
     pass: EditPass,
     backend: &Backend,
@@ -126,7 +130,7 @@ fn counts_after(
     before: &Counts,
 ) -> Counts {
     let ratio = match pass {
-        // Neither pass changes the number of elements.
+        // These passes do not change the number of elements.
         EditPass::SplitCollapse | EditPass::FlipAll => return *before,
         EditPass::DecimateHalf => 0.5,
         EditPass::DecimateTenth => 0.1,
@@ -136,7 +140,7 @@ fn counts_after(
     counts.unwrap_or(*before)
 }
 
-/// Returns the counts of the mesh after `M` was decimated to this ratio of the faces; `None` if the
+/// Returns the counts of the mesh after decimation to `ratio` of its faces; `None` if the
 /// decimation is refused.
 pub(crate) fn decimated_counts<M: Representation + MeshEdit>(
     polygons: &PolygonMesh,

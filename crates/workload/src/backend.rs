@@ -33,10 +33,10 @@ macro_rules! backends {
     };
 }
 
-/// A structure with its properties and the functions that build, run and measure it.
+/// A structure and the functions that build, run and measure it.
 ///
 /// [`Backend::structures`] returns the backends of Sixfold. [`Backend::new`] makes a backend from
-/// any other structure. Studies, `pick`, edits and subdivisions accept both kinds:
+/// any other structure:
 ///
 /// ```
 /// use sixfold::{EditableHalfEdgeMesh, HalfEdgeMesh, shapes};
@@ -53,15 +53,15 @@ macro_rules! backends {
 pub struct Backend {
     /// Properties that are known before the structure is built.
     pub info: StructureInfo,
-    /// Computes by formula the bytes of the layout for a mesh with these counts.
+    /// Computes the bytes of the layout for a mesh with the given counts.
     pub layout_bytes: fn(&Counts) -> usize,
     pub(crate) queries: QueryFunctions,
     pub(crate) edits: Option<EditFunctions>,
-    /// Sets up a subdivision that refines the structure's own tables.
+    /// Sets up a subdivision that refines the tables of the structure.
     pub(crate) prepare_native: Option<PrepareRefiner>,
 }
 
-/// The functions that only need queries.
+/// The functions that need only queries.
 #[derive(Clone, Copy)]
 pub(crate) struct QueryFunctions {
     build: Build,
@@ -69,7 +69,7 @@ pub(crate) struct QueryFunctions {
     count: Count,
     pub(crate) prepare_mix: for<'a> fn(&MixInput<'a>) -> PreparedMix<'a>,
     pub(crate) tabulate: Tabulate,
-    /// Sets up a subdivision that rebuilds the structure from each level.
+    /// Sets up a subdivision that rebuilds the structure for each level.
     pub(crate) prepare_rebuilt: PrepareRefiner,
 }
 
@@ -82,27 +82,23 @@ pub(crate) struct EditFunctions {
     pub(crate) decimated_counts: fn(&PolygonMesh, f64) -> Option<Counts>,
 }
 
-/// Builds the structure and prepares it for measurement. The memory of the structure is read before
-/// any operation runs.
+/// Builds the structure and prepares it for measurement.
 type Build =
     for<'a> fn(&Backend, &'a PolygonMesh, Option<&'a Draw>) -> Result<Prepared<'a>, BuildError>;
 
-/// Builds the structure and counts the table reads of relations.
 type Count =
     fn(&PolygonMesh, &[Relation], &AtomicBool, &mut dyn ReadsObserver) -> Result<(), BuildError>;
 
-/// Builds tables of the relations that a schedule queries, from the structure.
 type Tabulate =
     for<'a> fn(&'a PolygonMesh, &'a Schedule, &'a Route) -> Option<Box<dyn MixBackend + 'a>>;
 
-/// Builds the control mesh of a subdivision.
 type PrepareRefiner = fn(SubdivisionJob, &PolygonMesh, &Creases) -> PreparedRefiner;
 
-/// A structure ready to be measured, and its memory footprint.
+/// A structure that is ready to be measured, and its memory footprint.
 pub type Prepared<'a> = (Box<dyn TimedBackend + 'a>, MemoryFootprint);
 
 impl Backend {
-    /// Makes a backend from `M` that supports neither edits nor native subdivision.
+    /// Makes a backend for `M` without edits and native subdivision.
     pub fn new<M: Measured + 'static>() -> Self {
         Self {
             info: StructureInfo::new::<M>(),
@@ -128,7 +124,7 @@ impl Backend {
         }
     }
 
-    /// Adds the edits of `M`, the editable type of the same structure.
+    /// Adds the edits of `M`, the editable type of the structure.
     #[must_use]
     pub fn with_edits<M: Representation + MeshEdit + 'static>(self) -> Self {
         let edits = EditFunctions {
@@ -144,8 +140,7 @@ impl Backend {
         }
     }
 
-    /// Adds native subdivision. `M` is the type of the same structure that can refine its own
-    /// tables.
+    /// Adds the native subdivision of `M`, the type of the structure that can refine its tables.
     #[must_use]
     pub fn with_refinement<M: Refine + 'static>(self) -> Self {
         Self {
@@ -155,20 +150,19 @@ impl Backend {
         }
     }
 
-    /// Returns a backend for each structure of Sixfold, in the order in which tables show them.
+    /// Returns a backend for each structure of Sixfold, in the order of tables.
     pub fn structures() -> Vec<Self> {
         structures!([backends])
     }
 
-    /// Returns the backend for the structure of Sixfold called `name`; `None` if the name is
-    /// unknown.
+    /// Returns the backend of Sixfold called `name`; `None` if the name is unknown.
     pub fn find(name: &str) -> Option<Self> {
         let mut all = Self::structures().into_iter();
         all.find(|backend| backend.name() == name)
     }
 
-    /// Builds the structure from `polygons` and prepares it for measurement. If `draw` is given,
-    /// the structure can also run samples of the drawn elements. Also returns the memory footprint.
+    /// Builds the structure from `polygons` and prepares it for measurement. With `draw`, it can
+    /// also run samples of the drawn elements. Also returns the memory footprint.
     ///
     /// # Errors
     ///
@@ -181,8 +175,7 @@ impl Backend {
         (self.queries.build)(self, polygons, draw)
     }
 
-    /// Builds the structure from `polygons`, without preparing it for measurement. Counts the
-    /// allocated bytes with `heap`.
+    /// Builds the structure from `polygons` and counts the allocated bytes with `heap`.
     ///
     /// # Errors
     ///
@@ -195,8 +188,8 @@ impl Backend {
         (self.queries.measure_memory)(polygons, heap)
     }
 
-    /// Builds the structure from `polygons` and counts the table reads of `relations`, until `stop`
-    /// is true.
+    /// Builds the structure from `polygons` and counts the reads of `relations`, until `stop` is
+    /// true.
     ///
     /// # Errors
     ///
@@ -211,14 +204,13 @@ impl Backend {
         (self.queries.count)(polygons, relations, stop, observer)
     }
 
-    /// Returns the name that users write.
+    /// Returns the name of the structure.
     pub fn name(&self) -> &'static str {
         self.info.name
     }
 }
 
 impl PartialEq for Backend {
-    /// Returns whether both have the same name.
     fn eq(&self, other: &Self) -> bool {
         self.name() == other.name()
     }

@@ -1,4 +1,4 @@
-//! The workloads that Sixfold contains, as files that users can copy and change.
+//! The built-in workloads, as files that users can copy and change.
 
 use crate::workload::Workload;
 
@@ -51,7 +51,7 @@ pub fn built_ins() -> impl Iterator<Item = (&'static str, &'static str)> {
 ///
 /// # Panics
 ///
-/// Panics if the built-in file has an error. A test parses all of them.
+/// Panics if the built-in file has an error. A test parses all built-in files.
 pub fn built_in(name: &str) -> Option<Workload> {
     let (name, text) = FILES.into_iter().find(|(known, _)| *known == name)?;
     let workload = Workload::parse(name, &format!("{name}.toml"), text);

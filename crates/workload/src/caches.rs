@@ -1,8 +1,6 @@
-//! The caches of the processor, if the platform reports them. Whether a mesh fits into a cache
-//! explains many measured times.
+//! The caches of the processor.
 //!
-//! Linux describes the caches in small files under `/sys`. On other platforms the list is empty,
-//! and reports state that the caches are unknown.
+//! Linux describes the caches in files under `/sys`. On other platforms the list is empty.
 
 use std::fs;
 use std::path::Path;
@@ -15,23 +13,23 @@ const CACHE_FOLDER: &str = "/sys/devices/system/cpu/cpu0/cache";
 /// One cache of one processor.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Cache {
-    /// The level; 1 is the nearest to the processor.
+    /// The level. Level 1 is the nearest to the processor.
     pub level: u8,
     /// The content: `data`, `instruction`, or `unified` for both.
     pub kind: String,
     /// The size in bytes.
     pub bytes: u64,
-    /// The number of processors that share it, if the platform reports it.
+    /// The number of processors that share the cache, if known.
     pub shared_by: Option<usize>,
 }
 
 impl Cache {
-    /// Returns whether it holds data.
+    /// Returns whether the cache holds data.
     pub fn holds_data(&self) -> bool {
         self.kind != "instruction"
     }
 
-    /// Reads one cache; `file` returns the content of the file with the given name.
+    /// Reads one cache. `file` returns the content of the file with the given name.
     fn read(file: impl Fn(&str) -> Option<String>) -> Option<Self> {
         Some(Self {
             level: file("level")?.trim().parse().ok()?,
@@ -42,8 +40,7 @@ impl Cache {
     }
 }
 
-/// Returns the caches of the first processor, the nearest first. Empty if the platform does not
-/// report them.
+/// Returns the caches of the first processor, the nearest first. Empty if unknown.
 pub fn caches() -> Vec<Cache> {
     let Ok(entries) = fs::read_dir(CACHE_FOLDER) else {
         return Vec::new();
@@ -57,14 +54,14 @@ pub fn caches() -> Vec<Cache> {
     caches
 }
 
-/// Returns the size in bytes of the last-level cache that holds data, if one is known.
+/// Returns the size of the last-level data cache in bytes, if known.
 pub fn last_level_bytes(caches: &[Cache]) -> Option<u64> {
     let data = caches.iter().filter(|cache| cache.holds_data());
     data.max_by_key(|cache| cache.level)
         .map(|cache| cache.bytes)
 }
 
-/// Returns the size in bytes of the cache of `level` that holds data, if it is known.
+/// Returns the size of the data cache of `level` in bytes, if known.
 pub(crate) fn level_bytes(caches: &[Cache], level: u8) -> Option<u64> {
     let data = caches.iter().filter(|cache| cache.holds_data());
     data.filter(|cache| cache.level == level)
@@ -72,7 +69,7 @@ pub(crate) fn level_bytes(caches: &[Cache], level: u8) -> Option<u64> {
         .next()
 }
 
-/// Parses a size such as `32K` or `1M` into bytes; K is 1024, M is 1024².
+/// Parses a size such as `32K` or `1M` into bytes. K is 1024, M is 1024².
 fn parse_size(text: &str) -> Option<u64> {
     let digits = text.trim_end_matches(|c: char| !c.is_ascii_digit());
     let unit = match &text[digits.len()..] {
@@ -116,7 +113,6 @@ mod tests {
         assert_eq!(cache(&files), Some(expected.clone()));
         let shared = [&files[..], &[("shared_cpu_list", "0-3,8,10-11")]].concat();
         assert_eq!(cache(&shared).and_then(|c| c.shared_by), Some(7));
-        // A cache without a known size is left out.
         assert_eq!(cache(&files[..2]), None);
         for wrong in ["", "K", "12Q", "0K", "many"] {
             let files = [files[0], files[1], ("size", wrong)];

@@ -5,25 +5,25 @@ use std::time::Instant;
 
 use crate::pages;
 
-/// A point in time, or the difference of two.
+/// A point in time, or the difference between two points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Time {
     /// Processor time of this thread, in nanoseconds; `None` if the platform does not report it.
     pub cpu_ns: Option<f64>,
     /// Wall time, in nanoseconds.
     pub wall_ns: f64,
-    /// Page faults of this thread during that time; `None` if they were not counted.
+    /// Page faults of this thread; `None` if they were not counted.
     pub faults: Option<u64>,
 }
 
 impl Time {
-    /// Returns the time to compare, in nanoseconds. This is processor time if it is known, because
-    /// a busy machine disturbs it less. Otherwise it is wall time.
+    /// Returns processor time in nanoseconds if known, else wall time. Other programs disturb
+    /// processor time less.
     pub fn ns(self) -> f64 {
         self.cpu_ns.unwrap_or(self.wall_ns)
     }
 
-    /// Makes a time that has only wall time.
+    /// Makes a time without processor time.
     pub fn from_wall_ns(wall_ns: f64) -> Self {
         Self {
             wall_ns,
@@ -31,7 +31,7 @@ impl Time {
         }
     }
 
-    /// Multiplies both times by `factor`; the number of page faults stays unchanged.
+    /// Multiplies both times by `factor`. The number of page faults does not change.
     pub fn scaled(self, factor: f64) -> Self {
         Self {
             cpu_ns: self.cpu_ns.map(|ns| ns * factor),
@@ -40,8 +40,8 @@ impl Time {
         }
     }
 
-    /// Adds both times and the page faults. The sum has page faults if at least one of the two
-    /// times has them.
+    /// Adds both times and the page faults. Missing page faults count as 0 if the other time has
+    /// page faults.
     pub fn plus(self, other: Self) -> Self {
         let known = self.faults.is_some() || other.faults.is_some();
         Self {
@@ -51,7 +51,7 @@ impl Time {
         }
     }
 
-    /// Returns a time of zero with the same clocks as `like`, and without counted page faults.
+    /// Returns a time of zero with the same clocks as `like`.
     pub fn zero_like(like: Self) -> Self {
         Self {
             faults: None,
@@ -59,8 +59,7 @@ impl Time {
         }
     }
 
-    /// Subtracts `overhead` from both times, but leaves at least a tenth of each: work that is
-    /// shorter than reading the clock still takes some time.
+    /// Subtracts `overhead` from both times, but leaves at least a tenth of each time.
     fn without(self, overhead: Self) -> Self {
         let subtract = |ns: f64, overhead: f64| (ns - overhead).max(0.1 * ns);
         Self {
@@ -87,12 +86,12 @@ impl Sub for Time {
 
 /// A source of times. Tests can implement it with chosen times.
 ///
-/// If work runs on another thread, the clock is read on that thread and reports its processor time.
+/// The clock must be read on the thread that does the work.
 pub trait Clock: Sync {
     /// Returns the current time.
     fn now(&self) -> Time;
 
-    /// Returns the cost of reading the clock twice, which [`timed`] subtracts from every time.
+    /// Returns the cost of reading the clock twice. [`timed`] subtracts this cost from every time.
     fn overhead(&self) -> Time {
         Time::default()
     }
@@ -103,14 +102,14 @@ pub trait Clock: Sync {
     }
 }
 
-/// The number of measurements for each value of the clock overhead.
+/// Number of measurements for each value of the clock overhead.
 const READINGS: usize = 301;
-/// Words that the work between two readings reads: more than a first-level cache holds.
+/// Number of words that the work between two readings reads. They exceed a first-level cache.
 const WORDS: usize = 8192;
-/// Upper limit of the overhead, relative to reading the clock in a loop that does nothing else.
+/// Maximum overhead, relative to readings in a loop without work.
 const MAX_OVERHEAD_RATIO: f64 = 3.0;
 
-/// The clocks of this machine and its counter of page faults.
+/// The clocks of this machine, and its counter of page faults.
 #[derive(Clone, Debug)]
 pub struct MachineClock {
     start: Instant,
@@ -119,7 +118,7 @@ pub struct MachineClock {
 }
 
 impl MachineClock {
-    /// Starts a clock. First measures the cost of reading it, which takes some milliseconds.
+    /// Starts a clock and measures the cost of reading it. This takes some milliseconds.
     pub fn start() -> Self {
         let mut clock = Self {
             start: Instant::now(),
@@ -131,8 +130,8 @@ impl MachineClock {
     }
 
     /// Measures the time that two readings add to the work between them. The result is twice the
-    /// time of some work minus the time of twice that work. The caches are then in the same state
-    /// as in real use. The result is at least the time of two readings without work between them.
+    /// time of some work minus the time of twice that work. It is at least the time of two readings
+    /// without work.
     fn cost_of_reading(&self) -> Time {
         let words: Vec<u64> = vec![1; WORDS];
         let pass = || std::hint::black_box(std::hint::black_box(&words).iter().sum::<u64>());
@@ -164,7 +163,7 @@ impl MachineClock {
         }
     }
 
-    /// Returns the name of the clock that the times of a study come from: `thread-cpu` or `wall`.
+    /// Returns the name of the clock of a study: `thread-cpu` or `wall`.
     pub fn name() -> &'static str {
         match thread_cpu_ns() {
             Some(_) => "thread-cpu",
@@ -195,8 +194,7 @@ impl Clock for MachineClock {
     }
 }
 
-/// Runs `work` and returns its time and its page faults. The cost of reading the clock is
-/// subtracted.
+/// Runs `work` and returns its time and page faults, without the cost of reading the clock.
 #[inline]
 pub fn timed(clock: &dyn Clock, work: impl FnOnce()) -> Time {
     let faults = clock.faults();
@@ -258,7 +256,7 @@ mod tests {
         assert_eq!(Time::zero_like(wall(9.0)).plus(wall(4.0)), wall(4.0));
     }
 
-    /// A clock with readings of 300 ns each, and a counter of page faults.
+    /// A clock whose readings take 300 ns, and a counter of page faults.
     struct SlowClock(Mutex<(f64, u64)>);
 
     impl Clock for SlowClock {

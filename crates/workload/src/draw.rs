@@ -1,21 +1,20 @@
-//! A seeded random choice of elements. It uses only the input mesh, so it is the same for every
-//! structure.
+//! A seeded random order of the elements. It is the same for every structure.
 
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sixfold::{FaceId, PolygonMesh, VertexId};
 
-/// One side of a face, which identifies its edge.
+/// One side of a face, which identifies an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Side {
     /// The face.
     pub face: FaceId,
-    /// The two ends of the edge, the lower first.
+    /// The two ends of the edge, the lower end first.
     pub ends: [VertexId; 2],
 }
 
-/// All elements of a mesh in a seeded random order; every prefix is a uniform sample.
+/// All elements of a mesh in random order. Every prefix is a uniform sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw {
     /// Every vertex.
@@ -27,7 +26,7 @@ pub struct Draw {
 }
 
 impl Draw {
-    /// Shuffles the elements of `polygons` with `seed`; O(n log n), n the number of corners.
+    /// Shuffles the elements of `polygons` with `seed`; O(n log n) for n corners.
     pub fn new(polygons: &PolygonMesh, seed: u64) -> Self {
         let mut draw = Self {
             vertices: polygons.vertices().collect(),
@@ -41,7 +40,7 @@ impl Draw {
         draw
     }
 
-    /// Returns the number of elements by kind.
+    /// Returns the number of elements of each kind.
     pub fn population(&self) -> [usize; 3] {
         [self.vertices.len(), self.edges.len(), self.faces.len()]
     }

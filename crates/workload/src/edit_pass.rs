@@ -13,11 +13,10 @@ use crate::series::{ReusedCopies, Series};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum EditPass {
     /// Inserts a vertex into the centre of every face. Then collapses each new vertex into a
-    /// neighbour, with all checks, and compacts the tables. At the end the mesh has its original
-    /// faces.
+    /// neighbour and compacts the tables. The mesh then has its original faces.
     SplitCollapse,
-    /// Flips every edge of the initial mesh if the flip is legal, in the order in which the faces
-    /// first list the edges. Then does the same again.
+    /// Flips every edge if the flip is legal, in the order in which the faces first list the edges.
+    /// Then does the same again.
     FlipAll,
     /// Collapses edges by quadric error until half of the faces are left.
     DecimateHalf,
@@ -34,7 +33,7 @@ impl EditPass {
         Self::DecimateTenth,
     ];
 
-    /// Returns the name that users write: `split_collapse`.
+    /// Returns the name in options, such as `split_collapse`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::SplitCollapse => "split_collapse",
@@ -44,21 +43,20 @@ impl EditPass {
         }
     }
 
-    /// Sets up the pass on the structure of `backend`. Returns `None` if the structure cannot be
-    /// edited.
+    /// Sets up the pass on the structure of `backend`. Returns `None` if the structure has no
+    /// edits.
     ///
     /// # Errors
     ///
-    /// Returns the reason if the structure cannot hold `polygons`, or a face is not a triangle.
+    /// Returns the reason if the structure cannot hold `polygons` or if a face is not a triangle.
     pub fn prepare(self, backend: &Backend, polygons: &PolygonMesh) -> Option<PreparedEditor> {
         Some((backend.edits?.prepare_pass)(self, polygons))
     }
 }
 
-/// Edits ready to be run, or the reason why they are not.
+/// Edits that are ready to run, or the reason why they are not ready.
 pub type PreparedEditor = Result<Box<dyn Editor>, String>;
 
-/// Sets up `pass` on `M`.
 pub(crate) fn prepare_pass<M: Representation + MeshEdit + 'static>(
     pass: EditPass,
     polygons: &PolygonMesh,
@@ -86,29 +84,28 @@ impl fmt::Display for EditPass {
     }
 }
 
-/// Edits that are ready to be run repeatedly, each time on the initial mesh.
+/// Edits that are ready to run repeatedly, each time on the initial mesh.
 pub trait Editor {
-    /// Runs the edits as `series` describes and returns the total time of all timed runs.
+    /// Runs the edits as `series` describes. Returns the total time of the timed runs.
     fn time(&mut self, series: &Series<'_>) -> Time;
 
-    /// Returns the counts of a run; all runs do the same work.
+    /// Returns the counts of one run.
     fn result(&self) -> Edits;
 }
 
 /// The counts of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Edits {
-    /// Visited elements: faces to split or to decimate, edges to flip.
+    /// Number of visited elements: faces to split or decimate, or edges to flip.
     pub elements: u64,
     /// Number of edits that were done.
     pub done: u64,
     /// Number of edits that were refused.
     pub refused: u64,
-    /// The sum of all edge lengths afterwards.
+    /// Sum of all edge lengths after the edits.
     pub checksum: f64,
 }
 
-/// A pass of edits on a structure of one type.
 struct EditPassRun<M: MeshEdit> {
     pass: EditPass,
     mesh: M,
@@ -117,7 +114,7 @@ struct EditPassRun<M: MeshEdit> {
     copies: ReusedCopies<WorkingCopy<M>>,
 }
 
-/// A copy of the mesh, the current handles of its edges, and the counts of the last run on it.
+/// A copy of the mesh with the current edge handles and the counts of its last run.
 struct WorkingCopy<M: MeshEdit> {
     mesh: M,
     edges: Option<TrackedEdges<M>>,
@@ -240,7 +237,6 @@ fn decimate_to<M: Representation + MeshEdit>(mesh: &mut M, ratio: f64) -> Edits 
     }
 }
 
-/// Returns the edges in the order in which the faces first list them.
 fn edges_in_face_order<M: MeshQuery>(mesh: &M) -> Vec<M::Edge> {
     let mut listed = mesh.edge_map(false);
     let mut edges = Vec::new();
@@ -254,18 +250,18 @@ fn edges_in_face_order<M: MeshQuery>(mesh: &M) -> Vec<M::Edge> {
     edges
 }
 
-/// The current handles of a list of edges, updated when flips change handles.
+/// The current handles of a list of edges.
 ///
-/// A flip returns the new handle of the flipped edge. It changes handles of other edges only in
-/// structures whose edge handle is the corner opposite the edge. In this case `indices` gives the
-/// list entry of such an edge.
+/// A flip returns the new handle of the flipped edge. In structures whose edge handle is the
+/// opposite corner, a flip also changes handles of other edges. `indices` then finds these edges in
+/// the list.
 struct TrackedEdges<M: MeshEdit> {
     edges: Vec<M::Edge>,
-    /// By edge: its index in `edges`.
+    /// For each edge, its index in `edges`.
     indices: EdgeMap<M, u32>,
     /// The index of the edge that is being flipped.
     flipping: usize,
-    /// Indices and new handles that the current flip has reported.
+    /// The indices and new handles that the current flip has reported.
     renamed: Vec<(u32, M::Edge)>,
 }
 
@@ -279,7 +275,7 @@ impl<M: MeshEdit> Clone for TrackedEdges<M> {
         }
     }
 
-    /// Copies into the existing tables.
+    /// Reuses the existing tables.
     fn clone_from(&mut self, source: &Self) {
         let Self {
             edges,
@@ -297,8 +293,8 @@ impl<M: MeshEdit> Clone for TrackedEdges<M> {
 impl<M: MeshEdit> TrackedEdges<M> {
     fn new(mesh: &M, edges: &[M::Edge]) -> Self {
         let mut indices = mesh.edge_map(0);
-        // Maps by row are always filled. Edges without rows need a hash map; their flips rename
-        // only the flipped edge, so the map stays empty.
+        // Edges without rows would need a hash map. Their flips rename only the flipped edge, so
+        // the map stays empty.
         if mesh.edge_rows() > 0 {
             for (index, &e) in (0..).zip(edges) {
                 indices.insert(e, index);
@@ -312,7 +308,7 @@ impl<M: MeshEdit> TrackedEdges<M> {
         }
     }
 
-    /// Stores all new handles at once: a new handle may be the old handle of another edge.
+    /// Stores all new handles at once, because a new handle may be the old handle of another edge.
     #[inline]
     fn apply_renames(&mut self) {
         while let Some((index, edge)) = self.renamed.pop() {

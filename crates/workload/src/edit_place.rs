@@ -1,11 +1,11 @@
-//! Places of a triangle mesh where edits can be done without affecting each other.
+//! Places of a triangle mesh at which edits do not affect each other.
 
 use sixfold::{
     Edit, FaceId, FaceVertexMesh, MeshEdit, MeshQuery, Point, PolygonMesh, Refusal, Representation,
 };
 
-/// Returns at most `max_count` faces, spread over the mesh, in no particular order. Their
-/// surroundings (all faces that touch a corner of the face) share no vertices.
+/// Returns at most `max_count` faces, spread over the mesh. The surroundings of two faces share no
+/// vertices. The surroundings of a face are all faces that touch a corner of the face.
 pub(crate) fn independent_faces(
     polygons: &PolygonMesh,
     max_count: usize,
@@ -13,7 +13,7 @@ pub(crate) fn independent_faces(
     let mesh = FaceVertexMesh::from_polygons(polygons).map_err(|refusal| refusal.to_string())?;
     let mut taken = vec![false; polygons.vertex_count()];
     let faces = polygons.face_count();
-    // A stride coprime to the number of faces visits all faces, and consecutive ones are far apart.
+    // A stride coprime to the number of faces visits all faces.
     let mut stride = (faces as f64 * 0.618) as usize | 1;
     while gcd(stride, faces) != 1 {
         stride += 2;
@@ -47,7 +47,7 @@ const fn gcd(mut a: usize, mut b: usize) -> usize {
     a
 }
 
-/// The arguments of an edit at its place.
+/// The arguments of an edit at one place.
 pub(crate) struct EditPlace<M: MeshQuery> {
     pub(crate) face: M::Face,
     corners: [M::Vertex; 3],
@@ -58,7 +58,7 @@ pub(crate) struct EditPlace<M: MeshQuery> {
 }
 
 impl<M: Representation> EditPlace<M> {
-    /// Looks up the arguments of `edit` at face `f`; some structures search for these handles.
+    /// Looks up the arguments of `edit` at face `f`.
     pub(crate) fn new(mesh: &M, polygons: &PolygonMesh, edit: Edit, f: FaceId) -> Self {
         let takes_edge = matches!(
             edit,
@@ -90,7 +90,7 @@ impl<M: Representation> EditPlace<M> {
     }
 }
 
-/// Prepares one place so that the edit can be done there.
+/// Prepares one place for the edit.
 pub(crate) fn prepare_place<M: MeshEdit>(
     mesh: &mut M,
     edit: Edit,
@@ -108,7 +108,6 @@ pub(crate) fn prepare_place<M: MeshEdit>(
     }
 }
 
-/// Applies the edit at one place.
 #[inline(always)]
 pub(crate) fn apply_edit<M: MeshEdit>(
     mesh: &mut M,
@@ -133,7 +132,7 @@ pub(crate) fn apply_edit<M: MeshEdit>(
         Edit::SplitVertex => mesh
             .split_vertex(a, Some(b), place.far_neighbour, place.position)
             .map(drop),
-        // Passes over the whole mesh, and edits added later.
+        // Passes over the whole mesh run elsewhere.
         _ => Ok(()),
     }
 }

@@ -1,9 +1,8 @@
-//! The work that is run on a structure and timed: queries, whole-mesh operations, edits,
-//! subdivisions.
+//! The work that is run on a structure and timed.
 //!
-//! [`Backend::new`] makes any structure measurable as a [`TimedBackend`], which runs a [`Job`] and
-//! returns its time and its result. This crate contains all code that is compiled once for each
-//! structure. The crates above it measure and evaluate. Their code is not generic over structures.
+//! [`Backend::new`] makes any structure measurable as a [`TimedBackend`]. A `TimedBackend` runs a
+//! [`Job`] and returns the time and the result. This crate contains all code that is compiled
+//! separately for each structure. The crates above it are not generic over structures.
 
 mod allocation;
 mod backend;

@@ -1,13 +1,14 @@
-//! Measures how fast this machine reads memory: bandwidth in sequential reads, and latency in
-//! dependent reads.
+//! Measures how fast this machine reads memory: the bandwidth of sequential reads, and the latency
+//! of dependent reads.
 //!
-//! Both are measured in buffers of growing size. A mesh can then be compared with the speed of the
-//! caches that it fits in; the largest buffer shows the speed of the main memory. One thread reads,
-//! because one thread queries a mesh. The bandwidth test adds all words of the buffer, in several
-//! passes. In the latency test each line holds the index of the next line. The lines form one cycle
-//! in random order, so that no read can start before the previous one has finished. Each value is
-//! the shortest of several timed series, after one untimed series. Both values include address
-//! translation (TLB misses), as the times on a mesh do.
+//! Both values are measured in buffers of growing size. Small buffers give the speed of the caches,
+//! and the largest buffer gives the speed of the main memory. One thread reads, because one thread
+//! queries a mesh.
+//!
+//! The bandwidth test adds all words of the buffer. In the latency test, each line holds the index
+//! of the next line. The lines form one cycle in random order, so each read must wait for the
+//! previous read. Each value is the shortest of several timed series. Both values include address
+//! translation (TLB misses).
 
 use std::hint::black_box;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -20,9 +21,8 @@ use serde::{Deserialize, Serialize};
 use crate::clock::{Clock, timed};
 use crate::read_probe::LINE_BYTES;
 
-/// Sizes of the buffers in bytes. The first is half of a small first-level cache. Each further size
-/// is four times the previous one. The last is far larger than the last-level cache of most
-/// machines.
+/// Sizes of the buffers in bytes. The first buffer is half of a small first-level cache. The last
+/// buffer is larger than the last-level cache of most machines.
 const SIZES: [usize; 8] = [
     1 << 14,
     1 << 16,
@@ -33,14 +33,14 @@ const SIZES: [usize; 8] = [
     1 << 26,
     1 << 28,
 ];
-/// Number of timed series of each kind.
+/// Number of timed series for each value.
 const SERIES: usize = 7;
-/// Minimum number of bytes that a series reads sequentially.
+/// Minimum number of bytes that a sequential series reads.
 const MIN_STREAMED_BYTES: usize = 1 << 24;
 /// Number of dependent reads in a series.
 const DEPENDENT_READS: usize = 1 << 16;
 
-/// Words of a cache line. The first may hold the index of another line.
+/// Number of words in a cache line.
 const WORDS: usize = LINE_BYTES / size_of::<u64>();
 
 /// The read speed of a buffer of one size.
@@ -48,23 +48,23 @@ const WORDS: usize = LINE_BYTES / size_of::<u64>();
 pub struct BufferSpeed {
     /// The size of the buffer in bytes.
     pub bytes: usize,
-    /// The bandwidth of sequential reads, in GB/s (bytes per nanosecond).
+    /// The bandwidth of sequential reads, in GB/s.
     pub gb_per_s: f64,
-    /// The time of one dependent read of an unpredictable line, in nanoseconds.
+    /// The time of one dependent read, in nanoseconds.
     pub latency_ns: f64,
 }
 
 /// The speed at which this machine reads buffers of growing size.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct MemorySpeed {
-    /// By size, the smallest first; never empty.
+    /// The speeds, by size of the buffer. Never empty.
     #[serde(rename = "rungs")]
     speeds: Vec<BufferSpeed>,
 }
 
 impl MemorySpeed {
-    /// Measures the speed. Takes one or two seconds and 256 MiB. Returns `None` if `stop` becomes
-    /// true.
+    /// Measures the speed. This takes one or two seconds and 256 MiB. Returns `None` if `stop`
+    /// becomes true.
     pub fn measure(clock: &dyn Clock, stop: &AtomicBool) -> Option<Self> {
         Self::measure_sizes(&SIZES, clock, stop)
     }
@@ -85,27 +85,26 @@ impl MemorySpeed {
         Some(Self { speeds })
     }
 
-    /// Returns the measured speeds by size, the smallest first.
+    /// Returns the measured speeds, the smallest buffer first.
     pub fn speeds(&self) -> &[BufferSpeed] {
         &self.speeds
     }
 
-    /// Returns the read speed for data of `bytes`: the speed of the largest buffer of at most this
-    /// size, so that the speed is not underestimated. If all buffers are larger, returns the speed
-    /// of the smallest.
+    /// Returns the speed of the largest buffer of at most `bytes` bytes. If all buffers are larger,
+    /// returns the speed of the smallest buffer.
     pub fn at(&self, bytes: usize) -> BufferSpeed {
         let larger = self.speeds.partition_point(|speed| speed.bytes <= bytes);
         self.speeds[larger.saturating_sub(1)]
     }
 
-    /// Returns the read speed of the main memory: the speed of the largest buffer.
+    /// Returns the speed of the largest buffer, which is the speed of the main memory.
     pub fn memory(&self) -> BufferSpeed {
         self.at(usize::MAX)
     }
 }
 
-/// Returns lines that form one cycle in random order. The first word of each line holds the index
-/// of the next line.
+/// Returns lines that form one cycle in random order. The first word of a line is the index of the
+/// next line.
 fn cycle(lines: usize) -> Vec<u64> {
     let mut order: Vec<u32> = (0..).take(lines).collect();
     order.shuffle(&mut ChaCha8Rng::seed_from_u64(1));
@@ -117,7 +116,7 @@ fn cycle(lines: usize) -> Vec<u64> {
     words
 }
 
-/// Measures the bandwidth of sequential reads, in bytes per nanosecond.
+/// Returns the bandwidth of sequential reads, in bytes per nanosecond.
 fn bandwidth(words: &[u64], clock: &dyn Clock) -> f64 {
     let bytes = size_of_val(words);
     let passes = (MIN_STREAMED_BYTES / bytes).max(1);
@@ -129,15 +128,14 @@ fn bandwidth(words: &[u64], clock: &dyn Clock) -> f64 {
     (passes * bytes) as f64 / ns
 }
 
-/// Adds all words. It iterates over a plain slice so that the compiler vectorizes and unrolls the
-/// loop.
+/// Adds all words. The compiler can vectorize this plain loop.
 fn sum(words: &[u64]) -> u64 {
     words
         .iter()
         .fold(0, |sum: u64, &word| sum.wrapping_add(word))
 }
 
-/// Measures the time of one dependent read, in nanoseconds.
+/// Returns the time of one dependent read, in nanoseconds.
 fn latency(words: &[u64], clock: &dyn Clock) -> f64 {
     let mut at = 0;
     let ns = shortest_ns(clock, || {
@@ -149,11 +147,10 @@ fn latency(words: &[u64], clock: &dyn Clock) -> f64 {
     ns / DEPENDENT_READS as f64
 }
 
-/// Returns the shortest time of several series, in nanoseconds, after one untimed series.
+/// Returns the shortest time of several series, in nanoseconds. The first series is not timed.
 fn shortest_ns(clock: &dyn Clock, mut series: impl FnMut()) -> f64 {
     series();
     let times = (0..SERIES).map(|_| timed(clock, &mut series).ns());
-    // A coarse clock may measure 0.
     times.fold(f64::INFINITY, f64::min).max(1.0)
 }
 
@@ -196,7 +193,6 @@ mod tests {
         assert_eq!(speed.memory(), speed.speeds()[2]);
     }
 
-    /// A clock that advances by one nanosecond at each reading.
     struct TickingClock(std::sync::atomic::AtomicU64);
 
     impl Clock for TickingClock {

@@ -1,9 +1,9 @@
-//! Runs a workload as a mix: all its operations in one loop, in its access order.
+//! Runs a workload as a mix: all operations in one loop, in the access order of the workload.
 //!
-//! Operations on elements are grouped into turns of 256 operations, or 64 if there are edits. A
-//! turn runs each part of the mix in proportion to its weight, on consecutive elements of a route
-//! that is the same for all structures. The parts therefore share caches as they do in a program,
-//! and switching between parts costs almost nothing. Passes over the whole mesh run between turns.
+//! Operations on elements are grouped into turns. A turn has 256 operations, or 64 if there are
+//! edits. It runs each part of the mix in proportion to its weight. All structures visit the same
+//! elements. The parts share caches as they do in a program. Passes over the whole mesh run between
+//! turns.
 
 mod passes;
 mod places;
@@ -33,42 +33,42 @@ pub struct MixRun {
     pub time: Time,
     /// The number of operations.
     pub operations: u64,
-    /// The number of elements that the operations yielded, or of positions that they read. Two
-    /// structures have the same number if both visit all elements, or the same route.
+    /// The number of results or of positions read. Two structures that visit the same elements have
+    /// the same number.
     pub yielded: u64,
     /// The number of edits that were refused.
     pub refused: u64,
 }
 
-/// A backend on which a mix can be run: a structure, or relation tables.
+/// A backend that can run a mix: a structure or relation tables.
 pub trait MixBackend {
-    /// Returns the name that users write.
+    /// Returns the name of the backend.
     fn name(&self) -> &'static str;
 
-    /// Returns the paths of the types that a program needs to use this backend.
+    /// Returns the paths of the types that a program needs to use the backend.
     fn type_paths(&self) -> Vec<&'static str>;
 
-    /// Returns the bytes of its tables.
+    /// Returns the size of the tables in bytes.
     fn bytes(&self) -> usize;
 
-    /// Returns how many vertices of the input were merged with others.
+    /// Returns the number of input vertices that were merged with other vertices.
     fn merged_vertices(&self) -> usize;
 
-    /// Returns for each part of the mix whether it visits all faces of the mesh for one operation.
+    /// Returns for each part whether one operation visits all faces of the mesh.
     fn scans(&self) -> Vec<bool>;
 
-    /// Runs the element operations of `turns` turns, starting with turn `turn`. If there are edits,
-    /// runs the turns `copies` times, each time on a copy that is reset outside the timing.
+    /// Runs the element operations of `turns` turns, from turn `turn` on. If there are edits, runs
+    /// the turns on `copies` copies. The copies are reset outside the timing.
     fn run(&mut self, turn: u64, turns: u64, copies: usize, clock: &dyn Clock) -> MixRun;
 
-    /// Runs `operations` operations of one part alone, from operation `first` of its route. Edits
-    /// start at the first place, on a reset copy.
+    /// Runs `operations` operations of one part alone, from operation `first` on. Edits start at
+    /// the first place, on a reset copy.
     fn run_part(&mut self, part: usize, first: u64, operations: u64, clock: &dyn Clock) -> MixRun;
 
-    /// Returns the number of operations of `part` that visit each of its elements, or places, once.
+    /// Returns the number of operations of `part` that visit each element or place once.
     fn cycle_length(&self, part: usize) -> u64;
 
-    /// Runs a pass over the whole mesh, or over a sample that represents it.
+    /// Runs a pass over the whole mesh or over a sample.
     fn run_pass(
         &mut self,
         operation: Operation,
@@ -76,13 +76,12 @@ pub trait MixBackend {
         series: &Series<'_>,
     ) -> Run;
 
-    /// Returns for each edit of the schedule and each place whether the edit is accepted.
+    /// Returns for each edit and each place whether the edit is accepted.
     fn accepted_places(&mut self) -> Vec<Vec<bool>>;
 
-    /// Keeps only the places that are true in `accepted`. All structures get the same `accepted`.
+    /// Keeps only the places that are true in `accepted`.
     fn keep_places(&mut self, accepted: &[Vec<bool>]);
 
-    /// Builds the backend from the polygons as often as `series` describes and returns the time of
-    /// one build.
+    /// Builds the backend as `series` describes. Returns the time of one build.
     fn build(&self, series: &Series<'_>) -> Time;
 }

@@ -23,20 +23,20 @@ pub enum ElementKind {
 }
 
 impl ElementKind {
-    /// All three, in the order of [`ElementKind::index`].
+    /// All three kinds, in the order of [`ElementKind::index`].
     pub const ALL: [Self; 3] = [Self::Vertex, Self::Edge, Self::Face];
 
-    /// Returns its index in [`ElementKind::ALL`].
+    /// Returns the index in [`ElementKind::ALL`].
     pub const fn index(self) -> usize {
         self as usize
     }
 
-    /// Returns the kind of element at which `relation` starts.
+    /// Returns the kind of element that `relation` queries.
     pub const fn queried_by(relation: Relation) -> Self {
         Self::ALL[relation as usize / 3]
     }
 
-    /// Returns its singular name: `vertex`.
+    /// Returns the singular name: `vertex`, `edge` or `face`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Vertex => "vertex",
@@ -48,53 +48,50 @@ impl ElementKind {
 
 /// An operation that a study times.
 ///
-/// Each operation visits its elements in the order of the structure. Every handle that a query
-/// yields goes into a sink. A structure therefore cannot count elements without computing their
-/// handles.
+/// An operation visits the elements in the order of the structure. Every handle that a query yields
+/// goes into a sink, so that each structure must compute all handles.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, DeserializeFromStr, SerializeDisplay,
 )]
 pub enum Operation {
     /// Builds the structure from flat arrays.
     Build,
-    /// Queries one relation of every element of its kind.
+    /// Queries one relation of every element of one kind.
     Relation(Relation),
     /// Queries the faces of every vertex and the vertices of every face.
     Circulate,
     /// Stores for each face the mean of its vertices.
     FaceBarycenter,
-    /// Stores face normals, then for each vertex the normalised sum over its faces.
+    /// Stores face normals. Then stores for each vertex the normalised sum of its face normals.
     VertexNormal,
-    /// Stores for each vertex the mean of its neighbours, then sets all positions to these means.
+    /// Computes the mean of the neighbours of each vertex. Then moves all vertices to these means.
     VvSmooth,
     /// Sums the lengths of all edges.
     EdgeLength,
     /// Counts the edges with one face.
     Boundary,
-    /// Traverses faces breadth first from face 0, then from the lowest unvisited face; sums the
-    /// depths.
+    /// Traverses all faces breadth first and sums the depths.
     FfBfs,
     /// Queries all three relations of every vertex, edge and face.
     AllQueries,
-    /// Runs one step of Catmull–Clark by one method. [`Operation::subdivision_job`] gives the
-    /// scheme and the way.
+    /// Runs one step of Catmull–Clark by one method.
     CatmullClark(Method),
     /// Runs one step of Loop by one method.
     Loop(Method),
-    /// A pass of edits that changes the mesh, on a restored copy each time.
+    /// Runs a pass of edits on a copy of the mesh.
     EditPass(EditPass),
 }
 
 const RELATIONS: &[Relation; 9] = &Relation::ALL;
-/// The relations that a step of Catmull–Clark queries at each vertex.
+/// Relations that a step of Catmull–Clark queries at each vertex.
 const VERTEX_RELATIONS: &[Relation] = &[Relation::VertexVertices, Relation::VertexFaces];
-/// The relations that a gathering or native step queries at each edge.
+/// Relations that a gathering or native step queries at each edge.
 const EDGE_RELATIONS: &[Relation] = &[Relation::EdgeVertices, Relation::EdgeFaces];
-/// The relations that every step queries at each face.
+/// Relations that every step queries at each face.
 const FACE_RELATIONS: &[Relation] = &[Relation::FaceVertices, Relation::FaceEdges];
 
 impl Operation {
-    /// All operations, in the order in which tables show them.
+    /// All operations, in the order of tables.
     pub const ALL: [Self; 28] = [
         Self::Build,
         Self::Relation(Relation::VertexVertices),
@@ -126,7 +123,7 @@ impl Operation {
         Self::EditPass(EditPass::DecimateTenth),
     ];
 
-    /// Returns the name that users write: `vv_smooth`.
+    /// Returns the name in options, such as `vv_smooth`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Build => "build",
@@ -149,7 +146,7 @@ impl Operation {
         }
     }
 
-    /// Returns the one-level subdivision that the operation runs; `None` for other operations.
+    /// Returns the subdivision that the operation runs; `None` for other operations.
     pub fn subdivision_job(self) -> Option<SubdivisionJob> {
         let (scheme, method) = match self {
             Self::CatmullClark(method) => (Scheme::CatmullClark, method),
@@ -169,8 +166,7 @@ impl Operation {
         matches!(self, Self::CatmullClark(_) | Self::Loop(_))
     }
 
-    /// Returns whether the operation makes another mesh, by subdivision or by edits. Such an
-    /// operation takes long, and its time can be estimated from a patch of the mesh.
+    /// Returns whether the operation makes another mesh, by subdivision or by edits.
     pub const fn creates_mesh(self) -> bool {
         self.subdivides() || matches!(self, Self::EditPass(_))
     }
@@ -186,20 +182,19 @@ impl Operation {
         )
     }
 
-    /// Returns whether the clock stops between runs. Meanwhile the changes of a run are undone, or
-    /// its result is dropped.
+    /// Returns whether the clock stops between runs, while changes are undone or results are
+    /// dropped.
     pub const fn pauses_clock(self) -> bool {
         matches!(self, Self::Build | Self::VvSmooth | Self::EditPass(_))
     }
 
-    /// Returns whether the operation allocates memory within the timing. Its time then depends on
-    /// the source of the pages.
+    /// Returns whether the timed part of the operation allocates memory.
     pub const fn allocates(self) -> bool {
         matches!(self, Self::Build | Self::FfBfs) || self.creates_mesh()
     }
 
-    /// Estimates the number of elements that the operation visits on `polygons`: the faces, or the
-    /// new faces. The estimate is used if no run has counted the elements.
+    /// Estimates the number of elements that the operation visits on `polygons`. The estimate is
+    /// used if no run has counted the elements.
     pub fn estimated_elements(self, polygons: &PolygonMesh) -> usize {
         match self {
             Self::CatmullClark(_) => polygons.corner_count(),
@@ -208,8 +203,7 @@ impl Operation {
         }
     }
 
-    /// Returns the unit of the element count: `vertex`, `edge`, `face`, `visit` (neighbours are
-    /// counted) or `new face`.
+    /// Returns the unit of the element count: `vertex`, `edge`, `face`, `visit` or `new face`.
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Relation(relation) => ElementKind::queried_by(relation).name(),
@@ -270,7 +264,7 @@ impl Operation {
             (Self::CatmullClark(_), ElementKind::Vertex) => VERTEX_RELATIONS,
             (Self::Loop(_), ElementKind::Vertex) => one(Relation::VertexVertices),
             (Self::CatmullClark(_) | Self::Loop(_), ElementKind::Edge) => EDGE_RELATIONS,
-            // The minimum that an edit has to query.
+            // An edit queries at least these relations.
             (Self::EditPass(EditPass::FlipAll), ElementKind::Edge) => one(Relation::EdgeFaces),
             (Self::EditPass(EditPass::FlipAll), _) => &[],
             (Self::EditPass(_), ElementKind::Vertex) => one(Relation::VertexFaces),
@@ -279,7 +273,7 @@ impl Operation {
         }
     }
 
-    /// Returns for each kind whether a structure with these costs scans all faces for each element.
+    /// Returns for each kind whether a structure with `costs` scans all faces for each element.
     pub fn scans(self, costs: &[QueryCost; 9]) -> [bool; 3] {
         ElementKind::ALL.map(|kind| {
             let relations = self.relations(kind);
@@ -289,23 +283,22 @@ impl Operation {
         })
     }
 
-    /// Returns for each kind whether the cost grows with the square of the valences or degrees on
-    /// at least one structure.
+    /// Returns for each kind whether the cost can grow with the square of valences or degrees.
     ///
-    /// This is true for all relations except EV and FV. An edge has two ends, and the corners of
-    /// all faces together are the corners of the mesh. The other relations visit a vertex of
-    /// valence n from each of its n edges, or search a face of n sides n times for a side.
+    /// This is true for all relations except `edge_vertices` and `face_vertices`. The other
+    /// relations may visit a vertex of valence n once for each of its n edges. They may also search
+    /// a face of n sides n times.
     pub fn grows_with_valence(self) -> [bool; 3] {
         let corners = [Relation::EdgeVertices, Relation::FaceVertices];
         ElementKind::ALL.map(|kind| self.relations(kind).iter().any(|r| !corners.contains(r)))
     }
 
-    /// Returns whether the operation can be run on a sample of elements.
+    /// Returns whether the operation can run on a sample of elements.
     pub const fn can_be_sampled(self) -> bool {
         !matches!(self, Self::Build | Self::FfBfs) && !self.creates_mesh()
     }
 
-    /// Returns whether the checksum is a count. Counts are exactly equal for all structures.
+    /// Returns whether the checksum is a count. Counts must be exactly equal.
     pub const fn has_exact_checksum(self) -> bool {
         !matches!(
             self,
@@ -393,8 +386,7 @@ mod tests {
         );
         assert_eq!(Operation::EdgeLength.grows_with_valence(), [false; 3]);
         assert_eq!(Operation::AllQueries.grows_with_valence(), [true; 3]);
-        // Subdivisions scan if they query the faces of vertices. The rules of Loop do not need
-        // these faces.
+        // Subdivisions scan if they query the faces of vertices. Loop does not query these faces.
         let scans = |operation: Operation| operation.scans(&costs)[0];
         assert!(scans(Operation::CatmullClark(Method::Gather)));
         assert!(!scans(Operation::CatmullClark(Method::Scatter)));

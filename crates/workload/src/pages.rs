@@ -1,18 +1,18 @@
-//! Controls what the program's allocator does with freed pages while times are measured.
+//! Controls what the allocator does with freed pages during a measurement.
 //!
-//! An allocator returns large freed blocks to the kernel, or keeps them, depending on what ran
-//! before. When a returned page is used again, it costs a page fault and is cleared. This can take
-//! longer than the measured operation, so the policy is a part of the experiment. [`Policy::Kept`]
-//! keeps freed pages in the process, so that no sample includes page faults after a warm-up.
-//! [`release_pages`] returns them on purpose, to measure the cost of a first run.
+//! An allocator returns large freed blocks to the kernel or keeps them. The choice depends on what
+//! ran before. A returned page causes a page fault when it is used again. Page faults can take
+//! longer than the measured operation, so the policy is a setting of the measurement.
+//! [`Policy::Kept`] keeps freed pages in the process, so that samples have no page faults after a
+//! warm-up. [`release_pages`] returns the pages, to measure a first run.
 //!
-//! `Kept` is implemented for the GNU C library with `mallopt`: no block is mapped separately, the
-//! heap is never trimmed, and all threads share one heap, so that one thread can reuse a block that
-//! another thread freed. Sharing works only if the policy is set before the program starts its
-//! first thread, because glibc reads the number of heaps once. Threads with their own heap also
-//! keep its pages, but [`release_pages`] returns only some of them. On other platforms, and in
-//! programs with another allocator, the active policy is [`Policy::System`], and [`set_policy`]
-//! reports this.
+//! `Kept` is implemented for the GNU C library with `mallopt`. No block is mapped separately, the
+//! heap is never trimmed, and all threads share one heap. The policy must be set before the program
+//! starts its first thread, because glibc reads the number of heaps once. A thread with its own
+//! heap also keeps pages, but [`release_pages`] returns only some of them.
+//!
+//! On other platforms, and with other allocators, the active policy is [`Policy::System`].
+//! [`set_policy`] returns the active policy.
 
 use std::fmt;
 use std::hint::black_box;
@@ -25,14 +25,14 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
-/// The treatment of freed pages.
+/// What happens to freed pages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Policy {
-    /// Freed pages stay in the process, and later allocations reuse them without page faults.
+    /// Freed pages stay in the process. Later allocations reuse them without page faults.
     #[default]
     Kept,
-    /// The allocator of the platform keeps or returns freed pages, depending on its own rules.
+    /// The allocator keeps or returns freed pages by its own rules.
     System,
 }
 
@@ -40,7 +40,7 @@ impl Policy {
     /// Both policies.
     pub const ALL: [Self; 2] = [Self::Kept, Self::System];
 
-    /// Returns the name that users write: `kept` or `system`.
+    /// Returns the name in options: `kept` or `system`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Kept => "kept",
@@ -73,26 +73,26 @@ impl FromStr for Policy {
     }
 }
 
-/// The heap on which a program measures.
+/// The heap of a measurement.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct HeapReport {
     /// The active policy.
     pub policy: Policy,
-    /// The reason why the active policy is not the requested one.
+    /// Why the active policy is not the requested policy.
     #[serde(default)]
     pub reason: Option<String>,
-    /// The allocator, with its version if the platform reports it: `glibc 2.36`.
+    /// The allocator with its version, such as `glibc 2.36`.
     pub allocator: String,
-    /// Bytes of a page, if the platform reports it.
+    /// Size of a page in bytes, if known.
     pub page_bytes: Option<u64>,
-    /// The mode of transparent huge pages, if the platform has them: `madvise`.
+    /// The mode of transparent huge pages, if known: `always`, `madvise` or `never`.
     pub transparent_huge_pages: Option<String>,
     /// Whether page faults are counted.
     pub counts_faults: bool,
 }
 
-/// Applies the policy `requested` to the whole program and reports the active policy. `Kept`
-/// becomes active only if the allocator of the program supports it, and a probe shows that pages are kept.
+/// Applies the policy `requested` to the whole program and returns the active policy. `Kept`
+/// becomes active only if the allocator supports it and a probe confirms it.
 pub fn set_policy(requested: Policy) -> HeapReport {
     let reason = match requested {
         Policy::System => {
@@ -114,7 +114,6 @@ pub fn set_policy(requested: Policy) -> HeapReport {
     }
 }
 
-/// Makes the allocator keep freed pages in the process.
 fn keep() -> Result<(), String> {
     if !platform::is_glibc_allocator() {
         return Err(
@@ -127,7 +126,7 @@ fn keep() -> Result<(), String> {
         stop_keeping();
         return Err("the allocator refused to keep pages".into());
     }
-    // Allocates and frees a block twice. By default, its pages would be returned in between.
+    // Allocate and free a block twice. By default, the pages are returned in between.
     let allocate = || {
         let mut block = untouched_block(PROBE_BYTES).unwrap_or_default();
         pages_of(&mut block).for_each(|page| {
@@ -150,7 +149,7 @@ fn keep() -> Result<(), String> {
     }
 }
 
-/// Whether pages are kept. If not, [`stop_keeping`] has nothing to undo.
+/// Whether pages are kept.
 static KEEPING: AtomicBool = AtomicBool::new(false);
 
 /// Undoes [`keep`] and returns the kept pages to the kernel.
@@ -161,41 +160,40 @@ fn stop_keeping() {
     }
 }
 
-/// Size of the block that shows whether pages are kept.
+/// Size of the block that tests whether pages are kept, in bytes.
 const PROBE_BYTES: usize = 16 << 20;
-/// Maximum number of page faults of the probe if pages are kept. The block has thousands of pages.
+/// Maximum number of page faults of the test block if pages are kept.
 const MAX_PROBE_FAULTS: u64 = 64;
-/// The smallest page size of all platforms, in bytes.
+/// Minimum page size of all platforms, in bytes.
 const MIN_PAGE_BYTES: usize = 4096;
-/// Size of the first blocks that are allocated to find freed blocks, in bytes. It is then halved.
+/// Size of the first blocks that are allocated to find freed blocks, in bytes.
 const MAX_BLOCK_BYTES: usize = 1 << 20;
 
-/// Touches `bytes` in one block and the pages of all freed blocks, so that later allocations find
-/// their pages present. Pages that [`release_pages`] returned are taken from the kernel again.
-/// Useful only if pages are kept. O(`bytes` + bytes of freed blocks), plus one walk over the list of
-/// freed blocks for each MiB of them.
+/// Touches `bytes` in one block and the pages of all freed blocks. Later allocations then find
+/// their pages present. This is useful only if pages are kept.
+///
+/// O(`bytes` + bytes of freed blocks), plus one walk over the list of freed blocks per MiB.
 pub fn reserve(bytes: usize) {
     touch_free_pages(bytes, |_| {});
 }
 
-/// Touches the same pages as [`reserve`], in random order. The kernel then also chooses the pages
-/// of large tables in random order. As a result, the second-level cache sets that the tables use do
-/// not depend on earlier work of the process.
+/// Touches the same pages as [`reserve`], in random order. The kernel then chooses the pages of
+/// large tables in random order. The cache sets of the tables do not depend on earlier work.
 pub fn reserve_in_random_order(bytes: usize) {
-    /// The number of calls. It is the seed of the order, so that each call has a different order.
+    /// Number of calls. It is the seed, so that each call has a different order.
     static CALLS: AtomicU64 = AtomicU64::new(0);
     let mut random = ChaCha8Rng::seed_from_u64(CALLS.fetch_add(1, Ordering::Relaxed));
     touch_free_pages(bytes, |pages| pages.shuffle(&mut random));
 }
 
-/// A page of memory that no value uses.
+/// An unused page of memory.
 type FreePage<'b> = &'b mut [MaybeUninit<u8>];
 
-/// Touches the pages of a block of `bytes` and of all freed blocks, in the order into which
-/// `arrange` brings the pages.
+/// Touches the pages of a block of `bytes` and of all freed blocks, after `arrange` has sorted the
+/// pages.
 fn touch_free_pages(bytes: usize, arrange: impl FnOnce(&mut [FreePage<'_>])) {
-    // All blocks are held at the same time, so that no block is allocated twice. Large blocks come
-    // first, because small ones fit anywhere.
+    // Hold all blocks at the same time, so that no block is allocated twice. Start with large
+    // blocks, because small blocks fit anywhere.
     let mut blocks: Vec<Vec<u8>> = untouched_block(bytes).into_iter().collect();
     let mut size = MAX_BLOCK_BYTES;
     let mut heap = platform::heap_bytes();
@@ -216,20 +214,18 @@ fn touch_free_pages(bytes: usize, arrange: impl FnOnce(&mut [FreePage<'_>])) {
     black_box(&mut blocks);
 }
 
-/// Returns the pages of an empty block.
 fn pages_of(block: &mut Vec<u8>) -> impl Iterator<Item = FreePage<'_>> {
     block.spare_capacity_mut().chunks_mut(MIN_PAGE_BYTES)
 }
 
-/// Allocates `bytes` without touching them; `None` if there is too little memory.
+/// Allocates `bytes` without touching them. Returns `None` if there is too little memory.
 fn untouched_block(bytes: usize) -> Option<Vec<u8>> {
     let mut block: Vec<u8> = Vec::new();
     block.try_reserve_exact(bytes).ok()?;
     Some(block)
 }
 
-/// Returns the pages of all freed blocks to the kernel, so that the next allocations get new ones.
-/// Does nothing if the allocator does not support it.
+/// Returns the pages of all freed blocks to the kernel, if the allocator supports it.
 pub fn release_pages() {
     platform::release_pages();
 }
@@ -239,14 +235,14 @@ pub fn can_release_pages() -> bool {
     platform::is_glibc_allocator()
 }
 
-/// Returns the bytes of this process that are in memory, if the platform reports them.
+/// Returns the resident memory of this process in bytes, if known.
 pub fn resident_bytes() -> Option<u64> {
     let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
     let pages: u64 = pages.split_ascii_whitespace().nth(1)?.parse().ok()?;
     Some(pages * page_bytes()?)
 }
 
-/// Returns the bytes by which the address space of this process may still grow, if it has a limit.
+/// Returns the bytes by which the address space may still grow, if there is a limit.
 #[cfg(unix)]
 pub fn address_space_left() -> Option<u64> {
     use nix::sys::resource::{RLIM_INFINITY, Resource, getrlimit};
@@ -257,14 +253,13 @@ pub fn address_space_left() -> Option<u64> {
     (limit != RLIM_INFINITY).then(|| limit.saturating_sub(used))
 }
 
-/// Returns the bytes by which the address space of this process may still grow, if it has a limit.
+/// Returns the bytes by which the address space may still grow, if there is a limit.
 #[cfg(not(unix))]
 pub fn address_space_left() -> Option<u64> {
     None
 }
 
-/// Returns the page faults of this thread so far, without those that read from disk; `None` if the
-/// platform does not count them.
+/// Returns the page faults of this thread without disk reads; `None` if they are not counted.
 #[cfg(any(target_os = "linux", target_os = "android"))]
 pub fn faults() -> Option<u64> {
     use nix::sys::resource::{UsageWho, getrusage};
@@ -272,20 +267,19 @@ pub fn faults() -> Option<u64> {
     u64::try_from(usage.minor_page_faults()).ok()
 }
 
-/// Returns the page faults of this thread so far, without those that read from disk; `None` if the
-/// platform does not count them.
+/// Returns the page faults of this thread without disk reads; `None` if they are not counted.
 #[cfg(not(any(target_os = "linux", target_os = "android")))]
 pub fn faults() -> Option<u64> {
     None
 }
 
-/// Returns whether page faults are counted. Some sandboxes always report the same number.
+/// Returns whether page faults are counted. Some sandboxes do not count them.
 pub fn counts_faults() -> bool {
     use std::sync::OnceLock;
     static COUNTS: OnceLock<bool> = OnceLock::new();
     *COUNTS.get_or_init(|| {
         let before = faults();
-        // A new thread has a new stack, so it has page faults even if the heap keeps its pages.
+        // The stack of a new thread causes page faults even if the heap keeps its pages.
         let after = std::thread::spawn(|| {
             std::hint::black_box([1_u8; 1 << 16]);
             faults()
@@ -318,22 +312,22 @@ fn bracketed(modes: &str) -> Option<&str> {
 }
 
 /// Calls to the GNU C library. This is the only file of the workspace with unsafe code. The calls
-/// control the allocator or read its counts; they take and return plain numbers.
+/// control the allocator or read its counts. They take and return plain numbers.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 #[allow(unsafe_code)]
 mod platform {
     use std::ffi::CStr;
 
-    /// Size of a test block, in bytes. The size is unusual, so that another thread is unlikely to
-    /// allocate the same.
+    /// Size of a test block in bytes. The size is unusual, so that other threads are unlikely to
+    /// allocate it.
     const TEST_BLOCK_BYTES: usize = (1 << 20) + 4096 * 3;
-    /// Number of attempts to see the test block in the counts of the allocator.
+    /// Maximum number of attempts to find the test block in the counts of the allocator.
     const ATTEMPTS: usize = 16;
-    /// The heap grows by at least this many bytes at a time.
+    /// Minimum growth of the heap, in bytes.
     const STEP: libc::c_int = 1 << 20;
 
-    /// Makes the allocator map no block separately, never trim its heap, and use one heap for all
-    /// threads. Returns whether the allocator accepts these options.
+    /// Sets the options of `Policy::Kept`. Returns whether the allocator
+    /// accepts them.
     pub(super) fn keep() -> bool {
         let options = [
             (libc::M_ARENA_MAX, 1),
@@ -344,9 +338,8 @@ mod platform {
         set(&options)
     }
 
-    /// Sets the thresholds to the values that glibc reaches by itself in a program that has freed
-    /// large blocks. Once they are set, glibc no longer adapts them. All threads still share one
-    /// heap.
+    /// Sets the thresholds that glibc reaches by itself after large blocks were freed. After this
+    /// call, glibc no longer adapts the thresholds. All threads still share one heap.
     pub(super) fn restore() {
         let options = [
             (libc::M_MMAP_MAX, 65536),
@@ -371,8 +364,7 @@ mod platform {
         unsafe { libc::malloc_trim(0) };
     }
 
-    /// Returns the counts of the allocator modulo 2³². `mallinfo2` has larger counts, but older
-    /// systems do not have it.
+    /// Returns the counts of the allocator modulo 2³². Older systems do not have `mallinfo2`.
     fn info() -> libc::mallinfo {
         // SAFETY: `mallinfo` may be called at any time from any thread, and returns plain numbers.
         unsafe { libc::mallinfo() }
@@ -389,8 +381,8 @@ mod platform {
         info.uordblks.wrapping_add(info.hblkhd).cast_unsigned()
     }
 
-    /// Returns whether Rust allocates from the GNU C library: its counts then include a test block.
-    /// Because other threads may allocate at the same time, one of several attempts has to succeed.
+    /// Returns whether Rust allocates from the GNU C library. If so, the counts include a test
+    /// block. Several attempts are needed, because other threads may allocate at the same time.
     pub(super) fn is_glibc_allocator() -> bool {
         let is_counted = || {
             let before = used();

@@ -1,8 +1,8 @@
-//! Counts what queries read: rows, bytes, and the cache lines that contain these bytes.
+//! Counts the rows, bytes and cache lines that queries read.
 //!
 //! The counts come from a model of memory, so they are exact and the same on every machine. Each
-//! table starts at a multiple of 64 bytes, its rows follow one another, and a line is 64 bytes of
-//! one table. A row that crosses the boundary of two lines touches both.
+//! table starts at a multiple of 64 bytes. Its rows follow one another. A cache line is 64 bytes of
+//! one table. A row that crosses a line boundary touches two lines.
 //!
 //! ```text
 //! lines of 64   0                  1                  2                  3
@@ -11,11 +11,10 @@
 //!               rows 2 and 5 touch two lines each: bytes 48 to 71, and 120 to 143
 //! ```
 //!
-//! The probe also updates a model of a small cache. This cache holds [`CACHE_LINES`] lines of any
-//! table, first in, first out. A touched line that is not in the cache is *fetched*. The fetch is a
-//! *jump* if the cache has none of the [`REACH`] lines before this line, and none of the [`REACH`]
-//! lines after it. Streaming access fetches lines but rarely jumps, even if it skips lines. The
-//! prefetchers of a processor predict streaming access, but not jumps.
+//! The probe also simulates a small cache of [`CACHE_LINES`] lines. A full cache drops the line
+//! that came in first. A touched line that is not in the cache is *fetched*. The fetch is a *jump*
+//! if no line within [`REACH`] lines before or after it is in the cache. Streaming access fetches
+//! lines but rarely jumps. The prefetchers of a processor predict streaming access, but not jumps.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -26,14 +25,13 @@ use sixfold_core::Probe;
 
 /// Bytes of a cache line.
 pub const LINE_BYTES: usize = 64;
-/// Lines that the small cache of the model holds: 256 KiB. Most processors have at least this much
-/// cache for each core. Data in such a cache arrives quickly, so a walk hardly waits for it.
+/// Number of lines in the simulated cache: 256 KiB. Most processors have at least this much cache
+/// per core.
 pub const CACHE_LINES: u64 = 4096;
-/// A fetch within this many lines of a cached line, on either side, is not a jump.
+/// Maximum distance of a fetch from a cached line, in lines. A more distant fetch is a jump.
 pub const REACH: usize = 4;
 
-/// A number that clones of a probe share. Only one thread may count: if two threads count at the
-/// same time, a count may be lost.
+/// A number that clones of a probe share. Only one thread may count, or counts may be lost.
 #[derive(Debug, Default)]
 struct Counter(AtomicU64);
 
@@ -60,18 +58,16 @@ fn set_to_zero<const N: usize>(numbers: [&Counter; N]) {
     }
 }
 
-/// The state of one line.
 #[derive(Debug, Default)]
 struct Line {
-    /// The number of the last query that touched it.
+    /// The number of the last query that touched this line.
     last_query: Counter,
-    /// The bytes that this query has read, one bit for each byte.
+    /// The bytes that this query has read, one bit per byte.
     read: Counter,
-    /// The number of the last fetch that loaded it, counted from 1; 0 if it was never fetched.
+    /// The number of the last fetch of this line, from 1; 0 if it was never fetched.
     fetch: Counter,
 }
 
-/// One table with all its lines.
 #[derive(Debug)]
 struct TableLines {
     name: Cow<'static, str>,
@@ -83,19 +79,18 @@ struct TableLines {
 /// The counts of a series of queries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct ReadCounts {
-    /// Row reads; a row counts each time it is read.
+    /// Number of row reads.
     pub(crate) reads: u64,
-    /// Bytes read; each byte counts once for each query.
+    /// Bytes read. A byte counts once per query.
     pub(crate) bytes: u64,
-    /// Lines touched; each line counts once for each query.
+    /// Lines touched. A line counts once per query.
     pub(crate) lines: u64,
     /// Lines that were not in the small cache.
     pub(crate) fetched: u64,
-    /// Fetched lines that were not near a line in the small cache.
+    /// Fetched lines that were not near a cached line.
     pub(crate) jumps: u64,
 }
 
-/// The activity during which rows are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
     /// The next element is listed.
@@ -104,7 +99,6 @@ pub(crate) enum Step {
     Querying,
 }
 
-/// The counts of one step, as counters that the clones of a probe share.
 #[derive(Debug, Default)]
 struct Totals {
     reads: Counter,
@@ -114,16 +108,15 @@ struct Totals {
     jumps: Counter,
 }
 
-/// The counts of all reads, and the lines that the model of a small cache holds.
 #[derive(Debug)]
 struct CacheModel {
     tables: Vec<TableLines>,
-    /// By [`Step`].
+    /// The totals of each [`Step`].
     totals: [Totals; 2],
     step: Counter,
     /// The number of the current query.
     query: Counter,
-    /// Number of lines fetched so far. The age of a cached line is measured in fetches.
+    /// Number of fetched lines. The age of a cached line is measured in fetches.
     fetches: Counter,
     /// Number of distinct lines touched.
     touched: Counter,
@@ -134,8 +127,8 @@ struct CacheModel {
 pub(crate) struct CountingProbe(Arc<CacheModel>);
 
 impl CountingProbe {
-    /// Makes a probe with zero counts and a [`TableLines`] for each table of `memory`. A read of any
-    /// other table counts as a row read, but touches no line.
+    /// Makes a probe with zero counts for the tables of `memory`. A read of another table counts as
+    /// a row read, but touches no line.
     pub(crate) fn new(memory: &MemoryFootprint) -> Self {
         let table_lines = |table: &TableBytes| {
             let lines = (table.rows * table.row_bytes).div_ceil(LINE_BYTES);
@@ -190,14 +183,13 @@ impl CountingProbe {
         set_to_zero([step, query, fetches, touched]);
     }
 
-    /// Starts a new query: the following reads belong to it and to `step`.
+    /// Starts a new query. The following reads belong to this query and to `step`.
     #[inline]
     pub(crate) fn begin(&self, step: Step) {
         self.0.query.add(1);
         self.0.step.set(step as u64);
     }
 
-    /// Returns the counts of `step`.
     pub(crate) fn counts(&self, step: Step) -> ReadCounts {
         let total = &self.0.totals[step as usize];
         ReadCounts {
@@ -209,13 +201,13 @@ impl CountingProbe {
         }
     }
 
-    /// Returns the number of lines touched in any step; each line counts once.
+    /// Returns the number of distinct lines touched.
     pub(crate) fn touched(&self) -> u64 {
         self.0.touched.get()
     }
 
-    /// Returns the tables that queries have read, with the bytes per row and the number of row
-    /// reads. Reads by listing do not count.
+    /// Returns for each table the bytes per row and the number of row reads. Listing does not
+    /// count.
     pub(crate) fn tables(&self) -> impl Iterator<Item = (&str, usize, u64)> {
         let tables = self.0.tables.iter();
         let read = tables.map(|table| (&*table.name, table.row_bytes, table.reads.get()));
@@ -224,8 +216,8 @@ impl CountingProbe {
 }
 
 impl CacheModel {
-    /// Records a read of some bytes of the line `at`. `bytes` has one bit for each byte, and
-    /// `number` is the number of bits that are set.
+    /// Records a read of some bytes of the line `at`. `bytes` has one bit per byte, and `number` is
+    /// the number of set bits.
     #[inline]
     fn touch(&self, lines: &[Line], at: usize, bytes: u64, number: usize, total: &Totals) {
         let line = &lines[at];
@@ -275,7 +267,7 @@ impl Probe for CountingProbe {
         if model.step.get() == Step::Querying as u64 {
             table.reads.add(1);
         }
-        // If only part of a row is read, the model assumes that it is the beginning.
+        // A partial read of a row starts at the beginning of the row.
         let start = row.saturating_mul(table.row_bytes);
         let end = start.saturating_add(bytes);
         let mut from = start;
@@ -308,7 +300,7 @@ mod tests {
         CountingProbe::new(&tables.iter().map(table).collect())
     }
 
-    /// Reads whole rows of one table as one query and returns the numbers of lines and bytes.
+    /// Reads rows of one table as one query. Returns the numbers of lines and bytes.
     fn query(probe: &CountingProbe, table: &'static str, bytes: usize, rows: &[usize]) -> [u64; 2] {
         let before = probe.counts(Step::Querying);
         probe.begin(Step::Querying);
@@ -349,8 +341,7 @@ mod tests {
     #[test]
     fn a_read_of_part_of_a_row_starts_where_the_row_starts() {
         let probe = probe(&[("halves", 100, 24)]);
-        // Row 5 begins at byte 120: its first four bytes are in line 1, and the rest of the row
-        // extends into line 2.
+        // Row 5 begins at byte 120. Its first four bytes are in line 1, and the rest is in line 2.
         assert_eq!(query(&probe, "halves", 4, &[5]), [1, 4]);
         assert_eq!(query(&probe, "halves", 24, &[5]), [2, 24]);
     }
@@ -377,7 +368,7 @@ mod tests {
         query(&probe, "corners", 4, &rows);
         let counts = probe.counts(Step::Querying);
         assert_eq!((counts.fetched, counts.jumps), (lines as u64, 1));
-        // The first lines were evicted, and are fetched again.
+        // The first lines were evicted, so they are fetched again.
         query(&probe, "corners", 4, &rows);
         let counts = probe.counts(Step::Querying);
         assert_eq!((counts.fetched, counts.jumps), (2 * lines as u64, 2));
@@ -399,7 +390,7 @@ mod tests {
             CACHE_LINES,
             "all cached"
         );
-        // One more line evicts only the first one.
+        // One more line evicts the first line.
         query(&probe, "spread", 64, &[far * lines, far]);
         assert_eq!(probe.counts(Step::Querying).fetched, CACHE_LINES + 1);
         query(&probe, "spread", 64, &[0]);

@@ -1,4 +1,4 @@
-//! Counts how much of its tables a structure reads to answer a relation. Counts are free of noise.
+//! Counts the table reads that relations need. The counts have no noise.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -8,16 +8,14 @@ use sixfold_core::Measured;
 
 use crate::read_probe::{CountingProbe, LINE_BYTES, ReadCounts, Step};
 
-/// Number of sampled elements if a structure scans. They are evenly spaced and include the first
-/// element.
+/// Number of sampled elements if a structure scans. The elements are evenly spaced.
 pub const SCAN_SAMPLE: usize = 16;
-/// Maximum number of rows that a query may read on average. If a relation reads more, only
-/// [`SCAN_SAMPLE`] elements are queried: at a vertex with very many faces, a walk is as slow as a
-/// scan.
+/// Maximum mean number of rows per query without sampling. If a relation reads more rows, only
+/// [`SCAN_SAMPLE`] elements are queried.
 pub const MAX_READS: u64 = 256;
 
-/// The reads of one relation. It is queried at every element in the order of the structure, or at a
-/// sample of the elements.
+/// The reads of one relation. All elements are queried in the order of the structure, or a sample
+/// of them.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Reads {
     /// The relation.
@@ -27,29 +25,29 @@ pub struct Reads {
     /// Number of elements that were queried.
     #[serde(rename = "asked")]
     pub queried: u64,
-    /// Whether only a sample was queried; the values per query are then means over the sample.
+    /// Whether only a sample was queried. Values per query are then means over the sample.
     pub sampled: bool,
-    /// Results per query.
+    /// Number of results per query.
     pub answers: f64,
-    /// Row reads per query; a row counts each time it is read.
+    /// Number of row reads per query.
     pub reads: f64,
-    /// Bytes read per query; each byte counts once.
+    /// Bytes read per query. A byte counts once per query.
     pub bytes: f64,
-    /// Cache lines touched per query; each line counts once.
+    /// Cache lines touched per query. A line counts once per query.
     pub lines: f64,
-    /// Row reads for listing the elements, per element.
+    /// Row reads for listing, per element.
     pub listing_reads: f64,
-    /// Lines that a small cache has to fetch, per element, including listing.
+    /// Lines that a small cache has to fetch, per element. Listing is included.
     pub fetched: f64,
     /// Fetched lines that are not near a cached line, per element.
     pub jumps: f64,
-    /// Lines that the whole sweep touches, including listing; each line counts once. If there is a
-    /// sample, the sweep visits only the sample.
+    /// Number of distinct lines that the whole sweep touches. Listing is included. A sampled sweep
+    /// visits only the sample.
     pub sweep_lines: u64,
-    /// Bytes to move per element: those of the lines of the sweep, each line counted once. If a
-    /// sample was queried, all lines of a query count, because each query reads them again.
+    /// Bytes to move per element. All distinct lines of the sweep are moved once. In a sampled
+    /// sweep, each query moves its lines again.
     pub moved_bytes: f64,
-    /// By table: the row reads per query.
+    /// The row reads per query, by table.
     pub tables: Vec<TableReads>,
 }
 
@@ -60,18 +58,18 @@ impl Reads {
     }
 }
 
-/// The reads of one table by a query.
+/// The reads of one table.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct TableReads {
     /// The name of the table.
     pub table: String,
-    /// Bytes of a row.
+    /// Bytes per row.
     pub row_bytes: usize,
-    /// Row reads per query; a row counts each time it is read.
+    /// Number of row reads per query.
     pub reads: f64,
 }
 
-/// A receiver of the counts: called before and after each relation.
+/// Receives the counts of relations.
 pub trait ReadsObserver {
     /// Called before `relation` is queried.
     fn relation_started(&mut self, relation: Relation);
@@ -81,7 +79,8 @@ pub trait ReadsObserver {
 
 /// Queries `relations` of `mesh` and counts the reads, until `stop` is true.
 ///
-/// Takes several times as long as the queries, and additional memory of a third of the mesh.
+/// The counting takes several times as long as the queries. It needs additional memory of a third
+/// of the mesh.
 pub(crate) fn count<M: Measured>(
     mesh: M,
     relations: &[Relation],
@@ -115,7 +114,6 @@ pub(crate) fn count<M: Measured>(
     }
 }
 
-/// A mesh with a probe, and that probe.
 struct ReadCounter<'a, M> {
     mesh: &'a M,
     probe: &'a CountingProbe,
@@ -123,8 +121,8 @@ struct ReadCounter<'a, M> {
 }
 
 impl<M: MeshQuery> ReadCounter<'_, M> {
-    /// Queries `queried` of the `elements`. Returns `None` if `stop` is true, or if all elements are
-    /// queried and their queries read too much.
+    /// Queries `queried` of the `elements`. Returns `None` if `stop` is true. Also returns `None`
+    /// if all elements are queried and a query reads too many rows on average.
     fn count(&self, relation: Relation, elements: usize, queried: usize) -> Option<Reads> {
         let mesh = self.mesh;
         let sweep = Sweep {
@@ -164,7 +162,7 @@ impl<M: MeshQuery> ReadCounter<'_, M> {
         }
     }
 
-    /// Lists the elements one by one, as the timed sweep does, and queries the selected ones.
+    /// Lists the elements one by one, as the timed sweep does, and queries the selected elements.
     fn count_sweep<I: Iterator>(
         &self,
         sweep: Sweep,
@@ -194,7 +192,6 @@ impl<M: MeshQuery> ReadCounter<'_, M> {
     }
 }
 
-/// The relation to query, the number of elements, and the number of them to query.
 #[derive(Clone, Copy)]
 struct Sweep {
     relation: Relation,
@@ -203,9 +200,8 @@ struct Sweep {
 }
 
 impl Sweep {
-    /// Returns the list index of the next element to query after `queried` queries.
+    /// Returns the list index of the next element after `queried` queries.
     fn nth_index(self, queried: usize) -> usize {
-        // `u128` cannot overflow here.
         (queried as u128 * self.elements as u128 / self.queried.max(1) as u128) as usize
     }
 
@@ -255,7 +251,7 @@ impl Sweep {
     }
 }
 
-/// Counts the results with `fold`, as the timed sweep does: calling `next` may read other rows.
+/// Counts the results with `fold`, as the timed sweep does. `next` may read other rows.
 fn count_results(answers: impl IntoIterator) -> u64 {
     answers.into_iter().fold(0, |number, _| number + 1)
 }

@@ -1,4 +1,4 @@
-//! The runs of a job for one sample, and the preparation before the clock starts.
+//! The timed runs of a job for one sample, and the preparation before them.
 
 use std::hint::black_box;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
@@ -7,12 +7,12 @@ use crate::caches::{caches, last_level_bytes, level_bytes};
 use crate::clock::{Clock, Time, timed};
 use crate::pages;
 
-/// Target for the minimum length of timed work, in nanoseconds. Short runs are timed together up to
-/// about this length, if their copies fit the cache.
+/// Target for the minimum time of timed work, in nanoseconds. Short runs are timed together up to
+/// about this time, if their copies fit the cache.
 pub const MIN_TIMED_NS: f64 = 60_000.0;
-/// Assumed size of the second-level cache in bytes, if the platform does not report it.
+/// Assumed size of the second-level cache in bytes, if unknown.
 const USUAL_SECOND_LEVEL: usize = 512 << 10;
-/// Assumed size of the last-level cache in bytes, if the platform does not report it.
+/// Assumed size of the last-level cache in bytes, if unknown.
 const USUAL_LAST_LEVEL: u64 = 32 << 20;
 
 /// The state of caches and heap at the start of timed work.
@@ -21,9 +21,9 @@ pub enum Start<'c> {
     /// The state after the previous runs: warm caches, and pages that stay in the process.
     #[default]
     Warm,
-    /// Caches that hold other data.
+    /// The caches hold other data.
     Cold(&'c CacheFlusher),
-    /// A heap whose freed pages were returned to the kernel.
+    /// Freed pages were returned to the kernel.
     FreshPages,
 }
 
@@ -34,7 +34,7 @@ pub struct CacheFlusher {
 }
 
 impl CacheFlusher {
-    /// Allocates data of twice the size of the last-level cache.
+    /// Allocates a buffer of twice the size of the last-level cache.
     pub fn new() -> Self {
         let caches = caches();
         let bytes = last_level_bytes(&caches).unwrap_or(USUAL_LAST_LEVEL);
@@ -45,13 +45,12 @@ impl CacheFlusher {
         }
     }
 
-    /// Returns the number of bytes that are written before each sample.
+    /// Returns the number of bytes written before each sample.
     pub fn bytes(&self) -> usize {
         size_of_val(&**self.words())
     }
 
-    /// Returns the last cache level whose content is replaced; `None` if the platform does not
-    /// report it.
+    /// Returns the last cache level whose content is replaced; `None` if unknown.
     pub fn level(&self) -> Option<u8> {
         self.level
     }
@@ -60,7 +59,7 @@ impl CacheFlusher {
         self.words.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Writes to all words, so that the caches hold only them.
+    /// Writes all words, so that the caches hold only this buffer.
     fn flush(&self) {
         let words = &mut *self.words();
         words
@@ -79,8 +78,8 @@ impl Default for CacheFlusher {
 /// The runs of a job for one sample.
 #[derive(Clone, Copy)]
 pub struct Series<'c> {
-    /// Number of untimed runs before the timed ones. They bring caches, tables and pages into the
-    /// same state as in the timed runs.
+    /// Number of untimed runs before the timed runs. They bring caches, tables and pages into the
+    /// state of the timed runs.
     pub untimed: u32,
     /// Number of timed runs; at least 1.
     pub runs: u32,
@@ -93,7 +92,7 @@ pub struct Series<'c> {
 }
 
 impl<'c> Series<'c> {
-    /// Makes a series of one timed run, without untimed runs.
+    /// Makes a series of one timed run without untimed runs.
     pub fn once(clock: &'c dyn Clock) -> Self {
         Self {
             untimed: 0,
@@ -104,7 +103,7 @@ impl<'c> Series<'c> {
         }
     }
 
-    /// Makes a series of `runs` timed runs, without untimed runs.
+    /// Makes a series of `runs` timed runs without untimed runs.
     pub fn with_runs(runs: u32, clock: &'c dyn Clock) -> Self {
         Self {
             runs,
@@ -112,7 +111,7 @@ impl<'c> Series<'c> {
         }
     }
 
-    /// Returns the same series, with the result computed.
+    /// Returns the series with `check` set.
     pub fn with_result(self) -> Self {
         Self {
             check: true,
@@ -120,7 +119,7 @@ impl<'c> Series<'c> {
         }
     }
 
-    /// Returns the same series with `untimed` untimed runs.
+    /// Returns the series with `untimed` untimed runs.
     pub fn with_untimed(self, untimed: u32) -> Self {
         Self { untimed, ..self }
     }
@@ -134,14 +133,13 @@ impl<'c> Series<'c> {
         }
     }
 
-    /// Returns the time of `work`, which starts in the state of [`Start`].
     pub(crate) fn timed(&self, work: impl FnOnce()) -> Time {
         self.begin();
         timed(self.clock, work)
     }
 
-    /// Runs `work` as often as the series describes, without stopping the clock between the timed
-    /// runs. The work must not change its input. Returns the total time of the timed runs.
+    /// Runs `work` as the series describes, without stopping the clock between timed runs. `work`
+    /// must not change its input. Returns the total time of the timed runs.
     pub(crate) fn time_together(&self, mut work: impl FnMut()) -> Time {
         for _ in 0..self.untimed {
             work();
@@ -154,17 +152,15 @@ impl<'c> Series<'c> {
     }
 }
 
-/// Copies that runs change, and that are reset to their initial state outside the timing.
+/// Copies that runs change. They are reset to the initial state outside the timing.
 ///
-/// Normally one copy is used. If a run is too short for the clock, several copies are used in turn,
-/// for about 60 µs of timed work, even if the series asks for fewer runs. Together they fit into
-/// half of the second-level cache. Each copy is therefore as warm in the cache as a single copy
-/// would be. The copies, with the grown capacity of their tables, are kept from one series to the
-/// next.
+/// Normally there is one copy. If a run is too short for the clock, several copies are used in
+/// turn, for about 60 µs of timed work. All copies together fit into half of the second-level
+/// cache. The copies and their tables are kept between series.
 #[derive(Debug)]
 pub(crate) struct ReusedCopies<T> {
     copies: Vec<T>,
-    /// The time of the last run, in nanoseconds; 0 before the first.
+    /// The time of the last run, in nanoseconds; 0 before the first run.
     last_ns: f64,
 }
 
@@ -178,10 +174,9 @@ impl<T> Default for ReusedCopies<T> {
 }
 
 impl<T> ReusedCopies<T> {
-    /// Runs `run` as often as `series` describes, each time on a copy that `reset` has restored
-    /// outside the timing. `new` makes a copy if one is missing; `bytes` is the size of a copy.
-    /// Returns the total time of the timed runs: of more runs in proportion, if those that were
-    /// asked for are too short for the clock.
+    /// Runs `run` as `series` describes, on copies that `reset` restores outside the timing. `new`
+    /// makes a missing copy of size `bytes`. Returns the total time of the timed runs. If more runs
+    /// are needed for the clock, their time is scaled to the requested number.
     pub(crate) fn time(
         &mut self,
         series: &Series<'_>,
@@ -208,7 +203,7 @@ impl<T> ReusedCopies<T> {
         time.scaled(f64::from(series.runs) / f64::from(enough.runs))
     }
 
-    /// Returns the time of the timed runs of `series`, on as many copies as [`copy_count`] allows.
+    /// Returns the time of the timed runs, on as many copies as [`copy_count`] allows.
     fn run_all(
         &mut self,
         series: &Series<'_>,
@@ -222,13 +217,13 @@ impl<T> ReusedCopies<T> {
         let mut left = series.runs as usize;
         while left > 0 {
             let count = copy_count(self.last_ns, bytes).min(left);
-            // Copies that are made below need no reset.
+            // New copies need no reset.
             let used = self.copies.len().min(count);
             self.copies[..used].iter_mut().for_each(&mut *reset);
             while self.copies.len() < count {
                 let mut copy = new();
                 if !self.copies.is_empty() && !fresh {
-                    // This untimed run grows the tables of the copy like those of the first copy.
+                    // This untimed run grows the tables of the copy.
                     run(&mut copy);
                     reset(&mut copy);
                 }
@@ -247,15 +242,14 @@ impl<T> ReusedCopies<T> {
         total
     }
 
-    /// Returns a copy in its state after a run; `None` before the first run. All runs do the same
-    /// work.
+    /// Returns a copy in its state after a run; `None` before the first run.
     pub(crate) fn used_copy(&self) -> Option<&T> {
         self.copies.first()
     }
 }
 
-/// Runs `make` as often as `series` describes. The results, of `bytes` each, are dropped outside
-/// the timing. Returns the total time of the timed runs, and one of the results if there was a run.
+/// Runs `make` as `series` describes. Results have size `bytes` and are dropped outside the timing.
+/// Returns the total time of the timed runs, and a result if there was a run.
 pub(crate) fn time_making<T>(
     series: &Series<'_>,
     bytes: usize,
@@ -272,7 +266,7 @@ pub(crate) fn time_making<T>(
     (time, slots.copies.pop().flatten())
 }
 
-/// Returns the number of copies of `bytes` each to use in turn, for runs of `ns` nanoseconds.
+/// Returns the number of copies of size `bytes` for runs of `ns` nanoseconds.
 fn copy_count(ns: f64, bytes: usize) -> usize {
     if ns <= 0.0 || ns >= MIN_TIMED_NS {
         return 1;
@@ -281,12 +275,11 @@ fn copy_count(ns: f64, bytes: usize) -> usize {
     ((MIN_TIMED_NS / ns).ceil() as usize).min(fit)
 }
 
-/// Returns whether data of this size is larger than the second-level cache.
+/// Returns whether `bytes` is larger than the second-level cache.
 pub fn exceeds_second_level(bytes: usize) -> bool {
     bytes > second_level_bytes()
 }
 
-/// Returns the size of the second-level cache in bytes.
 pub(crate) fn second_level_bytes() -> usize {
     static BYTES: OnceLock<usize> = OnceLock::new();
     *BYTES.get_or_init(|| {
@@ -301,7 +294,6 @@ mod tests {
 
     use super::*;
 
-    /// A clock that the test advances.
     #[derive(Default)]
     struct ManualClock(Mutex<f64>);
 
@@ -368,7 +360,7 @@ mod tests {
         };
         assert_eq!(count_runs(Start::Cold(&flusher)), 2);
         assert_eq!(count_runs(Start::FreshPages), 2);
-        // One run makes each of the 58 missing copies equal to the first two.
+        // The 58 missing copies need one run each to become equal to the first two copies.
         assert_eq!(count_runs(Start::Warm), 60 + 58);
     }
 

@@ -1,4 +1,4 @@
-//! One edit alone, at places that do not affect each other.
+//! One edit, measured alone at many places.
 
 use sixfold::{Edit, MeshEdit, PolygonMesh, Representation};
 
@@ -8,10 +8,10 @@ use crate::edit_pass::{Editor, Edits, PreparedEditor};
 use crate::edit_place::{EditPlace, apply_edit, independent_faces, prepare_place};
 use crate::series::{ReusedCopies, Series};
 
-/// An edit to be done at some places of a closed triangle mesh.
+/// An edit to be done at several places of a closed triangle mesh.
 ///
-/// The places are spread over the mesh, in no particular order. An edit at one place does not
-/// affect the surroundings of another, so handles that were looked up before the edits stay valid.
+/// The places are spread over the mesh. An edit at one place does not affect the other places, so
+/// handles stay valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SingleEdit {
     /// The edit.
@@ -26,20 +26,18 @@ impl SingleEdit {
     ///
     /// # Errors
     ///
-    /// Returns the reason if the structure cannot hold `polygons`, or a place cannot be prepared
-    /// for the edit.
+    /// Returns the reason if the structure cannot hold `polygons` or if a place cannot be prepared.
     pub fn prepare(self, backend: &Backend, polygons: &PolygonMesh) -> Option<PreparedEditor> {
         backend.info.edits[self.edit as usize]?;
         Some((backend.edits?.prepare_single)(self, polygons))
     }
 
-    /// Returns whether the edit is one pass over the whole mesh, independent of places.
+    /// Returns whether the edit is one pass over the whole mesh.
     pub const fn is_pass(self) -> bool {
         matches!(self.edit, Edit::Compact | Edit::RemoveIsolatedVertices)
     }
 }
 
-/// Sets up `job` on `M`.
 pub(crate) fn prepare_single<M: Representation + MeshEdit + 'static>(
     job: SingleEdit,
     polygons: &PolygonMesh,
@@ -47,7 +45,6 @@ pub(crate) fn prepare_single<M: Representation + MeshEdit + 'static>(
     Ok(Box::new(SingleEditRun::<M>::new(job, polygons)?))
 }
 
-/// An edit at places of a mesh that is prepared for it.
 struct SingleEditRun<M: MeshEdit> {
     edit: Edit,
     mesh: M,
@@ -105,7 +102,7 @@ impl<M: Representation + MeshEdit + 'static> Editor for SingleEditRun<M> {
     }
 }
 
-/// Applies the edit at all places, or once if it is a pass over the whole mesh.
+/// Applies the edit at all places. A pass over the whole mesh is applied once.
 fn apply_at_all_places<M: MeshEdit + Representation>(
     edit: Edit,
     mesh: &mut M,

@@ -1,4 +1,4 @@
-//! One subdivision of a study: sets it up, runs it on one thread, and returns its time and result.
+//! Runs one subdivision of a study on one thread.
 
 use std::collections::BTreeSet;
 use std::hint::black_box;
@@ -14,8 +14,7 @@ use crate::subdivision_job::SubdivisionJob;
 use crate::timed_structure::{Outcome, Run};
 
 /// Returns the pool of the one thread that runs all subdivisions. The processor time of this thread
-/// is therefore that of all the work. All structures use the same thread, so that they share its
-/// heap.
+/// is the time of all the work. All structures share the heap of this thread.
 fn one_thread_pool() -> Result<&'static ThreadPool, String> {
     static POOL: OnceLock<Result<ThreadPool, String>> = OnceLock::new();
     let start = || {
@@ -25,18 +24,17 @@ fn one_thread_pool() -> Result<&'static ThreadPool, String> {
     POOL.get_or_init(start).as_ref().map_err(Clone::clone)
 }
 
-/// Sets up `job` on the structure of `backend`, built from `polygons`. Runs the job as `series`
-/// describes.
+/// Sets up `job` on the structure of `backend` and runs it as `series` describes.
 ///
-/// Set-up is outside the timing. In native subdivisions, the untimed runs make the tables that all
-/// later runs reuse. The other methods build their structures within the timing.
+/// Set-up is not timed. In native subdivisions, the untimed runs make the tables that later runs
+/// reuse. The other methods build their structures within the timing.
 pub(crate) fn subdivide(
     backend: &Backend,
     job: SubdivisionJob,
     polygons: &PolygonMesh,
     series: &Series<'_>,
 ) -> Run {
-    // Everything runs on that thread, so clock, caches and page faults are those of the thread.
+    // Clock, caches and page faults then belong to the thread of the pool.
     let on_thread =
         |pool: &ThreadPool| pool.install(|| set_up_and_run(backend, job, polygons, series));
     one_thread_pool()
@@ -71,8 +69,8 @@ fn set_up_and_run(
     Ok(Run::done(time, outcome))
 }
 
-/// Checks that the scheme accepts the degrees of the faces. The check is made here, so that the
-/// error is the same for all structures and names a face of the whole mesh. O(faces) at most.
+/// Checks that the scheme accepts the degrees of the faces. The error is then the same for all
+/// structures. O(faces) at most.
 fn check_degrees(job: SubdivisionJob, polygons: &PolygonMesh) -> Result<(), SubdivisionError> {
     let scheme = job.subdivision.scheme;
     if scheme.kind().takes != "triangles" {
@@ -88,8 +86,8 @@ fn check_degrees(job: SubdivisionJob, polygons: &PolygonMesh) -> Result<(), Subd
     }
 }
 
-/// Returns a mesh of about the first `size` faces of `polygons`. Faces that touch others only at a
-/// vertex are left out, so that every structure that holds `polygons` also holds this mesh. Takes
+/// Returns a mesh of about the first `size` faces of `polygons`. Faces that touch other faces only
+/// at a vertex are left out, so that every structure that holds `polygons` also holds the patch.
 /// O(size · log size) for each of a few passes.
 pub(crate) fn patch(polygons: &PolygonMesh, size: usize) -> PolygonMesh {
     let faces = polygons.faces().iter().take(size.max(1));
@@ -101,8 +99,7 @@ pub(crate) fn patch(polygons: &PolygonMesh, size: usize) -> PolygonMesh {
         if singular.is_empty() {
             return mesh;
         }
-        // Keeps the first face at each such vertex. The number of faces decreases in each pass, and
-        // a single face has no such vertex, so the loop ends.
+        // Keep the first face at each such vertex. Each pass removes faces, so the loop ends.
         let corners = mesh.faces().iter().map(|(_, corners)| corners);
         let is_kept: Vec<bool> = corners
             .map(|corners| {
@@ -118,7 +115,7 @@ pub(crate) fn patch(polygons: &PolygonMesh, size: usize) -> PolygonMesh {
     }
 }
 
-/// Builds the mesh of some faces of `polygons`, with only their vertices.
+/// Builds the mesh of some faces of `polygons`.
 fn submesh(polygons: &PolygonMesh, faces: &[&[VertexId]]) -> PolygonMesh {
     let mut used: Vec<VertexId> = faces.iter().copied().flatten().copied().collect();
     used.sort_unstable();

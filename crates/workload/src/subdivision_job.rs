@@ -1,4 +1,4 @@
-//! Subdivision as a workload: one scheme, one way to run it, a number of levels, on one structure.
+//! Subdivision as a workload: a scheme, a way to run it, and a number of levels.
 
 use std::fmt;
 
@@ -10,17 +10,16 @@ use sixfold::{Creases, Point, PolygonMesh, Refine, Representation};
 
 use crate::backend::Backend;
 
-/// The method that computes the levels, and the memory that stores them.
+/// How a subdivision computes and stores the levels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Way {
-    /// Queries the mesh for each new point, and rebuilds the structure from each level.
+    /// Queries the mesh for each new point, and rebuilds the structure for each level.
     Gather,
-    /// Makes one pass over the faces, and rebuilds the structure from each level.
+    /// Makes one pass over the faces, and rebuilds the structure for each level.
     Scatter,
-    /// Refines the structure's own tables into newly allocated meshes.
+    /// Refines the tables of the structure into newly allocated meshes.
     NativeFresh,
-    /// Refines the structure's own tables into the meshes of the previous run, as an animation
-    /// does.
+    /// Refines the tables of the structure into the meshes of the previous run.
     Native,
 }
 
@@ -28,7 +27,7 @@ impl Way {
     /// All four ways.
     pub const ALL: [Self; 4] = [Self::Gather, Self::Scatter, Self::NativeFresh, Self::Native];
 
-    /// Returns the name that users write: `native_fresh`.
+    /// Returns the name in options: `gather`, `scatter`, `native_fresh` or `native`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Gather => "gather",
@@ -38,7 +37,7 @@ impl Way {
         }
     }
 
-    /// Returns its method.
+    /// Returns the subdivision method of this way.
     pub const fn method(self) -> Method {
         match self {
             Self::Gather => Method::Gather,
@@ -67,11 +66,11 @@ pub struct SubdivisionJob {
     pub subdivision: Subdivision,
     /// The way to run it.
     pub way: Way,
-    /// The number of levels; at least 1.
+    /// The number of levels. At least 1.
     pub levels: u32,
 }
 
-/// A subdivision that is ready to be run repeatedly: the control mesh is built.
+/// A subdivision that is ready to run repeatedly.
 pub trait Refiner: Send {
     /// Computes all levels.
     ///
@@ -80,13 +79,13 @@ pub trait Refiner: Send {
     /// Returns an error if the scheme or the structure refuses a level.
     fn run(&mut self) -> Result<(), SubdivisionError>;
 
-    /// Returns the number of faces of the last level, and a checksum of its positions:
-    /// Σ |x| + 2|y| + 3|z|.
+    /// Returns the number of faces of the last level and a checksum of the positions: Σ |x| + 2|y|
+    /// + 3|z|.
     fn result(&self) -> (usize, f64);
 }
 
 impl SubdivisionJob {
-    /// Makes a subdivision by `scheme` with its default options.
+    /// Makes a subdivision by `scheme` with default options.
     pub fn new(scheme: Scheme, way: Way, levels: u32) -> Self {
         Self {
             subdivision: Subdivision::new(scheme),
@@ -96,11 +95,12 @@ impl SubdivisionJob {
     }
 
     /// Sets up the subdivision on the structure of `backend`. Returns `None` if the structure does
-    /// not support this way.
+    /// not support the way.
     ///
     /// # Errors
     ///
-    /// Returns the reason if the structure cannot hold `polygons`, or the scheme refuses `creases`.
+    /// Returns the reason if the structure cannot hold `polygons` or if the scheme refuses
+    /// `creases`.
     pub fn prepare(
         self,
         backend: &Backend,
@@ -114,7 +114,6 @@ impl SubdivisionJob {
         Some(prepare(self, polygons, creases))
     }
 
-    /// Builds the control mesh, and converts the creases to it.
     fn control_mesh<M: Representation>(
         &self,
         polygons: &PolygonMesh,
@@ -126,10 +125,10 @@ impl SubdivisionJob {
     }
 }
 
-/// A subdivision ready to be run, or the reason why it is not.
+/// A subdivision that is ready to run, or the reason why it is not ready.
 pub type PreparedRefiner = Result<Box<dyn Refiner>, SubdivisionError>;
 
-/// Sets up `job` on `M`, which is rebuilt from each level.
+/// Sets up `job` on `M`. The structure is rebuilt for each level.
 pub(crate) fn prepare_rebuilt<M: Representation + 'static>(
     job: SubdivisionJob,
     polygons: &PolygonMesh,
@@ -144,7 +143,7 @@ pub(crate) fn prepare_rebuilt<M: Representation + 'static>(
     }))
 }
 
-/// Sets up `job` in the tables of `M`.
+/// Sets up `job` on `M`. The tables of the structure are refined.
 pub(crate) fn prepare_native<M: Refine + 'static>(
     job: SubdivisionJob,
     polygons: &PolygonMesh,
@@ -160,12 +159,12 @@ pub(crate) fn prepare_native<M: Refine + 'static>(
     }))
 }
 
-/// A subdivision that computes each level as polygons and builds the structure from them.
+/// Computes each level as polygons and builds the structure from the polygons.
 struct Rebuilt<M> {
     job: SubdivisionJob,
     mesh: M,
     creases: Creases,
-    /// The polygons of the last level. The structure may have merged vertices with equal positions.
+    /// The polygons of the last level. The structure may have merged vertices.
     last: PolygonMesh,
 }
 
@@ -173,7 +172,7 @@ impl<M: Representation + 'static> Refiner for Rebuilt<M> {
     fn run(&mut self) -> Result<(), SubdivisionError> {
         let subdivision = &self.job.subdivision;
         let mut creases = self.creases.clone();
-        // Drops the result of the previous run, so that all runs do the same work.
+        // Drop the previous result, so that all runs do the same work.
         self.last = PolygonMesh::default();
         let mut finest: Option<M> = None;
         for level in 0..self.job.levels {
@@ -196,7 +195,7 @@ impl<M: Representation + 'static> Refiner for Rebuilt<M> {
     }
 }
 
-/// A subdivision that refines the tables of the structure, with one mesh for each level.
+/// Refines the tables of the structure, with one mesh for each level.
 struct InPlace<M: Refine> {
     job: SubdivisionJob,
     mesh: M,
@@ -258,7 +257,6 @@ mod tests {
                     };
                     match refiner.run() {
                         Ok(()) => results.push(refiner.result()),
-                        // A corner table cannot hold quads.
                         Err(_) => assert_eq!(backend.name(), "corner-table"),
                     }
                     if refiner.run().is_ok() {

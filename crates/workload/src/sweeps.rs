@@ -1,17 +1,16 @@
 //! The loops of the operations, generic over the structure.
 //!
-//! Every loop is compiled for each structure and makes no choice at run time. Inner loops use
-//! `for_each`: circulators are 5 to 20 % faster with it than with `for` (`vertex_normal`,
-//! `face_barycenter`, `edge_edges` on icosphere6, in order and shuffled).
+//! Every loop is compiled separately for each structure. Inner loops use `for_each`: circulators
+//! are 5 to 20 % faster with it than with `for` (`vertex_normal`, `face_barycenter`, `edge_edges`
+//! on icosphere6, in order and shuffled).
 //!
 //! The loops over all elements must be fast without inlining, because inlining differs between
-//! programs. If a closure changes captured variables and is not inlined, it keeps these variables
-//! in memory, and loads the addresses of all tables again for each element. Therefore the loops
-//! pass sums by value with `fold`, or store results with `for`.
+//! programs. A closure that changes captured variables and is not inlined keeps them in memory. It
+//! also loads the addresses of all tables again for each element. Therefore the loops pass sums by
+//! value with `fold`, or store results with `for`.
 //!
-//! Operations store their results in [`Outputs`], which are made once per structure. The allocation
-//! of outputs is not timed. The allocation of the queue and the depths of `ff_bfs` is timed: it is
-//! part of that operation.
+//! Operations store their results in [`Outputs`]. Outputs are allocated once per structure, without
+//! timing. The queue and the depths of `ff_bfs` are allocated within the timing.
 
 use std::hash::Hasher;
 use std::hint::black_box;
@@ -22,11 +21,8 @@ use crate::operation::{ElementKind, Operation};
 
 /// The elements that an operation visits.
 pub(crate) trait Elements<M: MeshQuery> {
-    /// Lists the vertices.
     fn vertices<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Vertex> + 'a;
-    /// Lists the edges.
     fn edges<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Edge> + 'a;
-    /// Lists the faces.
     fn faces<'a>(&'a self, mesh: &'a M) -> impl Iterator<Item = M::Face> + 'a;
 }
 
@@ -47,14 +43,13 @@ impl<M: MeshQuery> Elements<M> for All {
 
 /// The storage for the results of operations.
 pub(crate) struct Outputs<M: MeshQuery> {
-    /// By face: barycentres or normals.
+    /// Barycentres or normals of the faces.
     pub(crate) faces: FaceMap<M, Point>,
-    /// By vertex: normals or positions.
+    /// Normals or positions of the vertices.
     pub(crate) vertices: VertexMap<M, Point>,
 }
 
 impl<M: MeshQuery> Outputs<M> {
-    /// Makes outputs for `mesh`, with an entry for every element.
     pub(crate) fn for_mesh(mesh: &M) -> Self {
         let mut outputs = Self {
             faces: mesh.face_map(Point::ZERO),
@@ -70,14 +65,12 @@ impl<M: MeshQuery> Outputs<M> {
     }
 }
 
-/// The counts and sums of a loop.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct SweepResult {
-    /// Visited elements.
+    /// Number of visited elements.
     pub(crate) elements: u64,
-    /// Handles that relations yielded, or the count that the operation defines.
+    /// Number of handles that relations yielded, or another count.
     pub(crate) count: u64,
-    /// The sum that the operation defines.
     pub(crate) sum: f64,
 }
 
@@ -89,7 +82,7 @@ impl SweepResult {
     }
 }
 
-/// Returns the checksum of a field of vectors: Σ |x| + 2|y| + 3|z|.
+/// Returns a checksum of vectors: Σ |x| + 2|y| + 3|z|.
 pub fn field_sum(points: impl Iterator<Item = Point>) -> f64 {
     let weighted_sum =
         |p: Point| f64::from(p.x).abs() + 2.0 * f64::from(p.y).abs() + 3.0 * f64::from(p.z).abs();
@@ -125,7 +118,7 @@ pub(crate) fn sweep_kind<M: MeshQuery, E: Elements<M>>(
         (Operation::AllQueries, ElementKind::Vertex) => query_vertices(mesh, elements),
         (Operation::AllQueries, ElementKind::Edge) => query_edges(mesh, elements),
         (Operation::AllQueries, ElementKind::Face) => query_faces(mesh, elements),
-        // `TimedStructure` runs these; they need more than queries.
+        // `TimedStructure` runs these operations.
         (Operation::Build, _) => SweepResult::default(),
         (Operation::CatmullClark(_) | Operation::Loop(_) | Operation::EditPass(_), _) => {
             SweepResult::default()
@@ -136,7 +129,7 @@ pub(crate) fn sweep_kind<M: MeshQuery, E: Elements<M>>(
 /// Computes a number from a handle in a few instructions. Equal handles have equal numbers.
 #[inline(always)]
 fn token<H: Handle>(handle: H) -> u64 {
-    /// A hasher that adds the words of a handle, with a rotation before each.
+    /// A hasher that adds the words of a handle, with a rotation before each word.
     struct Words(u64);
 
     impl Hasher for Words {
@@ -172,7 +165,7 @@ fn token<H: Handle>(handle: H) -> u64 {
     words.finish()
 }
 
-/// A sink that counts handles and adds their tokens, so that the compiler cannot omit them.
+/// Counts handles and adds their tokens, so that the compiler cannot omit the handles.
 #[derive(Default)]
 pub(crate) struct Sink {
     count: u64,
@@ -182,8 +175,7 @@ pub(crate) struct Sink {
 impl Sink {
     #[inline(always)]
     pub(crate) fn consume<H: Handle>(&mut self, handles: impl IntoIterator<Item = H>) {
-        // The sums are kept in registers: a sum behind a reference would be stored for every
-        // handle.
+        // The sums stay in registers. A sum behind a reference would be stored for every handle.
         let add = |(count, tokens): (u64, u64), handle: H| {
             (count + 1, tokens.wrapping_add(token(handle)))
         };
@@ -192,8 +184,7 @@ impl Sink {
         self.tokens = self.tokens.wrapping_add(tokens);
     }
 
-    /// Returns the number of handles. `black_box` makes the compiler compute the handles
-    /// themselves.
+    /// Returns the number of handles. `black_box` makes the compiler compute all handles.
     #[inline(always)]
     pub(crate) fn finish_count(self) -> u64 {
         black_box(self.tokens);
@@ -201,7 +192,6 @@ impl Sink {
     }
 }
 
-/// Queries every element, and passes all results to the sink.
 #[inline(always)]
 fn sweep<I: Iterator>(elements: I, query: impl Fn(&mut Sink, I::Item)) -> SweepResult {
     let (sink, queried) = elements.fold((Sink::default(), 0), |(mut sink, queried), element| {
@@ -269,7 +259,7 @@ fn query_faces<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> SweepRes
     })
 }
 
-/// Calls `store` for each element to store its result, and counts the elements.
+/// Calls `store` for each element, and counts the elements.
 #[inline(always)]
 fn count_each<I: Iterator>(elements: I, mut store: impl FnMut(I::Item)) -> SweepResult {
     let mut count = 0;
@@ -300,12 +290,10 @@ fn face_barycenters<M: MeshQuery, E: Elements<M>>(
     })
 }
 
-/// Returns the unnormalised normal of a face: the sum of cross products of the triangles at its
-/// first corner.
+/// Returns the unnormalised normal of a face: the sum of the cross products of its fan triangles.
 #[inline(always)]
 fn face_normal<M: MeshQuery>(mesh: &M, f: M::Face) -> Point {
-    // Positions are read without `map`: the `fold` of `map` is not always inlined, and a call per
-    // face is measurable.
+    // Positions are read without `map`, because the `fold` of `map` is not always inlined.
     let mut corners = mesh.face_vertices(f);
     let (Some(first), Some(second)) = (corners.next(), corners.next()) else {
         return Point::ZERO; // unreachable, as a face has three corners; avoids the code of a panic
@@ -348,7 +336,7 @@ fn vertex_normals<M: MeshQuery, E: Elements<M>>(
     })
 }
 
-/// Computes for each vertex the mean of its neighbours; an isolated vertex keeps its position.
+/// Computes the mean of the neighbours of each vertex. An isolated vertex keeps its position.
 #[inline(never)]
 fn neighbour_means<M: MeshQuery, E: Elements<M>>(
     mesh: &M,
@@ -396,13 +384,10 @@ fn boundary_edges<M: MeshQuery, E: Elements<M>>(mesh: &M, elements: &E) -> Sweep
     }
 }
 
-/// Returns the sum of all depths. The queue and the depths are allocated here, once.
+/// Returns the sum of all depths.
 ///
 /// Every neighbour is written to the end of the queue, but the queue grows only if the neighbour is
-/// new. This avoids a branch: two of three neighbours are already visited, in an order that a
-/// processor cannot predict. Measured on half-edge, in ns per face (with that branch / without it /
-/// without it and with `for_each`): icosphere6 23 / 24 / 19, bunny 21 / 18 / 11, nefertiti 30 / 28
-/// / 20.
+/// new. This avoids a branch that a processor cannot predict.
 #[inline(never)]
 fn breadth_first<M: MeshQuery>(mesh: &M) -> SweepResult {
     const UNVISITED: u32 = u32::MAX;

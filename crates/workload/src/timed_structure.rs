@@ -1,4 +1,4 @@
-//! One structure under measurement: the jobs that it runs, and their times and results.
+//! Runs jobs on one structure and measures their times.
 
 use std::hint::black_box;
 
@@ -19,34 +19,33 @@ use crate::sweeps::{All, Elements, Outputs, SweepResult, field_sum, sweep_kind};
 pub struct Job {
     /// The operation.
     pub operation: Operation,
-    /// The elements that represent all elements; `None` to run all of them.
+    /// The elements to run; `None` for all elements.
     pub sample: Option<ElementSample>,
 }
 
-/// The elements that represent all elements. For each kind whose queries scan, these are the first
-/// elements of the draw. For a subdivision, they are the first faces, as a separate mesh.
+/// A sample of the elements. For kinds whose queries scan, it contains the first elements of the
+/// draw. For a subdivision, it contains the first faces, as a separate mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ElementSample {
-    /// By kind: whether it is sampled. All elements of the other kinds are visited.
+    /// For each kind, whether it is sampled. Kinds that are not sampled are visited in full.
     pub scanned: [bool; 3],
-    /// The number of elements of each sampled kind, or all elements if the mesh has fewer.
+    /// The maximum number of elements of each sampled kind.
     pub size: usize,
 }
 
 /// The time and the result of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// The time of one run of the whole operation; scaled up if a sample was run.
+    /// The time of one run of the whole operation. The time of a sample is scaled up.
     pub time: Time,
     /// The result; `None` if it was not requested.
     pub outcome: Option<Outcome>,
-    /// The reason why this structure cannot run the operation on this mesh; `time` is then
-    /// meaningless.
+    /// Why this structure cannot run the operation on this mesh. `time` is then meaningless.
     pub refusal: Option<String>,
 }
 
 impl Run {
-    /// Makes a run that was not refused.
+    /// Makes the result of a run that was not refused.
     pub fn done(time: Time, outcome: Option<Outcome>) -> Self {
         Self {
             time,
@@ -55,7 +54,6 @@ impl Run {
         }
     }
 
-    /// Makes a run that was refused.
     pub(crate) fn refused(reason: String, series: &Series<'_>) -> Self {
         Self {
             time: Time::zero_like(series.clock.now()),
@@ -68,39 +66,36 @@ impl Run {
 /// The result of an operation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// A number that depends on all results, but not on the order of neighbours.
+    /// A checksum of all results. It does not depend on the order of neighbours.
     pub checksum: f64,
-    /// The number of elements that the whole operation visits; scaled up if a sample was run.
+    /// The number of elements that the whole operation visits.
     pub elements: u64,
 }
 
-/// A backend that is ready to be timed: a structure built from a mesh, or an external program. Tests
-/// can implement it.
+/// A backend that is ready to be timed: a structure or an external program.
 pub trait TimedBackend {
-    /// Returns the name that users write.
+    /// Returns the name of the backend.
     fn name(&self) -> &str;
-    /// Returns whether it is an external program. Such a program runs only whole operations, and
-    /// the results of other backends are not checked against its results.
+    /// Returns whether the backend is an external program. External programs run only whole
+    /// operations, and are never the reference for checksums.
     fn is_external(&self) -> bool {
         false
     }
     /// Returns for each relation how much of the mesh a query visits.
     fn costs(&self) -> [QueryCost; 9];
-    /// Returns how many vertices of the input were merged with others.
+    /// Returns the number of input vertices that were merged with other vertices.
     fn merged_vertices(&self) -> usize;
-    /// Returns the bytes of its tables.
+    /// Returns the size of the tables in bytes.
     fn bytes(&self) -> usize;
-    /// Builds the backend again from the same polygons at other addresses. The times of some
-    /// operations depend slightly on the addresses and pages of the tables. Does nothing if there
-    /// is nothing to build.
+    /// Builds the backend again from the same polygons at other addresses, if there is something to
+    /// build. Addresses and pages of the tables affect some times.
     fn rebuild(&mut self) {}
-    /// Runs `job` as `series` describes, or once if the job has a sample. The returned time is that
-    /// of one run.
+    /// Runs `job` as `series` describes. A job with a sample is run once. Returns the time of one
+    /// run.
     fn run(&mut self, job: &Job, series: &Series<'_>) -> Run;
 }
 
-/// A structure built from `polygons`, with storage for outputs and with handles of the drawn
-/// elements.
+/// A structure with its outputs and the handles of the drawn elements.
 pub(crate) struct TimedStructure<'a, M: Representation> {
     backend: Backend,
     polygons: &'a PolygonMesh,
@@ -112,7 +107,6 @@ pub(crate) struct TimedStructure<'a, M: Representation> {
 }
 
 impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
-    /// Prepares `mesh`, the structure of `backend` built from `polygons`, for measurement.
     pub(crate) fn new(
         backend: &Backend,
         polygons: &'a PolygonMesh,
@@ -140,7 +134,7 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         Run::done(time, outcome)
     }
 
-    /// Smooths a copy of the mesh in each run; each copy starts with the original positions.
+    /// Smooths a copy of the mesh in each run. Each copy starts with the original positions.
     fn smooth(&mut self, series: &Series<'_>) -> Run {
         let Self { mesh, outputs, .. } = self;
         let mut copies = ReusedCopies::default();
@@ -173,10 +167,9 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         let outcome = copies.used_copy().filter(|_| series.check).map(|smoothed| {
             let after = smoothed.vertices().map(|v| smoothed.position(v));
             let means = mesh.vertices().map(|v| outputs.vertices[v]);
-            // If a structure identifies vertices by their coordinates, smoothing can move two
-            // vertices to one position. The structure then merges them, or refuses the mesh if they
-            // are corners of one face. The work up to that point is the same, so the checksum then
-            // uses the computed means.
+            // Smoothing can move two vertices to one position. A structure that identifies vertices
+            // by position then merges them, or refuses the mesh. The checksum then uses the
+            // computed means.
             let apart = smoothed.vertex_count() == mesh.vertex_count();
             let checksum = match moved.is_ok() && apart {
                 true => field_sum(after),
@@ -269,7 +262,7 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         Run::done(total, outcome)
     }
 
-    /// Subdivides all faces, or a patch that represents them.
+    /// Subdivides all faces, or a patch.
     fn subdivide(
         &mut self,
         subdivision: SubdivisionJob,
@@ -373,14 +366,12 @@ impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
     }
 }
 
-/// Reads every table of `mesh`, if the mesh is larger than the second-level cache and runs are to
-/// start with warm caches.
+/// Reads every table of `mesh`, if runs start with warm caches and the mesh is larger than the
+/// second-level cache.
 ///
-/// If another backend was measured before, the third-level cache holds the data of that backend.
-/// Runs that do not read the tables in row order then need up to ten passes until the cache holds
-/// the tables again. `edge_edges` on a winged-edge mesh of 200,000 faces took 8 ms instead of 3 ms.
-/// After one sequential pass, the first run already takes 3 ms, as in a program that runs nothing
-/// else.
+/// Without this pass, the third-level cache holds the data of the previous backend. Runs that do
+/// not read in row order then need up to ten passes to fill the cache. For example, `edge_edges` on
+/// a winged-edge mesh of 200,000 faces took 8 ms instead of 3 ms.
 fn fill_caches<M: Representation>(mesh: &M, series: &Series<'_>) {
     if needs_filling(mesh, series) {
         let scans = M::cost(Relation::VertexFaces) == QueryCost::Scan;
@@ -388,7 +379,7 @@ fn fill_caches<M: Representation>(mesh: &M, series: &Series<'_>) {
     }
 }
 
-/// Reads the outputs of `mesh` from their start to their end, if [`fill_caches`] reads the mesh.
+/// Reads the outputs of `mesh`, if [`fill_caches`] reads the mesh.
 fn fill_caches_with_outputs<M: Representation>(
     mesh: &M,
     outputs: &Outputs<M>,
@@ -404,13 +395,12 @@ fn fill_caches_with_outputs<M: Representation>(
     }
 }
 
-/// Returns whether runs start with warm caches, and `mesh` is larger than the second-level cache.
 fn needs_filling<M: Representation>(mesh: &M, series: &Series<'_>) -> bool {
     matches!(series.start, Start::Warm) && exceeds_second_level(mesh.memory().total())
 }
 
-/// Reads every row of every table of `mesh`, as far as possible in the order of the rows. `scans`
-/// is true if relations of vertices read all faces.
+/// Reads every row of every table, mostly in row order. `scans` means that relations of vertices
+/// read all faces.
 fn read_tables<M: MeshQuery>(mesh: &M, scans: bool) {
     mesh.faces().for_each(|f| {
         black_box(mesh.face_vertices(f).last());
@@ -423,7 +413,7 @@ fn read_tables<M: MeshQuery>(mesh: &M, scans: bool) {
             black_box(mesh.vertex_faces(v).last());
         });
     }
-    // If edges are not rows, no table contains them, and listing them would need searches.
+    // If edges have no rows, no table contains them.
     if mesh.edge_rows() > 0 {
         mesh.edges().for_each(|e| {
             black_box(mesh.edge_vertices(e));
@@ -431,7 +421,7 @@ fn read_tables<M: MeshQuery>(mesh: &M, scans: bool) {
     }
 }
 
-/// Runs a pass of edits over the mesh, or over a patch that represents the mesh.
+/// Runs a pass of edits over the mesh or over a patch.
 fn run_edit_pass(
     backend: &Backend,
     pass: EditPass,
@@ -459,7 +449,7 @@ fn run_edit_pass(
     Run::done(time.scaled(scale), outcome)
 }
 
-/// The structure's handles of the first elements of the draw.
+/// The handles of the first elements of the draw.
 struct DrawnHandles<M: MeshQuery> {
     vertices: Vec<M::Vertex>,
     edges: Vec<M::Edge>,
@@ -477,8 +467,7 @@ impl<M: MeshQuery> Default for DrawnHandles<M> {
 }
 
 impl<M: Representation> DrawnHandles<M> {
-    /// Looks up handles of drawn elements until there are `size` handles of each kind, or one for
-    /// every element.
+    /// Looks up handles of drawn elements until there are `size` handles of each kind.
     fn extend_to(&mut self, mesh: &M, polygons: &PolygonMesh, draw: &Draw, size: usize) {
         fn missing<T>(drawn: &[T], known: usize, size: usize) -> &[T] {
             &drawn[known..drawn.len().min(size).max(known)]
@@ -495,7 +484,7 @@ impl<M: Representation> DrawnHandles<M> {
     }
 }
 
-/// Returns the handle of the edge of `side`, looked up among the edges of its face.
+/// Finds the edge of `side` among the edges of its face.
 pub(crate) fn edge_handle<M: Representation>(
     mesh: &M,
     polygons: &PolygonMesh,
@@ -511,7 +500,6 @@ pub(crate) fn edge_handle<M: Representation>(
         .expect("a face has an edge for each of its sides")
 }
 
-/// The sampled elements of each sampled kind, and all elements of the other kinds.
 struct SampledElements<'c, M: MeshQuery> {
     drawn: &'c DrawnHandles<M>,
     scanned: [bool; 3],
@@ -519,7 +507,7 @@ struct SampledElements<'c, M: MeshQuery> {
 }
 
 impl<M: MeshQuery> SampledElements<'_, M> {
-    /// Returns the sampled `handles` if `kind` is sampled, else the elements that `others` lists.
+    /// Returns the sampled `handles` if `kind` is sampled, else all `others`.
     #[inline(always)]
     fn pick<'p, H: Copy, I: Iterator<Item = H> + 'p>(
         &self,

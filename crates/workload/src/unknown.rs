@@ -2,7 +2,7 @@
 
 use strsim::jaro_winkler;
 
-/// Minimum Jaro–Winkler similarity between the unknown name and a suggested name.
+/// Minimum Jaro–Winkler similarity of a suggested name to the unknown name.
 const MIN_SIMILARITY: f64 = 0.8;
 
 /// Builds a message such as: no operation is called `boundry` (did you mean `boundary`?): choose

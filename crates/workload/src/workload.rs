@@ -1,5 +1,4 @@
-//! A workload as data: the operations of a program on a mesh, their weights, and their access
-//! order.
+//! A workload: the operations of a program on a mesh, their weights and their access order.
 
 use std::fmt;
 use std::str::FromStr;
@@ -16,7 +15,7 @@ use crate::unknown::unknown;
 /// The operations that a program does on a mesh.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Workload {
-    /// The name, as users write it: `smoothing`.
+    /// The name in options, such as `smoothing`.
     pub name: String,
     /// One sentence that describes the program.
     pub summary: String,
@@ -24,10 +23,10 @@ pub struct Workload {
     pub access: Access,
     /// The number of operations in one use of a mesh.
     pub operations: Amount,
-    /// The number of rebuilds of the structure during these operations. The first build is not
-    /// counted.
+    /// The number of rebuilds of the structure in one use of a mesh. The first build does not
+    /// count.
     pub rebuilds: u64,
-    /// The operations with their weights; at least one weight is more than 0.
+    /// The operations with their weights. At least one weight is more than 0.
     pub mix: Vec<Part>,
 }
 
@@ -36,7 +35,7 @@ pub struct Workload {
 pub struct Part {
     /// The operation.
     pub action: Action,
-    /// The frequency of the operation, relative to the weights of the other parts.
+    /// The frequency of the operation, relative to the other weights.
     pub weight: Amount,
 }
 
@@ -49,7 +48,7 @@ pub enum Action {
     Relation(Relation),
     /// Reads the position of a vertex.
     Position,
-    /// Reads the positions of the neighbours of a vertex.
+    /// Reads the positions of the neighbours of one vertex.
     NeighbourPositions,
     /// Reads the positions of the corners of a face.
     CornerPositions,
@@ -57,12 +56,12 @@ pub enum Action {
     EndPositions,
     /// Writes the position of a vertex.
     SetPosition,
-    /// Does an edit at one place, with all checks.
+    /// Does one edit.
     Edit(Edit),
     /// Runs a pass over the whole mesh.
     Pass(Operation),
-    /// Runs one subdivision step by the fastest method of the structure: Loop on triangle meshes,
-    /// Catmull–Clark on other meshes.
+    /// Runs one subdivision step by the fastest method of the structure. The scheme is Loop for
+    /// triangle meshes and Catmull–Clark for other meshes.
     Subdivide,
 }
 
@@ -72,24 +71,24 @@ pub enum Action {
 pub enum Access {
     /// In the order of the structure, repeatedly.
     Sequential,
-    /// In random order: each element of the mesh once, then again in the same order.
+    /// In random order. Each element is visited once, then again in the same order.
     Random,
-    /// Patch by patch. A patch is the faces around a random face, breadth first, with their
-    /// vertices and edges.
+    /// Patch by patch. A patch contains the faces around a random face, and their vertices and
+    /// edges.
     Patches,
 }
 
-/// An amount: a number, or a number for each element of a kind.
+/// A fixed number, or a number per element of one kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Amount {
     /// A fixed number.
     Number(f64),
-    /// A number for each element of this kind in the mesh.
+    /// A number for each element of this kind.
     Per(f64, ElementKind),
 }
 
 impl Amount {
-    /// Returns the amount on a mesh with these counts.
+    /// Returns the amount on a mesh with `counts`.
     pub fn value_on(self, counts: &Counts) -> f64 {
         match self {
             Self::Number(number) => number,
@@ -99,7 +98,7 @@ impl Amount {
         }
     }
 
-    /// Returns the number, without multiplying it by a count.
+    /// Returns the number without the count.
     pub const fn number(self) -> f64 {
         match self {
             Self::Number(number) | Self::Per(number, _) => number,
@@ -172,7 +171,7 @@ impl Access {
     /// All three orders.
     pub const ALL: [Self; 3] = [Self::Sequential, Self::Random, Self::Patches];
 
-    /// Returns the name that users write: `patches`.
+    /// Returns the name in options: `sequential`, `random` or `patches`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Sequential => "sequential",
@@ -188,7 +187,7 @@ impl fmt::Display for Access {
     }
 }
 
-/// The edits that a mix may contain, each at its own place.
+/// The edits that a mix may contain.
 const EDITS: [Edit; 10] = [
     Edit::AddFace,
     Edit::RemoveFace,
@@ -203,7 +202,7 @@ const EDITS: [Edit; 10] = [
 ];
 
 impl Action {
-    /// Returns all actions, in listing order.
+    /// Returns all actions in listing order.
     pub fn all() -> Vec<Self> {
         let relations = Relation::ALL.into_iter().map(Self::Relation);
         let positions = [
@@ -223,7 +222,7 @@ impl Action {
             .collect()
     }
 
-    /// Returns the name that users write: `vertex_faces`.
+    /// Returns the name in options, such as `vertex_faces`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Relation(relation) => relation.name(),
@@ -238,8 +237,7 @@ impl Action {
         }
     }
 
-    /// Returns the kind of element that the action works on. `None` for passes, because they work
-    /// on the whole mesh, and for edits, because they have their own places.
+    /// Returns the kind of element that the action works on. Returns `None` for passes and edits.
     pub const fn kind(self) -> Option<ElementKind> {
         match self {
             Self::Relation(relation) => Some(ElementKind::queried_by(relation)),
@@ -252,7 +250,7 @@ impl Action {
         }
     }
 
-    /// Returns the relations that the action queries; empty for [`Self::Edit`] and
+    /// Returns the relations that the action queries. The list is empty for [`Self::Edit`] and
     /// [`Self::Subdivide`].
     pub fn relations(self) -> Vec<Relation> {
         match self {
@@ -316,14 +314,13 @@ impl fmt::Display for Action {
 }
 
 impl Workload {
-    /// Returns the number of operations in one use of a mesh with these counts; at least 1.
+    /// Returns the number of operations in one use of a mesh with `counts`. At least 1.
     pub fn operations_on(&self, counts: &Counts) -> f64 {
         self.operations.value_on(counts).max(1.0)
     }
 
-    /// Returns the share of each part of the mix in all operations, on a mesh with these counts.
-    /// The shares add up to 1. All shares are equal if the mesh has no elements of the kinds in the
-    /// weights.
+    /// Returns the share of each part in all operations, on a mesh with `counts`. The shares add up
+    /// to 1. If all weights are 0 on this mesh, all shares are equal.
     pub fn shares(&self, counts: &Counts) -> Vec<f64> {
         let weights: Vec<f64> = self.mix.iter().map(|p| p.weight.value_on(counts)).collect();
         let sum: f64 = weights.iter().sum();
@@ -333,12 +330,12 @@ impl Workload {
         }
     }
 
-    /// Returns the number of rebuilds of the structure per operation.
+    /// Returns the number of rebuilds per operation.
     pub fn rebuilds_per_operation(&self, counts: &Counts) -> f64 {
         self.rebuilds as f64 / self.operations_on(counts)
     }
 
-    /// Returns whether the workload leaves the connectivity unchanged. Positions may change.
+    /// Returns whether the workload does not change the connectivity.
     pub fn is_read_only(&self) -> bool {
         !self
             .mix
@@ -346,7 +343,7 @@ impl Workload {
             .any(|part| part.action.changes_connectivity())
     }
 
-    /// Returns the relations that the operations query, each once.
+    /// Returns the relations that the operations query, without duplicates.
     pub fn relations(&self) -> Vec<Relation> {
         let queried = self.mix.iter().flat_map(|part| part.action.relations());
         let mut queried: Vec<Relation> = queried.collect();

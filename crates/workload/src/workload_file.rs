@@ -1,4 +1,4 @@
-//! Reads workload files: parses TOML text into a workload, or returns an error with its line.
+//! Parses workload files (TOML).
 
 use std::fmt;
 use std::ops::Range;
@@ -9,7 +9,7 @@ use toml::Spanned;
 use crate::unknown::unknown;
 use crate::workload::{Access, Action, Amount, Part, Workload};
 
-/// An error in a workload file, with its position.
+/// An error in a workload file, with its line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}: {message}")]
 #[non_exhaustive]
@@ -18,11 +18,11 @@ pub struct WorkloadError {
     pub file: String,
     /// The line number, from 1.
     pub line: usize,
-    /// The error, and the allowed values.
+    /// The error and the allowed values.
     pub message: String,
 }
 
-/// The content of the file, before checks.
+/// The content of the file before the checks.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct WorkloadFile {
@@ -33,7 +33,6 @@ struct WorkloadFile {
     mix: Spanned<Mix>,
 }
 
-/// A number or a text.
 #[derive(serde::Deserialize)]
 #[serde(untagged)]
 enum NumberOrText {
@@ -61,7 +60,7 @@ impl<'de> Deserialize<'de> for Mix {
                 while let Some(key) = map.next_key()? {
                     entries.push((key, map.next_value()?));
                 }
-                // The parser sorts keys by name; a mix is shown in file order.
+                // The parser sorts keys by name. Restore the file order.
                 entries.sort_by_key(|(key, _): &(Spanned<String>, _)| key.span().start);
                 Ok(Mix(entries))
             }
@@ -72,7 +71,7 @@ impl<'de> Deserialize<'de> for Mix {
 }
 
 impl Workload {
-    /// Parses the text of a workload file called `file` into a workload called `name`.
+    /// Parses `text` into a workload called `name`. `file` is the file name in errors.
     ///
     /// ```
     /// let text = "operations = '20 per vertex'\n[mix]\nvertex_faces = 1\nneighbour_positions = 0.5";
@@ -83,8 +82,8 @@ impl Workload {
     ///
     /// # Errors
     ///
-    /// Returns [`WorkloadError`], with the line and the allowed values, if the text is not TOML, a
-    /// key or name is unknown, or a number is out of range.
+    /// Returns an error if the text is not TOML, if a key or name is unknown, or if a number is out
+    /// of range.
     pub fn parse(name: &str, file: &str, text: &str) -> Result<Self, WorkloadError> {
         let at = |span: Range<usize>, message: String| WorkloadError {
             file: file.into(),
@@ -155,7 +154,7 @@ impl Workload {
     }
 }
 
-/// Maximum amount: more than any program needs, and small enough that `f64` arithmetic stays exact.
+/// Maximum amount. It is small enough for exact `f64` arithmetic.
 const MAX_AMOUNT: f64 = 1e15;
 
 fn amount(loose: &NumberOrText) -> Result<Amount, String> {
@@ -166,7 +165,7 @@ fn amount(loose: &NumberOrText) -> Result<Amount, String> {
     }
 }
 
-/// Returns the parser's message, reworded if it mentions Rust types.
+/// Returns the message of the parser, reworded if it mentions Rust types.
 fn readable_message(message: &str) -> String {
     let message = message.lines().collect::<Vec<_>>().join("; ");
     match message.contains("untagged enum") {

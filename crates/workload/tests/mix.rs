@@ -1,4 +1,4 @@
-//! Checks that a mix does the same work on every structure, for all routes, edits and handle types.
+//! Checks that a mix does the same work on every structure.
 
 use sixfold::{PolygonMesh, shapes};
 use sixfold_workload::{
@@ -6,7 +6,6 @@ use sixfold_workload::{
     Schedule, Series, Workload, built_in, built_ins, prepare_mix, tabulate,
 };
 
-/// A mesh with the inputs of a mix on it.
 struct Fixture {
     polygons: PolygonMesh,
     draw: Draw,
@@ -25,7 +24,7 @@ impl Fixture {
         }
     }
 
-    /// Returns all backends that can run the mix, with only the places that all of them accept.
+    /// Returns the backends that can run the mix, with the places that all of them accept.
     fn backends(&self) -> Vec<Box<dyn MixBackend + '_>> {
         let prepare = |backend: Backend| {
             prepare_mix(
@@ -67,7 +66,6 @@ fn parsed(text: &str) -> Workload {
     Workload::parse("test", "test.toml", text).expect("a valid file")
 }
 
-/// Returns the counts of a run, without its time.
 fn counts(run: MixRun) -> [u64; 3] {
     [run.operations, run.yielded, run.refused]
 }

@@ -85,7 +85,6 @@ impl Action {
         }
     }
 
-    /// Returns the position at which the edit puts a vertex.
     pub(crate) fn position(&self) -> Option<Point> {
         match self {
             Self::SetPosition { to: at, .. }

@@ -96,11 +96,11 @@ impl Model {
         count(self.vertices().count()) - count(self.edges().len()) + count(self.faces().count())
     }
 
-    /// Converts the model to polygons, without unused numbers.
+    /// Converts the model to polygons. Numbers of removed vertices are left out.
     ///
     /// # Panics
     ///
-    /// Panics if a face uses a removed vertex, because this is a bug of the model.
+    /// Panics if a face has a removed vertex.
     pub fn to_polygons(&self) -> PolygonMesh {
         let number: BTreeMap<usize, u32> = self.vertices().zip(0..).collect();
         let positions: Vec<Point> = self.positions.iter().copied().flatten().collect();
@@ -129,7 +129,6 @@ impl Model {
         Some(after)
     }
 
-    /// Returns whether another vertex is at the position where `action` puts a vertex.
     fn is_occupied(&self, action: &Action) -> bool {
         let own = match action {
             Action::SetPosition { v, .. } => [*v; 2],
@@ -151,8 +150,8 @@ impl Model {
         }
     }
 
-    /// Returns the two faces of an edge if they run along it in opposite directions. The face that
-    /// runs from `a` to `b` is first.
+    /// Returns the two faces of an edge if they run in opposite directions along the edge. The
+    /// first face runs from `a` to `b`.
     fn opposite_faces(&self, [a, b]: [usize; 2]) -> Option<[usize; 2]> {
         let edges = self.edges();
         match *edges.get(&[a.min(b), a.max(b)])?.as_slice() {
@@ -177,7 +176,6 @@ fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// Returns the index of the side of `face` that joins `a` and `b`, in either direction.
 fn position_of_side(face: &[usize], [a, b]: [usize; 2]) -> Option<usize> {
     sides(face).position(|side| side == (a, b) || side == (b, a))
 }

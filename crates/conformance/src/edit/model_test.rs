@@ -167,16 +167,15 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         self.faces[&f]
     }
 
-    /// Returns whether both tests hold the same mesh, with equal positions and equal faces.
+    /// Returns whether both tests have meshes with equal positions and equal faces.
     pub fn is_same_mesh(&self, other: &Self) -> bool {
         let [first, second] = [self, other].map(|test| test.mesh.to_polygons());
         sorted_faces(&first) == sorted_faces(&second)
             && sorted_positions(&first) == sorted_positions(&second)
     }
 
-    /// Compares all relations and the boundary of the mesh with its faces. The mesh may have
-    /// deleted rows. Checks the iterators and the numbers of the mesh. Also checks that the mesh
-    /// contains its own elements, and that handles of removed elements are invalid.
+    /// Checks all queries of the mesh, which may have deleted rows. Also checks that handles of
+    /// removed elements are invalid.
     ///
     /// # Panics
     ///
@@ -242,8 +241,7 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         }
     }
 
-    /// Returns whether the handle of a removed element is derived: a pair, coordinates or a corner,
-    /// instead of a row of its own.
+    /// Returns whether the handle of a removed element is a pair, coordinates or a corner.
     fn has_derived_handle(removed: Removed<M::Vertex, M::Edge, M::Face>) -> bool {
         match removed {
             Removed::Vertex(_) => !M::CAPABILITIES.coincident_vertices,
@@ -252,7 +250,6 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         }
     }
 
-    /// Returns whether a message contains an end of a removed edge.
     fn mentions_end(&self, message: &str, removed: Removed<M::Vertex, M::Edge, M::Face>) -> bool {
         let Removed::Edge(e) = removed else {
             return false;
@@ -261,14 +258,13 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         ends.is_ok_and(|ends| ends.iter().any(|end| message.contains(&format!("{end:?}"))))
     }
 
-    /// Returns whether the handle of a removed element is derived and another element now has the
-    /// same handle.
+    /// Returns whether another element now has the handle of a removed element.
     fn is_reused(&self, removed: Removed<M::Vertex, M::Edge, M::Face>) -> bool {
         Self::has_derived_handle(removed)
             && match removed {
                 Removed::Vertex(v) => self.mesh.vertices().any(|known| known == v),
-                // Every corner opposite an edge identifies this edge, not only the corner that is
-                // its handle.
+                // In a corner table, an edge has two opposite corners. Queries accept both as its
+                // handle.
                 Removed::Edge(e) => {
                     catch_panic(|| self.mesh.edge_vertices(e)).is_ok_and(|[a, b]| {
                         catch_panic(|| self.mesh.edge_between(a, b))
@@ -279,8 +275,6 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
             }
     }
 
-    /// Checks that `into_compact` returns the same mesh, and that the result can be made editable
-    /// again.
     fn check_into_compact(&self) {
         let compact = self.mesh.clone().into_compact();
         assert_eq!(
@@ -299,11 +293,8 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         assert!(same, "{}: into_compact changes the mesh", M::NAME);
     }
 
-    /// Checks that `set_positions` moves all vertices of a mesh with deleted rows, and that removed
-    /// vertices stay removed.
     fn check_set_positions(&self) {
         let mut mesh = self.mesh.clone();
-        // Twice the coordinates, so that different positions stay different.
         let mut positions = mesh.vertex_map(Point::ZERO);
         for v in mesh.vertices() {
             positions[v] = 2.0 * mesh.position(v);
@@ -334,7 +325,6 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         }
     }
 
-    /// Updates the map from the elements of the model to the handles after an edit.
     fn update_handles(&mut self, record: &EditRecord<M>, made: Option<M::Vertex>, action: &Action) {
         let renamed: BTreeMap<M::Vertex, M::Vertex> = record
             .vertices
@@ -356,7 +346,6 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
             .map(|(v, handle)| (v, renamed.get(&handle).copied().unwrap_or(handle)))
             .collect();
         if let Some(made) = made {
-            // The vertex that was moved, or the newest vertex of the model.
             let v = match action {
                 Action::SetPosition { v, .. } => *v,
                 Action::CollapseEdge { ends, .. } => ends[0],
@@ -369,8 +358,7 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
                 "{name}: {action:?} returned {made:?}"
             );
         }
-        // Faces are matched by their corners, because a structure may choose which part of a split
-        // face keeps the handle.
+        // A structure may choose which part of a split face keeps the handle.
         let mut by_corners: BTreeMap<Vec<M::Vertex>, Vec<M::Face>> = BTreeMap::new();
         let faces: BTreeSet<M::Face> = self.mesh.faces().collect();
         for &f in &faces {
@@ -395,7 +383,6 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         }
     }
 
-    /// Checks that mesh and model have equal vertices, positions and faces.
     fn compare(&self, action: &Action) {
         let name = M::NAME;
         let listed: BTreeSet<M::Vertex> = self.mesh.vertices().collect();
@@ -414,7 +401,6 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
             self.faces.len(),
             "{name}: faces after {action:?}"
         );
-        // The mesh as polygons, without the holes.
         let (out, model) = (self.mesh.to_polygons(), self.model.to_polygons());
         assert_eq!(
             sorted_faces(&out),
@@ -429,8 +415,7 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
     }
 }
 
-/// Returns the amount by which an edit on a manifold changes χ, if this amount does not depend on
-/// the mesh.
+/// Returns the change of χ by an edit on a manifold; `None` if the change depends on the mesh.
 fn euler_step(action: &Action) -> Option<isize> {
     match action.edit() {
         Edit::AddVertex => Some(1),
@@ -441,8 +426,7 @@ fn euler_step(action: &Action) -> Option<isize> {
     }
 }
 
-/// Rotates a face to the lexicographically least list of its corners. Comparing only the first
-/// corner is not enough, because corners may have equal positions.
+/// Returns the lexicographically least rotation of a face.
 fn canonical_rotation<T: Ord>(mut corners: Vec<T>) -> Vec<T> {
     let from = |i: usize| corners[i..].iter().chain(&corners[..i]);
     let least = (0..corners.len()).min_by(|&i, &j| from(i).cmp(from(j)));
@@ -450,7 +434,6 @@ fn canonical_rotation<T: Ord>(mut corners: Vec<T>) -> Vec<T> {
     corners
 }
 
-/// Returns the sorted positions of all vertices.
 fn sorted_positions(polygons: &PolygonMesh) -> Vec<[u32; 3]> {
     let mut keys: Vec<_> = polygons
         .positions()
@@ -462,7 +445,6 @@ fn sorted_positions(polygons: &PolygonMesh) -> Vec<[u32; 3]> {
     keys
 }
 
-/// Returns the sorted faces, each as the positions of its corners.
 fn sorted_faces(polygons: &PolygonMesh) -> Vec<Vec<[u32; 3]>> {
     let key = |v: &VertexId| position_key(polygons.position(*v));
     let faces = polygons.faces().iter();
@@ -473,7 +455,6 @@ fn sorted_faces(polygons: &PolygonMesh) -> Vec<Vec<[u32; 3]>> {
     faces
 }
 
-/// All handles of a mesh.
 struct Handles<M: MeshEdit> {
     vertices: BTreeSet<M::Vertex>,
     edges: BTreeSet<M::Edge>,
@@ -489,7 +470,6 @@ impl<M: MeshEdit> Handles<M> {
         }
     }
 
-    /// Checks that `record` describes the change from these handles to those of `after`.
     fn check(&self, record: &EditRecord<M>, after: &Self, name: &str, action: &Action) {
         let context =
             |what: &str| format!("{name}: {what} after {action:?}, with record {record:?}");
@@ -504,7 +484,6 @@ impl<M: MeshEdit> Handles<M> {
     }
 }
 
-/// Checks that `changes` turns the handles `before` into `after`.
 fn check_changes<H: Handle>(
     before: &BTreeSet<H>,
     changes: &Changes<H>,

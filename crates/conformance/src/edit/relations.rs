@@ -1,11 +1,11 @@
-//! Compares the nine relations of an edited mesh with its faces. The mesh may have deleted rows.
+//! Compares the nine relations of an edited mesh with its faces.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
 
 use sixfold_core::{IteratorExt, MeshQuery};
 
-/// Queries every relation of every element, and compares the answer with one computed from FV only.
+/// Compares every relation of every element with an answer computed from FV only.
 ///
 /// # Panics
 ///
@@ -33,7 +33,7 @@ pub(crate) fn check_relations<M: MeshQuery>(mesh: &M, name: &str) {
 }
 
 /// The relations between the elements of a mesh, computed from the corners of its faces. The key of
-/// an edge is its two ends, the lower one first.
+/// an edge is the sorted pair of its ends.
 struct Expected<'a, M: MeshQuery> {
     name: &'a str,
     corners: BTreeMap<M::Face, Vec<M::Vertex>>,
@@ -43,8 +43,7 @@ struct Expected<'a, M: MeshQuery> {
 }
 
 impl<'a, M: MeshQuery> Expected<'a, M> {
-    /// Computes the relations. Panics if `edges` does not list every edge of the faces exactly
-    /// once.
+    /// Panics if `edges` does not list every edge of the faces exactly once.
     fn new(mesh: &M, edges: &[M::Edge], faces: &[M::Face], name: &'a str) -> Self {
         let corners_of = |&f: &M::Face| (f, mesh.face_vertices(f).collect());
         let corners: BTreeMap<_, Vec<_>> = faces.iter().map(corners_of).collect();
@@ -78,7 +77,6 @@ impl<'a, M: MeshQuery> Expected<'a, M> {
         }
     }
 
-    /// Compares VV, VE and VF of `v`.
     fn check_vertex(&self, mesh: &M, v: M::Vertex) {
         let ends = self.edges.keys().filter(|ends| ends.contains(&v));
         let others = ends.map(|&[a, b]| if a == v { b } else { a });
@@ -94,7 +92,6 @@ impl<'a, M: MeshQuery> Expected<'a, M> {
         assert_same_items(name, "VF", v, mesh.vertex_faces(v), faces.collect());
     }
 
-    /// Compares EF, EE and `edge_between` of the edge with these ends.
     fn check_edge(&self, mesh: &M, [a, b]: [M::Vertex; 2]) {
         let e = self.edges[&[a, b]];
         let faces = self.faces_along[&[a, b]].clone();
@@ -109,7 +106,6 @@ impl<'a, M: MeshQuery> Expected<'a, M> {
         assert_eq!(mesh.edge_between(a, b), Some(e), "{name}: edge_between");
     }
 
-    /// Compares FE and FF of `f`.
     fn check_face(&self, mesh: &M, f: M::Face) {
         let edges = sides(&self.corners[&f]).map(|ends| self.edges[&ends]);
         let adjacent = sides(&self.corners[&f])
@@ -122,7 +118,6 @@ impl<'a, M: MeshQuery> Expected<'a, M> {
     }
 }
 
-/// Iterates over the ends of the sides of a face; side `i` starts at corner `i`.
 fn sides<V: Copy + Ord>(face: &[V]) -> impl Iterator<Item = [V; 2]> {
     let after = face.iter().cycle().skip(1);
     face.iter().zip(after).map(|(&a, &b)| sorted([a, b]))

@@ -1,4 +1,4 @@
-//! Random scripts of edits whose steps select their elements from the current mesh.
+//! Random scripts of edits. Each step selects its elements from the current mesh.
 
 use proptest::prelude::*;
 use proptest::{collection, sample};
@@ -7,7 +7,7 @@ use sixfold_core::{Edit, Point};
 use super::action::Action;
 use super::model::Model;
 
-/// Above this number of faces, an edit that adds faces is replaced by one that removes faces.
+/// Maximum number of faces of a mesh to which scripts add faces.
 const MANY_FACES: usize = 48;
 
 /// One step: the kind of edit, and numbers that select its elements.
@@ -19,9 +19,8 @@ pub struct Step {
     pub picks: [u16; 4],
 }
 
-/// Generates up to `max_steps` steps with kinds from `edits`. Removals and compaction are rarer,
-/// because they leave few elements to edit; `AddVertex` and `SetPosition` are rarer too. The other
-/// edits are equally likely.
+/// Generates up to `max_steps` steps with kinds from `edits`. Removals, `Compact`, `AddVertex` and
+/// `SetPosition` are less frequent than other edits.
 pub fn script(edits: &[Edit], max_steps: usize) -> impl Strategy<Value = Vec<Step>> + use<> {
     let weight = |edit: &Edit| match edit {
         Edit::RemoveVertex | Edit::RemoveIsolatedVertices | Edit::Compact => 1,
@@ -71,13 +70,11 @@ impl Step {
         })
     }
 
-    /// Returns the `i`-th of the four numbers that select elements.
     fn pick(&self, i: usize) -> usize {
         self.picks[i].into()
     }
 
-    /// Returns the edit of this step, or a collapse if the edit would add faces to a mesh with many
-    /// faces.
+    /// Returns the edit of this step, or a collapse if the mesh has too many faces.
     fn edit_on(&self, model: &Model) -> Edit {
         let grows = matches!(
             self.edit,
@@ -94,7 +91,7 @@ impl Step {
         }
     }
 
-    /// Returns the position of a new vertex. Sometimes this is the position of an existing vertex.
+    /// Returns the position of a new vertex, sometimes the position of an existing vertex.
     fn new_position(&self, model: &Model, number: usize) -> Option<Point> {
         let [p, q, r, s] = self.picks.map(usize::from);
         if s % 64 == 63 {
@@ -105,7 +102,6 @@ impl Step {
         Some(Point::new(x, (p % 97) as f32, (q % 89) as f32))
     }
 
-    /// Returns the ends of an edge, in any order.
     fn edge(&self, model: &Model) -> Option<[usize; 2]> {
         let all: Vec<[usize; 2]> = model.edges().into_keys().collect();
         let [a, b] = pick(&all, self.pick(0))?;
@@ -116,8 +112,7 @@ impl Step {
         })
     }
 
-    /// Returns the split of a face between two of its corners. Chooses a face with more than three
-    /// corners if there is one, because a triangle cannot be split.
+    /// Returns the split of a face, if possible of a face with more than three corners.
     fn face_split(&self, model: &Model) -> Option<Action> {
         let [p, q, r, _] = self.picks.map(usize::from);
         let polygons = model.faces().filter(|(_, face)| face.len() > 3);
@@ -132,7 +127,6 @@ impl Step {
         })
     }
 
-    /// Returns the collapse of an edge to `at`, or sometimes to one of its ends.
     fn collapse(&self, model: &Model, at: Point) -> Option<Action> {
         let ends = self.edge(model)?;
         let r = self.pick(2);
@@ -144,8 +138,6 @@ impl Step {
         Some(Action::CollapseEdge { ends, to })
     }
 
-    /// Returns the split of `v` between two adjacent vertices, or sometimes from one adjacent
-    /// vertex to the boundary.
     fn vertex_split(&self, model: &Model, v: usize, at: Point) -> Action {
         let [_, q, r, s] = self.picks.map(usize::from);
         let around: Vec<usize> = model.neighbours(v).into_iter().collect();
@@ -158,12 +150,11 @@ impl Step {
         Action::SplitVertex { v, left, right, at }
     }
 
-    /// Returns the corners of a new face that is often legal: any three vertices, a triangle at a
-    /// boundary edge or between two successive boundary edges, or the whole boundary of a hole.
+    /// Returns the corners of a new face, which is often legal.
     fn new_face(&self, model: &Model) -> Option<Vec<usize>> {
         let [p, q, r, s] = self.picks.map(usize::from);
         let vertices: Vec<usize> = model.vertices().collect();
-        // The boundary edges, in the direction in which a new face would run along them.
+        // The boundary edges, in the direction of a new face.
         let boundary: Vec<[usize; 2]> = model
             .edges()
             .into_iter()
@@ -206,7 +197,6 @@ fn all_faces(model: &Model) -> Vec<usize> {
     model.faces().map(|(f, _)| f).collect()
 }
 
-/// Returns the item that `number` selects; `None` if there are no items.
 fn pick<T: Copy>(items: &[T], number: usize) -> Option<T> {
     items.get(number.checked_rem(items.len())?).copied()
 }

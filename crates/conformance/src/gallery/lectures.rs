@@ -52,7 +52,7 @@ const CUBE_POINTS: [[f32; 3]; 8] = [
     [0.0, 1.0, 1.0],
 ];
 
-/// For each half-edge: its origin, and the next half-edge along its face.
+/// By half-edge: its origin, and the next half-edge along its face.
 const HALF_EDGES: [(u32, usize); 24] = [
     (0, 1),
     (1, 2),
@@ -80,7 +80,7 @@ const HALF_EDGES: [(u32, usize); 24] = [
     (6, 20),
 ];
 
-/// Returns the faces of the half-edge table; each starts at its first half-edge.
+/// Returns the faces of the half-edge table.
 fn half_edge_cube() -> [[u32; 4]; 6] {
     [0, 8, 4, 16, 12, 20].map(|first| {
         let mut half_edge = first;
@@ -110,7 +110,6 @@ const TETRAHEDRON_POINTS: [[f32; 3]; 4] = [
 
 const TETRAHEDRON: [[u32; 3]; 4] = [[0, 1, 2], [0, 2, 3], [0, 1, 3], [1, 2, 3]];
 
-/// Returns the corners of the cube, and the centres of top and bottom.
 fn box_points() -> Vec<Point> {
     let centres = [[0.5, 0.5, 1.0], [0.5, 0.5, 0.0]];
     CUBE_POINTS
@@ -120,7 +119,7 @@ fn box_points() -> Vec<Point> {
         .collect()
 }
 
-/// The four walls, f0 to f7, and the lid around v8, f8 to f11.
+/// The four walls (faces f0 to f7) and the lid around vertex v8 (faces f8 to f11).
 const BOX_SIDES: [[u32; 3]; 12] = [
     [0, 4, 5],
     [0, 5, 1],
@@ -136,8 +135,9 @@ const BOX_SIDES: [[u32; 3]; 12] = [
     [8, 4, 7],
 ];
 
-/// f12 to f15 as printed: a second lid on edges that already have a lid.
+/// Faces f12 to f15 as printed: a second lid on edges that already have a lid.
 const FAULTY_LID: [[u32; 3]; 4] = [[9, 5, 4], [9, 6, 5], [9, 7, 6], [9, 4, 7]];
 
-/// f12 to f15 as in the printed vertex lists; they are still oriented against the walls.
+/// Faces f12 to f15 as in the printed vertex lists. Their orientation does not match the
+/// orientation of the walls.
 const LISTED_LID: [[u32; 3]; 4] = [[9, 1, 0], [9, 2, 1], [9, 3, 2], [9, 0, 3]];

@@ -20,7 +20,7 @@ pub(super) fn klein_bottle(m: u32, n: u32) -> PolygonMesh {
     mesh(m * n, &faces.collect::<Vec<_>>())
 }
 
-/// Builds 4 × 4 quads, row by row, but leaves out two inner quads that share only a corner.
+/// Builds 4 × 4 quads without two inner quads that share only a corner.
 pub(super) fn touching_holes() -> PolygonMesh {
     let cells = (0..4_u32).flat_map(|j| (0..4_u32).map(move |i| (i, j)));
     let kept = cells.filter(|cell| ![(1, 1), (2, 2)].contains(cell));
@@ -29,8 +29,8 @@ pub(super) fn touching_holes() -> PolygonMesh {
     mesh(25, &faces.collect::<Vec<_>>())
 }
 
-/// Builds triangles that join a ring of `n` vertices to two apexes. The first vertex is the apex
-/// above the ring; the other apex is below the ring.
+/// Builds triangles that join a ring of `n` vertices to two apexes: the first vertex and the last
+/// vertex.
 pub(crate) fn double_cone(n: u32) -> PolygonMesh {
     let sides = (0..n).map(|i| (1 + i, 1 + (i + 1) % n));
     let faces = sides.flat_map(|(a, b)| [[0, a, b], [n + 1, b, a]]);
@@ -89,7 +89,7 @@ pub(super) fn voxels(rows: &[&str]) -> PolygonMesh {
     PolygonMesh::new(points.collect::<Vec<_>>(), faces).expect("a square has four corners")
 }
 
-/// Separates the faces: each face gets its own vertices, with unchanged positions.
+/// Gives each face its own vertices, with unchanged positions.
 pub(super) fn separate_faces(polygons: &PolygonMesh) -> PolygonMesh {
     let mut points = Vec::new();
     let mut faces = Vec::new();
@@ -121,7 +121,6 @@ pub(super) fn coincident_corners() -> PolygonMesh {
     )
 }
 
-/// Returns the mesh with vertex `v` at the position `distinct_position(numbers[v])`.
 pub(super) fn with_positions(polygons: &PolygonMesh, numbers: &[u32]) -> PolygonMesh {
     let points: Vec<Point> = numbers.iter().map(|&n| distinct_position(n)).collect();
     let faces = polygons.faces().clone();
@@ -142,14 +141,12 @@ pub(super) fn disjoint_union(parts: &[PolygonMesh]) -> PolygonMesh {
     PolygonMesh::new(points, faces).expect("the parts are meshes")
 }
 
-/// Builds a mesh of `faces` and `vertices` vertices with distinct positions.
 pub(super) fn mesh<F: AsRef<[u32]>>(vertices: u32, faces: &[F]) -> PolygonMesh {
     let points: Vec<Point> = (0..vertices).map(distinct_position).collect();
     PolygonMesh::new(points, faces).expect("a mesh made by hand is valid")
 }
 
-/// Returns the position for `number`. Different numbers have different positions, and no long run
-/// of positions is collinear.
+/// Returns a different position for each number.
 pub(crate) fn distinct_position(number: u32) -> Point {
     let x = number as f32;
     Point::new(x, (number * number % 7) as f32, (number % 3) as f32)

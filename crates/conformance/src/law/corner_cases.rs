@@ -8,15 +8,13 @@ use crate::gallery::gallery;
 use crate::print::one_line;
 use crate::weld::welded;
 
-/// Expected [`answers`] for a mesh of the gallery; "none" means that there is no such ring or loop.
+/// Expected [`answers`] for a mesh of the gallery; "none" means that the mesh has no such ring or
+/// loop.
 struct Case {
     mesh: &'static str,
     answers: &'static [(&'static str, &'static str)],
 }
 
-/// The cases show four rules: an element that is adjacent in two ways is listed once, no element is
-/// adjacent to itself, a vertex has no ring if its faces do not form one fan, and a boundary loop
-/// continues in the same fan.
 const CASES: &[Case] = &[
     Case {
         mesh: "pillow of two triangles",
@@ -173,8 +171,7 @@ pub fn corner_cases<M: Representation>() {
     for case in CASES {
         let entry = gallery.iter().find(|entry| entry.name == case.mesh);
         let polygons = &entry.expect("the gallery has it").polygons;
-        // If a vertex is identified by its coordinates, only meshes whose numbers stay the same
-        // after welding can be compared.
+        // If vertices are identified by coordinates, meshes that welding changes are skipped.
         if !M::CAPABILITIES.coincident_vertices && welded(polygons).as_ref() != Ok(polygons) {
             continue;
         }

@@ -1,4 +1,4 @@
-//! Compares the reads and the memory of a structure with what it declares.
+//! Laws about the reads and the memory of a structure.
 
 use std::hint::black_box;
 
@@ -9,15 +9,15 @@ use sixfold_core::{
 use crate::gallery::double_cone;
 use crate::oracle::Oracle;
 
-/// `COSTS` are correct, as measured in table reads, and `cost` and `is_local` agree with `COSTS`.
+/// `COSTS` agrees with the measured reads of tables; `cost` and `is_local` agree with `COSTS`.
 ///
 /// - Constant: the number of reads per item is bounded, for any size of mesh and any valence.
 /// - Local: if the valence is bounded, the number of reads is bounded for any size of mesh.
-/// - Scan: the number of reads grows with the mesh. Declaring a lower cost for a scan is wrong, and
-///   declaring a scan for a cheaper query is wrong too.
+/// - Scan: the number of reads grows with the mesh. Declaring a scan for a cheaper query is wrong.
 ///
-/// The meshes are two tori of valence six and two double cones. The large torus is nine times the
-/// size of the small one. The apexes have valence 24 in one double cone and 240 in the other.
+/// The meshes are two tori of valence six and two double cones. The large torus has nine times as
+/// many faces as the small torus. The apexes have valence 24 in one double cone and 240 in the
+/// other.
 pub fn costs<M: Measured>() {
     let scans = M::COSTS.contains(&QueryCost::Scan);
     assert_eq!(M::is_local(), !scans, "{}: is_local", M::NAME);
@@ -49,7 +49,7 @@ pub fn costs<M: Measured>() {
     }
 }
 
-/// The methods of [`OrientedWalk`]. The methods that need only the face of the side come first.
+/// The methods of [`OrientedWalk`]. The first six methods need only the face of the side.
 const WALK_METHODS: [&str; 11] = [
     "next_side",
     "prev_side",
@@ -67,8 +67,8 @@ const WALK_METHODS: [&str; 11] = [
 /// The number of [`WALK_METHODS`] that need only the face of the side.
 const WITHIN_A_FACE: usize = 6;
 
-/// No step of a walk scans, and the cost of a step within a face does not depend on the valence of
-/// its corners. The costs are measured in table reads on the meshes of [`costs`].
+/// No step of a walk scans. The cost of a step within a face does not depend on the valence of its
+/// corners. The law counts reads of tables on the meshes of [`costs`].
 pub fn oriented_walk_costs<M>()
 where
     M: Measured + OrientedWalk,
@@ -163,11 +163,10 @@ fn torus(side: usize) -> PolygonMesh {
     sixfold_shapes::triangle_torus(side, side).expect("a torus of this size can be built")
 }
 
-/// Maximum numbers of reads of one relation, over the elements tested.
+/// Maximum numbers of reads of one relation.
 #[derive(Clone, Copy, Default)]
 struct Reads {
     max: usize,
-    /// Reads per item, rounded up; finding the list counts as one more item.
     max_per_item: usize,
 }
 
@@ -178,7 +177,7 @@ impl Reads {
     }
 }
 
-/// Counts the reads of all nine relations, in the order of [`Relation::ALL`].
+/// Counts the reads of each relation, in the order of [`Relation::ALL`].
 fn reads<M: Measured>(polygons: &PolygonMesh) -> [Reads; 9] {
     let mesh = M::from_polygons(polygons);
     let mesh = mesh.unwrap_or_else(|e| panic!("{} refuses a closed triangle mesh: {e}", M::NAME));
@@ -188,8 +187,7 @@ fn reads<M: Measured>(polygons: &PolygonMesh) -> [Reads; 9] {
     let mut record = |relation: Relation, items: usize| {
         maxima[relation as usize].record(items, probe.take().len());
     };
-    // A few elements are enough, because the shapes are regular. The sample includes the first and
-    // the last vertex, because these are the apexes.
+    // The sample includes the first and the last vertex, because these are the apexes.
     probe.take();
     for v in sample(mesh.vertices().collect()) {
         record(Relation::VertexVertices, probed.vertex_vertices(v).count());
@@ -209,7 +207,7 @@ fn reads<M: Measured>(polygons: &PolygonMesh) -> [Reads; 9] {
     maxima
 }
 
-/// Returns about forty of `handles`, including the first and the last.
+/// Returns about forty of `handles`, including the first handle and the last handle.
 fn sample<H: Copy>(handles: Vec<H>) -> Vec<H> {
     let step = handles.len().div_ceil(40).max(1);
     let last = handles.last().copied();

@@ -10,13 +10,12 @@ use sixfold_core::{
 use super::scripts::on_random_scripts;
 use crate::edit::{Action, ModelTest, Step};
 
-/// Maximum number of steps for each accepted step of an edit. Scripts in which most steps are
-/// refused do not test much.
+/// Maximum number of tried steps for each accepted step of an edit.
 const MAX_STEPS_PER_ACCEPTED: usize = 12;
 
-/// Runs random scripts. After every step, mesh and model are equal, handles and records agree, and
-/// the invariants hold. A refused edit changes nothing. After every 16 steps, all relations are
-/// checked.
+/// Random scripts have the same effect on the structure and on the model. After every step, mesh
+/// and model are equal, handles and records agree, and the invariants hold. A refused edit changes
+/// nothing. All relations are checked after every 16 steps.
 ///
 /// `PROPTEST_CASES` sets the number of scripts.
 pub fn edits<M: Representation + MeshEdit + Debug>() {
@@ -57,8 +56,7 @@ fn run_script<M: Representation + MeshEdit + Debug>(
     counts_by_edit.set(counts);
 }
 
-/// Minimum number of steps on meshes that the structure can hold. There are about 1,800 to 3,400
-/// steps on a polygon soup, and more on the other structures.
+/// Minimum number of steps on meshes that the structure can hold.
 const MIN_STEPS: usize = 1000;
 
 fn check_acceptance<M: MeshEdit + Representation>(counts_by_edit: &[[usize; 2]; Edit::ALL.len()]) {
@@ -76,7 +74,7 @@ fn check_acceptance<M: MeshEdit + Representation>(counts_by_edit: &[[usize; 2]; 
             M::NAME,
             accepted + refused
         );
-        // A small number of scripts may not contain every edit.
+        // A few scripts may not contain every edit.
         if M::supports(edit) && tried > 2000 {
             assert!(
                 accepted * MAX_STEPS_PER_ACCEPTED >= accepted + refused && *accepted > 0,
@@ -95,14 +93,14 @@ fn check_acceptance<M: MeshEdit + Representation>(counts_by_edit: &[[usize; 2]; 
     }
 }
 
-/// `EDITS` are correct, as measured in rows read and written.
+/// `EDITS` agrees with the measured accesses to rows.
 ///
 /// - Constant and Local: the number of accesses does not depend on the size of the mesh.
 /// - Scan: the number of accesses grows with the mesh. Declaring a scan for a cheaper edit is
 ///   wrong.
 ///
-/// The meshes are two tori of valence six. The large torus is sixteen times the size of the small
-/// one. Only accesses to rows are counted, not the cost of growing a table.
+/// The meshes are two tori of valence six. The large torus has sixteen times as many faces as the
+/// small torus. Only accesses to rows are counted, not the cost of growing a table.
 pub fn edit_costs<M>()
 where
     M: Measured + MeshEdit,
@@ -129,7 +127,7 @@ where
     }
 }
 
-/// Returns the maximum number of rows that `edit` accesses, over a few faces of the mesh.
+/// Returns the maximum number of rows that `edit` accesses, at a few faces of the mesh.
 fn accesses<M>(polygons: &PolygonMesh, edit: Edit) -> usize
 where
     M: Measured + MeshEdit,
@@ -137,7 +135,7 @@ where
 {
     let mut mesh =
         M::from_polygons(polygons).expect("every structure holds closed triangle meshes");
-    // The first hole allocates one bit for every row. Make a hole now, so that this is not counted.
+    // The first hole allocates one bit for every row, which must not be counted.
     let last = mesh.faces().last().expect("a face");
     let n = mesh
         .poke_face(last, Point::splat(500.0))

@@ -39,22 +39,22 @@ impl<M: MeshQuery> ElementNumbers<M> for Numbers<M, u32> {
     }
 }
 
-/// The mesh under test. Every element has a number and a list. For a new element, a rule joins the
+/// The mesh under test. Every element has a number and a list; the rule for new elements joins the
 /// lists of the parents.
 type Subject<M, D> = MeshWithData<M, (D, Numbers<M, Vec<u32>>)>;
 
 type Numbers<M, T> = (VertexData<M, T>, EdgeData<M, T>, FaceData<M, T>);
 
-/// Runs random scripts on a [`MeshWithData`]. After every step, the number of each element equals
-/// the number from a brute-force replay of the reports. The rules for new elements received the
-/// correct parents. After a script, `into_compact` and `from_compact` keep the numbers.
+/// Data in a [`MeshWithData`] follows random scripts of edits. After every step, the data equals a
+/// brute-force replay of the reports, and the rules received the correct parents. After a script,
+/// `into_compact` and `from_compact` keep the data.
 ///
 /// `PROPTEST_CASES` sets the number of scripts.
 pub fn data_follows_edits<M: Representation + MeshEdit + Debug>() {
     numbers_follow_edits::<M, Numbers<M, u32>>();
 }
 
-/// Checks [`data_follows_edits`] with data of type `D`.
+/// Runs the law [`data_follows_edits`] with data of type `D`.
 pub fn numbers_follow_edits<M, D>()
 where
     M: Representation + MeshEdit + Debug,
@@ -101,7 +101,6 @@ struct DataTest<M: MeshEdit, D> {
 }
 
 impl<M: Representation + MeshEdit + Debug, D: ElementNumbers<M>> DataTest<M, D> {
-    /// Gives each element of `mesh` a number of its own.
     fn new(mesh: &M) -> Self {
         let (vertices, edges, faces) = (
             VertexData::new(mesh, vec![]),
@@ -137,7 +136,6 @@ impl<M: Representation + MeshEdit + Debug, D: ElementNumbers<M>> DataTest<M, D> 
         test
     }
 
-    /// Gives each of these elements a number of its own.
     fn number(&mut self, vertices: &[M::Vertex], edges: &[M::Edge], faces: &[M::Face]) {
         let (numbers, ancestors) = self.mesh.data_mut();
         let mut next = self.numbers_used;
@@ -185,7 +183,6 @@ impl<M: Representation + MeshEdit + Debug, D: ElementNumbers<M>> DataTest<M, D> 
         accepted
     }
 
-    /// Checks the number of every element.
     fn check_numbers(&mut self) {
         let name = M::NAME;
         let elements = [
@@ -242,7 +239,6 @@ impl<M: Representation + MeshEdit + Debug, D: ElementNumbers<M>> DataTest<M, D> 
         parents
     }
 
-    /// Checks which parents the rules received for the new elements.
     fn check_parents(&self, expected: &Parents<M>, record: &EditRecord<Subject<M, D>>) {
         let (_, (vertices, edges, faces)) = self.mesh.data();
         let name = M::NAME;
@@ -266,7 +262,6 @@ impl<M: Representation + MeshEdit + Debug, D: ElementNumbers<M>> DataTest<M, D> 
             let cut = expected.cut.iter();
             let parents = cut.filter(|(_, corners)| old.iter().all(|v| corners.contains(v)));
             let parents: Vec<u32> = parents.map(|&(number, _)| number).collect();
-            // Two faces can have the same corners.
             let is_parent = match faces[f][..] {
                 [] => parents.is_empty(),
                 [parent] => parents.contains(&parent),
@@ -280,7 +275,6 @@ impl<M: Representation + MeshEdit + Debug, D: ElementNumbers<M>> DataTest<M, D> 
         }
     }
 
-    /// Checks that conversion to a compact mesh and back keeps all numbers.
     fn check_conversion(self) {
         let before = sorted_numbers(&self.mesh);
         let compact = self.mesh.into_compact();
@@ -303,7 +297,7 @@ struct Parents<M: MeshQuery> {
     cut: Vec<(u32, Vec<M::Vertex>)>,
 }
 
-/// Updates the numbers by the reported changes of an edit, one element after the other.
+/// Updates the numbers by the reported changes of an edit.
 fn replay<H: Handle>(numbers: &mut BTreeMap<H, u32>, changes: &Changes<H>) {
     for (old, number) in std::mem::take(numbers) {
         if changes.removed.contains(&old) {
@@ -316,8 +310,8 @@ fn replay<H: Handle>(numbers: &mut BTreeMap<H, u32>, changes: &Changes<H>) {
     numbers.extend(changes.created.iter().map(|&new| (new, 0)));
 }
 
-/// Returns a sorted list with one entry for each element. An entry has the number of a vertex, the
-/// numbers of an edge and its ends, or the numbers of a face and its corners.
+/// Returns a sorted list with one entry for each element: the number of a vertex, the numbers of an
+/// edge and its ends, or the numbers of a face and its corners.
 fn sorted_numbers<N, M, D>(mesh: &MeshWithData<N, (D, Numbers<M, Vec<u32>>)>) -> Vec<Vec<u32>>
 where
     M: MeshQuery,

@@ -12,7 +12,7 @@ use crate::element::Element;
 use crate::subject::{Subject, stored_mesh};
 use crate::weld::position_key;
 
-/// Each element is iterated once, and counts agree. Faces and vertices come in the order of the
+/// Iterators yield each element once, and counts agree. Faces and vertices have the order of the
 /// contract.
 pub fn elements<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::from_polygons(polygons) else {
@@ -54,8 +54,8 @@ pub fn elements<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// `vertex_handle` and `face_handle` return the handles that the mesh itself uses, one for each
-/// element.
+/// `vertex_handle` and `face_handle` return a different handle for each element. The mesh uses the
+/// same handles.
 pub fn names<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -143,7 +143,7 @@ pub fn numbers<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// Checks the numbers of all elements of `mesh`, which may have deleted rows.
+/// Checks the numbers of all elements of `mesh`.
 ///
 /// # Panics
 ///
@@ -161,11 +161,10 @@ fn check_kind<H: Handle>(name: &str, handles: Vec<H>, numbers: &Numbers<H>) {
     }
 }
 
-/// If a handle is a row beyond the mesh, queries panic with a message that contains the handle. If
-/// a handle consists of the coordinates of one or two points and is not in the mesh, its relations
-/// are empty.
+/// If a handle is a row that does not exist, queries panic with a message that contains the handle.
+/// If a handle consists of coordinates that are not in the mesh, its relations are empty.
 ///
-/// The missing handles are those of a strip of triangles that is larger than the mesh and far away.
+/// The law uses the handles of a strip of triangles that is larger than the mesh and far away.
 pub fn missing_handles<M: Representation>(polygons: &PolygonMesh) {
     let Some(Subject { mesh, .. }) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -205,7 +204,6 @@ pub fn missing_handles<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// Checks that `mesh` contains neither `v` nor `e` nor `f`.
 fn check_not_contained<M: Representation>(mesh: &M, v: M::Vertex, e: M::Edge, f: M::Face) {
     assert!(
         !mesh.contains_vertex(v),
@@ -224,10 +222,9 @@ fn check_not_contained<M: Representation>(mesh: &M, v: M::Vertex, e: M::Edge, f:
     );
 }
 
-/// A query and its answer.
+/// The name of a query, and its answer.
 type Answer = (&'static str, String);
 
-/// Queries the relations of `v`.
 fn vertex_answers<M: Representation>(mesh: &M, v: M::Vertex) -> [Answer; 4] {
     let one_ring = || mesh.one_ring(v).map_or(0, Iterator::count);
     [
@@ -238,7 +235,6 @@ fn vertex_answers<M: Representation>(mesh: &M, v: M::Vertex) -> [Answer; 4] {
     ]
 }
 
-/// Queries the relations of `e`, except its ends.
 fn edge_answers<M: Representation>(mesh: &M, e: M::Edge) -> [Answer; 2] {
     [
         ("edge_edges", items(|| mesh.edge_edges(e).count())),
@@ -246,7 +242,6 @@ fn edge_answers<M: Representation>(mesh: &M, e: M::Edge) -> [Answer; 2] {
     ]
 }
 
-/// Queries the relations of `f`.
 fn face_answers<M: Representation>(mesh: &M, f: M::Face) -> [Answer; 3] {
     [
         ("face_vertices", items(|| mesh.face_vertices(f).count())),
@@ -255,8 +250,7 @@ fn face_answers<M: Representation>(mesh: &M, f: M::Face) -> [Answer; 3] {
     ]
 }
 
-/// Whether the handles of each kind of element are rows. A map panics if it has no row for a
-/// handle.
+/// Whether the handles of each kind of element are rows.
 struct Rows {
     vertex: bool,
     edge: bool,
@@ -275,8 +269,7 @@ impl Rows {
     fn for_edge(&self) -> Missing {
         match (self.edge, self.vertex) {
             (true, _) => Missing::Panics,
-            // The handle is a pair of rows. Its ends are out of range, and the mesh does not
-            // contain the pair.
+            // The handle is a pair of rows that are out of range.
             (false, true) => Missing::Either,
             (false, false) => Missing::Empty,
         }
@@ -291,7 +284,7 @@ impl Rows {
     }
 }
 
-/// Required behaviour of a query for a missing handle.
+/// The required result of a query with a missing handle.
 #[derive(Clone, Copy, Debug)]
 enum Missing {
     Panics,
@@ -317,7 +310,6 @@ impl Missing {
 
 const NO_ITEMS: &str = "0 items";
 
-/// Formats the number of items, or returns the message of the panic.
 fn items(query: impl FnOnce() -> usize) -> String {
     match catch_panic(query) {
         Ok(count) => format!("{count} items"),
@@ -325,8 +317,7 @@ fn items(query: impl FnOnce() -> usize) -> String {
     }
 }
 
-/// Builds a strip of triangles with more elements of every kind than `polygons`, at other
-/// positions.
+/// Builds a strip of triangles with more elements than `polygons`, at other positions.
 pub(super) fn distant_strip(polygons: &PolygonMesh) -> PolygonMesh {
     let finite = polygons.positions().iter().filter(|p| p.is_finite());
     let x = finite.map(|p| p.x.abs()).fold(1.0, f32::max) * 4.0;

@@ -9,9 +9,9 @@ use crate::edit::{Action, ModelTest};
 /// Position of new vertices, far from all other vertices.
 const FAR: Point = Point::new(50.0, 60.0, 70.0);
 
-/// Edits, and a function that executes one of them at an edge or a face and then undoes it. The
-/// function returns whether both edits are accepted. If they are, the function checks that the mesh
-/// is unchanged.
+/// Edits, and a function that executes the first edit at an edge or a face and then undoes it. The
+/// function returns whether all edits are accepted. If so, the function checks that the mesh is
+/// unchanged.
 type Undo<M, At> = (&'static [Edit], fn(&ModelTest<M>, At) -> bool);
 
 /// Edits that undo each other restore the mesh.
@@ -51,8 +51,6 @@ pub fn inverse_edits<M: Representation + MeshEdit + Debug>() {
     }
 }
 
-/// Returns the meshes on which edits are undone: with triangles and polygons, with and without a
-/// boundary.
 fn inverse_starts() -> [PolygonMesh; 5] {
     let message = "a shape of this size can be built";
     [
@@ -64,7 +62,6 @@ fn inverse_starts() -> [PolygonMesh; 5] {
     ]
 }
 
-/// Checks that `edits` were undone often enough, if `M` supports all of them.
 fn check_undo_count<M: Representation + MeshEdit>(edits: &[Edit], count: usize) {
     let offered = edits.iter().all(|&edit| M::supports(edit));
     assert!(
@@ -74,8 +71,6 @@ fn check_undo_count<M: Representation + MeshEdit>(edits: &[Edit], count: usize) 
     );
 }
 
-/// `split` adds a vertex to an edge at `end`; collapsing the new vertex into `end` undoes the
-/// split.
 fn is_undone_by_collapse<M: Representation + MeshEdit + Debug>(
     test: &ModelTest<M>,
     split: Action,
@@ -88,7 +83,6 @@ fn is_undone_by_collapse<M: Representation + MeshEdit + Debug>(
     is_undone(test, &[split, collapse])
 }
 
-/// A second `flip_edge`, of the edge between the former apexes, undoes the first.
 fn is_flip_undone<M: Representation + MeshEdit + Debug>(
     test: &ModelTest<M>,
     ends: [usize; 2],
@@ -111,12 +105,10 @@ fn is_flip_undone<M: Representation + MeshEdit + Debug>(
     true
 }
 
-/// `split_vertex` undoes the collapse of an edge with two triangles.
 fn is_collapse_undone<M: Representation + MeshEdit + Debug>(
     test: &ModelTest<M>,
     ends: [usize; 2],
 ) -> bool {
-    // `split_vertex` needs the vertices that are adjacent to both ends.
     let [first, second] = ends.map(|v| test.model.neighbours(v));
     let common: Vec<usize> = (&first & &second).into_iter().collect();
     let [left, right] = common[..] else {
@@ -146,7 +138,6 @@ fn is_collapse_undone<M: Representation + MeshEdit + Debug>(
     true
 }
 
-/// `remove_vertex` and `add_face` undo `poke_face`.
 fn is_poke_undone<M: Representation + MeshEdit + Debug>(test: &ModelTest<M>, f: usize) -> bool {
     let corners = test.model.face(f).expect("the face exists").to_vec();
     let mut poked = test.clone();
@@ -154,7 +145,8 @@ fn is_poke_undone<M: Representation + MeshEdit + Debug>(test: &ModelTest<M>, f: 
     if !poked.apply(&Action::PokeFace { f, at: FAR }) || !poked.apply(&Action::RemoveVertex { v }) {
         return false;
     }
-    // If a vertex is identified by its coordinates, corners without another face are removed.
+    // `remove_vertex` also removes corners without a face, if vertices are identified by
+    // coordinates.
     let has_corners = corners.iter().all(|&v| poked.model.position(v).is_some());
     if !has_corners || !poked.apply(&Action::AddFace { corners }) {
         return false;
@@ -163,7 +155,6 @@ fn is_poke_undone<M: Representation + MeshEdit + Debug>(test: &ModelTest<M>, f: 
     true
 }
 
-/// `dissolve_edge` undoes `split_face`.
 fn is_face_split_undone<M: Representation + MeshEdit + Debug>(
     test: &ModelTest<M>,
     f: usize,
@@ -177,7 +168,7 @@ fn is_face_split_undone<M: Representation + MeshEdit + Debug>(
     is_undone(test, &actions)
 }
 
-/// Returns the vertex that the next edit adds, if it adds one.
+/// Returns the vertex that the next edit would add.
 fn new_vertex<M: Representation + MeshEdit + Debug>(test: &ModelTest<M>) -> usize {
     test.model.vertices().last().map_or(0, |v| v + 1)
 }

@@ -7,7 +7,7 @@ use sixfold_core::{Point, PolygonMesh, Refine, RefineError, Split};
 use self::expected_child::ExpectedChild;
 use crate::subject::Subject;
 
-/// Returns all splits of the structure, including both kinds of √3.
+/// Returns all splits of the structure, including both values of `trisect`.
 fn splits<M: Refine>() -> Vec<Split> {
     let mut splits = Vec::new();
     for &split in M::SPLITS {
@@ -21,8 +21,8 @@ fn splits<M: Refine>() -> Vec<Split> {
     splits
 }
 
-/// The child of every split is valid, and has the expected faces, edges and parents. If a child is
-/// impossible, the split returns the matching error. Edges are numbered in the order of `edges()`.
+/// The child of every split is valid, and has the expected faces, edges and parents. An impossible
+/// split returns the matching error. Edges are numbered in the order of `edges()`.
 pub fn refine<M: Refine>(polygons: &PolygonMesh) {
     let Some(Subject { mesh, input, .. }) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -30,8 +30,7 @@ pub fn refine<M: Refine>(polygons: &PolygonMesh) {
     let mut numbers = M::EdgeNumbers::default();
     mesh.number_edges(&mut numbers);
     check_edge_numbers(&mesh, &numbers);
-    // This mesh is reused for all splits, so that a split also overwrites tables that are not
-    // empty.
+    // All splits overwrite this mesh, so its tables are not always empty.
     let mut used = M::empty();
     assert_eq!(used.to_polygons(), PolygonMesh::default());
     for split in splits::<M>() {

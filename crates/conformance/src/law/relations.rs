@@ -83,7 +83,7 @@ pub fn face_edges<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// Incidence and adjacency are symmetric: `f ∈ VF(v)` if and only if `v ∈ FV(f)`, and so on.
+/// The relations are symmetric: for example, `f ∈ VF(v)` if and only if `v ∈ FV(f)`.
 pub fn symmetry<M: Representation>(polygons: &PolygonMesh) {
     use Relation::*;
     let Some(subject) = Subject::<M>::from_polygons(polygons) else {
@@ -123,8 +123,8 @@ pub fn symmetry<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// `one_ring` runs counter-clockwise, and from boundary to boundary at a boundary vertex. It exists
-/// if and only if the faces form one consistently oriented fan.
+/// `one_ring` runs counter-clockwise; at a boundary vertex, it runs from boundary to boundary. The
+/// ring exists if and only if the faces form one consistently oriented fan.
 pub fn one_ring<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -213,8 +213,8 @@ pub fn predicates<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// `boundary_edges`, `boundary_loops` and `edge_face_counts` agree with the faces; there are as many
-/// loops as [`Facts`] counts.
+/// `boundary_edges`, `boundary_loops` and `edge_face_counts` agree with the faces. The number of
+/// loops agrees with [`Facts`].
 pub fn boundary_loops<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -243,7 +243,8 @@ pub fn boundary_loops<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// Each iterator yields the same items by `next` and by `fold`, also after some calls of `next`.
+/// Each iterator yields the same items by `next` and by `fold`. The same holds for `fold` after
+/// some calls of `next`.
 pub fn folds<M: Representation>(polygons: &PolygonMesh) {
     if let Some(subject) = Subject::<M>::from_polygons(polygons) {
         check_folds(&subject.mesh, M::NAME);
@@ -259,7 +260,7 @@ fn check_sets<M: Representation>(polygons: &PolygonMesh, relation: Relation) {
     }
 }
 
-/// Checks that `relation` of `element` is the set of the oracle, each item once.
+/// Checks that `relation` of `element` yields each item of the oracle's set once.
 pub(crate) fn check_relation<M: Representation>(
     subject: &Subject<M>,
     relation: Relation,
@@ -279,7 +280,6 @@ pub(crate) fn check_relation<M: Representation>(
     assert_eq!(got, expected, "{name}: {relation} of {element}");
 }
 
-/// Returns the edge between two vertices.
 fn edge_between(a: Element, b: Element) -> Element {
     match (a, b) {
         (Element::Vertex(a), Element::Vertex(b)) => Element::edge(a, b),
@@ -287,7 +287,6 @@ fn edge_between(a: Element, b: Element) -> Element {
     }
 }
 
-/// Returns whether `a` is a rotation of `b`.
 pub(crate) fn is_rotation<T: PartialEq>(a: &[T], b: &[T]) -> bool {
     let rotated = |start: usize| b[start..].iter().chain(&b[..start]);
     a.len() == b.len() && (a.is_empty() || (0..b.len()).any(|start| rotated(start).eq(a)))

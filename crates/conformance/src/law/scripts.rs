@@ -1,4 +1,4 @@
-//! Random scripts of edits, run by a law.
+//! Random scripts of edits for laws.
 
 use std::cell::RefCell;
 use std::fmt::{Debug, Write};
@@ -12,11 +12,11 @@ use crate::edit::{Action, Step, script};
 use crate::print::one_line;
 use crate::strategy::{any_mesh, manifold_mesh};
 
-/// Number of scripts if `PROPTEST_CASES` is not set, and maximum number of steps of a script.
+/// Number of scripts if `PROPTEST_CASES` is not set.
 const SCRIPTS: u32 = 64;
 const MAX_STEPS: usize = 160;
 
-/// The actions of a script that were executed, and whether each was accepted.
+/// The executed actions of a script, and whether each action was accepted.
 pub(super) type Executed = RefCell<Vec<(Action, bool)>>;
 
 /// Calls `run` with random start meshes and random scripts. If `run` panics, shrinks the script and

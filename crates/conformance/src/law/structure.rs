@@ -8,8 +8,8 @@ use super::relations::{check_relation, is_rotation};
 use crate::subject::{Subject, stored_mesh};
 use crate::weld::position_key;
 
-/// `from_polygons` accepts exactly the meshes that `CAPABILITIES` include. For all other meshes, it
-/// returns the error of `CAPABILITIES.check`. Brute force finds the same error.
+/// `from_polygons` accepts exactly the meshes that `CAPABILITIES` include. For other meshes,
+/// `from_polygons`, `CAPABILITIES.check` and a brute-force check return the same error.
 pub fn verdict<M: Representation>(polygons: &PolygonMesh) {
     let built = M::from_polygons(polygons).map(|_| ());
     let declared = M::CAPABILITIES.check(polygons);
@@ -62,7 +62,6 @@ pub fn set_positions<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// Moves the vertices of `subject` to `places`, and checks every answer.
 fn move_and_check<M: Representation>(subject: Subject<M>, places: Vec<Point>) -> Subject<M> {
     let Subject {
         mut mesh,
@@ -99,13 +98,11 @@ fn move_and_check<M: Representation>(subject: Subject<M>, places: Vec<Point>) ->
     subject
 }
 
-/// Returns a different position for each vertex, far from the positions of the shapes.
 fn distant_position(v: VertexId) -> Point {
     let i = v.index() as f32;
     Point::new(1000.0 + i, -i, (v.index() % 7) as f32)
 }
 
-/// Returns two vertices with no face in common.
 fn pair_without_common_face<M: Representation>(subject: &Subject<M>) -> Option<[VertexId; 2]> {
     let oracle = &subject.oracle;
     let share_face = |a, b| {
@@ -149,7 +146,7 @@ fn check_invariants<M: Representation>(mesh: &M) {
     }
 }
 
-/// A probed copy gives the same answers in the same order, and its reads are recorded.
+/// A probed copy gives the same answers in the same order, and the probe records its reads.
 pub fn probed<M: Measured>(polygons: &PolygonMesh) {
     let Some(Subject {
         mesh,

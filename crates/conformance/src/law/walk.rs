@@ -32,9 +32,8 @@ pub fn oriented_walk<M: Representation + OrientedWalk>(polygons: &PolygonMesh) {
     expected.check_missing(missing.expect("the larger mesh has sides"));
 }
 
-/// Runs random scripts of edits. After every few steps and after the last step, the walk agrees
-/// with the corners of the faces. Then one face of a copy is removed, and its sides no longer
-/// exist.
+/// Steps from side to side agree with the corners of the faces during random scripts of edits. The
+/// sides of a removed face do not exist.
 ///
 /// `PROPTEST_CASES` sets the number of scripts.
 pub fn oriented_walk_after_edits<M: Representation + MeshEdit + OrientedWalk + Debug>() {
@@ -61,8 +60,8 @@ fn run_script<M: Representation + MeshEdit + OrientedWalk + Debug>(
     check_edited(&test.mesh);
 }
 
-/// Checks the walk on a mesh that may have deleted rows. Then removes a face of a copy, and checks
-/// that the sides of this face do not exist.
+/// Checks the walk. Then removes a face of a copy, and checks that the sides of this face do not
+/// exist.
 fn check_edited<M: Representation + MeshEdit + OrientedWalk>(mesh: &M) {
     ExpectedWalk::from_mesh(mesh).check();
     let mut without = mesh.clone();
@@ -75,7 +74,7 @@ fn check_edited<M: Representation + MeshEdit + OrientedWalk>(mesh: &M) {
     }
 }
 
-/// A side, and the expected answers for it.
+/// The expected answers for a side.
 struct ExpectedSide<M: OrientedWalk> {
     side: M::Side,
     next: M::Side,
@@ -89,12 +88,11 @@ struct ExpectedWalk<'a, M: OrientedWalk> {
     mesh: &'a M,
     name: &'a str,
     sides: Vec<ExpectedSide<M>>,
-    /// The sides from one vertex to another.
+    /// By start and end: the sides.
     by_ends: BTreeMap<[M::Vertex; 2], Vec<M::Side>>,
 }
 
 impl<'a, M: Representation + OrientedWalk> ExpectedWalk<'a, M> {
-    /// Takes the corners of the faces from FV, which other laws check.
     fn from_mesh(mesh: &'a M) -> Self {
         let faces = mesh.faces().map(|f| (f, mesh.face_vertices(f).collect()));
         Self::new(mesh, M::NAME, faces.collect())
@@ -102,8 +100,7 @@ impl<'a, M: Representation + OrientedWalk> ExpectedWalk<'a, M> {
 }
 
 impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
-    /// Computes the answers from `faces`; the corners of a face may start anywhere. Only the
-    /// handles of the sides come from `mesh`.
+    /// Computes the answers from `faces`. Only the handles of the sides come from `mesh`.
     fn new(mesh: &'a M, name: &'a str, faces: Vec<(M::Face, Vec<M::Vertex>)>) -> Self {
         let mut sides = Vec::new();
         let mut by_ends: BTreeMap<_, Vec<_>> = BTreeMap::new();
@@ -150,7 +147,6 @@ impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
         self.check_map();
     }
 
-    /// Checks that `sides` has every side once, in the order of the faces.
     fn check_lists(&self) {
         let (mesh, name) = (self.mesh, self.name);
         let expected: Vec<M::Side> = self.sides.iter().map(|s| s.side).collect();
@@ -184,7 +180,6 @@ impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
         assert_eq!(back, twin.map(|_| s), "{name}: twin of the twin of {s:?}");
     }
 
-    /// Checks the next sides around the origin in both directions. These sides follow from twins.
     fn check_turns(&self, expected: &ExpectedSide<M>) {
         let (mesh, name, s) = (self.mesh, self.name, expected.side);
         let cw = self.twin(expected.ends).map(|twin| mesh.next_side(twin));
@@ -193,8 +188,7 @@ impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
         assert_eq!(mesh.ccw_side(s), ccw, "{name}: ccw_side of {s:?}");
     }
 
-    /// Returns the twin of the side between these ends. The twin is the side in the opposite
-    /// direction, if there is exactly one side in each direction.
+    /// Returns the side in the opposite direction, if there is exactly one side in each direction.
     fn twin(&self, [from, to]: [M::Vertex; 2]) -> Option<M::Side> {
         match (self.between([from, to]), self.between([to, from])) {
             ([_], [twin]) => Some(*twin),
@@ -206,7 +200,6 @@ impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
         self.by_ends.get(&ends).map_or(&[], Vec::as_slice)
     }
 
-    /// Checks the sides of every edge and of every vertex.
     fn check_sets(&self) {
         let (mesh, name) = (self.mesh, self.name);
         for e in mesh.edges() {
@@ -231,7 +224,6 @@ impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
         }
     }
 
-    /// Checks that a map has one value for each side.
     fn check_map(&self) {
         let mut map = self.mesh.side_map(usize::MAX);
         for s in &self.sides {
@@ -245,8 +237,7 @@ impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
         }
     }
 
-    /// Checks a side `s` that is not in the mesh: its methods panic or return elements that do not
-    /// exist.
+    /// Checks a side that does not exist: its methods panic or return elements that do not exist.
     fn check_missing(&self, s: M::Side) {
         let mesh = self.mesh;
         let has = |s: M::Side| self.sides.iter().any(|known| known.side == s);
@@ -279,7 +270,6 @@ impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
     }
 }
 
-/// Returns whether `element` finds an element; false if it panics.
 fn exists(element: impl FnOnce() -> bool) -> bool {
     catch_panic(element).unwrap_or(false)
 }

@@ -1,4 +1,4 @@
-//! A mesh as lists of faces while operations change it.
+//! A mesh as lists of faces.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,7 +6,7 @@ use sixfold_core::{Point, PolygonMesh};
 
 use crate::gallery::distinct_position;
 
-/// An oriented mesh that operations change; positions are added at the end.
+/// An oriented mesh without positions, which operations change.
 #[derive(Clone, Debug)]
 pub(super) struct MeshBuilder {
     /// Exclusive upper bound of the vertex numbers in faces.
@@ -14,12 +14,11 @@ pub(super) struct MeshBuilder {
     pub(super) faces: Vec<Vec<u32>>,
     /// Number of isolated vertices to add.
     pub(super) isolated: u32,
-    /// Two vertices: the first gets the position of the second.
+    /// Two vertices: the first vertex gets the position of the second vertex.
     pub(super) coincident: Option<[u32; 2]>,
 }
 
 impl MeshBuilder {
-    /// Collects the faces of all `pieces`, side by side.
     pub(super) fn from_meshes(pieces: &[PolygonMesh]) -> Self {
         let mut builder = Self {
             vertices: 0,
@@ -37,20 +36,18 @@ impl MeshBuilder {
         builder
     }
 
-    /// Adds a vertex and returns its number.
     pub(super) fn add_vertex(&mut self) -> u32 {
         self.vertices += 1;
         self.vertices - 1
     }
 
-    /// Reverses every face.
     pub(super) fn reverse_faces(&mut self) {
         for face in &mut self.faces {
             face.reverse();
         }
     }
 
-    /// Returns the sides in order: start, end and face of each.
+    /// Returns the start, the end and the face of each side.
     pub(super) fn sides(&self) -> Vec<(u32, u32, usize)> {
         let faces = self.faces.iter().enumerate();
         let sides = faces.flat_map(|(f, face)| {
@@ -67,14 +64,12 @@ impl MeshBuilder {
         sides.map(|(a, b, f)| ((a, b), f)).collect()
     }
 
-    /// Returns the vertices adjacent to `v`.
     pub(super) fn neighbours(&self, v: u32) -> BTreeSet<u32> {
         let sides = self.sides().into_iter();
         let ends = sides.filter(|&(a, b, _)| a == v || b == v);
         ends.map(|(a, b, _)| if a == v { b } else { a }).collect()
     }
 
-    /// Returns the vertices that faces use, in ascending order.
     pub(super) fn used_vertices(&self) -> Vec<u32> {
         let used: BTreeSet<u32> = self.faces.iter().flatten().copied().collect();
         used.into_iter().collect()
@@ -82,8 +77,6 @@ impl MeshBuilder {
 
     /// Separates the fans of each vertex: one fan keeps the vertex, and every other fan gets a new
     /// vertex.
-    ///
-    /// The faces of one fan share edges at the vertex. No edge is in two fans, so no edge is cut.
     pub(super) fn separate_fans(&mut self) {
         for v in self.used_vertices() {
             let mut rest: Vec<usize> = (0..self.faces.len())
@@ -115,7 +108,6 @@ impl MeshBuilder {
         fan
     }
 
-    /// Returns the corners before and after `v` in face `f`.
     fn spokes(&self, f: usize, v: u32) -> [u32; 2] {
         let face = &self.faces[f];
         let at = face.iter().position(|&corner| corner == v);
@@ -159,7 +151,7 @@ impl MeshBuilder {
     }
 }
 
-/// A generator of pseudo-random numbers (SplitMix64, Steele et al. 2014).
+/// A pseudo-random generator (SplitMix64, Steele et al. 2014).
 struct SplitMix64(u64);
 
 impl SplitMix64 {

@@ -5,7 +5,7 @@ use super::builder::MeshBuilder;
 /// A fault of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// One face is oriented against the adjacent faces.
+    /// The orientation of one face differs from its adjacent faces.
     TurnedFace,
     /// An edge has three faces or more.
     ThirdFace,
@@ -15,12 +15,12 @@ pub enum Fault {
     DuplicateFace,
     /// A vertex has no face.
     IsolatedVertex,
-    /// Two vertices share a position.
+    /// Two vertices have the same position.
     CoincidentVertices,
 }
 
 impl Fault {
-    /// All faults, in the order in which they can be added to one mesh.
+    /// All faults. Faults are added to a mesh in this order.
     pub const ALL: [Self; 6] = [
         Self::TurnedFace,
         Self::ThirdFace,
@@ -36,7 +36,7 @@ impl Fault {
         let (a, b, f) = sides[at % sides.len()];
         match self {
             Self::TurnedFace => {
-                // Without an adjacent face across that side, turning the face would not be a fault.
+                // Turning a face is a fault only if the face has an adjacent face.
                 if !sides.iter().any(|side| (side.0, side.1) == (b, a)) {
                     let apex = builder.add_vertex();
                     builder.faces.push(vec![b, a, apex]);
@@ -62,8 +62,8 @@ impl Fault {
     }
 }
 
-/// Merges `v` with another vertex if the two have no face and no adjacent vertex in common. If
-/// there is no such vertex, attaches a triangle to `v`.
+/// Merges `v` with another vertex that has no common face and no common adjacent vertex. If there
+/// is no such vertex, attaches a triangle to `v`.
 fn bow_tie(builder: &mut MeshBuilder, v: u32) {
     let neighbours = builder.neighbours(v);
     let is_separate = |&u: &u32| builder.neighbours(u).is_disjoint(&neighbours);
@@ -88,7 +88,6 @@ fn bow_tie(builder: &mut MeshBuilder, v: u32) {
     }
 }
 
-/// Returns the vertices that have no face in common with `v`.
 fn without_common_face(builder: &MeshBuilder, v: u32) -> Vec<u32> {
     let share_face = |u: u32| {
         builder

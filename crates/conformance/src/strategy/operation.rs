@@ -1,4 +1,4 @@
-//! Operations that keep an oriented manifold an oriented manifold.
+//! Operations that change an oriented manifold into another oriented manifold.
 
 use std::collections::BTreeMap;
 
@@ -6,11 +6,11 @@ use proptest::prelude::*;
 
 use super::builder::MeshBuilder;
 
-/// One operation. Its numbers, taken modulo the number of elements, select the elements. If the
-/// operation is impossible at these elements, it does nothing.
+/// One operation. Its numbers, modulo the number of elements, select the elements. An operation
+/// that is impossible at these elements does nothing.
 #[derive(Clone, Debug)]
 pub(super) enum Operation {
-    /// Removes a face, unless it is the last one. If a vertex then has two fans, it is duplicated.
+    /// Removes a face, except the last face. A vertex that then has two fans is duplicated.
     RemoveFace(usize),
     /// Inserts a vertex into an edge, and into each face at the edge.
     SplitEdge(usize),
@@ -29,7 +29,6 @@ pub(super) enum Operation {
     Tube(usize, usize),
 }
 
-/// Generates any operation.
 pub(super) fn operation() -> impl Strategy<Value = Operation> {
     let at = || (0..1000_usize).boxed();
     prop_oneof![
@@ -45,7 +44,7 @@ pub(super) fn operation() -> impl Strategy<Value = Operation> {
 }
 
 impl Operation {
-    /// Applies the operation to `builder`, which has at least one face before and after.
+    /// Applies the operation to `builder`, which must have at least one face.
     pub(super) fn apply(self, builder: &mut MeshBuilder) {
         match self {
             Self::RemoveFace(f) => remove_face(builder, f),
@@ -60,7 +59,6 @@ impl Operation {
     }
 }
 
-/// Returns the item at `number` modulo the number of items.
 fn pick<T: Clone>(items: &[T], number: usize) -> Option<T> {
     items.get(number.checked_rem(items.len())?).cloned()
 }
@@ -98,7 +96,6 @@ fn poke_face(builder: &mut MeshBuilder, f: usize) {
     builder.faces.extend(fan);
 }
 
-/// Pokes every face that is not a triangle.
 pub(super) fn triangulate(builder: &mut MeshBuilder) {
     while let Some(f) = builder.faces.iter().position(|face| face.len() > 3) {
         poke_face(builder, f);
@@ -129,8 +126,7 @@ fn split_face(builder: &mut MeshBuilder, f: usize, i: usize, j: usize) {
     builder.faces.push(second);
 }
 
-/// Merges two faces if they share only an edge and its ends. If they shared another vertex, the
-/// merged face would use this vertex twice.
+/// Merges two faces that share only an edge and its ends.
 fn dissolve_edge(builder: &mut MeshBuilder, side: usize) {
     let face_of_side = builder.face_by_side();
     let shared = face_of_side.iter().filter_map(|(&(a, b), &f)| {
@@ -143,7 +139,6 @@ fn dissolve_edge(builder: &mut MeshBuilder, side: usize) {
     let Some((a, b, f, g)) = pick(&shared.collect::<Vec<_>>(), side) else {
         return;
     };
-    // The corners of f from b to a, then the corners of g from a on, without a and b.
     let from = |face: &[u32], start: u32| {
         let at = face.iter().position(|&v| v == start).unwrap_or(0);
         [&face[at..], &face[..at]].concat()
@@ -175,9 +170,8 @@ fn fill_hole(builder: &mut MeshBuilder, side: usize) {
     builder.faces.push(around.collect());
 }
 
-/// Returns the sides of the faces that would fill the holes: the boundary edges in the opposite
-/// direction. The result maps the start of each side to its end. At most one side starts at each
-/// vertex, because the mesh is manifold.
+/// Returns the boundary edges in the direction opposite to their faces, as a map from start to end.
+/// In a manifold, at most one such edge starts at each vertex.
 fn holes(builder: &MeshBuilder) -> BTreeMap<u32, u32> {
     let face_of_side = builder.face_by_side();
     let open = face_of_side
@@ -202,7 +196,7 @@ fn tube(builder: &mut MeshBuilder, f: usize, g: usize) {
     let a = builder.faces[f].clone();
     let mut b = builder.faces[g].clone();
     b.reverse();
-    // A vertex of both faces must not be joined to itself: a–c and c–b would be the same edge.
+    // A vertex of both faces must not be joined to itself.
     let coincide = |b: &[u32]| a.iter().zip(b).any(|(a, b)| a == b);
     for _ in 0..degree {
         if coincide(&b) {
@@ -232,7 +226,6 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// The first operation that breaks the mesh is shown.
         #[test]
         fn every_step_keeps_an_oriented_manifold(steps in collection::vec(operation(), 0..20)) {
             let mut builder = MeshBuilder::from_meshes(&[sixfold_shapes::tetrahedron(), sixfold_shapes::cube()]);

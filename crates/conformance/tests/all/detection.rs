@@ -9,7 +9,7 @@ use crate::face_and_edge_lists::FaceAndEdgeLists;
 use crate::flawed::{Flaw, Flawed, Kind};
 
 /// `Kind => law, "words of the message"` makes a test: the law must fail for the structure with
-/// this flaw, and its message must contain these words.
+/// this flaw, with a message that contains these words.
 macro_rules! detects {
     (meshes { $($flaw:ident => $law:ident, $words:literal;)+ }
      structures { $($structural_flaw:ident => $structural:ident, $structural_words:literal;)+ }) => {
@@ -38,7 +38,6 @@ macro_rules! detects {
             )+
         }
 
-        /// The laws that are shown to detect a flaw.
         const DETECTED: &[&str] = &[$(stringify!($law),)+ $(stringify!($structural)),+];
     };
     (@flaws $($flaw:ident)+) => {
@@ -136,14 +135,12 @@ detects! {
     }
 }
 
-/// The seventh structure searches all edges to find the edge of a side.
 #[test]
 fn a_walk_that_scans_is_found() {
     let fault = fault(law::oriented_walk_costs::<FaceAndEdgeLists>);
     assert!(fault.contains("side_edge scans"), "{fault}");
 }
 
-/// Returns the message of the law that fails.
 fn fault(run: impl FnOnce() + std::panic::UnwindSafe) -> String {
     let outcome = catch_unwind(run);
     let payload = outcome.expect_err("the suite passes a flawed structure");
@@ -151,7 +148,6 @@ fn fault(run: impl FnOnce() + std::panic::UnwindSafe) -> String {
     message.expect("a law panics with a message").clone()
 }
 
-/// Checks that a message contains `words` and the name of the structure.
 fn assert_reported(fault: &str, words: &str) {
     assert!(fault.contains(words), "“{words}” is not in:\n{fault}");
     assert!(
@@ -170,7 +166,6 @@ fn every_law_detects_a_flaw() {
     }
 }
 
-/// If only a large random mesh shows a flaw, the mesh is shrunk to a small mesh.
 #[test]
 fn a_failing_mesh_shrinks_and_is_shown() {
     type Lists = crate::face_and_edge_lists::FaceAndEdgeLists;

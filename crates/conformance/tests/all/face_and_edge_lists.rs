@@ -36,7 +36,6 @@ impl<P: Probe> FaceAndEdgeLists<P> {
     }
 }
 
-/// Iterates over the sides of a face, each with its lower end first.
 fn sides(corners: &[VertexId]) -> impl Iterator<Item = [VertexId; 2]> + Clone {
     let next = corners.iter().cycle().skip(1);
     let pairs = corners.iter().zip(next);

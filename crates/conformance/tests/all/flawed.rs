@@ -109,7 +109,7 @@ impl<F: Flaw, P: Probe> Flawed<F, P> {
         F::KIND == kind
     }
 
-    /// Returns `items`, with a second copy of the first one if the flaw is `kind`.
+    /// Repeats the first item if the flaw is `kind`.
     fn with_duplicate<T: Copy>(&self, kind: Kind, mut items: Vec<T>) -> std::vec::IntoIter<T> {
         if self.is(kind) {
             items.extend(items.first().copied());
@@ -117,7 +117,7 @@ impl<F: Flaw, P: Probe> Flawed<F, P> {
         items.into_iter()
     }
 
-    /// Returns `items`, without the last one if the flaw is `kind`.
+    /// Drops the last item if the flaw is `kind`.
     fn without_last<T>(&self, kind: Kind, mut items: Vec<T>) -> Vec<T> {
         if self.is(kind) {
             items.pop();

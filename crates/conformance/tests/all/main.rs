@@ -1,5 +1,5 @@
-//! Tests of the suite itself: it passes for a correct structure and fails for every flawed one, and
-//! its random meshes have the documented properties.
+//! Tests of the suite itself. The suite passes for a correct structure and fails for every flawed
+//! structure. The random meshes have the documented properties.
 
 mod detection;
 mod face_and_edge_lists;

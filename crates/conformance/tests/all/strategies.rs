@@ -8,7 +8,6 @@ use sixfold_core::{BuildError, Capabilities, Facts, PolygonMesh};
 
 const SAMPLES: usize = 1000;
 
-/// Generates the same meshes on every run.
 fn samples<S: Strategy>(strategy: S) -> Vec<S::Value> {
     let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
     let mut runner = TestRunner::new_with_rng(Config::default(), rng);
@@ -21,12 +20,11 @@ fn samples<S: Strategy>(strategy: S) -> Vec<S::Value> {
     (0..SAMPLES).map(sample).collect()
 }
 
-/// Returns the percentage of `items` for which `predicate` is true.
 fn share<T>(items: &[T], predicate: impl Fn(&T) -> bool) -> usize {
     100 * items.iter().filter(|item| predicate(item)).count() / items.len()
 }
 
-/// Checks that each kind of mesh is frequent enough: `(kind, floor, share)` in percent.
+/// Each entry is `(kind, floor, share)` in percent.
 fn assert_shares(floors: &[(&str, usize, usize)]) {
     let below = floors.iter().filter(|(_, floor, share)| share < floor);
     let below: Vec<_> = below.collect();
@@ -157,8 +155,7 @@ fn faulty_meshes_have_exactly_their_faults() {
                 (Fault::TurnedFace, Err(BuildError::RepeatedSide { .. }))
                 | (Fault::ThirdFace, Err(BuildError::NonManifoldEdge { .. }))
                 | (Fault::BowTie, Err(BuildError::NonManifoldVertex { .. })) => true,
-                // The duplicate repeats sides of a face. It is the third face at an edge that
-                // already has two.
+                // The duplicate may be the third face at an edge.
                 (Fault::DuplicateFace, Err(_)) => facts.duplicate_faces > 0,
                 (Fault::IsolatedVertex, Ok(())) => facts.isolated_vertices == 1,
                 (Fault::CoincidentVertices, Ok(())) => true,

@@ -1,4 +1,4 @@
-//! Edits of the division: faces are added, get other corners, and lose their rows.
+//! Edits of the division of corners into faces.
 
 use super::{FaceSpans, ScatteredFaces, Span};
 use crate::editing::{Editable, HoleSet};
@@ -7,8 +7,8 @@ use crate::probe::Probe;
 use crate::row_id::{FaceId, Slot, row};
 use crate::table::Table;
 
-/// `corners` is the table that these spans divide. The caller checks beforehand that handles
-/// can name one more face or corner.
+/// `corners` is the table that these spans divide. The caller must check the limits on the numbers
+/// of faces and corners beforehand.
 impl<P: Probe> FaceSpans<P, Editable> {
     /// Adds a face at the end of the table; O(degree) amortised. The first face of another degree
     /// adds a table of spans, which takes O(corners) once.
@@ -42,8 +42,8 @@ impl<P: Probe> FaceSpans<P, Editable> {
     }
 
     /// Replaces the corners of `f`; O(degree) amortised. If the face gets more corners than before,
-    /// they are written at the end of the table; otherwise they are written in place. The first
-    /// change of a degree adds a table of spans, which takes O(corners) once.
+    /// all its corners move to the end of the table. The first change of a degree adds a table of
+    /// spans, which takes O(corners) once.
     pub fn rewrite<T: Copy>(&mut self, corners: &mut Table<T, P>, f: FaceId, face: &[T], blank: T) {
         let old = self.range(f);
         if face.len() != old.len() {
@@ -83,8 +83,8 @@ impl<P: Probe> FaceSpans<P, Editable> {
         }
     }
 
-    /// Closes the gaps of deleted faces in `corners`; O(corners), not observed. A table that is
-    /// less than half used frees its spare memory.
+    /// Closes the gaps of deleted faces in `corners`; O(corners). The probe does not record this. A
+    /// table that is less than half used frees its spare memory.
     pub fn compact<T: Copy>(&mut self, corners: &mut Table<T, P>, holes: &Holes<P>) {
         match self {
             Self::Uniform { degree, faces } => {
@@ -124,7 +124,7 @@ impl<P: Probe> FaceSpans<P, Editable> {
         }
     }
 
-    /// Changes the spans so that faces can lie anywhere; O(corners), or O(1) if they already can.
+    /// Changes the spans to scattered faces; O(corners).
     fn scatter<T>(&mut self, corners: &Table<T, P>) {
         if let Self::Scattered(_) = self {
             return;

@@ -44,7 +44,6 @@ fn spans_must_divide_the_corners() {
 
 const BLANK: u32 = 99;
 
-/// Returns the faces that are not holes, after checking that spans and corners agree.
 fn faces(
     spans: &FaceSpans<Untraced, Editable>,
     corners: &Table<u32>,

@@ -30,13 +30,12 @@ impl<V: ScannedVertex> Star<V> {
         }
     }
 
-    /// Returns whether `f` is a triangle, if it has both ends; otherwise `None`.
+    /// Returns whether `f` is a triangle; `None` if `f` does not have both ends.
     fn is_triangle_along(&self, f: FaceId) -> Option<bool> {
         let found = self.along.binary_search_by_key(&f, |&(face, _)| face);
         found.ok().map(|i| self.along[i].1)
     }
 
-    /// Returns whether a face remains after the collapse.
     fn remains(&self, f: FaceId) -> bool {
         self.is_triangle_along(f) != Some(true)
     }
@@ -56,7 +55,7 @@ impl<V: ScannedVertex> Star<V> {
         ends.flat_map(|end| self.ring(end, |f| self.remains(f)))
     }
 
-    /// Reports the changes of the edges at both ends, which become the vertex `to`.
+    /// Reports the changes of the edges at both ends.
     fn report_edges<M: ScannedMesh<V>>(&self, to: V, log: &mut impl EditLog<M>) {
         let (keep, removed) = (self.keep, self.removed);
         log.removed_edge(Pair::new(keep, removed));
@@ -127,8 +126,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         Ok(())
     }
 
-    /// Returns the corners at the ends of `e`, after checking that `e` exists and that its ends are
-    /// adjacent in every face that has both.
+    /// Finds the corners at the ends of `e`. Checks that `e` exists, that `to` is free, and that
+    /// the ends are adjacent in every face that has both ends.
     fn star(&self, e: Pair<V>, keep: V, to: V) -> Result<Star<V>, Refusal<V>> {
         let [a, b] = e.ends();
         if !e.has(keep) {
@@ -180,8 +179,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         Ok(star)
     }
 
-    /// Checks that `keep` and the third corners of the removed triangles still have faces
-    /// afterwards.
+    /// Checks that `keep` and the third corners of the removed triangles keep a face.
     fn check_remaining_faces(&self, star: &Star<V>) -> Result<(), Refusal<V>> {
         if star.hits.iter().all(|hit| !star.remains(hit.face)) {
             return Err(EditError::LastFace { vertex: star.keep });
@@ -198,8 +196,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
             if star.remaining_ring().any(|v| v == apex) {
                 continue;
             }
-            // Rare: `apex` has no remaining face at the ends of the edge, but may have one
-            // elsewhere.
+            // Rare: no remaining face at the ends of the edge has `apex`, so this scans all faces.
             let mut faces = self.vertex_faces(apex);
             if faces.all(|f| !star.remains(f)) {
                 return Err(EditError::LastFace { vertex: apex });

@@ -20,7 +20,7 @@ struct FaceSide<V> {
     corners: [usize; 2],
     /// The vertices at these corners.
     ends: [V; 2],
-    /// The other neighbour of the edge's lower end in the face: in a triangle, the third corner.
+    /// The third corner, if the face is a triangle.
     apex: V,
 }
 
@@ -111,7 +111,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         let grown = along.iter().map(|side| self.degree(side.face) + 1);
         self.check_capacity(0, grown.sum())?;
         for side in along.iter() {
-            // All corners from the end of the side around to its start, then m.
+            // The corners from the end of the side to its start, then `m`.
             let mut face: ShortVec<V::Corner> =
                 self.corners_from(side.face, side.corners[1]).collect();
             face.push(m.corner());
@@ -128,7 +128,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Refuses a missing edge, a face of it that is not a triangle, and an occupied position.
+    /// Refuses a missing edge, an edge with a face that is not a triangle, and an occupied
+    /// position.
     pub fn bisect_edge<M: ScannedMesh<V>>(
         &mut self,
         e: Pair<V>,
@@ -156,20 +157,20 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         Ok(())
     }
 
-    /// Removes `e` and merges its two faces into the first of them in the table; one scan.
+    /// Removes `e` and merges its two faces into the first face in the table; one scan.
     ///
     /// # Errors
     ///
-    /// Refuses a missing edge, an edge that does not have exactly two faces, and faces that run
-    /// along it in the same direction or share another vertex.
+    /// Refuses a missing edge, and the same cases as
+    /// [`MeshEdit::dissolve_edge`](crate::MeshEdit::dissolve_edge).
     pub fn dissolve_edge<M: ScannedMesh<V>>(
         &mut self,
         e: Pair<V>,
         log: &mut impl EditLog<M>,
     ) -> Result<FaceId, Refusal<V>> {
         let [first, second] = Self::opposed(e, &self.along(e, None)?)?;
-        // All corners of the first face from the end of its side around to its start, then those of
-        // the second face without the two ends.
+        // The corners of the first face from the end of its side to its start, then the corners of
+        // the second face except the two ends.
         let mut merged: ShortVec<V> = self
             .corners_from(first.face, first.corners[1])
             .map(V::from_corner)
@@ -222,7 +223,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         if c == d {
             return Err(EditError::SameApex { edge: e, vertex: c });
         }
-        // The second scan: whether edge c–d exists, and the corners at b.
+        // The second scan finds the corners at `b`, and the edge `c`–`d` if it exists.
         let mut at_b = ShortVec::new();
         for hit in self.hits(SearchSet::Two([b, c])) {
             if hit.at == b {

@@ -140,8 +140,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         }
         self.check_capacity(corners.len() - 1, 3 * corners.len())?;
         log.created_vertex(m);
-        // The corners of `f` stay in place until `f` is rewritten at the end. Pushing other faces
-        // does not move these corners.
+        // Pushing other faces does not move the corners of `f`.
         let start = corners.start;
         let [first, second] =
             [start, start + 1].map(|corner| V::from_corner(*self.corners.read(corner)));
@@ -165,8 +164,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Refuses a missing face, and `ends` that are not corners of it, are equal, or are adjacent in
-    /// it.
+    /// Refuses a missing face. Also refuses `ends` that are not corners of `f`, are equal, or are
+    /// adjacent in `f`.
     pub fn split_face<M: ScannedMesh<V>>(
         &mut self,
         f: FaceId,

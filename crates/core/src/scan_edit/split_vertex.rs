@@ -55,8 +55,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         hits.sort_unstable_by_key(|hit| hit.after);
         let mut i = from;
         loop {
-            // The edges to `left` and `right` stay at v, and n gets new ones; the other edges move to
-            // n with their faces.
+            // The edges to `left` and `right` stay at `v`. The other edges move to `n`.
             if Some(ring[i]) != right && Some(ring[i]) != left {
                 log.renamed_edge(Pair::new(v, ring[i]), Pair::new(n, ring[i]));
             }

@@ -68,7 +68,6 @@ fn scans_skip_blank_corners() {
         assert_eq!(mesh.edge_faces(e).next(), None);
         assert_eq!(mesh.edge_edges(e).next(), None);
     }
-    // The set has bits only for small numbers, so blank corners are not in it.
     let many: Vec<VertexId> = (0..6).map(VertexId::new).collect();
     assert_eq!(mesh.scan(SearchSet::from_vertices(&many)).count(), 6);
     mesh.corners.rows_mut()[3] = many[3];

@@ -10,14 +10,13 @@ use crate::mesh::{CornerId, CornerTable, EdgeCorner, NO_VERTEX, edge_between};
 struct RemainingFan {
     /// The corner across the last triangle at the edge, counter-clockwise around this end.
     after: Slot<CornerId>,
-    /// The corner across the first of these triangles.
+    /// The corner across the first triangle at the edge.
     before: Slot<CornerId>,
-    /// The corner of the first triangle at which a walk from `after` stops if the fan is closed.
+    /// If the fan is closed, a walk from `after` stops at this corner.
     stop: Slot<CornerId>,
 }
 
 impl RemainingFan {
-    /// Returns whether the fan is closed and a single triangle remains.
     #[inline]
     fn is_one_triangle(self) -> bool {
         let [after, before] = [self.after, self.before].map(|c| c.get().map(CornerId::triangle));
@@ -26,9 +25,11 @@ impl RemainingFan {
 }
 
 impl<P: Probe> CornerTable<Editable, P> {
-    /// Merges the ends of `e`, if the link condition holds (Dey, Edelsbrunner, Guha & Nekhayev
-    /// 1999). The condition is: only C and D are adjacent to both ends, no triangle of one end
-    /// would coincide with a triangle of the other, and the collapse does not join two boundaries.
+    /// Merges the ends of `e`, if these conditions hold (Dey, Edelsbrunner, Guha & Nekhayev 1999):
+    ///
+    /// - Only C and D are adjacent to both ends.
+    /// - No triangle of one end would coincide with a triangle of the other end.
+    /// - The collapse does not join two boundaries.
     ///
     /// ```text
     ///         C                 C          T and R are deleted. on and op become opposite, as do
@@ -58,7 +59,7 @@ impl<P: Probe> CornerTable<Editable, P> {
             });
         }
         let [on, op] = [n, p].map(|c| *self.opposite.read(c.index()));
-        // For a boundary edge, the values of the other side stay empty.
+        // For a boundary edge, the values of the missing triangle stay empty.
         let (mut q, mut r, mut vd) = (c, c, NO_VERTEX);
         let (mut oq, mut or) = (Slot::NONE, Slot::NONE);
         if let Some(o) = across {
@@ -101,7 +102,7 @@ impl<P: Probe> CornerTable<Editable, P> {
             true
         });
         if others.as_slice().is_empty() {
-            // Only C and D: the fan is open, or closed with one remaining triangle C–D.
+            // The fan is open, or closed with one remaining triangle.
             if closed && kept_fan.is_one_triangle() {
                 return Err(EditError::Pillow { edge: e });
             }
@@ -112,7 +113,7 @@ impl<P: Probe> CornerTable<Editable, P> {
             return Err(EditError::AcrossBoundary { edge: e });
         }
 
-        // If one of the two fans is at a boundary, the merged fan begins at this boundary.
+        // The merged fan begins at the boundary, if there is one.
         let start_vertex = match across {
             None => vb,
             Some(_) if !closed => gone,
@@ -145,9 +146,9 @@ impl<P: Probe> CornerTable<Editable, P> {
         Ok(keep)
     }
 
-    /// Calls `visitor` with each corner of `fan` and a neighbour in its triangle: the vertex
-    /// before the corner while walking counter-clockwise, the vertex after it while walking
-    /// clockwise. Returns true if the fan is closed or `visitor` returned false.
+    /// Calls `visitor` with each corner of `fan` and a neighbour in its triangle. In a
+    /// counter-clockwise walk, the neighbour is the vertex before the corner; in a clockwise walk,
+    /// the vertex after the corner. Returns true if the fan is closed or `visitor` returned false.
     #[inline]
     fn visit(
         &self,
@@ -171,7 +172,7 @@ impl<P: Probe> CornerTable<Editable, P> {
         false
     }
 
-    /// Returns a vertex of `fan` that is in `others`, the neighbours of the other end.
+    /// Returns a vertex of `fan` that is in `others`.
     #[inline]
     fn common_vertex(&self, fan: RemainingFan, mut others: ShortVec<VertexId>) -> Option<VertexId> {
         others.sort_for_lookup();
@@ -186,7 +187,7 @@ impl<P: Probe> CornerTable<Editable, P> {
     }
 
     /// Deletes the triangle of `apex`, which is at `v`, and links the corners across its two other
-    /// sides: the side at the end that stays, and the side at the removed end.
+    /// sides.
     #[inline]
     fn collapse_triangle(
         &mut self,
@@ -222,8 +223,7 @@ mod tests {
     use super::*;
     use crate::EditableCornerTable;
 
-    /// Returns a wheel of `n` triangles around v0 and a second wheel around v(n + 1) with the same
-    /// rim, so that both hubs have valence `n`.
+    /// Returns two wheels of `n` triangles with the same rim, around v0 and around v(n + 1).
     fn double_wheel(n: u32) -> EditableCornerTable {
         let rim = |i: u32| 1 + i % n;
         let triangles = (0..n).flat_map(|i| [[0, rim(i), rim(i + 1)], [n + 1, rim(i + 1), rim(i)]]);
@@ -241,7 +241,7 @@ mod tests {
                 assert_eq!(done, Ok(keep), "{n}");
                 assert_eq!(mesh.validate(), Ok(()), "{n}");
                 assert_eq!(mesh.face_count(), 2 * n as usize - 2);
-                // Now the two hubs are adjacent, and have the whole rim in common.
+                // The two hubs are now adjacent, and have the whole rim in common.
                 let far = VertexId::new(n + 1);
                 let e = mesh.edge_between(keep, far).expect("adjacent hubs");
                 let before = format!("{mesh:?}");

@@ -8,8 +8,8 @@ use super::faced_by;
 use crate::mesh::{CornerId, CornerTable};
 
 impl<P: Probe> CornerTable<Editable, P> {
-    /// Moves all rows down over the holes, in one pass over each table. Triangles keep their order,
-    /// so the lower of two corners that face an edge stays the lower.
+    /// Moves all rows down over the holes. Triangles keep their order, so the lower corner that
+    /// faces an edge stays the lower corner.
     pub(super) fn compact_tables(&mut self, log: &mut impl EditLog<Self>) {
         if !self.vertex_holes.is_empty() || !self.face_holes.is_empty() {
             let new_vertices = self.vertex_holes.new_rows(self.positions.len());
@@ -66,7 +66,7 @@ impl<P: Probe> CornerTable<Editable, P> {
     }
 }
 
-/// Returns the handle of corner `c` after its triangle moved to its new row.
+/// Returns the new handle of corner `c`.
 #[inline]
 fn new_corner(c: CornerId, faces: &[u32]) -> CornerId {
     let t = c.triangle();

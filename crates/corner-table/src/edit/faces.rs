@@ -6,8 +6,7 @@ use super::{Refusal, faced_by, report_renamed};
 use crate::mesh::{CornerId, CornerTable, edge_between};
 
 impl<P: Probe> CornerTable<Editable, P> {
-    /// Adds a triangle with the given vertices, and links it to the triangles that run along its
-    /// sides in the other direction.
+    /// Adds a triangle, and links it to the triangles across its sides.
     ///
     /// ```text
     ///     s           l        The fan of v is open, from the edge v–s to the edge v–l. The new
@@ -60,7 +59,7 @@ impl<P: Probe> CornerTable<Editable, P> {
         Ok(at_a.triangle())
     }
 
-    /// Finds where a triangle with the sides w–v and v–u fits into the fan of `v`.
+    /// Finds the place of a triangle with the sides w–v and v–u in the fan of `v`.
     fn find_gap(&self, v: VertexId, u: VertexId, w: VertexId) -> Result<Gap, Refusal> {
         let Some(first) = self.corner.read(v.index()).get() else {
             return Ok(Gap {
@@ -69,7 +68,8 @@ impl<P: Probe> CornerTable<Editable, P> {
             });
         };
         let (mut last, mut end) = (first.next(), Slot::NONE);
-        // `at_u` is the corner after v in the triangle where u follows v; `at_w` is the same for w.
+        // `at_u` is the corner after v in the triangle where u follows v. `at_w` is the corner
+        // after v in the triangle where w follows v.
         let (mut at_u, mut at_w) = (None, None);
         for (after, across) in self.fan(v) {
             let beyond = *self.vertex.read(after.index());
@@ -84,8 +84,8 @@ impl<P: Probe> CornerTable<Editable, P> {
         let beyond_last = *self.vertex.read(last.next().index());
         let (joins_last, joins_first) =
             (open && beyond_last == u, open && at_w == Some(first.next()));
-        // If the triangle does not fit, a face already runs along an edge in this direction, or
-        // an edge has two faces.
+        // The triangle does not fit in two cases: a face already runs along one of the edges in
+        // this direction, or the edge has two faces.
         if let Some(at_u) = at_u {
             return Err(if open && at_u == first.next() {
                 self.repeated_side_error(v, u, at_u)
@@ -112,7 +112,6 @@ impl<P: Probe> CornerTable<Editable, P> {
         })
     }
 
-    /// Returns the error that `corner`'s triangle already runs the side `from`–`to`.
     fn repeated_side_error(&self, from: VertexId, to: VertexId, corner: CornerId) -> Refusal {
         EditError::RepeatedSide {
             from,
@@ -121,15 +120,14 @@ impl<P: Probe> CornerTable<Editable, P> {
         }
     }
 
-    /// Returns the error for an edge with two faces. The edge goes from the vertex before `after`
-    /// to the vertex of `after`.
+    /// Returns the error for an edge with two faces. The edge ends at the vertex of `after`.
     fn full_edge_error(&self, after: CornerId) -> Refusal {
         EditError::FullEdge {
             edge: self.edge(after.next()),
         }
     }
 
-    /// Removes `f`. The edges that it shared become boundary edges of its neighbours.
+    /// Removes `f`. Each edge with another face becomes a boundary edge.
     pub(super) fn remove_triangle(
         &mut self,
         f: FaceId,
@@ -152,8 +150,8 @@ impl<P: Probe> CornerTable<Editable, P> {
         Ok(())
     }
 
-    /// Removes `v` and all triangles at it. Each adjacent vertex loses one triangle, or two
-    /// adjacent ones.
+    /// Removes `v` and all triangles at `v`. Each neighbour of `v` loses one triangle or two
+    /// adjacent triangles.
     pub(super) fn remove_star(
         &mut self,
         v: VertexId,
@@ -162,8 +160,8 @@ impl<P: Probe> CornerTable<Editable, P> {
         if self.check_vertex(v)?.get().is_some() {
             let (star, closed) = self.star(v);
             let star = star.as_slice();
-            // One gap between each two consecutive corners of the star, counter-clockwise. At an
-            // end of an open star, one of the two is `None`.
+            // A gap lies between two consecutive corners of the star, counter-clockwise. At an end
+            // of an open star, one of the two corners is `None`.
             let gaps = (0..star.len() + usize::from(!closed)).map(|i| {
                 let before = match i {
                     0 if closed => star.last(),
@@ -186,7 +184,7 @@ impl<P: Probe> CornerTable<Editable, P> {
         Ok(())
     }
 
-    /// Returns the corners at `v`, counter-clockwise, and whether its fan is closed.
+    /// Returns the corners at `v`, counter-clockwise, and whether the fan is closed.
     pub(super) fn star(&self, v: VertexId) -> (ShortVec<CornerId>, bool) {
         let mut star = ShortVec::new();
         let mut closed = false;
@@ -197,9 +195,9 @@ impl<P: Probe> CornerTable<Editable, P> {
         (star, closed)
     }
 
-    /// Returns the other end of the edge at `v` that the triangles of two consecutive corners share.
-    /// Also returns the corners opposite the sides of these triangles that have this end, but not
-    /// `v`.
+    /// Returns the other end of the edge at `v` between the triangles of two consecutive corners.
+    /// Also returns the corners across the outer sides of these triangles. An outer side has this
+    /// end, but not `v`.
     fn rim(
         &self,
         v: VertexId,
@@ -208,7 +206,7 @@ impl<P: Probe> CornerTable<Editable, P> {
     ) -> (VertexId, [Slot<CornerId>; 2]) {
         let at = next.map_or_else(|| before.map(CornerId::prev), |c| Some(c.next()));
         let at = at.expect("there is a triangle on at least one side");
-        // If two triangles have the same corners, each lies across all sides of the other.
+        // Two triangles with the same corners are adjacent along all sides.
         let outer = |c: Option<CornerId>| {
             let across = c.and_then(|c| self.opposite(c));
             Slot::from(across.filter(|&o| self.vertex(o) != v))
@@ -219,11 +217,11 @@ impl<P: Probe> CornerTable<Editable, P> {
     fn delete_star(&mut self, star: &[CornerId], closed: bool, log: &mut impl EditLog<Self>) {
         for &c in star {
             let [next, prev] = [c.next(), c.prev()];
-            // Each inner spoke is reported by the first of its triangles.
+            // The first triangle of an inner spoke reports the edge.
             log.removed_edge(self.edge(next));
             let across = *self.opposite.read(c.index());
             match across.get() {
-                // Two triangles with the same corners: only one of them reports the edge.
+                // If two triangles have the same corners, only one of them reports the edge.
                 Some(o) if closed && star.len() == 2 && star.contains(&o) => {
                     if c < o {
                         log.removed_edge(faced_by(c));
@@ -247,12 +245,11 @@ impl<P: Probe> CornerTable<Editable, P> {
 struct Gap {
     /// The corner across the side that leaves the vertex.
     across: Slot<CornerId>,
-    /// Whether the new triangle becomes the first of the fan.
     is_first: bool,
 }
 
-/// Removal of adjacent triangles from the fan of a vertex. `before` is the corner across the first
-/// of them, `after` the corner across the last, counter-clockwise.
+/// Removal of adjacent triangles from the fan of a vertex. Counter-clockwise, `before` is the
+/// corner across the first triangle and `after` the corner across the last triangle.
 impl<P: Probe> CornerTable<Editable, P> {
     fn check_removal(
         &self,
@@ -266,8 +263,7 @@ impl<P: Probe> CornerTable<Editable, P> {
         Ok(())
     }
 
-    /// Updates `corner(v)`: the fan begins after the removed triangles. If only triangles before
-    /// them remain, the beginning does not change.
+    /// Updates `corner(v)` if the start of the fan changes.
     fn remove_from_fan(&mut self, v: VertexId, before: Slot<CornerId>, after: Slot<CornerId>) {
         match after.get() {
             Some(after) => *self.corner.write(v.index()) = Slot::some(after.next()),
@@ -276,7 +272,8 @@ impl<P: Probe> CornerTable<Editable, P> {
         }
     }
 
-    /// Makes the edge that `c` faces a boundary edge of the triangle across, or removes it.
+    /// Removes the triangle of `c` from the edge that `c` faces. An edge without another triangle
+    /// is removed.
     fn unlink_side(&mut self, c: CornerId, across: Slot<CornerId>, log: &mut impl EditLog<Self>) {
         match across.get() {
             Some(o) => {

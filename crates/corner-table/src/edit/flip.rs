@@ -38,7 +38,7 @@ impl<P: Probe> CornerTable<Editable, P> {
         }
         let adjacent = self.walk_around_both([vc, vd], [va, vb], [on, oq]);
         if adjacent.unwrap_or_else(|| self.are_neighbours([on, op], va, vd)) {
-            // This check covers ends of valence three as well: C and D are adjacent there.
+            // This check also covers ends of valence three, because C and D are then adjacent.
             return Err(EditError::EdgeExists { ends: [vc, vd] });
         }
 
@@ -50,7 +50,7 @@ impl<P: Probe> CornerTable<Editable, P> {
         }
         *self.opposite.write(n.index()) = Slot::some(q);
         *self.opposite.write(q.index()) = Slot::some(n);
-        // Of the two corners at A, only n is left; of the two corners at B, only q is left.
+        // Corner n is the only remaining corner of the two at A, and q of the two at B.
         self.replace_corner(va, r, n);
         self.replace_corner(vb, p, q);
 
@@ -61,8 +61,8 @@ impl<P: Probe> CornerTable<Editable, P> {
         Ok(turned)
     }
 
-    /// Returns whether C and D are adjacent; `None` if a walk reaches a boundary. Walks around both
-    /// at once, so that neither walk waits for the other. The walk that ends first decides.
+    /// Returns whether C and D are adjacent, or `None` if a walk reaches a boundary. Walks around C
+    /// and D at the same time; the shorter walk decides.
     #[inline]
     fn walk_around_both(
         &self,
@@ -85,8 +85,8 @@ impl<P: Probe> CornerTable<Editable, P> {
         }
     }
 
-    /// Returns whether C and D are adjacent, by a walk around the whole fan of C: from `on` in one
-    /// direction, then from `op` in the other.
+    /// Returns whether C and D are adjacent, by a walk around C: from `on` in one direction, then
+    /// from `op` in the other direction.
     #[cold]
     #[inline(never)]
     fn are_neighbours(&self, [on, op]: [Slot<CornerId>; 2], va: VertexId, vd: VertexId) -> bool {
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn a_flip_writes_the_expected_rows() {
-        // C, A, B, D are v0, v1, v2, v3; a triangle lies across A–D, and one across B–C.
+        // C, A, B, D are v0, v1, v2, v3. A triangle lies across A–D, and a triangle across B–C.
         let mut mesh = table(6, &[[0, 1, 2], [3, 2, 1], [3, 1, 4], [0, 2, 5]]);
         let mut record = EditRecord::new();
         let e = mesh.flip_edge_logged(EdgeCorner::new(0), &mut record);
@@ -132,7 +132,7 @@ mod tests {
             opposite,
             [8, 4, none, 11, 1, none, none, none, 0, none, none, 3]
         );
-        // Three renamings at once: e1 was B–C, which c3 now faces; e4 was A–D, which c0 now faces.
+        // Edge e1 was B–C, which c3 now faces. Edge e4 was A–D, which c0 now faces.
         let mut renamed = record.edges.renamed.clone();
         renamed.sort_unstable();
         assert_eq!(

@@ -6,7 +6,7 @@ use super::{Refusal, faced_by, report_renamed};
 use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
 
 impl<P: Probe> CornerTable<Editable, P> {
-    /// Puts m into `e`: T and R keep A, two new triangles have B.
+    /// Puts m into `e`. T and R keep A; the two new triangles have B.
     ///
     /// ```text
     ///         C              T  p moves to m        new (C, m, B) has the corners t, u, w
@@ -68,7 +68,7 @@ impl<P: Probe> CornerTable<Editable, P> {
         Ok(m)
     }
 
-    /// Puts m into the triangle (A, B, C), which keeps its side A–B.
+    /// Puts m into the triangle (A, B, C). The old row keeps the side A–B.
     ///
     /// ```text
     ///           C
@@ -99,7 +99,7 @@ impl<P: Probe> CornerTable<Editable, P> {
         *self.opposite.write(j.index()) = Slot::some(u);
         self.set_opposite(bc, Slot::some(z));
         self.set_opposite(ca, Slot::some(w));
-        // At B, the triangle (B, C, m) comes before the old one. C has only the two new triangles.
+        // At B, the triangle (B, C, m) comes first. C has only the two new triangles.
         self.replace_corner(b, j, x);
         self.replace_corner(c, k, u);
 
@@ -112,8 +112,7 @@ impl<P: Probe> CornerTable<Editable, P> {
         Ok(m)
     }
 
-    /// Splits `v` between two of its sides: the new vertex n gets the corners from `right` to
-    /// `left`.
+    /// Splits `v`. The new vertex n gets the corners from `right` to `left`.
     ///
     /// ```text
     ///         left
@@ -125,7 +124,7 @@ impl<P: Probe> CornerTable<Editable, P> {
     ///         right
     /// ```
     ///
-    /// If `left` or `right` is `None`, its triangle is missing and the new edge is a boundary edge.
+    /// If `left` or `right` is `None`, there is no triangle on that side.
     pub(super) fn split_fan(
         &mut self,
         v: VertexId,
@@ -148,7 +147,7 @@ impl<P: Probe> CornerTable<Editable, P> {
         if closed && (left.is_none() || right.is_none()) {
             return Err(EditError::NotOnBoundary { vertex: v });
         }
-        // Each neighbour has the number of the corner after it; an open fan has one more neighbour.
+        // Each neighbour has the index of the corner after it. An open fan has one more neighbour.
         let place = |side: VertexId| {
             let mut before = star.iter().map(|c| *self.vertex.read(c.next().index()));
             let place = before.position(|u| u == side);
@@ -160,7 +159,7 @@ impl<P: Probe> CornerTable<Editable, P> {
         let to = left.map_or(Ok(count), place)?;
         self.check_room(1, 2)?;
 
-        // n gets the corners from `from` to `to`, past the end of the list if `from > to`.
+        // n gets the corners from `from` to `to`, or around the end of the list.
         let wraps = from > to;
         let moves = |i: usize| {
             if wraps {
@@ -178,8 +177,8 @@ impl<P: Probe> CornerTable<Editable, P> {
         for (_, &c) in star.iter().enumerate().filter(|&(i, _)| moves(i)) {
             *self.vertex.write(c.index()) = n;
         }
-        // The corners that face the edge to neighbour `i`: in the previous triangle, and in the
-        // next.
+        // The corners that face the edge to neighbour `i`, in the previous and in the next
+        // triangle.
         let in_previous = |i: usize| match i {
             0 if closed => Slot::some(star[count - 1].next()),
             0 => Slot::NONE,
@@ -221,7 +220,7 @@ impl<P: Probe> CornerTable<Editable, P> {
             log.created_face(x.triangle());
         }
         let (first_of_v, first_of_n) = match (left, right) {
-            // An open fan has a gap: one of the two vertices keeps it, with the start of the fan.
+            // One of the two vertices keeps the gap of an open fan, and the start of the fan.
             (Some(_), Some(_)) if closed => (upper[0], lower[2]),
             (Some(_), Some(_)) if wraps => (upper[0], if to > 0 { star[0] } else { upper[1] }),
             (_, Some(_)) => (if from > 0 { star[0] } else { lower[0] }, lower[2]),
@@ -234,9 +233,9 @@ impl<P: Probe> CornerTable<Editable, P> {
         Ok(n)
     }
 
-    /// Links a new triangle between the two corners that faced an edge. `in_next` and `in_previous`
-    /// now face two sides of the new triangle. The corners `across_next` and `across_previous` of
-    /// the new triangle face the same two sides.
+    /// Links a new triangle between the two corners that faced an edge. After this, `in_next` faces
+    /// one side of the new triangle, and `in_previous` another side. The corners `across_next` and
+    /// `across_previous` of the new triangle face the same two sides.
     fn link_new_triangle(
         &mut self,
         in_next: Slot<CornerId>,
@@ -254,8 +253,7 @@ impl<P: Probe> CornerTable<Editable, P> {
     }
 }
 
-/// Reports that `old` faces a new edge, and that `new` faces the edge that `old` and `across` faced
-/// before.
+/// Reports that `old` now faces a new edge, and that `new` faces the old edge.
 #[inline]
 fn report_cut<P: Probe>(
     log: &mut impl EditLog<CornerTable<Editable, P>>,

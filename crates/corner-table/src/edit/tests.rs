@@ -10,7 +10,7 @@ pub(super) fn table(vertices: u16, triangles: &[[u32; 3]]) -> EditableCornerTabl
     EditableCornerTable::from_polygons(&polygons).expect("manifold")
 }
 
-/// Returns two triangles and a separate third one; the third triangle and v4 are deleted.
+/// Returns three triangles; the third triangle and v4 are deleted.
 fn with_holes() -> EditableCornerTable {
     let mut mesh = table(8, &[[0, 1, 2], [0, 2, 3], [4, 5, 6]]);
     mesh.remove_face(FaceId::new(2)).expect("the face exists");
@@ -45,7 +45,7 @@ fn handles_of_missing_elements_are_refused() {
         let refused = mesh.set_position(vertex, Point::ZERO);
         assert_eq!(refused, Err(EditError::NoSuchVertex { vertex }));
     }
-    // c5 faces the same edge as c1, which names it; c7 is a deleted corner; c9 does not exist.
+    // c1 names the edge that c5 faces; c7 is a deleted corner; c9 does not exist.
     for row in [5, 7, 9, u32::MAX] {
         let edge = EdgeCorner::new(row);
         let refused = mesh.flip_edge(edge);

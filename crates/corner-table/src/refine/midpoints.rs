@@ -1,9 +1,9 @@
 //! Triangles split in four at the middles of their edges.
 //!
-//! The children of triangle `t` are 4t + i, which keeps corner i of `t`, and 4t + 3 in the middle.
-//! Corner j of each lies towards corner j of `t`. For two corners a and b of `t`, the child corner
-//! 3a + b is therefore the one towards b in the child of a. 12t + 9 + i is the corner of the middle
-//! triangle on the edge that corner i faces.
+//! The children of triangle `t` are 4t, 4t + 1, 4t + 2 and 4t + 3. Child 4t + i keeps corner i of
+//! `t`; child 4t + 3 is in the middle. Corner j of each child lies towards corner j of `t`. For two
+//! corners a and b of `t`, corner 3a + b is the corner of the child of a that lies towards b.
+//! Corner 12t + 9 + i is the corner of the middle triangle on the edge that corner i of `t` faces.
 //!
 //! ```text
 //!             b             vertex(3a + a)      vertex(a)
@@ -26,7 +26,7 @@ use crate::CornerTable;
 use crate::mesh::CornerId;
 
 impl CornerTable {
-    /// Splits every triangle into four. Overwrites the tables of `child`. They already have their
+    /// Splits every triangle into four. Overwrites the tables of `child`, which already have their
     /// final lengths.
     pub(super) fn split_in_four(&self, numbers: &EdgeNumbers, child: &mut Self) {
         let count = self.positions.len();
@@ -68,9 +68,8 @@ impl CornerTable {
                 let at_middles = [towards(c, b), towards(a, c), towards(b, a)];
                 for ((corner, &across), middle) in [a, b, c].into_iter().zip(across).zip(at_middles)
                 {
-                    // It is unpredictable which corners name an edge. To avoid a branch, every
-                    // corner writes a row. If a corner names no edge, the next corner overwrites
-                    // its row.
+                    // To avoid an unpredictable branch, every corner writes a row. If a corner
+                    // names no edge, the next corner overwrites this row.
                     if let Some(row) = corners.get_mut(edge) {
                         *row = Slot::some(middle);
                     }
@@ -93,11 +92,12 @@ fn towards(a: CornerId, b: CornerId) -> CornerId {
     CornerId::new(3 * a.row() + b.row())
 }
 
-/// Returns the opposites of the corners of the four children; `first` is the first of the corners.
+/// Returns the opposites of the corners of the four children. `first` is the first of these
+/// corners.
 #[inline(always)]
 fn opposites_of_four(first: u32, across: [Slot<CornerId>; 3]) -> [Slot<CornerId>; 12] {
     let own = |i: u32| Slot::some(CornerId::new(first + i));
-    // By corner b: the opposite in the triangle of next(b), and in the triangle of prev(b).
+    // For each corner b, the opposites in the triangles of next(b) and of prev(b).
     let after = across.map(|o| Slot::from(o.get().map(|o| towards(o.prev(), o))));
     let before = across.map(|o| Slot::from(o.get().map(|o| towards(o.next(), o))));
     [

@@ -1,9 +1,9 @@
 //! Triangles split in three at a new point each, with their inner edges flipped (√3).
 //!
-//! Each corner c of triangle `t` makes the child triangle c at the edge that the corner faces. The
-//! vertices of this child are the first end a of that edge, the point p′ of the triangle across,
-//! and the point p of `t`. On a boundary, the other end b replaces p′. If the boundary edge is cut
-//! in three, its triangles are c, x and x + 1, with x = 3F + 2k for the k-th boundary edge of a
+//! Each corner c of triangle `t` makes the child triangle c. The vertices of this child are an end
+//! a of the edge that c faces, the point p′ of the triangle across, and the point p of `t`. If the
+//! edge is a boundary edge, the other end b replaces p′. If the boundary edge is cut in three, the
+//! three triangles at the edge are c, x and x + 1, with x = 3F + 2k for the k-th boundary edge of a
 //! mesh of F triangles.
 //!
 //! ```text
@@ -16,8 +16,8 @@
 //!                         2 3 next(o) + 1             none              none    none    none
 //! ```
 //!
-//! Here o is opposite(c), o₋ is opposite(prev(c)), and x₋ is the x of the edge that prev(c) faces.
-//! In the child, corner(v) is 3 prev(corner(v)), and the corner of the point of `t` is 9t + 2.
+//! Here o is opposite(c) and o₋ is opposite(prev(c)). x₋ is the x of the edge that prev(c) faces.
+//! In the child, corner(v) is 3 prev(corner(v)). The corner of the point of `t` is 9t + 2.
 
 use sixfold_core::{CHUNK_ROWS, MeshQuery, RowId, Slot, VertexId, for_each_chunk, row};
 
@@ -25,7 +25,7 @@ use super::EdgeNumbers;
 use crate::CornerTable;
 use crate::mesh::CornerId;
 
-/// The split of every triangle into three, with every old inner edge flipped.
+/// The split of every triangle into three, with flipped inner edges.
 #[derive(Clone, Copy)]
 pub(super) struct Sqrt3<'a> {
     pub(super) mesh: &'a CornerTable,
@@ -97,7 +97,6 @@ impl Sqrt3<'_> {
         });
     }
 
-    /// Returns the vertices of the child triangle `c`.
     #[inline(always)]
     fn vertices(self, c: CornerId) -> [VertexId; 3] {
         let far = match self.mesh.opposite(c) {
@@ -108,7 +107,6 @@ impl Sqrt3<'_> {
         [self.mesh.vertex(c.next()), far, self.point(c)]
     }
 
-    /// Returns the opposites of the corners of the child triangle `c`.
     #[inline(always)]
     fn opposites(self, c: CornerId) -> [Slot<CornerId>; 3] {
         let [own, before] = [c, c.prev()].map(|c| self.mesh.opposite(c));
@@ -137,19 +135,19 @@ impl Sqrt3<'_> {
         CornerId::new(row(self.numbers.inner.select_missing(k)))
     }
 
-    /// Returns the two points that cut the boundary edge that `c` faces, in the order of the side.
+    /// Returns the two points on the boundary edge that `c` faces, in the order of the side.
     fn cuts(self, c: CornerId) -> [VertexId; 2] {
         let points = self.mesh.positions.len() + self.mesh.face_count();
         let first = points as u32 + 2 * self.numbers.boundary_number(c);
         [first, first + 1].map(VertexId::new)
     }
 
-    /// Returns one of the six corners in the two pieces at the boundary edge that `c` faces.
+    /// Returns corner 0 to 5 of the two new triangles at the boundary edge that `c` faces.
     fn cut(self, c: CornerId, corner: u32) -> Slot<CornerId> {
         self.cut_corner(6 * self.numbers.boundary_number(c) + corner)
     }
 
-    /// Returns one of the corners in all pieces.
+    /// Returns corner `corner` of all new triangles at boundary edges.
     fn cut_corner(self, corner: u32) -> Slot<CornerId> {
         Slot::some(CornerId::new(3 * self.mesh.corner_count() as u32 + corner))
     }

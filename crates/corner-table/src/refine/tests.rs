@@ -2,8 +2,8 @@ use sixfold_core::{PolygonMesh, Representation};
 
 use super::*;
 
-/// Splits two triangles that share an edge: c1 and c5 are opposite. The five edges are those
-/// that c0, c1, c2, c3 and c4 face; all except the second are boundary edges.
+/// Splits two triangles with a common edge, which c1 and c5 face. The corners c0, c1, c2, c3 and c4
+/// face the five edges.
 fn split(split: Split) -> CornerTable {
     let positions = [0.0, 1.0, 2.0, 3.0].map(Point::splat);
     let polygons = PolygonMesh::new(positions, [[0, 1, 2], [0, 2, 3]]).expect("valid");
@@ -45,7 +45,7 @@ fn splitting_two_triangles_in_four_gives_the_expected_tables() {
 
 #[test]
 fn splitting_two_triangles_in_three_gives_the_expected_tables() {
-    // v4 and v5 are the points of the triangles, v6 to v13 those of the boundary edges.
+    // v4 and v5 are the points of the triangles, v6 to v13 the points of the boundary edges.
     let child = split(Split::Sqrt3 { trisect: true });
     let vertices = [
         [1, 6, 4],
@@ -82,7 +82,8 @@ fn splitting_two_triangles_in_three_gives_the_expected_tables() {
         [16, 36, NONE],
     ];
     assert_eq!(rows(child.opposite_corners()), opposites.as_flattened());
-    // v0 keeps the triangle of c2, v1 that of c0, v2 that of c3, and v3 that of c4.
+    // v0 keeps the triangle of c2, v1 the triangle of c0, v2 the triangle of c3, and v3 the
+    // triangle of c4.
     let corners = [6, 0, 9, 12, 2, 11, 18, 21, 24, 27, 30, 33, 36, 39];
     assert_eq!(rows(child.vertex_corners()), corners);
     let whole = split(Split::Sqrt3 { trisect: false });

@@ -35,7 +35,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         }
         let [low, high] = e.ends();
         let gone = if keep == low { high } else { low };
-        // Pushed one by one: an extended list would be copied in memory.
+        // An extended list would be copied in memory, so the faces are pushed one by one.
         let (mut removed, mut moving) = (ShortVec::new(), ShortVec::new());
         for &f in &*both {
             if self.known_face(f).len() == 3 {
@@ -79,7 +79,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         Ok(keep)
     }
 
-    /// Checks that the end `keep` and the third corners of the triangles `removed` keep a face.
+    /// Checks that `keep` and the third corners of the triangles `removed` keep a face.
     fn check_last_faces(
         &self,
         e: Edge,
@@ -107,13 +107,12 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         }
     }
 
-    /// Returns the total number of corners of the polygons among `faces`.
     fn corners_of_polygons(&self, faces: &[FaceId]) -> usize {
         let degrees = faces.iter().map(|&f| self.known_face(f).len());
         degrees.filter(|&degree| degree > 3).sum()
     }
 
-    /// Removes the corner `gone` from those of `faces` that still exist.
+    /// Removes the corner `gone` from all `faces` that still exist.
     fn remove_corner(&mut self, faces: &[FaceId], gone: VertexId) {
         for &f in faces {
             let face = self.known_face(f);
@@ -126,8 +125,8 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         }
     }
 
-    /// Returns the neighbours of `gone` except `keep`, each with a flag: whether it is adjacent to
-    /// `keep`.
+    /// Returns the neighbours of `gone` except `keep`. The flag of a neighbour shows whether the
+    /// neighbour is adjacent to `keep`.
     fn other_neighbours(&self, gone: VertexId, keep: VertexId) -> Vec<(VertexId, bool)> {
         let others = self.ring(gone, |v| v).filter(|&v| v != keep);
         others
@@ -135,7 +134,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
             .collect()
     }
 
-    /// Reports the changes of the edges at `gone`, and of those at `keep` with which they merge.
+    /// Reports the changes of the edges at `gone`, and of the edges at `keep` that merge with them.
     fn report_merged_edges(
         &self,
         neighbours: &[(VertexId, bool)],

@@ -25,7 +25,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         self.face_holes.clear();
     }
 
-    /// Stores the fans without gaps, in vertex order, each in the order of its faces.
+    /// Stores the fans without gaps, in vertex order. Each fan has the order of its faces.
     fn compact_pool(&mut self, faces: &NewRows) {
         let old = self.pool.rows();
         let mut pool: Vec<FaceId> = Vec::with_capacity(self.corners.len());

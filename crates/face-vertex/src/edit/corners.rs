@@ -1,4 +1,4 @@
-//! Functions on the corner list of a face, and changes of it that leave the fans to the caller.
+//! Functions on the corner list of a face. These functions do not change the fans.
 
 use sixfold_core::{Editable, FaceId, Pair, Probe, VertexId};
 
@@ -18,8 +18,7 @@ pub(super) fn corners_from(face: &[VertexId], v: VertexId) -> impl Iterator<Item
     after.iter().chain(before).copied()
 }
 
-/// Returns the end of `e` that the triangle `face` reaches when it runs along `e`, and the third
-/// corner.
+/// Returns the end of `e` that `face` reaches when it runs along `e`, and the third corner.
 #[inline]
 pub(super) fn third_corner(face: [VertexId; 3], e: Edge) -> (VertexId, VertexId) {
     let [a, b, c] = face;
@@ -34,18 +33,18 @@ pub(super) fn third_corner(face: [VertexId; 3], e: Edge) -> (VertexId, VertexId)
 }
 
 impl<P: Probe> FaceVertexMesh<Editable, P> {
-    /// Marks `f`, which is in no fan any more, as deleted.
+    /// Marks `f` as deleted. `f` must be in no fan.
     pub(super) fn delete_face(&mut self, f: FaceId) {
         self.spans.blank(&mut self.corners, f, BLANK_CORNER);
         self.face_holes.insert(f.index());
     }
 
-    /// Replaces the corner `old` of `f` by `new`; the caller updates the fans.
+    /// Replaces the corner `old` of `f` by `new`. The caller updates the fans.
     #[inline]
     pub(super) fn replace_corner(&mut self, f: FaceId, old: VertexId, new: VertexId) {
         let range = self.spans.range(f);
         let at = match self.corners.read_range(range.clone()) {
-            // Uses no branch, because the place of `old` is unpredictable.
+            // No branch, because the place of `old` is unpredictable.
             &[_, b, c] => usize::from(b == old) + 2 * usize::from(c == old),
             face => {
                 let at = face.iter().position(|&v| v == old);

@@ -6,10 +6,10 @@
 //!                                                              start, length      room
 //! ```
 //!
-//! Places outside all fans are blank. The place behind a fan therefore shows whether it is free,
-//! and no table of capacities is needed. A fan that moves gets room for twice its faces, at least
-//! eight (doubling: Cormen et al., Introduction to Algorithms, 17.4). After each fan of the input
-//! has moved once, adding a face thus costs O(1) amortised time and places.
+//! Places outside all fans are blank, so the place behind a fan shows whether the fan can grow. A
+//! fan that moves gets room for twice its faces, at least eight (Cormen et al., Introduction to
+//! Algorithms, 17.4). So adding a face costs O(1) amortised time and places, after each fan of the
+//! input has moved once.
 
 use std::ops::Range;
 
@@ -19,9 +19,8 @@ use super::find::mask;
 use crate::mesh::{BLANK_PLACE, FaceVertexMesh, Fan};
 
 impl<P: Probe> FaceVertexMesh<Editable, P> {
-    /// Returns the blanks that follow a fan after its move to the end of the pool. The fan has
-    /// `len` faces, including the new face. Returns no blanks if places are short, so that
-    /// [`check_room`](Self::check_room) is sufficient.
+    /// Returns the blanks behind a fan that moves to the end of the pool. The fan has `len` faces,
+    /// including the new face. Returns no blanks if places are short.
     fn spare_places(&self, len: u32) -> impl Iterator<Item = FaceId> + use<P> {
         let room = if self.pool.len() < MAX_ROWS / 2 {
             (2 * (len - 1)).max(8)
@@ -47,7 +46,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         self.fans.write(v.index()).len = fan.len + 1;
     }
 
-    /// Moves the fan of `v` to the end of the pool, with `f` as its last face and room for more.
+    /// Moves the fan of `v` to the end of the pool, and adds `f`.
     #[inline(never)]
     fn move_and_add(&mut self, v: VertexId, fan: Fan, f: FaceId) {
         let moved = Fan {
@@ -82,12 +81,12 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         *self.pool.write(place) = new;
     }
 
-    /// Returns the place of `f` in `fan`, which contains it.
+    /// Returns the index in `pool` of the entry `f` of `fan`. The fan must contain `f`.
     #[inline]
     fn place_of(&self, fan: Fan, f: FaceId) -> usize {
         let start = fan.range().start;
-        // Uses no branch, because the place of `f` is unpredictable. The places behind this fan may
-        // contain `f` too.
+        // No branch, because the place of `f` is unpredictable. The places behind this fan may also
+        // contain `f`.
         let hits = if let Some(faces) = self.lanes::<8>(fan) {
             mask(faces.map(|face| u32::from(face == f)))
         } else if let Some(faces) = self.lanes::<16>(fan) {
@@ -103,8 +102,8 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         start + place.expect("I3: the fan of a corner contains its face")
     }
 
-    /// Replaces the faces `old` in the fan of `v` by `new`. If `old` has more than four faces, they
-    /// must be sorted.
+    /// Replaces the faces `old` in the fan of `v` by `new`. More than four faces in `old` must be
+    /// sorted.
     pub(super) fn replace_faces(&mut self, v: VertexId, old: &[FaceId], new: &[FaceId]) {
         const FEW: usize = 4;
         if old.len() > FEW {
@@ -151,7 +150,6 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         self.fans.write(v.index()).len = len;
     }
 
-    /// Makes these places blank.
     pub(super) fn clear_places(&mut self, places: Range<usize>) {
         for place in places {
             *self.pool.write(place) = BLANK_PLACE;
@@ -170,7 +168,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         v
     }
 
-    /// Marks `v`, which has no faces any more, as deleted.
+    /// Marks `v` as deleted. `v` must have no faces.
     pub(super) fn delete_vertex(&mut self, v: VertexId) {
         let fan = std::mem::replace(self.fans.write(v.index()), Fan::DELETED);
         self.clear_places(fan.range());

@@ -1,4 +1,4 @@
-//! Lookups before an edit changes anything: handles, faces at an edge, room for new elements.
+//! Lookups before an edit: handles, faces at an edge, room for new elements.
 
 use sixfold_core::{
     EditError, Editable, FaceId, IteratorExt, MAX_ROWS, Pair, Probe, ShortVec, VertexId, check_rows,
@@ -7,11 +7,11 @@ use sixfold_core::{
 use crate::circulate::{has_side_between, neighbours_in};
 use crate::mesh::{BLANK_CORNER, BLANK_PLACE, FaceVertexMesh, Fan};
 
-/// The error of an edit; the same type for every probe.
+/// The error of an edit, without the type of the probe.
 pub(super) type Refused = EditError<VertexId, Pair<VertexId>, FaceId>;
 
-/// Maximum number of places in the pool that an edit may fill, including those in use. Even if all
-/// fans then move and leave blanks, the pool stays below [`MAX_ROWS`].
+/// Maximum number of places in the pool that an edit may fill. If all fans then move and leave
+/// blanks, the pool still has fewer than [`MAX_ROWS`] places.
 const MAX_PLACES: usize = MAX_ROWS / 4;
 
 /// Returns a number with bit `i` set for each `i` with `hits[i] == 1`.
@@ -21,7 +21,6 @@ pub(super) fn mask<const N: usize>(hits: [u32; N]) -> u32 {
 }
 
 impl<P: Probe> FaceVertexMesh<Editable, P> {
-    /// Returns the fan of `v`, or an error if `v` does not exist.
     #[inline]
     pub(super) fn fan_of(&self, v: VertexId) -> Result<Fan, Refused> {
         if v.index() < self.fans.len() {
@@ -33,7 +32,6 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         Err(EditError::NoSuchVertex { vertex: v })
     }
 
-    /// Returns the corners of `f`, or an error if `f` does not exist.
     #[inline]
     pub(super) fn corners_of_face(&self, f: FaceId) -> Result<&[VertexId], Refused> {
         if f.index() < self.spans.len() {
@@ -45,10 +43,9 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         Err(EditError::NoSuchFace { face: f })
     }
 
-    /// Visits the faces with corners at both ends of `e`; the two corners need not be adjacent.
-    /// Visits no face if an end does not exist.
+    /// Visits the faces with corners at both ends of `e`. The two corners need not be adjacent.
     ///
-    /// Compares short fans with each other, which needs no jump to the corners of a face.
+    /// Compares short fans with each other, without reading the corners of a face.
     #[inline]
     fn visit_faces_at_both(&self, e: Pair<VertexId>, mut visit: impl FnMut(FaceId)) {
         let [a, b] = e.ends();
@@ -63,11 +60,10 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         }
     }
 
-    /// Visits the faces that two fans of up to `N` faces have in common. Returns false if a fan is
-    /// longer, or so near the end of the pool that fewer than `N` places follow.
+    /// Visits the common faces of two fans of up to `N` faces. Returns false if a fan is longer, or
+    /// if fewer than `N` places of the pool follow its start.
     ///
-    /// Compares all faces of one fan with all faces of the other, without a branch, because the
-    /// matches are unpredictable.
+    /// Compares all faces of the two fans, without a branch, because the matches are unpredictable.
     #[inline]
     fn compare_fans<const N: usize>(&self, fans: [Fan; 2], visit: &mut impl FnMut(FaceId)) -> bool {
         let [Some(some), Some(others)] = fans.map(|fan| self.lanes::<N>(fan)) else {
@@ -81,7 +77,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
                 *hit |= u32::from(face == other);
             }
         }
-        // The places behind the second fan can contain blanks or faces of the first fan: mask them.
+        // The mask removes the places after the second fan.
         let mut hits = mask(hits) & ((1 << other_len) - 1);
         while hits != 0 {
             visit(others[hits.trailing_zeros() as usize]);
@@ -90,8 +86,8 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         true
     }
 
-    /// Does the same as `compare_fans`, for long fans: visits the faces of the shorter fan that
-    /// contain the other vertex.
+    /// Visits the same faces as `compare_fans`, but searches the faces of the shorter fan for the
+    /// other vertex.
     #[cold]
     #[inline(never)]
     fn search_shorter_fan(&self, ends: [(VertexId, Fan); 2], visit: &mut impl FnMut(FaceId)) {
@@ -106,7 +102,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         }
     }
 
-    /// Returns the faces with corners at both ends of `e`; the two corners need not be adjacent.
+    /// Returns the faces with corners at both ends of `e`. The two corners need not be adjacent.
     #[inline]
     pub(super) fn faces_at_both(&self, e: Pair<VertexId>) -> ShortVec<FaceId> {
         let mut both = ShortVec::new();
@@ -114,8 +110,8 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         both
     }
 
-    /// Returns `N` places of the pool from the start of a fan, with one load if `N` is small.
-    /// Returns `None` if the fan is longer, or if fewer than `N` places follow.
+    /// Returns `N` places of the pool from the start of a fan. Returns `None` if the fan is longer,
+    /// or if fewer than `N` places follow its start.
     #[inline]
     pub(super) fn lanes<const N: usize>(&self, fan: Fan) -> Option<[FaceId; N]> {
         let start = fan.range().start;
@@ -133,7 +129,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         has_side_between(self.known_face(f), a, b)
     }
 
-    /// Returns the faces at `e`, at least one, or an error if `e` is not an edge.
+    /// Returns the faces at `e`, or an error if `e` is not an edge.
     #[inline]
     pub(super) fn faces_of_edge(&self, e: Pair<VertexId>) -> Result<ShortVec<FaceId>, Refused> {
         let mut along = ShortVec::new();
@@ -148,7 +144,6 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         Ok(along)
     }
 
-    /// Returns whether `e` is an edge.
     #[inline]
     pub(super) fn has_edge(&self, e: Pair<VertexId>) -> bool {
         let mut has = false;
@@ -156,12 +151,12 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         has
     }
 
-    /// Returns the two faces of `e`; the first of them runs along `e` from the lower end.
+    /// Returns the two faces of `e`. The first face runs along `e` from the lower end.
     #[inline]
     pub(super) fn two_faces(&self, e: Pair<VertexId>) -> Result<[FaceId; 2], Refused> {
         let [low, high] = e.ends();
         let mut found = 0;
-        // One face for each direction: the last that runs up, and the last that runs down.
+        // The last face that runs up, and the last face that runs down.
         let mut along = [BLANK_PLACE; 2];
         self.visit_faces_at_both(e, |f| {
             let [before, after] = neighbours_in(self.known_face(f), low);
@@ -178,8 +173,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         }
     }
 
-    /// Returns the corners of `f`, which exists, or an error if it is not a triangle.
-    // Always inlined: a call would return its large error type in memory.
+    // Always inlined: a call would return a large error in memory.
     #[inline(always)]
     pub(super) fn triangle(&self, f: FaceId) -> Result<[VertexId; 3], Refused> {
         let face = self.known_face(f);
@@ -192,7 +186,6 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         }
     }
 
-    /// Returns the valence of `v`.
     pub(super) fn valence(&self, v: VertexId) -> usize {
         let ends = self
             .fan(v)
@@ -201,8 +194,8 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         ends.distinct().count()
     }
 
-    /// Checks that handles can name these numbers of additional vertices, faces and corners; each
-    /// corner also takes a place in the pool.
+    /// Checks that handles exist for these numbers of new vertices, faces and corners. Each corner
+    /// also needs a place in the pool.
     #[inline]
     pub(super) fn check_room(
         &self,

@@ -16,19 +16,18 @@ struct FanFace {
     before: VertexId,
 }
 
-/// The faces around a vertex, counter-clockwise; from the boundary if the vertex is on one.
+/// The faces around a vertex, counter-clockwise. An open fan starts at the boundary.
 struct OrderedFan {
     members: ShortVec<FanFace>,
     is_closed: bool,
 }
 
 impl OrderedFan {
-    /// Returns the number of neighbours. Each has the face after it or, on a boundary, a gap.
+    /// Returns the number of neighbours.
     fn len(&self) -> usize {
         self.members.len() + usize::from(!self.is_closed)
     }
 
-    /// Returns neighbour `i`.
     fn neighbour(&self, i: usize) -> VertexId {
         match self.members.get(i) {
             Some(member) => member.after,
@@ -36,7 +35,6 @@ impl OrderedFan {
         }
     }
 
-    /// Returns the faces from neighbour `from` up to neighbour `to`.
     fn faces_between(&self, from: usize, to: usize) -> ShortVec<FaceId> {
         let all = self.indices_between(from, to);
         let faces = all.filter_map(|i| self.members.get(i).map(|member| member.face));
@@ -52,7 +50,8 @@ impl OrderedFan {
 }
 
 impl<P: Probe> FaceVertexMesh<Editable, P> {
-    /// Implements [`split_vertex`](sixfold_core::MeshEdit::split_vertex); `sides`: left, right.
+    /// Implements [`split_vertex`](sixfold_core::MeshEdit::split_vertex). `sides` has left, then
+    /// right.
     pub(super) fn split_fan(
         &mut self,
         v: VertexId,
@@ -66,7 +65,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         let moving = fan.faces_between(from, to);
         let mut staying = fan.faces_between(to, from);
         if from == to {
-            // From the boundary all the way around to the boundary: no face moves.
+            // The part is the whole open fan, so no face moves.
             staying = ShortVec::from_iter(self.fan(v).iter().copied());
         }
         self.check_room(1, 2, 6 + moving.len())?;
@@ -98,7 +97,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         if uses_reports(log) {
             log.created_vertex(n);
             log.created_edge(Pair::new(v, n));
-            // The neighbours between the sides; if a side is missing, also the neighbour on the
+            // The neighbours between the sides. If a side is missing, also the neighbour on the
             // boundary.
             let passed = fan.indices_between(from, to).map(|i| fan.neighbour(i));
             let all = passed.chain([fan.neighbour(to)]);
@@ -109,8 +108,8 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         Ok(n)
     }
 
-    /// Returns the indices of left and right among the neighbours of `v`. The part between them
-    /// moves, counter-clockwise from right to left.
+    /// Returns the indices of left and right among the neighbours of `v`. The part from right to
+    /// left, counter-clockwise, moves.
     fn side_indices(
         &self,
         v: VertexId,
@@ -130,8 +129,8 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         }
     }
 
-    /// Returns the faces around `v` in order, or `None` if they are not a single oriented fan or
-    /// `v` is isolated. O(length · log length + corners of polygons).
+    /// Returns the faces around `v` in order. Returns `None` if `v` is isolated or the faces are
+    /// not one oriented fan. O(length · log length + corners of polygons).
     fn ordered_fan(&self, v: VertexId) -> Option<OrderedFan> {
         let members = self.fan(v).iter().map(|&face| {
             let [before, after] = neighbours_in(self.known_face(face), v);
@@ -148,7 +147,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         }
         let next =
             |member: &FanFace| sorted.binary_search_by_key(&member.before, |other| other.after);
-        // The first member of an open fan has no previous one.
+        // The first face of an open fan has no previous face.
         let mut has_previous = ShortVec::from_iter(sorted.iter().map(|_| false));
         for i in sorted.iter().filter_map(|member| next(member).ok()) {
             if std::mem::replace(&mut has_previous[i], true) {

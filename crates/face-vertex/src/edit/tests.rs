@@ -1,4 +1,4 @@
-//! Tests beyond the conformance suite: the tables after an edit, their size, and panics.
+//! Tests of the tables after an edit, their size, and panics.
 
 use crate::EditableFaceVertexMesh;
 use crate::mesh::{BLANK_PLACE, Fan};
@@ -24,7 +24,7 @@ fn edge(a: u32, b: u32) -> Edge {
     Pair::new(v(a), v(b))
 }
 
-/// Returns the start in the pool and the faces of the fan of each vertex.
+/// Returns the start in the pool and the faces of each fan.
 fn fans(mesh: &EditableFaceVertexMesh) -> Vec<(u32, Vec<usize>)> {
     let fan = |v: VertexId| {
         let faces = mesh.fan(v).iter().map(|f| f.index());
@@ -43,10 +43,10 @@ fn a_flip_changes_one_corner_per_face_and_four_fans() {
         Ok(edge(1, 3))
     );
     assert_eq!(mesh.validate(), Ok(()));
-    // f1 runs the edge from v0 to v2 and keeps v0.
+    // f1 runs along the edge from v0 to v2 and keeps v0.
     let corners: Vec<usize> = mesh.corners().iter().map(|v| v.index()).collect();
     assert_eq!(corners, [3, 1, 2, 0, 1, 3]);
-    // The fans of v0 and v2 shrank in place, that of v1 had no room and moved, that of v3 is last.
+    // The fans of v0 and v2 shrank in place. The fan of v1 moved to the end. The fan of v3 is last.
     let expected = [(0, vec![1]), (6, vec![0, 1]), (3, vec![0]), (5, vec![1])];
     assert_eq!(fans(&mesh)[..3], expected[..3]);
     assert_eq!(record.edges.renamed, [[edge(0, 2), edge(1, 3)]]);
@@ -69,7 +69,7 @@ fn a_fan_uses_the_blank_behind_it_before_it_moves() {
     let moved = mesh.fans()[0];
     assert_eq!((moved.start as usize, moved.len), (places, 4));
     assert_eq!(mesh.pool()[..3], [BLANK_PLACE; 3]);
-    // Eight places: room for four more.
+    // The new fan has eight places, four of them blank.
     assert_eq!(mesh.pool()[places + 4..places + 8], [BLANK_PLACE; 4]);
     assert_eq!(mesh.validate(), Ok(()));
 }
@@ -85,7 +85,8 @@ fn a_fan_that_grows_face_by_face_leaves_few_blanks() {
     }
     assert_eq!(mesh.validate(), Ok(()));
     assert_eq!(mesh.fan(v(0)).len(), 1001);
-    // The hub moved at each power of two, to twice its length; each rim vertex once, to 8 places.
+    // The hub moved at each power of two, to twice its length. Each rim vertex moved once, to 8
+    // places.
     let hub = 4 * 1001;
     assert!(mesh.pool().len() <= hub + 9 * 1002 + 3);
     let one_by_one = mesh.pool().len();
@@ -157,7 +158,7 @@ fn handles_of_missing_elements_are_refused() {
     assert_eq!(diagonal, Err(EditError::NoSuchEdge { edge: edge(0, 2) }));
 }
 
-/// Returns the square after removal of vertex v3 with its face.
+/// Returns the square without v3 and the face of v3.
 fn without_a_corner() -> EditableFaceVertexMesh {
     let mut mesh = build(&[&[0, 1, 2], &[0, 2, 3]], 4);
     mesh.remove_vertex(v(3)).expect("v3 exists");

@@ -6,35 +6,33 @@ use super::Refusal;
 use super::handle_set::HandleSet;
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
-/// The data of an edge collapse that the check has read.
+/// The data of an edge collapse, from the check.
 struct Collapse {
     /// The half-edge from the removed end to the kept end.
     h: HalfEdgeId,
     into: Half,
     back: Half,
-    /// The third side, with its record, of the triangle on the left and on the right. The origin of
-    /// the third side is the third corner.
+    /// The third side of the triangle on the left, and of the triangle on the right, with their
+    /// records. The third side starts at the third corner.
     left: Option<(HalfEdgeId, Half)>,
     right: Option<(HalfEdgeId, Half)>,
     gone: End,
     kept: End,
 }
 
-/// One end of the collapsed edge. A walk around the end, from the edge back to the edge, finds
-/// these values.
+/// One end of the collapsed edge.
 struct End {
-    /// The number of spokes. `end_without_walk` reports any valence other than 3 as 4.
+    /// Number of spokes. `end_without_walk` reports every valence except 3 as 4.
     valence: usize,
     on_boundary: bool,
-    /// The last spoke before the edge, and the spoke before that.
+    /// The last two spokes before the edge.
     last: HalfEdgeId,
     last_but_one: HalfEdgeId,
 }
 
 impl<P: Probe> HalfEdgeMesh<Editable, P> {
     /// Collapses `e` into `keep`. O(valence) of both ends; O(valence log valence) above 16
-    /// neighbours. If the removed end has no neighbours except `keep` and the third corners, only
-    /// the rows around the removed end are read.
+    /// neighbours.
     ///
     /// ```text
     ///          c                      c
@@ -84,10 +82,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
     }
 
     /// Checks the link condition (Dey et al. 1999), and that no face would contain `keep` twice.
-    /// Sets both ends of `collapse`.
-    ///
-    /// The check writes into `collapse` and does not return a new value. A returned value would be
-    /// copied in pieces of other sizes than those written, and processors wait for such reads.
+    /// Sets both ends of `collapse`. Writing into `collapse` is faster than returning a new value.
     #[inline]
     fn check_collapse(
         &self,
@@ -108,7 +103,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
                 vertex: keep,
             });
         }
-        // `keep` stands for a missing third corner: only the edge itself leads to `keep`.
+        // `keep` replaces a missing third corner, because only the edge itself leads to `keep`.
         let apex = |side: Option<(HalfEdgeId, Half)>| side.map_or(keep, |(_, third)| third.origin);
         let apexes = [apex(collapse.left), apex(right)];
         if apexes[0] == apexes[1] && apexes[0] != keep {
@@ -133,7 +128,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         neighbours.sort();
         faces.sort();
         collapse.kept = match right {
-            // No common neighbour is possible, so a walk around the kept end is not needed.
+            // No neighbour is left, so a walk around the kept end is not needed.
             Some((last, _)) if neighbours.is_empty() => {
                 let found = |f: &FaceId| self.sides(*f).any(|(_, half)| half.origin == keep);
                 if faces.iter().any(found) {
@@ -161,8 +156,8 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         }
     }
 
-    /// Walks clockwise around the origin of `h` once. `twin` is the record of the twin of `h`;
-    /// `visit` gets the record of every other half-edge that arrives at the origin.
+    /// Walks clockwise around the origin of `h`. `twin` is the record of the twin of `h`. `visit`
+    /// gets the record of every other half-edge that arrives at the origin.
     #[inline]
     fn walk_end(
         &self,
@@ -189,8 +184,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         Ok(end)
     }
 
-    /// Returns the data of the end `v` without a walk around it. The spokes after and before the
-    /// edge show whether the valence is 3. Any other valence is reported as 4.
+    /// Returns the data of the end `v` without a walk. Reports every valence except 3 as 4.
     #[inline]
     fn end_without_walk(&self, v: VertexId, first: HalfEdgeId, last: HalfEdgeId) -> End {
         let leaving = self.leaving.read(v.index()).get().expect("I5");
@@ -206,7 +200,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         }
     }
 
-    /// Refuses an inner edge that joins two boundaries, and an edge whose third corner has no other
+    /// Refuses in two cases: an inner edge joins two boundaries, or a third corner has no other
     /// face.
     #[cold]
     #[inline(never)]
@@ -234,7 +228,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         Ok(())
     }
 
-    /// Returns whether the two faces that remain at the merged vertex would both be triangles.
+    /// Returns whether the two remaining faces at the merged vertex would both be triangles.
     #[cold]
     #[inline(never)]
     fn only_triangles_remain(&self, checked: &Collapse) -> bool {
@@ -271,9 +265,8 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
             spoke = self.follow(spoke.twin());
         }
 
-        // On the left, the side from `keep` replaces the spoke of the removed end. A polygon or a
-        // boundary loop is closed where `h` was. After that, the right side may read rows that the
-        // left side has written.
+        // On the left, the side from `keep` replaces the spoke of the removed end. The right side
+        // may read rows that the left side has written.
         if let Some((last, at_last)) = left {
             self.replace(gone.last_but_one.twin(), last.twin(), next);
             self.replace_leaving(at_last.origin, last, next.twin());
@@ -294,7 +287,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
             after
         };
 
-        // The boundary half-edge of either end. On the left, a side has replaced a spoke.
+        // The boundary half-edge of one of the two ends. On the left, a side has replaced a spoke.
         let from = if gone.on_boundary && !kept.on_boundary {
             v
         } else {
@@ -329,7 +322,6 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
 }
 
 impl Collapse {
-    /// Returns the valence of the merged vertex.
     fn valence_after(&self) -> usize {
         let triangles = usize::from(self.left.is_some()) + usize::from(self.right.is_some());
         self.gone.valence + self.kept.valence - 2 - triangles

@@ -5,7 +5,7 @@ use sixfold_core::{EditLog, Editable, MeshQuery, NewRows, Probe, RowId};
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
 impl<P: Probe> HalfEdgeMesh<Editable, P> {
-    /// Moves all rows down over the holes, in order, and replaces the handles in them; O(mesh).
+    /// Moves all rows down over the holes, and replaces the handles in the rows; O(mesh).
     pub(super) fn compact_tables<L: EditLog<Self>>(&mut self, log: &mut L) {
         if self.hole_count() > 0 {
             self.rename_rows(log);
@@ -19,7 +19,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         self.face_holes.clear();
     }
 
-    /// Replaces every handle in the tables, and moves the half-edges, which have two rows per edge.
+    /// Replaces every handle in the tables, and moves the half-edges.
     fn rename_rows<L: EditLog<Self>>(&mut self, log: &mut L) {
         let vertices = NewRows::from_holes(&self.vertex_holes, self.vertex_rows());
         let edges = NewRows::from_holes(&self.edge_holes, self.edge_rows());

@@ -9,9 +9,9 @@ use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 impl<P: Probe> HalfEdgeMesh<Editable, P> {
     /// Adds a face over `corners`; O(valence) of the corners.
     ///
-    /// Each side of the new face uses a boundary half-edge or a new edge. All faces at a vertex
-    /// form one fan, so the only boundary half-edge that leaves a vertex is `leaving`. If any other
-    /// edge leads to the next corner, the face is refused.
+    /// Each side of the new face uses a boundary half-edge or a new edge. A vertex has at most one
+    /// boundary half-edge that leaves it: `leaving`. If another edge already leads to the next
+    /// corner, the face is refused.
     pub(super) fn add(
         &mut self,
         corners: &[VertexId],
@@ -57,7 +57,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         Ok(f)
     }
 
-    /// Checks a new face over `corners`; returns the number of edges that it adds.
+    /// Checks a new face over `corners`. Returns the number of new edges.
     fn check_new_face(&self, corners: &[VertexId]) -> Result<usize, Refusal> {
         check_corners(corners, |v| self.check_vertex(v))?;
         let degree = corners.len();
@@ -80,15 +80,14 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         Ok(new_edges)
     }
 
-    /// Returns the boundary half-edge from one vertex to the other, if there is one.
     fn boundary_side(&self, from: VertexId, to: VertexId) -> Option<HalfEdgeId> {
         let h = self.leaving.read(from.index()).get()?;
         let [half, twin] = self.record_pair(h);
         (half.face == Slot::NONE && twin.origin == to).then_some(h)
     }
 
-    /// Refuses if an edge joins the two vertices. The caller has checked that no boundary half-edge
-    /// runs from `from` to `to`.
+    /// Refuses if an edge joins the two vertices. No boundary half-edge may run from `from` to
+    /// `to`.
     fn check_no_edge(&self, from: VertexId, to: VertexId) -> Result<(), Refusal> {
         let mut spokes = self.spokes(from);
         let Some((h, arriving)) = spokes.find(|(_, arriving)| arriving.origin == to) else {
@@ -102,8 +101,8 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         }
     }
 
-    /// Links two sides of a new face at `v`, and the boundary beside them. The flag of a side is
-    /// true if its edge is new. Otherwise the side is a boundary half-edge that the face fills.
+    /// Links two sides of a new face at `v`, and the boundary beside them. Each side has a flag:
+    /// whether its edge is new.
     ///
     /// ```text
     /// arriving  leaving     boundary
@@ -137,7 +136,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         self.link(arriving, leaving);
     }
 
-    /// Returns the half-edge before `h`, found by a walk around its origin.
+    /// Finds the half-edge before `h` by a walk around the origin of `h`.
     fn prev_around_origin(&self, h: HalfEdgeId) -> HalfEdgeId {
         let mut spoke = h;
         loop {
@@ -149,8 +148,8 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         }
     }
 
-    /// Checks that the remaining faces at each corner of a face would form one fan: at a corner on
-    /// a boundary, a side of the face must be on the boundary too.
+    /// Checks that the remaining faces at each corner of a face would form one fan. At a corner on
+    /// a boundary, a side of the face must also be on the boundary.
     pub(super) fn check_removable(&self, first: HalfEdgeId) -> Result<(), Refusal> {
         let mut h = first;
         let [mut half, mut twin] = self.record_pair(h);
@@ -172,8 +171,8 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         }
     }
 
-    /// Checks each other corner of the faces of `v`: without these faces, its remaining faces must
-    /// form one fan.
+    /// Checks that the remaining faces at each neighbouring corner would form one fan without the
+    /// faces of `v`.
     ///
     /// O(valence) for each corner of each face of `v`.
     pub(super) fn check_fan_removable(&self, v: VertexId) -> Result<(), Refusal> {
@@ -211,7 +210,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
     }
 
     /// Unlinks the faces of `v` counter-clockwise, starting at the boundary if there is one. Each
-    /// face after the first then has a side on the boundary, because the face before it is gone.
+    /// face except the first then has a side on the boundary.
     pub(super) fn unlink_fan(&mut self, v: VertexId, log: &mut impl EditLog<Self>) {
         let Some(mut out) = self.leaving.read(v.index()).get() else {
             return;
@@ -230,14 +229,13 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         }
     }
 
-    /// Removes `f` and the edges that only `f` has; O(valence) of the corners. `first` is a side of
-    /// `f`.
+    /// Removes `f` and the edges without another face; O(valence) of the corners. `first` is a side
+    /// of `f`.
     ///
-    /// At each corner, the `next` of `before` becomes `after`. `before` is the arriving side or, if
-    /// that side is removed, the half-edge before its twin. `after` is the leaving side or, if that
-    /// side is removed, the half-edge after its twin. While several faces are removed one by one, a
-    /// corner may have several fans. Each gap between them then has its own two half-edges, and the
-    /// walk around the vertex still visits all half-edges.
+    /// At each corner, the `next` of `before` becomes `after`. `before` is the arriving side, or
+    /// the half-edge before its twin if the side is removed. `after` is the leaving side, or the
+    /// half-edge after its twin if the side is removed. While several faces are removed, a corner
+    /// may have several fans.
     pub(super) fn unlink_face(
         &mut self,
         f: FaceId,
@@ -271,7 +269,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
                 self.link(before, after);
                 self.set_leaving(v, after);
             }
-            // The first side is needed again, at the last corner.
+            // The last corner needs the first side again.
             if !arriving_removed {
                 self.halves.write(arriving.index()).face = Slot::NONE;
             } else if arriving != first {

@@ -6,8 +6,7 @@ use super::Refusal;
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
 impl<P: Probe> HalfEdgeMesh<Editable, P> {
-    /// Flips `e`; O(smaller valence of `c` and `d`). Reads the records of five edges. Each step
-    /// then reads one half-edge around `c` and one around `d`.
+    /// Flips `e`; O(smaller valence of `c` and `d`).
     ///
     /// ```text
     ///        c                    c
@@ -41,8 +40,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         if c == d {
             return Err(EditError::SameApex { edge: e, vertex: c });
         }
-        // An end has three edges if the spoke after `e` is directly followed by the spoke before
-        // `e`.
+        // An end has three edges if the spoke after `e` directly follows the spoke before `e`.
         let inner = |half: &Half| half.face.get().is_some();
         if at_da.next == ca.twin() && inner(&at_da) {
             return Err(EditError::LowValence { vertex: a });
@@ -50,8 +48,8 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         if at_cb.next == db.twin() && inner(&at_cb) {
             return Err(EditError::LowValence { vertex: b });
         }
-        // Walks around both third corners at once, so that neither walk waits for the other. The
-        // walk that ends first has visited every edge that could join them.
+        // Walks around both third corners at the same time. The shorter walk visits every edge that
+        // could join the third corners.
         let (mut x, mut y) = (at_ac.next, at_bd.next);
         while x != bc.twin() && y != ad.twin() {
             let [to_c, to_d] = [x, y].map(|spoke| self.record(spoke.twin()));
@@ -99,8 +97,8 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         }
     }
 
-    /// Returns the third side of the triangle along `h`, with its record, or `None` if `h` is along
-    /// a polygon or a boundary loop. `half` is the record of `h`.
+    /// Returns the third side of the triangle along `h`, with its record. Returns `None` if there
+    /// is no triangle along `h`. `half` is the record of `h`.
     #[inline]
     pub(super) fn third_side(&self, h: HalfEdgeId, half: &Half) -> Option<(HalfEdgeId, Half)> {
         half.face.get()?;

@@ -4,9 +4,8 @@ use sixfold_core::{Lookup, RowId, ShortVec};
 
 /// A set of handles, stored in place while it is small.
 ///
-/// A filter of 64 bits rejects most handles that are not in the set; only the others are compared.
-/// From the 17th handle on, the handles are in a sorted list, so that a vertex of valence 100,000
-/// costs O(valence log valence).
+/// A filter of 64 bits rejects most handles that are not in the set. More than 16 handles are
+/// stored in a sorted list, so a vertex of valence n costs O(n log n).
 pub(super) struct HandleSet<H> {
     filter: u64,
     handles: ShortVec<H>,
@@ -21,7 +20,7 @@ impl<H: RowId> HandleSet<H> {
         }
     }
 
-    /// Adds `handle`. After the last one, call [`sort`](Self::sort) before the first
+    /// Adds `handle`. Call [`sort`](Self::sort) after the last `push` and before the first
     /// [`contains`](Self::contains).
     #[inline]
     pub(super) fn push(&mut self, handle: H) {
@@ -34,7 +33,6 @@ impl<H: RowId> HandleSet<H> {
         self.handles.is_empty()
     }
 
-    /// Iterates over the handles, in no particular order.
     pub(super) fn iter(&self) -> impl Iterator<Item = &H> {
         self.handles.iter()
     }
@@ -50,7 +48,7 @@ impl<H: RowId> HandleSet<H> {
     }
 }
 
-/// Returns the filter bit of a handle; consecutive handles have different bits.
+/// Returns the filter bit of a handle.
 #[inline]
 fn bit<H: RowId>(handle: H) -> u64 {
     1 << (handle.row().wrapping_mul(0x9e37_79b9) >> 26)

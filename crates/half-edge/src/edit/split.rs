@@ -58,16 +58,15 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         Ok(self.record(n).origin)
     }
 
-    /// Returns a half-edge of `e` whose twin has a face, so that the half-edge before the twin is
-    /// near.
+    /// Returns a half-edge of `e` whose twin has a face.
     fn half_beside_a_face(&self, e: EdgeId) -> Result<HalfEdgeId, Refusal> {
         let [_, other] = self.check_edge(e)?;
         let [h, t] = self.halves_of(e);
         Ok(if other.face == Slot::NONE { t } else { h })
     }
 
-    /// Inserts a vertex into the edge of `h`; returns the new half-edge after `h`. The twin of `h`
-    /// has a face, and follows `before` along it.
+    /// Inserts a vertex into the edge of `h`. Returns the new half-edge after `h`. The twin of `h`
+    /// has a face, and `before` is the half-edge before the twin.
     ///
     /// ```text
     ///        h                    h       n
@@ -98,7 +97,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
     }
 
     /// Cuts a face by an edge from the target of `q` to the target of `p`. The part after `p` up to
-    /// `q` becomes a new face. Returns the half-edge of the new edge that has the new face.
+    /// `q` becomes a new face. Returns the half-edge along the new face.
     ///
     /// ```text
     ///    ───► u ───► ┄        p ends at u, q at w; x runs w → u in the new face
@@ -250,7 +249,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
             return Err(EditError::NotTwoFaces { edge: e, faces: 1 });
         };
         let [h, t] = self.halves_of(e);
-        // The corners of one face, except the ends of `e`, which both faces share.
+        // The corners of one face, except the ends of `e`.
         let mut corners = HandleSet::new();
         let mut before_h = one.next;
         loop {

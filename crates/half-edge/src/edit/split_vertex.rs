@@ -5,7 +5,7 @@ use sixfold_core::{EditError, EditLog, Editable, Point, Probe, Slot, VertexId};
 use super::Refusal;
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
-/// A spoke of the vertex that is split, and the half-edge before it.
+/// A spoke of the split vertex, and the half-edge before this spoke.
 #[derive(Clone, Copy)]
 struct Spoke {
     h: HalfEdgeId,
@@ -15,8 +15,8 @@ struct Spoke {
 impl<P: Probe> HalfEdgeMesh<Editable, P> {
     /// Splits `v`; O(valence).
     ///
-    /// The edge to `left` moves to the new vertex, and the edge to `right` stays. So each new edge
-    /// replaces a spoke whose previous half-edge is known from the walk around `v`.
+    /// The edge to `left` moves to the new vertex, and the edge to `right` stays. The walk around
+    /// `v` finds the half-edge before each of the two spokes.
     ///
     /// ```text
     ///        left                    left
@@ -42,7 +42,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         }
         let [mut to_left, mut to_right] = [None; 2];
         let mut h = first;
-        // The half-edge before the first spoke is known after the walk.
+        // The walk finds the half-edge before the first spoke last.
         let mut before = first;
         loop {
             let arriving = self.record(h.twin());
@@ -77,7 +77,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
 
         let n = self.push_vertex(at, Slot::NONE);
         log.created_vertex(n);
-        // Clockwise from `left` (or the boundary) to `right` (or the boundary).
+        // Clockwise from `left` to `right`. If a side is missing, the boundary replaces the side.
         let from = to_left.map_or(first, |spoke| self.follow(spoke.h.twin()));
         let to = to_right.map_or(first, |spoke| spoke.h);
         let mut first_moves = false;
@@ -102,8 +102,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
             (spoke.h, self.double(spoke, v, y, log))
         });
         let (leaves_v, leaves_n) = match (left, right) {
-            // One vertex keeps the first spoke or gets its new copy. The first spoke is on the
-            // boundary if there is one.
+            // At a boundary vertex, the first spoke is on the boundary.
             (Some((hl, new_l)), Some((hr, new_r))) => {
                 if first_moves {
                     (hr, first)
@@ -133,8 +132,8 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         Ok(n)
     }
 
-    /// Doubles a spoke: a new half-edge from `origin` replaces it. The spoke becomes the first side
-    /// of a new triangle, followed by the twin of the new half-edge and by `third`. Returns the new
+    /// Doubles a spoke: a new half-edge from `origin` replaces the spoke. The sides of the new
+    /// triangle are the spoke, the twin of the new half-edge, and `third`. Returns the new
     /// half-edge.
     fn double(
         &mut self,

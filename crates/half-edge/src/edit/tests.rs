@@ -1,4 +1,4 @@
-//! Tests beyond the conformance suite: the tables, the panic messages and the memory.
+//! Tests of the tables, the panic messages and the memory.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -22,7 +22,7 @@ fn mesh<const N: usize>(
     EditableHalfEdgeMesh::from_polygons(&polygons).expect("manifold")
 }
 
-/// Returns the rows as next, origin and face; `.` means no face.
+/// Returns next, origin and face of each row; `.` means no face.
 fn rows(mesh: &EditableHalfEdgeMesh) -> Vec<String> {
     let row = |half: &Half| {
         let face = half.face.get().map_or(".".to_owned(), |f| f.to_string());
@@ -47,8 +47,8 @@ fn a_flip_writes_the_expected_rows() {
     let before = "h6 v0 f0, h4 v1 ., h8 v0 f1, h0 v2 f0, h9 v0 ., \
                   h2 v3 f1, h3 v1 f0, h1 v2 ., h5 v2 f1, h7 v3 .";
     assert_eq!(rows(&mesh).join(", "), before);
-    // Before the flip, h2 runs v0 → v2 along f1, and h3 runs back along f0. After the flip, h2 runs
-    // v1 → v3, and f1 keeps v0.
+    // Before the flip, h2 runs from v0 to v2 along f1, and h3 runs back along f0. After the flip,
+    // h2 runs from v1 to v3, and f1 keeps v0.
     let e = edge(&mesh, 0, 2);
     assert_eq!(mesh.halves_of(e), [2, 3].map(HalfEdgeId::new));
     assert_eq!(mesh.flip_edge(e), Ok(e));

@@ -1,9 +1,9 @@
 //! Faces split at the midpoints of their edges: any face into quads, or a triangle into four.
 //!
-//! Half-edge `h` runs from vertex `v` along face `f`; `p` and `n` are the half-edges before and
-//! after it, `t` is its twin, and `#h` the number of its corner. The midpoint m(h) cuts `h` in two:
-//! e(h) is the early half, l(h) the late half. The corner of `h` adds one edge inside the face:
-//! i(h) and its twin j(h).
+//! Half-edge `h` runs from vertex `v` along face `f`. `p` is the half-edge before `h`, `n` the
+//! half-edge after `h`, and `t` the twin of `h`. `#h` is the number of the corner of `h`. The
+//! midpoint m(h) cuts `h` in two: e(h) is the early half, l(h) the late half. The corner of `h`
+//! adds one edge inside the face: i(h) and its twin j(h).
 //!
 //! ```text
 //!   Quads                                  Triangles
@@ -15,7 +15,7 @@
 //!     v ─── e(h) ──► m(h) ── l(h) ─►        v ─ e(h) ─► m(h) ── l(h) ─►
 //! ```
 //!
-//! With E edges and C corners in the parent, and the face point of `f` called f:
+//! The parent has E edges and C corners. In the table, f is the face point of `f`:
 //!
 //! | half-edge of the child | row | next | origin | face |
 //! |---|---|---|---|---|
@@ -28,9 +28,8 @@
 //! | e(b), on the boundary | 2b | l(b) | v | none |
 //! | l(b), on the boundary | 2(b ^ 1) + 1 | e(n) | m(b) | none |
 //!
-//! So edge e becomes the edges 2e and 2e + 1, and their four rows are adjacent. The rows of i and j
-//! for the two half-edges of an edge are also adjacent. A thread takes a range of edges, and writes
-//! two ranges of rows.
+//! Edge e becomes the edges 2e and 2e + 1, whose four rows are adjacent. A thread takes a range of
+//! edges and writes two ranges of rows.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -40,11 +39,11 @@ use super::{BLANK, Corners, fill, for_each_edge_chunk, half};
 use crate::HalfEdgeMesh;
 use crate::mesh::{Half, HalfEdgeId};
 
-/// The number of steps after which [`previous`] stops. Without this limit, the walks from all
-/// corners of a face would take O(degree²).
+/// Maximum number of steps of [`previous`]. Without this limit, the walks from all corners of a
+/// face would take O(degree²).
 const MAX_STEPS: usize = 8;
 
-/// The row counts of the parent, from which the rows of the child are computed.
+/// The numbers of rows of the parent.
 #[derive(Clone, Copy)]
 struct Sizes {
     vertices: u32,
@@ -72,7 +71,6 @@ impl Sizes {
     }
 }
 
-/// Splits every face into quads.
 pub(super) fn quads<const CLOSED: bool>(
     mesh: &HalfEdgeMesh,
     corners: &Corners<CLOSED>,
@@ -85,7 +83,7 @@ pub(super) fn quads<const CLOSED: bool>(
     split(mesh, corners, sizes, child, |h, record, n| {
         let (sizes, corners) = (sizes, *corners);
         let p = previous(rows, h, n).unwrap_or_else(|| {
-            // A placeholder: large faces are linked after all rows are written.
+            // A placeholder: `link_large_faces` links large faces later.
             has_large_face.store(true, Ordering::Relaxed);
             h
         });
@@ -105,7 +103,6 @@ pub(super) fn quads<const CLOSED: bool>(
     });
 }
 
-/// Splits every triangle into four.
 pub(super) fn triangles<const CLOSED: bool>(
     mesh: &HalfEdgeMesh,
     corners: &Corners<CLOSED>,
@@ -141,8 +138,8 @@ fn split<const CLOSED: bool>(
 ) {
     let edges = mesh.half_rows().as_chunks::<2>().0;
     for_each_edge_chunk(edges.len(), corners, 4, child, |chunk| {
-        // Local copies: writes to the tables cannot change them, so the compiler can keep them in
-        // registers.
+        // The compiler keeps local copies in registers, because no write to the tables can change
+        // the copies.
         let (sizes, corners) = (sizes, *corners);
         let pairs = &edges[chunk.edges.start as usize..chunk.edges.end as usize];
         let along = chunk.along.as_chunks_mut::<4>().0;
@@ -160,7 +157,7 @@ fn split<const CLOSED: bool>(
             let rows = pairs.iter().zip(along).zip(inner);
             for (e, ((pair, along), inner)) in chunk.edges.clone().zip(rows) {
                 let mut cut = [[BLANK; 2]; 2];
-                // A loop, so that `inner_pair` is called in one place, and inlined there.
+                // With a loop, `inner_pair` is called in one place, and inlined there.
                 for side in 0..2 {
                     let (h, record) = (2 * e + side as u32, &pair[side]);
                     cut[side] = children(h, record);
@@ -207,7 +204,7 @@ fn split<const CLOSED: bool>(
     });
     let points = &mut points[(sizes.midpoints - sizes.vertices) as usize..];
     fill(points, |e| {
-        // The boundary half-edge if there is one.
+        // The boundary half-edge, if there is one.
         let h = 2 * e as u32;
         let outer = if corners.has_face(h + 1) { h } else { h + 1 };
         Slot::some(HalfEdgeId::new(late(outer)))
@@ -221,7 +218,7 @@ fn late(h: u32) -> u32 {
 }
 
 /// Returns the half-edge before `h` along a face, or `None` if the face is too large. `n` is the
-/// next of `h`.
+/// half-edge after `h`.
 #[inline(always)]
 fn previous(rows: &[Half], h: u32, n: u32) -> Option<u32> {
     let mut at = n;
@@ -235,7 +232,7 @@ fn previous(rows: &[Half], h: u32, n: u32) -> Option<u32> {
     None
 }
 
-/// Links the faces that are too large for [`previous`], by one walk along each; O(corners).
+/// Links the faces that are too large for [`previous`]; O(corners).
 #[cold]
 fn link_large_faces(mesh: &HalfEdgeMesh, child: &mut HalfEdgeMesh, inner: impl Fn(u32) -> u32) {
     let rows = child.halves.rows_mut();

@@ -1,9 +1,9 @@
 //! Triangles split at face points, with their edges flipped.
 //!
-//! Half-edge `h` runs from vertex `a` to `b` along face `f`; `p` and `n` are the half-edges before
-//! and after it, and its twin `t` has face `g`. In the child, `h` has the same row, but runs from
-//! the face point g to the face point f. The corner of `h` adds one edge: the spoke s(h) from `a`
-//! to f, and its twin r(h).
+//! Half-edge `h` runs from vertex `a` to vertex `b` along face `f`. `p` is the half-edge before
+//! `h`, and `n` the half-edge after `h`. The twin `t` of `h` has face `g`. In the child, row `h`
+//! runs from the face point g to the face point f. The corner of `h` adds one edge: the spoke s(h)
+//! from `a` to f, with its twin r(h).
 //!
 //! ```text
 //!             g            x = next(t)            f           ▲ y + 4  ▲ y + 6   to f;
@@ -25,10 +25,10 @@
 //! | s(h), p ^ 1 without a face | 2(E + #h) | r(p) | a | #p |
 //! | r(h), t without a face | s(h) + 1 | h | f | #h |
 //!
-//! Boundary half-edges stay as they are. If boundary edges are cut in three, the `j`-th of them
-//! gets the points q and q', and eight rows from y = 2(E + C) + 8j on. It also gets two triangles
-//! beside #h (q' b f): C + 2j (a q f) and C + 2j + 1 (q q' f). Its boundary half-edge keeps its row
-//! and runs from `b` to q'; y + 1 then runs to q, and y + 3 to `a`.
+//! Boundary half-edges do not change, unless boundary edges are cut in three. The `j`-th boundary
+//! edge then gets the points q and q', and eight rows from y = 2(E + C) + 8j on. Two more triangles
+//! lie beside #h (q' b f): C + 2j (a q f) and C + 2j + 1 (q q' f). The boundary half-edge keeps its
+//! row and runs from `b` to q'. Half-edge y + 1 runs from q' to q, and y + 3 from q to `a`.
 
 use sixfold_core::{FaceId, MeshQuery, Slot};
 
@@ -36,8 +36,8 @@ use super::{Corners, fill, for_each_edge_chunk, half};
 use crate::HalfEdgeMesh;
 use crate::mesh::{Half, HalfEdgeId};
 
-/// Splits every triangle into three and flips the inner edges; cuts boundary edges in three if
-/// `TRISECT`.
+/// Splits every triangle into three and flips the inner edges. If `TRISECT`, also cuts each
+/// boundary edge in three.
 pub(super) fn sqrt3<const CLOSED: bool, const TRISECT: bool>(
     mesh: &HalfEdgeMesh,
     corners: &Corners<CLOSED>,
@@ -59,7 +59,7 @@ pub(super) fn sqrt3<const CLOSED: bool, const TRISECT: bool>(
     }
 }
 
-/// The half-edges of the parent and the numbers of its elements, with the formulas of the child.
+/// The parent mesh and the formulas of the child.
 #[derive(Clone, Copy)]
 struct Sqrt3<'a, const CLOSED: bool, const TRISECT: bool> {
     rows: &'a [Half],
@@ -71,12 +71,11 @@ struct Sqrt3<'a, const CLOSED: bool, const TRISECT: bool> {
 
 /// The tables of the child.
 impl<const CLOSED: bool, const TRISECT: bool> Sqrt3<'_, CLOSED, TRISECT> {
-    /// Computes the rows of the old half-edges and of the spokes, and `first` of the face at each
-    /// corner.
+    /// Computes the rows of the old half-edges and of the spokes, and `first` of each face.
     fn fill_edges(self, child: &mut HalfEdgeMesh) {
         for_each_edge_chunk(self.edges as usize, self.corners, 2, child, |chunk| {
-            // A local copy: writes to the tables cannot change it, so the compiler can keep it in
-            // registers.
+            // The compiler keeps a local copy in registers, because no write to the tables can
+            // change the copy.
             let split = self;
             let pairs = &split.rows.as_chunks::<2>().0
                 [chunk.edges.start as usize..chunk.edges.end as usize];
@@ -102,7 +101,6 @@ impl<const CLOSED: bool, const TRISECT: bool> Sqrt3<'_, CLOSED, TRISECT> {
         });
     }
 
-    /// Computes one leaving half-edge for each old vertex and for each face point.
     fn fill_leaving(self, mesh: &HalfEdgeMesh, child: &mut HalfEdgeMesh) {
         let (old, points) = child
             .leaving
@@ -126,7 +124,7 @@ impl<const CLOSED: bool, const TRISECT: bool> Sqrt3<'_, CLOSED, TRISECT> {
         });
     }
 
-    /// Computes all rows of the points, triangles and half-edges that cut the boundary edges.
+    /// Computes the points, triangles and half-edges at the cut boundary edges.
     fn fill_cuts(self, child: &mut HalfEdgeMesh) {
         let new_points = &mut child.leaving.rows_mut()[self.new_point(0) as usize..];
         fill(new_points.as_chunks_mut().0, |j| {
@@ -148,7 +146,7 @@ impl<const CLOSED: bool, const TRISECT: bool> Sqrt3<'_, CLOSED, TRISECT> {
 
 /// The rows of half-edges, by the table above.
 impl<const CLOSED: bool, const TRISECT: bool> Sqrt3<'_, CLOSED, TRISECT> {
-    /// Returns the row of the boundary half-edge `h`, which is `record` in the parent.
+    /// Returns the row of the boundary half-edge `h`. `record` is its row in the parent.
     #[inline(always)]
     fn boundary_half(self, h: u32, record: &Half) -> Half {
         let next = if TRISECT {
@@ -159,7 +157,7 @@ impl<const CLOSED: bool, const TRISECT: bool> Sqrt3<'_, CLOSED, TRISECT> {
         half(next, record.origin.index() as u32, Slot::NONE)
     }
 
-    /// Returns the row of s(h), for a half-edge that is `record` in the parent.
+    /// Returns the row of s(h). `record` is the row of `h` in the parent.
     #[inline(always)]
     fn arriving_spoke(self, record: &Half) -> Half {
         let origin = record.origin.index() as u32;
@@ -175,8 +173,8 @@ impl<const CLOSED: bool, const TRISECT: bool> Sqrt3<'_, CLOSED, TRISECT> {
         }
     }
 
-    /// Returns the rows of `h` and of r(h), which depend on the face across `h`. In the parent, `h`
-    /// is `record`, and its twin is `twin`.
+    /// Returns the rows of `h` and of r(h). `record` is the row of `h` in the parent, and `twin`
+    /// the row of its twin.
     #[inline(always)]
     fn flipped_and_leaving(self, h: u32, record: &Half, twin: &Half) -> (Half, Half) {
         let n = record.next.index() as u32;
@@ -198,8 +196,7 @@ impl<const CLOSED: bool, const TRISECT: bool> Sqrt3<'_, CLOSED, TRISECT> {
         }
     }
 
-    /// Returns the rows from y to y + 7 at the `j`-th boundary edge, whose boundary half-edge is
-    /// `b`.
+    /// Returns the rows from y to y + 7 at the `j`-th boundary edge. `b` is the boundary half-edge.
     #[inline(always)]
     fn cut_halves(self, b: u32, j: u32) -> [Half; 8] {
         let h = b ^ 1;
@@ -223,7 +220,6 @@ impl<const CLOSED: bool, const TRISECT: bool> Sqrt3<'_, CLOSED, TRISECT> {
 
 /// The numbers of elements.
 impl<const CLOSED: bool, const TRISECT: bool> Sqrt3<'_, CLOSED, TRISECT> {
-    /// Returns the half-edge after `h` in the parent.
     #[inline(always)]
     fn next(self, h: u32) -> u32 {
         self.rows[h as usize].next.index() as u32
@@ -241,19 +237,19 @@ impl<const CLOSED: bool, const TRISECT: bool> Sqrt3<'_, CLOSED, TRISECT> {
         self.vertices + f.get().map_or(0, |f| f.index() as u32)
     }
 
-    /// Returns the number `j` of boundary half-edges before the boundary half-edge `b`.
+    /// Returns the number of boundary half-edges before `b`.
     #[inline(always)]
     fn boundary_rank(self, b: u32) -> u32 {
         b - self.corners.number(b)
     }
 
-    /// Returns y, the first new half-edge at the `j`-th boundary edge.
+    /// Returns y at the `j`-th boundary edge.
     #[inline(always)]
     fn new_half(self, j: u32) -> u32 {
         2 * (self.edges + 3 * self.faces) + 8 * j
     }
 
-    /// Returns q, the first new point on the `j`-th boundary edge.
+    /// Returns q at the `j`-th boundary edge.
     #[inline(always)]
     fn new_point(self, j: u32) -> u32 {
         self.vertices + self.faces + 2 * j

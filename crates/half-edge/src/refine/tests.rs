@@ -33,7 +33,7 @@ fn split(mesh: &HalfEdgeMesh, split: Split) -> HalfEdgeMesh {
 
 /// Checks that the child of a single triangle is `expected`.
 fn triangle_becomes(expected: &HalfEdgeMesh, by: Split) {
-    // v0 ─h0→ v1 ─h2→ v2 ─h4→ v0, with the boundary half-edges h1, h3 and h5 beside them.
+    // v0 ─h0→ v1 ─h2→ v2 ─h4→ v0, with the boundary half-edges h1, h3 and h5.
     let inside = [(2, 0), (4, 1), (0, 2)].map(|(next, v)| (next, v, Some(0)));
     let outside = [(5, 1, None), (1, 2, None), (3, 0, None)];
     let rows = [0, 1, 2].map(|e| [inside[e], outside[e]]);
@@ -125,7 +125,7 @@ fn a_triangle_with_its_boundary_cut_in_three() {
 
 #[test]
 fn the_edge_between_two_triangles_is_flipped() {
-    // f0 = v0 v1 v2 and f1 = v0 v2 v3; h0 runs from v0 to v2 and has f1 on its left.
+    // f0 = v0 v1 v2 and f1 = v0 v2 v3. h0 runs from v0 to v2 and has f1 on its left.
     let rows = [
         [(6, 0, Some(1)), (2, 2, Some(0))],
         [(4, 0, Some(0)), (9, 1, None)],
@@ -151,7 +151,7 @@ fn the_edge_between_two_triangles_is_flipped() {
 
 #[test]
 fn large_faces_are_linked() {
-    // For each degree around the reach of `previous`: a face, and a pyramid over it.
+    // Degrees below and above the limit of `previous`: a face, and a pyramid over this face.
     for degree in 3..24 {
         let rim = (0..degree).collect::<Vec<u32>>();
         let sides = (0..degree).map(|i| vec![(i + 1) % degree, i, degree]);

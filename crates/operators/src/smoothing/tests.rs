@@ -15,7 +15,6 @@ fn set(polygons: &PolygonMesh) -> IndexedFaceSet {
     IndexedFaceSet::from_polygons(polygons).expect("it accepts any mesh")
 }
 
-/// Returns the positions of `polygons` after smoothing, in its order.
 fn moved(polygons: &PolygonMesh, smoothing: &Smoothing) -> Vec<Point> {
     let mesh = set(polygons);
     let moved = smoothed(&mesh, smoothing).expect("it can be smoothed");
@@ -33,14 +32,13 @@ fn noise(i: usize) -> f32 {
     (i * 2_654_435 % 2001) as f32 / 1000.0 - 1.0
 }
 
-/// Returns whether vertex `i` of an m × n grid is on its boundary.
 fn is_on_boundary(i: usize, m: usize, n: usize) -> bool {
     let (x, y) = (i % (m + 1), i / (m + 1));
     x == 0 || x == m || y == 0 || y == n
 }
 
-/// The neighbours of a vertex p of a regular solid have the mean c·p. A step scales p by
-/// 1 − λ(1 − c), and a step back by 1 − μ(1 − c).
+/// The mean of the neighbours of a vertex p is c·p. A forward step scales p by 1 − λ(1 − c), and a
+/// backward step scales p by 1 − μ(1 − c).
 #[test]
 fn regular_solids_shrink_by_the_factor_of_their_ring() {
     let root5 = 5.0_f64.sqrt();
@@ -82,7 +80,7 @@ fn regular_solids_shrink_by_the_factor_of_their_ring() {
     }
 }
 
-/// The vertices of this sphere lie on its axes of symmetry, and cannot leave them.
+/// Every vertex is on an axis of symmetry and stays there.
 #[test]
 fn a_sphere_shrinks_towards_its_centre() {
     let sphere = sixfold_shapes::geodesic(2).expect("small");
@@ -135,7 +133,6 @@ fn a_plane_stays_a_plane() {
     }
 }
 
-/// Linear precision: in a plane the cotangent weights of any ring balance.
 #[test]
 fn cotangents_leave_a_plane_unchanged() {
     let (m, n) = (7, 6);
@@ -192,7 +189,7 @@ fn bumps_shrink_and_a_fixed_boundary_stays() {
     }
 }
 
-/// The mean of the neighbours of a corner p of a regular n-gon is cos(2π/n)·p.
+/// The mean of the neighbours of p in a regular n-gon is cos(2π/n)·p.
 #[test]
 fn a_boundary_curve_shrinks_by_itself() {
     let n = 7;
@@ -228,7 +225,7 @@ fn a_boundary_curve_shrinks_by_itself() {
     }
 }
 
-/// Two triangles that share one vertex: it has four boundary edges, the others have two.
+/// Two triangles share one vertex. The vertex has four boundary edges.
 #[test]
 fn a_vertex_where_the_boundary_crosses_itself_stays() {
     let points = [
@@ -273,7 +270,6 @@ fn a_step_back_keeps_the_volume() {
 
 #[test]
 fn flat_triangles_and_isolated_vertices_give_finite_positions() {
-    // Triangles in one point, on a line and nearly on a line, and an isolated vertex.
     let points = [
         Point::ZERO,
         Point::ZERO,
@@ -351,8 +347,8 @@ fn each_invalid_input_returns_its_error() {
     assert_eq!(refusal(taubin), None);
 }
 
-/// Step 1 moves every vertex of the octahedron to the centre. Vertices may have equal positions
-/// there unless the structure identifies a vertex by its coordinates.
+/// Step 1 moves all vertices of the octahedron to the centre. The polygon soup identifies vertices
+/// by their positions and returns an error.
 #[test]
 fn the_structure_decides_whether_vertices_may_coincide() {
     let whole = Smoothing {
@@ -377,7 +373,6 @@ fn the_structure_decides_whether_vertices_may_coincide() {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Smoothing, then mapping gives the same result as mapping, then smoothing.
     #[test]
     fn uniform_smoothing_commutes_with_affine_maps(
         polygons in manifold_mesh(),
@@ -396,7 +391,6 @@ proptest! {
         }
     }
 
-    /// Cotangents depend on angles, so they commute only with rotation, scaling and translation.
     #[test]
     fn cotangent_smoothing_commutes_with_similarities(
         axis in prop::array::uniform3(0.1_f32..1.0),

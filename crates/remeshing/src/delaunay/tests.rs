@@ -4,7 +4,7 @@ use sixfold_half_edge::EditableHalfEdgeMesh;
 
 use super::*;
 
-/// Builds a flat grid with displaced inner vertices, triangulated in the same direction everywhere.
+/// Builds a flat triangulated grid with moved inner vertices.
 fn perturbed_grid(side: usize, offsets: &[[f32; 2]]) -> PolygonMesh {
     let grid = sixfold_shapes::triangle_grid(side, side).expect("small");
     let is_outer = |x: f32, max: f32| x <= 0.0 || x >= max;
@@ -31,7 +31,6 @@ proptest! {
         let report = flip_to_delaunay(&mut mesh).expect("triangles");
         prop_assert_eq!(mesh.validate(), Ok(()));
         prop_assert_eq!(report.stop, Stop::Done);
-        // Unless a flip was refused, no vertex is inside the circle around a triangle.
         let mut inside = 0;
         for f in mesh.faces() {
             let [a, b, c] = corners(&mesh, f).map(|v| at(&mesh, v));

@@ -21,7 +21,6 @@ fn lengths(mesh: &EditableHalfEdgeMesh) -> Vec<f64> {
 
 #[test]
 fn edges_get_the_requested_length() {
-    // Triangles of a uv sphere are thin at the poles and large at the equator.
     let sphere = sixfold_shapes::uv_sphere(24, 9)
         .expect("small")
         .fan_triangulated()
@@ -77,7 +76,6 @@ fn any_length_is_refused_or_remeshing_ends() {
     assert!(matches!(error, RemeshError::TooFine { .. }), "{error}");
     let (mesh, _) = remeshed(&sphere, &Remeshing::with_edge_length(1e30));
     assert!(mesh.face_count() >= 4);
-    // Faces without area also have edges to split.
     let line = [0.0, 1.0, 2.0].map(|x| sixfold_core::Point::new(x, 0.0, 0.0));
     let flat = PolygonMesh::new(line, [[0, 1, 2]]).expect("valid");
     let mut flat = EditableHalfEdgeMesh::from_polygons(&flat).expect("a triangle");
@@ -118,7 +116,7 @@ fn a_structure_that_scans_makes_the_same_mesh() {
 #[test]
 fn lengths_below_the_precision_are_refused_and_others_end() {
     let grid = sixfold_shapes::triangle_grid(20, 20).expect("small");
-    // Large coordinates, as in surveys: neighbouring f32 coordinates are half a unit apart.
+    // With large coordinates, neighbouring f32 coordinates are half a unit apart.
     let far = |p: &Point| Point::new(0.7 * p.x + 500_000.0, 0.7 * p.y + 4_650_000.0, 0.0);
     let far: Vec<Point> = grid.positions().iter().map(far).collect();
     let far = PolygonMesh::from_faces(far, grid.faces().clone()).expect("the same faces");
@@ -134,7 +132,6 @@ fn lengths_below_the_precision_are_refused_and_others_end() {
         assert!(report.faces < 2 * grid.face_count(), "{report:?}");
         assert_eq!(mesh.validate(), Ok(()));
     }
-    // Sums that overflow f32 are not positions.
     let huge = |p: &Point| (*p - Point::splat(10.0)) * 3.4e37;
     let huge: Vec<Point> = grid.positions().iter().map(huge).collect();
     let huge = PolygonMesh::from_faces(huge, grid.faces().clone()).expect("the same faces");
@@ -154,7 +151,6 @@ fn remeshing_ends_when_converged_and_collapses_make_room() {
     let mut mesh = EditableHalfEdgeMesh::from_polygons(&ball).expect("closed");
     let options = Remeshing {
         iterations: usize::MAX,
-        // Fewer faces than the mesh has at first, and more than it has at this edge length.
         max_faces: 1000,
         ..Remeshing::with_edge_length(0.3)
     };

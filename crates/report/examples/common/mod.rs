@@ -1,4 +1,4 @@
-//! Shared code of the programs that make reports: the introduction and the median.
+//! Shared code of the programs that make reports.
 
 use sixfold_study::Environment;
 
@@ -26,7 +26,6 @@ pub(crate) fn introduction(
     )
 }
 
-/// Returns the median of `samples`.
 pub(crate) fn median(samples: &[f64]) -> f64 {
     let mut sorted = samples.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -1,4 +1,4 @@
-//! The amount of work after which building a structure has paid off.
+//! The amount of work after which building a structure pays off.
 
 use kuva::plot::LinePlot;
 use kuva::render::plots::Plot;
@@ -8,12 +8,12 @@ use sixfold_study::{Operation, PickReport, Report, ResultRow};
 use crate::colours::column_colour;
 use crate::figure::{Figure, Table, base_layout, render_svg};
 
-/// The structure of the input mesh. Building it is not necessary.
+/// The structure of the input mesh. It need not be built.
 const INPUT_BACKEND: &str = "indexed-face-set";
 
-/// Draws the time to build once and then repeat one operation, over the number of runs.
+/// Draws the time to build once and repeat one operation, over the number of repetitions.
 pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Option<Figure> {
-    // The operation with the most queries among those measured.
+    // Prefer the operation with the most queries.
     let candidates = [
         Operation::AllQueries,
         Operation::VertexNormal,
@@ -76,7 +76,7 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
     curves.draw(&lines, command)
 }
 
-/// Draws the time to build once and then run the mix of a workload, over the number of operations.
+/// Draws the time to build once and run the mix of a workload, over the number of operations.
 pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Option<Figure> {
     let pays_after = |name: &str| {
         let row = report.break_even.iter().find(|row| row.backend == name);
@@ -120,7 +120,7 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
     curves.draw(&lines, command)
 }
 
-/// The line of one structure, with times in nanoseconds.
+/// The line of one structure. Times are in nanoseconds.
 struct Line<'a> {
     name: &'a str,
     build: f64,
@@ -135,7 +135,6 @@ fn break_even_text(count: f64, singular: &str, plural: &str) -> String {
     }
 }
 
-/// Texts and range of a figure.
 struct Curves<'a> {
     title: String,
     id: String,
@@ -143,7 +142,7 @@ struct Curves<'a> {
     axis: &'a str,
     /// Column title of the repeated work.
     unit: &'a str,
-    /// Largest number of repetitions.
+    /// Maximum number of repetitions.
     max_count: f64,
 }
 

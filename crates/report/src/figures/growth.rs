@@ -1,5 +1,5 @@
-//! Growth of costs with the size of the mesh. The slopes of lines through the logarithms are the
-//! exponents of growth.
+//! Growth of times with the size of the mesh. On logarithmic axes, the slope of a line is the
+//! exponent of growth.
 
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::plots::Plot;
@@ -10,7 +10,6 @@ use super::per_unit;
 use crate::colours::column_colour;
 use crate::figure::{Figure, Table, base_layout, render_svg};
 
-/// Draws one figure for each operation.
 pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Vec<Figure> {
     let operations: Vec<Operation> = Operation::ALL
         .into_iter()
@@ -51,7 +50,7 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
     }
 }
 
-/// Draws the times of one backend over the sizes: a line, and a mark with a title for each size.
+/// Draws the times of one backend over the sizes, with a mark for each size.
 fn curve(sizes: &[SizeReport], fit: &Fit) -> [Plot; 2] {
     let (mut points, mut titles) = (Vec::new(), Vec::new());
     for size in sizes {
@@ -89,7 +88,7 @@ fn curve(sizes: &[SizeReport], fit: &Fit) -> [Plot; 2] {
     [Plot::Line(line), Plot::Scatter(marks)]
 }
 
-/// Returns the table with a column for each backend: its time per element by size, then its slopes.
+/// Returns a table with a column for each backend: its times per element, then its slopes.
 fn times_and_slopes(sizes: &[SizeReport], fits: &[&Fit]) -> Table {
     let names = fits.iter().map(|fit| fit.backend.as_str());
     let mut table = Table::new(["faces"].into_iter().chain(names));
@@ -131,13 +130,11 @@ fn slope_cell(slope: Option<Slope>) -> String {
     }
 }
 
-/// Returns the row of `size` with the backend and operation of `fit`.
 fn find_row<'s>(size: &'s SizeReport, fit: &Fit) -> Option<&'s ResultRow> {
     let mut rows = size.results.iter();
     rows.find(|row| row.operation == fit.operation && row.backend == fit.backend)
 }
 
-/// Returns the time of a whole run in nanoseconds, measured or estimated.
 fn run_ns(row: &ResultRow) -> Option<f64> {
     row.median_ns.or(row.estimated_ns)
 }

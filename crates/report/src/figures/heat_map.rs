@@ -10,10 +10,9 @@ use sixfold_study::{Collection, Operation, Report};
 use crate::colours::GRID_COLOUR;
 use crate::figure::{Figure, Table, base_layout, ratio_ticks, render_svg};
 
-/// All ratios above this have the same colour, so that smaller differences remain visible.
+/// Maximum ratio with its own colour. Larger ratios have the colour of this ratio.
 const MAX_RATIO: f64 = 1000.0;
 
-/// Draws the ratios to the best of one study.
 pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Option<Figure> {
     let columns = study.backends.iter().filter(|column| column.holds);
     let columns: Vec<&str> = columns.map(|column| column.name.as_str()).collect();
@@ -25,7 +24,6 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
     figure(&title, &columns, &ratio, id_prefix, command)
 }
 
-/// Draws the mean ratios over all meshes.
 pub(super) fn pooled(collection: &Collection, command: &str) -> Option<Figure> {
     let mut columns: Vec<&str> = Vec::new();
     for row in &collection.pooled {
@@ -66,12 +64,12 @@ fn figure(
         line.extend(ratios.iter().map(|&ratio| shown(ratio)));
         table.row(line);
     }
-    // The plot draws rows upwards; the first operation must be on top.
+    // The plot draws rows upwards, but the first operation belongs at the top.
     for &operation in operations.iter().rev() {
         let mut line = Vec::new();
         for column in columns {
             let value = ratio(operation, column);
-            // NaN stands for "not measured" and has its own colour.
+            // NaN means "not measured" and has its own colour.
             line.push(value.map_or(f64::NAN, |ratio| ratio.clamp(1.0, MAX_RATIO).log10()));
             let shown = value.map_or_else(|| "not measured".into(), times);
             titles.push(format!("{operation} on {column}: {shown}"));
@@ -108,7 +106,7 @@ fn figure(
     })
 }
 
-/// Returns a colour from dark to light; grey for NaN.
+/// Returns a colour from dark to light. NaN is grey.
 fn colour(value: f64) -> String {
     match value.is_nan() {
         true => GRID_COLOUR.into(),

@@ -1,4 +1,4 @@
-//! Bytes of each structure as stacked bars, one part per table.
+//! Bytes of each structure as stacked bars, with one part per table.
 
 use kuva::plot::BarPlot;
 use kuva::render::plots::Plot;
@@ -8,11 +8,9 @@ use sixfold_study::numbers::grouped;
 use crate::colours::table_colour;
 use crate::figure::{Figure, Table, base_layout, render_svg};
 
-/// Name of the table of positions; structures with points instead of vertices do not have this
-/// table.
+/// Name of the table of positions. A structure with points instead of vertices has no such table.
 const POSITIONS: &str = "positions";
 
-/// Draws the bytes per vertex of each table.
 pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Option<Figure> {
     let columns = study
         .backends
@@ -28,8 +26,7 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
     let mut titles = Vec::new();
     for column in &columns {
         let mut parts = Vec::new();
-        // Positions come first, in the same colour for all structures. The other tables keep their
-        // order.
+        // Positions come first, in the same colour for all structures.
         let mut tables: Vec<_> = column.tables.iter().collect();
         tables.sort_by_key(|part| part.table != POSITIONS);
         let first = usize::from(tables.first().is_none_or(|part| part.table != POSITIONS));

@@ -9,7 +9,6 @@ use super::per_unit;
 use crate::colours::table_colour;
 use crate::figure::{Figure, MIN_BAR_LENGTH, Table, base_layout, ratio_ticks, render_svg};
 
-/// Draws one figure for each operation.
 pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Vec<Figure> {
     let figures = report
         .comparisons
@@ -34,7 +33,7 @@ fn figure(
     let mut table = Table::new(header.chain(["worst / best", "95 %"]));
     let (mut plot, mut titles) = (BarPlot::new().with_legend(names), Vec::new());
     let logs = rows.iter().filter_map(|row| row.row.ratio_to_best);
-    // The axis reaches at least 1.5, so that noise does not fill the figure.
+    // The axis reaches at least ratio 1.5, so that noise does not fill the figure.
     let max_log = logs.fold(1.5, f64::max).log10();
     let per = per_unit(operation.unit());
     for backend_rows in rows.chunk_by(|a, b| a.row.backend == b.row.backend) {

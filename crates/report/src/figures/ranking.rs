@@ -11,7 +11,6 @@ use super::{Row, per_unit};
 use crate::colours::{INTERVAL_COLOUR, column_colour};
 use crate::figure::{Figure, MIN_BAR_LENGTH, Table, base_layout, ratio_ticks, render_svg};
 
-/// Draws one figure for each operation of a study.
 pub(super) fn from_study(study: &Report, command: &str) -> Vec<Figure> {
     let figures = Operation::ALL.into_iter().filter_map(|operation| {
         let rows = study.rows(operation).filter_map(|row| {
@@ -38,14 +37,13 @@ pub(super) fn from_study(study: &Report, command: &str) -> Vec<Figure> {
     figures.collect()
 }
 
-/// Returns the time per element of a first run, on fresh pages, if it differs from later runs.
+/// Returns the time per element of a first run, if it differs from the time of later runs.
 fn first_time(row: &ResultRow) -> Option<f64> {
     let ratio = row.first_ratio()?;
     let each = row.first_ns? / row.elements.filter(|&n| n > 0)? as f64;
     (ratio.max(ratio.recip()) > FIRST_TIME_SHOWN).then_some(each)
 }
 
-/// Draws one figure for each operation, over all meshes.
 pub(super) fn pooled(collection: &Collection, command: &str) -> Vec<Figure> {
     let figures = Operation::ALL.into_iter().filter_map(|operation| {
         let rows = collection
@@ -68,7 +66,6 @@ pub(super) fn pooled(collection: &Collection, command: &str) -> Vec<Figure> {
     figures.collect()
 }
 
-/// Draws the ranking for a workload.
 pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Option<Figure> {
     let rows = report.ranking.iter().map(|ranked| Row {
         backend: &ranked.backend,
@@ -148,7 +145,7 @@ fn figure(
             per_unit(per)
         ));
     }
-    // The plot draws categories upwards; the fastest must be on top.
+    // The plot draws categories upwards, but the fastest backend belongs at the top.
     bars.reverse();
     whiskers.reverse();
     titles.reverse();

@@ -1,5 +1,5 @@
-//! Times of queries as a function of the bytes that they move. If a mark lies on the line of a
-//! memory speed, the query can become faster only if it moves fewer bytes.
+//! Times of queries over the bytes that they move. A query on the line of a memory speed can become
+//! faster only if it moves fewer bytes.
 
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::plots::Plot;
@@ -10,10 +10,9 @@ use super::per_unit;
 use crate::colours::{TEXT_COLOUR, column_colour};
 use crate::figure::{Figure, Table, base_layout, render_svg};
 
-/// A row of the results with its times.
 type TimedRow<'a> = (&'a WhyRow, Timed);
 
-/// Draws all relations on all structures in one figure; `None` if nothing was measured.
+/// Draws all relations on all structures. Returns `None` if nothing was measured.
 pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
     let buffers = why.memory.as_ref()?;
     let rows = why.rows.iter().filter_map(|row| Some((row, row.timed?)));
@@ -28,7 +27,7 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
         .fold([f64::INFINITY, 0.0], |[min_bytes, max_bytes], bytes| {
             [f64::min(min_bytes, bytes), f64::max(max_bytes, bytes)]
         });
-    // The fastest and the slowest buffer; all other buffers are between these two.
+    // The other buffers lie between these two.
     let buffers = [buffers.first(), buffers.last()].into_iter().flatten();
     let mut plots: Vec<Plot> = buffers
         .map(|buffer| line(buffer, min_bytes, max_bytes))
@@ -58,8 +57,7 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
     })
 }
 
-/// Draws a mark with a title for each relation on the structure `backend`; `None` if it has no
-/// rows.
+/// Draws a mark for each relation on the structure `backend`. Returns `None` without rows.
 fn marks(rows: &[TimedRow], backend: &str) -> Option<Plot> {
     let (mut points, mut titles) = (Vec::new(), Vec::new());
     for (row, timed) in rows.iter().filter(|(row, _)| row.backend == backend) {
@@ -87,7 +85,6 @@ fn marks(rows: &[TimedRow], backend: &str) -> Option<Plot> {
     ))
 }
 
-/// Returns the table with one line for each mark.
 fn table(rows: &[TimedRow]) -> Table {
     let mut table = Table::new([
         "",
@@ -114,7 +111,7 @@ fn table(rows: &[TimedRow]) -> Table {
     table
 }
 
-/// Draws the time to read `min_bytes` to `max_bytes` bytes at the speed of `buffer`.
+/// Draws the time to read from `min_bytes` to `max_bytes` at the speed of `buffer`.
 fn line(buffer: &BufferSpeed, min_bytes: f64, max_bytes: f64) -> Plot {
     let ends = [min_bytes, max_bytes].map(|bytes| (bytes, bytes / buffer.gb_per_s));
     Plot::Line(

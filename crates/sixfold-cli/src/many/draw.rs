@@ -10,7 +10,6 @@ use crate::failure::Failure;
 use crate::load;
 use crate::outcome::command_line;
 
-/// Reads the results and draws them.
 pub(crate) fn run(arguments: &Draw) -> Result<ExitCode, Failure> {
     let mut collection = Collection::empty();
     for place in &arguments.results {

@@ -1,4 +1,4 @@
-//! The folder of a report: one file per finished study, and at the end all results in one file.
+//! The folder of a report.
 //!
 //! ```text
 //! DIR/studies/bunny-0e2a97c1.json  one mesh, written as soon as it is finished; used by --resume
@@ -24,17 +24,16 @@ use crate::output::{Output, cannot_write};
 use crate::text::print_stderr;
 use sixfold_study::numbers::counted;
 
-/// A folder for results.
 pub(super) struct Folder {
     path: PathBuf,
 }
 
-/// The saved study of one mesh, or the reason why it failed.
+/// The saved study of one mesh, or the reason why the study failed.
 #[derive(Debug, Deserialize, Serialize)]
 pub(super) struct StudyRecord {
     schema: u32,
     mesh: String,
-    /// Size and checksum of the mesh file, to detect that the file has changed.
+    /// Size and checksum of the mesh file. They show whether the file has changed.
     content: Option<String>,
     settings: SharedSettings,
     study: Option<Report>,
@@ -61,7 +60,6 @@ impl StudyRecord {
         }
     }
 
-    /// Adds the saved study, or the reason of its failure, to the results.
     pub(super) fn add_to(self, collection: &mut Collection) {
         match (self.study, self.failure) {
             (Some(study), _) => collection.add_study(study),
@@ -71,7 +69,7 @@ impl StudyRecord {
     }
 }
 
-/// Returns the size and checksum of a file; `None` if it cannot be read.
+/// Returns the size and checksum of a file. Returns `None` if the file cannot be read.
 fn content(path: &Path) -> Option<String> {
     let mut file = fs::File::open(path).ok()?;
     let mut hasher = crc32fast::Hasher::new();
@@ -90,8 +88,7 @@ fn content(path: &Path) -> Option<String> {
 }
 
 impl Folder {
-    /// Opens `path`, or creates it if it does not exist. If `resume`, adds its finished studies to
-    /// `collection`.
+    /// Opens or creates `path`. If `resume` is set, adds the finished studies to `collection`.
     pub(super) fn open(
         path: &Path,
         resume: bool,
@@ -147,7 +144,7 @@ impl Folder {
         Ok(folder)
     }
 
-    /// Opens or creates the folder at `path`, for complete results.
+    /// Opens or creates the folder for complete results.
     pub(super) fn create(path: &Path) -> Result<Self, Failure> {
         let shown = path.display().to_string();
         fs::create_dir_all(path).map_err(|cause| cannot_write(&shown, &cause))?;
@@ -158,7 +155,7 @@ impl Folder {
         self.path.join("studies")
     }
 
-    /// Returns the files of finished studies and their text.
+    /// Returns the paths and texts of the finished studies.
     fn study_files(&self) -> Result<Vec<(PathBuf, String)>, Failure> {
         let failed = |path: &Path, cause: io::Error| {
             Failure::usage(format!(
@@ -191,7 +188,7 @@ impl Folder {
             }
         };
         let stem: String = stem.to_string_lossy().chars().map(safe).take(40).collect();
-        // The checksum of the name keeps the files of meshes with the same stem apart.
+        // The checksum of the full name distinguishes meshes with the same stem.
         let name = crc32fast::hash(record.mesh.as_bytes());
         let path = self.studies().join(format!("{stem}-{name:08x}.json"));
         Output::open(&path)?.finish(|writer| {
@@ -200,13 +197,12 @@ impl Folder {
         })
     }
 
-    /// Reads the saved lab `name`; returns `None` if it cannot be read.
+    /// Reads the saved lab `name`. Returns `None` if the lab cannot be read.
     pub(super) fn load_lab(&self, name: &str) -> Option<Results> {
         let text = fs::read_to_string(self.lab_path(name)).ok()?;
         Results::read_json(&text).ok()
     }
 
-    /// Saves the results of the lab `name`.
     pub(super) fn save_lab(&self, name: &str, results: &Results) -> Result<(), Failure> {
         let path = self.lab_path(name);
         let folder = self.path.join("labs");
@@ -219,7 +215,7 @@ impl Folder {
         self.path.join("labs").join(format!("{name}.json"))
     }
 
-    /// Writes all results and the page; `command` is the command that reproduces them.
+    /// Writes all results and the page. `command` reproduces them.
     pub(super) fn write_report(
         &self,
         collection: &Collection,
@@ -231,7 +227,7 @@ impl Folder {
         self.write_page(collection, command)
     }
 
-    /// Writes only the page and its figures.
+    /// Writes only the page and the figures.
     pub(super) fn write_page(&self, collection: &Collection, command: &str) -> Result<(), Failure> {
         let output = |name: &str| Output::open(&self.path.join(name));
         let page = ReportPage::new(collection, command);

@@ -1,4 +1,4 @@
-//! The labs in the report of one mesh besides its study: orders, growth and why.
+//! The labs in the report of one mesh: orders, growth and why.
 
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,14 +11,13 @@ use crate::failure::Failure;
 use crate::text::{TextOutput, hanging_indent, print_stderr, sanitize};
 use crate::{growth, orders, why};
 
-/// A lab.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Lab {
-    /// The mesh in several orders, as measured by `sixfold orders`.
+    /// The mesh in several orders, as in `sixfold orders`.
     Orders,
-    /// A shape in several sizes, as measured by `sixfold growth`.
+    /// A shape in several sizes, as in `sixfold growth`.
     Growth,
-    /// The reads of queries, as counted by `sixfold why`.
+    /// The reads of queries, as in `sixfold why`.
     Why,
 }
 
@@ -34,7 +33,6 @@ impl Lab {
     }
 }
 
-/// The labs selected by `--labs`.
 #[derive(Clone, Debug)]
 pub(crate) struct LabSelection(Vec<Lab>);
 
@@ -56,8 +54,8 @@ impl FromStr for LabSelection {
     }
 }
 
-/// Returns the labs of the report: the selected ones, or all by default. Several meshes have no
-/// labs.
+/// Returns the labs of the report: the selected labs, or all labs by default. A report on several
+/// meshes has no labs.
 pub(super) fn selected_labs(
     selection: Option<&LabSelection>,
     single: bool,
@@ -72,20 +70,19 @@ pub(super) fn selected_labs(
     }
 }
 
-/// Measures labs, with the input that all labs share.
+/// Measures labs. The fields are the shared input of all labs.
 pub(super) struct LabRunner<'a> {
     pub(super) study_mesh: &'a StudyMesh,
     pub(super) settings: &'a Settings,
     pub(super) folder: &'a Folder,
-    /// Whether an earlier run finished the study, so that the folder has results of the same mesh
-    /// and settings.
+    /// Whether an earlier run finished the study. The folder then has results of the same mesh and
+    /// settings.
     pub(super) resumed: bool,
     pub(super) stop: &'a AtomicBool,
 }
 
 impl LabRunner<'_> {
-    /// Measures the labs that are not in the folder yet. A lab that cannot be measured is reported
-    /// and left out.
+    /// Measures the labs that are not in the folder. A lab that fails is reported and left out.
     pub(super) fn run(&self, selected: &[Lab]) -> Result<Labs, Failure> {
         let mut labs = Labs::default();
         for &lab in selected {
@@ -170,7 +167,6 @@ impl LabRunner<'_> {
     }
 }
 
-/// Prints the findings of the labs; the report has the rest.
 pub(super) fn print(labs: &Labs, text: &mut TextOutput) {
     let orders = labs.orders.iter().map(|orders| {
         let title = format!("Effect of the order of {}", sanitize(&orders.mesh.name));

@@ -12,7 +12,6 @@ use crate::outcome::{command_line, studies_exit_code};
 use crate::output::{Output, check_not_overwritten, is_stdout};
 use crate::text::TextOutput;
 
-/// Reads the results of the shards, and writes them as the results of a single run.
 pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
     if arguments.json.is_none() && arguments.report.is_none() {
         return Err(Failure::usage(

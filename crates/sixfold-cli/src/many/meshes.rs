@@ -1,4 +1,4 @@
-//! Finds the meshes of a study: named files, and the OBJ files of folders.
+//! Finds the meshes of a study in files and folders.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -8,16 +8,15 @@ use std::str::FromStr;
 
 use crate::failure::Failure;
 
-/// One of many meshes.
 #[derive(Clone, Debug)]
 pub(crate) struct Mesh {
-    /// Its name in results: the path as given.
+    /// The name in results: the path as given.
     pub(crate) name: String,
-    /// Its file; `None` for the built-in mesh.
+    /// The file; `None` for the built-in mesh.
     pub(crate) path: Option<PathBuf>,
 }
 
-/// Every n-th mesh, from the i-th on: the part of one of n jobs.
+/// The part of a study that one of n jobs does: every n-th mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Shard {
     index: usize,
@@ -25,7 +24,7 @@ pub(crate) struct Shard {
 }
 
 impl Shard {
-    /// Returns whether mesh `number`, counted from 0, is in the shard.
+    /// Returns whether mesh `number` is in the shard. Meshes are numbered from 0.
     pub(crate) fn contains(self, number: usize) -> bool {
         number % self.count == self.index - 1
     }
@@ -34,7 +33,7 @@ impl Shard {
 impl FromStr for Shard {
     type Err = String;
 
-    /// Parses `2/8`: the second of eight.
+    /// Parses a text such as `2/8`, the second of eight shards.
     fn from_str(text: &str) -> Result<Self, String> {
         let parts = text.split_once('/');
         let parsed =
@@ -48,8 +47,8 @@ impl FromStr for Shard {
     }
 }
 
-/// Returns the meshes in `places`: files, and all OBJ files in folders and their subfolders, sorted
-/// by name. Each file occurs once. Without any place, returns the built-in mesh.
+/// Returns the meshes in `places`, without duplicates and sorted by name. Searches folders and
+/// their subfolders for OBJ files. If `places` is empty, returns the built-in mesh.
 pub(crate) fn find_meshes(places: &[PathBuf]) -> Result<Vec<Mesh>, Failure> {
     let mut meshes: Vec<Mesh> = Vec::new();
     if places.is_empty() {
@@ -88,15 +87,15 @@ pub(crate) fn find_meshes(places: &[PathBuf]) -> Result<Vec<Mesh>, Failure> {
     Ok(meshes)
 }
 
-/// Returns a path as text. Bytes that are not UTF-8 are escaped, so that no two paths have the same
-/// name.
+/// Returns a path as text. Bytes that are not UTF-8 are escaped, so that different paths have
+/// different names.
 fn name_of(path: &Path) -> String {
     path.to_str()
         .map_or_else(|| format!("{path:?}"), ToOwned::to_owned)
 }
 
-/// Lists all OBJ files in `folder` and its subfolders, sorted by name. Skips hidden files, which
-/// other programs leave behind. Does not follow links to folders, because they may form a cycle.
+/// Lists all OBJ files in `folder` and its subfolders, sorted by name. Skips hidden files. Does not
+/// follow links to folders, because they may form a cycle.
 fn list_obj_files(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), (PathBuf, io::Error)> {
     let failed = |cause| (folder.to_owned(), cause);
     let entries = fs::read_dir(folder).map_err(failed)?;
@@ -108,7 +107,7 @@ fn list_obj_files(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), (PathBu
         }
         let path = entry.path();
         let is_folder = entry.file_type().map_err(failed)?.is_dir();
-        // Only files and links to files are listed, because opening a pipe, for example, may block.
+        // List only files and links to files. Opening a pipe may block.
         if is_folder || fs::metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
             paths.push((path, is_folder));
         }

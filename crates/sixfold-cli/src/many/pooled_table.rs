@@ -5,8 +5,8 @@ use sixfold_study::{Collection, Pooled};
 
 use crate::tables::styled;
 
-/// Returns the table of the geometric mean, over all meshes, of the ratio to the best backend of
-/// the mesh: a row per operation, a column per backend.
+/// Returns the table of mean ratios, with a row per operation and a column per backend. A mean
+/// ratio is the geometric mean of the ratios to the best backend of each mesh.
 pub(super) fn pooled_table(collection: &Collection, bold: bool) -> String {
     let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
     let mut columns: Vec<&str> = Vec::new();
@@ -36,7 +36,7 @@ pub(super) fn pooled_table(collection: &Collection, bold: bool) -> String {
 const LEGEND: &str = "* fastest or tied with the fastest on most meshes\n\
     (n) on n meshes only: the backend cannot hold the other meshes, or did different work there";
 
-/// Formats a cell as `1.04*` or `18.2 (3)`.
+/// Formats a cell such as `1.04*` or `18.2 (3)`.
 fn cell(row: &Pooled, most: usize, bold: bool) -> Cell {
     let ratio = match row.ratio_to_best {
         ratio if ratio < 9.995 => format!("{ratio:.2}"),

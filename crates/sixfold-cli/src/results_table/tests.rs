@@ -115,7 +115,6 @@ fn report() -> Report {
     }
 }
 
-/// Compares the whole table, with every sign in it and fixed figures, with a golden file.
 #[test]
 fn golden() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/table.txt");

@@ -9,23 +9,21 @@ use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
 use sixfold_study::numbers::{bytes, counted};
 
-/// Bytes per edge of the sums in a pass over the faces. If edges have no rows, the sums are in a
+/// Bytes per edge of the sums in a pass over the faces. Without rows for edges, the sums are in a
 /// hash map.
 const SUMS_BYTES: usize = 120;
 
 /// Bytes per vertex while limits are computed.
 const LIMIT_BYTES: usize = 128;
 
-/// The sizes of all levels, and the peak of memory while they are made.
+/// The sizes of all levels, and the peak memory of the subdivision.
 pub(crate) struct Forecast {
     /// Counts of the control mesh and of each level.
     levels: Vec<Counts>,
-    /// Peak memory in bytes.
     peak: usize,
 }
 
 impl Forecast {
-    /// Predicts the sizes of `levels` steps from `polygons`.
     pub(crate) fn new(
         subdivision: &Subdivision,
         method: Method,
@@ -60,7 +58,7 @@ impl Forecast {
         let peaks = counts.windows(2).map(|pair| {
             let [old, new] = [&pair[0], &pair[1]];
             match method {
-                // Two meshes, and at the end the polygons of the result.
+                // Two meshes, and the polygons of the result.
                 Method::Native => {
                     structure_bytes(backend, old)
                         + structure_bytes(backend, new)
@@ -94,12 +92,12 @@ impl Forecast {
         })
     }
 
-    /// Returns the number of faces of all new levels.
+    /// Returns the total number of faces of all new levels.
     pub(crate) fn new_faces(&self) -> usize {
         self.levels.iter().skip(1).map(|counts| counts.faces).sum()
     }
 
-    /// Describes the expected result in a line.
+    /// Describes the expected result in one line.
     pub(crate) fn describe(&self) -> String {
         let result = &self.levels[self.levels.len() - 1];
         format!(
@@ -110,7 +108,7 @@ impl Forecast {
         )
     }
 
-    /// Refuses a result that takes more than the free memory, unless `force`.
+    /// Returns an error if the result needs more than the free memory. `force` turns the check off.
     pub(crate) fn check(&self, force: bool) -> Result<(), Failure> {
         let result = &self.levels[self.levels.len() - 1];
         let faces = counted(result.faces, "face", "faces");
@@ -118,7 +116,7 @@ impl Forecast {
     }
 }
 
-/// Refuses `what` if it takes more than the free memory, unless `force`.
+/// Returns an error if `what` needs more than the free memory. `force` turns the check off.
 pub(super) fn check_memory(what: &str, peak: usize, force: bool) -> Result<(), Failure> {
     match force {
         true => Ok(()),
@@ -130,13 +128,11 @@ pub(super) fn check_memory(what: &str, peak: usize, force: bool) -> Result<(), F
     }
 }
 
-/// Returns the bytes of the positions and faces of a polygon mesh.
 fn polygon_bytes(counts: &Counts) -> usize {
     let positions = counts.vertices.saturating_mul(size_of::<Point>());
     positions.saturating_add(counts.corners.saturating_mul(size_of::<VertexId>()))
 }
 
-/// Returns the bytes of the structure with the name `backend`.
 fn structure_bytes(backend: &str, counts: &Counts) -> usize {
     let found = Backend::find(backend);
     found.map_or(0, |found| (found.layout_bytes)(counts))

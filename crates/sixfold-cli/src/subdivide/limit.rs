@@ -1,4 +1,4 @@
-//! `--limit`: moves the vertices to their limits for infinitely many levels.
+//! The option `--limit`: moves the vertices to their limits for infinitely many levels.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -12,11 +12,11 @@ use crate::failure::Failure;
 use crate::text::sanitize;
 use sixfold_study::numbers::counted;
 
-/// A result with its vertices at their limits for infinitely many levels.
+/// A result with its vertices at their limit positions.
 pub(super) struct Limits {
     moved: PolygonMesh,
     normals: Vec<Option<Point>>,
-    /// The number of vertices without a limit, for each reason.
+    /// For each reason, the number of vertices without a limit.
     undefined: BTreeMap<&'static str, usize>,
 }
 
@@ -28,7 +28,7 @@ impl Limits {
         step: &Step,
         levels: u32,
     ) -> Result<Self, Failure> {
-        // Face-vertex meshes hold every polygon mesh, and keep the order of the elements.
+        // A face-vertex mesh can hold every polygon mesh, and keeps the order of the elements.
         let mesh = FaceVertexMesh::from_polygons(&step.polygons).map_err(Failure::unsupported)?;
         let creases = match levels {
             0 => subdivision.control_creases(&mesh, &step.polygons, &step.creases),
@@ -62,7 +62,7 @@ impl Limits {
         write_obj_with_normals(&self.moved, &self.normals, writer)
     }
 
-    /// Describes the limits, written to `path`, in lines.
+    /// Describes the limits in lines. `path` is the file of the limits.
     pub(super) fn describe(&self, path: &Path) -> Vec<String> {
         let place = sanitize(&path.display().to_string());
         let normals = self.normals.iter().flatten().count();

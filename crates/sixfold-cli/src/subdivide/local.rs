@@ -1,4 +1,4 @@
-//! `--select`: refines only some triangles.
+//! The option `--select`: refines only some triangles.
 
 use std::fs;
 use std::path::Path;
@@ -19,7 +19,6 @@ use sixfold_study::numbers::{counted, grouped};
 use super::check_tags;
 use super::forecast::check_memory;
 
-/// Refines the chosen triangles and writes the mesh.
 pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Failure> {
     check_options(arguments)?;
     if let Select::Faces(path) = select {
@@ -64,7 +63,7 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
     Ok(ExitCode::SUCCESS)
 }
 
-/// Refuses schemes other than midpoint, and options that midpoints do not use.
+/// Refuses schemes other than midpoint, and options that midpoint does not use.
 fn check_options(arguments: &Subdivide) -> Result<(), Failure> {
     let Subdivide { scheme, .. } = arguments;
     if *scheme != Scheme::Midpoint {
@@ -103,7 +102,7 @@ fn selection(select: &Select) -> Result<Selection, Failure> {
     })
 }
 
-/// Reads the faces that a file lists: numbers from 0 separated by spaces; `#` begins a comment.
+/// Reads a list of face numbers, which are separated by spaces. `#` begins a comment.
 fn read_face_list(path: &Path) -> Result<Vec<FaceId>, Failure> {
     let shown = path.display();
     let text = fs::read_to_string(path).map_err(|cause| {
@@ -126,10 +125,10 @@ fn read_face_list(path: &Path) -> Result<Vec<FaceId>, Failure> {
     Ok(faces)
 }
 
-/// Returns an upper bound of the bytes of a level, for a mesh with `faces` faces and `chosen`
-/// selected ones. Each selected face becomes four and also splits some neighbours.
+/// Returns an upper bound of the bytes of a level. The mesh has `faces` faces, and `chosen` of them
+/// are selected. Each selected face becomes four faces and splits some neighbours.
 fn max_bytes(faces: usize, chosen: usize) -> usize {
-    /// Bytes of polygons, structure and scratch data, per old or new face.
+    /// Bytes of polygons, structure and scratch data per face.
     const BYTES: usize = 200;
     let new_faces = faces.saturating_add(chosen.saturating_mul(12));
     new_faces.min(faces.saturating_mul(4)).saturating_mul(BYTES)
@@ -146,8 +145,7 @@ struct LocalRefinement<'a> {
 impl Visitor for LocalRefinement<'_> {
     type Output = Result<LocalMesh, Failure>;
 
-    /// Refines like `refine_locally`, but checks the memory of each level after its faces are
-    /// selected.
+    /// Refines as `refine_locally` does, but checks the free memory before each level.
     fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
         let mut local = LocalMesh::new(self.polygons.clone()).map_err(Failure::unsupported)?;
         for level in 0..self.levels {

@@ -20,7 +20,7 @@ fn shared_settings() -> SharedSettings {
     }
 }
 
-/// A study in which half-edge takes `ratio` times as long as the fastest, corner-table.
+/// A study in which the time of half-edge is `ratio` times the time of corner-table.
 fn report(mesh: &str, ratio: f64) -> Report {
     let study_mesh = StudyMesh::new(mesh, shapes::icosahedron());
     let settings = Settings {
@@ -88,7 +88,7 @@ fn ratios_are_pooled_by_geometric_means_over_meshes() {
         "{:?}",
         all.sentences
     );
-    // A backend without a result on one mesh cannot lead, but the sentence names it.
+    // A backend without a result on one mesh cannot lead.
     let mut other = report("b", 1.0);
     other.results.retain(|row| row.backend == "half-edge");
     other.results[0].ratio_to_best = Some(5.0);
@@ -102,7 +102,6 @@ fn ratios_are_pooled_by_geometric_means_over_meshes() {
         sentence.contains("lower ratio, but on fewer meshes: corner-table 1.00 × on 2"),
         "{sentence}"
     );
-    // A second study of one mesh replaces the first.
     all.add_study(report("b", 1.0));
     assert_eq!(all.studies.len(), 3);
 }

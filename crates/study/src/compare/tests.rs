@@ -8,7 +8,7 @@ use sixfold::shapes;
 use super::*;
 use crate::{Settings, StudyMesh, study};
 
-/// Returns a study whose samples are replaced by known ones: 1000 ns times `factor`.
+/// Returns a study with known samples: 1000 ns times `factor`.
 fn report(factor: impl Fn(&str, Operation) -> f64) -> Report {
     let study_mesh = StudyMesh::new("ball", shapes::icosahedron());
     let settings = Settings {
@@ -21,7 +21,6 @@ fn report(factor: impl Fn(&str, Operation) -> f64) -> Report {
     report.control = None;
     // Other tests of this program may have changed the policy.
     report.environment.heap.as_mut().expect("measured").policy = Policy::Kept;
-    // Every row gets samples, even a row that was not measured for lack of time.
     let raw = report.results.iter().map(|row| {
         let base = 1000.0 * factor(&row.backend, row.operation);
         // Nine samples, from −2 % to +2 %.
@@ -59,7 +58,7 @@ fn a_known_change_is_found_and_nothing_else() {
     let after = report(|backend, operation| match (backend, operation) {
         ("half-edge", Operation::EdgeLength) => 1.5,
         ("corner-table", Operation::Build) => 0.5,
-        // Within the drift of a machine, although the intervals are narrow.
+        // The change is smaller than the drift of a machine.
         ("winged-edge", Operation::Boundary) => 1.06,
         _ => 1.0,
     });
@@ -164,7 +163,7 @@ fn different_heaps_and_caches_are_refused() {
     let refused = compare(&before, &after, CompareSettings::default());
     let message = refused.expect_err("two states").to_string();
     assert!(message.contains("--caches cold"), "{message}");
-    // Older versions measured on the system's heap with warm caches.
+    // Older versions used the system's heap and warm caches.
     let mut old = before.clone();
     (old.environment.heap, old.environment.cache_state) = (None, None);
     assert_eq!(old.environment.memory_settings(), ["system", "warm"]);

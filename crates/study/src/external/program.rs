@@ -1,4 +1,4 @@
-//! An external program behind two pipes, which may crash, hang or write invalid lines.
+//! Communication with an external program. The program may crash, hang or write invalid lines.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
@@ -17,34 +17,33 @@ use crate::sanitize::sanitize;
 
 /// Version of the protocol.
 const PROTOCOL: u32 = 1;
-/// Largest length of a line in bytes. It limits the memory that a program's output can take.
+/// Maximum length of a line in bytes.
 const LONGEST_LINE: u64 = 1 << 16;
-/// Number of last bytes of standard error that are kept.
+/// Number of bytes of standard error that are kept.
 const STDERR_TAIL_BYTES: usize = 400;
-/// Interval between two checks of the stop flag while waiting.
+/// Interval between two checks of the stop flag.
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
 /// Time limit for a program to end after its input is closed.
 const EXIT_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// The first line of a program: whether it takes part.
+/// The first line that a program writes.
 #[derive(Debug, Deserialize)]
 pub(super) struct Handshake {
     protocol: u32,
-    /// Whether it holds the mesh.
+    /// Whether the program holds the mesh.
     pub(super) holds: bool,
-    /// Why it does not hold the mesh.
+    /// Why the program does not hold the mesh.
     pub(super) reason: Option<String>,
-    /// Bytes of its structure, if known.
+    /// Bytes of the structure, if known.
     pub(super) bytes: Option<usize>,
-    /// The library it measures, with its version.
+    /// The measured library and its version.
     pub(super) library: Option<String>,
-    /// Its allocator, if environment variables can make it keep pages: `glibc`.
+    /// The allocator, if an environment variable can make it keep pages. The only value is `glibc`.
     #[serde(default)]
     pub(super) heap: Option<String>,
 }
 
-/// Environment variable, and its value, that makes the GNU C library keep freed pages, as Sixfold
-/// does.
+/// An environment variable that makes the GNU C library keep freed pages, and its value.
 const TUNABLES: [&str; 2] = [
     "GLIBC_TUNABLES",
     "glibc.malloc.mmap_max=0:glibc.malloc.trim_threshold=9223372036854775807:glibc.malloc.top_pad=1048576:glibc.malloc.arena_max=1",
@@ -62,37 +61,35 @@ impl Handshake {
         }
     }
 
-    /// Returns whether its allocator keeps pages if started with [`TUNABLES`].
+    /// Returns whether the allocator keeps pages if the program is started with [`TUNABLES`].
     pub(super) fn keeps_pages_if_tuned(&self) -> bool {
         self.heap.as_deref() == Some("glibc")
     }
 }
 
-/// A request to run an operation.
 #[derive(Debug, Serialize)]
 pub(super) struct Request {
     /// Name of the operation.
     pub(super) run: &'static str,
-    /// Number of runs in a row.
+    /// Number of consecutive runs.
     pub(super) times: u32,
 }
 
 /// The answer to a request.
 #[derive(Debug, Deserialize)]
 pub(super) struct Response {
-    /// Why it does not run the operation.
+    /// Why the program refuses the operation.
     pub(super) refused: Option<String>,
-    /// Processor time of all runs together.
+    /// Processor time of all runs together, in nanoseconds.
     pub(super) cpu_ns: Option<f64>,
-    /// Wall time of all runs together.
+    /// Wall time of all runs together, in nanoseconds.
     pub(super) wall_ns: Option<f64>,
-    /// A number that depends on all results of one run.
+    /// The checksum of one run.
     pub(super) checksum: Option<f64>,
     /// Number of elements that one run visits.
     pub(super) elements: Option<u64>,
 }
 
-/// A running program.
 pub(super) struct Program<'a> {
     child: Child,
     input: Option<ChildStdin>,
@@ -109,7 +106,7 @@ enum Line {
 }
 
 impl<'a> Program<'a> {
-    /// Starts the program `arguments[0]` with the other arguments; `Err` holds the reason.
+    /// Starts the program `arguments[0]` with the other arguments. The error is the reason.
     pub(super) fn start(
         arguments: &[String],
         heap: Policy,
@@ -124,7 +121,7 @@ impl<'a> Program<'a> {
         }
         command.stdin(Stdio::piped());
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        // Ctrl-C must reach only Sixfold: the program ends when its input ends.
+        // Ctrl-C must reach only Sixfold. The program ends when its input is closed.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let child = command.spawn();
@@ -155,13 +152,13 @@ impl<'a> Program<'a> {
         })
     }
 
-    /// Returns whether programs are started with [`TUNABLES`]. They are not if the user has set the
-    /// variable.
+    /// Returns whether programs are started with [`TUNABLES`]. If the user has set the variable, it
+    /// is not changed.
     pub(super) fn sets_tunables(heap: Policy) -> bool {
         heap == Policy::Kept && std::env::var_os(TUNABLES[0]).is_none()
     }
 
-    /// Reads the first line of the program and checks its protocol version.
+    /// Reads the first line of the program and checks the protocol version.
     pub(super) fn handshake(&mut self) -> Result<Handshake, String> {
         let handshake: Handshake = self.read_answer("at the start")?;
         if handshake.protocol != PROTOCOL {
@@ -175,7 +172,7 @@ impl<'a> Program<'a> {
 
     /// Sends `request` and waits for the answer.
     pub(super) fn ask(&mut self, request: &Request) -> Result<Response, String> {
-        // A line that is already there would be taken for the answer to this request.
+        // A line that arrives before the request cannot be its answer.
         if let Ok(Line::Text(line)) = self.lines.try_recv() {
             self.kill();
             let excerpt = excerpt(&line);
@@ -189,12 +186,12 @@ impl<'a> Program<'a> {
         });
         match sent {
             Some(Ok(())) => self.read_answer(&format!("to {}", request.run)),
-            // The program closed its input: report its status and last error line.
+            // The program closed its input. Report its status and its last error line.
             _ => Err(self.describe_exit()),
         }
     }
 
-    /// Waits for the next line and parses it; `to` names the request in errors.
+    /// Waits for the next line and parses it. `to` names the request in errors.
     fn read_answer<T: DeserializeOwned>(&mut self, to: &str) -> Result<T, String> {
         let start = Instant::now();
         let line = loop {
@@ -230,7 +227,7 @@ impl<'a> Program<'a> {
         })
     }
 
-    /// Ends the program and describes its exit status and the last line of its standard error.
+    /// Ends the program. Describes its exit status and its last error line.
     fn describe_exit(&mut self) -> String {
         let status = self.wait(EXIT_TIMEOUT);
         let how = match status {
@@ -249,7 +246,8 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// Waits up to `timeout` for the program to end; `None` if it is still running.
+    /// Waits up to `timeout` for the program to end. Returns `None` if the program is still
+    /// running.
     fn wait(&mut self, timeout: Duration) -> Option<ExitStatus> {
         let start = Instant::now();
         loop {
@@ -261,7 +259,7 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// Kills the program and, on Unix, every process it has started.
+    /// Kills the program. On Unix, also kills the processes that the program has started.
     fn kill(&mut self) {
         self.input = None;
         #[cfg(unix)]
@@ -275,7 +273,6 @@ impl<'a> Program<'a> {
 }
 
 impl Drop for Program<'_> {
-    /// Ends the program, so that it does not outlive the study.
     fn drop(&mut self) {
         self.input = None;
         if self.wait(EXIT_TIMEOUT).is_none() {
@@ -284,7 +281,7 @@ impl Drop for Program<'_> {
     }
 }
 
-/// Returns the first 80 characters of an invalid line, without control characters.
+/// Returns the first 80 characters of a line, without control characters.
 fn excerpt(line: &str) -> String {
     sanitize(line).chars().take(80).collect()
 }
@@ -299,7 +296,7 @@ fn read_line(output: &mut impl BufRead) -> Line {
     }
 }
 
-/// Reads `errors` to the end and keeps the last [`STDERR_TAIL_BYTES`] bytes.
+/// Reads `errors` to the end. Keeps the last [`STDERR_TAIL_BYTES`] bytes.
 fn keep_tail(mut errors: impl Read, kept: &Mutex<Vec<u8>>) -> Option<()> {
     let mut buffer = [0; STDERR_TAIL_BYTES];
     loop {

@@ -1,4 +1,4 @@
-//! An external program as a subject of measurements, beside the structures.
+//! An external program as a backend of the measurement.
 
 use sixfold::QueryCost;
 use sixfold_workload::{Clock, Job, Outcome, Run, Series, Time, TimedBackend};
@@ -6,11 +6,11 @@ use sixfold_workload::{Clock, Job, Outcome, Run, Series, Time, TimedBackend};
 use super::program::{Program, Request, Response};
 use crate::sanitize::sanitize;
 
-/// Largest ratio of the time that a program reports to the time that Sixfold waited. The two clocks
-/// may differ.
+/// Maximum ratio of the time that a program reports to the time that Sixfold waited.
 const CLOCK_TOLERANCE: f64 = 1.01;
 
-/// An external program that holds the mesh; after a failure, the error instead of the program.
+/// An external program that holds the mesh. After a failure, it holds the error instead of the
+/// program.
 pub(super) struct ExternalSubject<'a> {
     name: String,
     bytes: usize,
@@ -27,7 +27,7 @@ impl<'a> ExternalSubject<'a> {
     }
 
     /// Sends `request` and checks the reported time. The time is `None` if the program refuses.
-    /// After an error or an impossible time the program is not used again.
+    /// After an error or an impossible time, the program is not used again.
     fn ask(
         &mut self,
         request: &Request,
@@ -59,7 +59,7 @@ impl TimedBackend for ExternalSubject<'_> {
         true
     }
 
-    /// Returns placeholders: the costs are unknown, and only full runs are timed.
+    /// Returns placeholders, because the costs are unknown.
     fn costs(&self) -> [QueryCost; 9] {
         [QueryCost::Local; 9]
     }
@@ -105,7 +105,7 @@ impl TimedBackend for ExternalSubject<'_> {
     }
 }
 
-/// Returns the reported time, or an error if it is missing or impossible.
+/// Returns the reported time. Returns an error if the time is missing or impossible.
 fn time(response: &Response, waited_ns: f64, cpu: bool) -> Result<Time, String> {
     let Some(wall_ns) = response.wall_ns else {
         return Err("its answer has no `wall_ns` (the time of the runs)".into());

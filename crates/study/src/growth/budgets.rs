@@ -1,9 +1,9 @@
-//! Distribution of the budget of a sweep over its sizes.
+//! Divides a budget among the sizes of the growth lab.
 
 use std::time::{Duration, Instant};
 
-/// The part of the budget for each size, proportional to the square root of its faces: the time of
-/// a run grows with the faces, but small sizes need more runs.
+/// The part of the budget for each size. It is proportional to the square root of the number of
+/// faces, because small sizes need more runs.
 pub(super) struct SizeBudgets {
     weights: Vec<f64>,
     start: Instant,
@@ -19,18 +19,17 @@ impl SizeBudgets {
         }
     }
 
-    /// Returns the start and the end of this size's part of the whole budget, from 0 to 1.
+    /// Returns the start and the end of the part for one size, from 0 to 1.
     pub(super) fn range(&self, step: usize) -> [f64; 2] {
         let all: f64 = self.weights.iter().sum();
         [step, step + 1].map(|end| self.weights[..end].iter().sum::<f64>() / all)
     }
 
-    /// Returns the time left of the budget.
     pub(super) fn left(&self) -> Duration {
         self.budget.saturating_sub(self.start.elapsed())
     }
 
-    /// Returns the part of the time left that is for this size.
+    /// Returns the time for one size, as a part of the time left.
     pub(super) fn budget(&self, step: usize) -> Duration {
         let rest: f64 = self.weights[step..].iter().sum();
         self.left().mul_f64((self.weights[step] / rest).min(1.0))
@@ -47,11 +46,10 @@ mod tests {
         let [first, second, last] = [0, 1, 2].map(|step| budgets.range(step));
         assert_eq!((first[0], first[1], second[1]), (0.0, second[0], last[0]));
         assert!((last[1] - 1.0).abs() < 1e-12);
-        // Square roots of 10, 100 and 1000.
+        // The weights are the square roots of the sizes: 10, 100 and 1000.
         assert!((first[1] - 10.0 / 1110.0).abs() < 1e-12, "{first:?}");
         let second = budgets.budget(0).as_secs_f64();
         assert!((8.0..9.1).contains(&second), "{second}");
-        // The last size has all the time left.
         assert!(budgets.budget(2) > Duration::from_secs(990));
         let spent = SizeBudgets::new(&[100, 200], Duration::ZERO);
         assert_eq!(spent.budget(1), Duration::ZERO);

@@ -16,15 +16,15 @@ pub struct Fit {
     pub backend: String,
     /// The operation.
     pub operation: Operation,
-    /// Whether it scans all faces for each element.
+    /// Whether the structure scans all faces for each element.
     pub scans: bool,
-    /// Line through all sizes; `None` for a single size.
+    /// Line through all sizes; `None` if there is only one size.
     pub all: Option<Slope>,
     /// Line through the sizes at which the structure fits into the last cache.
     pub in_cache: Option<Slope>,
     /// Line through the sizes at which the structure does not fit into the last cache.
     pub beyond: Option<Slope>,
-    /// Number of sizes at which the time is an estimate.
+    /// Number of sizes with an estimated time.
     pub estimated: usize,
 }
 
@@ -37,11 +37,10 @@ pub struct CacheLimit {
     pub level: u8,
     /// Bytes of the cache.
     pub cache_bytes: u64,
-    /// Smallest number of faces at which the layout takes more bytes than the cache has.
+    /// Minimum number of faces at which the layout is larger than the cache.
     pub faces: usize,
 }
 
-/// Fits lines to the times of each backend and operation that has any.
 pub(super) fn fits(
     sizes: &[SizeReport],
     backends: &[&Backend],
@@ -93,8 +92,8 @@ pub(super) fn fits(
     fits
 }
 
-/// Finds for each data cache the size at which each layout outgrows it; `counts` are those of a
-/// large mesh.
+/// Finds the sizes at which layouts outgrow the data caches. `counts` are the counts of a large
+/// mesh.
 pub(super) fn cache_limits(
     backends: &[&Backend],
     counts: &Counts,
@@ -158,7 +157,8 @@ mod tests {
 
     #[test]
     fn sizes_inside_and_beyond_the_last_cache_have_separate_lines() {
-        // Linear up to 10⁵ faces, which fill the cache; then with the power 1.5.
+        // The time is linear up to 10⁵ faces, which fill the cache. Then it grows with the power
+        // 1.5.
         let time = |n: f64| {
             if n <= 1e5 {
                 n
@@ -183,7 +183,6 @@ mod tests {
         assert!((small.exponent - 1.0).abs() < 1e-9 && small.sizes == 3);
         assert!((large.exponent - 1.5).abs() < 1e-9 && large.sizes == 2);
         assert!(all.is_some_and(|all| all.sizes == 5));
-        // If the cache size is unknown, there is only one line.
         let unknown = &fit(None)[0];
         assert_eq!((unknown.in_cache, unknown.beyond), (None, None));
         assert_eq!(unknown.all, only_fit.all);
@@ -215,7 +214,7 @@ mod tests {
             assert!(bytes(end.faces) > 512 << 10, "{end:?}");
             assert!(bytes(end.faces - 1) <= 512 << 10, "{end:?}");
         }
-        // 24 words per vertex, two faces per vertex: 48 bytes per face.
+        // 24 words per vertex and two faces per vertex give 48 bytes per face.
         let half_edge = ends
             .iter()
             .find(|end| end.backend == "half-edge")

@@ -1,4 +1,4 @@
-//! Sentences on the results of a sweep over sizes.
+//! Sentences about the results of the growth lab.
 
 use super::{CacheLimit, Fit, SizeReport};
 use crate::numbers::{grouped, times};
@@ -6,7 +6,6 @@ use crate::report::{Agreement, Standing};
 use crate::slope::Slope;
 use sixfold_workload::{Cache, last_level_bytes};
 
-/// Returns sentences on exponents, times per element, the fastest backends and the caches.
 pub(super) fn sentences(
     sizes: &[SizeReport],
     fits: &[Fit],
@@ -35,7 +34,6 @@ pub(super) fn sentences(
     sentences
 }
 
-/// Lists the sizes that were left out for lack of time.
 pub(super) fn left_out(sizes: &[usize]) -> Option<String> {
     let names: Vec<String> = sizes.iter().map(|&faces| grouped(faces)).collect();
     (!names.is_empty()).then(|| {
@@ -46,7 +44,6 @@ pub(super) fn left_out(sizes: &[usize]) -> Option<String> {
     })
 }
 
-/// Describes the exponents, separately for backends that scan and those that do not.
 fn exponents(fits: &[Fit], caches: &[Cache]) -> Vec<String> {
     let range = |scans: bool, slope: &dyn Fn(&Fit) -> Option<Slope>| {
         let slopes = fits.iter().filter(|fit| fit.scans == scans);
@@ -94,7 +91,6 @@ fn exponents(fits: &[Fit], caches: &[Cache]) -> Vec<String> {
     sentences
 }
 
-/// Describes the change of the time per element from the smallest to the largest size.
 fn per_element_changes(sizes: &[SizeReport], fits: &[Fit]) -> Option<String> {
     let (small, large) = (sizes.first()?, sizes.last()?);
     let ns_per_element_at = |size: &SizeReport, fit: &Fit| {
@@ -128,7 +124,7 @@ fn per_element_changes(sizes: &[SizeReport], fits: &[Fit]) -> Option<String> {
     })
 }
 
-/// Lists for each operation the backend that is fastest beyond the noise, with its range of sizes.
+/// Lists the clearly fastest backend of each operation, and the range of sizes.
 fn fastest(sizes: &[SizeReport]) -> Vec<String> {
     let mut sentences = Vec::new();
     let operations = sizes.first().map_or(&[][..], |size| &size.results);
@@ -167,8 +163,7 @@ fn fastest(sizes: &[SizeReport]) -> Vec<String> {
     sentences
 }
 
-/// Lists the sizes at which structures outgrow the last cache, or states that the caches are
-/// unknown.
+/// Lists the sizes at which structures outgrow the last cache.
 fn cache_limits(caches: &[Cache], ends: &[CacheLimit]) -> Option<String> {
     let Some(bytes) = last_level_bytes(caches) else {
         return Some(
@@ -189,7 +184,6 @@ fn cache_limits(caches: &[Cache], ends: &[CacheLimit]) -> Option<String> {
     ))
 }
 
-/// Describes the noise that the controls of all sizes show.
 fn noise(sizes: &[SizeReport]) -> Option<String> {
     let controls = sizes.iter().filter_map(|size| size.control.as_ref());
     let controls: Vec<_> = controls.collect();
@@ -202,7 +196,7 @@ fn noise(sizes: &[SizeReport]) -> Option<String> {
     ))
 }
 
-/// Describes figures that are uncertain because the budget was too small.
+/// Lists the figures that are uncertain because the budget was too small.
 fn uncertain_figures(sizes: &[SizeReport], fits: &[Fit]) -> Vec<String> {
     let mut sentences = Vec::new();
     let rows = sizes.iter().flat_map(|size| &size.results);

@@ -1,4 +1,4 @@
-//! Settings of a sweep, and the checks made before any mesh is built.
+//! Settings of the growth lab, and their checks.
 
 use std::time::Duration;
 
@@ -10,30 +10,30 @@ use crate::orders::{chosen_operations, draw_bytes, prepared_bytes};
 use crate::study::{Settings, StudyError};
 use sixfold_workload::{Backend, Operation, unknown};
 
-/// Smallest number of faces; smaller meshes are too short to time.
+/// Minimum number of faces. Smaller meshes are too short to time.
 const MIN_FACES: usize = 100;
-/// Largest number of faces; corner handles can number about this many triangles.
+/// Maximum number of faces. Corner handles cannot number more triangles.
 const MAX_FACES: usize = 500_000_000;
-/// Smallest budget of one size.
+/// Minimum budget of one size.
 const MIN_SIZE_BUDGET: Duration = Duration::from_millis(100);
-/// Largest number of sizes.
+/// Maximum number of sizes.
 const MAX_STEPS: usize = 1000;
 
-/// The shape, the sizes and the budget of a sweep.
+/// The shape, the sizes and the budget of the growth lab.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GrowthSettings {
-    /// Backends, operations, seed, and the budget of the whole sweep. If the operations are empty,
+    /// The backends, the operations, the seed and the total budget. If the operations are empty,
     /// [`DEFAULT_OPERATIONS`](crate::DEFAULT_OPERATIONS) are measured.
     pub study: Settings,
-    /// Name of a shape of [`SCALABLE_SHAPES`].
+    /// Name of a shape in [`SCALABLE_SHAPES`].
     pub shape: String,
-    /// Order of its elements in memory.
+    /// Order of the elements in memory.
     pub order: Order,
     /// Approximate number of faces of the smallest size.
     pub from: usize,
     /// Approximate number of faces of the largest size.
     pub to: usize,
-    /// Number of sizes; each is larger than the previous one by the same factor.
+    /// Number of sizes. The ratio of two successive sizes is constant.
     pub steps: usize,
 }
 
@@ -53,12 +53,12 @@ impl Default for GrowthSettings {
     }
 }
 
-/// The reason why a sweep cannot be run.
+/// The reason why the growth lab cannot run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum GrowthError {
-    /// There is nothing to study.
+    /// The study is not possible.
     #[error(transparent)]
     Study(#[from] StudyError),
     /// The shape refuses its parameters.
@@ -67,7 +67,7 @@ pub enum GrowthError {
     /// The name of the shape is unknown.
     #[error("{}", unknown("scalable shape", .name, &SCALABLE_SHAPES.iter().map(|shape| shape.name).collect::<Vec<_>>()))]
     UnknownShape { name: String },
-    /// The largest size is not larger than the smallest.
+    /// The largest size is not larger than the smallest size.
     #[error(
         "the first size ({from} faces) is not smaller than the last size ({to} faces): give the \
          smaller first"
@@ -91,7 +91,6 @@ pub enum GrowthError {
     },
 }
 
-/// Checked settings.
 pub(super) struct Plan {
     pub(super) shape: &'static ScalableShape,
     /// Approximate numbers of faces, ascending.
@@ -101,7 +100,7 @@ pub(super) struct Plan {
 }
 
 impl GrowthSettings {
-    /// Returns the default range of sizes, with fewer steps if the budget of `study` is short.
+    /// Returns the default sizes. If the budget of `study` is short, returns fewer sizes.
     pub fn from_study(study: Settings) -> Self {
         let usual = Self::default();
         let time_for = study.budget.as_millis() / MIN_SIZE_BUDGET.as_millis();
@@ -113,7 +112,6 @@ impl GrowthSettings {
         }
     }
 
-    /// Checks the settings, before any mesh is built.
     pub(super) fn plan(&self) -> Result<Plan, GrowthError> {
         let Self {
             study,
@@ -145,7 +143,7 @@ impl GrowthSettings {
                 steps,
             });
         }
-        // Different face counts can give the same parameters of the shape.
+        // Different face counts can give the same mesh.
         let mut sizes = sizes(from, to, steps);
         sizes.dedup_by_key(|faces| shape.parameters(*faces));
         if sizes.len() < 2 {
@@ -160,7 +158,7 @@ impl GrowthSettings {
     }
 }
 
-/// Returns sizes that grow by a constant factor, including both ends.
+/// Returns sizes that grow by a constant factor, from `from` to `to`.
 fn sizes(from: usize, to: usize, steps: usize) -> Vec<usize> {
     let factor = to as f64 / from as f64;
     let size = |step: usize| from as f64 * factor.powf(step as f64 / (steps - 1) as f64);
@@ -169,14 +167,14 @@ fn sizes(from: usize, to: usize, steps: usize) -> Vec<usize> {
     sizes
 }
 
-/// Estimates the peak memory of the sweep in bytes, reached at the largest size.
+/// Estimates the peak memory of the growth lab in bytes. The largest size needs the most memory.
 ///
 /// # Errors
 ///
-/// Returns the errors of [`growth`](super::growth) about invalid settings.
+/// Returns an error if the settings are invalid, as [`growth`](super::growth) does.
 pub fn growth_bytes(settings: &GrowthSettings) -> Result<u64, GrowthError> {
     let plan = settings.plan()?;
-    // A small mesh has the same proportions as a large one.
+    // A small mesh has the same proportions as a large mesh.
     let small = plan.shape.make(plan.sizes[0])?;
     let counts = small.counts(Facts::from_polygons(&small).edges);
     let counts = scaled(&counts, settings.to as f64 / counts.faces as f64);
@@ -184,11 +182,10 @@ pub fn growth_bytes(settings: &GrowthSettings) -> Result<u64, GrowthError> {
     let (all, most) = bytes.fold((0, 0), |(all, most): (u64, u64), one| {
         (all + one, most.max(one))
     });
-    // Plus the control, and temporary memory for building one structure.
+    // Three times the largest structure: the control, and memory for building one structure.
     Ok(all + 3 * most + 2 * draw_bytes(&counts))
 }
 
-/// Returns `counts` scaled by `factor`.
 pub(super) fn scaled(counts: &sixfold_core::Counts, factor: f64) -> sixfold_core::Counts {
     let scaled = |count: usize| (count as f64 * factor).round() as usize;
     sixfold_core::Counts {
@@ -263,7 +260,7 @@ mod tests {
     fn the_memory_estimate_grows_with_the_mesh_and_the_structures() {
         let mut settings = GrowthSettings::default();
         let all = growth_bytes(&settings).expect("sound");
-        // Six structures and a control of a million triangles, about 50 bytes per face each.
+        // Seven structures of a million triangles, with about 50 bytes per face.
         assert!((200 << 20..2 << 30).contains(&all), "{all}");
         settings.to = 10_000_000;
         let tenfold = growth_bytes(&settings).expect("sound") as f64 / all as f64;

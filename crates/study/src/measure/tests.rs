@@ -15,7 +15,6 @@ use crate::simulated_machine::SimulatedMachine;
 use crate::statistics::Median;
 use sixfold_workload::pages::Policy;
 
-/// A structure with the same known time for every element.
 struct Synthetic {
     machine: SimulatedMachine,
     ns_per_element: f64,
@@ -25,14 +24,13 @@ struct Synthetic {
     placement: Placement,
 }
 
-/// The place of the tables of a structure in memory.
 #[derive(Clone, Default)]
 struct Placement {
-    /// Time to build them elsewhere, in nanoseconds.
+    /// Time of a rebuild at another place, in nanoseconds.
     rebuild_ns: f64,
     /// Number of rebuilds.
     rebuilt: Rc<Cell<u32>>,
-    /// Slowdown of everything at each place; rebuilds go through the places in turn.
+    /// Slowdown at each place. Rebuilds visit the places in turn.
     slowdowns: Vec<f64>,
 }
 
@@ -86,7 +84,6 @@ fn measured(costs_ns: &[f64], scanning: bool, budget: Duration, stop: bool) -> V
     measure_all(costs_ns, scanning, budget, stop, false).0
 }
 
-/// Returns the measured entries and the time taken.
 fn measure_all(
     costs_ns: &[f64],
     scanning: bool,
@@ -114,7 +111,6 @@ fn measure_all(
     run(&machine, &mut subjects, budget, stop, skewed)
 }
 
-/// Returns the measured entries of `subjects` and the time taken.
 fn run(
     machine: &SimulatedMachine,
     subjects: &mut [Box<dyn TimedBackend>],
@@ -147,7 +143,7 @@ fn ratio(entries: &[Entry], a: usize, b: usize) -> Median {
 
 #[test]
 fn the_control_shows_a_difference_of_its_two_entries() {
-    // The second entry of the control takes 20 % longer at every place.
+    // The second column of the control takes 20 % longer at every place.
     let entries = measured(&[7.0, 10.0, 8.4], false, Duration::from_secs(2), false);
     let planted = control(&entries, 0, 2, "synthetic").expect("samples");
     for row in &planted.operations {
@@ -179,12 +175,10 @@ fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget()
                 },
             }) as Box<dyn TimedBackend>
         };
-        // At each place one structure is slow and the other is fast.
         let mut subjects = vec![subject(0, [1.0, 1.2]), subject(1, [1.2, 1.0])];
         let (entries, elapsed) = run(&machine, &mut subjects, budget, false, false);
         (entries, elapsed, rebuilt[0].get())
     };
-    // Both structures are at both places equally often.
     let (entries, elapsed, rebuilt) = placed(100_000.0);
     assert!(elapsed <= budget);
     assert!(
@@ -201,7 +195,7 @@ fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget()
         all > 15 && (2 * slower).abs_diff(all) <= all / 5,
         "{slower} of {all}"
     );
-    // A long rebuild happens once; its time prevents others.
+    // A long rebuild leaves no time for another rebuild.
     assert_eq!(placed(1e8).2, 1);
 }
 
@@ -257,8 +251,7 @@ fn ratios_within_rounds_do_not_depend_on_drift() {
         let alike = ratio(&entries, first + 2, first).value;
         assert!((alike - 1.0).abs() < 0.05, "{alike}");
     }
-    // The drift is large: single samples of one entry differ by more than the costs of the two
-    // entries do.
+    // The drift between samples of one entry is larger than the difference between the two entries.
     let own =
         Median::from_samples(entries[0].samples.iter().map(|(_, t)| t.ns())).expect("samples");
     let most = entries[0]
@@ -271,7 +264,7 @@ fn ratios_within_rounds_do_not_depend_on_drift() {
 
 #[test]
 fn scans_are_sampled_or_estimated_to_fit_the_budget() {
-    // 10,000 elements of 200 µs: 2 s per run, and three operations in a budget of 2 s.
+    // A run takes 2 s: 10,000 elements of 200 µs.
     let entries = measured(&[200_000.0], true, Duration::from_secs(2), false);
     for entry in &entries[..2] {
         let sample = entry.job.sample.expect("a sample");
@@ -285,7 +278,7 @@ fn scans_are_sampled_or_estimated_to_fit_the_budget() {
         .expect("a search that scans takes too long");
     assert!((1e9..1e10).contains(&estimate.ns()), "{estimate:?}");
     assert!(entries[2].samples.is_empty() && entries[2].times().is_empty());
-    // With enough time nothing is sampled or left out.
+    // With enough time, no operation is sampled or left out.
     let entries = measured(&[40_000.0], true, Duration::from_secs(200), false);
     assert!(
         entries
@@ -296,7 +289,6 @@ fn scans_are_sampled_or_estimated_to_fit_the_budget() {
 
 #[test]
 fn a_skewed_mesh_is_sampled_on_every_structure() {
-    // 2 s per run on each of three structures that do not scan; six entries walk around elements.
     let costs = [200_000.0; 3];
     let budget = Duration::from_secs(2);
     let (entries, elapsed) = measure_all(&costs, false, budget, false, true);
@@ -305,18 +297,19 @@ fn a_skewed_mesh_is_sampled_on_every_structure() {
         assert!(entry.job.sample.is_some() && !entry.times().is_empty());
     }
     assert!(entries[6..].iter().all(|e| e.estimate.is_some()));
-    // Cheap operations run in full on a skewed mesh, too.
+    // Cheap operations run in full even on a skewed mesh.
     let (entries, _) = measure_all(&[7.0], false, budget, false, true);
     assert!(entries.iter().all(|e| e.job.sample.is_none()));
     assert!(entries.iter().all(|e| e.samples.len() >= 5));
-    // On a mesh that is not skewed nothing is sampled: the run takes far longer than the budget.
+    // On a mesh that is not skewed, no operation is sampled, so the run exceeds the budget.
     let (_, elapsed) = measure_all(&costs, false, budget, false, false);
     assert!(elapsed > budget * 5, "{elapsed:?}");
 }
 
 #[test]
 fn a_search_that_fits_the_budget_once_is_run_once() {
-    // 1 s per run: too long for rounds within the budget of 6 s, but not for a single run.
+    // A run takes 1 s. This is too long for rounds in a budget of 6 s, but short enough for one
+    // run.
     let (entries, elapsed) = measure_all(&[100_000.0], true, Duration::from_secs(6), false, false);
     let search = &entries[2];
     assert!(search.estimate.is_none() && search.samples.is_empty());
@@ -366,10 +359,10 @@ fn a_long_subdivision_is_only_estimated_unless_requested_by_name() {
         let entries = measurement.measure(&[Operation::CatmullClark(Method::Gather)]);
         (entries[0].clone(), most_run.get())
     };
-    // 1 ms per run without searches: it takes part in rounds.
+    // A run takes 1 ms, so it takes part in rounds.
     let (entry, _) = planned(100.0, QueryCost::Local, false);
     assert!(entry.samples.len() >= 5 && entry.estimate.is_none());
-    // 0.3 s per run in a budget of 2 s: only estimated from a patch, unless requested by name.
+    // A run takes 0.3 s of a budget of 2 s, so it is estimated unless it is named.
     let (entry, most_run) = planned(30_000.0, QueryCost::Local, false);
     let estimate = entry.estimate.expect("long").ns();
     assert!((1e8..1e9).contains(&estimate) && entry.by_name_only);
@@ -377,11 +370,11 @@ fn a_long_subdivision_is_only_estimated_unless_requested_by_name() {
     let (entry, most_run) = planned(30_000.0, QueryCost::Local, true);
     assert!(entry.estimate.is_none() && entry.times().len() == 1);
     assert_eq!(most_run, 10_000);
-    // Searches for six relations, 0.1 s each.
+    // Six relations need searches of 0.1 s each.
     let (entry, _) = planned(10_000.0, QueryCost::Scan, false);
     let estimate = entry.estimate.expect("long").ns();
     assert!((3e8..2e9).contains(&estimate), "{estimate}");
-    // Longer than the budget: only estimated even by name, and `by_name_only` is not set.
+    // A run exceeds the budget, so it is estimated even if it is named.
     for named in [false, true] {
         let (entry, _) = planned(1e6, QueryCost::Local, named);
         assert!(entry.estimate.is_some() && !entry.by_name_only);

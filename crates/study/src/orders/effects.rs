@@ -1,4 +1,4 @@
-//! Effects of order and structure on times: ratios within rounds, with intervals.
+//! Effects of order and structure on times, as ratios with intervals.
 
 use serde::{Deserialize, Serialize};
 use sixfold::shapes::Order;
@@ -10,11 +10,10 @@ use sixfold_workload::{Operation, Time};
 /// Assumed error factor of a ratio without an interval.
 const ASSUMED_ERROR: f64 = 1.5;
 
-/// The samples of one structure in one order.
 pub(super) struct OrderSamples {
     pub(super) backend: &'static str,
     pub(super) order: Order,
-    /// Whether it scans all faces for each element.
+    /// Whether the structure scans all faces for each element.
     pub(super) scans: bool,
     pub(super) samples: Vec<(u32, Time)>,
 }
@@ -26,14 +25,14 @@ impl OrderSamples {
     }
 }
 
-/// The ratio of two times: the median over rounds, with its interval.
+/// The ratio of two times, with its interval.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Factor {
-    /// The median.
+    /// The median over the rounds.
     pub ratio: f64,
     /// Lower end of the 95 % interval; `None` with fewer than three rounds.
     pub ci_low: Option<f64>,
-    /// Upper end of the interval.
+    /// Upper end of the 95 % interval.
     pub ci_high: Option<f64>,
 }
 
@@ -47,7 +46,7 @@ impl Factor {
         })
     }
 
-    /// Returns whether the ratio is larger than the noise, and its interval lies above 1.
+    /// Returns whether the ratio is larger than the noise and its interval lies above 1.
     fn beyond(&self, noise: f64) -> bool {
         self.ratio > noise && self.low() > 1.0
     }
@@ -66,35 +65,35 @@ impl Factor {
 pub struct OrderEffect {
     /// The structure.
     pub backend: String,
-    /// Whether it scans all faces for each element of this operation.
+    /// Whether the structure scans all faces for each element.
     pub scans: bool,
     /// The order with the smallest median.
     pub best: Order,
     /// The order with the largest median.
     pub worst: Order,
-    /// Time of the worst order divided by that of the best.
+    /// Time of the worst order divided by the time of the best order.
     pub worst_to_best: Factor,
-    /// Time of the given order divided by that of the best.
+    /// Time of the original order divided by the time of the best order.
     pub given_to_best: Option<Factor>,
-    /// Whether the worst order is slower than the best by more than the noise.
+    /// Whether `worst_to_best` is larger than the noise.
     pub matters: bool,
 }
 
-/// The effect of the structure, among structures that do not scan. Each structure is in its best
+/// The effect of the structure. The structures that do not scan are compared, each in its best
 /// order.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct StructureEffect {
     /// The structure with the smallest median.
     pub fastest: String,
-    /// Its best order.
+    /// The best order of the fastest structure.
     pub fastest_order: Order,
     /// The structure with the largest median.
     pub slowest: String,
-    /// Its best order.
+    /// The best order of the slowest structure.
     pub slowest_order: Order,
-    /// Time of the slowest divided by that of the fastest.
+    /// Time of the slowest structure divided by the time of the fastest.
     pub slowest_to_fastest: Factor,
-    /// Whether the slowest is slower than the fastest by more than the noise.
+    /// Whether `slowest_to_fastest` is larger than the noise.
     pub matters: bool,
 }
 
@@ -102,11 +101,11 @@ pub struct StructureEffect {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Larger {
-    /// The effect of the order is larger on every structure that does not scan.
+    /// On every structure that does not scan, the order has the larger effect.
     Order,
-    /// The effect of the structure is larger on every structure that does not scan.
+    /// On every structure that does not scan, the structure has the larger effect.
     Structure,
-    /// The larger effect depends on the structure, or the intervals overlap.
+    /// The answer differs between structures, or the intervals overlap.
     Depends,
 }
 
@@ -115,13 +114,13 @@ pub enum Larger {
 pub struct Comparison {
     /// The operation.
     pub operation: Operation,
-    /// Ratios up to this are noise.
+    /// Maximum ratio that is noise.
     pub noise: f64,
-    /// Effect of the order on each structure with samples of at least two orders.
+    /// Effect of the order on each structure with samples in at least two orders.
     pub orders: Vec<OrderEffect>,
-    /// Effect of the structure; `None` if fewer than two structures do not scan.
+    /// Effect of the structure; `None` if fewer than two structures remain without scans.
     pub structures: Option<StructureEffect>,
-    /// The larger of the two; `None` if one of them is unknown.
+    /// The larger effect; `None` if an effect is unknown.
     pub larger: Option<Larger>,
 }
 
@@ -152,7 +151,7 @@ impl Comparison {
     }
 }
 
-/// Returns the entries with the smallest and the largest median.
+/// Returns the samples with the smallest and the largest median.
 fn extremes<'t>(
     timed: impl IntoIterator<Item = &'t OrderSamples>,
 ) -> Option<(&'t OrderSamples, &'t OrderSamples)> {
@@ -196,8 +195,7 @@ fn structure_effect(best: &[&OrderSamples], noise: f64) -> Option<StructureEffec
     })
 }
 
-/// Returns which effect is larger according to the intervals; `None` without an effect of the
-/// order.
+/// Returns the larger effect according to the intervals; `None` if `orders` is empty.
 fn larger(orders: &[Factor], structures: &Factor) -> Option<Larger> {
     if orders.is_empty() {
         return None;
@@ -217,7 +215,6 @@ fn larger(orders: &[Factor], structures: &Factor) -> Option<Larger> {
 mod tests {
     use super::*;
 
-    /// Returns samples of about `ns` in seven rounds on a machine that drifts.
     fn timed(backend: &'static str, order: Order, ns: f64, scans: bool) -> OrderSamples {
         let drift = [1.0, 3.0, 2.0, 1.5, 5.0, 2.5, 1.1];
         let time = |drift: f64| Time {
@@ -289,7 +286,6 @@ mod tests {
         assert_eq!(larger([10.0, 11.0], [30.0, 31.0]), Some(Larger::Structure));
         assert_eq!(larger([10.0, 50.0], [30.0, 31.0]), Some(Larger::Depends));
         assert_eq!(larger([10.0, 50.0], [11.0, 44.0]), Some(Larger::Order));
-        // Only one structure that does not scan.
         assert_eq!(compared(&[("a", [1.0, 2.0], false)]).larger, None);
         let beside_scan = compared(&[("a", [1.0, 2.0], false), ("s", [9.0, 9.0], true)]);
         assert_eq!((beside_scan.structures, beside_scan.larger), (None, None));

@@ -1,16 +1,16 @@
-//! One mesh in every order, with a draw of the same elements for each.
+//! One mesh in every order, with the same sampled elements in each order.
 
 use sixfold::PolygonMesh;
 use sixfold::shapes::{Order, Reordered};
 
 use sixfold_workload::{Draw, Side};
 
-/// The mesh in every order, each with the same drawn elements under its own handles.
+/// The mesh in every order. Each mesh has the handles of the same drawn elements.
 pub(super) struct OrderedMeshes(Vec<(Order, PolygonMesh, Option<Draw>)>);
 
 impl OrderedMeshes {
     pub(super) fn new(polygons: &PolygonMesh, seed: u64, needs_draw: bool) -> Self {
-        // A seed other than that of the shuffle, so that the draw does not repeat its order.
+        // The seed differs from the seed of the shuffle, so that the draw has another order.
         let draw = needs_draw.then(|| Draw::new(polygons, !seed));
         let meshes = Order::ALL.map(|order| {
             let reordered = order.apply_with_handles(polygons, seed);
@@ -27,7 +27,7 @@ impl OrderedMeshes {
     }
 }
 
-/// Returns the draw with the handles that its elements have after reordering.
+/// Converts the handles of a draw to the handles after reordering.
 fn with_new_handles(draw: &Draw, to: &Reordered) -> Draw {
     let side = |side: &Side| {
         let mut ends = side.ends.map(|v| to.vertices[v.index()]);

@@ -1,4 +1,4 @@
-//! Sentences on the tables of orders.
+//! Sentences about the results of the order lab.
 
 use sixfold::shapes::Order;
 
@@ -6,7 +6,6 @@ use super::{Comparison, Larger, OrderEffect, OrderRow};
 use crate::numbers::times;
 use crate::report::{Agreement, Control, Standing};
 
-/// Returns sentences on the best order, on the given order, and on the larger effect.
 pub(super) fn sentences(
     rows: &[OrderRow],
     comparisons: &[Comparison],
@@ -42,7 +41,7 @@ pub(super) fn sentences(
     sentences
 }
 
-/// Counts how often each order is best alone, and how often it is tied for best.
+/// Counts for each order how often it is the best order or tied with the best.
 fn best_orders(rows: &[OrderRow]) -> Option<String> {
     let pairs =
         rows.chunk_by(|a, b| a.row.operation == b.row.operation && a.row.backend == b.row.backend);
@@ -78,7 +77,6 @@ fn best_orders(rows: &[OrderRow]) -> Option<String> {
     ))
 }
 
-/// Describes how far the given order is from the best.
 fn given_order(comparisons: &[Comparison]) -> Option<String> {
     let effects = comparisons
         .iter()
@@ -108,7 +106,7 @@ fn given_order(comparisons: &[Comparison]) -> Option<String> {
     ))
 }
 
-/// Describes for one operation the effects of order and structure, and which is larger.
+/// Describes the effects of order and structure on one operation.
 fn effects(comparison: &Comparison) -> Option<String> {
     let local = || comparison.orders.iter().filter(|effect| !effect.scans);
     let ratio = |effect: &&OrderEffect| effect.worst_to_best.ratio;
@@ -153,7 +151,7 @@ fn effects(comparison: &Comparison) -> Option<String> {
     Some(format!("{orders}. {between}. {larger}."))
 }
 
-/// Describes the effect of the order on structures that scan: they read memory from end to end.
+/// Describes the effect of the order on structures that scan.
 fn scan_effect(comparisons: &[Comparison]) -> Option<String> {
     let scans = comparisons.iter().flat_map(|comparison| {
         let scans = comparison.orders.iter().filter(|effect| effect.scans);
@@ -191,7 +189,7 @@ fn verdict(comparisons: &[Comparison]) -> Option<String> {
     })
 }
 
-/// Describes figures that are uncertain because the budget was too small.
+/// Lists the figures that are uncertain because the budget was too small.
 fn few_samples(rows: &[OrderRow]) -> Option<String> {
     let measured = rows.iter().filter(|r| r.row.median_ns.is_some());
     let fewest = measured.map(|r| r.row.samples).min()?;

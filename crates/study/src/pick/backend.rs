@@ -1,49 +1,46 @@
-//! The backends that are measured on a mesh, with their samples.
+//! A measured backend of a pick, with its samples.
 
 use sixfold::Edit;
 use sixfold_workload::{
     Action, Backend, Clock, EditPlaceError, MixBackend, Schedule, Series, Time,
 };
 
-/// A structure or relation tables, with its samples.
+/// A structure or relation tables, with samples.
 pub(crate) struct PickBackend<'a> {
     pub(crate) mixer: Box<dyn MixBackend + 'a>,
     /// The structure; `None` for relation tables.
     pub(crate) structure: Option<Backend>,
-    /// The structure from which the tables were made; `None` for a structure.
+    /// The structure from which relation tables were made; `None` for a structure.
     pub(crate) made_from: Option<&'static str>,
-    /// Whether it is the second copy of a backend, for the control.
+    /// Whether this is the control: a backend that is measured a second time.
     pub(crate) control: bool,
-    /// By part: the plan for timing a pass.
+    /// For each part, the plan for timing a pass.
     pub(crate) passes: Vec<PassPlan>,
-    /// By part: number of operations in one sample of that part alone.
+    /// For each part, the number of operations in one sample of that part alone.
     pub(crate) part_operations: Vec<u64>,
-    /// By round: the time of one operation of the mix, rebuilding included.
+    /// For each round, the time of one operation of the mix, with rebuilding.
     pub(crate) samples: Vec<(u32, Time)>,
-    /// By sample: the slowdown that the detector measured before or after it, whichever is larger.
+    /// For each sample, the larger of the slowdowns before and after the sample.
     pub(crate) slowdowns: Vec<f64>,
-    /// The building times.
     pub(crate) builds: Vec<Time>,
-    /// Ratios of building times: the time on fresh pages divided by the time directly afterwards on
-    /// kept pages.
+    /// The building time on fresh pages divided by the time directly afterwards on kept pages.
     pub(crate) first_builds: Vec<f64>,
-    /// By part: the times of one operation, timed alone, in nanoseconds.
+    /// For each part, the times of one operation, timed alone, in nanoseconds.
     pub(crate) parts: Vec<Vec<f64>>,
-    /// By part: the count that its operations yielded on all elements, or the checksum of a pass;
-    /// `None` if not all elements were queried.
+    /// For each part, the number of results on all elements, or the checksum of a pass. `None` if
+    /// not all elements were queried.
     pub(crate) results: Vec<Option<f64>>,
 }
 
-/// The plan for timing a pass on one backend.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PassPlan {
-    /// The operation that the pass runs on this backend; `None` for parts that are not passes.
+    /// The operation of the pass on this backend; `None` if the part is not a pass.
     pub(crate) operation: Option<sixfold_workload::Operation>,
     /// Number of consecutive runs in one sample.
     pub(crate) runs: u32,
-    /// The sample of the elements to run on, if it scans.
+    /// The sampled elements of a pass that scans.
     pub(crate) sample: Option<sixfold_workload::ElementSample>,
-    /// The estimated time, if a run would exceed the budget.
+    /// The estimated time of a pass whose run would exceed the budget.
     pub(crate) estimate: Option<Time>,
 }
 
@@ -80,15 +77,14 @@ impl<'a> PickBackend<'a> {
         }
     }
 
-    /// Returns whether some part scans all faces. If so, the parts are timed one by one, on few
-    /// elements.
+    /// Returns whether some part scans all faces. The parts are then timed one by one.
     pub(crate) fn scans(&self) -> bool {
         self.mixer.scans().contains(&true)
     }
 }
 
-/// Tries the edits of the schedule at their places on all backends, and keeps the places that all
-/// backends accept, so that all backends do the same work.
+/// Tries the edits at their places on all backends. Keeps only the places that all backends accept,
+/// so that all backends do the same work.
 pub(crate) fn keep_common_places(
     backends: &mut [PickBackend<'_>],
     schedule: &Schedule,
@@ -126,8 +122,8 @@ pub(crate) fn keep_common_places(
     Ok(())
 }
 
-/// Returns tables of the relations that the workload queries, made from the structure that builds
-/// the tables fastest; `None` if the workload queries nothing that can be tabulated.
+/// Returns tables of the relations that the workload queries. The tables come from the structure
+/// that builds them fastest. Returns `None` if the workload has no such relations.
 pub(crate) fn build_tables<'a>(
     backends: &[PickBackend<'a>],
     clock: &dyn Clock,

@@ -4,13 +4,13 @@ use crate::pick::backend::PickBackend;
 use crate::pick::report::{BreakEven, Ranked};
 use crate::statistics::Median;
 
-/// The structure that a program has from the start: positions and index lists.
+/// The structure that a program has from the start.
 const BASE: &str = "indexed-face-set";
 
-/// Returns the break-even of each backend, compared with an indexed face set that need not be
-/// built. The break-even is at n = build / (t_base − t) operations: the time saved then equals the
-/// building time. Differences are formed within rounds; the interval of n is derived from the
-/// interval of the median difference. `operations` is the number of operations in one use.
+/// Returns the break-even of each backend, compared with an existing indexed face set. The
+/// break-even is at n = build / (t_base − t) operations, when the saved time equals the building
+/// time. Time differences are formed within rounds. The interval of n follows from the interval of
+/// the median difference. `operations` is the number of operations in one use.
 pub(crate) fn break_even(
     backends: &[&PickBackend<'_>],
     ranking: &[Ranked],

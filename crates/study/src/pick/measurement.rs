@@ -21,18 +21,17 @@ use crate::pick::{PickError, PickSettings};
 use crate::ranking::{NO_DIFFERENCE, rank, ratio};
 use crate::statistics::Median;
 
-/// The largest number of rounds. More rounds hardly narrow the intervals.
+/// Maximum number of rounds.
 const MAX_ROUNDS: u32 = 200;
-/// The smallest number of rounds for a result.
+/// Minimum number of rounds for a result.
 const MIN_ROUNDS: u32 = 3;
-/// Number of rounds in which building is timed; all rounds if the workload rebuilds.
+/// Number of rounds in which building is timed, if the workload does not rebuild.
 const BUILDS: usize = 9;
-/// Part of the budget after the rounds, for timing each part alone and for the first builds.
+/// Part of the budget for timing each part alone and for the first builds.
 const FOR_PARTS: f64 = 0.15;
-/// Part of the budget for building on fresh pages, at the end.
+/// Part of the budget for building on fresh pages.
 const FOR_FIRST_BUILDS: f64 = 0.05;
 
-/// The measurement on one mesh: the mesh, the settings, the budget, the clock and the memory.
 pub(crate) struct PickMeasurement<'c> {
     pub(crate) study_mesh: &'c StudyMesh,
     pub(crate) settings: &'c PickSettings,
@@ -45,7 +44,6 @@ pub(crate) struct PickMeasurement<'c> {
     pub(crate) progress: &'c mut dyn FnMut(f64, &str),
 }
 
-/// The result of the measurement on one mesh.
 pub(crate) struct Outcome {
     pub(crate) mesh: String,
     pub(crate) ranking: Vec<Ranked>,
@@ -89,7 +87,7 @@ impl PickMeasurement<'_> {
         let mut cost = 0.0;
         for round in 0..MAX_ROUNDS {
             let now = self.now();
-            // The first round is always run: it gives the time of a round.
+            // The first round is always run, because it measures the time of a round.
             if self.stopped() || (round > 0 && now + cost > rounds_end) {
                 break;
             }
@@ -120,7 +118,8 @@ impl PickMeasurement<'_> {
             backend.samples = undisturbed(&backend.samples, &backend.slowdowns);
         }
         self.time_parts(&mut backends, deadline - FOR_FIRST_BUILDS * budget);
-        // This comes last, because it returns pages to the kernel that later samples would need.
+        // First builds come last, because they return pages to the kernel. Other samples would
+        // reuse these pages.
         self.time_first_builds(&mut backends, deadline);
         let shortest_ns = backends
             .iter()
@@ -137,7 +136,6 @@ impl PickMeasurement<'_> {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Takes a sample of the whole mix.
     fn sample(
         &self,
         detector: &mut DisturbanceDetector,
@@ -162,7 +160,6 @@ impl PickMeasurement<'_> {
         }
     }
 
-    /// Returns the time of one operation of the mix, and the building time if it was built.
     fn sample_once(
         &self,
         backend: &mut PickBackend<'_>,
@@ -190,8 +187,8 @@ impl PickMeasurement<'_> {
         (total, build)
     }
 
-    /// Runs all parts on elements in one loop. The preceding turns are run first, untimed and for
-    /// the same time, so that caches and branch predictors are in the same state as in a program.
+    /// Runs all parts on elements in one loop. Untimed turns come first. They bring the caches and
+    /// branch predictors into the state that they have in a program.
     fn time_mix(&self, backend: &mut PickBackend<'_>, round: u32, plan: SamplePlan) -> Time {
         let SamplePlan { turns, copies } = plan;
         let at = u64::from(round) * turns;
@@ -201,8 +198,8 @@ impl PickMeasurement<'_> {
         run.time.scaled(self.schedule.on_elements / operations)
     }
 
-    /// Runs a few operations of each part. If one part scans all faces, it dominates the others,
-    /// and the state of the caches hardly matters.
+    /// Runs a few operations of each part. A part that scans all faces dominates the time, so the
+    /// state of the caches hardly matters.
     fn time_part_by_part(&self, backend: &mut PickBackend<'_>, round: u32) -> Time {
         let mut total = Time::zero_like(self.clock.now());
         for part in self.schedule.elements() {
@@ -215,7 +212,7 @@ impl PickMeasurement<'_> {
         total
     }
 
-    /// Returns the time of the pass `part`, or its estimate if it has one.
+    /// Returns the time of the pass `part`. If the plan has an estimate, returns the estimate.
     fn time_pass(&self, backend: &mut PickBackend<'_>, part: usize) -> Time {
         let PassPlan {
             operation,
@@ -255,7 +252,6 @@ impl PickMeasurement<'_> {
         }
     }
 
-    /// Times each part alone, in rounds, while there is time; at least once.
     fn time_parts(&mut self, backends: &mut [PickBackend<'_>], deadline: f64) {
         let start = self.now();
         let mut longest = 0.0_f64;
@@ -287,8 +283,8 @@ impl PickMeasurement<'_> {
         }
     }
 
-    /// Returns the backends whose results differ from the first backend that does not merge
-    /// vertices.
+    /// Returns the backends whose results differ from the reference. The reference is the first
+    /// backend that does not merge vertices.
     fn disagreeing(&self, backends: &[PickBackend<'_>]) -> Vec<String> {
         let keeps_vertices = |b: &&PickBackend<'_>| b.mixer.merged_vertices() == 0;
         let differs = |backend: &&PickBackend<'_>| {
@@ -398,7 +394,7 @@ impl PickMeasurement<'_> {
     }
 }
 
-/// Returns the time of the shortest sample of mixed turns, in nanoseconds; `None` without samples.
+/// Returns the shortest timed sample in nanoseconds; `None` without samples.
 fn shortest(backend: &PickBackend<'_>, plan: SamplePlan, schedule: &Schedule) -> Option<f64> {
     if backend.scans() || schedule.on_elements <= 0.0 {
         return None;
@@ -412,7 +408,7 @@ fn shortest(backend: &PickBackend<'_>, plan: SamplePlan, schedule: &Schedule) ->
     times.min_by(f64::total_cmp)
 }
 
-/// Returns the package of a type. The path of the type begins with the name of its crate.
+/// Returns the package name from the path of a type.
 fn package_of(type_path: &str) -> String {
     let (package, _) = type_path.split_once("::").unwrap_or((type_path, ""));
     package.replace('_', "-")

@@ -1,4 +1,4 @@
-//! The capabilities that a program can require of its mesh data structure, by name.
+//! The capabilities that a program can require of a structure.
 
 use std::fmt;
 use std::str::FromStr;
@@ -39,7 +39,7 @@ impl Need {
         Self::Refine,
     ];
 
-    /// Returns the name that users write: `non-manifold`.
+    /// Returns the name in options, such as `non-manifold`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Edit => "edit",
@@ -52,7 +52,7 @@ impl Need {
         }
     }
 
-    /// Returns why `backend` does not meet this need; `None` if it does.
+    /// Returns why `backend` does not meet this need; `None` if it meets the need.
     pub(crate) fn unmet_reason(self, backend: &Backend) -> Option<String> {
         let can = backend.info.capabilities;
         let (has, lacks) = match self {
@@ -93,7 +93,7 @@ impl fmt::Display for Need {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", unknown("need", .name, &Need::ALL.map(Need::name)))]
 pub struct UnknownNeed {
-    /// The name that was given.
+    /// The unknown name.
     pub name: String,
 }
 

@@ -1,4 +1,4 @@
-//! The plan of the measurement on one mesh: how much of each part makes a sample.
+//! The plan of the samples on one mesh.
 
 use sixfold::subdivision::{Method, Scheme};
 use sixfold_workload::{
@@ -8,30 +8,28 @@ use sixfold_workload::{
 use crate::pick::backend::{PassPlan, PickBackend};
 use crate::pick::measurement::PickMeasurement;
 
-/// The shortest sample of the fastest backend. In a shorter sample the resolution of the clock
-/// would matter.
+/// Minimum time of a sample of the fastest backend. The clock cannot resolve shorter samples well.
 const SHORTEST_SAMPLE_NS: f64 = 500_000.0;
-/// The longest sample of the slowest backend. Longer ones would leave too few rounds.
+/// Maximum time of a sample of the slowest backend. Longer samples would leave too few rounds.
 const LONGEST_SAMPLE_NS: f64 = 20_000_000.0;
-/// The largest number of copies in a sample. More copies do not improve the sample.
+/// Maximum number of copies in a sample.
 const MAX_COPIES: usize = 10_000;
-/// Sizes of the patches, in faces, from which the time of a scanning pass is estimated.
+/// Face counts of the patches from which the time of a pass is estimated.
 const PATCHES: [usize; 2] = [256, 1024];
 /// Number of operations in the first probe of a part.
 const FIRST_PROBE_OPERATIONS: u64 = 4;
 
-/// How the element operations are divided into samples.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SamplePlan {
     /// Number of turns in a sample.
     pub(crate) turns: u64,
-    /// Number of copies that a sample runs on, if there are edits.
+    /// Number of copies in a sample, if there are edits.
     pub(crate) copies: usize,
 }
 
 impl PickMeasurement<'_> {
-    /// Plans how many turns make a sample: enough for the clock on the fastest backend, not too
-    /// many on the slowest, and no more than there are places for edits.
+    /// Plans the number of turns in a sample. There are enough turns for the clock on the fastest
+    /// backend, but not too many on the slowest. There are no more turns than places for edits.
     pub(crate) fn plan_samples(
         &self,
         backends: &mut [PickBackend<'_>],
@@ -56,7 +54,7 @@ impl PickMeasurement<'_> {
         let turns = turns.min(LONGEST_SAMPLE_NS / most).max(1.0) as u64;
         let room = self.schedule.edits().filter_map(|part| {
             let places = backends.iter().map(|b| b.mixer.cycle_length(part)).min()?;
-            // More turns would need more places than there are.
+            // Each turn with edits needs places of its own.
             let fits = |turns: &u64| self.schedule.operations_within(part, *turns) <= places;
             (1..=turns).take_while(fits).last().or(Some(0))
         });
@@ -103,9 +101,8 @@ impl PickMeasurement<'_> {
         }
     }
 
-    /// Plans a pass that scans all faces for each element. The pass is run on a sample of the
-    /// elements. If it cannot be sampled and takes too long, its time is estimated from patches of
-    /// the mesh.
+    /// Plans a pass that scans all faces for each element. If possible, the pass is run on a
+    /// sample. If not, and if the pass takes too long, its time is estimated from patches.
     fn plan_search(
         &self,
         backend: &mut PickBackend<'_>,
@@ -120,7 +117,7 @@ impl PickMeasurement<'_> {
             backend.mixer.run_pass(operation, sample, &series)
         };
         if operation.can_be_sampled() || operation == Operation::FfBfs {
-            // A walk over all faces is estimated by the relation that it queries.
+            // A walk over all faces is estimated from the relation that it queries.
             let probed = match operation.relations(ElementKind::Face) {
                 &[relation] if !operation.can_be_sampled() => Operation::Relation(relation),
                 _ => operation,
@@ -149,7 +146,7 @@ impl PickMeasurement<'_> {
                 size,
             };
             let size = size.min(self.counts.faces) as f64;
-            // `run_pass` scales the time of a patch to the whole mesh; this undoes it.
+            // `run_pass` scales the time of a patch to the whole mesh. The division undoes this.
             run(operation, Some(patch))
                 .time
                 .scaled(size / self.counts.faces as f64)
@@ -164,7 +161,8 @@ impl PickMeasurement<'_> {
         }
     }
 
-    /// Returns one step of subdivision by the best method of a structure, or of tables if `None`.
+    /// Returns one subdivision step by the best method of a structure; of relation tables if
+    /// `None`.
     fn subdivision(&self, structure: Option<&Backend>) -> Operation {
         let triangles = self.study_mesh.polygons.first_polygon().is_none();
         let scheme = match triangles {
@@ -179,8 +177,8 @@ impl PickMeasurement<'_> {
         }
     }
 
-    /// Plans how many operations of each part make a sample of that part, and records the counts
-    /// that the operations yield on all elements.
+    /// Plans the number of operations in a sample of each part alone. Also records the results of
+    /// the operations on all elements.
     pub(crate) fn plan_parts(&self, backend: &mut PickBackend<'_>, slot_ns: f64) {
         let scans = backend.mixer.scans();
         for part in self.schedule.elements() {

@@ -11,8 +11,8 @@ use crate::ranking::NO_DIFFERENCE;
 use crate::report::SCHEMA;
 use crate::timer::Timer;
 
-/// Combines the outcomes of the meshes. A backend that is excluded on one mesh is excluded from the
-/// ranking; the others are compared by geometric means over the meshes.
+/// Combines the results of the meshes. A backend must qualify on every mesh to be ranked. Backends
+/// are compared by geometric means over the meshes.
 pub(crate) fn pooled(
     mut outcomes: Vec<Outcome>,
     settings: &PickSettings,
@@ -90,7 +90,7 @@ pub(crate) fn pooled(
     report
 }
 
-/// Ranks the backends that have results on all meshes, by the geometric mean of their times.
+/// Ranks the backends with results on all meshes by the geometric mean of their times.
 fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
     let mut by_name: BTreeMap<&str, Vec<&Ranked>> = BTreeMap::new();
     for ranked in outcomes.iter().flat_map(|o| &o.ranking) {
@@ -111,8 +111,8 @@ fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
                 .zip(&best)
                 .map(|(r, b)| r.ratio_to_best / b.ratio_to_best),
         );
-        // Meshes are measured independently, so the squared half widths of the log intervals add
-        // up. The interval of the best backend is added, too.
+        // Meshes are measured independently, so the squared half-widths of the log intervals add
+        // up. The interval of the best backend is added as well.
         let squared_widths = |rows: &[&Ranked]| -> f64 {
             let width = |r: &&Ranked| Some((r.ci_high? / r.ci_low?).ln() / 2.0);
             rows.iter()
@@ -152,8 +152,8 @@ fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
     rows.collect()
 }
 
-/// Returns the break-even of `ranked` over all meshes; it has no number of operations if building
-/// never pays off on one of the meshes.
+/// Returns the break-even of `ranked` over all meshes. The number of operations is `None` if
+/// building never pays off on some mesh.
 fn break_even_on_all(outcomes: &[Outcome], ranked: &Ranked) -> Option<BreakEven> {
     let rows: Option<Vec<&BreakEven>> = outcomes
         .iter()

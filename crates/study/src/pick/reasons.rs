@@ -3,7 +3,7 @@
 use crate::numbers::{duration, grouped, times};
 use crate::pick::report::{PartCost, PickReport, Ranked};
 
-/// Returns the fastest backend, the reasons, the break-even and the packages to add, in this order.
+/// Returns sentences about the fastest backend, the reasons, the break-even and the packages.
 pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
     let Some(best) = report.ranking.first() else {
         return vec!["No backend qualifies.".into()];
@@ -17,7 +17,7 @@ pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
     sentences
 }
 
-/// Returns warnings: noise, few rounds, a busy machine, backends with other results.
+/// Returns warnings about noise, few rounds, a busy machine and wrong results.
 pub(crate) fn warnings(report: &PickReport) -> Vec<String> {
     let mut warnings = crate::warnings::machine_warnings(&report.environment);
     if let Some(noise) = report.noise.filter(|&noise| noise > 1.05) {
@@ -42,7 +42,6 @@ pub(crate) fn warnings(report: &PickReport) -> Vec<String> {
     warnings
 }
 
-/// Returns the name of a backend in a sentence.
 fn name(ranked: &Ranked) -> String {
     match &ranked.made_from {
         Some(made_from) => format!("{} (made from {made_from})", ranked.backend),
@@ -87,7 +86,7 @@ fn fastest(report: &PickReport, best: &Ranked) -> String {
     }
 }
 
-/// Formats a ratio with three digits, to be compared with a close one: `1.04`, `12.3`, `123`.
+/// Formats a ratio with three digits: `1.04`, `12.3`, `123`.
 fn precise(ratio: f64) -> String {
     match ratio {
         r if r < 10.0 => format!("{r:.2}"),
@@ -96,7 +95,6 @@ fn precise(ratio: f64) -> String {
     }
 }
 
-/// Describes which part of the mix takes most of the time.
 fn dominant_part(report: &PickReport, best: &Ranked) -> Option<String> {
     let total: f64 = best.parts.iter().map(PartCost::weighted_ns).sum();
     let heaviest = best
@@ -114,8 +112,7 @@ fn dominant_part(report: &PickReport, best: &Ranked) -> Option<String> {
     ))
 }
 
-/// Describes the part of the mix in which the first backend that is slower than the fastest loses
-/// the most time.
+/// Describes the part of the mix in which the second-best backend loses the most time.
 fn largest_loss(report: &PickReport, best: &Ranked) -> Option<String> {
     let next = report
         .ranking
@@ -137,8 +134,8 @@ fn largest_loss(report: &PickReport, best: &Ranked) -> Option<String> {
     ))
 }
 
-/// Describes the time of relation tables. If the tables are the best, describes the time of the
-/// fastest structure.
+/// Describes the time of relation tables. If the tables are the fastest, describes the fastest
+/// structure instead.
 fn tables(report: &PickReport, best: &Ranked) -> Option<String> {
     let structure = report
         .ranking
@@ -167,7 +164,7 @@ fn tables(report: &PickReport, best: &Ranked) -> Option<String> {
 fn one_use_with_building(report: &PickReport, best: &Ranked) -> Option<String> {
     let operations = report.operations;
     let total = |ranked: &Ranked| {
-        // A program has an indexed face set before it builds anything.
+        // A program already has an indexed face set.
         let build = match ranked.backend.as_str() {
             "indexed-face-set" => 0.0,
             _ => ranked.first_build_ns(),
@@ -202,8 +199,8 @@ fn one_use_with_building(report: &PickReport, best: &Ranked) -> Option<String> {
     })
 }
 
-/// Describes the command that adds the packages, and the types to use. Packages of Sixfold are
-/// taken from a checkout.
+/// Describes the command that adds the packages, and the types to use. The packages of Sixfold come
+/// from a checkout.
 fn packages_to_add(best: &Ranked) -> String {
     let command = |package: &String| match package.strip_prefix("sixfold-") {
         Some(folder) => format!("`cargo add {package} --path CHECKOUT/crates/{folder}`"),

@@ -12,7 +12,7 @@ use crate::pick::needs::Need;
 use crate::report::write_json;
 use crate::timer::Timer;
 
-/// The ranking of the backends, with intervals and reasons.
+/// The ranking of the backends.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct PickReport {
     /// The version of the format.
@@ -21,37 +21,36 @@ pub struct PickReport {
     pub meshes: Vec<String>,
     /// The workload that was run.
     pub workload: Workload,
-    /// The number of operations in one use of the mesh; the mean over the meshes.
+    /// The number of operations in one use of the mesh, as the mean over the meshes.
     pub operations: f64,
     /// The capabilities that were required.
     pub needs: Vec<Need>,
-    /// The maximum size of the structure that was allowed, in bytes.
+    /// The maximum size of the structure, in bytes.
     pub max_memory: Option<u64>,
-    /// The backends that qualify, the fastest first; empty if no backend does.
+    /// The backends that qualify, the fastest first.
     pub ranking: Vec<Ranked>,
-    /// The other backends, with the reasons.
+    /// The backends that do not qualify.
     #[serde(serialize_with = "by_name", deserialize_with = "from_names")]
     pub excluded: Vec<Excluded>,
-    /// For each backend, the number of operations after which its building time is saved, compared
-    /// with an indexed face set that exists already. Empty if the indexed face set did not take
-    /// part.
+    /// The number of operations after which building each backend pays off. The comparison is with
+    /// an existing indexed face set. The list is empty if the indexed face set was not measured.
     pub break_even: Vec<BreakEven>,
-    /// The noise: the ratio, 1 or more, of the two times of a backend that was measured twice.
+    /// The noise: the ratio of the two times of a backend that was measured twice. At least 1.
     pub noise: Option<f64>,
-    /// Backends with other results than the rest for the same work: a fault in Sixfold.
+    /// Backends with wrong results. This is a fault in Sixfold.
     pub mismatches: Vec<String>,
-    /// The fastest backend and the reasons, as sentences.
+    /// Sentences about the fastest backend and the reasons.
     #[serde(rename = "words")]
     pub sentences: Vec<String>,
-    /// Possible faults of the measurement with remedies, as sentences.
+    /// Sentences about possible faults of the measurement and their remedies.
     pub warnings: Vec<String>,
-    /// Whether the measurement was stopped early, so that there are fewer samples.
+    /// Whether the measurement was stopped early. There are then fewer samples.
     pub interrupted: bool,
-    /// The costs of reading the clock.
+    /// The cost of reading the clock.
     pub timer: Timer,
     /// The machine and the program version.
     pub environment: Environment,
-    /// The results for each mesh if there are several; empty for one mesh.
+    /// The results for each mesh; empty if there is only one mesh.
     pub by_mesh: Vec<MeshRanking>,
 }
 
@@ -71,54 +70,52 @@ pub struct MeshRanking {
 /// One backend in the ranking.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Ranked {
-    /// The backend; `relation-tables` for flat tables of only the relations that the workload
-    /// queries.
+    /// The name of the backend. `relation-tables` are flat tables of the relations that the
+    /// workload queries.
     pub backend: String,
-    /// The structure from which the tables were made; `None` for a structure.
+    /// The structure from which relation tables were made; `None` for a structure.
     #[serde(rename = "over")]
     pub made_from: Option<String>,
-    /// The median, over rounds, of the time of one operation of the mix, rebuilding included, in
-    /// nanoseconds.
+    /// The median time of one operation of the mix, in nanoseconds. It includes rebuilding.
     pub ns_per_operation: f64,
-    /// The lower end of the 95 % interval of that time; `None` with fewer than three rounds.
+    /// The lower end of the 95 % interval of `ns_per_operation`; `None` with fewer than three
+    /// rounds.
     pub ns_ci_low: Option<f64>,
-    /// The upper end of that interval.
+    /// The upper end of the 95 % interval of `ns_per_operation`.
     pub ns_ci_high: Option<f64>,
-    /// The median, over rounds, of the time of this backend divided by the time of the fastest; 1
-    /// for the fastest itself.
+    /// The median ratio to the fastest backend, over the rounds. The fastest backend has ratio 1.
     pub ratio_to_best: f64,
-    /// The lower end of the 95 % interval of that ratio.
+    /// The lower end of the 95 % interval of `ratio_to_best`.
     pub ci_low: Option<f64>,
-    /// The upper end of that interval.
+    /// The upper end of the 95 % interval of `ratio_to_best`.
     pub ci_high: Option<f64>,
-    /// Whether it is tied with the fastest: not measurably different from it.
+    /// Whether the backend is not measurably slower than the fastest backend.
     pub tied_with_best: bool,
-    /// The time to build the backend from polygons, on pages that were freed before, in
-    /// nanoseconds. For relation tables, this includes making the tables. Each rebuild takes this
-    /// time.
+    /// The time to build the backend from polygons on reused pages, in nanoseconds. For relation
+    /// tables, it includes making the tables.
     pub build_ns: f64,
-    /// The time to build the backend on fresh pages, as in a program that builds it once. `None` if
-    /// there was no time to measure it.
+    /// The time to build the backend on fresh pages, in nanoseconds. A program that builds the
+    /// backend once needs this time. `None` if there was no time to measure it.
     #[serde(default)]
     pub first_build_ns: Option<f64>,
-    /// The size of its tables, in bytes.
+    /// The size of the tables, in bytes.
     pub bytes: usize,
-    /// That size per vertex of the mesh.
+    /// The size of the tables per vertex of the mesh, in bytes.
     pub bytes_per_vertex: f64,
-    /// Whether only a sample of the elements was queried, because a query scans all faces.
+    /// Whether only some elements were queried, because a query scans all faces.
     pub sampled: bool,
-    /// Whether the time of some part is an estimate, because a full run would exceed the budget.
+    /// Whether the time of a part is an estimate, because a full run would exceed the budget.
     pub estimated: bool,
     /// The cost of each part of the mix, timed alone.
     pub parts: Vec<PartCost>,
-    /// The number of rounds in which it was measured.
+    /// The number of rounds with a sample of this backend.
     pub samples: usize,
     /// The largest number of page faults in a sample; `None` if they were not counted.
     #[serde(default)]
     pub faults: Option<u64>,
     /// The packages to add as dependencies.
     pub crates: Vec<String>,
-    /// The path of the type to use, for each package.
+    /// The paths of the types to use.
     #[serde(default)]
     pub types: Vec<String>,
 }
@@ -128,45 +125,44 @@ pub struct Ranked {
 pub struct PartCost {
     /// The operation.
     pub operation: Action,
-    /// Its share of all operations, from 0 to 1.
+    /// The share of this operation in all operations, from 0 to 1.
     pub share: f64,
-    /// The time of one operation, timed alone in the access order of the workload, in nanoseconds;
+    /// The time of one operation, timed alone in the access order of the workload, in nanoseconds.
     /// `None` if it was not measured.
     pub ns: Option<f64>,
 }
 
 impl Ranked {
-    /// Returns the time of the first building: on fresh pages if measured, else [`Self::build_ns`].
+    /// Returns the time to build on fresh pages if it was measured, else [`Self::build_ns`].
     pub fn first_build_ns(&self) -> f64 {
         self.first_build_ns.unwrap_or(self.build_ns)
     }
 }
 
 impl PartCost {
-    /// Returns the contribution of the part to the time of one operation of the mix, in
-    /// nanoseconds.
+    /// Returns the time of this part in one operation of the mix, in nanoseconds.
     pub(crate) fn weighted_ns(&self) -> f64 {
         self.ns.unwrap_or(0.0) * self.share
     }
 }
 
-/// The number of operations after which building a backend has paid off.
+/// The number of operations after which building a backend pays off.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct BreakEven {
     /// The backend.
     pub backend: String,
-    /// The time to build it, in nanoseconds.
+    /// The time to build the backend, in nanoseconds.
     pub build_ns: f64,
-    /// The time that the backend saves per operation, compared with the indexed face set, in
-    /// nanoseconds; negative if the backend is slower.
+    /// The time saved per operation, compared with the indexed face set, in nanoseconds. Negative
+    /// if the backend is slower.
     pub saves_ns_per_operation: f64,
-    /// The number of operations after which its building time is saved; `None` if never.
+    /// The number of operations after which building pays off; `None` if never.
     pub operations: Option<f64>,
-    /// The lower end of the 95 % interval of that number.
+    /// The lower end of the 95 % interval of `operations`.
     pub ci_low: Option<f64>,
-    /// The upper end of that interval; `None` if building may never pay off.
+    /// The upper end of the 95 % interval of `operations`; `None` if building may never pay off.
     pub ci_high: Option<f64>,
-    /// The same number in uses of the mesh by this workload.
+    /// The number of uses of the mesh after which building pays off.
     pub uses: Option<f64>,
 }
 
@@ -188,7 +184,6 @@ impl Excluded {
     }
 }
 
-/// Returns the reason why a backend of `bytes` bytes is excluded if at most `most` are allowed.
 pub(crate) fn over_memory_limit(bytes: u64, most: u64) -> String {
     let [bytes, most] = [bytes, most].map(|bytes| grouped(bytes as usize));
     format!("it takes {bytes} bytes, but --max-memory allows only {most}")
@@ -205,7 +200,7 @@ impl PickReport {
     }
 }
 
-/// Serializes a map from names to reasons that keeps the order.
+/// Serializes a map from names to reasons in the order of the list.
 fn by_name<S: Serializer>(excluded: &[Excluded], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(excluded.iter().map(|e| (&e.backend, &e.reason)))
 }

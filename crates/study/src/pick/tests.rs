@@ -1,4 +1,4 @@
-//! Measurements of mixers with known costs, on a machine whose speed drifts.
+//! Tests with mixers of known costs, on a simulated machine whose speed drifts.
 
 use sixfold::{PolygonMesh, shapes};
 use sixfold_workload::pages::Policy;
@@ -8,14 +8,13 @@ use super::*;
 use crate::pick::measurement::Outcome;
 use crate::simulated_machine::SimulatedMachine;
 
-/// A mixer with a known time for each operation and a known building time.
 struct KnownBackend {
     name: &'static str,
     machine: SimulatedMachine,
     operation_ns: f64,
     build_ns: f64,
     parts: usize,
-    /// The result of one operation: 1 if it agrees with the others.
+    /// The result of one operation. Agreeing backends return 1.
     yield_per_operation: u64,
 }
 
@@ -102,10 +101,10 @@ fn settings(budget: Duration) -> PickSettings {
     }
 }
 
-/// The backend whose results differ from the others.
+/// The backend with a wrong result.
 const FAULTY: &str = "face-vertex";
 
-/// Measures an indexed face set of 50 ns per operation, and mixers of these costs.
+/// Measures an indexed face set of 50 ns per operation, and mixers with `costs_ns`.
 fn measure_known(costs_ns: &[f64], seed: u64) -> Outcome {
     let study_mesh = StudyMesh::new("ball", shapes::icosahedron());
     let budget = Duration::from_secs(1);
@@ -188,7 +187,7 @@ fn known_ratios_are_found_on_a_drifting_machine() {
 fn break_even_is_building_time_divided_by_time_saved() {
     let outcome = measure_known(&[10.0, 60.0], 1);
     let row = |name: &str| outcome.break_even.iter().find(|row| row.backend == name);
-    // 40 µs divided by 40 ns per operation; the machine drifts between building and running.
+    // 40 µs divided by 40 ns per operation.
     let pays = row("half-edge")
         .and_then(|row| row.operations)
         .expect("it pays");
@@ -199,7 +198,6 @@ fn break_even_is_building_time_divided_by_time_saved() {
     assert!(row("indexed-face-set").is_none(), "it need not be built");
 }
 
-/// The 95 % interval contains a known ratio in about 19 of 20 measurements, on a drifting machine.
 #[test]
 fn intervals_cover_a_known_ratio() {
     let mut covered = 0;

@@ -1,4 +1,4 @@
-//! Limit positions and normals, compared with the surfaces that many steps approach.
+//! Compares limit positions and normals with meshes after many steps.
 
 use proptest::prelude::*;
 use sixfold_conformance::strategy::manifold_mesh;
@@ -36,8 +36,8 @@ fn step(scheme: &Subdivision, polygons: &PolygonMesh, creases: &Creases) -> Step
     scheme.gather(&mesh, creases, 0).expect("a step")
 }
 
-/// Builds a vertex with `faces` faces around it (triangles for Loop, otherwise quads) on uneven
-/// ground. It is vertex 0, and its neighbours follow.
+/// Builds vertex 0 with `faces` faces around it, on uneven ground. The faces are triangles for Loop
+/// and quads for other schemes. The neighbours of vertex 0 have the next numbers.
 fn fan(scheme: Scheme, faces: usize, is_closed: bool, seed: usize) -> PolygonMesh {
     let bump = |i: usize| ((i * 37 + seed * 101) as f32 * 12.9898).sin() * 0.3;
     let spokes = if is_closed { faces } else { faces + 1 };
@@ -66,8 +66,8 @@ fn fan(scheme: Scheme, faces: usize, is_closed: bool, seed: usize) -> PolygonMes
     PolygonMesh::new(points, (0..faces).map(face)).expect("a fan")
 }
 
-/// Runs a step and returns the faces at vertex 0, with this vertex moved to the origin and the
-/// largest distance scaled to 1; also the position of the vertex, and the largest distance before.
+/// Runs a step and returns the faces at vertex 0, the position of vertex 0, and the size of the
+/// faces. The returned faces are moved so that vertex 0 is at the origin, and scaled to size 1.
 fn ring_after(scheme: &Subdivision, from: &Step) -> (Step, Point, f32) {
     let Step { polygons, creases } = step(scheme, &from.polygons, &from.creases);
     let faces = polygons.faces().iter().map(|(_, face)| face);
@@ -93,7 +93,7 @@ fn ring_after(scheme: &Subdivision, from: &Step) -> (Step, Point, f32) {
     });
     let corners = creases.corners().iter();
     let corners = corners.filter_map(|&(v, sharpness)| Some((name(v)?, sharpness)));
-    // Only edges at the vertex matter; edges of the outer boundary change from step to step.
+    // Only edges at vertex 0 have an influence.
     let edges: Vec<_> = edges.filter(|&(ends, _)| ends.contains(&0)).collect();
     let creases = Creases::new(&ring, edges, corners.collect::<Vec<_>>()).expect("of the ring");
     let step = Step {
@@ -103,9 +103,9 @@ fn ring_after(scheme: &Subdivision, from: &Step) -> (Step, Point, f32) {
     (step, origin, size)
 }
 
-/// Returns the position of vertex 0 after `levels` steps, and the direction of the sum of the
-/// normals of its faces. The sum includes only the faces that `counts` selects by their first
-/// neighbour.
+/// Returns the position of vertex 0 after `levels` steps and its normal. The normal is the sum over
+/// the faces for which `counts` is true. The argument of `counts` is the first neighbour of the
+/// face.
 fn vertex_after(
     scheme: &Subdivision,
     from: Step,
@@ -167,7 +167,6 @@ fn limits_match_values_computed_by_hand() {
     let scheme = Subdivision::new(Scheme::CatmullClark);
     let (_, at) = limits::<HalfEdgeMesh>(&scheme, &cube, &Creases::default());
     for (v, limit) in cube.positions().iter().zip(at) {
-        // The position is (9 + 4 − 1)/24 of the corner; the normal points outwards.
         let (position, normal) = defined(limit);
         assert!(position.distance(*v * 0.5) < 1e-6);
         let LimitNormal::One(normal) = normal else {
@@ -179,7 +178,6 @@ fn limits_match_values_computed_by_hand() {
     let scheme = Subdivision::new(Scheme::Loop);
     let (_, at) = limits::<HalfEdgeMesh>(&scheme, &tetrahedron, &Creases::default());
     for (v, limit) in tetrahedron.positions().iter().zip(at) {
-        // β = 3/16, so ω = 1/5, and the neighbours of v sum to −v.
         let (position, normal) = defined(limit);
         assert!(position.distance(*v * 0.2) < 1e-6);
         assert_eq!(
@@ -204,7 +202,6 @@ fn a_smooth_vertex_converges_to_its_limit() {
         for (n, seed) in (2..12).flat_map(|n| (0..4).map(move |seed| (n, seed))) {
             let polygons = fan(scheme.scheme, n, true, seed);
             if n == 2 && scheme.scheme == Scheme::Loop {
-                // Two triangles with the same corners: their outer edges are joined too.
                 continue;
             }
             let (creases, at) = limits::<IndexedFaceSet>(&scheme, &polygons, &Creases::default());
@@ -237,8 +234,7 @@ fn a_boundary_vertex_converges_to_its_limit() {
             let (creases, at) = limits::<IndexedFaceSet>(&scheme, &polygons, &Creases::default());
             let (position, normal) = defined(at[0]);
             let start = Step { polygons, creases };
-            // With few faces, the faces become flat along the boundary until rounding dominates.
-            // With many faces, the steps converge slowly.
+            // A boundary with few faces becomes flat. With many faces, the steps converge slowly.
             let (levels, least) = match k {
                 1 | 2 => (14, 0.9995),
                 3 => (20, 0.9995),
@@ -276,7 +272,7 @@ fn a_crease_has_a_normal_on_either_side() {
             for (side, normal) in sides.into_iter().enumerate() {
                 let faces = [second, n - second][side];
                 let levels = if faces < 4 { 9 } else { 45 };
-                // The ring may start at any neighbour: try every start, and take the best normal.
+                // The ring may start at any neighbour. Tries every start and uses the best normal.
                 let best = (0..n).map(|first| {
                     let counts = |i: usize| (i as u32 + n - first) % n < faces;
                     let (place, seen) = vertex_after(&scheme, start.clone(), levels, counts);
@@ -351,7 +347,8 @@ fn undefined_limits_have_the_expected_reason() {
     assert_eq!(first(&[infinite; 3], 0.5), corner);
     assert_eq!(first(&[0.5], infinite), corner);
     assert!(first(&[infinite; 2], 0.0).position().is_some());
-    // Pentagons: the limit is defined on a crease at once, everywhere after one step.
+    // Next to pentagons, the limit is defined on a crease. After one step, it is defined
+    // everywhere.
     let polygons = sixfold_shapes::dodecahedron();
     let (control, at) = limits::<IndexedFaceSet>(&scheme, &polygons, &Creases::default());
     assert!(
@@ -387,7 +384,7 @@ fn undefined_limits_have_the_expected_reason() {
     let (_, at) = limits::<IndexedFaceSet>(&rounded, &single, &Creases::default());
     let (_, normal) = defined(at[pentagon[0] as usize]);
     assert_eq!(normal, LimitNormal::Undefined);
-    // Three pages of a book.
+    // A book with three pages.
     let places = [0.0, 1.0, 2.0, 3.0, 4.0].map(|x| Point::new(x, x * x, 1.0));
     let book = PolygonMesh::new(places, [[0, 1, 2], [0, 1, 3], [0, 1, 4]]).expect("a book");
     let scheme = Subdivision::new(Scheme::Loop);
@@ -420,8 +417,6 @@ fn other_schemes_return_no_limit() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(96))]
 
-    /// The limit of a vertex equals that of its child, for any sharpness, and is the same on all
-    /// structures.
     #[test]
     fn a_step_does_not_change_the_limit(
         polygons in manifold_mesh(),
@@ -462,12 +457,11 @@ proptest! {
             let limits = limits_of(&scheme, &mesh, &after.creases);
             for (v, (a, b)) in before.iter().zip(&limits).enumerate() {
                 let (Some(p), Some(q)) = (a.position(), b.position()) else {
-                    // A defined limit stays defined.
                     prop_assert!(a.position().is_none(), "{}: {:?} {:?}", v, a, b);
                     continue;
                 };
                 prop_assert!(p.distance(q) < 1e-5 * size, "{}: {:?} {:?}", v, a, b);
-                // The order of the sides may change with the numbers of the ends.
+                // The order of the two sides depends on the vertex numbers.
                 let (m, n) = (normals(*a), normals(*b));
                 let known = |m: &Point| n.is_empty() || n.iter().any(|n| m.dot(*n) > 0.98);
                 prop_assert!(m.iter().all(known), "{}: {:?} {:?}", v, a, b);

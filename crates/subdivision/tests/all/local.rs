@@ -1,4 +1,5 @@
-//! Local refinement: conforming, with bounded angles, and the same on all structures.
+//! Local refinement: meshes are conforming, angles are bounded, and all structures give the same
+//! mesh.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -35,7 +36,7 @@ fn smallest_angle(polygons: &PolygonMesh) -> f64 {
     faces(polygons).flat_map(angles).fold(180.0, f64::min)
 }
 
-/// Returns the smallest angle after one side of one face has been halved.
+/// Returns the smallest angle after one side of one face is halved.
 fn smallest_of_halves(polygons: &PolygonMesh) -> f64 {
     let halves = faces(polygons).flat_map(|[a, b, c]| {
         [[a, b, c], [b, c, a], [c, a, b]]
@@ -48,7 +49,7 @@ fn smallest_of_halves(polygons: &PolygonMesh) -> f64 {
     halves.flat_map(angles).fold(180.0, f64::min)
 }
 
-/// Asserts that the topology is unchanged; a corner inside a side would open the mesh there.
+/// Asserts that the topology is unchanged. A corner inside a side would change the topology.
 fn assert_conforming(before: &PolygonMesh, after: &PolygonMesh) {
     let [old, new] = [before, after].map(Facts::from_polygons);
     assert_eq!(new.euler_characteristic, old.euler_characteristic);
@@ -57,7 +58,7 @@ fn assert_conforming(before: &PolygonMesh, after: &PolygonMesh) {
     assert_eq!(new.isolated_vertices, old.isolated_vertices);
     assert_eq!(new.consistently_oriented, old.consistently_oriented);
     assert_eq!(new.degenerate_faces, 0);
-    // The length of the boundary is unchanged, so its new points lie on it.
+    // Equal lengths show that new boundary points lie on the old boundary.
     let length = |mesh: &PolygonMesh| -> f64 {
         let structure = IndexedFaceSet::from_polygons(mesh).expect("it accepts any mesh");
         let boundary = structure
@@ -69,7 +70,6 @@ fn assert_conforming(before: &PolygonMesh, after: &PolygonMesh) {
     assert!((length(before) - length(after)).abs() <= 1e-4 * length(before));
 }
 
-/// Returns the new faces of each old face.
 fn parts(local: &LocalMesh) -> BTreeMap<FaceId, Vec<FaceId>> {
     let mut parts = BTreeMap::<_, Vec<_>>::new();
     for (part, origin) in (0..).map(FaceId::new).zip(local.origins()) {
@@ -104,7 +104,7 @@ fn one_face_of_an_octahedron() {
 
 #[test]
 fn two_split_sides_make_a_face_red() {
-    // Two neighbours of the first face are chosen, so the first face becomes red too.
+    // Two neighbours of the first face are chosen, so the first face also becomes red.
     let before = sixfold_shapes::octahedron();
     let mesh = HalfEdgeMesh::from_polygons(&before).expect("closed");
     let beside: Vec<FaceId> = mesh.face_faces(FaceId::new(0)).take(2).collect();
@@ -114,13 +114,12 @@ fn two_split_sides_make_a_face_red() {
         assert_eq!(parts[f].len(), 4);
         assert!(!parts[f].iter().any(|&part| local.is_green(part)));
     }
-    // Only the chosen faces count as chosen, not the face that had to follow.
     assert_eq!(local.chosen_parts().len(), 8);
 }
 
 #[test]
 fn green_faces_are_undone() {
-    // Two triangles: one becomes red, the other green; then a half of the green one is chosen.
+    // One triangle becomes red and the other green. Then a half of the green triangle is chosen.
     let corners = [
         [0.0, 0.0, 0.0],
         [1.0, 0.0, 0.0],
@@ -134,7 +133,7 @@ fn green_faces_are_undone() {
         assert!(first.is_green(FaceId::new(half)));
         let mesh = HalfEdgeMesh::from_polygons(first.polygons()).expect("a sheet");
         let second = first.refined(&mesh, &ids(&[half])).expect("small");
-        // All eight parts of a uniform step, and no extra vertex: the side was split before.
+        // The result has the eight parts of a uniform step and no extra vertex.
         let uniform = refined(&before, &Selection::Faces(ids(&[0, 1])), 1);
         let shape = |local: &LocalMesh| {
             let mut all: Vec<_> = faces(local.polygons())
@@ -150,8 +149,7 @@ fn green_faces_are_undone() {
         assert_eq!(shape(&second), shape(&uniform));
         assert_eq!(second.polygons().vertex_count(), 9);
         assert_eq!(second.chosen_parts().len(), 4);
-        // A face next to the green pair is chosen: the whole of the pair becomes red, and one of
-        // its outer parts green.
+        // The chosen face is next to the green pair. The green pair becomes red.
         let third = first.refined(&mesh, &ids(&[0])).expect("small");
         assert_conforming(&before, third.polygons());
         assert!((area(third.polygons()) - 1.0).abs() < 1e-6);
@@ -184,7 +182,7 @@ fn angles_stay_bounded_at_a_point() {
             let polygons = local.polygons();
             assert_conforming(&mesh, polygons);
             assert!((area(polygons) - area(&mesh)).abs() < 1e-5 * area(&mesh));
-            // At all levels, every face has the shape of an old face or of half of one.
+            // Every face has the shape of an old face or of half of an old face.
             let angle = smallest_angle(polygons);
             assert!(angle > halves - 0.1, "level {levels}: {angle} of {halves}");
             if smallest > 59.0 {
@@ -193,8 +191,7 @@ fn angles_stay_bounded_at_a_point() {
                     "level {levels}: {angle} of {smallest}"
                 );
             }
-            // Refinement at a point adds a bounded number of faces per level, and does not multiply
-            // them.
+            // Each level adds at most a fixed number of faces.
             assert!(polygons.face_count() < mesh.face_count() + 40 * levels as usize);
             assert!(polygons.face_count() > faces);
             faces = polygons.face_count();
@@ -204,7 +201,7 @@ fn angles_stay_bounded_at_a_point() {
 
 #[test]
 fn an_angle_finds_the_folds() {
-    // A strip with a ridge along its middle, flat if the height is 0.
+    // A strip with a ridge along the middle. With height 0, the strip is flat.
     let strip = |height: f32| {
         let points = (0..9).map(|i| {
             let (x, y) = ((i % 3) as f32, (i / 3) as f32);
@@ -216,7 +213,6 @@ fn an_angle_finds_the_folds() {
             .flat_map(|i| [[i, i + 1, i + 4], [i, i + 4, i + 3]]);
         PolygonMesh::new(points.collect::<Vec<_>>(), faces).expect("valid")
     };
-    // 45° up and 45° down.
     let chosen = |height, degrees| {
         let polygons = strip(height);
         let mesh = HalfEdgeMesh::from_polygons(&polygons).expect("a sheet");
@@ -227,7 +223,7 @@ fn an_angle_finds_the_folds() {
     assert_eq!(chosen(0.0, 0.0), []);
     let local = refined(&strip(1.0), &Selection::Angle(45.0), 4);
     assert_conforming(&strip(1.0), local.polygons());
-    // The ridge has 2 · 2⁴ edges, each with two faces.
+    // The ridge has 2 · 2⁴ edges with two faces each.
     let mesh = HalfEdgeMesh::from_polygons(local.polygons()).expect("a sheet");
     let folds = Selection::Angle(45.0).faces(&mesh).expect("an angle");
     assert_eq!(folds.len(), 2 * 2 * 16);
@@ -307,7 +303,7 @@ fn each_invalid_input_returns_its_error() {
     assert_eq!(error, Err(expected.clone()));
     let structure = IndexedFaceSet::from_polygons(&cube).expect("it accepts any mesh");
     assert_eq!(Selection::Angle(1.0).faces(&structure), Err(expected));
-    // With unlimited levels, refinement ends when the coordinates are too coarse.
+    // Refinement ends when the coordinates are too coarse.
     let at = Point::new(1.0, 0.0, 0.0);
     let error =
         refine_locally::<HalfEdgeMesh>(&mesh, &Selection::Box { min: at, max: at }, u32::MAX);
@@ -330,8 +326,7 @@ fn each_invalid_input_returns_its_error() {
     assert!(matches!(refusal, BuildError::NonManifoldEdge { .. }));
 }
 
-/// Returns fans without repeated triangles: two with the same corners would share their inner
-/// edges.
+/// Triangulates the faces and removes repeated triangles.
 fn triangulated(polygons: &PolygonMesh) -> PolygonMesh {
     let fans = polygons.fan_triangulated().expect("small");
     let mut known = BTreeSet::new();
@@ -368,9 +363,8 @@ proptest! {
             prop_assert_eq!(parts[f].len(), 4_usize.pow(levels));
             prop_assert!(!parts[f].iter().any(|&part| local.is_green(part)));
         }
-        // Old vertices keep their positions, and come first.
+        // Old vertices come first and do not move.
         prop_assert_eq!(&local.polygons().positions()[..before.vertex_count()], before.positions());
-        // Green faces come in pairs.
         let greens: Vec<FaceId> = (0..local.polygons().face_count() as u32)
             .map(FaceId::new)
             .filter(|&f| local.is_green(f))
@@ -379,13 +373,12 @@ proptest! {
             let [f, g] = [pair[0], pair[1]].map(|f| local.polygons().faces().face(f));
             prop_assert_eq!(f.iter().filter(|v| g.contains(v)).count(), 2);
         }
-        // Any face of the result, green or not, can be chosen next.
         let mesh = IndexedFaceSet::from_polygons(local.polygons()).expect("it accepts any mesh");
         let any = FaceId::new(again.index(local.polygons().face_count()) as u32);
         let next = local.refined(&mesh, &[any]).expect("small");
         assert_conforming(&before, next.polygons());
         prop_assert!(next.chosen_parts().len() >= 4);
-        // Another structure makes the same faces, compared by the positions of their corners.
+        // The faces of two structures are compared by the positions of their corners.
         if HalfEdgeMesh::from_polygons(&before).is_ok() {
             let other = refine_locally::<HalfEdgeMesh>(&before, &Selection::Faces(chosen), levels);
             let other = other.expect("it can be refined");

@@ -1,4 +1,4 @@
-//! Tests that need whole meshes and several structures; one binary.
+//! Tests that need whole meshes and several structures.
 
 mod limit;
 mod local;

@@ -9,8 +9,6 @@ use crate::edge::{Edge, RunId};
 use crate::mesh::WingedEdgeMesh;
 
 impl<P: Probe> WingedEdgeMesh<Editable, P> {
-    /// Adds a face over `corners`, and links it corner by corner.
-    ///
     /// ```text
     ///          w                      At each corner v the face has a run in, u→v, and a run out,
     ///         ╱│                      v→w. Each is an existing run without a face, or belongs to a
@@ -37,8 +35,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
                 self.side_or_new([v, corners[i + 1]], log)
             };
             self.link_corner(v, before, after);
-            // The face is set here and not earlier: before, a run without a face shows that the
-            // side already exists.
+            // Until now, a run without a face shows that the side already existed.
             self.set_face(before.run, Slot::some(face));
             before = after;
         }
@@ -46,7 +43,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         Ok(face)
     }
 
-    /// Checks a new face over `corners`; returns the number of edges that it adds.
+    /// Checks a new face over `corners`. Returns the number of new edges.
     fn check_new_face(&self, corners: &[VertexId]) -> Result<usize, Refusal<Self>> {
         check_corners(corners, |v| self.check_vertex(v))?;
         let mut new_edges = 0;
@@ -64,8 +61,8 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         Ok(new_edges)
     }
 
-    /// Returns whether no edge joins the two vertices. Refuses if an edge joins them and its side
-    /// in this direction already has a face.
+    /// Returns whether no edge joins the two vertices. Refuses if the side between them already has
+    /// a face.
     fn is_new(&self, [from, to]: [VertexId; 2]) -> Result<bool, Refusal<Self>> {
         if self.boundary_side([from, to]).is_some() {
             return Ok(false);
@@ -73,7 +70,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         let Some(edge) = self.edge_between(from, to) else {
             return Ok(true);
         };
-        // Only one side without a face leaves `from`, and it leads elsewhere.
+        // Only one side without a face leaves `from`, and this side leads to another vertex.
         let run = self.run(self.leaving(edge, from));
         match (run.face().get(), run.across().get()) {
             (Some(face), None) => Err(EditError::RepeatedSide { from, to, face }),
@@ -81,14 +78,13 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         }
     }
 
-    /// Returns the run without a face from one vertex to the other, if there is one.
     fn boundary_side(&self, [from, to]: [VertexId; 2]) -> Option<RunId> {
         let side = self.run_after(self.boundary_into(from)?);
         (self.run(side).target() == to).then_some(side)
     }
 
-    /// Returns the run without a face from one vertex to the other, of an existing edge or of a new
-    /// one.
+    /// Returns the run without a face from one vertex to the other. Adds the edge if the edge is
+    /// missing.
     fn side_or_new(&mut self, ends: [VertexId; 2], log: &mut impl EditLog<Self>) -> NewSide {
         if let Some(run) = self.boundary_side(ends) {
             return NewSide { run, is_new: false };

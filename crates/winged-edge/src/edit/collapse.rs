@@ -25,7 +25,7 @@ struct Triangle {
     outer: RunId,
 }
 
-/// The edges at the removed end, except those that are removed too.
+/// The remaining edges at the removed end.
 struct Spokes {
     edges: ShortVec<EdgeId>,
     on_boundary: bool,
@@ -81,8 +81,8 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         Ok(keep)
     }
 
-    /// Relinks the edges around `out`, which runs from the first of `ends` to the second. Returns
-    /// the spoke of the merged vertex if its boundary begins at the second end.
+    /// Relinks the edges around `out`, which runs from the first of `ends` to the second end.
+    /// Returns the spoke of the merged vertex if its boundary begins at the second end.
     fn relink(
         &mut self,
         out: RunId,
@@ -96,7 +96,8 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         } else {
             None
         };
-        // Faces that only lose a side come first: a kept side may then replace one of their runs.
+        // Faces that lose only one side come first. After that, a kept side may replace one of
+        // their runs.
         for (run, _) in { [out, out.twin()].into_iter().zip(sides) }.filter(|(_, s)| s.is_none()) {
             let (before, after) = (self.run_before(run), self.run_after(run));
             let face = self.run(run).face();
@@ -108,7 +109,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         for &spoke in spokes.edges.as_slice() {
             self.set_end(spoke, gone, keep);
         }
-        // One of these two runs may follow the other, so both get the new end before `replace`.
+        // One of these two runs may follow the other run, so both runs get the new end first.
         for triangle in sides.into_iter().flatten() {
             self.set_end(triangle.outer.edge, gone, keep);
         }
@@ -133,8 +134,8 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         }
     }
 
-    /// Merges the three triangles around a vertex into one: the triangle that is not along the
-    /// collapsed edge gets the remaining sides of the other two.
+    /// Merges the three triangles around a vertex into one triangle. The triangle that is not along
+    /// the collapsed edge gets the remaining sides of the other two triangles.
     #[inline(always)]
     fn merge_three_triangles(&mut self, left: Triangle, right: Triangle) {
         let run = self.run(left.outer);
@@ -149,8 +150,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         }
     }
 
-    /// Returns the triangle on the left of `out`, which runs to `gone`, if the face there is a
-    /// triangle.
+    /// Returns the triangle on the left of `out`, if there is one. `out` runs to `gone`.
     #[inline(always)]
     fn left_of(&self, out: Run<'_>, gone: VertexId) -> Result<Option<Triangle>, Refusal<Self>> {
         let removed = Run::from(self.record(out.next()), gone);
@@ -169,8 +169,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         }))
     }
 
-    /// Returns the triangle on the left of `back`, which runs to `keep`, if the face there is a
-    /// triangle.
+    /// Returns the triangle on the left of `back`, if there is one. `back` runs to `keep`.
     #[inline(always)]
     fn right_of(&self, back: Run<'_>, keep: VertexId) -> Result<Option<Triangle>, Refusal<Self>> {
         let kept = Run::from(self.record(back.next()), keep);
@@ -189,7 +188,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         }))
     }
 
-    /// Checks that there is a face across at least one of the two sides that become one.
+    /// Checks that at least one of the two merged sides has a face across.
     #[inline(always)]
     fn check_last_face(vertex: VertexId, across: [Slot<FaceId>; 2]) -> Result<(), Refusal<Self>> {
         if across == [Slot::NONE; 2] {
@@ -200,8 +199,8 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
 
     /// Checks the link condition (Dey et al. 1999), and that no face would contain `keep` twice.
     ///
-    /// Walks around the removed end, then around the kept end. Only the third corners may be
-    /// adjacent to both ends. Only the faces along the edge may be at both ends.
+    /// Only the third corners may be adjacent to both ends. Only the faces along the edge may be at
+    /// both ends.
     fn check_link(
         &self,
         out: RunId,
@@ -263,8 +262,8 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         Ok(spokes)
     }
 
-    /// Returns whether the removed end has three edges and three triangles around it. Its
-    /// neighbours are then the kept end and the third corners, so no walk is needed.
+    /// Returns whether the removed end has three edges and three triangles. Its neighbours are then
+    /// the kept end and the third corners, so no walk is needed.
     #[inline(always)]
     fn removed_end_has_valence_three(&self, left: Triangle, right: Triangle) -> bool {
         let (to_removed, from_removed) = (self.run(left.outer), self.run(right.outer));
@@ -273,8 +272,8 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
             && to_removed.prev() == from_removed.next()
     }
 
-    /// Returns whether the kept end has three edges and three triangles around it. The last two
-    /// triangles would then have the same corners.
+    /// Returns whether the kept end has three edges and three triangles. After the collapse, two
+    /// triangles would have the same corners.
     #[inline(always)]
     fn kept_end_has_valence_three(&self, left: Triangle, right: Triangle) -> bool {
         let from_keep = self.run(left.kept.twin());

@@ -6,7 +6,7 @@ use crate::mesh::WingedEdgeMesh;
 use crate::wings::Wings;
 
 impl<P: Probe> WingedEdgeMesh<Editable, P> {
-    /// Moves all rows down over the holes, in order, and replaces the handles in them; O(mesh).
+    /// Moves all rows down over the holes, and replaces the handles in the rows; O(mesh).
     pub(super) fn compact_tables<L: EditLog<Self>>(&mut self, log: &mut L) {
         let vertices = NewRows::from_holes(&self.vertex_holes, self.positions.len());
         let edges = NewRows::from_holes(&self.edge_holes, self.edges.len());

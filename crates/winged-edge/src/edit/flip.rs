@@ -7,8 +7,7 @@ use crate::edge::{Run, RunId};
 use crate::mesh::WingedEdgeMesh;
 
 impl<P: Probe> WingedEdgeMesh<Editable, P> {
-    /// Flips `e` counter-clockwise: changes five edge records, and possibly the spokes of its ends
-    /// and the sides of its faces.
+    /// Flips `e` counter-clockwise.
     ///
     /// ```text
     ///          c                        c
@@ -29,7 +28,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
             return Err(EditError::NotTwoFaces { edge: e, faces: 1 });
         }
         let ([bc, ad], [ca, db]) = (edge.next.both(), edge.prev.both());
-        // These four run from a or from b, along the two faces or against them.
+        // These four runs start at a or at b.
         let [b_to_c, b_to_d] = [bc, db].map(|edge| Run::from(self.record(edge), b));
         let [a_to_c, a_to_d] = [ca, ad].map(|edge| Run::from(self.record(edge), a));
         if b_to_c.next() != ca || a_to_d.next() != db {
@@ -62,7 +61,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         self.set_links(ad, f, e, ca.edge);
         self.set_links(db, g, bc.edge, e);
         self.set_links(bc, g, e, db.edge);
-        // If e is the spoke of an end, that end is an inner vertex: no boundary spoke is lost.
+        // If e is the spoke of an end, this end is an inner vertex and needs no boundary spoke.
         self.replace_spoke(a, e, ad.edge);
         self.replace_spoke(b, e, bc.edge);
         for face in [f, g].into_iter().filter_map(Slot::get) {
@@ -72,11 +71,10 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
     }
 
     /// Returns whether an edge joins two vertices. Each entry of `walks` has a vertex, the first
-    /// edge of its walk (counter-clockwise), the edge at which the walk stops, and the other
-    /// vertex.
+    /// edge of its counter-clockwise walk, the edge where the walk stops, and the other vertex.
     ///
-    /// Walks around both vertices at once, so that neither walk waits for the other. Stops when the
-    /// shorter walk ends, so a vertex with many edges costs no more than the other vertex.
+    /// Walks around both vertices at the same time. Stops when the shorter walk ends, so a vertex
+    /// with many edges costs no more than the other vertex.
     #[inline(always)]
     fn are_neighbours(&self, walks: [(VertexId, EdgeId, EdgeId, VertexId); 2]) -> bool {
         let [(c, mut at_c, end_c, to_d), (d, mut at_d, end_d, to_c)] = walks;
@@ -91,7 +89,6 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         false
     }
 
-    /// Returns the error for the face of `e` that is not a triangle.
     #[cold]
     #[inline(never)]
     fn not_two_triangles(&self, e: EdgeId) -> Refusal<Self> {

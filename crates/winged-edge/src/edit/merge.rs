@@ -9,7 +9,7 @@ use crate::edge::RunId;
 use crate::mesh::WingedEdgeMesh;
 
 impl<P: Probe> WingedEdgeMesh<Editable, P> {
-    /// Removes `e` and, of its two faces, the one with fewer sides.
+    /// Removes `e`, and the face of `e` with fewer sides.
     pub(super) fn dissolve(
         &mut self,
         e: EdgeId,

@@ -9,8 +9,7 @@ use crate::edge::{Edge, NO_EDGE, Run, RunId};
 use crate::mesh::WingedEdgeMesh;
 use crate::wings::Side;
 
-/// Maximum number of edges, as for building from polygons, so that their corners can be numbered
-/// too.
+/// Maximum number of edges, so that every corner also has a number.
 const MAX_EDGES: usize = MAX_ROWS / 4;
 
 /// Checks that elements exist and that there is room for more.
@@ -24,7 +23,6 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         Ok(())
     }
 
-    /// Returns the record of `edge`, or an error if `edge` does not exist.
     #[inline(always)]
     pub(super) fn check_edge(&self, edge: EdgeId) -> Result<&Edge, Refusal<Self>> {
         if edge.index() < self.edges.len() {
@@ -36,7 +34,6 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         Err(EditError::NoSuchEdge { edge })
     }
 
-    /// Returns a side of `face`, or an error if `face` does not exist.
     #[inline(always)]
     pub(super) fn check_face(&self, face: FaceId) -> Result<EdgeId, Refusal<Self>> {
         if face.index() < self.sides.len() {
@@ -58,48 +55,45 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
     }
 }
 
-/// Functions of runs, which are stored as an edge and a side. All are O(1), except if `apex`
-/// returns a degree as an error.
+/// Functions of runs, each O(1) if faces are triangles.
 impl<P: Probe> WingedEdgeMesh<Editable, P> {
     #[inline(always)]
     pub(super) fn run(&self, run: RunId) -> Run<'_> {
         Run::new(self.record(run.edge), run.side)
     }
 
-    /// Returns the run of `edge` that leaves its end `v`.
+    /// Returns the run of `edge` that leaves `v`.
     #[inline(always)]
     pub(super) fn leaving(&self, edge: EdgeId, v: VertexId) -> RunId {
         RunId::new(edge, Run::from(self.record(edge), v).side())
     }
 
-    /// Returns the run of `edge` that arrives at its end `v`.
+    /// Returns the run of `edge` that arrives at `v`.
     #[inline(always)]
     pub(super) fn arriving(&self, edge: EdgeId, v: VertexId) -> RunId {
         self.leaving(edge, v).twin()
     }
 
-    /// Returns the run of `edge` with its face `f` on the left.
+    /// Returns the run of `edge` with `f` on its left.
     #[inline(always)]
     pub(super) fn along(&self, edge: EdgeId, f: FaceId) -> RunId {
         RunId::new(edge, Run::along(self.record(edge), f).side())
     }
 
-    /// Returns the run after `run` along its face.
     #[inline(always)]
     pub(super) fn run_after(&self, run: RunId) -> RunId {
         let run = self.run(run);
         self.leaving(run.next(), run.target())
     }
 
-    /// Returns the run before `run` along its face.
     #[inline(always)]
     pub(super) fn run_before(&self, run: RunId) -> RunId {
         let run = self.run(run);
         self.arriving(run.prev(), run.origin())
     }
 
-    /// Returns the third corner if the face on the left of `run` is a triangle, otherwise its
-    /// degree as an error.
+    /// Returns the third corner of the triangle on the left of `run`. If the face is not a
+    /// triangle, returns the degree as an error.
     pub(super) fn apex(&self, run: RunId) -> Result<VertexId, usize> {
         let [next, prev] = [self.run(run).next(), self.run(run).prev()];
         let after = self.run(self.run_after(run));
@@ -132,7 +126,6 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         self.edges.write(run.edge.index()).faces[run.side.index()] = face;
     }
 
-    /// Sets the face, the next wing and the previous wing of one side.
     #[inline(always)]
     pub(super) fn set_links(&mut self, run: RunId, face: Slot<FaceId>, next: EdgeId, prev: EdgeId) {
         let record = self.edges.write(run.edge.index());
@@ -141,7 +134,6 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         record.prev.set(run.side, prev);
     }
 
-    /// Replaces the end `old` of `edge` by `new`.
     #[inline(always)]
     pub(super) fn set_end(&mut self, edge: EdgeId, old: VertexId, new: VertexId) {
         let ends = &mut self.edges.write(edge.index()).ends;
@@ -153,8 +145,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         *self.spokes.write(v.index()) = Slot::some(spoke);
     }
 
-    /// Makes `other` the spoke of `v` if `gone` was its spoke. At an inner vertex, any edge can be
-    /// the spoke.
+    /// Makes `other` the spoke of `v` if the spoke was `gone`.
     #[inline(always)]
     pub(super) fn replace_spoke(&mut self, v: VertexId, gone: EdgeId, other: EdgeId) {
         if *self.spokes.read(v.index()) == Slot::some(gone) {
@@ -168,9 +159,8 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
     }
 }
 
-/// New rows and holes. The caller checks that there is room before it adds rows.
+/// New rows and holes. The caller checks that there is room.
 impl<P: Probe> WingedEdgeMesh<Editable, P> {
-    /// Adds a vertex without an edge.
     #[inline(always)]
     pub(super) fn push_vertex(&mut self, at: Point, log: &mut impl EditLog<Self>) -> VertexId {
         let v = VertexId::new(row(self.positions.len()));
@@ -188,7 +178,6 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         e
     }
 
-    /// Returns the edge that will be added next.
     #[inline(always)]
     pub(super) fn next_edge(&self) -> EdgeId {
         EdgeId::new(row(self.edges.len()))
@@ -234,7 +223,6 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         (run.across() == Slot::NONE).then(|| RunId::new(spoke, run.side()).twin())
     }
 
-    /// Returns the error for a face that is not a triangle.
     #[cold]
     pub(super) fn not_a_triangle(face: Slot<FaceId>, degree: usize) -> Refusal<Self> {
         let face = face.get().expect("a run with a face");
@@ -242,8 +230,8 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
     }
 }
 
-/// Builds the record of an edge from `ends[0]` to `ends[1]`. `left` and `right` have the face, the
-/// next wing and the previous wing of each side.
+/// Builds the record of an edge. `left` and `right` each have a face, the next wing and the
+/// previous wing.
 #[inline(always)]
 pub(super) fn edge_record(
     ends: [VertexId; 2],
@@ -259,7 +247,7 @@ pub(super) fn edge_record(
     }
 }
 
-/// Returns both runs of `edge`, the left one first.
+/// Returns the left run and the right run of `edge`.
 #[inline(always)]
 pub(super) fn runs_of(edge: EdgeId) -> [RunId; 2] {
     [RunId::new(edge, Side::LEFT), RunId::new(edge, Side::RIGHT)]

@@ -8,8 +8,8 @@ use crate::edge::{Run, RunId};
 use crate::mesh::WingedEdgeMesh;
 use crate::wings::Side;
 
-/// A run along the outline of the removed faces. The outline of one face is all its sides; the
-/// outline of the faces at a vertex is their sides that do not touch the vertex.
+/// A run along the outline of the removed faces. The outline of one face is all its sides. The
+/// outline of the faces at a vertex is all sides without that vertex.
 #[derive(Clone, Copy)]
 struct OutlineRun {
     run: RunId,
@@ -18,18 +18,18 @@ struct OutlineRun {
     across: Across,
 }
 
-/// The element on the other side of a run of the outline.
+/// The element across a run of the outline.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Across {
-    /// A face that is kept: the run becomes a boundary.
+    /// A face that is kept. The run becomes a boundary.
     Kept,
-    /// No face: the edge is removed.
+    /// No face. The edge is removed.
     NoFace,
-    /// Another removed face: the edge is removed, and is on the outline twice.
+    /// Another removed face. The edge is twice on the outline and is removed.
     Removed,
 }
 
-/// A corner of the outline, and the runs there that lose their face but stay.
+/// A corner of the outline, and the runs there that lose their face.
 #[derive(Clone, Copy)]
 struct Corner {
     v: VertexId,
@@ -98,7 +98,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
             self.check_corners(corners.clone(), &gone)?;
             self.make_boundary(outline.as_slice(), corners, log);
         } else {
-            // With polygons, the outline may visit a vertex twice; with triangles only, it cannot.
+            // With triangles only, the outline visits each vertex at most once.
             let merged = Self::merge_corners(corners.collect())?;
             self.check_corners(merged.iter().copied(), &gone)?;
             self.make_boundary(outline.as_slice(), merged, log);
@@ -128,7 +128,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         }
     }
 
-    /// Merges the corners of each vertex. Refuses if two fans would remain at one vertex.
+    /// Merges the corners of each vertex. Refuses two fans at one vertex.
     fn merge_corners(mut corners: Vec<Corner>) -> Result<Vec<Corner>, Refusal<Self>> {
         corners.sort_unstable_by_key(|corner| corner.v);
         let mut two_fans = None;
@@ -150,8 +150,8 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         }
     }
 
-    /// Checks that one fan remains at each corner. A fan begins where the outline arrives and the
-    /// face across it is kept. No other fan may then begin at the boundary that was there before.
+    /// Checks that one fan remains at each corner. A fan begins at a corner if the face across
+    /// the arriving outline is kept. Then no other fan may begin at the old boundary there.
     fn check_corners(
         &self,
         corners: impl IntoIterator<Item = Corner>,
@@ -172,7 +172,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         Ok(())
     }
 
-    /// Makes the outline a boundary, and removes the edges that no longer have a face.
+    /// Makes the outline a boundary, and removes the edges without a face.
     fn make_boundary(
         &mut self,
         outline: &[OutlineRun],
@@ -206,16 +206,14 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         }
     }
 
-    /// Returns the run without a face that arrives at `v`, where the outline meets the old
-    /// boundary.
+    /// Returns the run of the old boundary that arrives at `v`.
     fn old_boundary_into(&self, v: VertexId) -> RunId {
         let into = self.boundary_into(v);
         into.expect("a fan that does not end at the outline ends at the boundary")
     }
 }
 
-/// Iterates over the corners between consecutive runs of the outline, and over those where a chain
-/// of runs begins or ends.
+/// Iterates over the corners between consecutive runs, and over the corners at the ends of chains.
 fn corners_of(outline: &[OutlineRun]) -> impl Iterator<Item = Corner> + Clone {
     let kept = |side: &OutlineRun| (side.across == Across::Kept).then_some(side.run);
     let before = outline.iter().cycle().skip(outline.len() - 1);

@@ -10,8 +10,7 @@ use crate::edge::{Run, RunId};
 use crate::mesh::WingedEdgeMesh;
 
 impl<P: Probe> WingedEdgeMesh<Editable, P> {
-    /// Inserts a vertex into the existing edge `e`; returns the vertex and the new edge, which
-    /// starts there.
+    /// Inserts a vertex into `e`. Returns the vertex and the new edge, which starts there.
     ///
     /// ```text
     ///     a ──── e ────► b        a ── e ──► m ── n ──► b
@@ -36,7 +35,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         self.edges.write(next.edge.index()).prev.set(next.side, n);
         self.edges.write(prev.edge.index()).next.set(prev.side, n);
         self.replace_spoke(b, e, n);
-        // Seen from m, e has the left face on its right, and n has the right face on its right.
+        // Seen from m, the left face is on the right of e, and the right face is on the right of n.
         self.set_spoke(m, if left == Slot::NONE { e } else { n });
         (m, n)
     }
@@ -75,7 +74,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
     }
 
     /// Cuts a face by an edge from the origin of `p` to the origin of `q`. The part from `p` up to
-    /// `q` becomes a new face. O(degree) of the new face.
+    /// `q` becomes a new face.
     ///
     /// ```text
     ///     ◄─── q ─── y ◄──────
@@ -168,8 +167,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         let mut side = self.check_face(f)?;
         let first = Run::along(self.record(side), f);
         let mut before = first.prev();
-        // The first and the last side show whether f is a triangle, without waiting for the middle
-        // one.
+        // The first and the last side are sufficient to detect a triangle.
         let degree = if Run::along(self.record(before), f).prev() == first.next() {
             3
         } else {

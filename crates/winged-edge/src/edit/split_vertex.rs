@@ -11,17 +11,16 @@ use crate::mesh::WingedEdgeMesh;
 
 /// The part of the fan that moves to the new vertex.
 struct Part {
-    /// The edges to `left` and `right`, if given.
     left: Option<EdgeId>,
     right: Option<EdgeId>,
-    /// The edges between `left` and `right`. If one of the two is missing, the edges up to the
-    /// boundary or from it.
+    /// The edges between `left` and `right`. If `left` or `right` is missing, the edges extend to
+    /// the boundary.
     moved: ShortVec<EdgeId>,
     /// Whether the boundary begins in this part.
     has_boundary: bool,
 }
 
-/// A run that becomes a side of a new triangle, and the run of a new edge that replaces it.
+/// A run that becomes a side of a new triangle, and the run of the new edge that replaces it.
 #[derive(Clone, Copy)]
 struct Doubled {
     run: RunId,
@@ -31,8 +30,7 @@ struct Doubled {
 }
 
 impl<P: Probe> WingedEdgeMesh<Editable, P> {
-    /// Splits `v`: adds an edge from `v` to a new vertex n, between the two parts of the fan;
-    /// O(valence).
+    /// Splits `v`: adds an edge from `v` to a new vertex n; O(valence).
     ///
     /// ```text
     ///     left             left
@@ -69,7 +67,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
             self.doubled(self.leaving(edge, v), runs_of(new)[0])
         });
         let doubled = [on_left, on_right];
-        // A run before or after a doubled run is now before or after the new run.
+        // A new run replaces each doubled run.
         let current = |run: RunId| {
             let mut doubled = doubled.iter().flatten();
             doubled.find(|d| d.run == run).map_or(run, |d| d.new)
@@ -83,7 +81,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
                 self.set_side(f, d.new.edge);
             }
         }
-        // If a side is not given, the new edge is part of the boundary there.
+        // If a side is missing, the new edge is on the boundary there.
         for (d, run) in [(on_left, to_n), (on_right, to_v)] {
             if let (None, Some([into, out])) = (d, boundary) {
                 self.link(current(into), run);
@@ -96,7 +94,7 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         if let Some(d) = on_right {
             self.add_triangle([to_v, d.run, d.new.twin()], log);
             if self.run(d.new).face() == Slot::NONE {
-                // The boundary that ran from v to the side now runs from n.
+                // The boundary from v to the side now starts at n.
                 let side = self.run(d.new).target();
                 self.set_spoke(side, d.new.edge);
             }
@@ -180,7 +178,6 @@ impl<P: Probe> WingedEdgeMesh<Editable, P> {
         }
     }
 
-    /// Adds a triangle along three runs.
     fn add_triangle(&mut self, runs: [RunId; 3], log: &mut impl EditLog<Self>) {
         let f = self.push_face(runs[0].edge, log);
         for i in 0..3 {

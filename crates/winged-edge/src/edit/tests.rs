@@ -1,4 +1,4 @@
-//! Tests beyond the conformance suite: the records, the panic messages and the memory.
+//! Tests of the records, the panic messages and the memory.
 
 use sixfold_core::{
     EdgeId, EditError, FaceId, MeshEdit, MeshQuery, Point, PolygonMesh, Representation, RowId,
@@ -18,7 +18,7 @@ fn mesh(vertices: u16, faces: &[&[u32]]) -> EditableWingedEdgeMesh {
     EditableWingedEdgeMesh::from_polygons(&polygons).expect("manifold")
 }
 
-/// Returns a square of two triangles; the diagonal e1 runs from v0 to v2.
+/// Returns a square of two triangles. The diagonal e1 runs from v0 to v2.
 fn square() -> EditableWingedEdgeMesh {
     mesh(4, &[&[0, 1, 2], &[0, 2, 3]])
 }
@@ -35,8 +35,8 @@ fn between(mesh: &EditableWingedEdgeMesh, a: u32, b: u32) -> EdgeId {
     mesh.edge_between(v(a), v(b)).expect("an edge")
 }
 
-/// Returns the start and the end of `edge`. Then returns its faces, its next edges and its previous
-/// edges; the left one comes first in each pair.
+/// Returns the two ends, then a pair of faces, of next edges and of previous edges. Each pair has
+/// the left value first.
 fn row(edge: &Edge) -> ([u32; 2], [Option<u32>; 2], [u32; 2], [u32; 2]) {
     (
         edge.ends().map(RowId::row),
@@ -52,7 +52,7 @@ fn a_flip_writes_the_expected_records() {
     let e = between(&mesh, 0, 2);
     let [ab, bc, cd, da] =
         [[0, 1], [1, 2], [2, 3], [3, 0]].map(|[a, b]| between(&mesh, a, b).row());
-    // Before the flip, `e` runs from v0 to v2 with f1 = (0, 2, 3) on the left; after the flip, `e`
+    // Before the flip, `e` runs from v0 to v2 with f1 = (0, 2, 3) on the left. After the flip, `e`
     // runs from v1 to v3.
     assert_eq!(
         row(mesh.edge(e)),
@@ -74,7 +74,7 @@ fn spokes_start_on_the_boundary_after_edits() {
         .split_edge(between(&mesh, 0, 1), Point::ZERO)
         .expect("always legal");
     assert_eq!(mesh.spoke(m), Some(between(&mesh, 4, 1)));
-    // v1 is removed: its boundary edge to v2 becomes the first boundary edge of v4.
+    // Without v1, its boundary edge to v2 is the first boundary edge of v4.
     let e = between(&mesh, 4, 1);
     mesh.collapse_edge(e, m, Point::ZERO)
         .expect("a boundary edge");
@@ -84,7 +84,6 @@ fn spokes_start_on_the_boundary_after_edits() {
 
 #[test]
 fn vertices_with_many_edges_can_be_edited() {
-    // A wheel of triangles, with up to 16 spokes and with more.
     for spokes in [5, 16, 17, 40] {
         let rim = |i: u32| 1 + i % spokes;
         let faces: Vec<Vec<u32>> = (0..spokes).map(|i| vec![0, rim(i), rim(i + 1)]).collect();
@@ -107,7 +106,7 @@ fn vertices_with_many_edges_can_be_edited() {
         );
         assert_eq!(closed.validate(), Ok(()));
 
-        // Collapses the hub into a rim vertex: only the third corners are adjacent to both.
+        // The hub collapses into a rim vertex. Only the third corners are adjacent to both ends.
         let mut collapsed = wheel.clone();
         let e = between(&wheel, 0, 1);
         collapsed

@@ -2,8 +2,9 @@ use sixfold_core::{PolygonMesh, Representation};
 
 use super::*;
 
-/// Splits one triangle: e0 from v0 to v1 and e2 from v1 to v2 have the face on the left, e1
-/// from v0 to v2 has it on the right. The ranks of these runs are 0, 2 and 1.
+/// Splits one triangle. Edges e0 from v0 to v1 and e2 from v1 to v2 have the face on the left. Edge
+/// e1 from v0 to v2 has the face on the right. The ranks of the runs of e0, e2 and e1 are 0, 2 and
+/// 1.
 fn split(split: Split) -> WingedEdgeMesh {
     let polygons = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]]);
     let mesh = WingedEdgeMesh::from_polygons(&polygons.expect("valid")).expect("manifold");
@@ -57,7 +58,7 @@ fn a_split_into_quads_gives_the_expected_tables() {
 
 #[test]
 fn a_split_into_triangles_gives_the_expected_tables() {
-    // v3, v4 and v5 are the middles; f3 is the triangle between them.
+    // v3, v4 and v5 are the middles; f3 is the middle triangle.
     let child = split(Split::Triangles);
     let expected = [
         ([0, 3], [Some(0), None], [6, 2], [2, 1]),

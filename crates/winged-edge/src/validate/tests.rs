@@ -12,7 +12,7 @@ fn mesh(vertices: u16, faces: &[&[u32]]) -> EditableWingedEdgeMesh {
     mesh
 }
 
-/// Returns a square of two triangles and an isolated vertex; the diagonal runs from v0 to v2.
+/// Two triangles with the diagonal from v0 to v2, and an isolated vertex.
 fn sound() -> EditableWingedEdgeMesh {
     mesh(5, &[&[0, 1, 2], &[0, 2, 3]])
 }
@@ -30,13 +30,11 @@ fn between(mesh: &EditableWingedEdgeMesh, a: u32, b: u32) -> EdgeId {
     edges.find(|&e| has(e, a) && has(e, b)).expect("an edge")
 }
 
-/// Returns the record of the edge between `a` and `b`.
 fn record(mesh: &mut EditableWingedEdgeMesh, a: u32, b: u32) -> &mut Edge {
     let e = between(mesh, a, b);
     &mut mesh.edges.rows_mut()[e.index()]
 }
 
-/// Returns the record of the diagonal.
 fn inner(mesh: &mut EditableWingedEdgeMesh) -> &mut Edge {
     record(mesh, 0, 2)
 }
@@ -46,7 +44,7 @@ fn set_wing(wings: &mut Wings, side: usize, wing: EdgeId) {
     wings.set(Side::right_if(side == 1), wing);
 }
 
-/// Replaces the vertex `merged` by `kept` in all records, and clears its spoke.
+/// Replaces the vertex `merged` by `kept` in all records, and clears the spoke of `merged`.
 fn merge(mesh: &mut EditableWingedEdgeMesh, kept: u32, merged: u32) {
     for edge in mesh.edges.rows_mut() {
         let merge = |v: VertexId| VertexId::new(if v.row() == merged { kept } else { v.row() });
@@ -104,8 +102,8 @@ fn a_face_that_changes_along_its_sides_breaks_i3() {
 
 #[test]
 fn wings_that_are_not_inverse_break_i4() {
-    // Two triangles with a common vertex, where the boundary of one could continue along the
-    // other.
+    // Two triangles with a common vertex. The boundary of one triangle could continue along the
+    // other triangle.
     let mut mesh = mesh(6, &[&[0, 1, 2], &[3, 4, 5]]);
     merge(&mut mesh, 0, 5);
     let v = VertexId::new(0);
@@ -116,7 +114,7 @@ fn wings_that_are_not_inverse_break_i4() {
             [run.face(), run.across()].map(|f| f == Slot::NONE),
             [false, true]
         );
-        // The blank side arrives at v; the edge after it there is the one clockwise of `to`.
+        // The blank side arrives at v. The edge after the blank side is clockwise of `to`.
         let next = Run::from(mesh.edge(to), v).cw();
         let blank = usize::from(mesh.edge(e).ends()[0] == v);
         let mut broken = mesh.clone();
@@ -133,7 +131,7 @@ fn spokes_that_are_not_first_break_i5() {
     assert_eq!(broken(|m| spoke(m, 1, None)), "I5");
     assert_eq!(broken(|m| spoke(m, 1, Some(between(m, 0, 3)))), "I5");
     assert_eq!(broken(|m| spoke(m, 4, Some(between(m, 0, 1)))), "I5");
-    // v0 has edges to v1, v2 and v3, in this order.
+    // The edges of v0 lead to v1, v2 and v3, in this order.
     assert_eq!(
         sound().spoke(VertexId::new(0)),
         Some(between(&sound(), 0, 1))
@@ -156,7 +154,7 @@ fn a_face_that_is_not_at_its_side_breaks_i7() {
         m.sides.rows_mut()[0] = side;
     };
     assert_eq!(broken(elsewhere), "I7");
-    // A square that is folded so that two of its corners are one vertex.
+    // A folded square: two of its corners are one vertex.
     let mut folded = mesh(
         9,
         &[
@@ -181,7 +179,7 @@ fn edges_with_the_same_ends_break_i8() {
 
 #[test]
 fn unmarked_holes_and_references_to_holes_break_i9() {
-    // f1 and the edges that only it has are deleted.
+    // f1 and its edges without another face are deleted.
     let mut edited = sound();
     let gone = FaceId::new(1);
     let side = between(&edited, 0, 3);

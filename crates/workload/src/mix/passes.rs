@@ -9,7 +9,7 @@ use crate::series::Series;
 use crate::sweeps::{All, Outputs, SweepResult, field_sum, sweep_kind};
 use crate::timed_structure::{Outcome, Run};
 
-/// Runs `operation` over all of `mesh` as `series` describes; the returned time is that of one run.
+/// Runs `operation` over all of `mesh` as `series` describes. Returns the time of one run.
 pub(crate) fn pass_over<M: MeshQuery>(
     mesh: &M,
     outputs: &mut Outputs<M>,

@@ -1,4 +1,4 @@
-//! The places of the edits of a mix: each edit has its own place, away from the queried elements.
+//! The places of the edits of a mix. Each edit has its own place, away from the queried elements.
 
 use sixfold::{Edit, FaceId, FaceVertexMesh, PolygonMesh, Representation};
 
@@ -6,31 +6,30 @@ use crate::edit_place::independent_faces;
 use crate::mix::schedule::Schedule;
 use crate::workload::Action;
 
-/// Minimum number of vertices for each place. The rest of the mesh is left for queries.
+/// Minimum number of vertices per place. The other vertices are left for queries.
 const VERTICES_PER_PLACE: usize = 60;
-/// Maximum number of places. More places would not improve a sample, and a structure that scans
-/// takes long at each place.
+/// Maximum number of places.
 const MAX_PLACES: usize = 512;
 
-/// The reason why a mix with edits cannot be run on a mesh.
+/// Why a mix with edits cannot run on a mesh.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message explains each field")]
 pub enum EditPlaceError {
-    /// A face is not a triangle; edits need triangles.
+    /// A face is not a triangle.
     #[error("face {face} has {degree} corners, and {edit} needs triangles: triangulate the mesh")]
     NotATriangle {
         edit: Edit,
         face: FaceId,
         degree: usize,
     },
-    /// The mesh is too small for the places of the edits and other elements to query.
+    /// The mesh is too small for the places and for elements to query.
     #[error(
         "the mesh is too small: it has no room for {edits} kinds of edits beside the elements to \
          query; use a larger mesh"
     )]
     TooSmall { edits: usize },
-    /// The edit is refused at every place by at least one backend.
+    /// Every place of the edit is refused by at least one backend.
     #[error(
         "no place of the mesh allows {edit} on all backends: remove {edit} from the workload, or \
          use another mesh"
@@ -38,17 +37,17 @@ pub enum EditPlaceError {
     NowhereAccepted { edit: Edit },
 }
 
-/// The faces at which each edit of a schedule is done, and the vertices near them.
+/// The faces at which edits are done, and the vertices near them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct EditPlaces {
-    /// By edit of the schedule: its faces.
+    /// For each edit of the schedule, its faces.
     pub(crate) by_edit: Vec<Vec<FaceId>>,
-    /// By vertex of the mesh: whether it is near a place. Empty if there are no edits.
+    /// For each vertex, whether it is near a place. Empty if there are no edits.
     pub(crate) occupied: Vec<bool>,
 }
 
 impl EditPlaces {
-    /// Distributes the edits of `schedule` over `polygons`, in proportion to their shares.
+    /// Distributes the edits over `polygons` in proportion to their shares.
     pub(crate) fn new(schedule: &Schedule, polygons: &PolygonMesh) -> Result<Self, EditPlaceError> {
         let edits: Vec<(Edit, f64)> = schedule
             .edits()
@@ -87,7 +86,6 @@ impl EditPlaces {
         Ok(Self { by_edit, occupied })
     }
 
-    /// Returns only the accepted places.
     pub(crate) fn filter_accepted(&self, accepted: &[Vec<bool>]) -> Self {
         let keep = |(faces, accepted): (&Vec<FaceId>, &Vec<bool>)| {
             let both = faces.iter().zip(accepted);

@@ -1,4 +1,4 @@
-//! The order in which a mix visits the elements; it is the same for every structure.
+//! The order in which a mix visits the elements. It is the same for every structure.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -11,10 +11,10 @@ use crate::workload::Access;
 /// Maximum number of faces of a patch.
 const PATCH_FACES: usize = 128;
 
-/// The elements of a mesh in the order in which they are visited.
+/// The elements of a mesh in the order of their visits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Route {
-    /// Whether elements are visited in the order of each structure. The lists are empty then.
+    /// Whether each structure uses its own order. The lists are then empty.
     pub(crate) structure_order: bool,
     pub(crate) vertices: Vec<VertexId>,
     pub(crate) edges: Vec<Side>,
@@ -22,7 +22,7 @@ pub struct Route {
 }
 
 impl Route {
-    /// Builds the route through `polygons`, with random choices from `seed`. O(corners) expected.
+    /// Builds the route through `polygons` with the random seed `seed`; O(corners) expected.
     pub fn new(access: Access, polygons: &PolygonMesh, seed: u64) -> Self {
         let empty = Self {
             structure_order: true,
@@ -49,8 +49,8 @@ impl Route {
     }
 }
 
-/// Builds patches around random faces until the patches have as many faces in total as the mesh.
-/// Patches contain no isolated vertices.
+/// Builds patches around random faces until they have as many faces as the mesh. Patches contain no
+/// isolated vertices.
 fn patches(mesh: &FaceVertexMesh, polygons: &PolygonMesh, seed: u64) -> Route {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut route = Route {
@@ -60,7 +60,7 @@ fn patches(mesh: &FaceVertexMesh, polygons: &PolygonMesh, seed: u64) -> Route {
         faces: Vec::new(),
     };
     let count = polygons.face_count();
-    // By element: the last patch that contains it, so that each patch contains it only once.
+    // For each element, the last patch that contains it.
     let mut face_seen = vec![0_u32; count];
     let mut vertex_seen = vec![0_u32; polygons.vertex_count()];
     let mut patch = 0;
@@ -95,7 +95,7 @@ fn patches(mesh: &FaceVertexMesh, polygons: &PolygonMesh, seed: u64) -> Route {
                 route.edges.push(Side { face, ends });
             }
         }
-        // Sides of the patch with the same ends are one edge: the first side is kept.
+        // Two sides of the patch with the same ends are one edge. Keep the first side.
         let mut of_patch = route.edges.split_off(sides);
         let mut order: Vec<usize> = (0..of_patch.len()).collect();
         order.sort_by_key(|&i| (of_patch[i].ends, i));
@@ -133,7 +133,7 @@ mod tests {
                     .any(|neighbour| patch.contains(&neighbour))
             );
         }
-        // Euler: V − E + F = 1 for a patch without a hole.
+        // A patch without a hole satisfies V − E + F = 1.
         let corners = |f: &FaceId| mesh.faces().face(*f).to_vec();
         let vertices: BTreeSet<VertexId> = patch.iter().flat_map(corners).collect();
         assert_eq!(

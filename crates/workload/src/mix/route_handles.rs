@@ -1,4 +1,4 @@
-//! The handles of one structure for the elements of a route, and the operations on them.
+//! The handles of the elements of a route in one structure.
 
 use std::hint::black_box;
 use std::ops::Range;
@@ -11,7 +11,6 @@ use crate::sweeps::Sink;
 use crate::timed_structure::edge_handle;
 use crate::workload::Action;
 
-/// The elements of a route as handles of one structure.
 pub(crate) struct RouteHandles<M: MeshQuery> {
     vertices: Vec<M::Vertex>,
     edges: Vec<M::Edge>,
@@ -19,7 +18,6 @@ pub(crate) struct RouteHandles<M: MeshQuery> {
 }
 
 impl<M: MeshQuery> RouteHandles<M> {
-    /// Lists all elements in the order of the structure.
     pub(crate) fn from_mesh(mesh: &M) -> Self {
         Self {
             vertices: mesh.vertices().collect(),
@@ -28,7 +26,7 @@ impl<M: MeshQuery> RouteHandles<M> {
         }
     }
 
-    /// Converts the handles to those of another mesh for the same elements.
+    /// Converts the handles to handles of another mesh for the same elements.
     pub(crate) fn map_handles<N: MeshQuery>(
         self,
         vertex: impl FnMut(M::Vertex) -> N::Vertex,
@@ -42,7 +40,6 @@ impl<M: MeshQuery> RouteHandles<M> {
         }
     }
 
-    /// Returns the number of elements of `kind`.
     pub(crate) fn len(&self, kind: ElementKind) -> usize {
         match kind {
             ElementKind::Vertex => self.vertices.len(),
@@ -51,8 +48,8 @@ impl<M: MeshQuery> RouteHandles<M> {
         }
     }
 
-    /// Runs `action` on the elements of the operations `range`. Returns the number of elements that
-    /// the action yielded, or of positions that it read.
+    /// Runs `action` for the operations `range`. Returns the number of results or of positions
+    /// read.
     #[inline(never)]
     pub(crate) fn run_action(&self, mesh: &M, action: Action, range: Range<u64>) -> u64 {
         let (v, e, f) = (&self.vertices, &self.edges, &self.faces);
@@ -99,20 +96,20 @@ impl<M: MeshQuery> RouteHandles<M> {
             Action::EndPositions => sum_positions(e, range, |sum, e| {
                 add_positions(mesh, mesh.edge_vertices(e).into_iter(), sum)
             }),
-            // The callers run actions that write, and passes.
+            // Writes and passes run elsewhere.
             Action::SetPosition | Action::Edit(_) | Action::Pass(_) | Action::Subdivide => 0,
         }
     }
 
-    /// Returns the vertices of the operations `range`, as one or more slices.
+    /// Returns the vertices of the operations `range`, as slices.
     pub(crate) fn vertices(&self, range: Range<u64>) -> impl Iterator<Item = &[M::Vertex]> {
         slices(&self.vertices, range)
     }
 }
 
 impl<M: Representation> RouteHandles<M> {
-    /// Looks up the handles of `route` on `mesh`, which was built from `polygons`. Leaves out the
-    /// vertices that are `occupied`, and the edges and faces that have such a vertex.
+    /// Looks up the handles of `route` on `mesh`, which was built from `polygons`. Leaves out
+    /// elements with an `occupied` vertex.
     pub(crate) fn from_route(
         route: &Route,
         mesh: &M,
@@ -156,8 +153,8 @@ impl<M: Representation> RouteHandles<M> {
     }
 }
 
-/// Returns the handles of the operations `range` as one or more slices. After the last handle comes
-/// the first again.
+/// Returns the handles of the operations `range` as slices. The first handle follows the last
+/// handle.
 fn slices<H>(handles: &[H], range: Range<u64>) -> impl Iterator<Item = &[H]> {
     let all = handles.len() as u64;
     let mut left = if all == 0 { 0 } else { range.end - range.start };

@@ -6,29 +6,28 @@ use sixfold_core::Counts;
 
 use crate::workload::{Action, Part, Workload};
 
-/// Operations on elements in a turn: enough that switching between the parts takes negligible time.
+/// Number of element operations in a turn.
 const TURN_OPERATIONS: f64 = 256.0;
-/// Operations on elements in a turn if there are edits: edits take longer, and each needs its own
-/// place.
+/// Number of element operations in a turn if there are edits. Each edit needs its own place.
 const EDIT_TURN_OPERATIONS: f64 = 64.0;
 
-/// The schedule of the mix of a workload on a mesh.
+/// The schedule of a mix on a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {
     /// The parts of the mix.
     pub parts: Vec<Part>,
-    /// By part: its share of all operations, from 0 to 1.
+    /// For each part, its share of all operations, from 0 to 1.
     pub shares: Vec<f64>,
-    /// The share of all operations that work on elements; the rest are passes.
+    /// The share of the operations on elements. The rest are passes.
     pub on_elements: f64,
     /// The number of operations on elements in a turn.
     pub turn_operations: f64,
-    /// Whether the mix needs an editable mesh: it has edits or sets positions.
+    /// Whether the mix has edits or sets positions, so that it needs an editable mesh.
     pub editable: bool,
 }
 
 impl Schedule {
-    /// Builds the schedule of `workload` on a mesh with these counts.
+    /// Builds the schedule of `workload` on a mesh with `counts`.
     pub fn new(workload: &Workload, counts: &Counts) -> Self {
         let shares = workload.shares(counts);
         let on_elements = shares.iter().zip(&workload.mix);
@@ -45,14 +44,13 @@ impl Schedule {
         }
     }
 
-    /// Returns the range of operations of `part` that turn `turn` runs. Operations are counted from
-    /// the first turn on.
+    /// Returns the operations of `part` in turn `turn`. Operations are numbered from the first
+    /// turn.
     pub fn turn_range(&self, part: usize, turn: u64) -> Range<u64> {
         if self.parts[part].action.is_pass() {
             return 0..0;
         }
-        // Rounds the running total, so that no operation is lost or repeated. A part with a share
-        // of 1/1000 gets one operation in about every fourth turn.
+        // Round the running total, so that no operation is lost or repeated.
         let each = self.turn_operations * self.shares[part] / self.on_elements;
         let done = |turns: u64| (each * turns as f64) as u64;
         done(turn)..done(turn + 1)
@@ -86,7 +84,6 @@ fn is_edit(action: Action) -> bool {
     matches!(action, Action::Edit(_))
 }
 
-/// Returns whether an action on elements changes the mesh.
 fn writes(action: Action) -> bool {
     is_edit(action) || action == Action::SetPosition
 }

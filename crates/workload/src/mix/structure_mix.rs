@@ -1,4 +1,4 @@
-//! One structure on which a mix is run.
+//! Runs a mix on one structure.
 
 use std::hint::black_box;
 use std::marker::PhantomData;
@@ -24,7 +24,7 @@ use crate::sweeps::Outputs;
 use crate::timed_structure::{ElementSample, Job, Run, TimedBackend};
 use crate::workload::{Action, Part};
 
-/// A structure ready for a mix, or the reason why it is not.
+/// A structure that is ready for a mix, or the reason why it is not ready.
 pub type PreparedMix<'a> = Result<Box<dyn MixBackend + 'a>, MixRefusal>;
 
 /// The reason why a structure cannot run a mix.
@@ -45,7 +45,6 @@ pub enum MixRefusal {
     EditPlaceError(#[from] EditPlaceError),
 }
 
-/// The input of a mix on one backend.
 pub(crate) struct MixInput<'a> {
     pub(crate) backend: Backend,
     pub(crate) polygons: &'a PolygonMesh,
@@ -55,12 +54,11 @@ pub(crate) struct MixInput<'a> {
 }
 
 /// Builds the structure of `backend` from `polygons` and prepares it for `schedule` along `route`.
-/// The mesh is editable if the schedule needs it.
 ///
 /// # Errors
 ///
-/// Returns the reason if the structure cannot hold `polygons`, cannot be edited as the schedule
-/// needs, or if there is no place for an edit.
+/// Returns the reason if the structure cannot hold `polygons`, if it does not support the edits, or
+/// if there is no place for an edit.
 pub fn prepare_mix<'a>(
     backend: &Backend,
     polygons: &'a PolygonMesh,
@@ -89,7 +87,6 @@ pub fn prepare_mix<'a>(
     }
 }
 
-/// Prepares a mix without edits on `M`.
 pub(crate) fn prepare_query_mix<'a, M: Representation + 'static>(
     input: &MixInput<'a>,
 ) -> PreparedMix<'a> {
@@ -97,7 +94,6 @@ pub(crate) fn prepare_query_mix<'a, M: Representation + 'static>(
     Ok(Box::new(mix))
 }
 
-/// Prepares a mix with edits on `M`.
 pub(crate) fn prepare_edit_mix<'a, M: Representation + MeshEdit + 'static>(
     input: &MixInput<'a>,
 ) -> PreparedMix<'a> {
@@ -105,7 +101,6 @@ pub(crate) fn prepare_edit_mix<'a, M: Representation + MeshEdit + 'static>(
     Ok(Box::new(mix))
 }
 
-/// The write access to a mesh.
 trait WriteAccess<M: Representation> {
     fn set_position(mesh: &mut M, v: M::Vertex, to: Point);
     fn prepare_place(mesh: &mut M, edit: Edit, place: &mut EditPlace<M>) -> bool;
@@ -114,7 +109,7 @@ trait WriteAccess<M: Representation> {
     fn scans(edit: Edit) -> bool;
 }
 
-/// The write access of schedules that only read; its methods are never called.
+/// The access of schedules without writes. Its methods are never called.
 struct ReadOnly;
 
 impl<M: Representation> WriteAccess<M> for ReadOnly {
@@ -130,13 +125,12 @@ impl<M: Representation> WriteAccess<M> for ReadOnly {
     }
 }
 
-/// The write access through [`MeshEdit`].
 struct ReadWrite;
 
 impl<M: Representation + MeshEdit> WriteAccess<M> for ReadWrite {
     #[inline(always)]
     fn set_position(mesh: &mut M, v: M::Vertex, to: Point) {
-        // Writes the current position: no structure refuses this, and the mesh does not change.
+        // Write the current position: no structure refuses it, and the mesh does not change.
         let _ = black_box(mesh.set_position(v, to).is_ok());
     }
     fn prepare_place(mesh: &mut M, edit: Edit, place: &mut EditPlace<M>) -> bool {
@@ -151,12 +145,11 @@ impl<M: Representation + MeshEdit> WriteAccess<M> for ReadWrite {
     }
 }
 
-/// The work of a mix: the schedule, the handles of the route, and the places of the edits.
 struct Task<'a, M: Representation, W> {
     schedule: &'a Schedule,
     handles: RouteHandles<M>,
     faces: EditPlaces,
-    /// By edit of the schedule: its places, on a mesh prepared for the edits.
+    /// For each edit of the schedule, its places on a mesh prepared for the edits.
     places: Vec<Vec<EditPlace<M>>>,
     write_access: PhantomData<W>,
 }
@@ -171,8 +164,8 @@ impl<M: Representation, W: WriteAccess<M>> Task<'_, M, W> {
         }
     }
 
-    /// Runs the operations `range` of one part on `mesh`; for edits, `range` is a range of places.
-    /// Returns the number of operations, the number of results, and the number of refused edits.
+    /// Runs the operations `range` of one part on `mesh`. For edits, `range` is a range of places.
+    /// Returns the numbers of operations, results and refused edits.
     #[inline]
     fn run_range(&self, mesh: &mut M, part: usize, range: Range<u64>) -> [u64; 3] {
         let operations = range.end - range.start;
@@ -203,9 +196,8 @@ impl<M: Representation, W: WriteAccess<M>> Task<'_, M, W> {
         }
     }
 
-    /// Runs the element operations of some turns. Returns the counts of
-    /// [`run_range`](Self::run_range). Edits start at their first place, because each call
-    /// gets a restored copy of the mesh.
+    /// Runs the element operations of some turns. Returns the same counts as
+    /// [`run_range`](Self::run_range). Edits start at their first place.
     #[inline]
     fn run_turns(&self, mesh: &mut M, turns: Range<u64>) -> [u64; 3] {
         let mut sums = [0; 3];
@@ -225,7 +217,6 @@ impl<M: Representation, W: WriteAccess<M>> Task<'_, M, W> {
     }
 }
 
-/// A structure and the work of a mix on it.
 struct StructureMix<'a, M: Representation, W> {
     backend: Backend,
     mesh: M,
@@ -233,12 +224,11 @@ struct StructureMix<'a, M: Representation, W> {
     draw: &'a Draw,
     outputs: Outputs<M>,
     task: Task<'a, M, W>,
-    /// The mesh prepared for its edits; `None` if there are no edits.
+    /// The mesh prepared for the edits; `None` if there are no edits.
     prepared: Option<M>,
-    /// Copies of `prepared`, each with the counts of the last run on it.
+    /// Copies of `prepared`, each with the counts of its last run.
     copies: ReusedCopies<(M, [u64; 3])>,
-    /// The structure as a study measures it, for passes that make a mesh or visit a sample. It is
-    /// built when first needed.
+    /// The structure for passes that make a mesh or visit a sample. It is built on first use.
     timed_backend: Option<Box<dyn TimedBackend + 'a>>,
 }
 
@@ -268,8 +258,8 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
         Ok(mix)
     }
 
-    /// Looks up the handles of the places and prepares a copy of the mesh for the edits there.
-    /// Returns for each edit and place whether the preparation succeeded.
+    /// Finds the places and prepares a copy of the mesh for the edits. Returns for each edit and
+    /// place whether the preparation succeeded.
     fn prepare_places(&mut self) -> Vec<Vec<bool>> {
         if self.task.faces.by_edit.is_empty() {
             return Vec::new();
@@ -302,8 +292,8 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
         is_prepared
     }
 
-    /// Runs `work` once on the mesh. If there are edits, runs it `runs` times on copies that are
-    /// reset outside the timing.
+    /// Runs `work` once on the mesh. If there are edits, runs `work` `runs` times on copies. The
+    /// copies are reset outside the timing.
     fn run_timed(
         &mut self,
         runs: usize,
@@ -330,7 +320,6 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
                     |(copy, _)| copy.clone_from(prepared),
                     |(copy, counts)| *counts = work(task, copy),
                 );
-                // All runs have the same counts.
                 counts = copies.used_copy().map_or(counts, |(_, counts)| *counts);
                 time
             }

@@ -1,4 +1,4 @@
-//! A mix on flat tables of the queried relations, instead of on a structure.
+//! Runs a mix on flat tables of the queried relations.
 
 use std::hint::black_box;
 
@@ -19,7 +19,6 @@ use crate::sweeps::Outputs;
 use crate::timed_structure::{ElementSample, Run};
 use crate::workload::Action;
 
-/// Tables of the queried relations, the positions, and the element counts.
 struct Tables {
     positions: Vec<Point>,
     edges: usize,
@@ -80,8 +79,7 @@ impl Tables {
     }
 }
 
-/// Defines one query. The query returns an empty row if the relation has no table because the
-/// workload does not query it.
+/// Defines one query. If the relation has no table, the query returns an empty row.
 macro_rules! row {
     ($name:ident, $from:ty, $to:ty) => {
         #[inline]
@@ -152,7 +150,7 @@ impl MeshQuery for Tables {
 }
 
 /// Builds the structure of `backend` from `polygons`, then tables of the relations that `schedule`
-/// queries. Returns `None` if the structure cannot hold `polygons`, or if the schedule changes
+/// queries. Returns `None` if the structure cannot hold `polygons` or if the schedule changes
 /// connectivity.
 pub fn tabulate<'a>(
     backend: &Backend,
@@ -167,7 +165,6 @@ pub fn tabulate<'a>(
     }
 }
 
-/// Builds the tables from `M`, like [`tabulate`].
 pub(crate) fn tabulate_structure<'a, M: Representation + 'static>(
     polygons: &'a PolygonMesh,
     schedule: &'a Schedule,
@@ -189,7 +186,7 @@ pub(crate) fn tabulate_structure<'a, M: Representation + 'static>(
     }))
 }
 
-/// Returns the relations that a schedule queries; a relation may occur several times.
+/// Returns the relations that a schedule queries, with duplicates.
 fn relations(schedule: &Schedule) -> Vec<Relation> {
     let relations = schedule
         .parts
@@ -213,8 +210,8 @@ fn route_handles<M: Representation>(
     )
 }
 
-/// Builds the structure and its tables, and returns the time of both. The tables are dropped
-/// outside the timing.
+/// Builds the structure and the tables, and returns the time. The tables are dropped outside the
+/// timing.
 fn build<M: Representation>(
     polygons: &PolygonMesh,
     relations: &[Relation],
@@ -228,7 +225,6 @@ fn build<M: Representation>(
     time_making(series, bytes, build).0
 }
 
-/// Relation tables and the work of a mix on them.
 struct TableMix<'a> {
     tables: Tables,
     schedule: &'a Schedule,
@@ -332,8 +328,7 @@ impl MixBackend for TableMix<'_> {
         if operation != Operation::VvSmooth {
             return run;
         }
-        // The positions are written to a copy, as for every structure, so that the mesh keeps its
-        // own.
+        // Writes to a copy, so that the mesh keeps its positions.
         let Self { moved, outputs, .. } = self;
         let swap = series.time_together(|| {
             moved.copy_from_slice(black_box(outputs.vertices.values()));

@@ -10,7 +10,6 @@ use sixfold_core::{Measured, Traced};
 use super::*;
 use crate::read_probe::LINE_BYTES;
 
-/// An observer that keeps all counts.
 #[derive(Default)]
 struct Collected(Vec<Reads>);
 
@@ -45,7 +44,7 @@ fn tables(reads: &Reads) -> Vec<(&str, usize, f64)> {
 
 #[test]
 fn corners_of_a_triangle_are_twelve_bytes_in_one_or_two_lines() {
-    // Face f is bytes 12 f to 12 f + 11 of the corners: f5 and f10 cross the end of a line.
+    // Face f has the corner bytes 12 f to 12 f + 11. Faces 5 and 10 cross the end of a line.
     let strip: Vec<[u32; 3]> = (0..16).map(|f| [f, f + 1, f + 2]).collect();
     let strip: Vec<&[u32]> = strip.iter().map(|face| &face[..]).collect();
     let reads = reads_of::<IndexedFaceSet>(&polygons(18, &strip), Relation::FaceVertices);
@@ -68,7 +67,7 @@ fn corners_of_a_triangle_are_twelve_bytes_in_one_or_two_lines() {
 
 #[test]
 fn both_ends_of_an_edge_are_in_its_two_halves() {
-    // Two halves of 12 bytes: edge e is bytes 24 e to 24 e + 23, and e2 crosses the end of a line.
+    // Edge e has the bytes 24 e to 24 e + 23. Edge 2 crosses the end of a line.
     let square = polygons(4, &[&[0, 1, 2], &[0, 2, 3]]);
     let reads = reads_of::<HalfEdgeMesh>(&square, Relation::EdgeVertices);
     assert_eq!((reads.elements, reads.answers), (5, 2.0));
@@ -96,8 +95,8 @@ fn mixed_degrees_read_the_offsets_of_a_face() {
 
 #[test]
 fn a_boundary_walk_reads_one_half_more_than_faces_and_an_isolated_vertex_reads_no_half() {
-    // Each corner of the triangle: `leaving`, and the twins of two spokes, one of them without a
-    // face. The fourth vertex: only `leaving`, which is empty.
+    // A corner of the triangle reads `leaving` and the twins of two spokes. The isolated vertex
+    // reads only `leaving`.
     let triangle = polygons(4, &[&[0, 1, 2]]);
     let reads = reads_of::<HalfEdgeMesh>(&triangle, Relation::VertexFaces);
     assert_eq!((reads.elements, reads.answers), (4, 3.0 / 4.0));
@@ -196,7 +195,7 @@ fn a_stopped_count_returns_nothing() {
     assert_eq!(collected.0, []);
 }
 
-/// Reads, bytes and lines per query, computed from a log of all accesses with sets.
+/// Computes reads, bytes and lines per query from a log of all accesses.
 struct AccessLog<'a>(&'a PolygonMesh);
 
 impl AccessLog<'_> {
@@ -226,15 +225,13 @@ impl AccessLog<'_> {
 }
 
 impl AccessLog<'_> {
-    /// Compares all structures of Sixfold with the log.
     fn all(&self) -> Vec<bool> {
         let mut agree = Vec::new();
         for_each_representation!(M => { agree.push(self.visit::<M>()); });
         agree
     }
 
-    /// Returns whether the structure holds the mesh. If so, checks all nine relations against the
-    /// log.
+    /// Returns whether the structure holds the mesh. If it does, checks all nine relations.
     fn visit<M: Measured>(&self) -> bool {
         let Ok(mesh) = M::from_polygons(self.0) else {
             return false;
@@ -281,12 +278,12 @@ impl AccessLog<'_> {
 
 #[test]
 fn counts_of_all_six_structures_equal_their_logs() {
-    // The mesh has so few elements that even a structure that scans is not sampled.
+    // These meshes are so small that no structure is sampled.
     let open = polygons(6, &[&[0, 1, 2], &[0, 2, 3], &[3, 2, 4], &[4, 2, 5]]);
     let mixed = polygons(7, &[&[0, 1, 2], &[0, 2, 3, 4], &[4, 3, 5], &[0, 4, 6, 1]]);
     let isolated = polygons(8, &[&[0, 1, 2], &[2, 1, 3], &[2, 3, 4, 5, 6]]);
     assert_eq!(AccessLog(&open).all(), [true; 6]);
-    // A corner table holds no polygons; a corner table and a soup hold no isolated vertices.
+    // Some structures refuse polygons or isolated vertices.
     let held = |mesh: &PolygonMesh| AccessLog(mesh).all().into_iter().filter(|&h| h).count();
     assert_eq!((held(&mixed), held(&isolated)), (5, 4));
 }

@@ -3,20 +3,20 @@
 use std::error::Error;
 use std::fs;
 
-/// Positions and corners, as in the file.
+/// A mesh as flat arrays, in the order of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Input {
     /// The position of each vertex.
     pub positions: Vec<[f32; 3]>,
     /// The vertices of all faces, one face after the other.
     pub corners: Vec<u32>,
-    /// The index of the first corner of each face, then the number of corners.
+    /// The index of the first corner of each face. The last entry is the number of corners.
     pub starts: Vec<usize>,
 }
 
 impl Input {
-    /// Reads the file that Sixfold writes for its columns: lines `v x y z` and `f a b c …`. General
-    /// OBJ readers drop isolated vertices, but these are needed here.
+    /// Reads the file that Sixfold writes for its columns. It has only lines `v x y z` and `f a b c
+    /// …`. General OBJ readers drop isolated vertices, so they cannot be used.
     pub(crate) fn read(path: &str) -> Result<Self, Box<dyn Error>> {
         Self::parse(&fs::read_to_string(path)?)
     }

@@ -1,6 +1,5 @@
-//! Runs a library as a column of `sixfold study`. An adapter implements the queries with the
-//! library; this crate implements the protocol and the operations. `benches/external/README.md`
-//! describes both.
+//! Runs a library as a column of `sixfold study`. An adapter implements the queries; this crate
+//! implements the protocol and the operations. Both are described in `benches/external/README.md`.
 
 mod input;
 mod operations;
@@ -26,7 +25,7 @@ pub trait Column: Sized {
     /// The name and the version of the library.
     const LIBRARY: &'static str;
 
-    /// Builds the structure from flat arrays, or returns the reason why it cannot.
+    /// Builds the structure from flat arrays. If this is not possible, returns the reason.
     fn build(input: &Input) -> Result<Self, String>;
 
     /// Lists all vertices.
@@ -36,9 +35,9 @@ pub trait Column: Sized {
     /// Lists all faces, in input order.
     fn faces(&self) -> impl Iterator<Item = Self::Face>;
 
-    /// Returns the number of a vertex, less than the number of vertices.
+    /// Returns the number of a vertex. Numbers count from 0 without gaps.
     fn vertex_index(&self, v: Self::Vertex) -> usize;
-    /// Returns any number that identifies the edge.
+    /// Returns a number that identifies the edge.
     fn edge_index(&self, e: Self::Edge) -> usize;
     /// Returns the number of a face, in input order.
     fn face_index(&self, f: Self::Face) -> usize;
@@ -83,7 +82,7 @@ struct Header<'a> {
     library: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<String>,
-    /// The allocator, if Sixfold can make it keep pages with an environment variable.
+    /// The allocator, if an environment variable can make this allocator keep its pages.
     #[serde(skip_serializing_if = "Option::is_none")]
     heap: Option<&'static str>,
 }
@@ -107,8 +106,8 @@ struct Refused<'a> {
     refused: &'a str,
 }
 
-/// Runs the whole program: reads the mesh that the first argument names, and answers requests until
-/// standard input ends.
+/// Reads the mesh at the path in the first argument, and answers requests until standard input
+/// ends.
 ///
 /// # Errors
 ///
@@ -146,7 +145,6 @@ pub fn serve<C: Column>() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Returns the message of a panic.
 fn panic_message(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<&str>().map(ToString::to_string);
     let text = text.or_else(|| payload.downcast_ref::<String>().cloned());

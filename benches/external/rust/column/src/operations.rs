@@ -10,7 +10,7 @@ use crate::{Column, Input, Response};
 
 type Vector = [f32; 3];
 
-/// A structure with storage for the results of operations.
+/// A structure and the results of operations.
 pub(crate) struct Runner<C> {
     input: Input,
     structure: C,
@@ -21,7 +21,7 @@ pub(crate) struct Runner<C> {
 /// The checksum of one run, and the number of visited elements.
 type RunResult = (f64, u64);
 
-/// A sink that counts results and adds their numbers, so that the compiler cannot omit a result.
+/// Counts results and adds their numbers, so that the compiler cannot omit a result.
 #[derive(Default)]
 struct Sink {
     count: u64,
@@ -40,7 +40,7 @@ impl Sink {
     }
 }
 
-/// A loop over elements that queries one relation of each.
+/// Queries one relation of each element.
 macro_rules! query_all {
     ($structure:expr, $elements:ident, $relation:ident, $index:ident) => {{
         let (mut sink, mut elements) = (Sink::default(), 0);
@@ -53,7 +53,7 @@ macro_rules! query_all {
 }
 
 impl<C: Column> Runner<C> {
-    /// Makes a runner. Refuses a mesh that the structure accepted but does not represent correctly.
+    /// Makes a runner. Returns an error if the structure does not represent the mesh correctly.
     pub(crate) fn new(input: Input, structure: C) -> Result<Self, String> {
         let runner = Self {
             face_values: vec![[0.0; 3]; input.starts.len() - 1],
@@ -104,13 +104,14 @@ impl<C: Column> Runner<C> {
         Ok(())
     }
 
-    /// Runs `operation` `times` times; `None` if the operation is unknown.
+    /// Runs `operation` as often as `times` requests. Returns `None` if the operation is unknown.
     pub(crate) fn run(&mut self, operation: &str, times: u64) -> Option<Response> {
         let (mut wall, mut cpu) = (Duration::ZERO, Duration::ZERO);
         let mut found = None;
-        // If an operation moves positions, each run is timed alone, and the reset between runs is
-        // not timed. All runs of another operation are timed together, because reading the clocks
-        // takes as long as a run on a small mesh.
+        // An operation that moves positions is timed in single runs, with an untimed reset between
+        // runs. All runs of another operation are timed together, because reading the clocks takes
+        // as
+        // long as a run on a small mesh.
         let moves = operation == "vv_smooth";
         let (batches, runs) = if moves { (times, 1) } else { (1, times) };
         for _ in 0..batches {
@@ -296,7 +297,7 @@ impl<C: Column> Runner<C> {
         (boundary as f64, edges)
     }
 
-    /// Traverses faces breadth first, each time from the lowest unvisited face.
+    /// Traverses the faces breadth first. Each traversal starts at the lowest unvisited face.
     fn ff_bfs(&self) -> RunResult {
         let structure = &self.structure;
         let faces: Vec<C::Face> = structure.faces().collect();

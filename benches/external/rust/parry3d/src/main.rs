@@ -7,7 +7,7 @@ use column::{Column, Input};
 use parry3d::math::Vector;
 use parry3d::shape::{TopoHalfEdge, TriMesh, TriMeshFlags};
 
-/// Stands for the missing twin of a half-edge at the boundary.
+/// The twin of a half-edge at the boundary.
 const NONE: u32 = u32::MAX;
 
 struct Parry {
@@ -21,14 +21,12 @@ impl Parry {
         &topology.expect("built with it").half_edges
     }
 
-    /// Returns the previous half-edge. The half-edges of a triangle have consecutive numbers, in
-    /// order.
+    /// Returns the previous half-edge. The three half-edges of a triangle have consecutive numbers.
     fn prev(half: u32) -> u32 {
         if half % 3 == 0 { half + 2 } else { half - 1 }
     }
 
-    /// Returns the edge of a half-edge. An edge is represented by the smaller of its two
-    /// half-edges.
+    /// Returns the edge of a half-edge: the smaller of the two half-edges of the edge.
     fn edge(&self, half: u32) -> u32 {
         half.min(self.half_edges()[half as usize].twin)
     }
@@ -45,8 +43,8 @@ impl Parry {
         half_edges[half_edges[half as usize].next as usize].vertex
     }
 
-    /// Calls `sink` with every half-edge that starts at `v`, and `false`. At a boundary, also calls
-    /// `sink` with the half-edge that ends at `v` and has no twin, and `true`.
+    /// Calls `sink` with every half-edge that starts at `v`, and `false`. At a boundary, one
+    /// half-edge ends at `v` and has no twin; `sink` is then called with this half-edge and `true`.
     fn visit_spokes(&self, v: u32, mut sink: impl FnMut(u32, bool)) {
         let half_edges = self.half_edges();
         let topology = self.mesh.topology().expect("built with it");
@@ -67,7 +65,7 @@ impl Parry {
                 break;
             }
         }
-        // Continues from the first half-edge in the other direction, up to the boundary.
+        // Continues in the other direction from the first half-edge to the boundary.
         let mut across = half_edges[first as usize].twin;
         while across != NONE {
             let next = half_edges[across as usize].next;
@@ -162,7 +160,8 @@ impl Column for Parry {
         self.mesh.vertices()[v as usize].into()
     }
     fn set_positions(&mut self, positions: &[[f32; 3]]) {
-        // This is the only way to move vertices in parry3d. It also rebuilds the hierarchy.
+        // parry3d has no other function to move vertices. This function also rebuilds the
+        // hierarchy.
         self.mesh.update_vertices(|points| {
             for (point, &position) in points.iter_mut().zip(positions) {
                 *point = position.into();

@@ -12,8 +12,7 @@ struct TriMesh {
 }
 
 impl TriMesh {
-    /// Returns the edge of a half-edge. An edge is represented by the smaller of its two
-    /// half-edges.
+    /// Returns the edge of a half-edge: the smaller of the two half-edges of the edge.
     fn edge(&self, half: HalfEdgeID) -> HalfEdgeID {
         let twin = self.mesh.walker_from_halfedge(half).twin_id();
         twin.map_or(half, |twin| twin.min(half))

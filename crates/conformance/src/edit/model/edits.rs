@@ -9,7 +9,6 @@ use crate::edit::action::Action;
 
 /// An edit returns `None` if its own rules forbid it. The model may then be partly edited.
 impl Model {
-    /// Executes `action`, even if the structure could not hold the result.
     pub(super) fn apply(&mut self, action: &Action, rules: &Rules) -> Option<()> {
         match *action {
             Action::SetPosition { v, to } => self.set_position(v, to),
@@ -42,7 +41,6 @@ impl Model {
         Some(())
     }
 
-    /// Adds a vertex and returns its number.
     fn add_vertex(&mut self, at: Point) -> usize {
         self.positions.push(Some(at));
         self.positions.len() - 1
@@ -66,7 +64,6 @@ impl Model {
         Some(())
     }
 
-    /// Removes `v` with its faces.
     fn remove_vertex(&mut self, v: usize) -> Option<()> {
         self.position(v)?;
         self.positions[v] = None;
@@ -78,7 +75,6 @@ impl Model {
         Some(())
     }
 
-    /// Adds a vertex to an edge, as a new corner of the faces at the edge.
     fn split_edge(&mut self, ends: [usize; 2], at: Point) -> Option<()> {
         let faces = self.edges().remove(&sorted(ends))?;
         let m = self.add_vertex(at);
@@ -90,7 +86,6 @@ impl Model {
         Some(())
     }
 
-    /// Adds a vertex to an edge, and splits each triangle at the edge in two.
     fn bisect_edge(&mut self, ends: [usize; 2], at: Point) -> Option<()> {
         let faces = self.edges().remove(&sorted(ends))?;
         let m = self.add_vertex(at);
@@ -105,7 +100,6 @@ impl Model {
         Some(())
     }
 
-    /// Replaces `f` by triangles around a new vertex.
     fn poke_face(&mut self, f: usize, at: Point) -> Option<()> {
         let face = self.face(f)?.to_vec();
         let m = self.add_vertex(at);
@@ -116,7 +110,6 @@ impl Model {
         Some(())
     }
 
-    /// Splits `f` along a new edge between two of its corners.
     fn split_face(&mut self, f: usize, ends: [usize; 2]) -> Option<()> {
         let face = self.face(f)?.to_vec();
         let [i, j] = ends.map(|v| face.iter().position(|&u| u == v));
@@ -129,7 +122,6 @@ impl Model {
         Some(())
     }
 
-    /// Merges the two faces of an edge.
     fn dissolve_edge(&mut self, ends: [usize; 2]) -> Option<()> {
         let [f, g] = self.opposite_faces(ends)?;
         let [first, second] = [f, g].map(|f| self.faces[f].clone());
@@ -138,7 +130,7 @@ impl Model {
         if common != 2 {
             return None;
         }
-        // Rotates `first` so that it ends with a, b, and `second` so that it starts with b, a.
+        // `first` must end with `a`, `b`; `second` must start with `b`, `a`.
         let i = position_of_side(&first, ends)?;
         let degree = first.len();
         first.rotate_left((i + 2) % degree);
@@ -153,7 +145,6 @@ impl Model {
         Some(())
     }
 
-    /// Replaces the common edge of two triangles by the edge between the other two corners.
     fn flip_edge(&mut self, [a, b]: [usize; 2]) -> Option<()> {
         let [f, g] = self.opposite_faces([a, b])?;
         let apex = |f: usize| match self.face(f)? {
@@ -175,7 +166,6 @@ impl Model {
         Some(())
     }
 
-    /// Attaches the edges and faces of `removed` to `keep`, and moves `keep` to the position `to`.
     fn collapse_edge(
         &mut self,
         [keep, removed]: [usize; 2],
@@ -238,9 +228,9 @@ impl Model {
         Some(())
     }
 
-    /// Returns the faces at `v` counter-clockwise, from the boundary if there is one. Each entry
-    /// has the corner after `v`, the face, and the corner before `v`. Returns `None` if the faces
-    /// are not one oriented fan.
+    /// Returns the faces at `v`, counter-clockwise from the boundary. Each entry has the corner
+    /// after `v`, the face, and the corner before `v`. Returns `None` if the faces are not one
+    /// oriented fan.
     fn fan(&self, v: usize) -> Option<Vec<(usize, usize, usize)>> {
         let mut left: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
         for (f, face) in self.faces() {
@@ -267,8 +257,6 @@ impl Model {
         (left.is_empty() && all_before.len() == fan.len()).then_some(fan)
     }
 
-    /// Attaches the faces at `v` between `right` and `left` to a new vertex. Then adds one triangle
-    /// at `left` and one at `right`.
     fn split_vertex(
         &mut self,
         v: usize,
@@ -279,8 +267,7 @@ impl Model {
         let fan = self.fan(v)?;
         let (first, last) = (fan[0].0, fan[fan.len() - 1].2);
         let closed = first == last;
-        // The sectors between consecutive vertices of the ring. At a boundary, the gap without a
-        // face is a sector too.
+        // The face between consecutive vertices of the ring; `None` for the gap at a boundary.
         let mut ring: Vec<usize> = fan.iter().map(|&(after, ..)| after).collect();
         let mut sectors: Vec<Option<usize>> = fan.iter().map(|&(_, f, _)| Some(f)).collect();
         if !closed {
@@ -288,8 +275,8 @@ impl Model {
             sectors.push(None);
         }
         let index_in_ring = |u: usize| ring.iter().position(|&w| w == u);
-        // Without `left`, the moved part ends at the start of the gap. Without `right`, it starts
-        // at the end of the gap.
+        // Without `left`, the moved faces end at the boundary. Without `right`, the moved faces
+        // start at the boundary.
         let (from, to) = match (left, right) {
             (Some(l), Some(r)) if l != r => (index_in_ring(r)?, index_in_ring(l)?),
             (None, Some(r)) if !closed => (index_in_ring(r)?, ring.len() - 1),

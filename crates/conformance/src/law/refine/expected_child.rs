@@ -6,8 +6,8 @@ use sixfold_core::{Counts, FaceId, Point, PolygonMesh, Refine, Split, VertexId};
 
 /// The expected result of a split.
 pub(super) struct ExpectedChild {
-    /// The sorted faces of the child. Each has its corners, from the lowest vertex on, and its
-    /// parent face.
+    /// The sorted faces of the child, each with its parent face. The corners start at the lowest
+    /// vertex.
     faces: Vec<(Vec<usize>, FaceId)>,
     vertices: usize,
     edges: usize,
@@ -16,7 +16,7 @@ pub(super) struct ExpectedChild {
 }
 
 impl ExpectedChild {
-    /// Splits the faces of `input`. The edges have the numbers that `mesh` gives them.
+    /// Splits the faces of `input`. `mesh` defines the numbers of the edges.
     pub(super) fn new<M: Refine>(mesh: &M, input: &PolygonMesh, split: Split) -> Self {
         let parent = Parent::new(mesh, input);
         let mut faces: Vec<(Vec<usize>, FaceId)> = Vec::new();
@@ -48,7 +48,6 @@ impl ExpectedChild {
         }
     }
 
-    /// Compares `child` with the expected result.
     pub(super) fn check<M: Refine>(
         &self,
         mesh: &M,
@@ -89,10 +88,10 @@ impl ExpectedChild {
     }
 }
 
-/// The mesh that is split, with the numbers of the points that a split adds.
+/// The mesh that is split, with the numbers of its edges.
 struct Parent<'a> {
     input: &'a PolygonMesh,
-    /// The number and the faces of each edge. The key is the ends, the lower one first.
+    /// By the sorted ends of each edge: its number and its faces.
     edges: BTreeMap<[VertexId; 2], (usize, Vec<FaceId>)>,
     /// The numbers of the boundary edges, sorted.
     boundary: Vec<usize>,
@@ -129,12 +128,10 @@ impl<'a> Parent<'a> {
         }
     }
 
-    /// Returns the point in the middle of `f`.
     fn face_point(&self, f: FaceId) -> usize {
         self.input.vertex_count() + f.index()
     }
 
-    /// Returns the faces into which `f` is split.
     fn children(&self, f: FaceId, corners: &[VertexId], split: Split) -> Vec<Vec<usize>> {
         match split {
             Split::Quads => self.quads(f, corners),
@@ -145,7 +142,6 @@ impl<'a> Parent<'a> {
         }
     }
 
-    /// Returns a quad for each corner.
     fn quads(&self, f: FaceId, corners: &[VertexId]) -> Vec<Vec<usize>> {
         let middles = self.middles(corners, self.input.vertex_count() + self.input.face_count());
         let quads = (0..corners.len()).map(|i| {
@@ -156,7 +152,6 @@ impl<'a> Parent<'a> {
         quads.collect()
     }
 
-    /// Returns one triangle for each corner, and one in the middle.
     fn triangles(&self, corners: &[VertexId]) -> Vec<Vec<usize>> {
         let middles = self.middles(corners, self.input.vertex_count());
         let at_corners = (0..corners.len()).map(|i| {
@@ -166,14 +161,13 @@ impl<'a> Parent<'a> {
         at_corners.chain([middles.clone()]).collect()
     }
 
-    /// Returns the points in the middles of the sides of a face; `first` is the first edge point.
+    /// Returns the edge points of the sides of a face. The edge points are numbered from `first`.
     fn middles(&self, corners: &[VertexId], first: usize) -> Vec<usize> {
         let edges = sides(corners).map(|side| &self.edges[&sorted(side)]);
         edges.map(|(number, _)| first + number).collect()
     }
 
-    /// Returns the triangles at a side of `f`: three if the side is on the boundary and `trisect`
-    /// is true, otherwise one.
+    /// Returns the triangles at a side of `f`.
     fn sqrt3_triangles(&self, f: FaceId, side: [VertexId; 2], trisect: bool) -> Vec<Vec<usize>> {
         let (number, along) = &self.edges[&sorted(side)];
         let across = along.iter().find(|&&g| g != f);
@@ -194,7 +188,6 @@ impl<'a> Parent<'a> {
     }
 }
 
-/// Iterates over the sides of a face, each in the direction of the face.
 fn sides<V: Copy>(corners: &[V]) -> impl Iterator<Item = [V; 2]> {
     let after = corners.iter().cycle().skip(1);
     corners.iter().zip(after).map(|(&a, &b)| [a, b])

@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 
 use super::{Flaw, Kind};
 
-/// The items of a query. Without a flaw of `fold`, both ways to iterate are correct.
+/// The items of a query, with an optional flaw of `fold`.
 pub(super) struct Items<F, T> {
     items: Vec<T>,
     taken: usize,

@@ -41,7 +41,6 @@ impl<F: Flaw> Representation for Flawed<F> {
                 };
                 strict.check(polygons)?;
             }
-            // Checks vertices before edges.
             Kind::WrongError => {
                 let vertices = Capabilities {
                     non_manifold_vertices: false,
