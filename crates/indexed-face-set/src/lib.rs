@@ -1,9 +1,10 @@
 //! Indexed face set: shared vertices, a vertex list for each face, and no other tables.
 //!
 //! Files and renderers use this form. Use it to read faces in order, or to keep a mesh in memory
-//! without queries. It is the smallest structure with shared vertices. It holds every polygon mesh. FV, FE and EV take O(1) per item. Every query of a neighbourhood scans all
-//! corners, because no table stores neighbours. Start at [`generic::IndexedFaceSet`]; its three
-//! invariants define the tables.
+//! without queries. It is the smallest structure with shared vertices. It holds every polygon mesh.
+//! FV, FE and EV take O(1) per item. Every query of a neighbourhood scans all corners, because no
+//! table stores neighbours. Start at [`generic::IndexedFaceSet`]; its three invariants define the
+//! tables.
 //!
 //! Edges are not stored; an edge is the [pair](sixfold_core::Pair) of its ends.
 //!
