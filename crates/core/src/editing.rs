@@ -185,7 +185,8 @@ impl<P: Probe> HoleSet<P> for NoHoles {
     }
 }
 
-/// The scattered faces of a [`Compact`] mesh: there are none.
+/// The scattered faces of a [`Compact`] mesh. A compact mesh has no scattered faces, so this type
+/// stores nothing.
 #[derive(Clone, Copy, Debug)]
 pub enum NoScatteredFaces {}
 

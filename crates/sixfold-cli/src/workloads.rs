@@ -41,7 +41,8 @@ pub(crate) fn run(arguments: &Workloads) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Returns the built-in workload `word`. If there is none, reads the workload file `word`.
+/// Returns the built-in workload with the name `word`. If no built-in workload has this name, reads
+/// the workload file `word`.
 pub(crate) fn workload(word: &str) -> Result<Workload, Failure> {
     let path = Path::new(word);
     let is_file = path.extension().is_some_and(|ending| ending == "toml");
