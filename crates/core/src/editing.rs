@@ -185,8 +185,8 @@ impl<P: Probe> HoleSet<P> for NoHoles {
     }
 }
 
-/// The scattered faces of a [`Compact`] mesh. A compact mesh has no scattered faces, so this type
-/// stores nothing.
+/// The scattered faces of a [`Compact`] mesh. A compact mesh has no scattered faces, so no value of
+/// this type exists.
 #[derive(Clone, Copy, Debug)]
 pub enum NoScatteredFaces {}
 

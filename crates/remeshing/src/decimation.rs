@@ -337,7 +337,7 @@ impl<M: MeshEdit> Work<M> {
         let mut best = (sum.value(middle), middle);
         for offset in [DVec3::ZERO, edge] {
             let error = sum.value(offset);
-            if error.total_cmp(&best.0).is_lt() {
+            if error < best.0 {
                 best = (error, offset);
             }
         }
