@@ -195,6 +195,15 @@ impl<T> ReusedCopies<T> {
             Start::Warm => copy_count(self.last_ns, bytes) as u32,
             Start::Cold(_) | Start::FreshPages => 1,
         };
+        if 0 < series.untimed && series.untimed < least {
+            // Each of the copies needs untimed runs, with the results of the others still held:
+            // otherwise a timed run could be the first to touch the pages of its result.
+            let all = Series {
+                runs: least,
+                ..untimed
+            };
+            self.run_all(&all, bytes, &new, &mut reset, &mut run);
+        }
         let enough = Series {
             runs: series.runs.max(least),
             ..*series
@@ -337,6 +346,29 @@ mod tests {
             }
             assert_eq!(copies.used_copy(), Some(&1));
         }
+    }
+
+    #[test]
+    fn all_results_of_a_short_sample_were_held_at_once_before() {
+        let clock = ManualClock::default();
+        let mut slots = ReusedCopies::default();
+        let held = Mutex::new(0);
+        let mut held_after_runs = Vec::new();
+        let series = Series::once(&clock).with_untimed(1);
+        let reset = |made: &mut bool| {
+            *held.lock().expect("no panics") -= i32::from(*made);
+            *made = false;
+        };
+        let run = |made: &mut bool| {
+            clock.advance(20_000.0);
+            *made = true;
+            *held.lock().expect("no panics") += 1;
+            held_after_runs.push(*held.lock().expect("no panics"));
+        };
+        slots.time(&series, 64, || false, reset, run);
+        let (untimed, timed) = held_after_runs.split_at(held_after_runs.len() - 3);
+        assert_eq!(timed, [1, 2, 3]);
+        assert_eq!(untimed.iter().max(), Some(&3), "{untimed:?}");
     }
 
     #[test]
