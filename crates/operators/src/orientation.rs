@@ -5,28 +5,30 @@ use sixfold_core::{FaceId, FaceList, PolygonMesh, VertexId};
 
 use crate::error::OrientationError;
 
-/// The rule that chooses one of the two orientations of each component.
+/// The rule that chooses one of the two possible orientations of each component.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Facing {
-    /// The orientation of the majority of faces. In a tie, the orientation of the first face.
+    /// The orientation that most faces of the component have. In a tie, the first face keeps its
+    /// orientation.
     #[default]
     Majority,
-    /// Outward if the component is closed and encloses a volume; otherwise as with
-    /// [`Majority`](Self::Majority).
+    /// Outward if the component is closed and encloses a volume. For other components, the rule
+    /// [`Majority`](Self::Majority) applies.
     Outward,
 }
 
-/// A mesh with consistent orientation, and the reversed faces.
+/// A mesh with consistent orientation, and the list of the reversed faces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Oriented {
-    /// The mesh. The vertices, the order of the faces and the first corner of each face are
-    /// unchanged.
+    /// The mesh after the faces were reversed. The vertices, the order of the faces and the first
+    /// corner of each face are unchanged.
     pub polygons: PolygonMesh,
-    /// The reversed faces, ascending.
+    /// The reversed faces, in ascending order.
     pub reversed: Vec<FaceId>,
 }
 
-/// Reverses faces until no two faces run along an edge in the same direction.
+/// Reverses faces until the faces of every edge with exactly two faces run along the edge in
+/// opposite directions.
 ///
 /// ```text
 ///     ──→──              ──→──
@@ -37,17 +39,17 @@ pub struct Oriented {
 ///                        ──←──
 /// ```
 ///
-/// Each component is oriented independently. With [`Facing::Outward`], the wall of a cavity inside
-/// a solid therefore faces away from the cavity.
+/// Each component is oriented independently of the other components. With [`Facing::Outward`], the
+/// wall of a cavity inside a solid therefore faces away from the cavity.
 ///
 /// # Errors
 ///
-/// Returns [`OrientationError::NotOrientable`] if the faces of a component cannot agree, with an
-/// edge of the component.
+/// Returns [`OrientationError::NotOrientable`] with an edge if the faces of a component cannot have
+/// a consistent orientation.
 ///
 /// # Complexity
 ///
-/// O(n log n) for n corners.
+/// O(n log n) time for n corners.
 pub fn oriented(polygons: &PolygonMesh, facing: Facing) -> Result<Oriented, OrientationError> {
     let faces = polygons.faces();
     let neighbours = side_neighbours(faces);
