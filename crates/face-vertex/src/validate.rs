@@ -225,7 +225,10 @@ mod tests {
         let expected = "I3 fails: the fan of v1 contains f1, which has no corner there";
         assert_eq!(fault(&broken), expected);
         broken.fans.rows_mut()[1].len = 0;
-        assert_eq!(fault(&broken), "I3 fails: the fan of v1 does not contain f0");
+        assert_eq!(
+            fault(&broken),
+            "I3 fails: the fan of v1 does not contain f0"
+        );
     }
 
     #[test]

@@ -38,7 +38,10 @@ pub fn round_trip<M: Representation>(polygons: &PolygonMesh) {
     assert_same::<M>("to_polygons", &out, &input);
     match M::from_polygons(&out) {
         Ok(again) => assert_same::<M>("a second to_polygons", &again.to_polygons(), &input),
-        Err(e) => panic!("{}: cannot be built from the result of to_polygons: {e}", M::NAME),
+        Err(e) => panic!(
+            "{}: cannot be built from the result of to_polygons: {e}",
+            M::NAME
+        ),
     }
 }
 

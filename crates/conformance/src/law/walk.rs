@@ -151,7 +151,11 @@ impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
         let (mesh, name) = (self.mesh, self.name);
         let expected: Vec<M::Side> = self.sides.iter().map(|s| s.side).collect();
         let distinct: BTreeSet<M::Side> = expected.iter().copied().collect();
-        assert_eq!(distinct.len(), expected.len(), "{name}: two sides are equal");
+        assert_eq!(
+            distinct.len(),
+            expected.len(),
+            "{name}: two sides are equal"
+        );
         assert!(mesh.sides().eq(expected), "{name}: sides()");
         assert_eq!(mesh.side_count(), self.sides.len(), "{name}: side_count()");
     }
