@@ -5,6 +5,7 @@ mod changes;
 mod comparing;
 mod external;
 mod golden;
+mod help_texts;
 mod interrupt;
 mod json_csv;
 mod many;

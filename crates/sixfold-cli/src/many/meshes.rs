@@ -1,6 +1,6 @@
 //! Finds the meshes of a study in files and folders.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -14,9 +14,16 @@ pub(crate) struct Mesh {
     pub(crate) name: String,
     /// The file; `None` for the built-in mesh.
     pub(crate) path: Option<PathBuf>,
+    /// Why there is no mesh at this place: a folder that cannot be listed, or has no mesh.
+    pub(crate) problem: Option<String>,
 }
 
-/// The part of a study that one of n jobs does: every n-th mesh.
+/// Endings of mesh files that folders can contain and that are not read.
+const OTHER_FORMATS: [&str; 12] = [
+    "3ds", "3mf", "blend", "dae", "fbx", "glb", "gltf", "off", "ply", "stl", "usd", "x3d",
+];
+
+/// A shard: every n-th mesh, starting with the i-th mesh. One of n jobs studies the shard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Shard {
     index: usize,
@@ -47,44 +54,99 @@ impl FromStr for Shard {
     }
 }
 
-/// Returns the meshes in `places`, without duplicates and sorted by name. Searches folders and
-/// their subfolders for OBJ files. If `places` is empty, returns the built-in mesh.
-pub(crate) fn find_meshes(places: &[PathBuf]) -> Result<Vec<Mesh>, Failure> {
+/// Returns the meshes in `places`: files, and all OBJ files in folders and their subfolders, sorted
+/// by name. Each file occurs once. Without any place, returns the built-in mesh. Calls `note` with a
+/// message on mesh files of other formats.
+///
+/// # Errors
+///
+/// Returns an error if no place has a mesh.
+pub(crate) fn find_meshes(
+    places: &[PathBuf],
+    note: &mut dyn FnMut(&str),
+) -> Result<Vec<Mesh>, Failure> {
     let mut meshes: Vec<Mesh> = Vec::new();
     if places.is_empty() {
-        let name = crate::load::built_in().name;
-        meshes.push(Mesh { name, path: None });
+        meshes.push(Mesh {
+            name: crate::load::built_in().name,
+            path: None,
+            problem: None,
+        });
     }
     let mut seen = BTreeSet::new();
     for place in places {
-        let mut files = Vec::new();
-        if place.is_dir() {
-            let listed = list_obj_files(place, &mut files);
-            listed.map_err(|(folder, cause)| {
-                Failure::usage(format!(
-                    "{}: cannot be listed ({cause}): check the permissions of this directory",
-                    folder.display()
-                ))
-            })?;
-            if files.is_empty() {
-                return Err(Failure::usage(format!(
-                    "{}: no .obj file in this directory or its subdirectories: name another \
-                     directory",
-                    place.display()
-                )));
+        let files = match place.is_dir() {
+            true => files_in_folder(place, note),
+            false => Ok(vec![place.clone()]),
+        };
+        match files {
+            Ok(files) => {
+                for path in files {
+                    if seen.insert(fs::canonicalize(&path).unwrap_or_else(|_| path.clone())) {
+                        meshes.push(Mesh {
+                            name: name_of(&path),
+                            path: Some(path),
+                            problem: None,
+                        });
+                    }
+                }
             }
-        } else {
-            files.push(place.clone());
-        }
-        for path in files {
-            if seen.insert(fs::canonicalize(&path).unwrap_or_else(|_| path.clone())) {
-                let name = name_of(&path);
-                let path = Some(path);
-                meshes.push(Mesh { name, path });
-            }
+            Err(problem) => meshes.push(Mesh {
+                name: name_of(place),
+                path: None,
+                problem: Some(problem),
+            }),
         }
     }
-    Ok(meshes)
+    match &meshes[..] {
+        [first, others @ ..] if others.iter().all(|mesh| mesh.problem.is_some()) => {
+            match &first.problem {
+                Some(problem) => Err(Failure::usage(format!("{}: {problem}", first.name))),
+                None => Ok(meshes),
+            }
+        }
+        _ => Ok(meshes),
+    }
+}
+
+/// Returns the OBJ files in a folder and its subfolders, at least one, or why there is none.
+fn files_in_folder(folder: &Path, note: &mut dyn FnMut(&str)) -> Result<Vec<PathBuf>, String> {
+    let mut found = Found::default();
+    list_files(folder, &mut found).map_err(|(at, cause)| match at == folder {
+        true => format!("cannot be listed: {cause}"),
+        false => format!("{} cannot be listed: {cause}", at.display()),
+    })?;
+    let others: Vec<String> = found
+        .others
+        .iter()
+        .map(|(ending, count)| format!("{count} .{ending}"))
+        .collect();
+    let others = others.join(", ");
+    if found.files.is_empty() {
+        let but = match others.is_empty() {
+            true => String::new(),
+            false => format!(", but {others}: convert them to OBJ"),
+        };
+        return Err(format!(
+            "no .obj file in this directory or its subdirectories{but}"
+        ));
+    }
+    if !others.is_empty() {
+        note(&format!(
+            "note: {}: files of other formats are left out ({others}): convert them to OBJ",
+            folder.display()
+        ));
+    }
+    Ok(found.files)
+}
+
+/// The files of a folder.
+#[derive(Default)]
+struct Found {
+    /// The OBJ files.
+    files: Vec<PathBuf>,
+    /// Number of mesh files of other formats, by ending.
+    others: BTreeMap<String, usize>,
 }
 
 /// Returns a path as text. Bytes that are not UTF-8 are escaped, so that different paths have
@@ -94,9 +156,10 @@ fn name_of(path: &Path) -> String {
         .map_or_else(|| format!("{path:?}"), ToOwned::to_owned)
 }
 
-/// Lists all OBJ files in `folder` and its subfolders, sorted by name. Skips hidden files. Does not
-/// follow links to folders, because they may form a cycle.
-fn list_obj_files(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), (PathBuf, io::Error)> {
+/// Lists all OBJ files in `folder` and its subfolders, sorted by name, and counts those of other
+/// formats. Skips hidden files, which other programs leave behind. Does not follow links to folders,
+/// because they may form a cycle.
+fn list_files(folder: &Path, found: &mut Found) -> Result<(), (PathBuf, io::Error)> {
     let failed = |cause| (folder.to_owned(), cause);
     let entries = fs::read_dir(folder).map_err(failed)?;
     let mut paths = Vec::new();
@@ -114,11 +177,16 @@ fn list_obj_files(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), (PathBu
     }
     paths.sort();
     for (path, is_folder) in paths {
-        let ending = path.extension();
         if is_folder {
-            list_obj_files(&path, files)?;
-        } else if ending.is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
-            files.push(path);
+            list_files(&path, found)?;
+            continue;
+        }
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        let ending = ending.unwrap_or_default().to_ascii_lowercase();
+        if ending == "obj" {
+            found.files.push(path);
+        } else if OTHER_FORMATS.contains(&&*ending) {
+            *found.others.entry(ending).or_default() += 1;
         }
     }
     Ok(())
