@@ -37,8 +37,8 @@ pub(super) fn pooled_table(pool: &Pool, bold: bool) -> String {
 
 const LEGEND: &str = "* fastest or tied with the fastest on most meshes\n\
     ? estimated on some meshes, because a run would exceed the budget\n\
-    (n) mean over n meshes only: a backend cannot do the operation on the other meshes\n\
-    – the backend cannot do the operation";
+    (n) mean over n meshes only: on the other meshes, a backend has no time\n\
+    – no time on these meshes";
 
 /// Formats a cell such as `1.04*` or `?18.2`.
 fn cell(row: &Pooled, bold: bool) -> Cell {

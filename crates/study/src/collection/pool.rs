@@ -377,10 +377,10 @@ impl Purpose {
     /// Returns the name of the purpose in sentences, such as `queries`.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Build => "building",
-            Self::Query => "queries",
-            Self::Edit => "edits",
-            Self::Subdivide => "subdivision",
+            Self::Build => "Building",
+            Self::Query => "Queries",
+            Self::Edit => "Edits",
+            Self::Subdivide => "Subdivision",
         }
     }
 }

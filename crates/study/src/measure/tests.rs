@@ -308,6 +308,39 @@ fn scans_are_sampled_or_estimated_to_fit_the_budget() {
 }
 
 #[test]
+fn long_runs_of_other_backends_leave_time_for_scans() {
+    let machine = SimulatedMachine::default();
+    let subject = |ns_per_element: f64, cost: QueryCost| {
+        Box::new(Synthetic {
+            machine: machine.clone(),
+            ns_per_element,
+            elements: 10_000,
+            costs: [cost; 9],
+            most_run: Rc::default(),
+            placement: Placement::default(),
+        }) as Box<dyn TimedBackend>
+    };
+    // The three first runs of the local backend take almost half of the budget.
+    let mut subjects = [
+        subject(60_000.0, QueryCost::Local),
+        subject(1_000.0, QueryCost::Scan),
+    ];
+    let (entries, _) = run(
+        &machine,
+        &mut subjects,
+        Duration::from_secs(4),
+        false,
+        false,
+    );
+    assert!(entries.iter().all(|entry| entry.refusal.is_none()));
+    assert!(
+        entries
+            .iter()
+            .all(|entry| !entry.times().is_empty() || entry.estimate.is_some())
+    );
+}
+
+#[test]
 fn a_skewed_mesh_is_sampled_on_every_structure() {
     let costs = [200_000.0; 3];
     let budget = Duration::from_secs(2);

@@ -121,7 +121,7 @@ impl Choice {
             "Choose {}: {} are equally fast (within 5 %, or not measurably different), and {} \
              {reason} ({per_vertex:.1} per vertex).",
             self.backend,
-            list(&[&[self.backend.clone()], &self.equally_fast[..]].concat()),
+            list(std::iter::once(&self.backend).chain(&self.equally_fast)),
             self.backend,
         ))
     }
@@ -147,10 +147,11 @@ impl Choice {
 }
 
 /// Joins names: `a`, `a and b`, `a, b and c`.
-pub(crate) fn list(names: &[String]) -> String {
-    match names {
+pub(crate) fn list<'n>(names: impl IntoIterator<Item = &'n String>) -> String {
+    let names: Vec<&str> = names.into_iter().map(String::as_str).collect();
+    match &names[..] {
         [] => String::new(),
-        [name] => name.clone(),
+        [name] => (*name).to_owned(),
         [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
 }

@@ -95,7 +95,7 @@ fn fastest(report: &PickReport, best: &Ranked) -> String {
         ),
         tied => format!(
             "{answer} {workload}, {} are tied: {each} per operation{next}.",
-            list(&[&[name(best)], tied].concat())
+            list(std::iter::once(&name(best)).chain(tied))
         ),
     }
 }
