@@ -54,8 +54,8 @@ impl Edit {
     ];
 
     /// The costs of the edits in a structure that stores adjacency. Moving or adding a vertex costs
-    /// O(1). Removing isolated vertices and compacting count as scans, because they read whole
-    /// tables. All other edits read only the faces around the element.
+    /// O(1). Two edits read whole tables, so their cost is a scan: removing isolated vertices, and
+    /// compacting. All other edits read only the faces around the element.
     pub const LOCAL_COSTS: [Option<QueryCost>; Self::ALL.len()] = {
         let mut costs = [Some(QueryCost::Local); Self::ALL.len()];
         costs[Self::SetPosition as usize] = Some(QueryCost::Constant);

@@ -47,10 +47,11 @@ pub struct Facts {
     /// The number of edges with two faces that run along the edge in the same direction.
     pub inconsistent_edges: usize,
     /// True if, at every edge with two faces, the faces run along the edge in opposite directions.
-    /// `None` if there are no used faces.
+    /// `None` if all faces are degenerate, or if there are no faces.
     pub consistently_oriented: Option<bool>,
     /// True if the faces can be flipped so that, at every edge with two faces, the faces run along
-    /// the edge in opposite directions. `None` if there are no used faces.
+    /// the edge in opposite directions. `None` if all faces are degenerate, or if there are no
+    /// faces.
     pub orientable: Option<bool>,
     /// True if there are used faces and no boundary edges.
     pub closed: bool,

@@ -55,8 +55,8 @@ use sixfold_core::{
 /// | `edges`, `edge_count` | all corners | O(corners + vertices), without hashing |
 ///
 /// A pass over all vertices with VF, or over all faces with FV, reads the tables from start to end.
-/// If the tables fit in the cache, the loop over the six items (VF) or three items (FV) takes most
-/// of the time. In larger meshes, the number of bytes limits the speed. VF reads 32 bytes per
+/// If the tables fit in the cache, most of this time is the loop over the results of each query:
+/// six faces around a vertex (VF), or three vertices of a face (FV). In larger meshes, the number of bytes limits the speed. VF reads 32 bytes per
 /// vertex (8 of fans, 24 of pool), and FV reads 12 bytes per triangle. The other queries jump from
 /// the pool to the corners of the faces, then compare the vertices at these corners. In a mesh with
 /// a good order, the comparisons limit the speed of VV. In a mesh with a random order, the latency

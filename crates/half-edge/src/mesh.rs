@@ -82,8 +82,8 @@ pub(crate) const NO_HALF: HalfEdgeId = HalfEdgeId::new(u32::MAX);
 ///   boundary, `leaving(v)` has no face.
 /// - I6  The steps `h → next(twin(h))` visit all half-edges with origin `v` in one cycle: every
 ///   vertex is manifold.
-/// - I7  `first(f)` is a half-edge with face `f`. The cycle of this half-edge has at least three
-///   vertices, each once.
+/// - I7  `first(f)` is a half-edge with face `f`. The cycle of `first(f)` has at least three
+///   vertices, and no vertex occurs twice.
 /// - I8  No two edges have the same ends.
 /// - I9  The bits in the tables of holes are set exactly for deleted vertices, edges and faces.
 ///   `leaving` of a deleted vertex is empty. Both half-edges of a deleted edge, and `first` of a
