@@ -107,8 +107,8 @@ pub use refine::EdgeNumbers;
 
 /// The mesh type with its type parameters, for generic code.
 ///
-/// Most programs use the types [`CornerTable`](crate::CornerTable) and
-/// [`EditableCornerTable`](crate::EditableCornerTable) instead.
+/// Most programs use the types [`CornerTable`] and
+/// [`EditableCornerTable`] instead.
 pub mod generic {
     pub use crate::mesh::CornerTable;
 }

@@ -26,8 +26,8 @@ pub use walk::{CornerMap, FaceSide};
 
 /// The mesh type with its type parameters, for generic code.
 ///
-/// Most programs use the types [`FaceVertexMesh`](crate::FaceVertexMesh) and
-/// [`EditableFaceVertexMesh`](crate::EditableFaceVertexMesh) instead.
+/// Most programs use the types [`FaceVertexMesh`] and
+/// [`EditableFaceVertexMesh`] instead.
 pub mod generic {
     pub use crate::mesh::FaceVertexMesh;
 }

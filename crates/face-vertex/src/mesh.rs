@@ -56,11 +56,11 @@ use sixfold_core::{
 ///
 /// A pass over all vertices with VF, or over all faces with FV, reads the tables from start to end.
 /// If the tables fit in the cache, most of this time is the loop over the results of each query:
-/// six faces around a vertex (VF), or three vertices of a face (FV). In larger meshes, the number of bytes limits the speed. VF reads 32 bytes per
-/// vertex (8 of fans, 24 of pool), and FV reads 12 bytes per triangle. The other queries jump from
-/// the pool to the corners of the faces, then compare the vertices at these corners. In a mesh with
-/// a good order, the comparisons limit the speed of VV. In a mesh with a random order, the latency
-/// of the jumps limits the speed of VV.
+/// six faces around a vertex (VF), or three vertices of a face (FV). In larger meshes, the number
+/// of bytes limits the speed. VF reads 32 bytes per vertex (8 of fans, 24 of pool), and FV reads 12
+/// bytes per triangle. The other queries jump from the pool to the corners of the faces, then
+/// compare the vertices at these corners. In a mesh with a good order, the comparisons limit the
+/// speed of VV. In a mesh with a random order, the latency of the jumps limits the speed of VV.
 ///
 /// Splitting every face ([`Refine`](sixfold_core::Refine)) takes O(corners · d + vertices) time.
 /// Numbering the edges also takes O(corners · d + vertices) time.

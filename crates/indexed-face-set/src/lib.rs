@@ -54,8 +54,8 @@ mod validate;
 
 /// The mesh type with its type parameters, for generic code.
 ///
-/// Most programs use the types [`IndexedFaceSet`](crate::IndexedFaceSet) and
-/// [`EditableIndexedFaceSet`](crate::EditableIndexedFaceSet) instead.
+/// Most programs use the types [`IndexedFaceSet`] and
+/// [`EditableIndexedFaceSet`] instead.
 pub mod generic {
     pub use crate::mesh::IndexedFaceSet;
 }

@@ -26,8 +26,8 @@ pub use vertex::SoupVertex;
 
 /// The mesh type with its type parameters, for generic code.
 ///
-/// Most programs use the types [`PolygonSoup`](crate::PolygonSoup) and
-/// [`EditablePolygonSoup`](crate::EditablePolygonSoup) instead.
+/// Most programs use the types [`PolygonSoup`] and
+/// [`EditablePolygonSoup`] instead.
 pub mod generic {
     pub use crate::mesh::PolygonSoup;
 }

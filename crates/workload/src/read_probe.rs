@@ -27,8 +27,8 @@ use sixfold_core::Probe;
 
 /// Bytes of one cache line.
 pub const LINE_BYTES: usize = 64;
-/// Number of lines in the simulated cache. The cache has 256 KiB. Most processors have at least this
-/// much cache per core.
+/// Number of lines in the simulated cache. The cache has 256 KiB. Most processors have at least
+/// this much cache per core.
 pub const CACHE_LINES: u64 = 4096;
 /// Maximum distance from a fetched line to the nearest cached line, in lines. If the distance is
 /// larger, the fetch is a jump.

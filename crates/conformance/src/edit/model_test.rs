@@ -80,7 +80,8 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
     /// # Panics
     ///
     /// Panics if the mesh accepts the action and the model refuses it, or the reverse. Panics if,
-    /// after the action, the faces, the positions, the handles or the recorded changes differ from the model.
+    /// after the action, the faces, the positions, the handles or the recorded changes differ from
+    /// the model.
     /// Also panics if an invariant of the mesh is broken.
     pub fn apply(&mut self, action: &Action) -> bool {
         let name = M::NAME;
