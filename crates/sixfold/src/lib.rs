@@ -171,11 +171,11 @@
 //!
 //! # Features
 //!
-//! - `rayon` (default): native subdivision steps use all threads.
+//! - `rayon` (default): subdivision steps in a structure's own tables use all threads.
 //! - `serde`: [`Facts`], [`Capabilities`], [`MemoryFootprint`], subdivision schemes and mesh orders
 //!   can be serialised.
 //! - `mint`: [`PolygonMesh::new`] takes points and vectors of the crate `mint`, and a [`Point`]
-//!   converts to them.
+//!   converts to such points and vectors.
 
 // The exports are a list instead of `*`, because `sixfold_core` also has items that only authors
 // of structures and measurements need.
