@@ -72,10 +72,10 @@ fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> bool {
     };
     let report = study(&study_mesh, &settings, &AtomicBool::new(false), &mut |_| ());
     let report = report.expect("all four can hold the mesh");
-    let heap = report.environment.heap.as_ref().expect("a heap report");
+    let heap = report.run.environment.heap.as_ref().expect("a heap report");
     assert_eq!((heap.policy, &heap.reason), (Policy::Kept, &None));
     let mut samples = 0;
-    for raw in &report.raw {
+    for raw in &report.samples {
         let faults = raw.faults.as_ref().expect("page faults are counted");
         assert!(
             faults.iter().all(|&n| n == 0),

@@ -21,7 +21,7 @@ use crate::polygon_mesh::{PolygonMesh, repeated};
 /// `genus` is computed from the Euler–Poincaré formula v − e + f = 2(c − g) − h, for v vertices, e
 /// edges, f faces, c components, h boundary loops and genus g. In this formula, a vertex whose
 /// faces form several fans (chains of faces that share edges) counts once per fan.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Facts {
     /// The number of vertices, including isolated vertices.

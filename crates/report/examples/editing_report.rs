@@ -17,9 +17,7 @@ use common::median;
 use serde_json::json;
 use sixfold::{Edit, PolygonMesh, QueryCost, StructureInfo, shapes, structure_infos};
 use sixfold_report::{Panel, panels};
-use sixfold_study::{
-    Backend, EditPass, Editor, Environment, MachineClock, Policy, Series, SingleEdit, pages,
-};
+use sixfold_study::{Backend, EditPass, Editor, MachineClock, Run, Series, SingleEdit};
 
 /// Side lengths of the tori: 1,058, 4,232, 16,200, 64,800, 259,200 and 1,036,800 triangles.
 const SIDES: [usize; 6] = [23, 46, 90, 180, 360, 720];
@@ -53,10 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .next()
         .ok_or("usage: editing_report FOLDER [ROUNDS]")?;
     let rounds = words.next().map_or(Ok(5), |word| word.parse())?;
-    let machine = Environment {
-        heap: Some(pages::set_policy(Policy::Kept)),
-        ..Environment::detect(0, 0.0)
-    };
+    let run = common::start();
     let mut samples = Samples::new();
     for side in SIDES {
         let polygons = shapes::triangle_torus(side, side)?;
@@ -65,13 +60,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let folder = Path::new(&folder);
     fs::create_dir_all(folder)?;
-    fs::write(folder.join("README.md"), text(&machine, rounds, &samples)?)?;
+    fs::write(folder.join("README.md"), text(&run, rounds, &samples)?)?;
     figure(&folder.join("growth.svg"), &samples)?;
     let rows = samples.iter().map(|(&((what, backend), faces), ns)| {
         json!({"what": what, "backend": backend, "faces": faces, "cpu_ns": ns})
     });
     let rows: Vec<_> = rows.collect();
-    let data = json!({"environment": machine, "rounds": rounds, "results": rows});
+    let data = json!({"environment": run.environment, "start": run.start, "rounds": rounds, "results": rows});
     fs::write(
         folder.join("editing.json"),
         serde_json::to_string_pretty(&data)? + "\n",
@@ -165,13 +160,9 @@ fn time_text(ns: f64) -> String {
     }
 }
 
-fn text(
-    machine: &Environment,
-    rounds: usize,
-    samples: &Samples,
-) -> Result<String, std::fmt::Error> {
+fn text(run: &Run, rounds: usize, samples: &Samples) -> Result<String, std::fmt::Error> {
     let mut text = String::from("# Cost of edits on each structure, as the mesh grows\n\n");
-    text += &common::introduction(machine, "editing_report", "reports/editing", rounds);
+    text += &common::introduction(run, "editing_report", "reports/editing", rounds);
     writeln!(
         text,
         " The meshes are tori of 1,058 to 1,036,800 triangles. Each edit is done at up to {PLACES} places of a fresh copy of the mesh ({PLACES_SCANNED} places if the structure scans all faces). The places are spread over the mesh, in no particular order. An untimed edit comes first, because the first edit reallocates full tables. Every edit checks whether it is legal. No edit writes a log of its changes.\n\n![Time per edit over the faces of the mesh](growth.svg)\n"

@@ -21,9 +21,7 @@ use serde_json::json;
 use sixfold::subdivision::{Scheme, SubdivisionError};
 use sixfold::{Creases, PolygonMesh, shapes};
 use sixfold_report::{Panel, panels};
-use sixfold_study::{
-    Backend, Clock, Environment, MachineClock, Policy, Refiner, SubdivisionJob, Way, pages,
-};
+use sixfold_study::{Backend, Clock, MachineClock, Refiner, Run, SubdivisionJob, Way};
 
 /// The schemes of the report. Both accept triangles.
 const SCHEMES: [Scheme; 2] = [Scheme::CatmullClark, Scheme::Loop];
@@ -56,16 +54,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         .next()
         .ok_or("usage: subdivision_report FOLDER [ROUNDS]")?;
     let rounds = words.next().map_or(Ok(5), |word| word.parse())?;
-    let machine = Environment {
-        heap: Some(pages::set_policy(Policy::Kept)),
-        ..Environment::detect(0, 0.0)
-    };
+    let run = common::start();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let polygons = shapes::geodesic(16)?;
     let samples = pool.install(|| measure(&polygons, rounds))?;
     let folder = Path::new(&folder);
     fs::create_dir_all(folder)?;
-    fs::write(folder.join("README.md"), text(&machine, rounds, &samples)?)?;
+    fs::write(folder.join("README.md"), text(&run, rounds, &samples)?)?;
     figure(&folder.join("growth.svg"), &samples)?;
     let rows: Vec<_> = samples
         .iter()
@@ -74,7 +69,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                    "faces": sample.faces, "cpu_ns": sample.ns})
         })
         .collect();
-    let data = json!({"environment": machine, "rounds": rounds, "results": rows});
+    let data = json!({"environment": run.environment, "start": run.start, "rounds": rounds, "results": rows});
     let data = serde_json::to_string_pretty(&data)? + "\n";
     fs::write(folder.join("subdivision.json"), data)?;
     Ok(())
@@ -134,13 +129,9 @@ fn measure(polygons: &PolygonMesh, rounds: usize) -> Result<Samples, Subdivision
     Ok(samples)
 }
 
-fn text(
-    machine: &Environment,
-    rounds: usize,
-    samples: &Samples,
-) -> Result<String, std::fmt::Error> {
+fn text(run: &Run, rounds: usize, samples: &Samples) -> Result<String, std::fmt::Error> {
     let mut text = String::from("# Cost of subdivision on each structure\n\n");
-    text += &common::introduction(machine, "subdivision_report", "reports/subdivision", rounds);
+    text += &common::introduction(run, "subdivision_report", "reports/subdivision", rounds);
     text += " The control mesh is a geodesic sphere of 5,120 triangles. Times are for all levels, in nanoseconds per face of the last level.\n\n";
     text += "`gather` queries the neighbourhood of each new point, and `scatter` makes one pass over the faces. After `gather` and `scatter`, the structure is built again from polygons. `native_fresh` and `native` split the structure's own tables. `native_fresh` writes the result into newly allocated tables, and `native` writes the result into the tables of the previous run.\n\n![Nanoseconds per new face, by size](growth.svg)\n";
     for scheme in SCHEMES {

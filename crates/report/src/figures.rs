@@ -9,7 +9,7 @@ mod ranking;
 mod roofline;
 
 use sixfold_study::numbers::{counted, grouped};
-use sixfold_study::{Collection, Environment, Labs, MeshReport, Pool, Report};
+use sixfold_study::{Environment, Finding, MeshReport, Pool, Report, Results, Run};
 
 use crate::{Figure, ReportPage, Section};
 
@@ -27,38 +27,38 @@ pub(crate) struct Row<'a> {
     pub(crate) note: String,
 }
 
-pub(crate) fn page(collection: &Collection, command: &str) -> ReportPage {
-    let single = match (&collection.studies[..], collection.meshes.len()) {
-        ([study], 1) => Some(study),
+pub(crate) fn page(results: &Results, command: &str) -> ReportPage {
+    let studies: Vec<&Report> = results.studies().collect();
+    let single = match (&studies[..], results.planned.len()) {
+        ([study], 1) => Some(*study),
         _ => None,
     };
-    let labs = labs(&collection.labs, command);
-    let pool = collection.pool();
+    let labs = labs(results, command);
+    let pool = results.pool();
     let title = match (single, &labs[..]) {
         (Some(study), _) => format!("Mesh data structures on {}", study.mesh.name),
-        (None, [lab]) if collection.meshes.is_empty() => lab.title.clone(),
-        (None, _) if collection.meshes.is_empty() => "Mesh data structures".into(),
+        (None, [lab]) if results.planned.is_empty() => lab.title.clone(),
+        (None, _) if results.planned.is_empty() => "Mesh data structures".into(),
         (None, _) => {
-            let meshes = counted(collection.studies.len(), "mesh", "meshes");
+            let meshes = counted(studies.len(), "mesh", "meshes");
             format!("Mesh data structures on {meshes}")
         }
     };
     // Show the recorded command if all results have the same command.
-    let mut commands =
-        environments(collection).map(|environment| recorded_command(environment, command));
+    let mut commands = runs(results).map(|run| recorded_command(run, command));
     let first = commands.next().unwrap_or(command);
     let command = match commands.all(|other| other == first) {
         true => first,
         false => command,
     };
     let mut machines: Vec<String> = Vec::new();
-    for environment in environments(collection) {
-        let machine = machine(environment);
+    for run in runs(results) {
+        let machine = machine(&run.environment);
         if !machines.contains(&machine) {
             machines.push(machine);
         }
     }
-    let section = |(place, study): (usize, &Report)| Section {
+    let section = |(place, study): (usize, &&Report)| Section {
         title: study.mesh.name.clone(),
         facts: facts(&study.mesh),
         sentences: study.sentences.clone(),
@@ -75,7 +75,7 @@ pub(crate) fn page(collection: &Collection, command: &str) -> ReportPage {
         warnings: {
             let warnings = single.map_or(&pool.warnings, |study| &study.warnings);
             let warnings = warnings.clone();
-            let interrupted = is_interrupted(collection).then(|| INTERRUPTED.to_owned());
+            let interrupted = results.is_interrupted().then(|| INTERRUPTED.to_owned());
             warnings.into_iter().chain(interrupted).collect()
         },
         figures: match single {
@@ -84,45 +84,33 @@ pub(crate) fn page(collection: &Collection, command: &str) -> ReportPage {
         },
         meshes: match single {
             Some(_) => Vec::new(),
-            None => collection.studies.iter().enumerate().map(section).collect(),
+            None => studies.iter().enumerate().map(section).collect(),
         },
         labs,
-        failures: collection
+        failures: results
             .failures
             .iter()
             .map(|failed| (failed.mesh.clone(), failed.reason.clone()))
             .collect(),
-        missing: collection.missing.clone(),
+        missing: results.missing().map(str::to_owned).collect(),
     }
 }
 
 const INTERRUPTED: &str = "Interrupted: some results are incomplete. To complete the report, use \
                            `sixfold study --resume`.";
 
-fn is_interrupted(collection: &Collection) -> bool {
-    let mut studies = collection.studies.iter();
-    studies.any(|study| study.interrupted) || collection.labs.interrupted()
+fn runs(results: &Results) -> impl Iterator<Item = &Run> {
+    results.findings.iter().map(Finding::run)
 }
 
-fn environments(collection: &Collection) -> impl Iterator<Item = &Environment> {
-    let studies = collection.studies.iter().map(|study| &study.environment);
-    studies.chain(collection.labs.environments())
+/// Returns the recorded command of a run, or `command` if none was recorded.
+fn recorded_command<'a>(run: &'a Run, command: &'a str) -> &'a str {
+    run.command.as_deref().unwrap_or(command)
 }
 
-/// Returns the recorded command of these results, or `command` if none was recorded.
-fn recorded_command<'a>(environment: &'a Environment, command: &'a str) -> &'a str {
-    environment.command.as_deref().unwrap_or(command)
-}
-
-fn labs(labs: &Labs, command: &str) -> Vec<Section> {
-    let Labs {
-        orders,
-        growth,
-        why,
-        picks,
-    } = labs;
+fn labs(results: &Results, command: &str) -> Vec<Section> {
     let mut sections = Vec::new();
-    for (i, orders) in orders.iter().enumerate() {
+    for (i, orders) in results.orders().enumerate() {
         sections.push(Section {
             title: format!("Effect of the order in memory: {}", orders.mesh.name),
             facts: facts(&orders.mesh),
@@ -130,11 +118,11 @@ fn labs(labs: &Labs, command: &str) -> Vec<Section> {
             figures: orders::from_orders(
                 orders,
                 &numbered_id("orders", i),
-                recorded_command(&orders.environment, command),
+                recorded_command(&orders.run, command),
             ),
         });
     }
-    for (i, growth) in growth.iter().enumerate() {
+    for (i, growth) in results.growth().enumerate() {
         let ends = growth.sizes.first().zip(growth.sizes.last());
         let sizes = ends.map_or_else(String::new, |(first, last)| {
             let [first, last] = [first.faces, last.faces].map(grouped);
@@ -148,15 +136,12 @@ fn labs(labs: &Labs, command: &str) -> Vec<Section> {
             figures: growth::from_growth(
                 growth,
                 &numbered_id("growth", i),
-                recorded_command(&growth.environment, command),
+                recorded_command(&growth.run, command),
             ),
         });
     }
-    for (i, why) in why.iter().enumerate() {
-        let environment = why.environment.as_ref();
-        let command = environment.map_or(command, |environment| {
-            recorded_command(environment, command)
-        });
+    for (i, why) in results.why().enumerate() {
+        let command = recorded_command(&why.run, command);
         let figure = roofline::from_why(why, &numbered_id("roofline", i), command);
         sections.extend(figure.map(|figure| Section {
             title: format!("Limiting factors of the queries on {}", why.mesh.name),
@@ -165,13 +150,14 @@ fn labs(labs: &Labs, command: &str) -> Vec<Section> {
             figures: vec![figure],
         }));
     }
-    for (i, pick) in picks.iter().enumerate() {
-        let command = recorded_command(&pick.environment, command);
+    for (i, pick) in results.picks().enumerate() {
+        let command = recorded_command(&pick.run, command);
         let id = numbered_id("pick", i);
         let ranked = ranking::from_workload(pick, &id, command);
         let curves = break_even::from_workload(pick, &format!("{id}-break-even"), command);
+        let names: Vec<&str> = pick.meshes.iter().map(|mesh| mesh.name.as_str()).collect();
         sections.push(Section {
-            title: format!("{} on {}", pick.workload.name, pick.meshes.join(", ")),
+            title: format!("{} on {}", pick.workload.name, names.join(", ")),
             facts: pick.workload.summary.trim().to_owned(),
             sentences: [&pick.sentences[..], &pick.warnings].concat(),
             figures: ranked.into_iter().chain(curves).collect(),
@@ -189,7 +175,7 @@ fn numbered_id(name: &str, place: usize) -> String {
 }
 
 fn study_figures(study: &Report, command: &str) -> Vec<Figure> {
-    let command = recorded_command(&study.environment, command);
+    let command = recorded_command(&study.run, command);
     let mut figures = Vec::new();
     figures.extend(heat_map::from_study(study, "", command));
     figures.extend(memory::from_study(study, "", command));
@@ -202,7 +188,7 @@ fn study_figures(study: &Report, command: &str) -> Vec<Figure> {
 fn section_figures(study: &Report, place: usize, command: &str) -> Vec<Figure> {
     // Different names can have the same slug, so the place is added.
     let id_prefix = format!("mesh-{place}-{}-", slug(&study.mesh.name));
-    let command = recorded_command(&study.environment, command);
+    let command = recorded_command(&study.run, command);
     let mut figures = Vec::new();
     figures.extend(heat_map::from_study(study, &id_prefix, command));
     figures.extend(memory::from_study(study, &id_prefix, command));

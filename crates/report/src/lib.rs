@@ -2,7 +2,7 @@
 //!
 //! A *lab* is an additional measurement besides the study: the effect of the element order, the
 //! growth of times with the mesh size, the memory reads of queries, or a workload.
-//! [`ReportPage::new`] draws the figures of a [`Collection`] of studies and labs. Each figure has a
+//! [`ReportPage::new`] draws the figures of a [`Results`]. Each figure has a
 //! table of numbers and the command that reproduces the figure. Browsers show the name and the
 //! value of a data point when the pointer is over the data point.
 //!
@@ -17,7 +17,7 @@ mod html;
 mod markdown;
 mod panels;
 
-use sixfold_study::Collection;
+use sixfold_study::Results;
 
 pub use figure::{Figure, Table};
 pub use panels::{Panel, panels};
@@ -65,8 +65,8 @@ pub struct Section {
 impl ReportPage {
     /// Draws the figures of `collection`. If the command that made a result is unknown, the figure
     /// of this result shows `command`.
-    pub fn new(collection: &Collection, command: &str) -> Self {
-        figures::page(collection, command)
+    pub fn new(results: &Results, command: &str) -> Self {
+        figures::page(results, command)
     }
 
     /// Iterates over all figures in the order of the page.

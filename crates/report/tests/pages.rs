@@ -7,7 +7,7 @@ use std::time::Duration;
 use sixfold::shapes;
 use sixfold_report::{Figure, ReportPage};
 use sixfold_study::{
-    Collection, Failed, FailureKind, Operation, Report, Settings, SharedSettings, StudyMesh, study,
+    Failed, FailureKind, Finding, Operation, Report, Results, Settings, StudyMesh, study,
 };
 
 const NAME_WITH_MARKUP: &str = "<script>alert('a|b')</script>&.obj";
@@ -31,18 +31,12 @@ fn operations() -> Vec<Operation> {
     ]
 }
 
-fn collection(meshes: &[&str]) -> Collection {
-    let names: Vec<String> = meshes.iter().map(|&mesh| mesh.to_owned()).collect();
-    let settings = SharedSettings {
-        operations: operations(),
-        budget_s: 0.08,
-        ..SharedSettings::default()
-    };
-    let mut collection = Collection::new(names, settings);
+fn results(meshes: &[&str]) -> Results {
+    let mut results = Results::default();
     for mesh in meshes {
-        collection.add_study(report(mesh));
+        results.add(report(mesh).into());
     }
-    collection
+    results
 }
 
 fn mark_count(figure: &Figure) -> usize {
@@ -58,7 +52,7 @@ fn figure_by_id<'p>(page: &'p ReportPage, id: &str) -> &'p Figure {
 
 #[test]
 fn every_figure_has_as_many_marks_as_numbers() {
-    let page = ReportPage::new(&collection(&["ball.obj"]), "sixfold study ball.obj");
+    let page = ReportPage::new(&results(&["ball.obj"]), "sixfold study ball.obj");
     let heat_map = figure_by_id(&page, "heat-map");
     assert_eq!(mark_count(heat_map), 3 * 6);
     assert_eq!(heat_map.table.rows.len(), 3);
@@ -98,20 +92,21 @@ fn every_figure_has_as_many_marks_as_numbers() {
 
 #[test]
 fn an_interrupted_page_has_a_warning() {
-    let mut whole = collection(&["ball.obj"]);
-    let has_warning = |collection: &Collection| {
-        let page = ReportPage::new(collection, "sixfold study ball.obj");
+    let mut whole = results(&["ball.obj"]);
+    let has_warning = |results: &Results| {
+        let page = ReportPage::new(results, "sixfold study ball.obj");
         [page.html(), page.markdown()].map(|text| text.contains("Interrupted: "))
     };
     assert_eq!(has_warning(&whole), [false; 2]);
-    whole.studies[0].interrupted = true;
+    if let Finding::Study(study) = &mut whole.findings[0] {
+        study.interrupted = true;
+    }
     assert_eq!(has_warning(&whole), [true; 2]);
 }
 
 #[test]
 fn a_page_of_several_meshes_has_pooled_figures_and_one_section_each() {
-    let mut both = collection(&["a.obj", NAME_WITH_MARKUP]);
-    both.meshes.push("gone.obj".into());
+    let mut both = results(&["a.obj", NAME_WITH_MARKUP]);
     both.add_failure(Failed {
         mesh: "gone.obj".into(),
         reason: "no such file".into(),
@@ -140,7 +135,7 @@ fn a_page_of_several_meshes_has_pooled_figures_and_one_section_each() {
 
 #[test]
 fn pages_load_nothing_and_names_are_escaped() {
-    let page = ReportPage::new(&collection(&[NAME_WITH_MARKUP]), "sixfold study '<b>'");
+    let page = ReportPage::new(&results(&[NAME_WITH_MARKUP]), "sixfold study '<b>'");
     let html = page.html();
     assert!(!html.contains("<script"), "a name became code");
     assert!(!html.contains("<b>"), "a command became code");

@@ -1,6 +1,7 @@
 //! The command-line arguments.
 
 mod comparing;
+mod files;
 mod memory;
 mod picking;
 mod remeshing;
@@ -18,6 +19,7 @@ use sixfold::shapes::Order;
 use sixfold_study::{CacheState, External, Operation, Policy};
 
 pub(crate) use comparing::{Compare, GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders};
+pub(crate) use files::ResultFiles;
 pub(crate) use memory::Memory;
 pub(crate) use picking::{Pick, Workloads};
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
@@ -136,11 +138,11 @@ pub(crate) enum Command {
     Orders(Orders),
     /// Measure how the times grow with the size of the mesh
     Growth(Growth),
-    /// Merge the results of a study that ran in several parts
+    /// Merge results, such as the parts of a study of many meshes
     Merge(Merge),
     /// Draw saved results on one page
     Report(Draw),
-    /// Compare two studies, and show the differences that exceed the noise
+    /// Compare two files of results, and show the differences that exceed the noise
     Compare(Compare),
     /// Show facts about a mesh, and which data structures can hold the mesh
     Inspect(Inspect),
@@ -229,13 +231,9 @@ pub(crate) struct Study {
     /// Refuse a file with degenerate faces instead of leaving them out
     #[arg(long)]
     pub(crate) strict: bool,
-    /// Write all results as JSON (- for standard output)
-    #[arg(long, value_name = "FILE")]
-    pub(crate) json: Option<PathBuf>,
-    /// Write one line per result as CSV (- for standard output)
-    #[arg(long, value_name = "FILE")]
-    pub(crate) csv: Option<PathBuf>,
-    /// Write report.html, report.md, results.json and results.csv to DIR
+    #[command(flatten)]
+    pub(crate) files: ResultFiles,
+    /// Write a page, its figures, and all results as JSON and CSV to DIR
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
     /// Labs (extra measurements): orders,growth,why or none [default: all]
@@ -266,25 +264,27 @@ fn cache_state(name: &str) -> Result<CacheState, String> {
         .ok_or_else(|| format!("unknown cache state `{name}`: choose `warm` or `cold`"))
 }
 
-/// Merge the results of a study that ran in several parts.
+/// Merge results into one file or report.
+///
+/// Merges the parts of a study of many meshes, and results of any command that measures. Studies
+/// must have the same settings.
 #[derive(Debug, Args)]
-#[command(after_help = MERGE_EXAMPLES)]
+#[command(after_help = MERGE_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Merge {
-    /// Results of `sixfold study --shard i/n --report DIR`, for each part i
+    /// Files written by --json, or folders written by --report
     #[arg(value_name = "DIR|FILE.json", required = true)]
-    pub(crate) shards: Vec<PathBuf>,
-    /// Write report.html, report.md, results.json and results.csv to DIR
+    pub(crate) results: Vec<PathBuf>,
+    /// Write a page, its figures, and all results as JSON and CSV to DIR
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
-    /// Write results.json as this file (- for standard output)
-    #[arg(long, value_name = "FILE")]
-    pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) files: ResultFiles,
 }
 
 /// Draw saved results on one page.
 ///
-/// Reads results of `study`, `orders`, `growth`, `why` and `pick`. At most one of the results may
-/// be a study. This command makes no new measurements.
+/// Reads results of any command that measures, also of several meshes. Studies must have the same
+/// settings. This command makes no new measurements.
 #[derive(Debug, Args)]
 #[command(after_help = REPORT_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Draw {
@@ -310,8 +310,7 @@ impl Default for Study {
             patience: settings.external_timeout,
             triangulate: false,
             strict: false,
-            json: None,
-            csv: None,
+            files: ResultFiles::default(),
             report: None,
             labs: None,
             resume: false,

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use comfy_table::{Cell, CellAlignment};
-use sixfold_study::{Change, Changes, CompareSettings, Report, Verdict, compare};
+use sixfold_study::{Change, Changes, CompareSettings, Measurement, Verdict, compare};
 
 use crate::arguments::Compare;
 use crate::failure::Failure;
@@ -20,9 +20,9 @@ const SLOWER: u8 = 1;
 pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     let Compare { before, after, .. } = arguments;
     for study in [before, after] {
-        check_not_overwritten("the study", study, &[("--json", arguments.json.as_ref())])?;
+        check_not_overwritten("the results", study, &[("--json", arguments.json.as_ref())])?;
     }
-    let read = |path: &Path| load::read_results(&load::results_path(path), Report::read_json);
+    let read = |path: &Path| load::read_results(path);
     let [before, after] = [read(before)?, read(after)?];
     let json = Output::open_if(arguments.json.as_ref())?;
     let settings = CompareSettings {
@@ -30,14 +30,6 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
         drift: arguments.noise,
     };
     let changes = compare(&before, &after, settings).map_err(Failure::usage)?;
-    if changes.rows.is_empty() {
-        return Err(Failure::usage(format!(
-            "{} and {} contain no operation that both measured on the same backend, so there is \
-             nothing to compare: study both with the same --backends and --operations",
-            arguments.before.display(),
-            arguments.after.display()
-        )));
-    }
     let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
     print(&changes, arguments.all, &mut text);
     let mut done = text.finish();
@@ -58,9 +50,14 @@ fn print(changes: &Changes, all: bool, text: &mut TextOutput) {
         let both = format!("{} → {}", setting.before, setting.after);
         text.print_line(&hanging_indent(&first, &both));
     }
-    for (backend, before, after) in &changes.bytes {
-        let (before, after) = (grouped(*before), grouped(*after));
-        text.print_line(&format!("{backend:<13}{before} bytes → {after} bytes"));
+    for change in &changes.bytes {
+        let (before, after) = (grouped(change.before), grouped(change.after));
+        let operation = change.operation.as_ref();
+        let operation = operation.map_or(String::new(), |name| format!(" ({name})"));
+        text.print_line(&format!(
+            "{:<13}{before} bytes → {after} bytes{operation}",
+            change.backend
+        ));
     }
     let rows: Vec<&Change> = match all {
         true => changes.rows.iter().collect(),
@@ -68,6 +65,7 @@ fn print(changes: &Changes, all: bool, text: &mut TextOutput) {
     };
     if !rows.is_empty() {
         text.print_line(&changes_table(&rows));
+        text.print_line("");
     }
     for sentence in &changes.sentences {
         text.print_line(&hanging_indent("- ", sentence));
@@ -77,17 +75,37 @@ fn print(changes: &Changes, all: bool, text: &mut TextOutput) {
         ("second", &changes.only_after),
     ] {
         if !only.is_empty() {
-            let words = format!("Only in the {which} study: {}.", only.join(", "));
-            text.print_line(&hanging_indent("- ", &words));
+            let names: Vec<String> = only.iter().map(name).collect();
+            let sentence = format!("Only in the {which} file: {}.", names.join(", "));
+            text.print_line(&hanging_indent("- ", &sentence));
         }
     }
 }
 
+/// Returns the name of a measurement, such as `build on half-edge`. The mesh and the case are not
+/// part of the name.
+fn name(measurement: &Measurement) -> String {
+    format!("{} on {}", measurement.operation, measurement.backend)
+}
+
 fn changes_table(rows: &[&Change]) -> String {
     let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
-    let header = ["operation", "backend"].map(Cell::new);
+    // A column with one value for all rows says nothing.
+    let differs = |of: fn(&Measurement) -> &str| {
+        let mut values = rows.iter().map(|row| of(&row.measurement));
+        let first = values.next();
+        values.any(|value| Some(value) != first)
+    };
+    let columns: [(&str, fn(&Measurement) -> &str); 3] = [
+        ("mesh", |m| &m.mesh),
+        ("command", |m| m.kind),
+        ("case", |m| &m.case),
+    ];
+    let columns: Vec<_> = columns.into_iter().filter(|(_, of)| differs(*of)).collect();
+    let names = columns.iter().map(|(name, _)| *name);
+    let header = names.chain(["operation", "backend"]).map(Cell::new);
     let figures = ["before", "after", "ratio", "95 %"].map(|name| right(name.into()));
-    let header = header.into_iter().chain(figures).chain([Cell::new("")]);
+    let header = header.chain(figures).chain([Cell::new("")]);
     let mut table = table(header.collect());
     for row in rows {
         let interval = row.ci_low.zip(row.ci_high);
@@ -98,15 +116,19 @@ fn changes_table(rows: &[&Change]) -> String {
             Verdict::Slower => "slower",
             Verdict::Same => "",
         };
-        table.add_row([
-            Cell::new(row.operation.name()),
-            Cell::new(&row.backend),
+        let place = columns
+            .iter()
+            .map(|(_, of)| Cell::new(of(&row.measurement)));
+        let figures = [
+            Cell::new(&row.measurement.operation),
+            Cell::new(&row.measurement.backend),
             right(duration(row.before_ns)),
             right(duration(row.after_ns)),
             right(format!("{:.2}", row.ratio)),
             right(interval.unwrap_or_else(|| "–".into())),
             Cell::new(verdict),
-        ]);
+        ];
+        table.add_row(place.chain(figures).collect::<Vec<Cell>>());
     }
     table.trim_fmt()
 }

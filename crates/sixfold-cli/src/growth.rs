@@ -12,18 +12,16 @@ use sixfold_study::{
 use crate::arguments::{GROWTH_EXAMPLES, Growth};
 use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
+use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::orders::{default_operations, short_figure};
-use crate::outcome::{command_line, exit_code, warn_of_debug_build};
-use crate::output::{Output, check_outputs, is_stdout};
-use crate::progress::{Bar, interrupt_flag};
-use crate::study::{describe_environment, name_lists};
+use crate::progress::Bar;
+use crate::study::{describe_run, name_lists};
 use crate::tables::styled;
 use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::{counted, grouped};
 
-/// Prints the text before the files are written, so that it is not lost if writing a file fails.
 pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
-    check_outputs(None, &[("--json", arguments.json.as_ref())])?;
+    let mut session = Session::open(None, &arguments.files, arguments.memory.heap)?;
     let settings = GrowthSettings {
         study: Settings {
             backends: arguments.backends.clone(),
@@ -40,18 +38,10 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
         to: arguments.to,
         steps: arguments.steps,
     };
-    let stop = interrupt_flag(arguments.memory.heap);
-    let json = Output::open_if(arguments.json.as_ref())?;
     warn_of_debug_build();
-    let report = measure(&settings, &stop, &Bar::new())?;
-
-    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
-    print(&report, &mut text);
-    let mut done = text.finish();
-    if let Some(output) = json {
-        done = done.and(output.finish(|writer| report.write_json(writer)));
-    }
-    exit_code(done, report.mismatches(), report.interrupted)
+    let report = measure(&settings, &session.stop, &Bar::new())?;
+    print(&report, &mut session.text);
+    session.finish(&with_command(report, false).into())
 }
 
 /// Measures all sizes, if there is enough free memory for the largest size.
@@ -69,12 +59,10 @@ pub(crate) fn measure(
     )?;
     let report = sixfold_study::growth(settings, stop, &mut |at| bar.show(at));
     bar.clear();
-    let mut report = report.map_err(|error| match error {
+    report.map_err(|error| match error {
         GrowthError::Study(StudyError::NoneHolds { .. }) => Failure::unsupported(error),
         error => Failure::usage(error),
-    })?;
-    report.environment.command = Some(command_line());
-    Ok(report)
+    })
 }
 
 /// Returns the help text after the options.
@@ -125,10 +113,13 @@ fn print(report: &GrowthReport, text: &mut TextOutput) {
     for sentence in &report.sentences {
         text.print_line(&hanging_indent("- ", sentence));
     }
+    for warning in &report.warnings {
+        text.print_line(&hanging_indent("! ", warning));
+    }
     text.print_line("");
     let rows = report.sizes.iter().flat_map(|size| &size.results);
     let most = rows.map(|row| row.samples).max();
-    let settings = describe_environment(&report.environment, most.unwrap_or(0));
+    let settings = describe_run(&report.run, most.unwrap_or(0));
     text.print_line(&hanging_indent("", &settings));
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use sixfold::io::{LeftOut, ObjMesh, read_obj};
 use sixfold::{Creases, PolygonMesh, shapes};
-use sixfold_study::{ReadError, StudyMesh};
+use sixfold_study::{Results, StudyMesh, sha256_of};
 
 use crate::failure::Failure;
 use crate::output::is_stdout;
@@ -106,21 +106,25 @@ pub(crate) fn results_path(place: &Path) -> PathBuf {
     }
 }
 
-pub(crate) fn read_results<T>(
-    path: &Path,
-    parse: impl Fn(&str) -> Result<T, ReadError>,
-) -> Result<T, Failure> {
+/// Reads results from a file or from the folder of a report.
+pub(crate) fn read_results(place: &Path) -> Result<Results, Failure> {
+    let path = results_path(place);
     let file = path.display();
-    let text = fs::read_to_string(path).map_err(|cause| {
+    let text = fs::read_to_string(&path).map_err(|cause| {
         Failure::usage(format!(
             "{file}: cannot be read ({cause}): name a file from --json, or a folder from --report"
         ))
     })?;
-    parse(&text).map_err(|error| Failure::usage(format!("{file}: {error}")))
+    Results::read_json(&text).map_err(|error| Failure::usage(format!("{file}: {error}")))
 }
 
 pub(crate) fn built_in() -> StudyMesh {
     StudyMesh::new("default study (built in)", shapes::default_study())
+}
+
+/// Returns the SHA-256 of a file; `None` if the file cannot be read.
+pub(crate) fn file_hash(path: &Path) -> Option<String> {
+    sha256_of(fs::File::open(path).ok()?).ok()
 }
 
 fn print_left_out(path: &Path, left_out: &[LeftOut]) {
@@ -151,6 +155,7 @@ fn from_file(path: &Path) -> Result<(StudyMesh, Vec<LeftOut>), Failure> {
         facts,
         polygons,
         changes,
+        file_sha256: file_hash(path),
     };
     Ok((study_mesh, left_out))
 }

@@ -9,20 +9,19 @@ mod pooled_table;
 
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use sixfold_study::{
-    Collection, Failed, FailureKind, Report, Settings, SharedSettings, StudyError, StudyMesh,
-};
+use sixfold_study::{Failed, FailureKind, Report, Results, Settings, StudyError, StudyMesh};
 
 use crate::arguments::Study;
 use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
 use crate::load;
-use crate::outcome::{command_line, studies_exit_code, warn_of_debug_build};
-use crate::output::{Output, check_outputs, is_stdout};
-use crate::progress::{Bar, interrupt_flag};
+use crate::measure::{Session, command_line, exit_code, warn_of_debug_build};
+use crate::progress::Bar;
+use crate::study::finding;
 use crate::text::{TextOutput, hanging_indent, print_stderr, sanitize};
 use sixfold_study::numbers::counted;
 
@@ -31,7 +30,7 @@ pub(crate) use labs::LabSelection;
 pub(crate) use merge::run as merge;
 pub(crate) use meshes::Shard;
 
-use folder::{Folder, StudyRecord};
+use folder::Folder;
 use meshes::{Mesh, find_meshes};
 
 /// The text of [`FailureKind::NoneHolds`].
@@ -42,7 +41,6 @@ const NONE_HOLDS: &str = "none of the selected backends can hold the mesh";
 pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Failure> {
     let meshes = find_meshes(&arguments.meshes, &mut |note| print_stderr(note))?;
     let single = meshes.len() == 1;
-    check_files(arguments, &meshes)?;
     let selected_labs = labs::selected_labs(arguments.labs.as_ref(), single)?;
     let parts = match single {
         true => 1 + selected_labs.len(),
@@ -52,30 +50,29 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         budget: part_of_budget(arguments, parts),
         ..settings.clone()
     };
-    let names = meshes.iter().map(|mesh| mesh.name.clone()).collect();
-    let mut collection = Collection::new(names, shared_settings(arguments, settings));
-    let stop = interrupt_flag(settings.heap);
-    let json = Output::open_if(arguments.json.as_ref())?;
-    let csv = Output::open_if(arguments.csv.as_ref())?;
+    let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
+    let mut session = Session::open(paths, &arguments.files, settings.heap)?;
+    let mut results = Results::new(meshes.iter().map(|mesh| mesh.name.clone()).collect());
     let folder = match &arguments.report {
         Some(path) => Some(Folder::open(
             path,
-            arguments.resume,
-            &mut collection,
+            arguments,
+            settings,
             &meshes,
+            &mut results,
         )?),
         None => None,
     };
-    let selected = unfinished(&meshes, arguments.shard, &collection);
+    let selected = unfinished(&meshes, arguments.shard, &results);
     warn_of_debug_build();
-    let mut text = TextOutput::new(!uses_stdout(arguments));
     let loaded = match &meshes[..] {
         [mesh @ Mesh { problem: None, .. }] => Some(load_mesh(mesh, arguments)),
         _ => None,
     };
     if let Some(Ok(study_mesh)) = &loaded {
-        print_before_measuring(study_mesh, settings, &mut text);
+        print_before_measuring(study_mesh, settings, &mut session.text);
     }
+    let stop = Arc::clone(&session.stop);
     let run = Run {
         arguments,
         settings,
@@ -85,52 +82,36 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         folder: folder.as_ref(),
         stop: &stop,
     };
-    run.study(&selected, &mut collection, &mut text)?;
-    if let ([_], Some(Ok(study_mesh)), Some(folder)) = (&collection.studies[..], &loaded, &folder) {
+    run.study(&selected, &mut results, &mut session.text)?;
+    let none_studied = results.studies().next().is_none();
+    if let (false, Some(Ok(study_mesh)), Some(folder)) = (none_studied, &loaded, &folder) {
         let runner = labs::LabRunner {
             study_mesh,
             settings,
+            triangulate: arguments.triangulate,
             folder,
             resumed: selected.is_empty(),
             stop: &stop,
         };
-        collection.labs = runner.run(&selected_labs)?;
+        runner.run(&selected_labs, &mut results)?;
     }
     let interrupted = stop.load(Ordering::Relaxed);
-    let mut written = print_and_write(&collection, single, text, json, csv);
-    let none_studied = collection.studies.is_empty() && !interrupted && arguments.shard.is_none();
+    print(&results, single, &mut session.text);
+    let mut written = session.write(&results);
+    let none_studied = none_studied && !interrupted && arguments.shard.is_none();
     let not_measured = |failed: &Failed| failed.kind == FailureKind::NotMeasured;
     if let Some(folder) = &folder {
         // A report on nothing would look like a result.
-        match none_studied && collection.failures.iter().all(not_measured) {
-            true => folder.remove_failures(),
-            false => written = written.and(folder.write_report(&collection, &command_line())),
+        match none_studied && results.failures.iter().all(not_measured) {
+            true => folder.remove_if_empty(),
+            false => written = written.and(folder.write_report(&results, &command_line())),
         }
     }
     if none_studied {
         written?;
-        return Err(failure_of_all(&collection.failures));
+        return Err(failure_of_all(&results.failures));
     }
-    let mismatches = collection.labs.mismatches();
-    studies_exit_code(written, &collection.studies, mismatches, interrupted)
-}
-
-/// Refuses outputs that overwrite a mesh. Refuses `--csv` for several meshes.
-fn check_files(arguments: &Study, meshes: &[Mesh]) -> Result<(), Failure> {
-    let outputs = [
-        ("--json", arguments.json.as_ref()),
-        ("--csv", arguments.csv.as_ref()),
-    ];
-    for path in meshes.iter().filter_map(|mesh| mesh.path.as_deref()) {
-        check_outputs(Some(path), &outputs)?;
-    }
-    if arguments.csv.is_some() && meshes.len() != 1 {
-        return Err(Failure::usage(
-            "--csv is for one mesh: use --report DIR instead, to write the samples of all meshes \
-             to results.csv",
-        ));
-    }
-    Ok(())
+    exit_code(written, &results, interrupted)
 }
 
 /// Returns the time of one of `parts` equal parts: a mesh or a lab. A shard takes its part of the
@@ -142,43 +123,15 @@ fn part_of_budget(arguments: &Study, parts: usize) -> Duration {
     }
 }
 
-/// Returns the meshes of the shard without results in `collection`.
-fn unfinished<'m>(
-    meshes: &'m [Mesh],
-    shard: Option<Shard>,
-    collection: &Collection,
-) -> Vec<&'m Mesh> {
+/// Returns the meshes of the shard without a study.
+fn unfinished<'m>(meshes: &'m [Mesh], shard: Option<Shard>, results: &Results) -> Vec<&'m Mesh> {
     meshes
         .iter()
         .enumerate()
         .filter(|(i, _)| shard.is_none_or(|shard| shard.contains(*i)))
         .map(|(_, mesh)| mesh)
-        .filter(|mesh| collection.missing.contains(&mesh.name))
+        .filter(|mesh| !results.is_done(&mesh.name))
         .collect()
-}
-
-/// Returns whether results are written to standard output. No text is printed in this case.
-fn uses_stdout(arguments: &Study) -> bool {
-    let data = [&arguments.json, &arguments.csv];
-    data.into_iter().flatten().any(|path| is_stdout(path))
-}
-
-fn shared_settings(arguments: &Study, settings: &Settings) -> SharedSettings {
-    let columns = settings
-        .externals
-        .iter()
-        .map(|external| external.name.clone());
-    SharedSettings {
-        backends: settings.backends.clone(),
-        externals: columns.collect(),
-        operations: settings.operations.clone(),
-        budget_s: settings.budget.as_secs_f64(),
-        seed: settings.seed,
-        heap: settings.heap,
-        caches: settings.caches,
-        triangulate: arguments.triangulate,
-        strict: arguments.strict,
-    }
 }
 
 /// The shared input of all studies.
@@ -197,12 +150,12 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Studies `meshes` one after the other and adds the results to `collection`. Stops if
+    /// Studies `meshes` one after the other and adds the studies to `results`. Stops if
     /// interrupted.
     fn study(
         &self,
         meshes: &[&Mesh],
-        collection: &mut Collection,
+        results: &mut Results,
         text: &mut TextOutput,
     ) -> Result<(), Failure> {
         for (done, mesh) in meshes.iter().enumerate() {
@@ -216,12 +169,21 @@ impl Run<'_> {
             if !self.single {
                 text.print_line(&progress_line(&position, mesh, &result));
             }
-            let record = StudyRecord::new(mesh, &collection.settings, result);
-            if let Some(folder) = self.folder {
-                // Save between two studies, so that writing does not disturb the measurements.
-                folder.save_study(&record)?;
+            match result {
+                Ok(report) => {
+                    let study = Results::from(finding(report, self.arguments));
+                    if let Some(folder) = self.folder {
+                        // Save between two studies, so that writing does not disturb the
+                        // measurements.
+                        folder.save_study(&mesh.name, &study)?;
+                    }
+                    study
+                        .findings
+                        .into_iter()
+                        .for_each(|study| results.add(study));
+                }
+                Err(failed) => results.add_failure(failed),
             }
-            record.add_to(collection);
         }
         Ok(())
     }
@@ -264,10 +226,7 @@ impl Run<'_> {
         bar.clear();
         match report {
             Ok(report) if report.interrupted => None,
-            Ok(mut report) => {
-                report.environment.command = Some(command_line());
-                Some(Ok(report))
-            }
+            Ok(report) => Some(Ok(report)),
             Err(StudyError::NoneHolds { .. }) => failed(FailureKind::NoneHolds, NONE_HOLDS.into()),
             Err(error) => failed(FailureKind::NotMeasured, error.to_string()),
         }
@@ -306,42 +265,31 @@ fn progress_line(position: &str, mesh: &Mesh, result: &Result<Report, Failed>) -
     }
 }
 
-/// Prints the results and writes them to the open files.
-fn print_and_write(
-    collection: &Collection,
-    single: bool,
-    mut text: TextOutput,
-    json: Option<Output>,
-    csv: Option<Output>,
-) -> Result<(), Failure> {
-    if let ([study], true) = (&collection.studies[..], single) {
-        crate::study::print(study, &mut text);
-        labs::print(&collection.labs, &mut text);
-        return text
-            .finish()
-            .and(crate::study::write_files(study, json, csv));
+/// Prints the results of one mesh with its labs, or of many meshes.
+fn print(results: &Results, single: bool, text: &mut TextOutput) {
+    match results.studies().next().filter(|_| single) {
+        Some(study) => {
+            crate::study::print(study, text);
+            labs::print(results, text);
+        }
+        None => print_all(results, text),
     }
-    print(collection, &mut text);
-    let mut written = text.finish();
-    if let Some(output) = json {
-        written = written.and(output.finish(|writer| collection.write_json(writer)));
-    }
-    written
 }
 
-fn print(collection: &Collection, text: &mut TextOutput) {
-    let studied = counted(collection.studies.len(), "mesh", "meshes");
+fn print_all(results: &Results, text: &mut TextOutput) {
+    let studied = counted(results.studies().count(), "mesh", "meshes");
     text.print_line("");
-    text.print_line(&format!("{studied} of {} studied", collection.meshes.len()));
-    for failed in &collection.failures {
+    text.print_line(&format!("{studied} of {} studied", results.planned.len()));
+    for failed in &results.failures {
         let first = format!("! {}: ", sanitize(&failed.mesh));
         text.print_line(&hanging_indent(&first, &sanitize(&failed.reason)));
     }
-    if !collection.missing.is_empty() {
-        let missing = counted(collection.missing.len(), "mesh is", "meshes are");
+    let missing = results.missing().count();
+    if missing > 0 {
+        let missing = counted(missing, "mesh is", "meshes are");
         text.print_line(&format!("! {missing} not studied yet"));
     }
-    let pool = collection.pool();
+    let pool = results.pool();
     if !pool.all().is_empty() {
         text.print_line("");
         text.print_line(&pooled_table::pooled_table(&pool, text.bold()));
@@ -353,7 +301,7 @@ fn print(collection: &Collection, text: &mut TextOutput) {
             text.print_line(&hanging_indent("! ", &sanitize(warning)));
         }
     }
-    for failed in &collection.failures {
+    for failed in &results.failures {
         let mesh = &failed.mesh;
         print_stderr(&format!("note: {mesh}: not studied: {}", failed.reason));
     }

@@ -4,8 +4,8 @@ use std::process::ExitCode;
 
 use comfy_table::{Cell, CellAlignment, Table};
 use sixfold_study::{
-    Audit, Backend, BackendAudit, BackendReport, MAX_SCANNED_FACES, OperationBytes, Settings,
-    audit, count_allocations,
+    Audit, Backend, BackendAudit, BackendReport, MAX_SCANNED_FACES, OperationBytes, Policy,
+    Settings, audit, count_allocations,
 };
 
 use crate::arguments::Memory;
@@ -13,7 +13,7 @@ use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::heap::Counters;
 use crate::load;
-use crate::output::{Output, check_outputs, is_stdout};
+use crate::measure::{Session, with_command};
 use crate::progress::{StatusLine, exit_on_interrupt};
 use crate::tables::table;
 use crate::text::{TextOutput, hanging_indent, print_stderr};
@@ -23,13 +23,11 @@ use sixfold_study::numbers::{counted, grouped};
 const COUNTS_DIFFER: u8 = 1;
 
 pub(crate) fn run(arguments: &Memory) -> Result<ExitCode, Failure> {
+    let mesh = arguments.mesh.as_deref();
+    let mut session = Session::open(mesh, &arguments.files, Policy::System)?;
+    // Counting cannot be resumed, so Ctrl-C ends it at once.
     exit_on_interrupt();
-    check_outputs(
-        arguments.mesh.as_deref(),
-        &[("--json", arguments.json.as_ref())],
-    )?;
-    let json = Output::open_if(arguments.json.as_ref())?;
-    let study_mesh = match &arguments.mesh {
+    let study_mesh = match mesh {
         Some(path) => load::for_study(path, false, arguments.triangulate)?,
         None => load::built_in(),
     };
@@ -51,21 +49,20 @@ pub(crate) fn run(arguments: &Memory) -> Result<ExitCode, Failure> {
     count_allocations(&mut audit, &study_mesh, &backends, &Counters, &mut counting);
     status.clear();
 
-    let write = |json: Option<Output>| match json {
-        Some(output) => output.finish(|writer| audit.write_json(writer)),
-        None => Ok(()),
-    };
     // If every backend refuses the mesh, the list of reasons is the result.
-    if let Some(none) = audit.refusal_error() {
-        write(json)?;
-        return Err(Failure::unsupported(none));
+    let refusal_error = audit.refusal_error();
+    if refusal_error.is_none() {
+        print(&audit, &mut session.text);
     }
-    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
-    print(&audit, &mut text);
-    // Print the text first, so that it is not lost if writing a file fails.
-    let done = text.finish().and(write(json));
-    let code = report_faults(&audit.faults());
-    done.map(|()| code)
+    let faults = audit.faults();
+    let written = session.write(&with_command(audit, arguments.triangulate).into());
+    match refusal_error {
+        Some(none) => written.and(Err(Failure::unsupported(none))),
+        None => {
+            let code = report_faults(&faults);
+            written.map(|()| code)
+        }
+    }
 }
 
 fn report_faults(faults: &[String]) -> ExitCode {

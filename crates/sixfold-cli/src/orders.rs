@@ -15,23 +15,17 @@ use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
 use crate::load;
-use crate::outcome::{command_line, exit_code, warn_of_debug_build};
-use crate::output::{Output, check_outputs, is_stdout};
-use crate::progress::{Bar, interrupt_flag};
-use crate::study::{describe_environment, name_lists};
+use crate::measure::{Session, warn_of_debug_build, with_command};
+use crate::progress::Bar;
+use crate::study::{describe_run, name_lists};
 use crate::tables::styled;
 use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::figure;
 
-/// Prints the text before the files are written, so that it is not lost if writing a file fails.
 pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
-    check_outputs(
-        arguments.mesh.as_deref(),
-        &[("--json", arguments.json.as_ref())],
-    )?;
-    let stop = interrupt_flag(arguments.memory.heap);
-    let json = Output::open_if(arguments.json.as_ref())?;
-    let study_mesh = match &arguments.mesh {
+    let mesh = arguments.mesh.as_deref();
+    let mut session = Session::open(mesh, &arguments.files, arguments.memory.heap)?;
+    let study_mesh = match mesh {
         Some(path) => load::for_study(path, false, arguments.triangulate)?,
         None => load::built_in(),
     };
@@ -45,16 +39,10 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
         ..Settings::default()
     };
     warn_of_debug_build();
-    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
-    print_before_measuring(&study_mesh, &settings, &mut text);
-    let report = measure(&study_mesh, &settings, &stop, &Bar::new())?;
-
-    print(&report, &mut text);
-    let mut done = text.finish();
-    if let Some(output) = json {
-        done = done.and(output.finish(|writer| report.write_json(writer)));
-    }
-    exit_code(done, report.mismatches(), report.interrupted)
+    print_before_measuring(&study_mesh, &settings, &mut session.text);
+    let report = measure(&study_mesh, &settings, &session.stop, &Bar::new())?;
+    print(&report, &mut session.text);
+    session.finish(&with_command(report, arguments.triangulate).into())
 }
 
 /// Measures the mesh in all orders, if there is enough free memory.
@@ -72,12 +60,10 @@ pub(crate) fn measure(
     )?;
     let report = sixfold_study::orders(study_mesh, settings, stop, &mut |at| bar.show(at));
     bar.clear();
-    let mut report = report.map_err(|error| match error {
+    report.map_err(|error| match error {
         OrdersError::Study(StudyError::NoneHolds { .. }) => Failure::unsupported(error),
         error => Failure::usage(error),
-    })?;
-    report.environment.command = Some(command_line());
-    Ok(report)
+    })
 }
 
 /// Returns the help text after the options.
@@ -114,9 +100,12 @@ fn print(report: &OrdersReport, text: &mut TextOutput) {
     for sentence in &report.sentences {
         text.print_line(&hanging_indent("- ", sentence));
     }
+    for warning in &report.warnings {
+        text.print_line(&hanging_indent("! ", warning));
+    }
     text.print_line("");
     let most = report.results.iter().map(|row| row.row.samples).max();
-    let settings = describe_environment(&report.environment, most.unwrap_or(0));
+    let settings = describe_run(&report.run, most.unwrap_or(0));
     text.print_line(&hanging_indent("", &settings));
 }
 

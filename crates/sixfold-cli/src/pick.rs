@@ -1,6 +1,6 @@
 //! `sixfold pick`: finds the backend that fits a mesh and a workload.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
@@ -12,9 +12,8 @@ use sixfold_study::{
 use crate::arguments::Pick;
 use crate::failure::Failure;
 use crate::load;
-use crate::outcome::{command_line, exit_code, warn_of_debug_build};
-use crate::output::{Output, check_outputs, is_stdout};
-use crate::progress::{Bar, interrupt_flag};
+use crate::measure::{Session, warn_of_debug_build, with_command};
+use crate::progress::Bar;
 use crate::tables::table;
 use crate::text::{TextOutput, hanging_indent, print_stderr, sanitize};
 use crate::workloads::workload;
@@ -23,15 +22,10 @@ use sixfold_study::numbers::{counted, duration, figure, grouped};
 /// The exit code if no backend qualifies.
 const NONE_QUALIFIES: u8 = 1;
 
-/// Prints the text before the files are written, so that the text is not lost if writing fails.
 pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
-    for mesh in &arguments.meshes {
-        check_outputs(Some(mesh), &[("--json", arguments.json.as_ref())])?;
-    }
     let workload = workload(&arguments.workload)?;
-    // Set the handler before the draft is created, so that Ctrl-C always deletes the draft.
-    let stop = interrupt_flag(arguments.heap);
-    let json = Output::open_if(arguments.json.as_ref())?;
+    let meshes = arguments.meshes.iter().map(PathBuf::as_path);
+    let mut session = Session::open(meshes, &arguments.files, arguments.heap)?;
     let study_meshes = study_meshes(arguments)?;
     let settings = PickSettings {
         workload,
@@ -44,25 +38,19 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
         heap: arguments.heap,
     };
     warn_of_debug_build();
-    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
-    print_before_measuring(&study_meshes, &settings, &stop, &mut text);
+    print_before_measuring(&study_meshes, &settings, &session.stop, &mut session.text);
     let bar = Bar::new();
-    let report = sixfold_study::pick(&study_meshes, &settings, &stop, &mut |done, what| {
-        bar.set(done, what)
-    });
+    let mut show = |done: f64, what: &str| bar.set(done, what);
+    let report = sixfold_study::pick(&study_meshes, &settings, &session.stop, &mut show);
     bar.clear();
-    let mut report = report.map_err(Failure::usage)?;
-    report.environment.command = Some(command_line());
-
-    print(&report, &mut text);
-    let mut done = text.finish();
-    if let Some(output) = json {
-        done = done.and(output.finish(|writer| report.write_json(writer)));
-    }
-    let code = exit_code(done, report.mismatches.len(), report.interrupted)?;
-    if report.ranking.is_empty() && !report.interrupted {
+    let report = report.map_err(Failure::usage)?;
+    print(&report, &mut session.text);
+    let none_qualifies = report.ranking.is_empty() && !report.interrupted;
+    let code = session.finish(&with_command(report, arguments.triangulate).into())?;
+    if none_qualifies {
         print_stderr(
-            "error: no backend qualifies: relax --needs, --max-memory or --backends, or repair the mesh (see `sixfold inspect`)",
+            "error: no backend qualifies: relax --needs, --max-memory or --backends, or repair the \
+             mesh (see `sixfold inspect`)",
         );
         return Ok(ExitCode::from(NONE_QUALIFIES));
     }

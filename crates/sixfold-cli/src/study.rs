@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use sixfold_study::{
-    BackendReport, Environment, Operation, Report, SCHEMA, Settings, StudyError, StudyMesh, Timer,
+    BackendReport, Environment, Finding, Operation, Report, Run, RunSettings, Settings, StudyError,
+    StudyMesh, Timer,
 };
 
 use crate::arguments::{STUDY_EXAMPLES, Study};
@@ -12,14 +13,12 @@ use crate::facts_text::{print_before_measuring, verdicts_text};
 use crate::failure::Failure;
 use crate::load;
 use crate::many;
-use crate::outcome::{command_line, studies_exit_code, warn_of_debug_build};
-use crate::output::{Output, check_outputs, is_stdout};
-use crate::progress::{Bar, interrupt_flag};
+use crate::measure::{Session, warn_of_debug_build, with_command};
+use crate::progress::Bar;
 use crate::results_table::{left_out_notes, results_table};
 use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::counted;
 
-/// Prints the text before the files are written, so that it is not lost if writing a file fails.
 pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     let settings = Settings {
         backends: arguments.backends.clone(),
@@ -36,48 +35,39 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     if several || arguments.report.is_some() {
         return many::run(arguments, &settings);
     }
-    let mesh = arguments.meshes.first();
-    check_outputs(
-        mesh.map(PathBuf::as_path),
-        &[
-            ("--json", arguments.json.as_ref()),
-            ("--csv", arguments.csv.as_ref()),
-        ],
-    )?;
-    // Set the handler before the drafts are created, so that Ctrl-C always deletes the drafts.
-    let stop = interrupt_flag(settings.heap);
-    let json = Output::open_if(arguments.json.as_ref())?;
-    let csv = Output::open_if(arguments.csv.as_ref())?;
+    let mesh = arguments.meshes.first().map(PathBuf::as_path);
+    let mut session = Session::open(mesh, &arguments.files, settings.heap)?;
     let study_mesh = match mesh {
         Some(path) => load::for_study(path, arguments.strict, arguments.triangulate)?,
         None => load::built_in(),
     };
     warn_of_debug_build();
-    let data = [&arguments.json, &arguments.csv];
-    let data_on_stdout = data.into_iter().flatten().any(|path| is_stdout(path));
-    let mut text = TextOutput::new(!data_on_stdout);
-    print_before_measuring(&study_mesh, &settings, &mut text);
+    print_before_measuring(&study_mesh, &settings, &mut session.text);
     let bar = Bar::new();
-    let report = sixfold_study::study(&study_mesh, &settings, &stop, &mut |at| bar.show(at));
+    let report = sixfold_study::study(&study_mesh, &settings, &session.stop, &mut |at| {
+        bar.show(at)
+    });
     bar.clear();
-    let report = match report {
-        Ok(mut report) => {
-            report.environment.command = Some(command_line());
-            report
+    match report {
+        Ok(report) => {
+            print(&report, &mut session.text);
+            session.finish(&finding(report, arguments).into())
         }
         // If every backend refuses the mesh, the list of reasons is the result.
         Err(error @ StudyError::NoneHolds { .. }) => {
             let refusals = refusals(&study_mesh, &settings)?;
-            write_files(&refusals, json, csv)?;
-            return Err(Failure::unsupported(error));
+            session.write(&finding(refusals, arguments).into())?;
+            Err(Failure::unsupported(error))
         }
-        Err(error) => return Err(Failure::usage(error)),
-    };
+        Err(error) => Err(Failure::usage(error)),
+    }
+}
 
-    print(&report, &mut text);
-    let done = text.finish().and(write_files(&report, json, csv));
-
-    studies_exit_code(done, [&report], 0, report.interrupted)
+/// Completes a study by the arguments that only the command knows.
+pub(crate) fn finding(report: Report, arguments: &Study) -> Finding {
+    let mut finding = with_command(report, arguments.triangulate);
+    finding.run_mut().settings.strict = arguments.strict;
+    finding
 }
 
 /// Returns the help text after the options.
@@ -94,28 +84,12 @@ pub(crate) fn name_lists() -> String {
     format!("{backends}\n{operations}")
 }
 
-/// Writes the selected files. If the first file fails, writes the second file anyway.
-pub(crate) fn write_files(
-    report: &Report,
-    json: Option<Output>,
-    csv: Option<Output>,
-) -> Result<(), Failure> {
-    let mut done = Ok(());
-    if let Some(output) = json {
-        done = done.and(output.finish(|writer| report.write_json(writer)));
-    }
-    if let Some(output) = csv {
-        done = done.and(output.finish(|writer| report.write_csv(writer)));
-    }
-    done
-}
-
 /// Returns the report on a mesh that every selected backend refuses.
 fn refusals(study_mesh: &StudyMesh, settings: &Settings) -> Result<Report, Failure> {
     let selected = settings.chosen_backends().map_err(Failure::usage)?;
     let inspection = sixfold_study::inspect(study_mesh, &selected);
     Ok(Report {
-        schema: SCHEMA,
+        run: Run::start(RunSettings::of_study(settings)),
         mesh: inspection.mesh,
         backends: inspection.backends,
         results: Vec::new(),
@@ -123,10 +97,9 @@ fn refusals(study_mesh: &StudyMesh, settings: &Settings) -> Result<Report, Failu
         control: None,
         sentences: Vec::new(),
         warnings: Vec::new(),
-        raw: Vec::new(),
+        samples: Vec::new(),
         timer: None,
         interrupted: false,
-        environment: Environment::detect(settings.seed, settings.budget.as_secs_f64()),
     })
 }
 
@@ -152,7 +125,7 @@ pub(crate) fn print(report: &Report, text: &mut TextOutput) {
     }
     text.print_line("");
     let most = report.results.iter().map(|row| row.samples).max();
-    let settings = describe_environment(&report.environment, most.unwrap_or(0));
+    let settings = describe_run(&report.run, most.unwrap_or(0));
     text.print_line(&hanging_indent("", &settings));
     if let Some(timer) = report.timer {
         text.print_line(&hanging_indent("", &clock_text(timer)));
@@ -171,17 +144,16 @@ fn clock_text(timer: Timer) -> String {
 }
 
 /// Describes the machine and the settings in one line.
-pub(crate) fn describe_environment(environment: &Environment, most_rounds: usize) -> String {
+pub(crate) fn describe_run(run: &Run, most_rounds: usize) -> String {
     let Environment {
         rustc,
         profile,
         cpu_model,
         cores,
-        load_average,
         clock,
-        seed,
         ..
-    } = environment;
+    } = &run.environment;
+    let (load_average, seed) = (run.start.load_average, run.settings.seed);
     let rustc = rustc.split(" (").next().unwrap_or_default();
     let mut parts = Vec::new();
     parts.extend(cpu_model.clone());
@@ -192,7 +164,7 @@ pub(crate) fn describe_environment(environment: &Environment, most_rounds: usize
         "thread-cpu" => "processor time of the thread".into(),
         _ => "wall time".into(),
     });
-    parts.extend(environment.memory_phrases());
+    parts.extend(run.environment.memory_phrases());
     let rounds = counted(most_rounds, "round", "rounds");
     parts.push(format!("medians of up to {rounds}"));
     parts.push(format!("seed {seed}"));

@@ -45,6 +45,7 @@ pub(crate) fn triangulated(study_mesh: StudyMesh) -> Result<StudyMesh, Failure> 
         },
         polygons,
         changes,
+        file_sha256: study_mesh.file_sha256,
     })
 }
 

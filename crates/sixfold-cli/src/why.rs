@@ -12,51 +12,35 @@ use crate::arguments::Why;
 use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
 use crate::load;
-use crate::outcome::{command_line, exit_code, warn_of_debug_build};
-use crate::output::{Output, check_outputs, is_stdout};
-use crate::progress::{Bar, Spinner, interrupt_flag};
+use crate::measure::{Session, warn_of_debug_build, with_command};
+use crate::progress::{Bar, Spinner};
 use crate::text::{TextOutput, hanging_indent};
 use crate::why_text::{legend, memory_text, relation_text, sentence};
 
-/// Prints the text before the files are written, so that the text is not lost if writing fails.
 pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
-    check_outputs(
-        arguments.mesh.as_deref(),
-        &[("--json", arguments.json.as_ref())],
-    )?;
-    // Set the handler before the draft is created, so that Ctrl-C always deletes the draft.
-    let stop = interrupt_flag(Policy::Kept);
-    let json = Output::open_if(arguments.json.as_ref())?;
-    let study_mesh = match &arguments.mesh {
+    let mesh = arguments.mesh.as_deref();
+    let mut session = Session::open(mesh, &arguments.files, Policy::Kept)?;
+    let study_mesh = match mesh {
         Some(path) => load::for_study(path, false, arguments.triangulate)?,
         None => load::built_in(),
     };
-    let budget = match arguments.counts_only {
-        true => None,
-        false => {
-            warn_of_debug_build();
-            Some(arguments.budget)
-        }
-    };
+    let budget = (!arguments.counts_only).then_some(arguments.budget);
+    if budget.is_some() {
+        warn_of_debug_build();
+    }
     let settings = WhySettings {
         backends: arguments.backends.clone(),
         relations: arguments.relations.clone(),
         ..WhySettings::default()
     };
-    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
     let chosen = Settings {
         backends: arguments.backends.clone(),
         ..Settings::default()
     };
-    print_before_measuring(&study_mesh, &chosen, &mut text);
-    let why = measure(&study_mesh, settings, budget, &stop, &Bar::new())?;
-
-    print(&why, !arguments.relations.is_empty(), &mut text);
-    let mut done = text.finish();
-    if let Some(output) = json {
-        done = done.and(output.finish(|writer| why.write_json(writer)));
-    }
-    exit_code(done, why.mismatches(), why.interrupted)
+    print_before_measuring(&study_mesh, &chosen, &mut session.text);
+    let why = measure(&study_mesh, settings, budget, &session.stop, &Bar::new())?;
+    print(&why, !arguments.relations.is_empty(), &mut session.text);
+    session.finish(&with_command(why, arguments.triangulate).into())
 }
 
 /// Counts reads. If there is a `budget`, also measures times.
@@ -70,14 +54,10 @@ pub(crate) fn measure(
     settings.timing = budget.and_then(|budget| timing(budget, stop));
     let why = sixfold_study::why(study_mesh, &settings, stop, &mut |at| bar.show(at));
     bar.clear();
-    let mut why = why.map_err(|error| match error {
+    why.map_err(|error| match error {
         StudyError::NoneHolds { .. } => Failure::unsupported(error),
         error => Failure::usage(error),
-    })?;
-    if let Some(environment) = &mut why.environment {
-        environment.command = Some(command_line());
-    }
-    Ok(why)
+    })
 }
 
 /// Measures the speed of memory. Returns `None` if interrupted.
@@ -109,6 +89,9 @@ fn print(why: &sixfold_study::Why, with_sentences: bool, text: &mut TextOutput) 
                 text.print_line(&hanging_indent("- ", &sentence(row)));
             }
         }
+    }
+    for warning in &why.warnings {
+        text.print_line(&hanging_indent("! ", warning));
     }
     text.print_line("");
     text.print_line(&legend(why));

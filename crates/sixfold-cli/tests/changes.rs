@@ -27,12 +27,13 @@ fn two_studies() -> Sixfold {
             *number = (2.0 * ns).into();
         }
     };
-    for row in study["results"].as_array_mut().expect("rows") {
+    let finding = &mut study["findings"][0];
+    for row in finding["results"].as_array_mut().expect("rows") {
         if row["backend"] == "half-edge" {
             doubled(&mut row["median_ns"]);
         }
     }
-    for raw in study["raw"].as_array_mut().expect("raw") {
+    for raw in finding["samples"].as_array_mut().expect("samples") {
         if raw["backend"] == "half-edge" {
             for column in ["cpu_ns", "wall_ns"] {
                 raw[column]
@@ -43,8 +44,8 @@ fn two_studies() -> Sixfold {
             }
         }
     }
-    study["environment"]["commit"] = "0123456".into();
-    study["control"] = Value::Null;
+    finding["control"] = Value::Null;
+    study["runs"][0]["environment"]["commit"] = "0123456".into();
     sixfold.file("b.json", &study.to_string());
     sixfold
 }
@@ -90,11 +91,11 @@ fn a_change_is_shown_and_can_set_the_exit_code() {
 }
 
 #[test]
-fn files_that_are_not_studies_are_refused_in_one_message() {
+fn files_without_common_results_are_refused_in_one_message() {
     let sixfold = two_studies();
     let whole = text(&sixfold, "a.json");
     sixfold.file("half.json", &whole[..whole.len() / 2]);
-    sixfold.file("old.json", "{\"schema\": 7}");
+    sixfold.file("old.json", "{\"schema\": 1, \"results\": []}");
     sixfold.file("foreign.json", "{\"name\": \"package\"}");
     sixfold.file("words.json", "not JSON\n");
     let pick = [
@@ -121,10 +122,10 @@ fn files_that_are_not_studies_are_refused_in_one_message() {
     run_ok(&sixfold, &fewer);
     for (file, message) in [
         ("half.json", "ends too early"),
-        ("old.json", "schema 7"),
+        ("old.json", "schema 2: measure again"),
         ("foreign.json", "no `schema`"),
         ("words.json", "is not JSON, line 1"),
-        ("pick.json", "`sixfold pick`"),
+        ("pick.json", "nothing to compare"),
         ("none.json", "cannot be read"),
         (".", "cannot be read"),
         ("build.json", "nothing to compare"),

@@ -3,11 +3,8 @@
 use serde_json::Value;
 
 use crate::bad_input::assert_refused;
+use crate::json_csv::finding;
 use crate::run::{Sixfold, TETRAHEDRON, run_ok};
-
-fn parsed(text: &str) -> Value {
-    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
-}
 
 fn list<'v>(value: &'v Value, name: &str) -> &'v [Value] {
     let list = value[name].as_array();
@@ -37,19 +34,24 @@ fn orders_writes_json() {
         "--json",
         "-",
     ];
-    let report = parsed(&run_ok(&sixfold, &arguments).stdout);
+    let report = finding(&run_ok(&sixfold, &arguments).stdout);
     let fields = [
         "backends",
         "comparisons",
         "control",
-        "environment",
         "interrupted",
+        "kind",
         "mesh",
+        "meshes",
         "orders",
         "refusals",
         "results",
-        "schema",
-        "words",
+        "run",
+        "samples",
+        "sentences",
+        "start",
+        "timer",
+        "warnings",
     ];
     assert_eq!(names(&report), fields);
     assert_eq!(report["mesh"]["faces"], 242);
@@ -129,21 +131,25 @@ fn growth_writes_json() {
     // The faces are quads. One structure refuses them.
     assert!(run.stdout.contains("corner-table refuses"), "{run:?}");
     assert!(run.stdout.contains("power"), "{run:?}");
-    let report = parsed(&crate::run::text(&sixfold, "growth.json"));
+    let report = finding(&crate::run::text(&sixfold, "growth.json"));
     let fields = [
         "backends",
-        "cache_ends",
+        "cache_limits",
         "caches",
-        "environment",
         "fits",
         "interrupted",
+        "kind",
         "left_out",
+        "meshes",
         "order",
-        "schema",
+        "refused_by",
+        "run",
+        "sentences",
         "shape",
         "sizes",
-        "unheld",
-        "words",
+        "start",
+        "timer",
+        "warnings",
     ];
     assert_eq!(names(&report), fields);
     assert_eq!(
@@ -151,12 +157,22 @@ fn growth_writes_json() {
         (&"torus".into(), &"shuffled".into())
     );
     assert_eq!(list(&report, "backends").len(), 5);
-    assert_eq!(names(&list(&report, "unheld")[0]), ["backend", "reason"]);
+    assert_eq!(
+        names(&list(&report, "refused_by")[0]),
+        ["backend", "reason"]
+    );
     let sizes = list(&report, "sizes");
     assert_eq!(sizes.len(), 3);
     for size in sizes {
         let fields = [
-            "control", "edges", "faces", "refusals", "results", "vertices", "weights",
+            "backend_bytes",
+            "control",
+            "edges",
+            "faces",
+            "refusals",
+            "results",
+            "samples",
+            "vertices",
         ];
         assert_eq!(names(size), fields);
         assert_eq!(
@@ -165,7 +181,7 @@ fn growth_writes_json() {
         );
         assert_eq!(list(size, "results").len(), 5);
         assert_eq!(
-            names(&list(size, "weights")[0]),
+            names(&list(size, "backend_bytes")[0]),
             ["backend", "bytes", "fits_in"]
         );
     }
@@ -188,7 +204,7 @@ fn growth_writes_json() {
     for cache in list(&report, "caches") {
         assert_eq!(names(cache), ["bytes", "kind", "level", "shared_by"]);
     }
-    for end in list(&report, "cache_ends") {
+    for end in list(&report, "cache_limits") {
         assert_eq!(names(end), ["backend", "cache_bytes", "faces", "level"]);
     }
 }
@@ -250,7 +266,7 @@ fn an_interrupted_sweep_keeps_the_sizes_that_are_finished() {
     let arguments = ["growth", "--budget", "40s", "--json", "kept.json"];
     // The first size takes half a second of the budget.
     sixfold.run_interrupted(&arguments, "INT", std::time::Duration::from_secs(4));
-    let report = parsed(&crate::run::text(&sixfold, "kept.json"));
+    let report = finding(&crate::run::text(&sixfold, "kept.json"));
     assert_eq!(report["interrupted"], true);
     let sizes = list(&report, "sizes").len();
     assert!((1..13).contains(&sizes), "{sizes} sizes");

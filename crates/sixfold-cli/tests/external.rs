@@ -50,7 +50,7 @@ fn study_with_program(mode: &str, more: &[&str]) -> (Sixfold, Run) {
 }
 
 fn report(sixfold: &Sixfold) -> Value {
-    serde_json::from_str(&crate::run::text(sixfold, "s.json")).expect("JSON")
+    crate::json_csv::finding(&crate::run::text(sixfold, "s.json"))
 }
 
 fn row<'v>(report: &'v Value, backend: &str, operation: &str) -> Option<&'v Value> {

@@ -26,7 +26,7 @@ fn an_interrupted_study_keeps_what_is_finished() {
         start.elapsed() < Duration::from_secs(120),
         "it did not wait for the budget"
     );
-    let report: Value = serde_json::from_str(&text(&sixfold, "kept.json")).expect("JSON");
+    let report: Value = crate::json_csv::finding(&text(&sixfold, "kept.json"));
     assert_eq!(report["interrupted"], true);
     assert!(
         report["results"]
@@ -47,7 +47,7 @@ fn an_interrupted_explanation_keeps_what_is_finished() {
         start.elapsed() < Duration::from_secs(120),
         "it did not wait for the budget"
     );
-    let report: Value = serde_json::from_str(&text(&sixfold, "kept.json")).expect("JSON");
+    let report: Value = crate::json_csv::finding(&text(&sixfold, "kept.json"));
     assert_eq!(report["interrupted"], true);
     assert_eq!(sixfold.names(), ["grid.obj", "kept.json"]);
 }

@@ -7,6 +7,7 @@ use std::process::Command;
 use serde_json::Value;
 
 use crate::bad_input::assert_refused;
+use crate::json_csv::completed;
 use crate::run::{Run, Sixfold, TETRAHEDRON, run_ok, text};
 
 const QUICK_ARGUMENTS: [&str; 4] = ["--budget", "400ms", "--operations", "boundary,edge_length"];
@@ -33,6 +34,13 @@ fn study(sixfold: &Sixfold, more: &[&str]) -> Run {
 
 fn results(sixfold: &Sixfold, folder: &str) -> Value {
     serde_json::from_str(&text(sixfold, &format!("{folder}/results.json"))).expect("JSON")
+}
+
+/// Returns the studies of a document, each with its mesh.
+fn studies(results: &Value) -> Value {
+    let findings = results["findings"].as_array().expect("a list").iter();
+    let studies = findings.filter(|finding| finding["kind"] == "study");
+    studies.map(|study| completed(results, study)).collect()
 }
 
 /// Returns the mesh names in a list of names, studies or failures.
@@ -67,14 +75,16 @@ fn all_meshes_of_a_folder_are_studied_and_failures_are_listed() {
         "scans/broken.obj",
         "scans/deep/c.obj",
     ];
-    assert_eq!(names(&report["meshes"]), all);
-    assert_eq!(names(&report["studies"]), [all[0], all[1], all[3]]);
+    assert_eq!(names(&report["planned"]), all);
+    assert_eq!(names(&studies(&report)), [all[0], all[1], all[3]]);
     assert_eq!(names(&report["failures"]), [all[2]]);
     let reason = report["failures"][0]["reason"].as_str().expect("a reason");
     assert!(reason.contains("line 2"), "{reason}");
-    assert_eq!(report["missing"], Value::Array(Vec::new()));
+    assert_eq!(report["missing"], 0);
     assert!(run.stderr.contains("broken.obj"), "{}", run.stderr);
-    let pooled = report["groups"][0]["pooled"].as_array().expect("rows");
+    let pooled = report["pool"]["groups"][0]["pooled"]
+        .as_array()
+        .expect("rows");
     assert_eq!(pooled.len(), 12);
     for row in pooled {
         assert_eq!(row["meshes"], 3, "{row}");
@@ -82,25 +92,25 @@ fn all_meshes_of_a_folder_are_studied_and_failures_are_listed() {
             ["ci_low", "ratio_to_best", "ci_high"].map(|name| row[name].as_f64());
         assert!(mean > Some(0.5) && low <= mean && mean <= high, "{row}");
     }
-    // Each sample has one line. The samples of the control are included.
-    let studies = report["studies"].as_array().expect("studies");
-    let raw = studies
+    // Each sample has one line. The samples of the control are left out.
+    let studies = studies(&report);
+    let studies = studies.as_array().expect("studies");
+    let samples = studies
         .iter()
-        .flat_map(|s| s["raw"].as_array().expect("raw"));
-    let samples: usize = raw
-        .map(|raw| raw["rounds"].as_array().map_or(0, Vec::len))
+        .flat_map(|s| s["samples"].as_array().expect("samples"))
+        .filter(|samples| samples["control"] == false);
+    let samples: usize = samples
+        .map(|samples| samples["rounds"].as_array().map_or(0, Vec::len))
         .sum();
-    let csv = text(&sixfold, "out/results.csv");
+    let csv = text(&sixfold, "out/samples.csv");
     assert_eq!(csv.lines().count(), samples + 1);
-    assert_eq!(
-        csv.lines().next(),
-        Some("mesh,backend,operation,control,round,cpu_ns,wall_ns")
-    );
     assert!(
-        csv.contains("scans/b grid.obj,half-edge,boundary,false,"),
+        csv.contains("scans/b grid.obj,study,,boundary,half-edge,"),
         "{csv:.400}"
     );
-    assert_eq!(study_files(&sixfold, "out").len(), 4);
+    let csv = text(&sixfold, "out/results.csv");
+    assert_eq!(csv.lines().count(), 3 * 12 + 1);
+    assert_eq!(study_files(&sixfold, "out").len(), 3);
 
     let shown = study(&sixfold, &[]);
     assert_eq!(shown.code, Some(0), "{shown:?}");
@@ -156,13 +166,13 @@ fn finished_studies_are_not_repeated() {
         rest.stderr
     );
     assert!(
-        rest.stdout.contains("3 of 3: scans/deep/c.obj, 32 faces"),
+        rest.stdout.contains("4 of 4: scans/deep/c.obj, 32 faces"),
         "{}",
         rest.stdout
     );
     let report = results(&sixfold, "out");
-    assert_eq!(names(&report["studies"]).len(), 3);
-    assert_eq!(report["studies"][2]["mesh"]["faces"], 32);
+    assert_eq!(names(&studies(&report)).len(), 3);
+    assert_eq!(studies(&report)[2]["mesh"]["faces"], 32);
     let other = [
         "study", "scans", "--report", "out", "--resume", "--seed", "7",
     ];
@@ -177,11 +187,7 @@ fn merged_shards_equal_a_single_run() {
         let run = study(&sixfold, &["--shard", shard, "--report", &folder]);
         assert_eq!(run.code, Some(0), "{run:?}");
         let report = results(&sixfold, &folder);
-        assert_eq!(
-            report["missing"].as_array().map(Vec::len),
-            Some(2),
-            "{shard}"
-        );
+        assert_eq!(report["missing"], 2, "{shard}");
     }
     let alone = run_ok(&sixfold, &["merge", "shard-1", "--json", "half.json"]);
     assert!(
@@ -210,12 +216,12 @@ fn merged_shards_equal_a_single_run() {
             .collect()
     };
     assert_eq!(form(&merged), form(&single));
-    for list in ["meshes", "failures", "missing", "settings"] {
+    for list in ["planned", "failures", "missing", "meshes"] {
         assert_eq!(merged[list], single[list], "{list}");
     }
-    assert_eq!(names(&merged["studies"]), names(&single["studies"]));
+    assert_eq!(names(&studies(&merged)), names(&studies(&single)));
     let keys = |report: &Value| -> Vec<(Value, Value)> {
-        let rows = report["groups"][0]["pooled"]
+        let rows = report["pool"]["groups"][0]["pooled"]
             .as_array()
             .expect("rows")
             .iter();
@@ -230,10 +236,10 @@ fn shards_that_do_not_belong_together_are_not_merged() {
     let sixfold = scans();
     assert_eq!(study(&sixfold, &["--report", "one"]).code, Some(0));
     let mut other: Value = results(&sixfold, "one");
-    other["settings"]["budget_s"] = 60.into();
+    other["runs"][0]["settings"]["budget_s"] = 60.into();
     sixfold.file("slow.json", &other.to_string());
     let mut other: Value = results(&sixfold, "one");
-    other["meshes"][0] = "elsewhere.obj".into();
+    other["meshes"][0]["sha256"] = "another".into();
     sixfold.file("elsewhere.json", &other.to_string());
     let whole = text(&sixfold, "one/results.json");
     sixfold.file("half.json", &whole[..whole.len() / 2]);
@@ -241,7 +247,10 @@ fn shards_that_do_not_belong_together_are_not_merged() {
     sixfold.file("later.json", "{\"schema\": 9}");
     for (shard, message) in [
         ("slow.json", "--budget is 60 s"),
-        ("elsewhere.json", "meshes differ: elsewhere.obj"),
+        (
+            "elsewhere.json",
+            "both have a study of scans/a.OBJ, but of different meshes",
+        ),
         ("half.json", "ends too early"),
         ("foreign.json", "no `schema`"),
         ("later.json", "schema 9"),
@@ -266,10 +275,6 @@ fn invalid_places_are_refused_before_anything_is_measured() {
     fs::create_dir(sixfold.folder().join("empty")).expect("a folder");
     for (arguments, message) in [
         (&["study", "empty"][..], "no .obj file"),
-        (
-            &["study", "scans", "--csv", "x.csv"],
-            "--csv is for one mesh",
-        ),
         (
             &["study", "scans", "--report", "scans/a.OBJ/x"],
             "cannot be written",
@@ -391,16 +396,16 @@ fn an_interrupted_study_can_be_resumed() {
     let shown = String::from_utf8_lossy(&output.stdout);
     assert!(shown.contains("not studied yet"), "{shown}");
     let kept = results(&sixfold, "out");
-    let finished = names(&kept["studies"]).len();
+    let finished = names(&studies(&kept)).len();
     assert!((1..3).contains(&finished), "{finished}");
-    let failed = names(&kept["failures"]).len();
-    assert_eq!(study_files(&sixfold, "out").len(), finished + failed);
+    assert_eq!(study_files(&sixfold, "out").len(), finished);
     let mut go_on = arguments.to_vec();
     go_on.push("--resume");
     run_ok(&sixfold, &go_on);
     let whole = results(&sixfold, "out");
-    assert_eq!(names(&whole["studies"]).len(), 3);
-    assert_eq!(whole["studies"][0], kept["studies"][0]);
+    assert_eq!(names(&studies(&whole)).len(), 3);
+    let first = |results: &Value| studies(results)[0]["results"].clone();
+    assert_eq!(first(&whole), first(&kept));
 }
 
 /// Runs the documented script as Slurm does, once per job of the array.
@@ -433,6 +438,6 @@ fn the_script_for_a_cluster_studies_all_meshes() {
     merge.extend(["--report", "results/all"]);
     run_ok(&sixfold, &merge);
     let report = results(&sixfold, "results/all");
-    assert_eq!(names(&report["studies"]).len(), 3);
-    assert_eq!(report["missing"].as_array().map(Vec::len), Some(0));
+    assert_eq!(names(&studies(&report)).len(), 3);
+    assert_eq!(report["missing"], 0);
 }

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use crate::bad_input::assert_refused;
-use crate::json_csv::{FACTS, assert_fields, parsed};
+use crate::json_csv::{FACTS, assert_fields, finding};
 use crate::run::{Sixfold, TETRAHEDRON, run_ok};
 
 const BACKEND: [(&str, &str); 16] = [
@@ -42,8 +42,7 @@ fn json_has_the_three_counts_and_the_tables() {
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
     );
     let run = run_ok(&sixfold, &["memory", "quad.obj", "--json", "-"]);
-    let audit = parsed(&run.stdout);
-    assert_eq!(audit["schema"], 1);
+    let audit = finding(&run.stdout);
     assert_fields(&audit["mesh"], &FACTS);
     let backends = audit["backends"].as_object().expect("a map");
     assert_eq!(backends.len(), 6);
@@ -90,7 +89,7 @@ const SUBDIVISION_LIMITS: [(&str, f64); 3] =
 #[test]
 fn operations_on_the_built_in_mesh_allocate_little_besides_their_result() {
     let run = run_ok(&Sixfold::new(), &["memory", "--json", "-"]);
-    let audit = parsed(&run.stdout);
+    let audit = finding(&run.stdout);
     let mut counted = 0;
     for (backend, build_limit) in BUILD_LIMITS {
         let operations = audit["backends"][backend]["operations"].as_array();
@@ -164,7 +163,7 @@ fn json_is_written_if_all_backends_refuse() {
     ];
     let run = sixfold.run(&arguments);
     assert_eq!(run.code, Some(3), "{run:?}");
-    let backends = &parsed(&run.stdout)["backends"];
+    let backends = &finding(&run.stdout)["backends"];
     assert_eq!(backends.as_object().map(|map| map.len()), Some(1));
     let reason = backends["half-edge"]["reason"].as_str().expect("a reason");
     assert!(reason.contains("f0, f1, f2"), "{reason}");

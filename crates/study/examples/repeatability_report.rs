@@ -21,7 +21,8 @@ use std::time::{Duration, Instant};
 
 use sixfold::{Relation, shapes};
 use sixfold_study::{
-    Environment, Operation, Report, ResultRow, Settings, Standing, StudyMesh, UNSEEN_DRIFT, study,
+    Environment, Operation, Report, ResultRow, Run, RunSettings, Settings, Standing, StudyMesh,
+    UNSEEN_DRIFT, study,
 };
 
 /// Minimum ratio of two backends whose order should be the same in all studies.
@@ -38,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "torus of 100,352 triangles, shuffled",
         shapes::shuffled(&torus, 1),
     );
-    let environment = Environment::detect(1, seconds as f64);
+    let now = Run::start(RunSettings::default());
     let mut reports = Vec::new();
     let start = Instant::now();
     for run in 0..runs {
@@ -57,29 +58,28 @@ fn main() -> Result<(), Box<dyn Error>> {
         reports.push(report);
     }
     let each = start.elapsed().as_secs_f64() / runs as f64;
-    let text = report_text(&reports, &environment, seconds, each);
+    let text = report_text(&reports, &now, seconds, each);
     fs::create_dir_all(&folder)?;
     fs::write(format!("{folder}/README.md"), &text)?;
     print!("{text}");
     Ok(())
 }
 
-fn report_text(reports: &[Report], environment: &Environment, seconds: u64, each: f64) -> String {
+fn report_text(reports: &[Report], now: &Run, seconds: u64, each: f64) -> String {
     let runs = reports.len();
     let Environment {
         cpu_model,
         cores,
         rustc,
-        load_average,
         ..
-    } = environment;
+    } = &now.environment;
     let mut text = format!(
         "# Repeated studies\n\n```sh\n\
          cargo run --release -p sixfold-study --example repeatability_report -- reports/repeatability {runs} {seconds}\n\
          ```\n\n{}, {} cores, load {:.1} at the start; {rustc}; processor time of the thread.\n\n",
         cpu_model.as_deref().unwrap_or("unknown processor"),
         cores.unwrap_or(0),
-        load_average.unwrap_or(f64::NAN),
+        now.start.load_average.unwrap_or(f64::NAN),
     );
     let _ = writeln!(
         text,

@@ -30,7 +30,7 @@ use sixfold::io::write_obj;
 use sixfold_core::Counts;
 use tempfile::TempDir;
 
-use crate::report::BackendReport;
+use crate::results::rows::BackendReport;
 use crate::sanitize::sanitize;
 use program::{Handshake, Program};
 use sixfold_workload::TimedBackend;

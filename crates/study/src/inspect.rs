@@ -1,11 +1,42 @@
 //! Facts of a mesh, and the backends that can hold it.
 
+use std::io;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 use sixfold::{BuildError, Facts, PolygonMesh};
 use sixfold_core::Counts;
 
 use crate::refusal::reason;
-use crate::report::{BackendReport, Inspection, MeshReport, SCHEMA};
+use crate::results::document::SCHEMA;
+use crate::results::json::write_json;
+use crate::results::rows::{BackendReport, MeshReport};
 use sixfold_workload::Backend;
+
+/// Number of bytes that are hashed at once.
+const HASH_BLOCK: usize = 1 << 16;
+
+/// The facts of a mesh, and the backends that can hold it.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Inspection {
+    /// The version of the JSON schema.
+    pub schema: u32,
+    /// Name and topology of the mesh.
+    pub mesh: MeshReport,
+    /// The backends, in the order of [`Backend::structures`](crate::Backend::structures).
+    pub backends: Vec<BackendReport>,
+}
+
+impl Inspection {
+    /// Writes the inspection as JSON.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of `writer`.
+    pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
+        write_json(self, writer)
+    }
+}
 
 /// A mesh to inspect or to measure, with its facts.
 #[derive(Clone, Debug)]
@@ -18,6 +49,9 @@ pub struct StudyMesh {
     pub polygons: PolygonMesh,
     /// Differences between `polygons` and the file, as phrases.
     pub changes: Vec<String>,
+    /// The SHA-256 of the file, as 64 hexadecimal digits; `None` if the mesh was not read from a
+    /// file.
+    pub file_sha256: Option<String>,
 }
 
 impl StudyMesh {
@@ -28,17 +62,73 @@ impl StudyMesh {
             facts: Facts::from_polygons(&polygons),
             polygons,
             changes: Vec::new(),
+            file_sha256: None,
         }
     }
 
-    /// Returns the name and the facts of the mesh, in the format of reports.
+    /// Returns the name, the facts and the hash of the mesh, in the format of reports. The time is
+    /// O(corners).
     pub fn report(&self) -> MeshReport {
         MeshReport {
             name: self.name.clone(),
             facts: self.facts.clone(),
             changes: self.changes.clone(),
+            sha256: content_hash(&self.polygons),
+            file_sha256: self.file_sha256.clone(),
         }
     }
+}
+
+/// Returns the SHA-256 of the positions and faces, as 64 hexadecimal digits. All numbers have 32
+/// bits and begin with the lowest byte: the number of vertices, three coordinates for each vertex,
+/// and for each face the number of corners and the vertices of the corners.
+fn content_hash(polygons: &PolygonMesh) -> String {
+    let mut hash = Sha256::new();
+    let mut bytes: Vec<u8> = Vec::with_capacity(HASH_BLOCK + 64);
+    bytes.extend((polygons.vertex_count() as u32).to_le_bytes());
+    for position in polygons.positions() {
+        bytes.extend(position.to_array().into_iter().flat_map(f32::to_le_bytes));
+        flush(&mut hash, &mut bytes, HASH_BLOCK);
+    }
+    for (_, face) in polygons.faces().iter() {
+        bytes.extend((face.len() as u32).to_le_bytes());
+        for &vertex in face {
+            bytes.extend((vertex.index() as u32).to_le_bytes());
+            flush(&mut hash, &mut bytes, HASH_BLOCK);
+        }
+    }
+    flush(&mut hash, &mut bytes, 0);
+    hex(&hash.finalize())
+}
+
+/// Hashes and removes `bytes` if there are at least `least`.
+fn flush(hash: &mut Sha256, bytes: &mut Vec<u8>, least: usize) {
+    if bytes.len() >= least {
+        hash.update(&*bytes);
+        bytes.clear();
+    }
+}
+
+/// Returns the SHA-256 of everything that `reader` returns, as 64 hexadecimal digits.
+///
+/// # Errors
+///
+/// Returns the errors of `reader`.
+pub fn sha256_of(mut reader: impl io::Read) -> io::Result<String> {
+    let mut hash = Sha256::new();
+    let mut buffer = vec![0; HASH_BLOCK];
+    loop {
+        match reader.read(&mut buffer) {
+            Ok(0) => return Ok(hex(&hash.finalize())),
+            Ok(count) => hash.update(&buffer[..count]),
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Checks which backends can hold the mesh, without building the backends. The expected time is

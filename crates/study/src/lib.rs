@@ -8,84 +8,67 @@
 //! shape in many sizes.
 //!
 //! [`inspect`] describes a mesh and the backends that can hold it. [`pick`] ranks the backends for
-//! a workload. [`compare`] compares two studies. A [`Collection`] holds the studies of many meshes
-//! and computes means over the meshes. [`audit`] counts the bytes of each backend in three ways,
+//! a workload. [`audit`] counts the bytes of each backend in three ways,
 //! and reports differences between the three counts. [`why`] counts the bytes that queries read,
 //! and compares the times of the queries with the speed of memory.
 //!
-//! The file `reports/SCHEMA.md` explains the values in the results. This crate has no command line
+//! [`Results`] is the document with the findings of these measurements. It is read and written as
+//! JSON, written as CSV, and merged with other documents. [`compare`] compares two documents. A
+//! [`Pool`] has the means over the studies of many meshes.
+//!
+//! The file `reports/SCHEMA.md` explains the values in the document. This crate has no command line
 //! and prints nothing. The measuring functions report the progress to a closure, and stop early
 //! when a flag is set.
 
-mod agreement;
-mod audit;
-mod budget;
-mod collection;
-mod compare;
-mod control;
-mod disturbance;
-mod environment;
+mod engine;
 mod external;
-mod growth;
-mod heap;
 mod inspect;
 mod labs;
-mod measure;
-mod methods;
 pub mod numbers;
-mod orders;
-mod pick;
-mod plan;
-mod ranking;
-mod read;
 mod refusal;
-mod report;
+mod results;
 mod runner;
 mod sanitize;
-mod sentences;
-#[cfg(test)]
-mod simulated_machine;
-mod slope;
-mod statistics;
-mod study;
-mod timer;
-mod trial;
-mod warnings;
-mod why;
 
-pub use audit::{Audit, BackendAudit, OperationBytes, audit, count_allocations};
-pub use budget::Budget;
-pub use collection::{
-    Collection, Failed, FailureKind, Group, Holding, MergeError, Overall, Pool, Pooled, Purpose,
-    SecondStudy, SharedSettings,
-};
-pub use compare::{
-    Change, Changes, CompareError, CompareSettings, DRIFT, NewWinner, SettingChange, Verdict,
-    compare,
-};
-pub use environment::Environment;
+pub use engine::budget::Budget;
+pub use engine::heap::{CacheState, CachesReport, free_memory};
+pub use engine::measure::Progress;
+pub use engine::statistics::UNSEEN_DRIFT;
+pub use engine::timer::Timer;
 pub use external::{EXTERNAL_TIMEOUT, External, ExternalError, ExternalReport};
-pub use growth::{
+pub use inspect::{Inspection, StudyMesh, inspect, sha256_of};
+pub use labs::Slope;
+pub use labs::growth::{
     BackendBytes, BackendRefusal, CacheLimit, Fit, GrowthError, GrowthReport, GrowthSettings,
     SCALABLE_SHAPES, ScalableShape, SizeReport, growth, growth_bytes,
 };
-pub use heap::{CacheState, CachesReport, free_memory};
-pub use inspect::{StudyMesh, inspect};
-pub use labs::Labs;
-pub use measure::Progress;
-pub use orders::{
+pub use labs::memory::{Audit, BackendAudit, OperationBytes, audit, count_allocations};
+pub use labs::orders::{
     Comparison, DEFAULT_OPERATIONS, Factor, Larger, OrderEffect, OrderRow, OrdersError,
-    OrdersReport, StructureEffect, orders, orders_bytes,
+    OrdersReport, SamplesInOrder, StructureEffect, orders, orders_bytes,
 };
-pub use pick::{
+pub use labs::pick::{
     BreakEven, Choice, EQUAL_UP_TO, Excluded, MeshRanking, Need, PartCost, PickError, PickReport,
     PickSettings, Predicted, Prediction, Ranked, TurningPoint, UnknownNeed, pick, predict,
 };
-pub use read::{ReadError, Results};
-pub use report::{
-    Agreement, BackendReport, Control, ControlRow, FIRST_TIME_SHOWN, Inspection, MeshReport,
-    RawSamples, Refusal, Report, ResultRow, SCHEMA, Standing,
+pub use labs::study::{Report, Settings, StudyError, study};
+pub use labs::why::{Bound, Model, Timed, Timing, Why, WhyRow, WhySettings, why};
+pub use results::compare::{
+    BytesChange, Change, Changes, CompareError, CompareSettings, DRIFT, Measurement, NewWinner,
+    SettingChange, Verdict, compare,
 };
+pub use results::document::{Failed, FailureKind, Results, SCHEMA};
+pub use results::environment::Environment;
+pub use results::figure::{Figure, FigureRow, Status};
+pub use results::finding::Finding;
+pub use results::merge::MergeError;
+pub use results::pool::{Group, Holding, Overall, Pool, Pooled, Purpose};
+pub use results::read::ReadError;
+pub use results::rows::{
+    Agreement, BackendReport, Control, ControlRow, FIRST_TIME_SHOWN, MeshReport, Refusal,
+    ResultRow, Samples, Standing,
+};
+pub use results::run::{Run, RunSettings, Start as RunStart};
 pub use runner::{BackendRun, BackendRunner};
 pub use sanitize::sanitize;
 pub use sixfold_workload::pages::{self, HeapReport, Policy, UnknownPolicy};
@@ -98,8 +81,3 @@ pub use sixfold_workload::{
     NotCounted, Operation, Reads, Refiner, Series, SingleEdit, Start, SubdivisionJob, TableReads,
     Time, UnknownOperation, Way, caches, timed, unknown,
 };
-pub use slope::Slope;
-pub use statistics::UNSEEN_DRIFT;
-pub use study::{Settings, StudyError, study};
-pub use timer::Timer;
-pub use why::{Bound, Model, Timed, Timing, Why, WhyRow, WhySettings, why};

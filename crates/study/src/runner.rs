@@ -4,10 +4,10 @@ use std::hint::black_box;
 
 use sixfold::{Facts, PolygonMesh};
 
-use crate::disturbance::{DisturbanceDetector, Verdict};
-use crate::measure::{MAX_RUNS, untimed_runs};
-use crate::plan::SHORTEST_SAMPLE_NS;
-use crate::study::{StudyError, prepare};
+use crate::engine::disturbance::{DisturbanceDetector, Verdict};
+use crate::engine::measure::{MAX_RUNS, untimed_runs};
+use crate::engine::plan::SHORTEST_SAMPLE_NS;
+use crate::labs::study::{StudyError, prepare};
 use sixfold_workload::Backend;
 use sixfold_workload::Draw;
 use sixfold_workload::Operation;

@@ -1,16 +1,19 @@
 //! Shared code of the programs that make reports.
 
-use sixfold_study::Environment;
+use sixfold_study::{Policy, Run, RunSettings, pages};
+
+/// Describes the machine, and keeps freed memory pages from now on.
+pub(crate) fn start() -> Run {
+    let mut run = Run::start(RunSettings::default());
+    run.environment.heap = Some(pages::set_policy(Policy::Kept));
+    run
+}
 
 /// Returns the command that makes the report, as a code block, and a description of the machine.
-pub(crate) fn introduction(
-    machine: &Environment,
-    example: &str,
-    folder: &str,
-    rounds: usize,
-) -> String {
+pub(crate) fn introduction(run: &Run, example: &str, folder: &str, rounds: usize) -> String {
+    let machine = &run.environment;
     let cpu = machine.cpu_model.as_deref().unwrap_or("unknown processor");
-    let load = machine.load_average.unwrap_or(f64::NAN);
+    let load = run.start.load_average.unwrap_or(f64::NAN);
     let flags = match machine.rustflags.as_str() {
         "" => String::new(),
         flags => format!("RUSTFLAGS=\"{flags}\" "),

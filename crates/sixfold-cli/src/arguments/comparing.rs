@@ -7,7 +7,7 @@ use clap::Args;
 use sixfold::shapes::Order;
 use sixfold_study::{GrowthSettings, Operation};
 
-use super::{MemoryState, backend, duration, operation, seed};
+use super::{MemoryState, ResultFiles, backend, duration, operation, seed};
 
 /// Text after the options in `orders --help`; the lists of names follow it.
 pub(crate) const ORDERS_EXAMPLES: &str = "Examples:
@@ -55,9 +55,8 @@ pub(crate) struct Orders {
     /// First cut every polygon into a fan of triangles
     #[arg(long)]
     pub(crate) triangulate: bool,
-    /// Write all results as JSON (- for standard output)
-    #[arg(long, value_name = "FILE")]
-    pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) files: ResultFiles,
 }
 
 const COMPARE_EXAMPLES: &str = "Examples:
@@ -65,35 +64,35 @@ const COMPARE_EXAMPLES: &str = "Examples:
   sixfold compare before.json after.json --fail-if-slower      for CI: exit code 1
   sixfold compare laptop.json server.json --relative
 
-Both files are written by `sixfold study --json`. A figure is the time of one operation on one
-backend. The ratio of a figure is the median time in the second study, divided by the median time in
-the first study. A figure counts as slower if three conditions hold:
+Each file has results of any commands that measure. A figure is the time of one operation on one
+backend, on the same mesh and by the same command in both files. The ratio of a figure is the median
+time in the second file, divided by the median time in the first file. A figure counts as slower if
+three conditions hold:
   - The 95 % interval of the ratio lies above 1.
   - The ratio is above --noise.
-  - The ratio is above the noise of this operation in both studies.
-A figure counts as faster if the same conditions hold for the inverse of the ratio. If a study has
+  - The ratio is above the noise of this operation in both files.
+A figure counts as faster if the same conditions hold for the inverse of the ratio. If a file has
 fewer than three samples of a figure, the first condition is that the ratio is above 2.
 
-The default of --noise is chosen for shared virtual machines, whose speed changes between studies. A
-dedicated machine allows a lower value. To find a suitable value, compare two studies of the same
-program.
+The default of --noise is chosen for shared virtual machines, whose speed changes over time. A
+dedicated machine allows a lower value. To find a suitable value, compare two measurements of
+the same program.
 
 Exit codes: 0 success; 1 a figure is slower and --fail-if-slower is given; 2 wrong usage, or a file
-that is incomplete, is not a study, or has another schema version.";
+that is incomplete, has no results, or has another schema version.";
 
-/// Compare two studies, and show the differences that exceed the noise.
+/// Compare two files of results, and show the differences that exceed the noise.
 ///
-/// Compares studies of one mesh on two machines, with two compilers or of two commits. Shows which
-/// figures are faster or slower, which backend is the fastest in the second study, and how machines
-/// and programs differ.
+/// Compares measurements on two machines, with two compilers or of two commits. Shows which figures
+/// are faster or slower, which backend is now the fastest, and how machines and programs differ.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment, after_help = COMPARE_EXAMPLES)]
 pub(crate) struct Compare {
-    /// The first study, as JSON
-    #[arg(value_name = "BEFORE.json")]
+    /// The first results: a file of --json, or a folder of --report
+    #[arg(value_name = "BEFORE.json|DIR")]
     pub(crate) before: PathBuf,
-    /// The second study, as JSON
-    #[arg(value_name = "AFTER.json")]
+    /// The second results
+    #[arg(value_name = "AFTER.json|DIR")]
     pub(crate) after: PathBuf,
     /// First divide each ratio by the median of all ratios
     #[arg(long)]
@@ -168,9 +167,8 @@ pub(crate) struct Growth {
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) memory: MemoryState,
-    /// Write all results as JSON (- for standard output)
-    #[arg(long, value_name = "FILE")]
-    pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) files: ResultFiles,
 }
 
 fn count(text: &str) -> Result<usize, String> {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::backend;
+use super::{ResultFiles, backend};
 
 const EXAMPLES: &str = "Examples:
   sixfold memory
@@ -42,7 +42,6 @@ pub(crate) struct Memory {
     /// First cut every polygon into a fan of triangles
     #[arg(long)]
     pub(crate) triangulate: bool,
-    /// Write all results as JSON (- for standard output)
-    #[arg(long, value_name = "FILE")]
-    pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) files: ResultFiles,
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use clap::Args;
 use sixfold_study::{Need, Policy};
 
-use super::{backend, duration, seed};
+use super::{ResultFiles, backend, duration, seed};
 
 const PICK_EXAMPLES: &str = "Examples:
   sixfold pick bunny.obj
@@ -70,9 +70,8 @@ pub(crate) struct Pick {
     /// First cut every polygon into a fan of triangles
     #[arg(long)]
     pub(crate) triangulate: bool,
-    /// Write the result as JSON (- for standard output)
-    #[arg(long, value_name = "FILE")]
-    pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) files: ResultFiles,
 }
 
 /// List the built-in workloads and the programs they model.

@@ -7,7 +7,7 @@ use clap::Args;
 use sixfold::Relation;
 
 use super::subdivision::parse_name;
-use super::{backend, duration};
+use super::{ResultFiles, backend, duration};
 
 const WHY_EXAMPLES: &str = "Examples:
   sixfold why --counts-only                                counts on the built-in mesh, no times
@@ -57,9 +57,8 @@ pub(crate) struct Why {
     /// Total time to measure, such as 20s, 500ms or 2m
     #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration, allow_hyphen_values = true, conflicts_with = "counts_only")]
     pub(crate) budget: Duration,
-    /// Write all results as JSON (- for standard output)
-    #[arg(long, value_name = "FILE")]
-    pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) files: ResultFiles,
 }
 
 fn relation(text: &str) -> Result<Relation, String> {

@@ -2,23 +2,14 @@
 
 use std::process::ExitCode;
 
-use sixfold_study::{Collection, Results};
-
 use super::folder::Folder;
+use super::merge::merged;
 use crate::arguments::Draw;
 use crate::failure::Failure;
-use crate::load;
-use crate::outcome::command_line;
+use crate::measure::command_line;
 
 pub(crate) fn run(arguments: &Draw) -> Result<ExitCode, Failure> {
-    let mut collection = Collection::empty();
-    for place in &arguments.results {
-        let file = load::results_path(place);
-        let results = load::read_results(&file, Results::read_json)?;
-        collection
-            .add(results)
-            .map_err(|error| Failure::usage(format!("{}: {error}", file.display())))?;
-    }
-    Folder::create(&arguments.to)?.write_page(&collection, &command_line())?;
+    let results = merged(&arguments.results)?;
+    Folder::create(&arguments.to)?.write_page(&results, &command_line())?;
     Ok(ExitCode::SUCCESS)
 }

@@ -4,22 +4,23 @@
 //! DIR/studies/bunny-0e2a97c1.json  one mesh, written as soon as it is finished; used by --resume
 //! DIR/labs/orders.json           another lab
 //! DIR/results.json               all results
-//! DIR/results.csv                every sample
+//! DIR/results.csv                every time
+//! DIR/samples.csv                every sample
 //! DIR/report.html                the page, which needs no other file
 //! DIR/report.md, DIR/figures     the same in Markdown
 //! ```
 
 use std::fs;
-use std::hash::Hasher;
-use std::io::{self, Read};
+use std::io;
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
 use sixfold_report::ReportPage;
-use sixfold_study::{Collection, Failed, Report, Results, SharedSettings};
+use sixfold_study::{Finding, Results, RunSettings, Settings};
 
 use super::meshes::Mesh;
+use crate::arguments::Study;
 use crate::failure::Failure;
+use crate::load::file_hash;
 use crate::output::{Output, cannot_write};
 use crate::text::print_stderr;
 use sixfold_study::numbers::counted;
@@ -28,79 +29,22 @@ pub(super) struct Folder {
     path: PathBuf,
 }
 
-/// The saved study of one mesh, or the reason why the study failed.
-#[derive(Debug, Deserialize, Serialize)]
-pub(super) struct StudyRecord {
-    schema: u32,
-    mesh: String,
-    /// Size and checksum of the mesh file. They show whether the file has changed.
-    content: Option<String>,
-    settings: SharedSettings,
-    study: Option<Report>,
-    failure: Option<Failed>,
-}
-
-impl StudyRecord {
-    pub(super) fn new(
-        mesh: &Mesh,
-        settings: &SharedSettings,
-        result: Result<Report, Failed>,
-    ) -> Self {
-        let (study, failure) = match result {
-            Ok(study) => (Some(study), None),
-            Err(failed) => (None, Some(failed)),
-        };
-        Self {
-            schema: sixfold_study::SCHEMA,
-            mesh: mesh.name.clone(),
-            content: mesh.path.as_deref().and_then(content),
-            settings: settings.clone(),
-            study,
-            failure,
-        }
-    }
-
-    pub(super) fn add_to(self, collection: &mut Collection) {
-        match (self.study, self.failure) {
-            (Some(study), _) => collection.add_study(study),
-            (None, Some(failed)) => collection.add_failure(failed),
-            (None, None) => {} // still missing
-        }
-    }
-}
-
-/// Returns the size and checksum of a file. Returns `None` if the file cannot be read.
-fn content(path: &Path) -> Option<String> {
-    let mut file = fs::File::open(path).ok()?;
-    let mut hasher = crc32fast::Hasher::new();
-    let mut buffer = vec![0; 1 << 16];
-    let mut bytes = 0_u64;
-    loop {
-        match file.read(&mut buffer).ok()? {
-            0 => break,
-            count => {
-                hasher.write(&buffer[..count]);
-                bytes += count as u64;
-            }
-        }
-    }
-    Some(format!("{bytes} bytes, crc32 {:08x}", hasher.finalize()))
-}
-
 impl Folder {
-    /// Opens or creates `path`. If `resume` is set, adds the finished studies to `collection`.
+    /// Opens or creates the folder of `arguments`. With `--resume`, adds the finished studies to
+    /// `results`.
     pub(super) fn open(
         path: &Path,
-        resume: bool,
-        collection: &mut Collection,
+        arguments: &Study,
+        settings: &Settings,
         meshes: &[Mesh],
+        results: &mut Results,
     ) -> Result<Self, Failure> {
         let shown = path.display();
         let folder = Self { path: path.into() };
         let studies = folder.studies();
         fs::create_dir_all(&studies).map_err(|cause| cannot_write(&shown.to_string(), &cause))?;
         let files = folder.study_files()?;
-        if !resume {
+        if !arguments.resume {
             let existing = folder.path.join("results.json");
             return match files.len() {
                 0 if existing.exists() => Err(Failure::usage(format!(
@@ -116,29 +60,21 @@ impl Folder {
                 }
             };
         }
+        let wanted = RunSettings {
+            triangulate: arguments.triangulate,
+            strict: arguments.strict,
+            ..RunSettings::of_study(settings)
+        };
         for (file, text) in files {
-            let Ok(record) = serde_json::from_str::<StudyRecord>(&text) else {
+            let Ok(saved) = Results::read_json(&text) else {
                 let file = file.display();
                 print_stderr(&format!(
                     "note: {file}: not a study of this program, so the mesh is studied again"
                 ));
                 continue;
             };
-            if record.settings != collection.settings {
-                return Err(Failure::usage(format!(
-                    "{} was made with other settings: name another folder, or use the same settings",
-                    file.display()
-                )));
-            }
-            let Some(mesh) = meshes.iter().find(|mesh| mesh.name == record.mesh) else {
-                continue; // no longer selected
-            };
-            match mesh.path.as_deref().and_then(content) == record.content {
-                true => record.add_to(collection),
-                false => print_stderr(&format!(
-                    "note: {}: the file has changed since it was studied, so it is studied again",
-                    mesh.name
-                )),
+            for study in saved.findings {
+                add_saved(study, &file, &wanted, meshes, results)?;
             }
         }
         Ok(folder)
@@ -151,16 +87,9 @@ impl Folder {
         Ok(Self { path: path.into() })
     }
 
-    /// Removes the records of failures, and the folder if it is empty then. Leaves everything that
-    /// this program did not write.
-    pub(super) fn remove_failures(&self) {
-        for (file, text) in self.study_files().unwrap_or_default() {
-            let record = serde_json::from_str::<StudyRecord>(&text);
-            if record.is_ok_and(|record| record.study.is_none()) {
-                fs::remove_file(file).ok();
-            }
-        }
-        // Only folders that are empty now are removed.
+    /// Removes the folder if this program wrote nothing into it.
+    pub(super) fn remove_if_empty(&self) {
+        // Only empty folders are removed.
         fs::remove_dir(self.studies()).ok();
         fs::remove_dir(&self.path).ok();
     }
@@ -192,8 +121,8 @@ impl Folder {
     }
 
     /// Saves the study of a mesh. The file gets its name when it is complete.
-    pub(super) fn save_study(&self, record: &StudyRecord) -> Result<(), Failure> {
-        let stem = Path::new(&record.mesh).file_stem().unwrap_or_default();
+    pub(super) fn save_study(&self, mesh: &str, study: &Results) -> Result<(), Failure> {
+        let stem = Path::new(mesh).file_stem().unwrap_or_default();
         let safe = |c: char| {
             if c.is_ascii_alphanumeric() || "._-".contains(c) {
                 c
@@ -203,12 +132,9 @@ impl Folder {
         };
         let stem: String = stem.to_string_lossy().chars().map(safe).take(40).collect();
         // The checksum of the full name distinguishes meshes with the same stem.
-        let name = crc32fast::hash(record.mesh.as_bytes());
+        let name = crc32fast::hash(mesh.as_bytes());
         let path = self.studies().join(format!("{stem}-{name:08x}.json"));
-        Output::open(&path)?.finish(|writer| {
-            serde_json::to_writer(&mut *writer, record)?;
-            writeln!(writer)
-        })
+        Output::open(&path)?.finish(|writer| study.write_json(writer))
     }
 
     /// Reads the saved lab `name`. Returns `None` if the lab cannot be read.
@@ -230,21 +156,18 @@ impl Folder {
     }
 
     /// Writes all results and the page. `command` reproduces them.
-    pub(super) fn write_report(
-        &self,
-        collection: &Collection,
-        command: &str,
-    ) -> Result<(), Failure> {
+    pub(super) fn write_report(&self, results: &Results, command: &str) -> Result<(), Failure> {
         let output = |name: &str| Output::open(&self.path.join(name));
-        output("results.json")?.finish(|writer| collection.write_json(writer))?;
-        output("results.csv")?.finish(|writer| collection.write_csv(writer))?;
-        self.write_page(collection, command)
+        output("results.json")?.finish(|writer| results.write_json(writer))?;
+        output("results.csv")?.finish(|writer| results.write_csv(writer))?;
+        output("samples.csv")?.finish(|writer| results.write_samples_csv(writer))?;
+        self.write_page(results, command)
     }
 
     /// Writes only the page and the figures.
-    pub(super) fn write_page(&self, collection: &Collection, command: &str) -> Result<(), Failure> {
+    pub(super) fn write_page(&self, results: &Results, command: &str) -> Result<(), Failure> {
         let output = |name: &str| Output::open(&self.path.join(name));
-        let page = ReportPage::new(collection, command);
+        let page = ReportPage::new(results, command);
         output("report.html")?.finish(|writer| writer.write_all(page.html().as_bytes()))?;
         output("report.md")?.finish(|writer| writer.write_all(page.markdown().as_bytes()))?;
         let figures = self.path.join("figures");
@@ -256,4 +179,34 @@ impl Folder {
         }
         Ok(())
     }
+}
+
+/// Adds a saved study to `results` if its mesh is selected and its file has not changed.
+fn add_saved(
+    saved: Finding,
+    file: &Path,
+    wanted: &RunSettings,
+    meshes: &[Mesh],
+    results: &mut Results,
+) -> Result<(), Failure> {
+    let Finding::Study(study) = saved else {
+        return Ok(());
+    };
+    if study.run.settings != *wanted {
+        return Err(Failure::usage(format!(
+            "{} was made with other settings: name another folder, or use the same settings",
+            file.display()
+        )));
+    }
+    let Some(mesh) = meshes.iter().find(|mesh| mesh.name == study.mesh.name) else {
+        return Ok(()); // no longer selected
+    };
+    match mesh.path.as_deref().and_then(file_hash) == study.mesh.file_sha256 {
+        true => results.add(Finding::Study(study)),
+        false => print_stderr(&format!(
+            "note: {}: the file has changed since it was studied, so it is studied again",
+            mesh.name
+        )),
+    }
+    Ok(())
 }

@@ -4,10 +4,13 @@ use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use sixfold_study::unknown;
-use sixfold_study::{GrowthSettings, Labs, Operation, Results, Settings, StudyMesh, WhySettings};
+use sixfold_study::{
+    Finding, GrowthSettings, Operation, Results, Settings, StudyMesh, WhySettings,
+};
 
 use super::folder::Folder;
 use crate::failure::Failure;
+use crate::measure::with_command;
 use crate::progress::Bar;
 use crate::text::{TextOutput, hanging_indent, print_stderr, sanitize};
 use crate::{growth, orders, why};
@@ -75,6 +78,7 @@ pub(super) fn selected_labs(
 pub(super) struct LabRunner<'a> {
     pub(super) study_mesh: &'a StudyMesh,
     pub(super) settings: &'a Settings,
+    pub(super) triangulate: bool,
     pub(super) folder: &'a Folder,
     /// True if an earlier run finished the study. The folder then has results of the same mesh and
     /// settings.
@@ -83,27 +87,34 @@ pub(super) struct LabRunner<'a> {
 }
 
 impl LabRunner<'_> {
-    /// Measures the labs that are not in the folder. A lab that fails is reported and left out.
-    pub(super) fn run(&self, selected: &[Lab]) -> Result<Labs, Failure> {
-        let mut labs = Labs::default();
+    /// Measures the labs that are not in the folder, and adds their findings. A lab that fails is
+    /// reported and left out.
+    pub(super) fn run(&self, selected: &[Lab], results: &mut Results) -> Result<(), Failure> {
         for (i, &lab) in selected.iter().enumerate() {
             let saved = match self.resumed {
                 true => self.folder.load_lab(lab.name()),
                 false => None,
             };
-            if saved.is_none() && self.stop.load(Ordering::Relaxed) {
+            if let Some(saved) = saved {
+                saved
+                    .findings
+                    .into_iter()
+                    .for_each(|saved| results.add(saved));
                 continue;
             }
-            let results = match saved {
-                Some(saved) => Ok(Some(saved)),
-                None => self.measure(lab, &format!("{} of {}: ", i + 2, selected.len() + 1)),
-            };
-            match results {
-                Ok(Some(results)) => {
+            if self.stop.load(Ordering::Relaxed) {
+                continue;
+            }
+            match self.measure(lab, &format!("{} of {}: ", i + 2, selected.len() + 1)) {
+                Ok(Some(finding)) => {
+                    let document = Results::from(with_command(finding, self.triangulate));
                     if !self.stop.load(Ordering::Relaxed) {
-                        self.folder.save_lab(lab.name(), &results)?;
+                        self.folder.save_lab(lab.name(), &document)?;
                     }
-                    labs.add(results);
+                    document
+                        .findings
+                        .into_iter()
+                        .for_each(|new| results.add(new));
                 }
                 Ok(None) => print_stderr(&format!(
                     "note: the report is without {}: none of the selected operations is a relation",
@@ -116,11 +127,11 @@ impl LabRunner<'_> {
                 )),
             }
         }
-        Ok(labs)
+        Ok(())
     }
 
     /// Measures a lab. `position` is shown before the progress.
-    fn measure(&self, lab: Lab, position: &str) -> Result<Option<Results>, Failure> {
+    fn measure(&self, lab: Lab, position: &str) -> Result<Option<Finding>, Failure> {
         let Settings {
             backends,
             operations,
@@ -147,12 +158,12 @@ impl LabRunner<'_> {
                     self.stop,
                     &Bar::after(position),
                 )?;
-                Some(Results::Orders(orders.into()))
+                Some(orders.into())
             }
             Lab::Growth => {
                 let settings = GrowthSettings::from_study(settings());
                 let growth = growth::measure(&settings, self.stop, &Bar::after(position))?;
-                Some(Results::Growth(growth.into()))
+                Some(growth.into())
             }
             Lab::Why => {
                 let relations = operations.iter().filter_map(|operation| match operation {
@@ -174,18 +185,18 @@ impl LabRunner<'_> {
                     self.stop,
                     &Bar::after(position),
                 )?;
-                Some(Results::Why(why.into()))
+                Some(why.into())
             }
         })
     }
 }
 
-pub(super) fn print(labs: &Labs, text: &mut TextOutput) {
-    let orders = labs.orders.iter().map(|orders| {
+pub(super) fn print(results: &Results, text: &mut TextOutput) {
+    let orders = results.orders().map(|orders| {
         let title = format!("Effect of the order of {}", sanitize(&orders.mesh.name));
         (title, &orders.sentences)
     });
-    let growth = labs.growth.iter().map(|growth| {
+    let growth = results.growth().map(|growth| {
         (
             format!("How costs grow: {}", growth.shape),
             &growth.sentences,

@@ -1,48 +1,48 @@
-//! `sixfold merge`: merges the shards of a study of many meshes.
+//! `sixfold merge`: merges documents of results.
 
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use sixfold_study::Collection;
+use sixfold_study::Results;
 
 use super::folder::Folder;
 use crate::arguments::Merge;
 use crate::failure::Failure;
 use crate::load;
-use crate::outcome::{command_line, studies_exit_code};
-use crate::output::{Output, check_not_overwritten, is_stdout};
-use crate::text::TextOutput;
+use crate::measure::{Session, command_line, exit_code};
+use crate::output::check_not_overwritten;
+use sixfold_study::Policy;
 
 pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
-    if arguments.json.is_none() && arguments.report.is_none() {
+    let options = arguments.files.options();
+    if options.iter().all(|(_, path)| path.is_none()) && arguments.report.is_none() {
         return Err(Failure::usage(
             "no output given: use --report DIR, or --json FILE (- for standard output)",
         ));
     }
-    let mut merged: Option<Collection> = None;
-    for place in &arguments.shards {
+    for place in &arguments.results {
         let file = load::results_path(place);
-        check_not_overwritten("a shard", &file, &[("--json", arguments.json.as_ref())])?;
-        let shard = load::read_results(&file, Collection::read_json)?;
-        match &mut merged {
-            None => merged = Some(shard),
-            Some(merged) => merged
-                .merge(shard)
-                .map_err(|error| Failure::usage(format!("{}: {error}", file.display())))?,
-        }
+        check_not_overwritten("the results", &file, &options)?;
     }
-    let Some(merged) = merged else {
-        return Err(Failure::usage("name the folders or files to merge"));
-    };
-    let on_stdout = arguments.json.as_deref().is_some_and(is_stdout);
-    let mut text = TextOutput::new(!on_stdout);
-    super::print(&merged, &mut text);
-    let mut written = text.finish();
-    if let Some(path) = &arguments.json {
-        let output = Output::open(path)?;
-        written = written.and(output.finish(|writer| merged.write_json(writer)));
-    }
+    let merged = merged(&arguments.results)?;
+    let mut session = Session::open(None::<&Path>, &arguments.files, Policy::System)?;
+    super::print_all(&merged, &mut session.text);
+    let mut written = session.write(&merged);
     if let Some(path) = &arguments.report {
         written = written.and(Folder::create(path)?.write_report(&merged, &command_line()));
     }
-    studies_exit_code(written, &merged.studies, merged.labs.mismatches(), false)
+    exit_code(written, &merged, false)
+}
+
+/// Reads and merges the results in `places`.
+pub(super) fn merged(places: &[PathBuf]) -> Result<Results, Failure> {
+    let mut merged = Results::default();
+    for place in places {
+        let results = load::read_results(place)?;
+        merged.merge(results).map_err(|error| {
+            let file = load::results_path(place);
+            Failure::usage(format!("{}: {error}", file.display()))
+        })?;
+    }
+    Ok(merged)
 }

@@ -1,5 +1,5 @@
 use sixfold::{Facts, PolygonMesh, structure_infos};
-use sixfold_study::{Control, Environment, MeshReport, SCHEMA};
+use sixfold_study::{Control, MeshReport, Run};
 
 use super::*;
 use crate::text::WIDTH;
@@ -75,11 +75,13 @@ fn report() -> Report {
     };
     let mesh = PolygonMesh::default();
     Report {
-        schema: SCHEMA,
+        run: Run::default(),
         mesh: MeshReport {
             name: "fixed".into(),
             facts: Facts::from_polygons(&mesh),
             changes: Vec::new(),
+            sha256: String::new(),
+            file_sha256: None,
         },
         backends: vec![backend("polygon-soup", 7200), backend("half-edge", 9600)],
         results: vec![
@@ -109,10 +111,9 @@ fn report() -> Report {
         }),
         sentences: Vec::new(),
         warnings: Vec::new(),
-        raw: Vec::new(),
+        samples: Vec::new(),
         timer: None,
         interrupted: false,
-        environment: Environment::detect(1, 1.0),
     }
 }
 

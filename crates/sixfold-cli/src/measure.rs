@@ -1,0 +1,196 @@
+//! The frame of all commands that measure: files are opened before the measurement begins, text is
+//! printed before the files are written, and the exit code follows from the results.
+
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use sixfold_study::numbers::counted;
+use sixfold_study::{Agreement, Finding, Policy, Report, ResultRow, Results};
+
+use crate::arguments::ResultFiles;
+use crate::failure::Failure;
+use crate::output::{Output, check_outputs, is_stdout};
+use crate::progress::{INTERRUPTED, interrupt_flag};
+use crate::text::{TextOutput, print_stderr};
+
+/// The exit code if backends found different results for the same work.
+const MISMATCH: u8 = 1;
+
+/// A measuring command between the opening of its files and the writing of its results.
+pub(crate) struct Session {
+    /// Set by Ctrl-C.
+    pub(crate) stop: Arc<AtomicBool>,
+    /// Prints nothing if results are written to standard output.
+    pub(crate) text: TextOutput,
+    files: OpenFiles,
+}
+
+/// The open files of [`ResultFiles`].
+struct OpenFiles {
+    json: Option<Output>,
+    csv: Option<Output>,
+    samples_csv: Option<Output>,
+}
+
+impl Session {
+    /// Opens the files. Returns an error if a file cannot be written, or would overwrite one of
+    /// `meshes` or another file.
+    pub(crate) fn open<'p>(
+        meshes: impl IntoIterator<Item = &'p Path>,
+        files: &ResultFiles,
+        heap: Policy,
+    ) -> Result<Self, Failure> {
+        check_outputs(None, &files.options())?;
+        for mesh in meshes {
+            check_outputs(Some(mesh), &files.options())?;
+        }
+        // Set the handler before the drafts are created, so that Ctrl-C always deletes the drafts.
+        let stop = interrupt_flag(heap);
+        let uses_stdout = files
+            .options()
+            .iter()
+            .any(|(_, path)| path.is_some_and(|p| is_stdout(p)));
+        Ok(Self {
+            stop,
+            text: TextOutput::new(!uses_stdout),
+            files: OpenFiles {
+                json: Output::open_if(files.json.as_ref())?,
+                csv: Output::open_if(files.csv.as_ref())?,
+                samples_csv: Output::open_if(files.samples_csv.as_ref())?,
+            },
+        })
+    }
+
+    /// Writes the files after the text was printed, and returns the exit code of the results.
+    pub(crate) fn finish(self, results: &Results) -> Result<ExitCode, Failure> {
+        let interrupted = results.is_interrupted();
+        let written = self.write(results);
+        exit_code(written, results, interrupted)
+    }
+
+    /// Writes the files after the text was printed. If one file fails, writes the others anyway.
+    pub(crate) fn write(self, results: &Results) -> Result<(), Failure> {
+        let OpenFiles {
+            json,
+            csv,
+            samples_csv,
+        } = self.files;
+        let mut done = self.text.finish();
+        if let Some(output) = json {
+            done = done.and(output.finish(|writer| results.write_json(writer)));
+        }
+        if let Some(output) = csv {
+            done = done.and(output.finish(|writer| results.write_csv(writer)));
+        }
+        if let Some(output) = samples_csv {
+            done = done.and(output.finish(|writer| results.write_samples_csv(writer)));
+        }
+        done
+    }
+}
+
+/// Adds the command line to the finding, and whether its meshes were triangulated.
+pub(crate) fn with_command(finding: impl Into<Finding>, triangulate: bool) -> Finding {
+    let mut finding = finding.into();
+    let run = finding.run_mut();
+    run.command = Some(command_line());
+    run.settings.triangulate = triangulate;
+    finding
+}
+
+/// Prints a note if the program was built without optimisation.
+pub(crate) fn warn_of_debug_build() {
+    if cfg!(debug_assertions) {
+        print_stderr("note: the times of a debug build are not meaningful: build with --release");
+    }
+}
+
+/// Returns the command line with quotes, so that a shell can run it again.
+pub(crate) fn command_line() -> String {
+    let words = std::env::args_os().skip(1);
+    let words = words.map(|word| word.to_string_lossy().into_owned());
+    let words: Vec<String> = ["sixfold".to_owned()].into_iter().chain(words).collect();
+    shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
+}
+
+/// Prints the final messages of a command and returns its exit code. Different results come first,
+/// then errors of writing (`written`), then an interruption, then different results of external
+/// programs.
+pub(crate) fn exit_code(
+    written: Result<(), Failure>,
+    results: &Results,
+    interrupted: bool,
+) -> Result<ExitCode, Failure> {
+    let mut others = 0;
+    for study in results.studies() {
+        for row in study.external_mismatches() {
+            others += 1;
+            print_different_work(study, row);
+        }
+    }
+    let code = code_of(written, results.mismatches(), interrupted)?;
+    Ok(match others {
+        0 => code,
+        _ => ExitCode::from(MISMATCH),
+    })
+}
+
+fn code_of(
+    written: Result<(), Failure>,
+    mismatches: usize,
+    interrupted: bool,
+) -> Result<ExitCode, Failure> {
+    if mismatches > 0 {
+        let results = counted(mismatches, "result differs", "results differ");
+        print_stderr(&format!(
+            "error: {results} from the results of other backends for the same work. This is a \
+             fault in Sixfold: please report it"
+        ));
+    }
+    written?;
+    if mismatches > 0 {
+        return Ok(ExitCode::from(MISMATCH));
+    }
+    if interrupted {
+        print_stderr("interrupted: finished results are kept");
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Reports the different result of an external program.
+fn print_different_work(study: &Report, row: &ResultRow) {
+    let ours = study.rows(row.operation);
+    let mut ours = ours.filter(|other| other.agreement == Agreement::Same);
+    let ours = ours.find_map(|other| other.checksum);
+    let [theirs, ours] = [row.checksum, ours].map(|checksum| match checksum {
+        Some(checksum) => checksum.to_string(),
+        None => "not a number".into(),
+    });
+    let (name, operation, mesh) = (&row.backend, row.operation, &study.mesh.name);
+    print_stderr(&format!(
+        "error: {mesh}: {name}: the checksum of {operation} is {theirs}, but {ours} on the \
+         built-in backends. The results differ, so the times of the program are not comparable: \
+         correct the program"
+    ));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mismatches_take_precedence_over_an_interruption() {
+        let code = |mismatches, interrupted| {
+            let result = code_of(Ok(()), mismatches, interrupted).expect("all is written");
+            format!("{result:?}")
+        };
+        let known = |code: u8| format!("{:?}", ExitCode::from(code));
+        assert_eq!(code(0, false), known(0));
+        assert_eq!(code(0, true), known(INTERRUPTED));
+        assert_eq!(code(2, true), known(MISMATCH));
+        assert!(code_of(Err(Failure::usage("full disk")), 1, true).is_err());
+    }
+}

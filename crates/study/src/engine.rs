@@ -1,0 +1,17 @@
+//! The measuring engine: built backends are measured in interleaved rounds, and the samples are
+//! judged.
+
+pub(crate) mod agreement;
+pub(crate) mod budget;
+pub(crate) mod control;
+pub(crate) mod disturbance;
+pub(crate) mod heap;
+pub(crate) mod measure;
+pub(crate) mod plan;
+pub(crate) mod ranking;
+#[cfg(test)]
+pub(crate) mod simulated_machine;
+pub(crate) mod statistics;
+pub(crate) mod timer;
+pub(crate) mod trial;
+pub(crate) mod warnings;

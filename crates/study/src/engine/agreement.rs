@@ -1,0 +1,305 @@
+//! Compares checksums to prove that all backends did the same work.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use sixfold::{Point, PolygonMesh};
+
+use crate::engine::measure::Entry;
+use crate::results::rows::Agreement;
+use sixfold_workload::Clock;
+use sixfold_workload::Operation;
+use sixfold_workload::field_sum;
+use sixfold_workload::{Job, Outcome, Series, Task, TimedBackend};
+
+/// Maximum relative difference of two `f32` sums of the same terms in different orders.
+const TOLERANCE: f64 = 1e-4;
+
+/// Compares the checksum of every entry with a reference. The reference is a backend of Sixfold
+/// without merged vertices.
+///
+/// If the jobs of the two entries differ, the smaller job is also run on the other backend, without
+/// timing. A sampled operation is never run in full. After `stop` is set, no more jobs are run.
+pub(crate) fn compare_checksums(
+    entries: &[Entry],
+    subjects: &mut [Box<dyn TimedBackend + '_>],
+    polygons: &PolygonMesh,
+    clock: &dyn Clock,
+    stop: &AtomicBool,
+) -> Vec<Agreement> {
+    let keeps_vertices =
+        |subjects: &[Box<dyn TimedBackend + '_>], s: usize| subjects[s].merged_vertices() == 0;
+    let is_reference = |subjects: &[Box<dyn TimedBackend + '_>], s: usize| {
+        keeps_vertices(subjects, s) && !subjects[s].is_external()
+    };
+    let agreement = |entry: &Entry| {
+        let Some(outcome) = entry.outcome else {
+            return Agreement::Unchecked;
+        };
+        let others = entries.iter().filter(|other| {
+            same_work(other.job.task, entry.job.task)
+                && other.subject != entry.subject
+                && other.outcome.is_some()
+                && is_reference(subjects, other.subject)
+        });
+        // Prefer a full run as the reference: its backend can also run the sample in little time.
+        let mut others: Vec<&Entry> = others.collect();
+        // Prefer a backend that refuses the same edits, because it does the same work.
+        let refuses_others =
+            |other: &Entry| other.outcome.is_some_and(|o| o.refused != outcome.refused);
+        others.sort_by_key(|other| {
+            let task_differs = other.job.task != entry.job.task;
+            (
+                refuses_others(other),
+                task_differs,
+                other.job.sample.is_some(),
+            )
+        });
+        let Some(other) = others.first() else {
+            return Agreement::Unchecked;
+        };
+        let pair = if (other.job.sample, other.job.first) == (entry.job.sample, entry.job.first) {
+            Some(outcome).zip(other.outcome)
+        } else if stop.load(Ordering::Relaxed) {
+            None
+        } else if size(&entry.job) <= size(&other.job) {
+            let reference = rerun(&mut subjects[other.subject], &entry.job, clock);
+            Some(outcome).zip(reference)
+        } else {
+            rerun(&mut subjects[entry.subject], &other.job, clock).zip(other.outcome)
+        };
+        let Some((outcome, reference)) = pair else {
+            return Agreement::Unchecked;
+        };
+        if outcome.refused != reference.refused && outcome.checksum != reference.checksum {
+            return Agreement::OtherEdits;
+        }
+        let same = match entry.operation() {
+            Some(operation) => agree(operation, outcome.checksum, reference.checksum, polygons),
+            None => outcome.checksum == reference.checksum,
+        };
+        if same {
+            // Merged vertices can give the same checksum from fewer elements.
+            match outcome.elements == reference.elements {
+                true => Agreement::Same,
+                false if subjects[entry.subject].is_external() => Agreement::Mismatch,
+                false if keeps_vertices(subjects, entry.subject) => Agreement::Same,
+                false => Agreement::Merged,
+            }
+        } else if !keeps_vertices(subjects, entry.subject) {
+            Agreement::Merged
+        } else if !(outcome.checksum.is_finite() && reference.checksum.is_finite()) {
+            Agreement::Unchecked
+        } else {
+            Agreement::Mismatch
+        }
+    };
+    entries.iter().map(agreement).collect()
+}
+
+/// Returns whether two tasks have the same result. All methods of a subdivision scheme make the same
+/// surface.
+fn same_work(a: Task, b: Task) -> bool {
+    let scheme = |task: Task| task.operation().and_then(Operation::scheme);
+    a == b || (scheme(a).is_some() && scheme(a) == scheme(b))
+}
+
+/// Returns the sample size of `job`. A full run has the size `usize::MAX`.
+fn size(job: &Job) -> usize {
+    job.sample.map_or(usize::MAX, |sample| sample.size)
+}
+
+fn rerun(
+    subject: &mut Box<dyn TimedBackend + '_>,
+    job: &Job,
+    clock: &dyn Clock,
+) -> Option<Outcome> {
+    subject.run(job, &Series::once(clock).with_result()).outcome
+}
+
+/// Returns whether two checksums can come from the same work.
+pub(crate) fn agree(operation: Operation, a: f64, b: f64, polygons: &PolygonMesh) -> bool {
+    if operation.has_exact_checksum() {
+        return a == b;
+    }
+    let difference = (a - b).abs();
+    let size = a.abs().max(b.abs());
+    if difference <= TOLERANCE * size {
+        return true;
+    }
+    // If the terms of a sum cancel, their rounding errors remain.
+    difference <= noise(operation, polygons) + TOLERANCE * size
+}
+
+/// Returns the maximum error of the checksum if terms cancel; O(corners).
+fn noise(operation: Operation, polygons: &PolygonMesh) -> f64 {
+    match operation {
+        Operation::VertexNormal => 12.0 * cancelled_normals(polygons) as f64,
+        Operation::FaceBarycenter
+        | Operation::VvSmooth
+        | Operation::CatmullClark(_)
+        | Operation::Loop(_) => {
+            let corners = polygons.faces().corners().iter();
+            1e-6 * field_sum(corners.map(|&v| polygons.position(v)))
+        }
+        _ => 0.0,
+    }
+}
+
+/// Counts the vertices whose face normals cancel. The direction of their sum is noise.
+fn cancelled_normals(polygons: &PolygonMesh) -> usize {
+    let mut sums = vec![(Point::ZERO, 0.0_f32); polygons.vertex_count()];
+    for (_, face) in polygons.faces().iter() {
+        let at = |corner: usize| polygons.position(face[corner]);
+        let spokes = (1..face.len() - 1).map(|i| (at(i) - at(0)).cross(at(i + 1) - at(0)));
+        let (mut normal, mut size) = (Point::ZERO, 0.0);
+        for cross in spokes {
+            normal += cross;
+            size += cross.length();
+        }
+        for &v in face {
+            let (sum, total) = &mut sums[v.index()];
+            *sum += normal;
+            *total += size;
+        }
+    }
+    let cancels = |(sum, total): &&(Point, f32)| *total > 0.0 && sum.length() < 1e-3 * total;
+    sums.iter().filter(cancels).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold::QueryCost;
+
+    use super::*;
+    use sixfold_workload::MachineClock;
+    use sixfold_workload::{ElementSample, Run};
+
+    fn pillow() -> PolygonMesh {
+        let corners = [Point::ZERO, Point::X, Point::ONE, Point::Y];
+        PolygonMesh::new(corners, [[0, 1, 2, 3], [3, 2, 1, 0]]).expect("valid")
+    }
+
+    #[test]
+    fn counts_agree_exactly_and_sums_approximately() {
+        let mesh = pillow();
+        assert!(!agree(Operation::Boundary, 1e9, 1e9 + 1.0, &mesh));
+        assert!(agree(Operation::EdgeLength, 1e9, 1e9 + 1e4, &mesh));
+        assert!(!agree(Operation::EdgeLength, 1e9, 1.001e9, &mesh));
+    }
+
+    struct Fixed {
+        checksum: f64,
+        merged: usize,
+        refused: u64,
+        /// Whether a full run causes a panic.
+        samples_only: bool,
+    }
+
+    impl TimedBackend for Fixed {
+        fn name(&self) -> &str {
+            "fixed"
+        }
+        fn costs(&self) -> [QueryCost; 9] {
+            [QueryCost::Local; 9]
+        }
+        fn merged_vertices(&self) -> usize {
+            self.merged
+        }
+        fn bytes(&self) -> usize {
+            1
+        }
+        fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+            // A sample has half the checksum of a full run.
+            assert!(!self.samples_only || job.sample.is_some(), "run in full");
+            let part = if job.sample.is_some() { 0.5 } else { 1.0 };
+            let outcome = Outcome {
+                checksum: self.checksum * part,
+                elements: 10 - self.merged as u64,
+                refused: self.refused,
+            };
+            Run::done(series.clock.now(), Some(outcome))
+        }
+    }
+
+    fn agreements(subjects: &[(f64, usize, bool)]) -> Vec<Agreement> {
+        let subjects: Vec<_> = subjects.iter().map(|&(c, m, s)| (c, m, s, 0)).collect();
+        agreements_with_refusals(&subjects)
+    }
+
+    fn agreements_with_refusals(subjects: &[(f64, usize, bool, u64)]) -> Vec<Agreement> {
+        let clock = MachineClock::start();
+        let (mut boxed, mut entries): (Vec<Box<dyn TimedBackend>>, Vec<Entry>) = Default::default();
+        for (i, &(checksum, merged, sampled, refused)) in subjects.iter().enumerate() {
+            let mut entry = Entry::new(i, Operation::Boundary);
+            entry.job.sample = sampled.then_some(ElementSample {
+                scanned: [true; 3],
+                size: 4,
+            });
+            let samples_only = sampled;
+            let mut subject = Fixed {
+                checksum,
+                merged,
+                refused,
+                samples_only,
+            };
+            entry.outcome = subject
+                .run(&entry.job, &Series::once(&clock).with_result())
+                .outcome;
+            boxed.push(Box::new(subject));
+            entries.push(entry);
+        }
+        let stop = AtomicBool::new(false);
+        compare_checksums(&entries, &mut boxed, &pillow(), &clock, &stop)
+    }
+
+    #[test]
+    fn backends_that_refuse_the_same_edits_must_agree() {
+        use Agreement::{Mismatch, OtherEdits, Same};
+        let three = |checksum: f64, refused: u64| {
+            let one = (8.0, 0, false, 0);
+            agreements_with_refusals(&[one, one, (checksum, 0, false, refused)])
+        };
+        assert_eq!(three(9.0, 2), [Same, Same, OtherEdits]);
+        assert_eq!(three(8.0, 2), [Same; 3]);
+        assert_eq!(three(9.0, 0), [Same, Same, Mismatch]);
+        let [some, all] = [(8.0, 0, false, 0), (9.0, 0, false, 2)];
+        assert_eq!(agreements_with_refusals(&[some, some, all, all]), [Same; 4]);
+    }
+
+    #[test]
+    fn each_kind_of_difference_has_its_agreement() {
+        use Agreement::{Merged, Mismatch, Same, Unchecked};
+        assert_eq!(
+            agreements(&[(8.0, 0, false), (8.0, 0, false)]),
+            [Same, Same]
+        );
+        assert_eq!(
+            agreements(&[(8.0, 0, false), (9.0, 0, false)]),
+            [Mismatch; 2]
+        );
+        // A sample is compared with the same sample, not with a full run.
+        assert_eq!(agreements(&[(8.0, 0, true), (8.0, 0, false)]), [Same, Same]);
+        assert_eq!(
+            agreements(&[(9.0, 0, true), (8.0, 0, false)]),
+            [Mismatch; 2]
+        );
+        // Merged vertices explain a difference. A merged mesh is never the reference.
+        assert_eq!(
+            agreements(&[(7.0, 2, false), (8.0, 0, false)]),
+            [Merged, Unchecked]
+        );
+        assert_eq!(agreements(&[(8.0, 0, false)]), [Unchecked]);
+        // The checksum is the same, but it comes from fewer elements.
+        assert_eq!(
+            agreements(&[(8.0, 2, false), (8.0, 0, false), (8.0, 0, false)]),
+            [Merged, Same, Same]
+        );
+    }
+
+    #[test]
+    fn cancelled_normals_allow_a_larger_difference() {
+        assert_eq!(cancelled_normals(&pillow()), 4);
+        assert!(agree(Operation::VertexNormal, 0.0, 3.0, &pillow()));
+        assert!(!agree(Operation::VertexNormal, 0.0, 60.0, &pillow()));
+    }
+}

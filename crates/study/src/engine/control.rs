@@ -1,0 +1,57 @@
+//! The control: one backend that is measured twice, to find the noise.
+
+use crate::engine::measure::Entry;
+use crate::engine::ranking::{NO_DIFFERENCE, ratio};
+use crate::engine::statistics::Median;
+use crate::results::rows::{Control, ControlRow};
+use sixfold_workload::Operation;
+
+/// Compares the two columns of `backend`: the subjects `first` and `second`.
+pub(crate) fn control(
+    entries: &[Entry],
+    first: usize,
+    second: usize,
+    backend: &str,
+) -> Option<Control> {
+    let find = |subject: usize, operation: Operation| {
+        let same = |e: &&Entry| e.subject == subject && e.operation() == Some(operation);
+        entries.iter().find(same)
+    };
+    let mut operations = Vec::new();
+    for again in entries.iter().filter(|e| e.subject == second) {
+        let Some(operation) = again.operation() else {
+            continue;
+        };
+        let Some(once) = find(first, operation) else {
+            continue;
+        };
+        // A coarse clock may measure zero, which has no ratio.
+        let ratio = ratio(&again.times(), &once.times());
+        let known = |ratio: &Median| ratio.value.is_finite() && ratio.value > 0.0;
+        if let Some(ratio) = ratio.filter(known) {
+            operations.push(ControlRow {
+                operation,
+                ratio: ratio.value,
+                ci_low: ratio.interval.map(|[low, _]| low),
+                ci_high: ratio.interval.map(|[_, high]| high),
+            });
+        }
+    }
+    let differences = || operations.iter().map(ControlRow::difference);
+    let typical = Median::from_samples(differences())?.value;
+    let worst = differences().fold(1.0, f64::max);
+    Some(Control {
+        backend: backend.to_owned(),
+        operations,
+        typical,
+        worst,
+    })
+}
+
+/// Returns the maximum ratio that is noise: the difference of the control in this operation, at
+/// least [`NO_DIFFERENCE`].
+pub(crate) fn noise(control: Option<&Control>, operation: Operation) -> f64 {
+    let rows = control.map_or(&[][..], |control| &control.operations);
+    let row = rows.iter().find(|row| row.operation == operation);
+    row.map_or(1.0, ControlRow::difference).max(NO_DIFFERENCE)
+}

@@ -1,0 +1,364 @@
+//! Warnings about possible faults of the measurement, each with a remedy.
+
+use crate::engine::statistics::{MIN_SAMPLES, Median};
+use crate::engine::timer::Timer;
+use crate::results::environment::Environment;
+use crate::results::rows::{Control, ResultRow};
+use crate::results::run::Run;
+use sixfold_workload::pages::Policy;
+
+/// Maximum load of an idle machine at the start, as a part of the cores.
+const BUSY: f64 = 0.5;
+/// Maximum ratio of wall time to processor time on an unshared processor.
+const INTERRUPTED: f64 = 1.05;
+/// Maximum half-width of a narrow interval, as a part of the median.
+const WIDE: f64 = 0.1;
+/// Maximum acceptable error of the clock, as a part of the shortest sample.
+const COARSE: f64 = 0.01;
+/// Maximum acceptable typical ratio between the two columns of a control.
+const NOISY: f64 = 1.05;
+
+/// Returns the warnings, the most serious first.
+pub(crate) fn warnings(
+    run: &Run,
+    timer: &Timer,
+    results: &[&ResultRow],
+    control: Option<&Control>,
+) -> Vec<String> {
+    let environment = &run.environment;
+    let all = [
+        nothing_measured(run, results),
+        pages_not_kept(environment),
+        page_faults(environment, results),
+        busy(run),
+        interrupted(environment, results),
+        noisy(control),
+        coarse(timer),
+        wall_time_only(environment),
+        few(results),
+        wide(results),
+        powersave(environment),
+    ];
+    all.into_iter().flatten().collect()
+}
+
+pub(crate) fn machine_warnings(run: &Run) -> Vec<String> {
+    let environment = &run.environment;
+    let all = [
+        pages_not_kept(environment),
+        busy(run),
+        wall_time_only(environment),
+        powersave(environment),
+    ];
+    all.into_iter().flatten().collect()
+}
+
+fn nothing_measured(run: &Run, results: &[&ResultRow]) -> Option<String> {
+    let mut measured = results.iter().filter(|row| row.median_ns.is_some());
+    let nothing = measured.clone().next().is_some() && measured.all(|row| row.warm_up_only);
+    let budget = run.settings.budget_s;
+    nothing.then(|| {
+        format!(
+            "The budget of {budget} s was too small to measure anything: every figure is from one run with cold caches. Use a longer --budget or fewer --operations."
+        )
+    })
+}
+
+/// Warns if pages are not kept although the settings request it, or if page faults are not counted.
+fn pages_not_kept(environment: &Environment) -> Option<String> {
+    let heap = environment.heap.as_ref()?;
+    match &heap.reason {
+        Some(reason) => Some(format!(
+            "The system's heap was used: {reason}. The times of operations that allocate memory \
+             include page faults and depend on earlier operations. Compare these times only with \
+             results of --heap system."
+        )),
+        None if !heap.counts_faults => Some(
+            "This platform does not count page faults, so samples with page faults cannot be \
+             found. If the two times of the backend that is measured twice differ in an operation \
+             that allocates memory, page faults may be the reason."
+                .into(),
+        ),
+        None => None,
+    }
+}
+
+/// Warns about samples with page faults, if pages are kept.
+fn page_faults(environment: &Environment, results: &[&ResultRow]) -> Option<String> {
+    let heap = environment.heap.as_ref()?;
+    let has_faults = |row: &&&ResultRow| row.faults.is_some_and(|faults| faults > 0);
+    let rows = results.iter().filter(has_faults);
+    let worst = rows.clone().max_by_key(|row| row.faults)?;
+    let (count, faults) = (rows.count(), worst.faults.unwrap_or(0));
+    let ResultRow {
+        operation, backend, ..
+    } = worst;
+    (heap.policy == Policy::Kept).then(|| {
+        format!(
+            "{count} of {} figures include samples with page faults. The sample with the most \
+             page faults has {faults} ({operation} on {backend}). Measure again with more free \
+             memory.",
+            results.len()
+        )
+    })
+}
+
+fn busy(run: &Run) -> Option<String> {
+    let (load, cores) = run.start.load_average.zip(run.environment.cores)?;
+    (load > BUSY * cores as f64).then(|| {
+        let cores = if cores == 1 {
+            "1 core".into()
+        } else {
+            format!("{cores} cores")
+        };
+        format!(
+            "The machine was busy at the start (load {load:.1} on {cores}). The ratios in this \
+             result are more reliable than the times. Stop other programs and measure again."
+        )
+    })
+}
+
+fn interrupted(environment: &Environment, results: &[&ResultRow]) -> Option<String> {
+    if environment.clock == "wall" {
+        return None; // there is no processor time to compare with
+    }
+    let ratios = results
+        .iter()
+        .filter_map(|row| Some(row.wall_median_ns? / row.median_ns?));
+    let ratio = Median::from_samples(ratios)?.value;
+    (ratio > INTERRUPTED).then(|| {
+        format!(
+            "Other programs used the processor for {:.0} % of the time and disturbed the caches. \
+             Stop the other programs, or pin the study to its own core.",
+            100.0 * (1.0 - 1.0 / ratio)
+        )
+    })
+}
+
+fn noisy(control: Option<&Control>) -> Option<String> {
+    let control = control.filter(|control| control.typical > NOISY)?;
+    Some(format!(
+        "Two measurements of one backend typically differ by {:.0} %: smaller differences between backends are not significant. Measure on a quieter machine, or with a longer --budget.",
+        100.0 * (control.typical - 1.0)
+    ))
+}
+
+fn coarse(timer: &Timer) -> Option<String> {
+    let share = timer.resolution_ns.max(timer.uncertainty_ns) / timer.shortest_ns?;
+    (share > COARSE).then(|| {
+        format!(
+            "The clock is too coarse: its error is up to {:.1} % of the shortest sample. Study a larger mesh.",
+            100.0 * share
+        )
+    })
+}
+
+fn wall_time_only(environment: &Environment) -> Option<String> {
+    (environment.clock == "wall").then(|| {
+        "This platform does not report the processor time of a thread, so the figures are wall \
+         time. Other programs make wall time longer: keep the machine quiet."
+            .to_owned()
+    })
+}
+
+fn few(results: &[&ResultRow]) -> Option<String> {
+    let measured = results.iter().filter(|row| row.median_ns.is_some());
+    let all = measured.clone().count();
+    let few = measured.filter(|row| row.samples < MIN_SAMPLES).count();
+    let once = results.iter().all(|row| row.warm_up_only); // `nothing_measured` warns of this
+    (few > 0 && !once).then(|| {
+        format!(
+            "{few} of {all} figures are from fewer than {MIN_SAMPLES} samples, so their intervals are wide \
+             or missing. Use a longer --budget or fewer --operations."
+        )
+    })
+}
+
+fn wide(results: &[&ResultRow]) -> Option<String> {
+    let half_width = |row: &ResultRow| {
+        let (low, high) = row.ci_low_ns.zip(row.ci_high_ns)?;
+        let median = row.median_ns?;
+        Some((median - low).max(high - median) / median)
+    };
+    let known: Vec<(f64, &ResultRow)> = results
+        .iter()
+        .copied()
+        .filter(|row| row.samples >= MIN_SAMPLES)
+        .filter_map(|row| Some((half_width(row)?, row)))
+        .collect();
+    let wide = known.iter().filter(|(half_width, _)| *half_width > WIDE);
+    let (count, all) = (wide.clone().count(), known.len());
+    let (worst, row) = wide.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(format!(
+        "{count} of {all} intervals extend more than {:.0} % from their median. The widest \
+         interval extends {:.0} % ({} on {}). Use a longer --budget or a quieter machine.",
+        100.0 * WIDE,
+        100.0 * worst,
+        row.operation,
+        row.backend
+    ))
+}
+
+fn powersave(environment: &Environment) -> Option<String> {
+    let governor = environment
+        .governor
+        .as_ref()
+        .filter(|name| *name == "powersave")?;
+    Some(format!(
+        "The frequency governor of the processor is {governor}, so the frequency changes with the \
+         load. To keep the frequency constant, run `cpupower frequency-set --governor performance`."
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold_workload::Operation;
+
+    use super::*;
+    use crate::labs::study::sentences::row;
+    use crate::results::rows::{ControlRow, Standing};
+
+    fn quiet() -> Run {
+        let mut run = Run::default();
+        run.start.load_average = Some(0.1);
+        run.settings.budget_s = 20.0;
+        run.environment = Environment {
+            cores: Some(2),
+            governor: Some("performance".into()),
+            clock: "thread-cpu".into(),
+            ..Environment::default()
+        };
+        run
+    }
+
+    /// Returns the quiet run with another environment.
+    fn with(change: impl FnOnce(&mut Environment)) -> Run {
+        let mut run = quiet();
+        change(&mut run.environment);
+        run
+    }
+
+    fn fine() -> ResultRow {
+        ResultRow {
+            wall_median_ns: Some(100.0),
+            ci_low_ns: Some(99.0),
+            ci_high_ns: Some(101.0),
+            samples: 20,
+            ..row("half-edge", Operation::Build, 1.0, Standing::Best)
+        }
+    }
+
+    const TIMER: Timer = Timer {
+        resolution_ns: 20.0,
+        overhead_ns: 600.0,
+        uncertainty_ns: 100.0,
+        largest_share: Some(0.0005),
+        shortest_ns: Some(200_000.0),
+    };
+
+    #[test]
+    fn a_good_run_has_no_warnings() {
+        let messages = warnings(&quiet(), &TIMER, &[&fine()], None);
+        assert_eq!(messages, [""; 0]);
+    }
+
+    #[test]
+    fn each_fault_has_a_warning_with_a_remedy() {
+        let good = quiet();
+        let control = Control {
+            backend: "half-edge".into(),
+            operations: vec![ControlRow {
+                operation: Operation::Build,
+                ratio: 1.2,
+                ci_low: None,
+                ci_high: None,
+            }],
+            typical: 1.2,
+            worst: 1.2,
+        };
+        let coarse = Timer {
+            largest_share: Some(0.05),
+            shortest_ns: Some(2000.0),
+            ..TIMER
+        };
+        let mut busy = quiet();
+        busy.start.load_average = Some(1.5);
+        let wall = with(|environment| environment.clock = "wall".into());
+        let powersave = with(|environment| environment.governor = Some("powersave".into()));
+        let shared = ResultRow {
+            wall_median_ns: Some(125.0),
+            ..fine()
+        };
+        let wide = ResultRow {
+            ci_high_ns: Some(134.0),
+            ..fine()
+        };
+        let few = ResultRow {
+            samples: 3,
+            ..fine()
+        };
+        let once = ResultRow {
+            samples: 1,
+            warm_up_only: true,
+            ci_low_ns: None,
+            ci_high_ns: None,
+            ..fine()
+        };
+        let cases = [
+            (
+                warnings(&busy, &TIMER, &[&fine()], None),
+                "load 1.5 on 2 cores",
+                "Stop other programs",
+            ),
+            (
+                warnings(&wall, &TIMER, &[&fine()], None),
+                "wall time",
+                "quiet",
+            ),
+            (
+                warnings(&powersave, &TIMER, &[&fine()], None),
+                "powersave",
+                "cpupower",
+            ),
+            (
+                warnings(&good, &coarse, &[&fine()], None),
+                "5.0 % of the shortest",
+                "larger mesh",
+            ),
+            (
+                warnings(&good, &TIMER, &[&fine()], Some(&control)),
+                "by 20 %",
+                "--budget",
+            ),
+            (
+                warnings(&good, &TIMER, &[&shared], None),
+                "for 20 % of the time",
+                "pin",
+            ),
+            (
+                warnings(&good, &TIMER, &[&fine(), &wide], None),
+                "1 of 2 intervals",
+                "--budget",
+            ),
+            (
+                warnings(&good, &TIMER, &[&fine(), &few], None),
+                "1 of 2 figures",
+                "--budget",
+            ),
+            (
+                warnings(&good, &TIMER, &[&once], None),
+                "too small to measure",
+                "--operations",
+            ),
+        ];
+        for (messages, fault, remedy) in cases {
+            let [message] = &messages[..] else {
+                panic!("{fault}: {messages:?}");
+            };
+            assert!(
+                message.contains(fault) && message.contains(remedy),
+                "{message}"
+            );
+        }
+    }
+}

@@ -1,0 +1,426 @@
+//! Measures how the time of an operation grows with the size of the mesh.
+//!
+//! One shape is built with several numbers of faces. The ratio of two successive numbers of faces
+//! is constant. At each size, all structures are measured in rounds, as in a study. A straight line
+//! is fitted to the logarithms of the number of faces and of the time. The slope of the line is the
+//! exponent of the growth. The exponent is 1 if the time per element is constant. The exponent is 2
+//! if each element needs a scan of all faces.
+//!
+//! The time per element also depends on the processor caches. A second line is therefore fitted to
+//! the sizes at which the structure fits into the last-level cache. A third line is fitted to the
+//! sizes at which the structure is larger than the last-level cache.
+
+mod budgets;
+mod fits;
+mod sentences;
+mod settings;
+mod shapes;
+
+use std::cell::Cell;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
+use sixfold::shapes::Order;
+use sixfold::{Facts, PolygonMesh};
+use sixfold_core::Counts;
+
+pub use fits::{CacheLimit, Fit};
+pub use settings::{GrowthError, GrowthSettings, growth_bytes};
+pub use shapes::{SCALABLE_SHAPES, ScalableShape};
+
+use crate::engine::agreement::compare_checksums;
+use crate::engine::control::noise;
+use crate::engine::heap::Memory;
+use crate::engine::measure::{Entry, Progress};
+use crate::engine::timer::Timer;
+use crate::engine::trial::{Columns, Measured, Trial};
+use crate::engine::warnings::warnings;
+use crate::labs::study::{StudyError, is_skewed, prepare, refusals, results, scans};
+use crate::results::figure::{Figure, FigureRow, samples_of};
+use crate::results::finding::LabFinding;
+use crate::results::read::ReadError;
+use crate::results::rows::{
+    Agreement, Control, MeshReport, Refusal, ResultRow, Samples, check_control, check_results,
+    check_samples,
+};
+use crate::results::run::{Run, RunSettings};
+use budgets::SizeBudgets;
+use fits::{cache_limits, fits};
+use settings::Plan;
+use sixfold_workload::{Backend, Draw, MachineClock, TimedBackend};
+use sixfold_workload::{Cache, caches, last_level_bytes};
+
+/// The results for one shape in several sizes.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct GrowthReport {
+    /// How the finding was measured. In JSON, the document has this field.
+    #[serde(skip)]
+    pub run: Run,
+    /// Name of the shape.
+    pub shape: String,
+    /// Order of the elements in memory.
+    pub order: Order,
+    /// The names of the measured backends.
+    pub backends: Vec<String>,
+    /// The backends that cannot hold the shape.
+    pub refused_by: Vec<BackendRefusal>,
+    /// The results at each measured size, beginning with the smallest size.
+    pub sizes: Vec<SizeReport>,
+    /// Approximate numbers of faces of the sizes that were left out because there was too little
+    /// time.
+    pub left_out: Vec<usize>,
+    /// The fitted lines, sorted by operation, then by backend.
+    pub fits: Vec<Fit>,
+    /// The processor caches of this machine; empty if unknown.
+    pub caches: Vec<Cache>,
+    /// The number of faces at which each structure becomes larger than each cache. The list is
+    /// sorted by cache, then by backend.
+    pub cache_limits: Vec<CacheLimit>,
+    /// Sentences that describe the results.
+    pub sentences: Vec<String>,
+    /// Sentences about possible faults of the measurement and their remedies.
+    pub warnings: Vec<String>,
+    /// True if the measurement was stopped early. Some sizes may then be missing.
+    pub interrupted: bool,
+    /// The resolution and the cost of reading the clock.
+    pub timer: Timer,
+}
+
+/// A backend that cannot hold the shape.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct BackendRefusal {
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+    /// Why the backend cannot hold the shape.
+    pub reason: String,
+}
+
+/// The results at one size of the shape.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct SizeReport {
+    /// Number of vertices.
+    pub vertices: usize,
+    /// Number of edges.
+    pub edges: usize,
+    /// Number of faces.
+    pub faces: usize,
+    /// Size of each backend in bytes.
+    pub backend_bytes: Vec<BackendBytes>,
+    /// The times of each operation on each backend.
+    pub results: Vec<ResultRow>,
+    /// The times of all samples.
+    pub samples: Vec<Samples>,
+    /// Operations that a backend cannot do.
+    pub refusals: Vec<Refusal>,
+    /// The comparison of two measurements of one backend, which shows the noise. `None` if no
+    /// backend was measured twice.
+    pub control: Option<Control>,
+}
+
+/// The size of a backend in bytes.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct BackendBytes {
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+    /// Allocated bytes, including spare capacity.
+    pub bytes: usize,
+    /// Smallest level of a cache that can hold these bytes; `None` if no known cache is large
+    /// enough.
+    pub fits_in: Option<u8>,
+}
+
+impl LabFinding for GrowthReport {
+    fn run(&self) -> &Run {
+        &self.run
+    }
+
+    fn run_mut(&mut self) -> &mut Run {
+        &mut self.run
+    }
+
+    fn meshes(&self) -> &[MeshReport] {
+        &[]
+    }
+
+    fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
+        match meshes.is_empty() {
+            true => Ok(()),
+            false => Err(ReadError::Malformed {
+                cause: "a finding of the kind `growth` has a mesh".into(),
+            }),
+        }
+    }
+
+    fn sentences(&self) -> &[String] {
+        &self.sentences
+    }
+
+    fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.interrupted
+    }
+
+    fn mismatches(&self) -> usize {
+        let rows = self.sizes.iter().flat_map(|size| &size.results);
+        rows.filter(|row| row.agreement == Agreement::Mismatch)
+            .count()
+    }
+
+    fn figures(&self) -> Vec<Figure<'_>> {
+        let figures = self.sizes.iter().flat_map(|size| {
+            size.results.iter().map(|row| {
+                let bytes = size.backend_bytes.iter();
+                let bytes = bytes.filter(|b| b.backend == row.backend).map(|b| b.bytes);
+                Figure {
+                    mesh: None,
+                    elements_of_mesh: [size.vertices, size.edges, size.faces],
+                    case: format!("{}, {}, {} faces", self.shape, self.order, size.faces),
+                    backend_bytes: bytes.last(),
+                    row: FigureRow::of_result(row),
+                    samples: samples_of(&size.samples, row.operation.name(), &row.backend),
+                    noise: noise(size.control.as_ref(), row.operation),
+                }
+            })
+        });
+        figures.collect()
+    }
+
+    fn check(&self) -> Result<(), ReadError> {
+        self.sizes.iter().try_for_each(|size| {
+            check_samples(&size.samples)?;
+            check_results(&size.results)?;
+            check_control(size.control.as_ref())
+        })
+    }
+}
+
+/// Measures a shape in several sizes, within the time budget of `settings`. A size is left out if
+/// the structures of this size cannot be built in the remaining time.
+///
+/// Setting `stop` to true ends the measurement early, with a report of the finished sizes.
+///
+/// # Errors
+///
+/// Returns an error if the settings are invalid or if no requested backend can hold the shape.
+pub fn growth(
+    settings: &GrowthSettings,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(Progress<'_>),
+) -> Result<GrowthReport, GrowthError> {
+    let plan = settings.plan()?;
+    let caches = caches();
+    let budget = settings.study.budget;
+    let run = Run::start(RunSettings::of_study(&settings.study));
+    let clock = MachineClock::start();
+    let mut timer = Timer::measure(&clock);
+    let mut sweep = Sweep {
+        settings,
+        plan: &plan,
+        caches: &caches,
+        stop,
+        refused_by: Vec::new(),
+        counts: None,
+        clock: &clock,
+        shortest_ns: None,
+    };
+    let study = &settings.study;
+    let mut memory = Memory::start(study.heap, study.caches, growth_bytes(settings)?);
+    let time = SizeBudgets::new(&plan.sizes, budget);
+    let mut sizes: Vec<SizeReport> = Vec::new();
+    let mut left_out = Vec::new();
+    // Time per face for building everything at the previous size, in seconds.
+    let mut building = 0.0;
+    for (step, &faces) in plan.sizes.iter().enumerate() {
+        if building * faces as f64 > time.left().as_secs_f64() {
+            left_out = plan.sizes[step..].to_vec();
+            break;
+        }
+        let start = Instant::now();
+        let built = Cell::new(Duration::ZERO);
+        let made = plan.shape.make(faces)?;
+        let mesh = settings.order.apply(&made, settings.study.seed);
+        drop(made);
+        let range = time.range(step);
+        let budget_left = || {
+            built.set(start.elapsed());
+            time.budget(step)
+        };
+        let mut report_progress = |at: Progress<'_>| {
+            let stage = format!("{} faces: {}", mesh.face_count(), at.stage);
+            progress(Progress {
+                done: range[0] + (range[1] - range[0]) * at.done,
+                stage: &stage,
+                ..at
+            });
+        };
+        match sweep.size(&mesh, step, &budget_left, &mut memory, &mut report_progress)? {
+            Some(size) => sizes.push(size),
+            None => break,
+        }
+        building = built.get().as_secs_f64() / faces as f64;
+    }
+    let interrupted = stop.load(Ordering::Relaxed);
+    let backends: Vec<&Backend> = plan
+        .backends
+        .iter()
+        .filter(|b| {
+            sweep
+                .refused_by
+                .iter()
+                .all(|other| other.backend != b.name())
+        })
+        .collect();
+    let fits = fits(
+        &sizes,
+        &backends,
+        &plan.operations,
+        last_level_bytes(&caches),
+    );
+    let cache_limits = sweep
+        .counts
+        .map_or_else(Vec::new, |counts| cache_limits(&backends, &counts, &caches));
+    let mut sentences = sentences::sentences(&sizes, &fits, &caches, &cache_limits);
+    sentences.extend(sentences::left_out(&left_out));
+    let run = run.with_memory(&memory);
+    timer = timer.with_shortest(sweep.shortest_ns);
+    let rows: Vec<&ResultRow> = sizes.iter().flat_map(|size| &size.results).collect();
+    let noisiest = sizes.iter().filter_map(|size| size.control.as_ref());
+    let noisiest = noisiest.max_by(|a, b| a.typical.total_cmp(&b.typical));
+    let warnings = warnings(&run, &timer, &rows, noisiest);
+    Ok(GrowthReport {
+        run,
+        shape: settings.shape.clone(),
+        order: settings.order,
+        backends: backends.iter().map(|b| b.name().to_owned()).collect(),
+        refused_by: sweep.refused_by,
+        sizes,
+        left_out,
+        fits,
+        cache_limits,
+        caches,
+        sentences,
+        warnings,
+        interrupted,
+        timer,
+    })
+}
+
+struct Sweep<'s> {
+    settings: &'s GrowthSettings,
+    plan: &'s Plan,
+    caches: &'s [Cache],
+    stop: &'s AtomicBool,
+    refused_by: Vec<BackendRefusal>,
+    /// Counts of the largest finished size.
+    counts: Option<Counts>,
+    clock: &'s MachineClock,
+    /// The shortest timed sample, in nanoseconds.
+    shortest_ns: Option<f64>,
+}
+
+impl Sweep<'_> {
+    /// Measures one size. Returns `None` if interrupted.
+    fn size(
+        &mut self,
+        mesh: &PolygonMesh,
+        step: usize,
+        budget: &dyn Fn() -> Duration,
+        memory: &mut Memory,
+        progress: &mut dyn FnMut(Progress<'_>),
+    ) -> Result<Option<SizeReport>, GrowthError> {
+        let Plan {
+            backends,
+            operations,
+            ..
+        } = self.plan;
+        let stopped = || self.stop.load(Ordering::Relaxed);
+        let facts = Facts::from_polygons(mesh);
+        let counts = mesh.counts(facts.edges);
+        let skewed = is_skewed(&facts);
+        let seed = self.settings.study.seed;
+        let needs_draw = backends.iter().any(|b| skewed || scans(b, operations));
+        let draw = needs_draw.then(|| Draw::new(mesh, seed));
+        let mut subjects: Vec<Box<dyn TimedBackend + '_>> = Vec::new();
+        let (mut backend_bytes, mut refused_by) = (Vec::new(), Vec::new());
+        for backend in backends {
+            if stopped() {
+                return Ok(None);
+            }
+            let (report, subject) = prepare(backend, mesh, draw.as_ref(), &counts);
+            match subject {
+                Some(subject) => {
+                    backend_bytes
+                        .push(self.bytes_with_cache(report.name, report.bytes.unwrap_or(0)));
+                    subjects.push(subject);
+                }
+                None => refused_by.push(BackendRefusal {
+                    backend: report.name,
+                    reason: report.reason.unwrap_or_default(),
+                }),
+            }
+        }
+        if subjects.is_empty() {
+            let refusals = refused_by
+                .into_iter()
+                .map(|u| (u.backend, u.reason))
+                .collect();
+            return Err(StudyError::NoneHolds { refusals }.into());
+        }
+        self.refused_by = refused_by;
+        let names: Vec<String> = subjects.iter().map(|s| s.name().to_owned()).collect();
+        let mut columns = Columns::new(subjects, Vec::new(), |first| {
+            let backend = backends.iter().find(|b| b.name() == names[first])?;
+            let (subject, _) = backend.prepare(mesh, draw.as_ref()).ok()?;
+            Some(subject)
+        });
+        let mut trial = Trial {
+            counts,
+            skewed,
+            clock: self.clock,
+            memory,
+            budget: budget(),
+            named: !self.settings.study.operations.is_empty(),
+            seed: seed.wrapping_add(step as u64),
+            stop: self.stop,
+            progress,
+        };
+        let entries = columns.entries(operations);
+        let measured = trial.run(&mut columns, entries);
+        let samples = measured.samples(&columns);
+        let Measured {
+            entries, control, ..
+        } = measured;
+        let subjects = &mut columns.subjects;
+        let agreements = compare_checksums(&entries, subjects, mesh, self.clock, self.stop);
+        if self.stop.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        self.counts = Some(counts);
+        let shortest = entries.iter().filter_map(Entry::shortest_sample_ns);
+        self.shortest_ns = shortest.chain(self.shortest_ns).min_by(f64::total_cmp);
+        Ok(Some(SizeReport {
+            vertices: counts.vertices,
+            edges: counts.edges,
+            faces: counts.faces,
+            backend_bytes,
+            results: results(&entries, agreements, subjects, mesh, control.as_ref()),
+            samples,
+            refusals: refusals(&entries, subjects),
+            control,
+        }))
+    }
+
+    fn bytes_with_cache(&self, backend: String, bytes: usize) -> BackendBytes {
+        let data = self.caches.iter().filter(|cache| cache.holds_data());
+        let room = data.filter(|cache| cache.bytes >= bytes as u64);
+        BackendBytes {
+            backend,
+            bytes,
+            fits_in: room.map(|cache| cache.level).min(),
+        }
+    }
+}

@@ -1,0 +1,491 @@
+//! The memory audit: counts the bytes of each structure in three ways.
+//!
+//! The three counts are made independently and must be equal. The layout formula uses only the
+//! numbers of elements of the mesh. The sum over the tables uses the capacity of each table. The
+//! allocator counts the bytes that it hands out. If the counts differ, Sixfold has a fault: a wrong
+//! formula, spare capacity, or memory that no table reports.
+
+use serde::{Deserialize, Serialize};
+use sixfold::{BuildError, PolygonMesh};
+use sixfold_core::Counts;
+use sixfold_workload::{
+    AllocationCounter, Backend, Heap, MAX_SCANNED_FACES, MeasuredMemory, NotCounted, Operation,
+};
+
+use crate::inspect::{StudyMesh, per_vertex, unbuilt};
+use crate::labs::study::StudyError;
+use crate::results::figure::{Figure, FigureRow, Status};
+use crate::results::finding::{LabFinding, only_mesh};
+use crate::results::read::ReadError;
+use crate::results::rows::{BackendReport, MeshReport};
+use crate::results::run::{Run, RunSettings};
+
+/// Bytes of a word: an index or a coordinate.
+const WORD: f64 = 4.0;
+
+/// Maximum number of counts per backend. Counting ends earlier if two counts in a row are equal.
+const MAX_COUNTS: usize = 8;
+
+/// The memory of each backend, counted by a formula, by the tables and by the allocator.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Audit {
+    /// How the finding was measured. In JSON, the document has this field.
+    #[serde(skip)]
+    pub run: Run,
+    /// Name and topology of the mesh. In JSON, the document has this field.
+    #[serde(skip)]
+    pub mesh: MeshReport,
+    /// The backends, in the requested order.
+    pub backends: Vec<BackendAudit>,
+}
+
+/// The memory of one backend, counted by a formula, by the tables and by the allocator.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct BackendAudit {
+    /// The bytes by the layout formula, the bytes of the tables, and whether the backend can hold
+    /// the mesh.
+    #[serde(flatten)]
+    pub backend: BackendReport,
+    /// Size by the layout formula, in words of 4 bytes per vertex of this mesh. `None` if the
+    /// backend cannot hold the mesh.
+    pub layout_words_per_vertex: Option<f64>,
+    /// Size by the layout formula for a very large closed triangle mesh, in words of 4 bytes per
+    /// vertex. A very large closed triangle mesh has about 2 faces and 3 edges per vertex.
+    pub closed_triangles_words_per_vertex: f64,
+    /// Bytes that the allocator counted; `None` if the backend cannot hold the mesh.
+    pub counted_bytes: Option<usize>,
+    /// Bytes that the allocator counted, per vertex of the mesh.
+    pub counted_bytes_per_vertex: Option<f64>,
+    /// Peak memory while the backend is built, in bytes. The input polygons are not included.
+    pub peak_bytes: Option<usize>,
+    /// `peak_bytes` divided by `counted_bytes`.
+    pub peak_to_counted: Option<f64>,
+    /// True if the layout formula, the tables and the allocator give the same number of bytes.
+    /// `None` if the backend cannot hold the mesh.
+    pub agrees: Option<bool>,
+    /// The bytes that operations allocate; empty if these bytes were not counted.
+    pub operations: Vec<OperationBytes>,
+}
+
+/// The bytes that one run of an operation allocates on one backend.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct OperationBytes {
+    /// The operation that allocates, such as `build`.
+    pub operation: Operation,
+    /// Bytes that the timed part of the operation requests from the allocator. `None` if the
+    /// operation was not run.
+    pub allocated_bytes: Option<usize>,
+    /// Bytes of the result of the operation; `None` if the operation was not run.
+    pub result_bytes: Option<usize>,
+    /// Allocated bytes divided by the bytes of the result.
+    pub allocated_to_result: Option<f64>,
+    /// Why the operation was not run; `None` if the operation was run.
+    pub reason: Option<String>,
+    /// True if the operation was not run because it scans all faces for each element.
+    pub scans: bool,
+}
+
+/// Builds each of `backends` from the mesh, one backend at a time, and counts the bytes with
+/// `heap`.
+///
+/// Each backend is counted until two counts in a row are equal, but at most eight times, because
+/// other threads may allocate at the same time. The closure `counting` is called before each
+/// backend is counted.
+pub fn audit(
+    study_mesh: &StudyMesh,
+    backends: &[Backend],
+    heap: &dyn Heap,
+    counting: &mut dyn FnMut(&Backend),
+) -> Audit {
+    let polygons = &study_mesh.polygons;
+    let counts = polygons.counts(study_mesh.facts.edges);
+    let names = backends.iter().map(|b| b.name().to_owned()).collect();
+    let backends = backends.iter().map(|backend| {
+        counting(backend);
+        let measured = count_bytes(backend, polygons, heap);
+        BackendAudit::new(backend, polygons, measured, &counts)
+    });
+    Audit {
+        run: Run::start(RunSettings {
+            backends: names,
+            ..RunSettings::default()
+        }),
+        mesh: study_mesh.report(),
+        backends: backends.collect(),
+    }
+}
+
+/// Counts the bytes that operations allocate, and adds the counts to `audit`. Every operation that
+/// allocates is run on every backend that holds the mesh. An operation that scans all faces for
+/// each element is not run on a large mesh. `audit` must be the result of [`audit()`] for
+/// `backends` and `study_mesh`.
+///
+/// A run is repeated until two runs allocate the same smallest number of bytes, but at most eight
+/// times, because other threads may allocate at the same time.
+pub fn count_allocations(
+    audit: &mut Audit,
+    study_mesh: &StudyMesh,
+    backends: &[Backend],
+    counter: &dyn AllocationCounter,
+    counting: &mut dyn FnMut(&Backend, Operation),
+) {
+    let (polygons, edges) = (&study_mesh.polygons, study_mesh.facts.edges);
+    for (audited, backend) in audit.backends.iter_mut().zip(backends) {
+        if !audited.backend.holds {
+            continue;
+        }
+        let operations = Operation::ALL.into_iter().filter(|job| job.allocates());
+        let operations = operations.map(|operation| {
+            counting(backend, operation);
+            let count = || backend.allocated(operation, polygons, edges, counter);
+            let mut least = count();
+            for _ in 1..MAX_COUNTS {
+                let again = match &least {
+                    Ok(_) => count(),
+                    Err(_) => break,
+                };
+                match (&least, &again) {
+                    (Ok(before), Ok(now)) if now.bytes < before.bytes => least = again,
+                    (Ok(before), Ok(now)) if now.bytes > before.bytes => {}
+                    _ => break,
+                }
+            }
+            OperationBytes::new(operation, least)
+        });
+        audited.operations = operations.collect();
+    }
+}
+
+impl OperationBytes {
+    fn new(operation: Operation, counted: Result<sixfold_workload::Allocated, NotCounted>) -> Self {
+        let scans = counted == Err(NotCounted::Scans);
+        let counted = counted.map_err(|not_counted| match not_counted {
+            NotCounted::Refused(reason) => reason,
+            NotCounted::Scans => format!(
+                "it scans all faces for each element, and the mesh has more than \
+                 {MAX_SCANNED_FACES} faces"
+            ),
+        });
+        let figures = counted.as_ref().ok();
+        Self {
+            operation,
+            allocated_bytes: figures.map(|figures| figures.bytes),
+            result_bytes: figures.map(|figures| figures.result_bytes),
+            allocated_to_result: figures
+                .filter(|figures| figures.result_bytes > 0)
+                .map(|figures| figures.bytes as f64 / figures.result_bytes as f64),
+            reason: counted.err(),
+            scans,
+        }
+    }
+}
+
+fn count_bytes(
+    backend: &Backend,
+    polygons: &PolygonMesh,
+    heap: &dyn Heap,
+) -> Result<MeasuredMemory, BuildError> {
+    let mut last = backend.measure_memory(polygons, heap)?;
+    for _ in 1..MAX_COUNTS {
+        let again = backend.measure_memory(polygons, heap)?;
+        if again == last {
+            break;
+        }
+        last = again;
+    }
+    Ok(last)
+}
+
+impl Audit {
+    /// Describes each difference between the bytes of the layout formula, of the tables and of the
+    /// allocator.
+    pub fn faults(&self) -> Vec<String> {
+        self.backends
+            .iter()
+            .flat_map(BackendAudit::faults)
+            .collect()
+    }
+
+    /// Returns the error for a mesh that no backend can hold; `None` if some backend can hold the
+    /// mesh.
+    pub fn refusal_error(&self) -> Option<StudyError> {
+        let refusal = |BackendAudit { backend, .. }: &BackendAudit| {
+            let reason = backend.reason.clone()?;
+            Some((backend.name.clone(), reason))
+        };
+        let refusals: Option<Vec<_>> = self.backends.iter().map(refusal).collect();
+        refusals.map(|refusals| StudyError::NoneHolds { refusals })
+    }
+}
+
+impl LabFinding for Audit {
+    fn run(&self) -> &Run {
+        &self.run
+    }
+
+    fn run_mut(&mut self) -> &mut Run {
+        &mut self.run
+    }
+
+    fn meshes(&self) -> &[MeshReport] {
+        std::slice::from_ref(&self.mesh)
+    }
+
+    fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
+        self.mesh = only_mesh(meshes)?;
+        Ok(())
+    }
+
+    fn sentences(&self) -> &[String] {
+        &[]
+    }
+
+    fn warnings(&self) -> &[String] {
+        &[]
+    }
+
+    fn is_interrupted(&self) -> bool {
+        false
+    }
+
+    fn mismatches(&self) -> usize {
+        0
+    }
+
+    fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
+        let facts = &self.mesh.facts;
+        let of_backend = |audited: &'s BackendAudit| {
+            let backend = &audited.backend;
+            let figure = |counted: &'s OperationBytes| Figure {
+                mesh: Some(&self.mesh),
+                elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
+                case: String::new(),
+                backend_bytes: audited.counted_bytes,
+                row: FigureRow {
+                    allocated_bytes: counted.allocated_bytes,
+                    ..FigureRow::new(
+                        counted.operation.name().into(),
+                        &backend.name,
+                        match counted.allocated_bytes {
+                            Some(_) => Status::Counted,
+                            None => Status::Refused,
+                        },
+                    )
+                },
+                samples: None,
+                noise: 1.0,
+            };
+            audited.operations.iter().map(figure).collect::<Vec<_>>()
+        };
+        self.backends.iter().flat_map(of_backend).collect()
+    }
+}
+
+impl BackendAudit {
+    fn new(
+        backend: &Backend,
+        polygons: &PolygonMesh,
+        measured: Result<MeasuredMemory, BuildError>,
+        counts: &Counts,
+    ) -> Self {
+        let closed_triangles = closed_triangles_words(backend);
+        let (report, measured) = match measured {
+            Err(refusal) => (unbuilt(backend, polygons, counts, Err(refusal)), None),
+            Ok(measured) => {
+                let bytes = measured.memory.total();
+                let report = BackendReport {
+                    bytes: Some(bytes),
+                    bytes_per_vertex: per_vertex(bytes, counts),
+                    tables: measured.memory.tables,
+                    merged_vertices: Some(measured.merged_vertices),
+                    ..unbuilt(backend, polygons, counts, Ok(()))
+                };
+                (report, Some((measured.counted, measured.peak)))
+            }
+        };
+        let [layout, tables] = [report.layout_bytes, report.bytes];
+        let (counted, peak) = measured.unzip();
+        Self {
+            layout_words_per_vertex: report.layout_bytes_per_vertex.map(|bytes| bytes / WORD),
+            closed_triangles_words_per_vertex: closed_triangles,
+            counted_bytes: counted,
+            counted_bytes_per_vertex: counted.and_then(|bytes| per_vertex(bytes, counts)),
+            peak_bytes: peak,
+            peak_to_counted: peak
+                .zip(counted.filter(|&bytes| bytes > 0))
+                .map(|(peak, counted)| peak as f64 / counted as f64),
+            agrees: counted.map(|_| layout == tables && tables == counted),
+            operations: Vec::new(),
+            backend: report,
+        }
+    }
+
+    fn faults(&self) -> Vec<String> {
+        let BackendReport {
+            name,
+            layout_bytes,
+            bytes,
+            ..
+        } = &self.backend;
+        let (Some(layout), Some(tables), Some(counted)) =
+            (*layout_bytes, *bytes, self.counted_bytes)
+        else {
+            return Vec::new();
+        };
+        let difference = |what: &str, is: usize, other: &str, than: usize| {
+            let more = if is > than { "more" } else { "fewer" };
+            let by = is.abs_diff(than);
+            (by > 0)
+                .then(|| format!("{name}: {what}, {by} bytes {more} than {other} ({than} bytes)"))
+        };
+        let tables_text = format!("its tables hold {tables} bytes");
+        let heap_text = format!("the allocator counted {counted} bytes");
+        let faults = [
+            difference(&tables_text, tables, "its layout formula gives", layout),
+            difference(&heap_text, counted, "its tables hold", tables),
+        ];
+        faults.into_iter().flatten().collect()
+    }
+}
+
+/// Returns the layout words per vertex of a very large closed triangle mesh.
+fn closed_triangles_words(backend: &Backend) -> f64 {
+    const VERTICES: usize = 1 << 20;
+    let counts = Counts {
+        vertices: VERTICES,
+        edges: 3 * VERTICES,
+        faces: 2 * VERTICES,
+        corners: 6 * VERTICES,
+        uniform: true,
+    };
+    (backend.layout_bytes)(&counts) as f64 / WORD / VERTICES as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use sixfold::{HalfEdgeMesh, IndexedFaceSet, shapes};
+    use sixfold_core::Measured;
+
+    use super::*;
+
+    struct Scripted {
+        counts: Vec<[usize; 2]>,
+        calls: Cell<usize>,
+    }
+
+    impl Scripted {
+        fn new(counts: impl IntoIterator<Item = [usize; 2]>) -> Self {
+            Self {
+                counts: counts.into_iter().collect(),
+                calls: Cell::new(0),
+            }
+        }
+
+        fn now(&self) -> [usize; 2] {
+            let last = self.counts.len() - 1;
+            self.counts[(self.calls.get() / 2).min(last)]
+        }
+    }
+
+    impl Heap for Scripted {
+        /// One count reads `live` twice: before and after building.
+        fn live(&self) -> usize {
+            let [live, _] = self.now();
+            let calls = self.calls.replace(self.calls.get() + 1);
+            1000 + (calls % 2) * live
+        }
+
+        fn restart_peak(&self) {}
+
+        fn peak(&self) -> usize {
+            self.counts[((self.calls.get() - 1) / 2).min(self.counts.len() - 1)][1]
+        }
+    }
+
+    fn audited(backend: Backend, heap: &Scripted) -> Audit {
+        let torus = shapes::triangle_torus(4, 3).expect("a small torus");
+        audit(
+            &StudyMesh::new("torus", torus),
+            &[backend],
+            heap,
+            &mut |_| (),
+        )
+    }
+
+    /// Bytes of the half-edge structure: 36 · 24 + 12 · 16 + 24 · 4.
+    const BYTES: usize = 1152;
+
+    #[test]
+    fn equal_numbers_give_no_fault() {
+        let audit = audited(
+            Backend::new::<HalfEdgeMesh>(),
+            &Scripted::new([[BYTES, 2 * BYTES]]),
+        );
+        assert_eq!(audit.faults(), Vec::<String>::new());
+        let one = &audit.backends[0];
+        assert_eq!(one.agrees, Some(true));
+        assert_eq!(one.peak_to_counted, Some(2.0));
+        assert_eq!(one.layout_words_per_vertex, Some(24.0));
+        assert_eq!(one.counted_bytes_per_vertex, Some(96.0));
+        assert_eq!(audit.refusal_error(), None);
+    }
+
+    #[test]
+    fn a_difference_is_reported_with_its_bytes() {
+        let right = Backend::new::<HalfEdgeMesh>();
+        let spare = audited(right, &Scripted::new([[BYTES + 40, BYTES]]));
+        let expected = "half-edge: the allocator counted 1192 bytes, 40 bytes more than its tables hold (1152 bytes)";
+        assert_eq!(spare.faults(), [expected]);
+        assert_eq!(spare.backends[0].agrees, Some(false));
+
+        let mut wrong = right;
+        wrong.layout_bytes = |counts| HalfEdgeMesh::layout_bytes(counts) + 8;
+        let formula = audited(wrong, &Scripted::new([[BYTES, BYTES]]));
+        let expected = "half-edge: its tables hold 1152 bytes, 8 bytes fewer than its layout formula gives (1160 bytes)";
+        assert_eq!(formula.faults(), [expected]);
+
+        let both = audited(wrong, &Scripted::new([[0, 0]]));
+        assert_eq!(both.faults().len(), 2);
+        assert_eq!(both.backends[0].peak_to_counted, None);
+    }
+
+    #[test]
+    fn allocations_of_another_thread_give_no_fault() {
+        let right = [BYTES, 2 * BYTES];
+        let disturbed = [[BYTES + 7, 2 * BYTES], [BYTES, 3 * BYTES], right, right];
+        let audit = audited(Backend::new::<HalfEdgeMesh>(), &Scripted::new(disturbed));
+        assert_eq!(audit.faults(), Vec::<String>::new());
+        assert_eq!(audit.backends[0].peak_bytes, Some(2 * BYTES));
+        // No two counts agree here, so the audit ends with the last count.
+        let changing = (0..100).map(|i| [BYTES + i, BYTES]);
+        let audit = audited(Backend::new::<HalfEdgeMesh>(), &Scripted::new(changing));
+        assert_eq!(audit.faults().len(), 1);
+    }
+
+    #[test]
+    fn a_refusal_has_a_reason_and_no_bytes() {
+        let quads = StudyMesh::new("cube", shapes::cube());
+        let [face_set, table] = [
+            Backend::new::<IndexedFaceSet>(),
+            Backend::new::<sixfold::CornerTable>(),
+        ];
+        let bytes = 8 * 12 + 24 * 4;
+        let heap = Scripted::new([[bytes, bytes]]);
+        let mut counted = Vec::new();
+        let audit = audit(&quads, &[face_set, table], &heap, &mut |backend| {
+            counted.push(backend.name());
+        });
+        assert_eq!(counted, ["indexed-face-set", "corner-table"]);
+        assert_eq!((audit.refusal_error(), audit.faults().len()), (None, 0));
+        let refused = &audit.backends[1];
+        assert!(refused.backend.reason.is_some() && !refused.backend.holds);
+        assert_eq!((refused.agrees, refused.counted_bytes), (None, None));
+        assert_eq!(refused.closed_triangles_words_per_vertex, 16.0);
+
+        let none = self::audit(&quads, &[table], &heap, &mut |_| ()).refusal_error();
+        let none = none.expect("the only one refuses").to_string();
+        assert!(none.contains("corner-table: "), "{none}");
+    }
+}

@@ -1,0 +1,447 @@
+//! Measures one mesh with its elements in several orders, on every structure.
+//!
+//! The order of the elements changes only the addresses of the elements in memory. The times of one
+//! structure in two orders therefore differ only because of caches and prefetchers. The effect of
+//! the order can be larger than the effect of the structure. A study of one file cannot show the
+//! effect of the order, because a file has only one order. If an operation is run on only some of
+//! the elements, the same elements are used in all orders. Checksums of different orders can
+//! therefore be compared.
+
+mod effects;
+mod meshes;
+mod sentences;
+
+use std::sync::atomic::AtomicBool;
+
+use serde::{Deserialize, Serialize};
+use sixfold::PolygonMesh;
+use sixfold::shapes::Order;
+use sixfold_core::Counts;
+
+pub use effects::{Comparison, Factor, Larger, OrderEffect, StructureEffect};
+
+use crate::engine::agreement::compare_checksums;
+use crate::engine::budget::Budget;
+use crate::engine::control::noise;
+use crate::engine::heap::Memory;
+use crate::engine::measure::{Entry, Progress};
+use crate::engine::timer::Timer;
+use crate::engine::trial::{Columns, Measured, Trial};
+use crate::engine::warnings::warnings;
+use crate::inspect::StudyMesh;
+use crate::labs::study::report::bytes_of;
+use crate::labs::study::{Settings, StudyError, is_skewed, prepare, refusals, results, scans};
+use crate::results::figure::{Figure, FigureRow};
+use crate::results::finding::{LabFinding, only_mesh};
+use crate::results::read::ReadError;
+use crate::results::rows::{
+    Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, Samples, check_control,
+    check_results, check_samples,
+};
+use crate::results::run::{Run, RunSettings};
+use effects::OrderSamples;
+use meshes::OrderedMeshes;
+use sixfold_workload::{Backend, MachineClock, Operation, TimedBackend};
+
+/// Names of the operations that [`orders`] measures if the settings name no operations.
+pub const DEFAULT_OPERATIONS: [&str; 6] = [
+    "vertex_vertices",
+    "vertex_faces",
+    "edge_faces",
+    "face_vertices",
+    "vertex_normal",
+    "ff_bfs",
+];
+
+/// The reason why a mesh cannot be measured in several orders.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OrdersError {
+    /// The settings are invalid, or no requested backend can hold the mesh.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+}
+
+/// The results of one mesh with its elements in several orders.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct OrdersReport {
+    /// How the finding was measured. In JSON, the document has this field.
+    #[serde(skip)]
+    pub run: Run,
+    /// Name and facts of the mesh in its original order. In JSON, the document has this field.
+    #[serde(skip)]
+    pub mesh: MeshReport,
+    /// The measured orders.
+    pub orders: Vec<Order>,
+    /// The requested backends with their memory, built from the mesh in its original order.
+    pub backends: Vec<BackendReport>,
+    /// The measured times, sorted by operation, then by structure, then by order.
+    pub results: Vec<OrderRow>,
+    /// Requested operations that a backend cannot do.
+    pub refusals: Vec<Refusal>,
+    /// The effects of the order and of the structure, for each operation.
+    pub comparisons: Vec<Comparison>,
+    /// The comparison of two measurements of one structure in the original order, which shows the
+    /// noise. `None` if no structure was measured twice.
+    pub control: Option<Control>,
+    /// Sentences that describe the results.
+    pub sentences: Vec<String>,
+    /// Sentences about possible faults of the measurement and their remedies.
+    pub warnings: Vec<String>,
+    /// The times of all samples, without the second measurement of the control.
+    pub samples: Vec<SamplesInOrder>,
+    /// True if the measurement was stopped early.
+    pub interrupted: bool,
+    /// The resolution and the cost of reading the clock.
+    pub timer: Timer,
+}
+
+/// The samples of one operation on one structure in one order.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct SamplesInOrder {
+    /// The order of the elements.
+    pub order: Order,
+    /// The samples.
+    #[serde(flatten)]
+    pub samples: Samples,
+}
+
+/// The times of one operation on one structure in one order.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct OrderRow {
+    /// The order of the elements.
+    pub order: Order,
+    /// The times of the operation. The fields `standing` and `ratio_to_best` compare this order
+    /// with the other orders on the same structure.
+    #[serde(flatten)]
+    pub row: ResultRow,
+}
+
+impl OrdersReport {
+    /// Iterates over the results of `operation`.
+    pub fn rows(&self, operation: Operation) -> impl Iterator<Item = &OrderRow> {
+        let of_it = move |row: &&OrderRow| row.row.operation == operation;
+        self.results.iter().filter(of_it)
+    }
+
+    /// Returns the samples of a result.
+    fn samples_of(&self, order: Order, row: &ResultRow) -> Option<&Samples> {
+        let samples = self.samples.iter().filter(|s| s.order == order);
+        let mut samples = samples.map(|of_order| &of_order.samples);
+        samples.find(|s| s.backend == row.backend && s.operation == row.operation.name())
+    }
+}
+
+impl LabFinding for OrdersReport {
+    fn run(&self) -> &Run {
+        &self.run
+    }
+
+    fn run_mut(&mut self) -> &mut Run {
+        &mut self.run
+    }
+
+    fn meshes(&self) -> &[MeshReport] {
+        std::slice::from_ref(&self.mesh)
+    }
+
+    fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
+        self.mesh = only_mesh(meshes)?;
+        Ok(())
+    }
+
+    fn sentences(&self) -> &[String] {
+        &self.sentences
+    }
+
+    fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.interrupted
+    }
+
+    fn mismatches(&self) -> usize {
+        let wrong = |row: &&OrderRow| row.row.agreement == Agreement::Mismatch;
+        self.results.iter().filter(wrong).count()
+    }
+
+    fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
+        let facts = &self.mesh.facts;
+        let figure = |OrderRow { order, row }: &'s OrderRow| Figure {
+            mesh: Some(&self.mesh),
+            elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
+            case: order.to_string(),
+            backend_bytes: bytes_of(&self.backends, &row.backend),
+            row: FigureRow::of_result(row),
+            samples: self.samples_of(*order, row),
+            noise: noise(self.control.as_ref(), row.operation),
+        };
+        self.results.iter().map(figure).collect()
+    }
+
+    fn check(&self) -> Result<(), ReadError> {
+        self.samples
+            .iter()
+            .try_for_each(|of_order| check_samples(std::slice::from_ref(&of_order.samples)))?;
+        check_results(self.results.iter().map(|row| &row.row))?;
+        check_control(self.control.as_ref())
+    }
+}
+
+/// Returns the requested operations. If none is requested, returns [`DEFAULT_OPERATIONS`].
+pub(crate) fn chosen_operations(settings: &Settings) -> Vec<Operation> {
+    let requested = |operation: &Operation| match settings.operations.is_empty() {
+        true => DEFAULT_OPERATIONS.contains(&operation.name()),
+        false => settings.operations.contains(operation),
+    };
+    Operation::ALL.into_iter().filter(requested).collect()
+}
+
+/// Measures the mesh in every element order on every requested backend. If `settings` name no
+/// operations, [`DEFAULT_OPERATIONS`] are measured.
+///
+/// Setting `stop` to true ends the measurement after the current sample, with a report of the
+/// finished part.
+///
+/// # Errors
+///
+/// Returns an error if the name of a backend is unknown or not unique, if the mesh has no faces, or
+/// if no requested backend can hold the mesh.
+pub fn orders(
+    study_mesh: &StudyMesh,
+    settings: &Settings,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(Progress<'_>),
+) -> Result<OrdersReport, OrdersError> {
+    let budget = Budget::start(settings.budget);
+    let chosen = settings.chosen_backends()?;
+    let operations = chosen_operations(settings);
+    let polygons = &study_mesh.polygons;
+    if polygons.face_count() == 0 {
+        return Err(StudyError::NoFaces.into());
+    }
+    let run = Run::start(RunSettings::of_study(settings));
+    let counts = polygons.counts(study_mesh.facts.edges);
+    let needed = orders_bytes(study_mesh, settings)?;
+    let mut memory = Memory::start(settings.heap, settings.caches, needed);
+    let skewed = is_skewed(&study_mesh.facts);
+    let needs_draw = chosen.iter().any(|b| skewed || scans(b, &operations));
+    let meshes = OrderedMeshes::new(polygons, settings.seed, needs_draw);
+
+    let mut backends = Vec::new();
+    let mut subjects: Vec<Box<dyn TimedBackend + '_>> = Vec::new();
+    let mut columns: Vec<Column> = Vec::new();
+    for backend in &chosen {
+        for (order, mesh, draw) in meshes.iter() {
+            let (report, subject) = prepare(backend, mesh, draw, &counts);
+            if order == Order::Given {
+                backends.push(report);
+            }
+            let Some(subject) = subject else { break };
+            subjects.push(subject);
+            columns.push(Column {
+                backend: *backend,
+                order,
+            });
+        }
+    }
+    if subjects.is_empty() {
+        let reason = |b: BackendReport| (b.name, b.reason.unwrap_or_default());
+        let refusals = backends.into_iter().map(reason).collect();
+        return Err(StudyError::NoneHolds { refusals }.into());
+    }
+    // The control is a structure in the given order, which comes first.
+    let mut measured = Columns::new(subjects, Vec::new(), |first| {
+        let (_, mesh, draw) = meshes.iter().next()?;
+        let (subject, _) = columns[first].backend.prepare(mesh, draw).ok()?;
+        Some(subject)
+    });
+    let clock = MachineClock::start();
+    let timer = Timer::measure(&clock);
+    let mut trial = Trial {
+        counts,
+        skewed,
+        clock: &clock,
+        memory: &mut memory,
+        budget: budget.left(),
+        named: !settings.operations.is_empty(),
+        seed: settings.seed,
+        stop,
+        progress,
+    };
+    let entries = measured.entries(&operations);
+    let Measured {
+        entries,
+        control,
+        interrupted,
+        ..
+    } = trial.run(&mut measured, entries);
+    let subjects = &mut measured.subjects;
+    let mut compare =
+        |entries: &[Entry]| compare_checksums(entries, subjects, polygons, &clock, stop);
+    let agreements = agreements(&entries, &columns, &mut compare);
+
+    let refusals = deduplicated(refusals(&entries, subjects));
+    let rows = rows(
+        &entries,
+        &agreements,
+        &columns,
+        subjects,
+        polygons,
+        control.as_ref(),
+    );
+    let timed = |operation: Operation| {
+        let of_it = entries.iter().filter(|e| e.operation() == Some(operation));
+        let timed = of_it.map(|entry| OrderSamples {
+            backend: columns[entry.subject].backend.name(),
+            order: columns[entry.subject].order,
+            scans: operation.scans(&columns[entry.subject].backend.info.costs) != [false; 3],
+            samples: entry.times(),
+        });
+        let timed: Vec<OrderSamples> = timed.collect();
+        Comparison::new(operation, &timed, noise(control.as_ref(), operation))
+    };
+    let comparisons: Vec<Comparison> = operations.into_iter().map(timed).collect();
+    let sentences = sentences::sentences(&rows, &comparisons, control.as_ref());
+    let run = run.with_memory(&memory);
+    let timer = timer.with_entries(&entries);
+    let timed: Vec<&ResultRow> = rows.iter().map(|row| &row.row).collect();
+    let warnings = warnings(&run, &timer, &timed, control.as_ref());
+    let samples = entries.iter().filter_map(|entry| {
+        let Column { backend, order } = columns[entry.subject];
+        let samples = Samples::of_entry(entry, backend.name(), false)?;
+        Some(SamplesInOrder { order, samples })
+    });
+    Ok(OrdersReport {
+        run,
+        mesh: study_mesh.report(),
+        orders: Order::ALL.into(),
+        backends,
+        samples: samples.collect(),
+        results: rows,
+        refusals,
+        comparisons,
+        control,
+        sentences,
+        warnings,
+        interrupted,
+        timer,
+    })
+}
+
+struct Column {
+    backend: Backend,
+    order: Order,
+}
+
+/// Returns whether the result depends on the order of the input: the operation starts at the first
+/// face, or edits the elements one after another.
+fn depends_on_order(entry: &Entry) -> bool {
+    let operation = entry.operation();
+    matches!(operation, Some(Operation::FfBfs | Operation::EditPass(_)))
+}
+
+/// Compares the checksums of all orders. If the result of an operation depends on the order,
+/// compares the checksums only within each order.
+fn agreements(
+    entries: &[Entry],
+    columns: &[Column],
+    compare: &mut dyn FnMut(&[Entry]) -> Vec<Agreement>,
+) -> Vec<Agreement> {
+    let mut agreements = vec![Agreement::Unchecked; entries.len()];
+    let mut compare_group = |takes_part: &dyn Fn(&Entry) -> bool| {
+        let indices: Vec<usize> = (0..entries.len())
+            .filter(|&e| takes_part(&entries[e]))
+            .collect();
+        let group: Vec<Entry> = indices.iter().map(|&e| entries[e].clone()).collect();
+        for (e, agreement) in indices.into_iter().zip(compare(&group)) {
+            agreements[e] = agreement;
+        }
+    };
+    compare_group(&|entry| !depends_on_order(entry));
+    for order in Order::ALL {
+        compare_group(&|entry| depends_on_order(entry) && columns[entry.subject].order == order);
+    }
+    agreements
+}
+
+/// Returns a row for each entry with a time. A row is compared with the other orders of its
+/// structure.
+fn rows(
+    entries: &[Entry],
+    agreements: &[Agreement],
+    columns: &[Column],
+    subjects: &[Box<dyn TimedBackend + '_>],
+    polygons: &PolygonMesh,
+    control: Option<&Control>,
+) -> Vec<OrderRow> {
+    let with_times: Vec<(&Entry, Agreement)> = entries
+        .iter()
+        .zip(agreements.iter().copied())
+        .filter(|(entry, _)| !entry.times().is_empty() || entry.estimate.is_some())
+        .collect();
+    let mut rows = Vec::new();
+    for group in with_times.chunk_by(|(a, _), (b, _)| {
+        let backend = |entry: &Entry| columns[entry.subject].backend.name();
+        a.job.task == b.job.task && backend(a) == backend(b)
+    }) {
+        let backend_entries: Vec<Entry> = group.iter().map(|(entry, _)| (*entry).clone()).collect();
+        let agreements = group.iter().map(|(_, agreement)| *agreement).collect();
+        let backend_rows = results(&backend_entries, agreements, subjects, polygons, control);
+        rows.extend(
+            backend_entries
+                .iter()
+                .zip(backend_rows)
+                .map(|(entry, row)| OrderRow {
+                    order: columns[entry.subject].order,
+                    row,
+                }),
+        );
+    }
+    rows
+}
+
+fn deduplicated(refusals: Vec<Refusal>) -> Vec<Refusal> {
+    let mut kept: Vec<Refusal> = Vec::new();
+    for refusal in refusals {
+        if !kept.contains(&refusal) {
+            kept.push(refusal);
+        }
+    }
+    kept
+}
+
+/// Estimates the peak memory of [`orders`] with these settings, in bytes.
+///
+/// # Errors
+///
+/// Returns an error if the name of a backend is unknown or not unique.
+pub fn orders_bytes(study_mesh: &StudyMesh, settings: &Settings) -> Result<u64, StudyError> {
+    let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
+    let chosen = settings.chosen_backends()?;
+    let copies = Order::ALL.len() as u64;
+    let bytes = chosen
+        .iter()
+        .map(|backend| prepared_bytes(backend, &counts));
+    let (all, most) = bytes.fold((0, 0), |(all, most): (u64, u64), one| {
+        (all + one, most.max(one))
+    });
+    // Three times the largest structure: the control, and memory for building one structure.
+    Ok(copies * (all + draw_bytes(&counts)) + 3 * most)
+}
+
+/// Estimates the bytes of a structure and of its outputs.
+pub(crate) fn prepared_bytes(backend: &Backend, counts: &Counts) -> u64 {
+    /// Bytes of one position.
+    const OUTPUTS: u64 = 12;
+    let outputs = OUTPUTS * (counts.vertices + counts.faces) as u64;
+    (backend.layout_bytes)(counts) as u64 + outputs
+}
+
+pub(crate) fn draw_bytes(counts: &Counts) -> u64 {
+    let polygons = 12 * counts.vertices + 4 * counts.corners;
+    let draw = 4 * (counts.vertices + counts.faces) + 12 * counts.edges;
+    (polygons + draw) as u64
+}

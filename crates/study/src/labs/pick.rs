@@ -1,0 +1,283 @@
+//! Picks the fastest backend for a mesh and a workload, and explains the result.
+//!
+//! A backend qualifies if it can hold the mesh and meets the requirements of the settings. Every
+//! backend that qualifies runs the operations of the workload (the mix), in the access order of the
+//! workload. The backends take turns in rounds, as in a study. Some rounds also time each operation
+//! of the mix alone, to explain the result. If the mix does not change connectivity, relation
+//! tables are measured as an additional backend. These tables contain only the relations that the
+//! mix queries.
+
+mod backend;
+mod break_even;
+mod choice;
+mod measurement;
+mod needs;
+mod pooled;
+mod prediction;
+mod reasons;
+mod report;
+mod tasks;
+#[cfg(test)]
+mod tests;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use sixfold_workload::pages::Policy;
+use sixfold_workload::{
+    Backend, Draw, EditPlaceError, MachineClock, MixRefusal, Operation, Route, Schedule, Workload,
+    prepare_mix, tabulate,
+};
+
+pub use choice::{Choice, EQUAL_UP_TO, TurningPoint};
+pub use needs::{Need, UnknownNeed};
+pub use prediction::{Predicted, Prediction, predict};
+pub use report::{BreakEven, Excluded, MeshRanking, PartCost, PickReport, Ranked};
+
+use crate::engine::budget::Budget;
+use crate::engine::heap::{CacheState, Memory};
+use crate::engine::timer::Timer;
+use crate::inspect::StudyMesh;
+use crate::labs::study::{Settings, StudyError, needed_bytes};
+use crate::refusal::reason;
+use crate::results::run::{Run, RunSettings};
+use backend::PickBackend;
+use measurement::PickMeasurement;
+
+/// The settings of [`pick`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct PickSettings {
+    /// The workload to run.
+    pub workload: Workload,
+    /// The names of the backends. If the list is empty, all backends are compared.
+    pub backends: Vec<String>,
+    /// Additional structures that are not part of Sixfold.
+    pub extra: Vec<Backend>,
+    /// Capabilities that a backend must have.
+    pub needs: Vec<Need>,
+    /// The maximum size of a backend, in bytes; `None` for no limit.
+    pub max_memory: Option<u64>,
+    /// Time limit for all meshes together.
+    pub budget: Duration,
+    /// Seed of the random numbers that choose the elements and the order of the measurements.
+    pub seed: u64,
+    /// What happens to freed memory pages during the measurement.
+    pub heap: Policy,
+}
+
+impl PickSettings {
+    fn chosen_backends(&self) -> Result<Vec<Backend>, StudyError> {
+        let settings = Settings {
+            backends: self.backends.clone(),
+            extra: self.extra.clone(),
+            ..Settings::default()
+        };
+        settings.chosen_backends()
+    }
+
+    fn run_settings(&self) -> RunSettings {
+        RunSettings {
+            backends: self.backends.clone(),
+            budget_s: self.budget.as_secs_f64(),
+            seed: self.seed,
+            heap: self.heap,
+            ..RunSettings::default()
+        }
+    }
+}
+
+/// The reason why [`pick`] fails.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum PickError {
+    /// The mesh has no faces, or the name of a backend is unknown or not unique.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// The workload cannot be run on this mesh.
+    #[error("{mesh}: {reason}")]
+    Impossible {
+        mesh: String,
+        reason: EditPlaceError,
+    },
+    /// The list of meshes is empty.
+    #[error("the list of meshes is empty: give at least one mesh")]
+    NoMesh,
+}
+
+/// Runs the workload of `settings` on each of `study_meshes`, and ranks the backends.
+///
+/// If no backend qualifies, the ranking is empty and `excluded` contains the reasons. Setting
+/// `stop` to true ends the measurement after the current sample, with a report of the finished
+/// part. `progress` is called with the finished part, from 0 to 1, and the current step.
+///
+/// # Errors
+///
+/// Returns an error if `study_meshes` is empty, if the name of a backend is unknown or not unique,
+/// if a mesh has no faces, or if the workload cannot be run on a mesh.
+pub fn pick(
+    study_meshes: &[StudyMesh],
+    settings: &PickSettings,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(f64, &str),
+) -> Result<PickReport, PickError> {
+    if study_meshes.is_empty() {
+        return Err(PickError::NoMesh);
+    }
+    let budget = Budget::start(settings.budget);
+    let run = Run::start(settings.run_settings());
+    let needed = study_meshes
+        .iter()
+        .map(|study_mesh| needed(study_mesh, settings));
+    let mut memory = Memory::start(settings.heap, CacheState::Warm, needed.max().unwrap_or(0));
+    let clock = MachineClock::start();
+    let timer = Timer::measure(&clock);
+    let mut outcomes = Vec::new();
+    for (i, study_mesh) in study_meshes.iter().enumerate() {
+        if stop.load(Ordering::Relaxed) && i > 0 {
+            break;
+        }
+        let part = |done: f64| (i as f64 + done) / study_meshes.len() as f64;
+        let mut progress = |done: f64, what: &str| progress(part(done), what);
+        let rest = study_meshes.len() - i;
+        let context = MeasureContext {
+            budget: Budget::start(budget.share(1.0, rest as f64)),
+            clock: &clock,
+            memory: &mut memory,
+            stop,
+            progress: &mut progress,
+        };
+        outcomes.push(measure_mesh(study_mesh, settings, context)?);
+    }
+    let interrupted = stop.load(Ordering::Relaxed);
+    Ok(pooled::pooled(
+        outcomes,
+        settings,
+        timer,
+        run.with_memory(&memory),
+        interrupted,
+    ))
+}
+
+fn needed(study_mesh: &StudyMesh, settings: &PickSettings) -> u64 {
+    let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
+    // Unknown names cause an error later.
+    let backends = settings.chosen_backends().unwrap_or_default();
+    // The factor 2 includes relation tables and the allocations of edits and subdivision.
+    2 * needed_bytes(&backends, &Operation::ALL, &counts)
+}
+
+pub(crate) struct MeasureContext<'m> {
+    budget: Budget,
+    clock: &'m MachineClock,
+    memory: &'m mut Memory,
+    stop: &'m AtomicBool,
+    progress: &'m mut dyn FnMut(f64, &str),
+}
+
+/// Returns the backends that qualify, and the excluded backends with the reasons.
+fn qualified(
+    study_mesh: &StudyMesh,
+    settings: &PickSettings,
+) -> Result<(Vec<Backend>, Vec<Excluded>), PickError> {
+    let polygons = &study_mesh.polygons;
+    if polygons.face_count() == 0 {
+        return Err(StudyError::NoFaces.into());
+    }
+    let counts = polygons.counts(study_mesh.facts.edges);
+    let mut excluded = Vec::new();
+    let mut qualified = Vec::new();
+    for backend in settings.chosen_backends()? {
+        let lacks = settings
+            .needs
+            .iter()
+            .find_map(|need| need.unmet_reason(&backend));
+        let bytes = (backend.layout_bytes)(&counts) as u64;
+        let excluded_because = match (lacks, settings.max_memory) {
+            (Some(lacks), _) => Some(lacks),
+            (None, Some(most)) if bytes > most => Some(report::over_memory_limit(bytes, most)),
+            _ => backend
+                .info
+                .check(polygons)
+                .err()
+                .map(|refusal| reason(&refusal, &backend.info.capabilities, polygons)),
+        };
+        match excluded_because {
+            Some(reason) => excluded.push(Excluded::new(backend.name(), reason)),
+            None => qualified.push(backend),
+        }
+    }
+    Ok((qualified, excluded))
+}
+
+fn measure_mesh(
+    study_mesh: &StudyMesh,
+    settings: &PickSettings,
+    context: MeasureContext<'_>,
+) -> Result<measurement::Outcome, PickError> {
+    let MeasureContext {
+        budget,
+        clock,
+        memory,
+        stop,
+        progress,
+    } = context;
+    let (qualifying, mut excluded) = qualified(study_mesh, settings)?;
+    let polygons = &study_mesh.polygons;
+    let counts = polygons.counts(study_mesh.facts.edges);
+    let workload = &settings.workload;
+    let mut schedule = Schedule::new(workload, &counts);
+    schedule.editable |= settings.needs.contains(&Need::Edit);
+    let route = Route::new(workload.access, polygons, settings.seed);
+    let draw = Draw::new(polygons, settings.seed);
+    let impossible = |reason: EditPlaceError| PickError::Impossible {
+        mesh: study_mesh.name.clone(),
+        reason,
+    };
+    let set_up = |backend: &Backend| prepare_mix(backend, polygons, &draw, &schedule, &route);
+
+    let mut backends = Vec::new();
+    for (i, backend) in qualifying.iter().enumerate() {
+        progress(
+            0.1 * i as f64 / qualifying.len() as f64,
+            &format!("building {}", backend.name()),
+        );
+        match set_up(backend) {
+            Ok(mixer) => backends.push(PickBackend::new(mixer, backend)),
+            Err(MixRefusal::EditPlaceError(reason)) => return Err(impossible(reason)),
+            Err(refusal) => excluded.push(Excluded::new(backend.name(), refusal.to_string())),
+        }
+    }
+    backend::exclude_large(&mut backends, settings.max_memory, &mut excluded);
+    let again = backends
+        .iter()
+        .find(|b| !b.scans())
+        .and_then(|b| b.structure);
+    let again =
+        again.and_then(|structure| Some(PickBackend::new(set_up(&structure).ok()?, &structure)));
+    let has_control = again.is_some();
+    backends.extend(again);
+    backend::keep_common_places(&mut backends, &schedule).map_err(impossible)?;
+    let control = backends.pop_if(|_| has_control);
+    if settings.needs.contains(&Need::Edit) {
+        let reason = "they cannot be edited".into();
+        excluded.push(Excluded::new("relation-tables", reason));
+    } else {
+        progress(0.1, "tabulating");
+        let tabulate = |backend: &Backend| tabulate(backend, polygons, &schedule, &route);
+        backends.extend(backend::build_tables(&backends, clock, tabulate));
+        backend::exclude_large(&mut backends, settings.max_memory, &mut excluded);
+    }
+    let measurement = PickMeasurement {
+        study_mesh,
+        settings,
+        counts,
+        schedule: &schedule,
+        budget: budget.left(),
+        clock,
+        memory,
+        stop,
+        progress,
+    };
+    Ok(measurement.run(backends, control, excluded))
+}

@@ -1,0 +1,79 @@
+//! The number of operations after which building a structure has paid off.
+
+use sixfold_workload::{Task, Time};
+
+use crate::engine::measure::Entry;
+use crate::engine::statistics::Median;
+use crate::labs::pick::backend::Candidate;
+use crate::labs::pick::report::{BreakEven, Ranked};
+
+/// A candidate with its measured tasks.
+pub(crate) struct MeasuredMix<'m> {
+    pub(crate) candidate: &'m Candidate,
+    pub(crate) entries: Vec<&'m Entry>,
+    /// By round: the time of one operation of the mix, rebuilding included.
+    pub(crate) samples: Vec<(u32, Time)>,
+}
+
+impl MeasuredMix<'_> {
+    /// Returns the entry of `task`; `None` if the candidate does not run it.
+    pub(crate) fn entry(&self, task: Task) -> Option<&Entry> {
+        let mut entries = self.entries.iter().copied();
+        entries.find(|entry| entry.job.task == task)
+    }
+
+    /// Returns the largest number of page faults in a sample; `None` if they were not counted.
+    pub(crate) fn most_faults(&self) -> Option<u64> {
+        let samples = self.entries.iter().flat_map(|entry| &entry.samples);
+        samples.filter_map(|(_, time)| time.faults).max()
+    }
+}
+
+/// The structure that a program has from the start: positions and index lists.
+const BASE: &str = "indexed-face-set";
+
+/// Returns the break-even of each backend, compared with an existing indexed face set. The
+/// break-even is at n = build / (t_base − t) operations, when the saved time equals the building
+/// time. Time differences are formed within rounds. The interval of n follows from the interval of
+/// the median difference. `operations` is the number of operations in one use.
+pub(crate) fn break_even(
+    measured: &[MeasuredMix<'_>],
+    ranking: &[Ranked],
+    operations: f64,
+) -> Vec<BreakEven> {
+    let find = |name: &str| measured.iter().find(|m| m.candidate.name == name);
+    let Some(base) = find(BASE) else {
+        return Vec::new();
+    };
+    let row = |ranked: &Ranked| {
+        let pairs = find(&ranked.backend)?
+            .samples
+            .iter()
+            .filter_map(|(round, time)| {
+                let base = base.samples.iter().find(|(r, _)| r == round)?;
+                Some([base.1.ns(), time.ns()])
+            });
+        let saved = Median::from_differences(&pairs.collect::<Vec<_>>())?;
+        let build = if ranked.backend == BASE {
+            0.0
+        } else {
+            ranked.first_build_ns()
+        };
+        let after = |ns: f64| (ns > 0.0).then(|| build / ns);
+        let pays = after(saved.value);
+        Some(BreakEven {
+            backend: ranked.backend.clone(),
+            build_ns: ranked.first_build_ns(),
+            saves_ns_per_operation: saved.value,
+            operations: pays,
+            ci_low: saved.interval.and_then(|[_, high]| after(high)),
+            ci_high: saved.interval.and_then(|[low, _]| after(low)),
+            uses: pays.map(|pays| pays / operations),
+        })
+    };
+    ranking
+        .iter()
+        .filter(|ranked| ranked.backend != BASE)
+        .filter_map(row)
+        .collect()
+}

@@ -1,0 +1,236 @@
+//! The measurement on one mesh, and the ranking that results.
+
+use std::collections::BTreeSet;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use sixfold_core::Counts;
+use sixfold_workload::{Clock, Operation, Schedule, Task, Time, TimedBackend};
+
+use crate::engine::agreement::compare_checksums;
+use crate::engine::heap::Memory;
+use crate::engine::measure::{Entry, Progress};
+use crate::engine::ranking::{NO_DIFFERENCE, rank, ratio};
+use crate::engine::statistics::Median;
+use crate::engine::trial::{Columns, Measured, Trial};
+use crate::inspect::StudyMesh;
+use crate::labs::pick::PickSettings;
+use crate::labs::pick::backend::{Candidate, PickBackend};
+use crate::labs::pick::break_even::{MeasuredMix, break_even};
+use crate::labs::pick::report::{BreakEven, Excluded, PartCost, Ranked};
+use crate::labs::pick::tasks::Tasks;
+use crate::labs::study::is_skewed;
+use crate::results::rows::{Agreement, MeshReport, Samples, Standing};
+
+pub(crate) struct PickMeasurement<'c> {
+    pub(crate) study_mesh: &'c StudyMesh,
+    pub(crate) settings: &'c PickSettings,
+    pub(crate) counts: Counts,
+    pub(crate) schedule: &'c Schedule,
+    pub(crate) budget: Duration,
+    pub(crate) clock: &'c dyn Clock,
+    pub(crate) memory: &'c mut Memory,
+    pub(crate) stop: &'c AtomicBool,
+    pub(crate) progress: &'c mut dyn FnMut(f64, &str),
+}
+
+pub(crate) struct Outcome {
+    pub(crate) mesh: MeshReport,
+    pub(crate) ranking: Vec<Ranked>,
+    pub(crate) excluded: Vec<Excluded>,
+    pub(crate) break_even: Vec<BreakEven>,
+    pub(crate) noise: Option<f64>,
+    /// Backends whose results differ from the others.
+    pub(crate) disagreeing: Vec<String>,
+    pub(crate) operations: f64,
+    /// The shortest timed sample, in nanoseconds.
+    pub(crate) shortest_ns: Option<f64>,
+    /// All samples, also those of the control.
+    pub(crate) samples: Vec<Samples>,
+}
+
+impl PickMeasurement<'_> {
+    /// Measures `backends` and ranks them. `control` is a second copy of one of them.
+    pub(crate) fn run(
+        self,
+        backends: Vec<PickBackend<'_>>,
+        control: Option<PickBackend<'_>>,
+        mut excluded: Vec<Excluded>,
+    ) -> Outcome {
+        let polygons = &self.study_mesh.polygons;
+        let workload = &self.settings.workload;
+        let tasks = Tasks::new(workload, self.schedule, polygons, &self.counts);
+        let ranked = backends.len();
+        let split = backends.into_iter().chain(control).map(PickBackend::split);
+        let (candidates, mut subjects): (Vec<Candidate>, Vec<Box<dyn TimedBackend + '_>>) =
+            split.unzip();
+        let again = subjects.pop_if(|_| candidates.len() > ranked);
+        let mut columns = Columns::new(subjects, Vec::new(), |_| again);
+        let progress = self.progress;
+        let mut trial = Trial {
+            counts: self.counts,
+            skewed: is_skewed(&self.study_mesh.facts),
+            clock: self.clock,
+            memory: self.memory,
+            budget: self.budget,
+            named: true,
+            seed: self.settings.seed,
+            stop: self.stop,
+            progress: &mut |at: Progress<'_>| {
+                let Progress {
+                    stage,
+                    task,
+                    backend,
+                    ..
+                } = at;
+                progress(0.1 + 0.9 * at.done, &format!("{stage} {task} on {backend}"));
+            },
+        };
+        let measured = trial.run(&mut columns, tasks.entries(&candidates));
+        let samples = measured.samples(&columns);
+        let Measured {
+            entries, second, ..
+        } = measured;
+        let subjects = &mut columns.subjects;
+        let agreements = compare_checksums(&entries, subjects, polygons, self.clock, self.stop);
+        let evaluate = |column: usize| {
+            let candidate = &candidates[column];
+            let own: Vec<&Entry> = entries
+                .iter()
+                .chain(&second)
+                .filter(|e| e.subject == column)
+                .collect();
+            let samples = tasks.mix_times(candidate, &own);
+            samples
+                .map(|samples| MeasuredMix {
+                    candidate,
+                    entries: own,
+                    samples,
+                })
+                .map_err(|reason| Excluded::new(&candidate.name, reason))
+        };
+        let mut measured = Vec::new();
+        for column in 0..ranked {
+            match evaluate(column) {
+                Ok(one) => measured.push(one),
+                Err(refused) => excluded.push(refused),
+            }
+        }
+        let control = (ranked..candidates.len()).find_map(|column| evaluate(column).ok());
+        let evaluation = Evaluation {
+            tasks: &tasks,
+            counts: &self.counts,
+            measured: &measured,
+        };
+        let noise = control.and_then(|control| evaluation.noise(&control));
+        let ranking = evaluation.ranking(noise.unwrap_or(1.0).max(NO_DIFFERENCE));
+        let operations = workload.operations_on(&self.counts);
+        let wrong = entries.iter().zip(agreements);
+        let wrong = wrong.filter(|(_, agreement)| *agreement == Agreement::Mismatch);
+        let wrong: BTreeSet<usize> = wrong.map(|(entry, _)| entry.subject).collect();
+        let wrong = wrong
+            .into_iter()
+            .map(|subject| candidates[subject].name.clone());
+        Outcome {
+            mesh: self.study_mesh.report(),
+            samples,
+            break_even: break_even(&measured, &ranking, operations),
+            ranking,
+            excluded,
+            noise,
+            disagreeing: wrong.collect(),
+            operations,
+            shortest_ns: entries
+                .iter()
+                .filter_map(Entry::shortest_sample_ns)
+                .min_by(f64::total_cmp),
+        }
+    }
+}
+
+/// The evaluation of what was measured.
+struct Evaluation<'e> {
+    tasks: &'e Tasks<'e>,
+    counts: &'e Counts,
+    measured: &'e [MeasuredMix<'e>],
+}
+
+impl Evaluation<'_> {
+    /// Returns the ratio, 1 or more, of the two times of a backend that was measured twice.
+    fn noise(&self, control: &MeasuredMix<'_>) -> Option<f64> {
+        let same = |m: &&MeasuredMix<'_>| m.candidate.name == control.candidate.name;
+        let original = self.measured.iter().find(same)?;
+        let ratio = ratio(&control.samples, &original.samples)?.value;
+        Some(ratio.max(ratio.recip()))
+    }
+
+    /// Ranks the backends that have samples; the fastest first. Differences up to `noise` are ties.
+    fn ranking(&self, noise: f64) -> Vec<Ranked> {
+        let times: Vec<Vec<(u32, Time)>> =
+            self.measured.iter().map(|m| m.samples.clone()).collect();
+        let ranks = rank(&times, noise);
+        let rows = self.measured.iter().zip(ranks).filter_map(|(m, rank)| {
+            let rank = rank?;
+            let time = Median::from_samples(m.samples.iter().map(|(_, time)| time.ns()))?;
+            let build = m.entry(Task::Operation(Operation::Build))?;
+            let builds = build.times();
+            let build_ns = Median::from_samples(builds.iter().map(|(_, time)| time.ns()))?.value;
+            let Candidate {
+                name,
+                made_from,
+                type_paths,
+                bytes,
+                ..
+            } = m.candidate;
+            Some(Ranked {
+                backend: name.clone(),
+                made_from: made_from.map(str::to_owned),
+                ns_per_operation: time.value,
+                ns_ci_low: time.interval.map(|[low, _]| low),
+                ns_ci_high: time.interval.map(|[_, high]| high),
+                ratio_to_best: rank.ratio.value,
+                ci_low: rank.ratio.interval.map(|[low, _]| low),
+                ci_high: rank.ratio.interval.map(|[_, high]| high),
+                tied_with_best: rank.standing != Standing::Slower,
+                build_ns,
+                first_build_ns: build.first_ns(),
+                bytes: *bytes,
+                bytes_per_vertex: *bytes as f64 / self.counts.vertices.max(1) as f64,
+                sampled: m.candidate.scans() || m.entries.iter().any(|e| e.job.sample.is_some()),
+                estimated: m.entries.iter().any(|entry| entry.estimate.is_some()),
+                parts: self.parts(m),
+                samples: m.samples.len(),
+                faults: m.most_faults(),
+                crates: type_paths.iter().map(|path| package_of(path)).collect(),
+                types: type_paths.iter().map(|&path| path.to_owned()).collect(),
+            })
+        });
+        let mut ranking: Vec<Ranked> = rows.collect();
+        ranking.sort_by(|a, b| a.ratio_to_best.total_cmp(&b.ratio_to_best));
+        ranking
+    }
+
+    /// Returns the cost of each part of the mix, timed alone.
+    fn parts(&self, measured: &MeasuredMix<'_>) -> Vec<PartCost> {
+        let schedule = self.tasks.schedule;
+        let cost = |part: usize| {
+            let entry = measured.entry(self.tasks.task(measured.candidate, part));
+            PartCost {
+                operation: schedule.parts[part].action,
+                share: schedule.shares[part],
+                ns: entry.and_then(|entry| {
+                    let times = entry.times();
+                    let median = Median::from_samples(times.iter().map(|(_, time)| time.ns()));
+                    median.map(|m| m.value).or(entry.estimate.map(Time::ns))
+                }),
+            }
+        };
+        (0..schedule.parts.len()).map(cost).collect()
+    }
+}
+
+/// Returns the package name from the path of a type.
+fn package_of(type_path: &str) -> String {
+    let (package, _) = type_path.split_once("::").unwrap_or((type_path, ""));
+    package.replace('_', "-")
+}

@@ -1,0 +1,195 @@
+//! Combines the results of one or several meshes into one report.
+
+use std::collections::BTreeMap;
+
+use crate::engine::ranking::NO_DIFFERENCE;
+use crate::engine::statistics::MIN_SAMPLES;
+use crate::engine::timer::Timer;
+use crate::labs::pick::PickSettings;
+use crate::labs::pick::choice::choose;
+use crate::labs::pick::measurement::Outcome;
+use crate::labs::pick::reasons;
+use crate::labs::pick::report::{BreakEven, Excluded, MeshRanking, PickReport, Ranked};
+use crate::results::run::Run;
+
+/// Combines the results of the meshes. A backend must qualify on every mesh to be ranked. Backends
+/// are compared by geometric means over the meshes.
+pub(crate) fn pooled(
+    mut outcomes: Vec<Outcome>,
+    settings: &PickSettings,
+    timer: Timer,
+    run: Run,
+    interrupted: bool,
+) -> PickReport {
+    let several = outcomes.len() > 1;
+    let mut excluded: Vec<Excluded> = Vec::new();
+    for outcome in &mut outcomes {
+        for new in outcome.excluded.drain(..) {
+            if excluded.iter().any(|known| known.backend == new.backend) {
+                continue;
+            }
+            let reason = match several {
+                true => format!("{}: {}", outcome.mesh.name, new.reason),
+                false => new.reason,
+            };
+            excluded.push(Excluded { reason, ..new });
+        }
+    }
+    let noise = outcomes.iter().filter_map(|o| o.noise);
+    let noise = noise.reduce(f64::max);
+    let ranking = match &outcomes[..] {
+        [only] => only.ranking.clone(),
+        many => ranked_on_all(many, noise.unwrap_or(1.0).max(NO_DIFFERENCE)),
+    };
+    let operations = mean(outcomes.iter().map(|o| o.operations)).unwrap_or(0.0);
+    let break_even = match &outcomes[..] {
+        [only] => only.break_even.clone(),
+        many => ranking
+            .iter()
+            .filter_map(|ranked| break_even_on_all(many, ranked))
+            .collect(),
+    };
+    let shortest = outcomes.iter().filter_map(|o| o.shortest_ns);
+    let shortest = shortest.min_by(f64::total_cmp);
+    let timer = timer.with_shortest(shortest);
+    let mut disagreeing: Vec<String> = outcomes
+        .iter()
+        .flat_map(|o| o.disagreeing.clone())
+        .collect();
+    disagreeing.sort();
+    disagreeing.dedup();
+    let mut report = PickReport {
+        run,
+        meshes: outcomes.iter().map(|o| o.mesh.clone()).collect(),
+        workload: settings.workload.clone(),
+        operations,
+        needs: settings.needs.clone(),
+        max_memory: settings.max_memory,
+        choice: choose(&ranking),
+        preliminary: ranking.iter().any(|ranked| ranked.samples < MIN_SAMPLES),
+        ranking,
+        excluded,
+        break_even,
+        noise,
+        mismatches: disagreeing,
+        sentences: Vec::new(),
+        warnings: Vec::new(),
+        interrupted,
+        timer,
+        samples: Vec::new(),
+        by_mesh: Vec::new(),
+    };
+    if several {
+        let each = outcomes.into_iter().map(|outcome| MeshRanking {
+            mesh: outcome.mesh.name,
+            samples: outcome.samples,
+            ranking: outcome.ranking,
+            break_even: outcome.break_even,
+            noise: outcome.noise,
+        });
+        report.by_mesh = each.collect();
+    } else {
+        report.samples = outcomes.into_iter().flat_map(|o| o.samples).collect();
+    }
+    report.sentences = reasons::sentences(&report);
+    report.warnings = reasons::warnings(&report);
+    report
+}
+
+/// Ranks the backends with results on all meshes by the geometric mean of their times.
+fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
+    let mut by_name: BTreeMap<&str, Vec<&Ranked>> = BTreeMap::new();
+    for ranked in outcomes.iter().flat_map(|o| &o.ranking) {
+        by_name.entry(&ranked.backend).or_default().push(ranked);
+    }
+    let everywhere = by_name
+        .into_values()
+        .filter(|rows| rows.len() == outcomes.len());
+    let mut everywhere: Vec<Vec<&Ranked>> = everywhere.collect();
+    let time = |rows: &Vec<&Ranked>| geometric(rows.iter().map(|r| r.ns_per_operation));
+    everywhere.sort_by(|a, b| time(a).total_cmp(&time(b)));
+    let Some(best) = everywhere.first().cloned() else {
+        return Vec::new();
+    };
+    let rows = everywhere.iter().map(|rows| {
+        let ratio = geometric(
+            rows.iter()
+                .zip(&best)
+                .map(|(r, b)| r.ratio_to_best / b.ratio_to_best),
+        );
+        // Meshes are measured independently, so the squared half-widths of the log intervals add
+        // up. The interval of the best backend is added as well.
+        let squared_widths = |rows: &[&Ranked]| -> f64 {
+            let width = |r: &&Ranked| Some((r.ci_high? / r.ci_low?).ln() / 2.0);
+            rows.iter()
+                .map(|r| width(r).unwrap_or(f64::INFINITY).powi(2))
+                .sum()
+        };
+        let same = rows[0].backend == best[0].backend;
+        let half_width = if same {
+            0.0
+        } else {
+            (squared_widths(rows) + squared_widths(&best)).sqrt() / rows.len() as f64
+        };
+        let known = half_width.is_finite();
+        let bytes = rows.iter().map(|r| r.bytes).max().unwrap_or(0);
+        Ranked {
+            ns_per_operation: time(rows),
+            ns_ci_low: None,
+            ns_ci_high: None,
+            ratio_to_best: ratio,
+            ci_low: known.then(|| ratio * (-half_width).exp()),
+            ci_high: known.then(|| ratio * half_width.exp()),
+            tied_with_best: ratio <= noise || (known && ratio * (-half_width).exp() <= 1.0),
+            build_ns: geometric(rows.iter().map(|r| r.build_ns)),
+            first_build_ns: rows
+                .iter()
+                .map(|r| r.first_build_ns)
+                .collect::<Option<Vec<f64>>>()
+                .map(|builds| geometric(builds.into_iter())),
+            bytes,
+            bytes_per_vertex: geometric(rows.iter().map(|r| r.bytes_per_vertex)),
+            sampled: rows.iter().any(|r| r.sampled),
+            estimated: rows.iter().any(|r| r.estimated),
+            samples: rows.iter().map(|r| r.samples).min().unwrap_or(0),
+            ..rows[0].clone()
+        }
+    });
+    rows.collect()
+}
+
+/// Returns the break-even of `ranked` over all meshes. The number of operations is `None` if
+/// building never pays off on some mesh.
+fn break_even_on_all(outcomes: &[Outcome], ranked: &Ranked) -> Option<BreakEven> {
+    let rows: Option<Vec<&BreakEven>> = outcomes
+        .iter()
+        .map(|o| {
+            o.break_even
+                .iter()
+                .find(|row| row.backend == ranked.backend)
+        })
+        .collect();
+    let rows = rows?;
+    let all = |of: fn(&BreakEven) -> Option<f64>| {
+        let values: Option<Vec<f64>> = rows.iter().map(|row| of(row)).collect();
+        values.map(|values| geometric(values.into_iter()))
+    };
+    Some(BreakEven {
+        backend: ranked.backend.clone(),
+        build_ns: ranked.first_build_ns(),
+        saves_ns_per_operation: mean(rows.iter().map(|r| r.saves_ns_per_operation))?,
+        operations: all(|row| row.operations),
+        ci_low: all(|row| row.ci_low),
+        ci_high: all(|row| row.ci_high),
+        uses: all(|row| row.uses),
+    })
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (sum, count) = values.fold((0.0, 0), |(sum, count), value| (sum + value, count + 1));
+    (count > 0).then(|| sum / f64::from(count))
+}
+
+fn geometric(values: impl Iterator<Item = f64>) -> f64 {
+    mean(values.map(f64::ln)).map_or(f64::NAN, f64::exp)
+}

@@ -1,0 +1,230 @@
+//! The result of a pick and its reasons, as sentences.
+
+use crate::engine::statistics::MIN_SAMPLES;
+use crate::labs::pick::choice::{Choice, list};
+use crate::labs::pick::report::{PartCost, PickReport, Ranked};
+use crate::numbers::{counted, duration, grouped, times};
+
+/// Returns sentences about the fastest backend, the reasons, the break-even and the packages.
+pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
+    let Some(best) = report.ranking.first() else {
+        return vec!["No backend qualifies.".into()];
+    };
+    let chosen = report.choice.as_ref();
+    let used = chosen.and_then(|c| report.ranking.iter().find(|r| r.backend == c.backend));
+    let mut sentences = vec![fastest(report, best)];
+    sentences.extend(chosen.and_then(|choice| choice.rule(&report.ranking)));
+    sentences.extend(
+        chosen
+            .map(Choice::what_would_change)
+            .filter(|_| report.ranking.len() > 1),
+    );
+    sentences.extend(dominant_part(report, best));
+    sentences.extend(largest_loss(report, best));
+    sentences.extend(tables(report, best));
+    sentences.extend(one_use_with_building(report, best));
+    sentences.push(packages_to_add(used.unwrap_or(best)));
+    sentences
+}
+
+/// Returns warnings about noise, few rounds, a busy machine and wrong results.
+pub(crate) fn warnings(report: &PickReport) -> Vec<String> {
+    let mut warnings = crate::engine::warnings::machine_warnings(&report.run);
+    if let Some(noise) = report.noise.filter(|&noise| noise > 1.05) {
+        warnings.push(format!(
+            "Two measurements of one backend differ by {:.0} %: smaller differences between backends are not significant. Measure on a quieter machine, or with a longer --budget.",
+            100.0 * (noise - 1.0)
+        ));
+    }
+    let fewest = report.ranking.iter().map(|ranked| ranked.samples).min();
+    if let Some(fewest) = fewest.filter(|_| report.preliminary) {
+        warnings.push(format!(
+            "Some times are from only {}, but a narrow interval needs {MIN_SAMPLES} samples: use a \
+             longer --budget.",
+            counted(fewest, "sample", "samples")
+        ));
+    }
+    for backend in &report.mismatches {
+        warnings.push(format!(
+            "{backend} gives different results from the other backends. This is a fault in \
+             Sixfold: please report it."
+        ));
+    }
+    warnings
+}
+
+fn name(ranked: &Ranked) -> String {
+    match &ranked.made_from {
+        Some(made_from) => format!("{} (made from {made_from})", ranked.backend),
+        None => ranked.backend.clone(),
+    }
+}
+
+fn fastest(report: &PickReport, best: &Ranked) -> String {
+    let tied: Vec<String> = report.ranking[1..]
+        .iter()
+        .filter(|ranked| ranked.tied_with_best)
+        .map(name)
+        .collect();
+    let each = duration(best.ns_per_operation);
+    let workload = &report.workload.name;
+    let next = report.ranking[1..]
+        .iter()
+        .find(|ranked| !ranked.tied_with_best);
+    let next = next.map_or(String::new(), |next| {
+        let sure = next
+            .ci_low
+            .zip(next.ci_high)
+            .map_or(String::new(), |(low, high)| {
+                format!(" (95 %: {} to {})", precise(low), precise(high))
+            });
+        format!(
+            "; {} takes {} that time{sure}",
+            name(next),
+            times(next.ratio_to_best)
+        )
+    });
+    let answer = match report.preliminary {
+        true => "Preliminary answer from too few samples: for",
+        false => "For",
+    };
+    match &tied[..] {
+        [] => format!(
+            "{answer} {workload}, {} is fastest: {each} per operation{next}.",
+            name(best)
+        ),
+        tied => format!(
+            "{answer} {workload}, {} are tied: {each} per operation{next}.",
+            list(std::iter::once(&name(best)).chain(tied))
+        ),
+    }
+}
+
+/// Formats a ratio with three digits: `1.04`, `12.3`, `123`.
+fn precise(ratio: f64) -> String {
+    match ratio {
+        r if r < 10.0 => format!("{r:.2}"),
+        r if r < 100.0 => format!("{r:.1}"),
+        r => grouped(r.round() as usize),
+    }
+}
+
+fn dominant_part(report: &PickReport, best: &Ranked) -> Option<String> {
+    let total: f64 = best.parts.iter().map(PartCost::weighted_ns).sum();
+    let heaviest = best
+        .parts
+        .iter()
+        .max_by(|a, b| a.weighted_ns().total_cmp(&b.weighted_ns()))?;
+    let each = duration(heaviest.ns?);
+    if report.workload.mix.len() == 1 {
+        return None;
+    }
+    Some(format!(
+        "{} takes {:.0} % of the time of the fastest backend ({each} each time).",
+        heaviest.operation,
+        100.0 * heaviest.weighted_ns() / total
+    ))
+}
+
+/// Describes the part of the mix in which the second-best backend loses the most time.
+fn largest_loss(report: &PickReport, best: &Ranked) -> Option<String> {
+    let next = report
+        .ranking
+        .iter()
+        .find(|ranked| !ranked.tied_with_best)?;
+    let lost = |(a, b): (&PartCost, &PartCost)| a.weighted_ns() - b.weighted_ns();
+    let pairs = || next.parts.iter().zip(&best.parts);
+    let (theirs, ours) = pairs().max_by(|&a, &b| lost(a).total_cmp(&lost(b)))?;
+    if lost((theirs, ours)) <= 0.0 || report.workload.mix.len() == 1 {
+        return None;
+    }
+    Some(format!(
+        "{} is slower mainly in {}: {} each time, compared with {} on {}.",
+        name(next),
+        theirs.operation,
+        duration(theirs.ns?),
+        duration(ours.ns?),
+        name(best)
+    ))
+}
+
+/// Describes the time of relation tables. If the tables are the fastest, describes the fastest
+/// structure instead.
+fn tables(report: &PickReport, best: &Ranked) -> Option<String> {
+    let structure = report
+        .ranking
+        .iter()
+        .find(|ranked| ranked.made_from.is_none())?;
+    if best.made_from.is_some() {
+        return Some(format!(
+            "Without relation tables, {} is fastest: {} per operation.",
+            structure.backend,
+            duration(structure.ns_per_operation)
+        ));
+    }
+    let tables = report
+        .ranking
+        .iter()
+        .find(|ranked| ranked.made_from.is_some())?;
+    Some(format!(
+        "Relation tables take {1} the time of the fastest backend. The tables contain only the \
+         queried relations, and are made once from {0}.",
+        tables.made_from.as_deref().unwrap_or_default(),
+        times(tables.ratio_to_best)
+    ))
+}
+
+/// Describes the fastest backend for one use of the mesh, building included.
+fn one_use_with_building(report: &PickReport, best: &Ranked) -> Option<String> {
+    let operations = report.operations;
+    let total = |ranked: &Ranked| {
+        // A program already has an indexed face set.
+        let build = match ranked.backend.as_str() {
+            "indexed-face-set" => 0.0,
+            _ => ranked.first_build_ns(),
+        };
+        build + operations * ranked.ns_per_operation
+    };
+    let least = report
+        .ranking
+        .iter()
+        .min_by(|a, b| total(a).total_cmp(&total(b)))?;
+    let count = grouped(operations.round() as usize);
+    let used = if operations.round() == 1.0 {
+        "operation"
+    } else {
+        "operations"
+    };
+    let cost = duration(total(least));
+    Some(match least.backend == best.backend {
+        true => format!(
+            "If the time to build is included, {} is still fastest for one use of the mesh \
+             ({count} {used}): {cost} in total.",
+            name(best)
+        ),
+        false => format!(
+            "If the time to build is included, {} is fastest for one use of the mesh ({count} \
+             {used}): {cost} in total, compared with {} on {}. The input is already an \
+             indexed face set, so the time to build this structure counts as 0.",
+            name(least),
+            duration(total(best)),
+            name(best)
+        ),
+    })
+}
+
+/// Describes the command that adds the packages, and the types to use. The packages of Sixfold come
+/// from a checkout.
+fn packages_to_add(best: &Ranked) -> String {
+    let command = |package: &String| match package.strip_prefix("sixfold-") {
+        Some(folder) => format!("`cargo add {package} --path CHECKOUT/crates/{folder}`"),
+        None => format!("`cargo add {package}`"),
+    };
+    let commands: Vec<String> = best.crates.iter().map(command).collect();
+    let types: Vec<String> = best.types.iter().map(|path| format!("`{path}`")).collect();
+    format!(
+        "To use {} in your package, run {}. CHECKOUT is the path of this repository.",
+        types.join(" and "),
+        commands.join(" and ")
+    )
+}

@@ -1,0 +1,322 @@
+//! The report of a pick, in the format that `reports/SCHEMA.md` documents.
+
+use serde::{Deserialize, Serialize};
+use sixfold_workload::{Action, Workload};
+
+use crate::engine::timer::Timer;
+use crate::labs::pick::choice::Choice;
+use crate::labs::pick::needs::Need;
+use crate::numbers::grouped;
+use crate::results::figure::{Figure, FigureRow, Status, samples_of};
+use crate::results::finding::LabFinding;
+use crate::results::read::ReadError;
+use crate::results::rows::{MeshReport, Samples, check_samples};
+use crate::results::run::Run;
+
+/// The name of the whole mix in samples and figures.
+pub(crate) const MIX: &str = "mix";
+
+/// The result of a pick: the backends, ranked by their times for a workload.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct PickReport {
+    /// How the finding was measured. In JSON, the document has this field.
+    #[serde(skip)]
+    pub run: Run,
+    /// The meshes. In JSON, the document has this field.
+    #[serde(skip)]
+    pub meshes: Vec<MeshReport>,
+    /// The workload that was run.
+    pub workload: Workload,
+    /// The number of operations that the program performs on one mesh, as a mean over the meshes.
+    pub operations: f64,
+    /// The capabilities that a backend must have.
+    pub needs: Vec<Need>,
+    /// The maximum size of a backend, in bytes; `None` for no limit.
+    pub max_memory: Option<u64>,
+    /// The backends that meet all requirements, the fastest backend first.
+    pub ranking: Vec<Ranked>,
+    /// The backend to use; `None` if no backend meets all requirements.
+    pub choice: Option<Choice>,
+    /// True if some times have too few samples for a 95 % confidence interval, because the time
+    /// budget was too small.
+    pub preliminary: bool,
+    /// The backends that do not meet all requirements, each with the reason.
+    pub excluded: Vec<Excluded>,
+    /// For each backend, the number of operations after which the building time is saved. The
+    /// comparison is with an indexed face set that is already built. The list is empty if the
+    /// indexed face set was not measured.
+    pub break_even: Vec<BreakEven>,
+    /// The noise: one backend is measured twice, and the longer time is divided by the shorter
+    /// time. `None` if no backend was measured twice.
+    pub noise: Option<f64>,
+    /// The names of the backends with wrong results. A wrong result is a fault in Sixfold.
+    pub mismatches: Vec<String>,
+    /// Sentences that name the fastest backend and explain the result.
+    pub sentences: Vec<String>,
+    /// Sentences about possible faults of the measurement and their remedies.
+    pub warnings: Vec<String>,
+    /// True if the measurement was stopped early. Backends may then have fewer samples.
+    pub interrupted: bool,
+    /// The cost of reading the clock.
+    pub timer: Timer,
+    /// The times of all samples; empty if there are several meshes.
+    pub samples: Vec<Samples>,
+    /// The results for each mesh; empty if there is only one mesh.
+    pub by_mesh: Vec<MeshRanking>,
+}
+
+/// The ranking on one of several meshes.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct MeshRanking {
+    /// The name of the mesh.
+    pub mesh: String,
+    /// The ranking on this mesh, as in [`PickReport::ranking`].
+    pub ranking: Vec<Ranked>,
+    /// The break-even of each backend on this mesh, as in [`PickReport::break_even`].
+    pub break_even: Vec<BreakEven>,
+    /// The noise on this mesh, as in [`PickReport::noise`].
+    pub noise: Option<f64>,
+    /// The times of all samples on this mesh.
+    pub samples: Vec<Samples>,
+}
+
+/// The times and the memory of one backend in the ranking.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Ranked {
+    /// The name of the backend. The backend `relation-tables` consists of flat tables of the
+    /// relations that the workload queries.
+    pub backend: String,
+    /// The structure from which the relation tables were made; `None` if the backend is a
+    /// structure.
+    pub made_from: Option<String>,
+    /// The median time of one operation of the workload, in nanoseconds. If the workload rebuilds
+    /// the structure, this time includes a share of the rebuilding time.
+    pub ns_per_operation: f64,
+    /// The lower end of the 95 % confidence interval of `ns_per_operation`; `None` with fewer than
+    /// three rounds.
+    pub ns_ci_low: Option<f64>,
+    /// The upper end of the 95 % confidence interval of `ns_per_operation`.
+    pub ns_ci_high: Option<f64>,
+    /// The time of this backend divided by the time of the fastest backend, as the median over the
+    /// rounds. The fastest backend has the ratio 1.
+    pub ratio_to_best: f64,
+    /// The lower end of the 95 % confidence interval of `ratio_to_best`.
+    pub ci_low: Option<f64>,
+    /// The upper end of the 95 % confidence interval of `ratio_to_best`.
+    pub ci_high: Option<f64>,
+    /// True if the backend is not measurably slower than the fastest backend.
+    pub tied_with_best: bool,
+    /// The time to build the backend from polygons in memory pages that were used before, in
+    /// nanoseconds. For relation tables, this time includes the computation of the tables.
+    pub build_ns: f64,
+    /// The time to build the backend in fresh memory pages, in nanoseconds. Use this time for a
+    /// program that builds the backend only once. `None` if this time was not measured.
+    pub first_build_ns: Option<f64>,
+    /// The size of the tables, in bytes.
+    pub bytes: usize,
+    /// The size of the tables per vertex of the mesh, in bytes.
+    pub bytes_per_vertex: f64,
+    /// True if only some of the elements were queried, because a query scans all faces.
+    pub sampled: bool,
+    /// True if the time of some operation of the workload is an estimate, because a full run would
+    /// exceed the time budget.
+    pub estimated: bool,
+    /// The cost of each operation of the workload, timed alone.
+    pub parts: Vec<PartCost>,
+    /// The number of rounds in which the workload was timed on this backend.
+    pub samples: usize,
+    /// The largest number of page faults in a sample; `None` if page faults were not counted.
+    pub faults: Option<u64>,
+    /// The names of the packages that a program needs as dependencies to use this backend.
+    pub crates: Vec<String>,
+    /// The Rust paths of the types that a program needs to use this backend.
+    pub types: Vec<String>,
+}
+
+/// The cost of one operation of the workload on one backend.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+pub struct PartCost {
+    /// The operation of the workload.
+    pub operation: Action,
+    /// The share of this operation in all operations of the workload, from 0 to 1.
+    pub share: f64,
+    /// The time of this operation, timed alone in the access order of the workload, in nanoseconds.
+    /// `None` if the operation was not timed alone.
+    pub ns: Option<f64>,
+}
+
+impl Ranked {
+    /// Returns the time to build in fresh memory pages. If this time was not measured, returns
+    /// [`Self::build_ns`].
+    pub fn first_build_ns(&self) -> f64 {
+        self.first_build_ns.unwrap_or(self.build_ns)
+    }
+}
+
+impl PartCost {
+    /// Returns the time of this part in one operation of the mix, in nanoseconds.
+    pub(crate) fn weighted_ns(&self) -> f64 {
+        self.ns.unwrap_or(0.0) * self.share
+    }
+}
+
+/// The number of operations after which the time to build a backend is saved, compared with an
+/// indexed face set that is already built.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct BreakEven {
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+    /// The time to build the backend, in nanoseconds.
+    pub build_ns: f64,
+    /// The time saved per operation, compared with the indexed face set, in nanoseconds. The value
+    /// is negative if the backend is slower than the indexed face set.
+    pub saves_ns_per_operation: f64,
+    /// The number of operations after which the building time is saved; `None` if the building time
+    /// is never saved.
+    pub operations: Option<f64>,
+    /// The lower end of the 95 % confidence interval of `operations`.
+    pub ci_low: Option<f64>,
+    /// The upper end of the 95 % confidence interval of `operations`; `None` if the building time
+    /// may never be saved.
+    pub ci_high: Option<f64>,
+    /// The number of uses of a mesh after which the building time is saved: `operations` divided by
+    /// the number of operations in one use.
+    pub uses: Option<f64>,
+}
+
+/// A backend that does not meet the requirements of a pick.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct Excluded {
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+    /// Why the backend does not meet the requirements.
+    pub reason: String,
+}
+
+impl Excluded {
+    pub(crate) fn new(backend: &str, reason: String) -> Self {
+        Self {
+            backend: backend.into(),
+            reason,
+        }
+    }
+}
+
+pub(crate) fn over_memory_limit(bytes: u64, most: u64) -> String {
+    let [bytes, most] = [bytes, most].map(|bytes| grouped(bytes as usize));
+    format!("it takes {bytes} bytes, but --max-memory allows only {most}")
+}
+
+impl LabFinding for PickReport {
+    fn run(&self) -> &Run {
+        &self.run
+    }
+
+    fn run_mut(&mut self) -> &mut Run {
+        &mut self.run
+    }
+
+    fn meshes(&self) -> &[MeshReport] {
+        &self.meshes
+    }
+
+    fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
+        self.meshes = meshes;
+        Ok(())
+    }
+
+    fn sentences(&self) -> &[String] {
+        &self.sentences
+    }
+
+    fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.interrupted
+    }
+
+    fn mismatches(&self) -> usize {
+        self.mismatches.len()
+    }
+
+    fn figures(&self) -> Vec<Figure<'_>> {
+        let by_mesh = match (&self.by_mesh[..], &self.meshes[..]) {
+            ([], [mesh]) => vec![(mesh, &self.ranking, &self.samples, self.noise)],
+            (rankings, meshes) => rankings
+                .iter()
+                .filter_map(|of_mesh| {
+                    let mesh = meshes.iter().find(|mesh| mesh.name == of_mesh.mesh)?;
+                    Some((mesh, &of_mesh.ranking, &of_mesh.samples, of_mesh.noise))
+                })
+                .collect(),
+        };
+        by_mesh
+            .into_iter()
+            .flat_map(|(mesh, ranking, samples, noise)| {
+                let noise = noise.unwrap_or(1.0);
+                ranking
+                    .iter()
+                    .flat_map(move |ranked| self.figures_of(mesh, ranked, samples, noise))
+            })
+            .collect()
+    }
+
+    fn check(&self) -> Result<(), ReadError> {
+        check_samples(&self.samples)?;
+        let by_mesh = self.by_mesh.iter();
+        by_mesh
+            .map(|of_mesh| &of_mesh.samples)
+            .try_for_each(|samples| check_samples(samples))
+    }
+}
+
+impl PickReport {
+    /// Returns the times of the mix, of its parts, and of building.
+    fn figures_of<'r>(
+        &'r self,
+        mesh: &'r MeshReport,
+        ranked: &'r Ranked,
+        samples: &'r [Samples],
+        noise: f64,
+    ) -> Vec<Figure<'r>> {
+        let status = match (ranked.estimated, ranked.sampled) {
+            (true, _) => Status::Estimated,
+            (false, true) => Status::Sampled,
+            (false, false) => Status::Measured,
+        };
+        let facts = &mesh.facts;
+        let figure = |row: FigureRow<'r>| {
+            let samples = samples_of(samples, &row.operation, row.backend);
+            Figure {
+                mesh: Some(mesh),
+                elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
+                case: self.workload.name.clone(),
+                backend_bytes: Some(ranked.bytes),
+                row,
+                samples,
+                noise,
+            }
+        };
+        let row = |operation: &str, unit: &str, ns: f64| FigureRow {
+            ns: Some(ns),
+            unit: unit.into(),
+            elements: Some(1),
+            ..FigureRow::new(operation.into(), &ranked.backend, status)
+        };
+        let mut figures = vec![figure(FigureRow {
+            interval_ns: ranked.ns_ci_low.zip(ranked.ns_ci_high).map(|(l, h)| [l, h]),
+            ratio_to_best: Some(ranked.ratio_to_best),
+            ratio_interval: ranked.ci_low.zip(ranked.ci_high).map(|(l, h)| [l, h]),
+            samples: ranked.samples,
+            ..row(MIX, "operation", ranked.ns_per_operation)
+        })];
+        for part in &ranked.parts {
+            let name = part.operation.to_string();
+            figures.extend(part.ns.map(|ns| figure(row(&name, "operation", ns))));
+        }
+        figures.push(figure(row("build", "mesh", ranked.build_ns)));
+        figures
+    }
+}

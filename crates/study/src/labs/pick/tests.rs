@@ -1,0 +1,396 @@
+//! Tests with mixers of known costs, on a simulated machine whose speed drifts.
+
+use sixfold::{PolygonMesh, QueryCost, shapes};
+use sixfold_workload::pages::Policy;
+use sixfold_workload::{
+    Job, MixBackend, Operation, Outcome as TaskOutcome, Run, Series, Task, TimedBackend, built_in,
+};
+
+use super::*;
+use crate::engine::simulated_machine::SimulatedMachine;
+use crate::labs::pick::measurement::Outcome;
+
+struct KnownBackend {
+    name: &'static str,
+    machine: SimulatedMachine,
+    operation_ns: f64,
+    build_ns: f64,
+    parts: usize,
+    /// The result of one operation. Agreeing backends return 1.
+    yield_per_operation: u64,
+}
+
+impl TimedBackend for KnownBackend {
+    fn name(&self) -> &str {
+        self.name
+    }
+    fn costs(&self) -> [QueryCost; 9] {
+        [QueryCost::Local; 9]
+    }
+    fn merged_vertices(&self) -> usize {
+        0
+    }
+    fn bytes(&self) -> usize {
+        1 << 20
+    }
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+        let Self { operation_ns, .. } = *self;
+        let (ns, operations) = match job.task {
+            Task::Operation(Operation::Build) => (self.build_ns, 1),
+            Task::Operation(_) => (1e6, 1),
+            Task::Mix => (256.0 * operation_ns, 256),
+            Task::Part(_) => (operation_ns, 1),
+        };
+        self.machine.work(ns * f64::from(series.untimed));
+        let start = series.clock.now();
+        self.machine.work(ns * f64::from(series.runs));
+        let time = series.clock.now() - start;
+        let outcome = TaskOutcome {
+            checksum: (operations * self.yield_per_operation) as f64,
+            elements: operations,
+            refused: 0,
+        };
+        Run::done(time.scaled(1.0 / f64::from(series.runs)), Some(outcome))
+    }
+}
+
+impl MixBackend for KnownBackend {
+    fn type_paths(&self) -> Vec<&'static str> {
+        vec!["sixfold_half_edge::HalfEdgeMesh"]
+    }
+    fn scans(&self) -> Vec<bool> {
+        vec![false; self.parts]
+    }
+    fn accepted_places(&mut self) -> Vec<Vec<bool>> {
+        Vec::new()
+    }
+    fn keep_places(&mut self, _: &[Vec<bool>]) {}
+}
+
+fn settings(budget: Duration) -> PickSettings {
+    PickSettings {
+        workload: built_in("geodesic-dijkstra").expect("a built-in workload"),
+        backends: Vec::new(),
+        extra: Vec::new(),
+        needs: Vec::new(),
+        max_memory: None,
+        budget,
+        seed: 7,
+        heap: Policy::Kept,
+    }
+}
+
+/// The backend with a wrong result.
+const FAULTY: &str = "face-vertex";
+
+/// Measures an indexed face set of 50 ns per operation, and mixers with `costs_ns`.
+fn measure_known(costs_ns: &[f64], seed: u64) -> Outcome {
+    let study_mesh = StudyMesh::new("ball", shapes::icosahedron());
+    let budget = Duration::from_secs(1);
+    let settings = PickSettings {
+        seed,
+        ..settings(budget)
+    };
+    let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
+    let schedule = Schedule::new(&settings.workload, &counts);
+    let machine = SimulatedMachine::default();
+    let names = ["half-edge", "winged-edge", "corner-table", "face-vertex"];
+    let known = |name, operation_ns| {
+        let machine = machine.clone();
+        Box::new(KnownBackend {
+            name,
+            machine,
+            operation_ns,
+            build_ns: 40e3,
+            parts: schedule.parts.len(),
+            yield_per_operation: if name == FAULTY { 2 } else { 1 },
+        })
+    };
+    let prepared = |name, cost| PickBackend {
+        mixer: known(name, cost),
+        structure: None,
+        made_from: None,
+    };
+    let mut backends = vec![prepared("indexed-face-set", 50.0)];
+    backends.extend(
+        names
+            .into_iter()
+            .zip(costs_ns)
+            .map(|(name, &cost)| prepared(name, cost)),
+    );
+    let control = prepared("half-edge", costs_ns[0]);
+    let stop = AtomicBool::new(false);
+    let measurement = PickMeasurement {
+        study_mesh: &study_mesh,
+        settings: &settings,
+        counts,
+        schedule: &schedule,
+        budget,
+        clock: &machine,
+        memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0),
+        stop: &stop,
+        progress: &mut |_, _| (),
+    };
+    measurement.run(backends, Some(control), Vec::new())
+}
+
+#[test]
+fn known_ratios_are_found_on_a_drifting_machine() {
+    let outcome = measure_known(&[10.0, 10.5, 12.5, 10.0], 1);
+    let of = |name: &str| {
+        outcome
+            .ranking
+            .iter()
+            .find(|r| r.backend == name)
+            .expect("it took part")
+    };
+    let best = &outcome.ranking[0];
+    assert!(
+        ["half-edge", "face-vertex"].contains(&best.backend.as_str()),
+        "{best:?}"
+    );
+    for (name, ratio) in [
+        ("corner-table", 1.25),
+        ("winged-edge", 1.05),
+        ("indexed-face-set", 5.0),
+    ] {
+        let row = of(name);
+        let found = row.ratio_to_best;
+        assert!((found / ratio - 1.0).abs() < 0.02, "{name}: {found}");
+        let [low, high] = [row.ci_low, row.ci_high].map(|end| end.expect("many rounds"));
+        assert!(
+            low <= ratio * 1.001 && ratio <= high * 1.001,
+            "{name}: {low} to {high}"
+        );
+    }
+    assert!(of("half-edge").tied_with_best && of("face-vertex").tied_with_best);
+    assert!(!of("corner-table").tied_with_best && !of("indexed-face-set").tied_with_best);
+    assert!(outcome.noise.expect("a control") < 1.02);
+    assert_eq!(outcome.disagreeing, [FAULTY]);
+}
+
+#[test]
+fn break_even_is_building_time_divided_by_time_saved() {
+    let outcome = measure_known(&[10.0, 60.0], 1);
+    let row = |name: &str| outcome.break_even.iter().find(|row| row.backend == name);
+    // 40 µs divided by 40 ns per operation.
+    let pays = row("half-edge")
+        .and_then(|row| row.operations)
+        .expect("it pays");
+    assert!((700.0..1400.0).contains(&pays), "{pays}");
+    let never = row("winged-edge").expect("it took part");
+    assert_eq!(never.operations, None);
+    assert!(never.saves_ns_per_operation < 0.0);
+    assert!(row("indexed-face-set").is_none(), "it need not be built");
+}
+
+#[test]
+fn intervals_cover_a_known_ratio() {
+    let mut covered = 0;
+    for seed in 0..40 {
+        let outcome = measure_known(&[10.0, 13.0], seed);
+        let row = outcome
+            .ranking
+            .iter()
+            .find(|r| r.backend == "winged-edge")
+            .expect("it took part");
+        let [low, high] = [row.ci_low, row.ci_high].map(|end| end.expect("many rounds"));
+        covered += usize::from(low <= 1.3 && 1.3 <= high);
+    }
+    assert!(covered >= 35, "{covered} of 40");
+}
+
+fn quick(settings: &PickSettings, meshes: &[PolygonMesh]) -> Result<PickReport, PickError> {
+    let named = meshes.iter().enumerate();
+    let study_meshes = named.map(|(i, mesh)| StudyMesh::new(format!("mesh {i}"), mesh.clone()));
+    let study_meshes: Vec<StudyMesh> = study_meshes.collect();
+    pick(
+        &study_meshes,
+        settings,
+        &AtomicBool::new(false),
+        &mut |_, _| (),
+    )
+}
+
+#[test]
+fn a_real_measurement_ranks_all_backends_with_reasons() {
+    let torus = shapes::triangle_torus(24, 24).expect("a torus");
+    let report = quick(&settings(Duration::from_secs(2)), &[torus]).expect("enough time");
+    assert_eq!(report.ranking.len(), 7, "{:?}", report.ranking);
+    assert!(report.excluded.is_empty());
+    let times = report.ranking.iter().map(|row| row.ns_per_operation);
+    assert!(times.is_sorted());
+    assert_eq!(report.ranking[0].ratio_to_best, 1.0);
+    assert_eq!(report.break_even.len(), 6);
+    let soup = report.ranking.last().expect("seven backends");
+    assert!(soup.sampled && soup.ratio_to_best > 10.0);
+    assert!(
+        report.sentences[0].starts_with("For geodesic-dijkstra, "),
+        "{:?}",
+        report.sentences
+    );
+    assert!(
+        report
+            .sentences
+            .iter()
+            .any(|sentence| sentence.contains("% of the time"))
+    );
+    let mut json = Vec::new();
+    let document = crate::Results::from(report);
+    document.write_json(&mut json).expect("into memory");
+    let json: serde_json::Value = serde_json::from_slice(&json).expect("it is JSON");
+    let json = &json["findings"][0];
+    for key in [
+        "backend",
+        "ns_per_operation",
+        "ratio_to_best",
+        "ci_low",
+        "ci_high",
+        "tied_with_best",
+        "build_ns",
+        "bytes",
+    ] {
+        assert!(!json["ranking"][0][key].is_null(), "{key}");
+    }
+    assert!(json["excluded"].is_array() && json["break_even"].is_array());
+}
+
+#[test]
+fn needs_and_memory_limits_exclude_backends() {
+    let torus = shapes::triangle_torus(24, 24).expect("a torus");
+    let with_limits = |needs: &[Need], max_memory| PickSettings {
+        needs: needs.to_vec(),
+        max_memory,
+        ..settings(Duration::from_secs(1))
+    };
+    let report = quick(
+        &with_limits(&[Need::Edit, Need::NonManifold], None),
+        std::slice::from_ref(&torus),
+    );
+    let report = report.expect("enough time");
+    let mut names: Vec<&str> = report
+        .ranking
+        .iter()
+        .map(|row| row.backend.as_str())
+        .collect();
+    names.sort_unstable();
+    assert_eq!(names, ["face-vertex", "indexed-face-set", "polygon-soup"]);
+    assert_eq!(report.excluded.len(), 4, "{:?}", report.excluded);
+    // The smallest structure takes nine words per vertex.
+    let vertices = torus.vertex_count() as u64;
+    let report = quick(
+        &with_limits(&[], Some(36 * vertices)),
+        std::slice::from_ref(&torus),
+    )
+    .expect("a report");
+    assert!(
+        report
+            .ranking
+            .iter()
+            .all(|row| row.bytes as u64 <= 36 * vertices)
+    );
+    assert!(
+        report
+            .excluded
+            .iter()
+            .any(|out| out.reason.contains("--max-memory"))
+    );
+    let report = quick(&with_limits(&[], Some(10)), &[torus]).expect("a report");
+    assert!(report.ranking.is_empty());
+    assert_eq!(report.sentences, ["No backend qualifies."]);
+}
+
+#[test]
+fn edits_are_done_by_all_at_the_same_places() {
+    let torus = shapes::triangle_torus(30, 30).expect("a torus");
+    let settings = PickSettings {
+        workload: built_in("remeshing").expect("a built-in workload"),
+        ..settings(Duration::from_secs(3))
+    };
+    let report = quick(&settings, &[torus]).expect("enough time");
+    let names: Vec<&str> = report
+        .ranking
+        .iter()
+        .map(|row| row.backend.as_str())
+        .collect();
+    assert!(
+        names.len() >= 5 && !names.contains(&"relation-tables"),
+        "{names:?}"
+    );
+}
+
+#[test]
+fn several_meshes_give_one_answer() {
+    let meshes = [
+        shapes::triangle_torus(20, 20).expect("a torus"),
+        shapes::triangle_grid(20, 20).expect("a grid"),
+        shapes::grid(12, 12).expect("a grid"),
+    ];
+    let report = quick(&settings(Duration::from_secs(3)), &meshes).expect("enough time");
+    assert_eq!(report.by_mesh.len(), 3);
+    assert!(
+        report
+            .ranking
+            .iter()
+            .all(|row| row.backend != "corner-table")
+    );
+    let out = report
+        .excluded
+        .iter()
+        .find(|out| out.backend == "corner-table")
+        .expect("it holds triangles only");
+    assert!(out.reason.starts_with("mesh 2: "), "{}", out.reason);
+    assert_eq!(report.ranking[0].ratio_to_best, 1.0);
+}
+
+#[test]
+fn invalid_settings_are_refused() {
+    assert!(matches!(
+        quick(&settings(Duration::from_secs(1)), &[]),
+        Err(PickError::NoMesh)
+    ));
+    let points = PolygonMesh::default();
+    let message = quick(&settings(Duration::from_secs(1)), &[points]).expect_err("no faces");
+    assert!(
+        matches!(message, PickError::Study(StudyError::NoFaces)),
+        "{message}"
+    );
+    let quads = shapes::grid(20, 20).expect("a grid");
+    let remeshing = PickSettings {
+        workload: built_in("remeshing").expect("a built-in workload"),
+        ..settings(Duration::from_secs(1))
+    };
+    let message = quick(&remeshing, &[quads]).expect_err("quads").to_string();
+    assert!(
+        message.contains("mesh 0: face f0 has 4 corners"),
+        "{message}"
+    );
+    let message = quick(&remeshing, &[shapes::tetrahedron()])
+        .expect_err("tiny")
+        .to_string();
+    assert!(
+        message.contains("too small for 3 kinds of edits"),
+        "{message}"
+    );
+}
+
+#[test]
+fn an_interrupted_measurement_keeps_its_samples() {
+    let torus = shapes::triangle_torus(20, 20).expect("a torus");
+    let study_mesh = [StudyMesh::new("torus", torus)];
+    let stop = AtomicBool::new(false);
+    let mut calls = 0;
+    let report = pick(
+        &study_mesh,
+        &settings(Duration::from_secs(60)),
+        &stop,
+        &mut |_, what| {
+            calls += usize::from(what.starts_with("measuring"));
+            if calls > 20 {
+                stop.store(true, Ordering::Relaxed);
+            }
+        },
+    );
+    let report = report.expect("the finished part");
+    assert!(report.interrupted && !report.ranking.is_empty());
+}

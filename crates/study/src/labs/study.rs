@@ -1,0 +1,451 @@
+//! A whole study: builds the structures, measures them, compares the results, and makes the report.
+
+mod methods;
+pub(crate) mod report;
+pub(crate) mod sentences;
+
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use sixfold::{Distribution, Facts, PolygonMesh, QueryCost, Relation};
+use sixfold_core::Counts;
+
+use crate::engine::agreement::compare_checksums;
+use crate::engine::budget::Budget;
+use crate::engine::control::noise;
+use crate::engine::heap::{CacheState, Memory};
+use crate::engine::measure::{Entry, Progress};
+use crate::engine::ranking::rank;
+use crate::external::{self, EXTERNAL_TIMEOUT, External, MeshFile};
+use crate::inspect::{StudyMesh, per_vertex, unbuilt};
+use crate::labs::orders::prepared_bytes;
+use crate::results::rows::{Agreement, BackendReport, Control, Refusal, ResultRow};
+use crate::results::run::{Run, RunSettings};
+pub use report::Report;
+
+use crate::engine::statistics::Median;
+use crate::engine::timer::Timer;
+use crate::engine::trial::{Columns, Measured, Trial};
+use crate::engine::warnings::warnings;
+use sentences::sentences;
+use sixfold_workload::Backend;
+use sixfold_workload::Draw;
+use sixfold_workload::Operation;
+use sixfold_workload::TimedBackend;
+use sixfold_workload::pages::Policy;
+use sixfold_workload::unknown;
+use sixfold_workload::{MachineClock, Time};
+
+/// Maximum valence or degree of a mesh that counts as not skewed.
+const MAX_NEIGHBOURS: usize = 1000;
+
+/// The settings of a study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// The names of the backends. If the list is empty, all backends are measured.
+    pub backends: Vec<String>,
+    /// Additional structures that are not part of Sixfold.
+    pub extra: Vec<Backend>,
+    /// The external programs to measure.
+    pub externals: Vec<External>,
+    /// Time limit for one answer of an external program.
+    pub external_timeout: Duration,
+    /// The operations. If the list is empty, all operations are measured, but the time of a
+    /// subdivision that takes a large part of the budget is only estimated.
+    pub operations: Vec<Operation>,
+    /// Time limit for the study. If the limit is too short for an operation, the operation is run
+    /// on only some of the elements, its time is estimated, or the operation is left out.
+    pub budget: Duration,
+    /// Seed of the random numbers that choose elements and the order of the measurements. The
+    /// number of chosen elements depends on the speed of the machine, not on the seed.
+    pub seed: u64,
+    /// What happens to freed memory pages. Keeping the pages needs more memory. If there is too
+    /// little memory, [`Policy::System`] is used.
+    pub heap: Policy,
+    /// The state of the processor caches when a timed series of runs starts.
+    pub caches: CacheState,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            backends: Vec::new(),
+            extra: Vec::new(),
+            externals: Vec::new(),
+            external_timeout: EXTERNAL_TIMEOUT,
+            operations: Vec::new(),
+            budget: Duration::from_secs(20),
+            seed: 1,
+            heap: Policy::Kept,
+            caches: CacheState::Warm,
+        }
+    }
+}
+
+/// The reason why a study is not possible.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum StudyError {
+    /// No backend has the requested name.
+    #[error("{}", unknown("backend", .name, .known))]
+    UnknownBackend {
+        name: String,
+        known: Vec<&'static str>,
+    },
+    /// Two structures have the same name.
+    #[error("two backends are called `{name}`: give each backend its own name")]
+    RepeatedBackend { name: String },
+    /// The mesh has no faces.
+    #[error(
+        "the mesh has no faces, so there is nothing to study: choose another mesh, or see its \
+         facts with `sixfold inspect`"
+    )]
+    NoFaces,
+    /// An external program has the name of a backend or of another external program.
+    #[error("two backends or programs are called `{name}`: give each program its own name")]
+    RepeatedExternal { name: String },
+    /// The mesh file for the external programs cannot be written.
+    #[error("the mesh file for the external programs cannot be written: {cause}")]
+    NoMeshFile { cause: String },
+    /// None of the selected backends can hold the mesh.
+    #[error("none of the selected backends can hold the mesh: {}", reasons(.refusals))]
+    NoneHolds { refusals: Vec<(String, String)> },
+}
+
+fn reasons(refusals: &[(String, String)]) -> String {
+    let reasons: Vec<String> = refusals
+        .iter()
+        .map(|(backend, reason)| format!("{backend}: {reason}"))
+        .collect();
+    reasons.join("; ")
+}
+
+impl Settings {
+    /// Returns the selected backends: first the structures of Sixfold, then the extra structures.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`StudyError::UnknownBackend`] for an unknown name. Returns
+    /// [`StudyError::RepeatedBackend`] if an extra backend has the name of another backend.
+    pub fn chosen_backends(&self) -> Result<Vec<Backend>, StudyError> {
+        let mut all = Backend::structures();
+        for &extra in &self.extra {
+            if all.contains(&extra) {
+                let name = extra.name().to_owned();
+                return Err(StudyError::RepeatedBackend { name });
+            }
+            all.push(extra);
+        }
+        let unknown = |name: &&String| all.iter().all(|backend| backend.name() != **name);
+        if let Some(name) = self.backends.iter().find(unknown) {
+            return Err(StudyError::UnknownBackend {
+                name: name.clone(),
+                known: all.iter().map(Backend::name).collect(),
+            });
+        }
+        let requested = |backend: &Backend| {
+            self.backends.is_empty() || self.backends.iter().any(|name| name == backend.name())
+        };
+        Ok(all.into_iter().filter(requested).collect())
+    }
+
+    /// Checks that no external program has the name of a backend or of another external program.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`StudyError::RepeatedExternal`] if a name is used twice.
+    pub fn check_externals(&self) -> Result<(), StudyError> {
+        let ours = Backend::structures()
+            .into_iter()
+            .chain(self.extra.iter().copied());
+        let mut names: Vec<String> = ours.map(|backend| backend.name().to_owned()).collect();
+        for External { name, .. } in &self.externals {
+            if names.contains(name) {
+                return Err(StudyError::RepeatedExternal { name: name.clone() });
+            }
+            names.push(name.clone());
+        }
+        Ok(())
+    }
+
+    fn chosen_operations(&self) -> Vec<Operation> {
+        let requested = |operation: &Operation| {
+            self.operations.is_empty() || self.operations.contains(operation)
+        };
+        Operation::ALL.into_iter().filter(requested).collect()
+    }
+}
+
+/// Measures the operations on the backends that can hold the mesh.
+///
+/// Setting `stop` to true ends the study after the current sample, with a report of the finished
+/// part. `progress` is called with the current step.
+///
+/// # Errors
+///
+/// Returns an error if the name of a backend is unknown or not unique, if the mesh has no faces, or
+/// if no selected structure can hold the mesh. Also returns an error if the mesh file for external
+/// programs cannot be written.
+pub fn study(
+    study_mesh: &StudyMesh,
+    settings: &Settings,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(Progress<'_>),
+) -> Result<Report, StudyError> {
+    let budget = Budget::start(settings.budget);
+    let chosen = settings.chosen_backends()?;
+    settings.check_externals()?;
+    let operations = settings.chosen_operations();
+    let polygons = &study_mesh.polygons;
+    if polygons.face_count() == 0 {
+        return Err(StudyError::NoFaces);
+    }
+    let run = Run::start(RunSettings::of_study(settings));
+    let counts = polygons.counts(study_mesh.facts.edges);
+    let needed = needed_bytes(&chosen, &operations, &counts);
+    let mut memory = Memory::start(settings.heap, settings.caches, needed);
+    let skewed = is_skewed(&study_mesh.facts);
+    let draw = chosen
+        .iter()
+        .any(|backend| skewed || scans(backend, &operations))
+        .then(|| Draw::new(polygons, settings.seed));
+
+    let mut backends = Vec::new();
+    let mut subjects: Vec<Box<dyn TimedBackend + '_>> = Vec::new();
+    for backend in &chosen {
+        let (report, subject) = prepare(backend, polygons, draw.as_ref(), &counts);
+        backends.push(report);
+        subjects.extend(subject);
+    }
+    let mesh_file = match settings.externals.is_empty() {
+        true => None,
+        false => Some(
+            MeshFile::write(polygons).map_err(|cause| StudyError::NoMeshFile {
+                cause: cause.to_string(),
+            })?,
+        ),
+    };
+    let mut programs = Vec::new();
+    for (external, mesh) in settings.externals.iter().zip(mesh_file.iter().cycle()) {
+        let timeout = settings.external_timeout;
+        let (report, subject) =
+            external::prepare(external, mesh, &counts, &memory.heap, timeout, stop);
+        backends.push(report);
+        programs.extend(subject);
+    }
+    if subjects.is_empty() {
+        let refusals = backends
+            .into_iter()
+            .map(|b| (b.name, b.reason.unwrap_or_default()));
+        return Err(StudyError::NoneHolds {
+            refusals: refusals.collect(),
+        });
+    }
+
+    let names: Vec<String> = subjects.iter().map(|s| s.name().to_owned()).collect();
+    let mut columns = Columns::new(subjects, programs, |first| {
+        let backend = chosen.iter().find(|b| b.name() == names[first])?;
+        let (subject, _) = backend.prepare(polygons, draw.as_ref()).ok()?;
+        Some(subject)
+    });
+    let clock = MachineClock::start();
+    let timer = Timer::measure(&clock);
+    let mut trial = Trial {
+        counts,
+        skewed,
+        clock: &clock,
+        memory: &mut memory,
+        budget: budget.left(),
+        named: !settings.operations.is_empty(),
+        seed: settings.seed,
+        stop,
+        progress,
+    };
+    let entries = columns.entries(&operations);
+    let measured = trial.run(&mut columns, entries);
+    let samples = measured.samples(&columns);
+    let Measured {
+        entries,
+        control,
+        interrupted,
+        ..
+    } = measured;
+    let subjects = &mut columns.subjects;
+    let timer = timer.with_entries(&entries);
+    let agreements = compare_checksums(&entries, subjects, polygons, &clock, stop);
+    let results = results(&entries, agreements, subjects, polygons, control.as_ref());
+    let refusals = refusals(&entries, subjects);
+    let scanning = |backend: &str, relation: Relation| {
+        let costs = chosen.iter().find(|b| b.name() == backend);
+        costs.is_some_and(|b| b.info.costs[relation as usize] == QueryCost::Scan)
+    };
+    let sentences = sentences(&backends, &results, polygons, control.as_ref(), &scanning);
+    let run = run.with_memory(&memory);
+    let rows: Vec<&ResultRow> = results.iter().collect();
+    let warnings = warnings(&run, &timer, &rows, control.as_ref());
+    Ok(Report {
+        run,
+        mesh: study_mesh.report(),
+        backends,
+        results,
+        refusals,
+        control,
+        sentences,
+        warnings,
+        samples,
+        interrupted,
+        timer: Some(timer),
+    })
+}
+
+/// Estimates the peak memory of the measurement in bytes. The sum includes the structures with
+/// their outputs, the control, and the largest operation. A refined mesh has four times the faces.
+/// It exists as polygons and as a structure.
+pub(crate) fn needed_bytes(backends: &[Backend], operations: &[Operation], counts: &Counts) -> u64 {
+    let bytes = backends
+        .iter()
+        .map(|backend| prepared_bytes(backend, counts));
+    let (all, most) = bytes.fold((0, 0_u64), |(all, most), one| (all + one, most.max(one)));
+    let makes = operations.iter().any(|operation| operation.creates_mesh());
+    all + most * if makes { 10 } else { 3 }
+}
+
+pub(crate) fn is_skewed(facts: &Facts) -> bool {
+    let most = |spread: &Option<Distribution>| spread.as_ref().map_or(0, |s| s.max);
+    most(&facts.valence).max(most(&facts.face_degree)) > MAX_NEIGHBOURS
+}
+
+pub(crate) fn scans(backend: &Backend, operations: &[Operation]) -> bool {
+    let costs = &backend.info.costs;
+    costs.contains(&QueryCost::Scan)
+        && operations
+            .iter()
+            .any(|operation| operation.scans(costs).contains(&true))
+}
+
+pub(crate) fn prepare<'a>(
+    backend: &Backend,
+    polygons: &'a PolygonMesh,
+    draw: Option<&'a Draw>,
+    counts: &Counts,
+) -> (BackendReport, Option<Box<dyn TimedBackend + 'a>>) {
+    match backend.prepare(polygons, draw) {
+        Err(refusal) => (unbuilt(backend, polygons, counts, Err(refusal)), None),
+        Ok((subject, memory)) => {
+            let bytes = memory.total();
+            let report = BackendReport {
+                bytes: Some(bytes),
+                bytes_per_vertex: per_vertex(bytes, counts),
+                tables: memory.tables,
+                merged_vertices: Some(subject.merged_vertices()),
+                ..unbuilt(backend, polygons, counts, Ok(()))
+            };
+            (report, Some(subject))
+        }
+    }
+}
+
+pub(crate) fn results(
+    entries: &[Entry],
+    agreements: Vec<Agreement>,
+    subjects: &[Box<dyn TimedBackend + '_>],
+    polygons: &PolygonMesh,
+    control: Option<&Control>,
+) -> Vec<ResultRow> {
+    let mut rows = Vec::new();
+    let mut agreements = agreements.into_iter();
+    for group in entries.chunk_by(|a, b| a.job.task == b.job.task) {
+        let Some(operation) = group[0].operation() else {
+            continue;
+        };
+        let times: Vec<Vec<(u32, Time)>> = group.iter().map(Entry::times).collect();
+        let noise = noise(control, operation);
+        let verdicts: Vec<Agreement> = agreements.by_ref().take(group.len()).collect();
+        let mut ranked = times.clone();
+        for (verdict, times) in verdicts.iter().zip(&mut ranked) {
+            if matches!(verdict, Agreement::Mismatch | Agreement::OtherEdits) {
+                times.clear();
+            }
+        }
+        let ranks = rank(&ranked, noise);
+        // The largest count comes from a whole run, if any backend made a whole run.
+        let counted = group
+            .iter()
+            .filter(|e| e.job.sample.is_none() && subjects[e.subject].merged_vertices() == 0)
+            .find_map(|e| e.outcome);
+        for (((entry, times), rank), agreement) in group.iter().zip(&times).zip(ranks).zip(verdicts)
+        {
+            if times.is_empty() && entry.estimate.is_none() {
+                continue; // refused, or the study was stopped before
+            }
+            let median = Median::from_samples(times.iter().map(|(_, time)| time.ns()));
+            let wall = Median::from_samples(times.iter().map(|(_, time)| time.wall_ns));
+            let elements = match entry.job.sample {
+                Some(_) => counted.or(entry.outcome),
+                None => entry.outcome.or(counted),
+            };
+            let elements = elements.map(|outcome| outcome.elements);
+            let expected = operation.estimated_elements(polygons) as u64;
+            let elements = elements.or(entry.estimate.map(|_| expected));
+            let per_element = |ns: f64| match elements {
+                Some(n) if n > 0 => Some(ns / n as f64),
+                _ => None,
+            };
+            let interval = median.and_then(|m| m.interval);
+            let ratio = rank.and_then(|p| p.ratio.interval);
+            rows.push(ResultRow {
+                backend: subjects[entry.subject].name().into(),
+                operation,
+                median_ns: median.map(|m| m.value),
+                min_ns: median.map(|m| m.least),
+                ci_low_ns: interval.map(|[low, _]| low),
+                ci_high_ns: interval.map(|[_, high]| high),
+                elements,
+                per: operation.unit().into(),
+                ns_per_element: median.and_then(|m| per_element(m.value)),
+                wall_median_ns: wall.map(|m| m.value),
+                wall_min_ns: wall.map(|m| m.least),
+                sampled: entry.job.sample.is_some(),
+                sample_size: entry.job.sample.map(|sample| sample.size),
+                estimated_ns: entry.estimate.map(Time::ns),
+                checksum: entry
+                    .outcome
+                    .map(|outcome| outcome.checksum)
+                    .filter(|checksum| checksum.is_finite()),
+                agreement,
+                standing: rank.map(|p| p.standing),
+                ratio_to_best: rank.map(|p| p.ratio.value),
+                ratio_ci_low: ratio.map(|[low, _]| low),
+                ratio_ci_high: ratio.map(|[_, high]| high),
+                samples: times.len(),
+                runs_per_sample: entry.runs,
+                warm_up_only: entry.samples.is_empty() && entry.warm_up.is_some(),
+                by_name_only: entry.by_name_only,
+                faults: most_faults(entry.samples.iter().map(|(_, time)| time)),
+                retaken: entry.retaken,
+                disturbed: entry.samples.len().saturating_sub(times.len()),
+                first_ns: entry.first_ns(),
+                first_samples: entry.first_times.len(),
+                first_faults: most_faults(entry.first_times.iter().map(|[first, _]| first)),
+            });
+        }
+    }
+    rows
+}
+
+fn most_faults<'t>(samples: impl IntoIterator<Item = &'t Time>) -> Option<u64> {
+    samples.into_iter().filter_map(|time| time.faults).max()
+}
+
+pub(crate) fn refusals(entries: &[Entry], subjects: &[Box<dyn TimedBackend + '_>]) -> Vec<Refusal> {
+    let refusal = |entry: &Entry| {
+        let reason = entry.refusal.clone()?;
+        Some(Refusal {
+            backend: subjects[entry.subject].name().into(),
+            operation: entry.operation()?,
+            reason,
+        })
+    };
+    entries.iter().filter_map(refusal).collect()
+}

@@ -1,0 +1,85 @@
+//! Sentences about subdivision methods.
+
+use sixfold::subdivision::Method;
+
+use crate::results::rows::{BackendReport, ResultRow};
+use sixfold_workload::Operation;
+
+/// Minimum ratio of two methods that is reported.
+const MIN_RATIO: f64 = 1.1;
+/// Assumed error factor of a time without an interval.
+const ASSUMED_ERROR: f64 = 1.5;
+
+#[derive(Clone, Copy)]
+struct MeasuredTime {
+    low: f64,
+    ns: f64,
+    high: f64,
+}
+
+impl MeasuredTime {
+    fn from_row(row: &ResultRow) -> Option<Self> {
+        let ns = row.median_ns.or(row.estimated_ns)?;
+        Some(Self {
+            low: row.ci_low_ns.unwrap_or(ns / ASSUMED_ERROR),
+            ns,
+            high: row.ci_high_ns.unwrap_or(ns * ASSUMED_ERROR),
+        })
+    }
+
+    /// Returns the ratio of this time to `other` if this time is clearly longer.
+    fn ratio_if_longer(self, other: Self) -> Option<f64> {
+        let ratio = self.ns / other.ns;
+        (self.low > other.high && ratio > MIN_RATIO).then_some(ratio)
+    }
+}
+
+/// Returns one sentence per scheme about the fastest method on each structure. `times` formats a
+/// ratio.
+pub(crate) fn methods(
+    backends: &[BackendReport],
+    results: &[ResultRow],
+    times: fn(f64) -> String,
+) -> Vec<String> {
+    let time_of = |operation: Operation, backend: &BackendReport| {
+        let mut rows = results.iter();
+        let row = rows.find(|row| row.operation == operation && row.backend == backend.name);
+        MeasuredTime::from_row(row?)
+    };
+    let mut sentences = Vec::new();
+    let catmull_clark: fn(Method) -> Operation = Operation::CatmullClark;
+    for (name, by) in [("Catmull–Clark", catmull_clark), ("Loop", Operation::Loop)] {
+        let (mut scatter_faster, mut scatter_slower, mut native) =
+            (Vec::new(), Vec::new(), Vec::new());
+        for backend in backends {
+            let [gather, scatter, own] = Method::ALL.map(|method| time_of(by(method), backend));
+            let phrase = |ratio: f64| (ratio, format!("{} ({})", backend.name, times(ratio)));
+            if let (Some(gather), Some(scatter)) = (gather, scatter) {
+                scatter_faster.extend(gather.ratio_if_longer(scatter).map(phrase));
+                scatter_slower.extend(scatter.ratio_if_longer(gather).map(phrase));
+            }
+            let rebuilt = [gather, scatter].into_iter().flatten();
+            let rebuilt = rebuilt.min_by(|a, b| a.ns.total_cmp(&b.ns));
+            if let (Some(rebuilt), Some(own)) = (rebuilt, own) {
+                native.extend(rebuilt.ratio_if_longer(own).map(phrase));
+            }
+        }
+        let parts = [
+            ("scatter is faster than gather on", scatter_faster),
+            ("scatter is slower than gather on", scatter_slower),
+            ("native is faster than gather and scatter on", native),
+        ];
+        let mut phrases = Vec::new();
+        for (verb, mut list) in parts {
+            list.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+            let list: Vec<String> = list.into_iter().map(|(_, phrase)| phrase).collect();
+            if !list.is_empty() {
+                phrases.push(format!("{verb} {}", list.join(", ")));
+            }
+        }
+        if !phrases.is_empty() {
+            sentences.push(format!("{name}: {}.", phrases.join("; ")));
+        }
+    }
+    sentences
+}

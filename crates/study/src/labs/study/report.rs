@@ -1,0 +1,147 @@
+//! The result of a study of one mesh.
+
+use serde::{Deserialize, Serialize};
+use sixfold_workload::Operation;
+
+use crate::engine::control::noise;
+use crate::engine::timer::Timer;
+use crate::results::figure::{Figure, FigureRow, Status, samples_of};
+use crate::results::finding::{LabFinding, only_mesh};
+use crate::results::read::ReadError;
+use crate::results::rows::{
+    Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, Samples, check_control,
+    check_results, check_samples,
+};
+use crate::results::run::Run;
+
+/// The result of a study.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Report {
+    /// How the study was measured. In JSON, the document has this field.
+    #[serde(skip)]
+    pub run: Run,
+    /// Name and topology of the mesh. In JSON, the document has this field.
+    #[serde(skip)]
+    pub mesh: MeshReport,
+    /// The backends, in the order of [`Backend::structures`](crate::Backend::structures).
+    pub backends: Vec<BackendReport>,
+    /// The results, sorted by operation, then in the order of
+    /// [`Backend::structures`](crate::Backend::structures).
+    pub results: Vec<ResultRow>,
+    /// The operations that a backend cannot do, in the order of `results`.
+    pub refusals: Vec<Refusal>,
+    /// The noise: the difference between two measurements of one backend. `None` if no backend was
+    /// measured twice.
+    pub control: Option<Control>,
+    /// Sentences that describe the main results.
+    pub sentences: Vec<String>,
+    /// Sentences about possible faults of the measurement and their remedies.
+    pub warnings: Vec<String>,
+    /// The times of all samples.
+    pub samples: Vec<Samples>,
+    /// True if the study was stopped early. Some results may then be missing or have fewer samples.
+    pub interrupted: bool,
+    /// The resolution and the cost of reading the clock; `None` if nothing was run.
+    pub timer: Option<Timer>,
+}
+
+impl Report {
+    /// Iterates over the results of `operation`.
+    pub fn rows(&self, operation: Operation) -> impl Iterator<Item = &ResultRow> {
+        self.results
+            .iter()
+            .filter(move |row| row.operation == operation)
+    }
+
+    /// Iterates over the wrong results of Sixfold's structures: the checksum differs, for no known
+    /// reason, from the checksums of other structures.
+    pub fn mismatches(&self) -> impl Iterator<Item = &ResultRow> {
+        let wrong = |row: &&ResultRow| row.agreement == Agreement::Mismatch;
+        self.results
+            .iter()
+            .filter(wrong)
+            .filter(|row| !self.is_external(&row.backend))
+    }
+
+    /// Iterates over the results of external programs that differ from the results of Sixfold.
+    pub fn external_mismatches(&self) -> impl Iterator<Item = &ResultRow> {
+        let wrong = |row: &&ResultRow| row.agreement == Agreement::Mismatch;
+        self.results
+            .iter()
+            .filter(wrong)
+            .filter(|row| self.is_external(&row.backend))
+    }
+
+    fn is_external(&self, column: &str) -> bool {
+        let mut columns = self.backends.iter().filter(|other| other.name == column);
+        columns.any(|column| column.external.is_some())
+    }
+}
+
+impl LabFinding for Report {
+    fn run(&self) -> &Run {
+        &self.run
+    }
+
+    fn run_mut(&mut self) -> &mut Run {
+        &mut self.run
+    }
+
+    fn meshes(&self) -> &[MeshReport] {
+        std::slice::from_ref(&self.mesh)
+    }
+
+    fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
+        self.mesh = only_mesh(meshes)?;
+        Ok(())
+    }
+
+    fn sentences(&self) -> &[String] {
+        &self.sentences
+    }
+
+    fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.interrupted
+    }
+
+    fn mismatches(&self) -> usize {
+        Self::mismatches(self).count()
+    }
+
+    fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
+        let facts = &self.mesh.facts;
+        let figure = |row: FigureRow<'s>, noise| Figure {
+            mesh: Some(&self.mesh),
+            elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
+            case: String::new(),
+            backend_bytes: bytes_of(&self.backends, row.backend),
+            samples: samples_of(&self.samples, &row.operation, row.backend),
+            row,
+            noise,
+        };
+        let timed = self.results.iter().map(|row| {
+            let noise = noise(self.control.as_ref(), row.operation);
+            figure(FigureRow::of_result(row), noise)
+        });
+        let refused = self.refusals.iter().map(|refusal| {
+            let name = refusal.operation.name().into();
+            figure(FigureRow::new(name, &refusal.backend, Status::Refused), 1.0)
+        });
+        timed.chain(refused).collect()
+    }
+
+    fn check(&self) -> Result<(), ReadError> {
+        check_samples(&self.samples)?;
+        check_results(&self.results)?;
+        check_control(self.control.as_ref())
+    }
+}
+
+/// Returns the size of a backend that was built.
+pub(crate) fn bytes_of(backends: &[BackendReport], name: &str) -> Option<usize> {
+    backends.iter().find(|backend| backend.name == name)?.bytes
+}

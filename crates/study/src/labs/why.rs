@@ -1,0 +1,505 @@
+//! Explains the times of queries by the memory that the queries read.
+//!
+//! The counts of reads ([`Reads`]) need no clock and have no noise. A study measures the times of
+//! the same queries. [`MemorySpeed`] is the speed at which this machine reads memory.
+//! [`Bound::from_times`] compares the time of a query with the time for reading the same amount of
+//! memory.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+use sixfold::Relation;
+use sixfold_workload::{
+    Backend, CACHE_LINES, ElementKind, LINE_BYTES, MAX_READS, MemorySpeed, ReadsObserver,
+};
+use sixfold_workload::{BufferSpeed, Operation, REACH, Reads, SCAN_SAMPLE};
+
+use crate::engine::budget::Budget;
+use crate::engine::measure::Progress;
+use crate::inspect::{StudyMesh, unbuilt};
+use crate::labs::study::report::{Report, bytes_of};
+use crate::labs::study::{Settings, StudyError, study};
+use crate::results::figure::{Figure, FigureRow, Status, samples_of};
+use crate::results::finding::{LabFinding, only_mesh};
+use crate::results::read::ReadError;
+use crate::results::rows::{Agreement, BackendReport, MeshReport, Samples, check_samples};
+use crate::results::run::{Run, RunSettings};
+
+/// The settings of [`why`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WhySettings {
+    /// The names of the backends. If the list is empty, all backends are used.
+    pub backends: Vec<String>,
+    /// Additional structures that are not part of Sixfold.
+    pub extra: Vec<Backend>,
+    /// The relations. If the list is empty, all nine relations are used.
+    pub relations: Vec<Relation>,
+    /// The settings of the time measurement. If this field is `None`, reads are counted, but times
+    /// are not measured.
+    pub timing: Option<Timing>,
+}
+
+/// The settings of the time measurement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Timing {
+    /// Time limit for counting reads and measuring times.
+    pub budget: Duration,
+    /// The speed at which this machine reads memory.
+    pub memory: MemorySpeed,
+}
+
+/// The memory that queries read on each structure, compared with the times of the queries.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Why {
+    /// How the finding was measured. In JSON, the document has this field.
+    #[serde(skip)]
+    pub run: Run,
+    /// Name and topology of the mesh. In JSON, the document has this field.
+    #[serde(skip)]
+    pub mesh: MeshReport,
+    /// The backends, in the order of [`Backend::structures`].
+    pub backends: Vec<BackendReport>,
+    /// The model of the processor cache with which reads are counted.
+    pub model: Model,
+    /// The speed of reading buffers of growing size; `None` if no times were measured.
+    pub memory: Option<Vec<BufferSpeed>>,
+    /// The results, sorted by relation, then in the order of [`Backend::structures`].
+    pub rows: Vec<WhyRow>,
+    /// The times of all samples; empty if no times were measured.
+    pub samples: Vec<Samples>,
+    /// Sentences about possible faults of the measurement and their remedies.
+    pub warnings: Vec<String>,
+    /// True if the measurement was stopped early. Some rows or times may then be missing.
+    pub interrupted: bool,
+}
+
+/// The model of the processor cache with which reads are counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct Model {
+    /// Size of a cache line, in bytes.
+    pub line_bytes: usize,
+    /// Number of cache lines in the modelled cache. A full cache drops the line that was loaded
+    /// first.
+    pub cache_lines: u64,
+    /// A jump is the loading of a cache line that is more than this number of cache lines away from
+    /// every cached line.
+    pub reach: usize,
+    /// Number of queried elements if only a sample of the elements is queried.
+    pub sample: usize,
+    /// If a query reads more table rows than this number on average, only a sample of the elements
+    /// is queried.
+    pub most_reads: u64,
+}
+
+impl Model {
+    /// The model that this version of Sixfold uses.
+    pub const CURRENT: Self = Self {
+        line_bytes: LINE_BYTES,
+        cache_lines: CACHE_LINES,
+        reach: REACH,
+        sample: SCAN_SAMPLE,
+        most_reads: MAX_READS,
+    };
+}
+
+/// The reads and the time of one relation on one backend.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct WhyRow {
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+    /// The kind of the elements that are queried: `vertex`, `edge` or `face`.
+    pub per: String,
+    /// The numbers of table reads.
+    #[serde(flatten)]
+    pub reads: Reads,
+    /// The time of the queries; `None` if no time was measured.
+    pub timed: Option<Timed>,
+}
+
+/// The time of querying a relation at all elements (a sweep), and the explanation of this time.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Timed {
+    /// The median time per element, in nanoseconds.
+    pub ns_per_element: f64,
+    /// True if only a sample of the elements was timed.
+    pub sampled: bool,
+    /// The comparison of the checksum with the checksums of other backends.
+    pub agreement: Agreement,
+    /// The speed of reading a buffer as large as the memory that all queries together read.
+    pub speed: BufferSpeed,
+    /// The computed time for a sequential read of the bytes that one element needs, in nanoseconds.
+    pub floor_ns: f64,
+    /// The computed time for the jumps of one element if the jumps do not overlap, in nanoseconds.
+    /// A jump loads a cache line that is not near any cached line.
+    pub waits_ns: f64,
+    /// The factor that limits the speed of the queries.
+    pub bound: Bound,
+}
+
+/// The factor that limits the speed of a sweep (querying a relation at all elements).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Bound {
+    /// The transfer of bytes from memory limits the speed.
+    Bandwidth,
+    /// The wait for cache lines that a prefetcher cannot predict limits the speed.
+    Latency,
+    /// Computation on data in the cache limits the speed.
+    Work,
+}
+
+impl Bound {
+    /// Returns the factor that limits a query that takes `ns` nanoseconds. `floor_ns` is the time
+    /// for the transfer of the bytes that the query reads. `waits_ns` is the time for all jumps to
+    /// distant cache lines if the jumps do not overlap.
+    ///
+    /// - `Bandwidth` if `floor_ns` is at least half of `ns`.
+    /// - `Latency` if `floor_ns` is less than half of `ns`, and `waits_ns` is at least half of
+    ///   `ns`. A processor overlaps jumps, so the jumps may take less time than `waits_ns`.
+    /// - `Work` in all other cases.
+    pub fn from_times(ns: f64, floor_ns: f64, waits_ns: f64) -> Self {
+        if 2.0 * floor_ns >= ns {
+            Self::Bandwidth
+        } else if 2.0 * waits_ns >= ns {
+            Self::Latency
+        } else {
+            Self::Work
+        }
+    }
+
+    /// Returns the name of the factor in files: `bandwidth`, `latency` or `work`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Bandwidth => "bandwidth",
+            Self::Latency => "latency",
+            Self::Work => "work",
+        }
+    }
+}
+
+impl LabFinding for Why {
+    fn run(&self) -> &Run {
+        &self.run
+    }
+
+    fn run_mut(&mut self) -> &mut Run {
+        &mut self.run
+    }
+
+    fn meshes(&self) -> &[MeshReport] {
+        std::slice::from_ref(&self.mesh)
+    }
+
+    fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
+        self.mesh = only_mesh(meshes)?;
+        Ok(())
+    }
+
+    fn sentences(&self) -> &[String] {
+        &[]
+    }
+
+    fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.interrupted
+    }
+
+    fn mismatches(&self) -> usize {
+        let timed = self.rows.iter().filter_map(|row| row.timed);
+        timed
+            .filter(|timed| timed.agreement == Agreement::Mismatch)
+            .count()
+    }
+
+    fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
+        let facts = &self.mesh.facts;
+        let figure = |row: &'s WhyRow| {
+            let timed = row.timed?;
+            let operation = Operation::Relation(row.reads.relation).name();
+            let status = match timed.sampled {
+                true => Status::Sampled,
+                false => Status::Measured,
+            };
+            let elements = row.reads.elements as u64;
+            let samples = samples_of(&self.samples, operation, &row.backend);
+            Some(Figure {
+                mesh: Some(&self.mesh),
+                elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
+                case: String::new(),
+                backend_bytes: bytes_of(&self.backends, &row.backend),
+                row: FigureRow {
+                    ns: Some(timed.ns_per_element * elements as f64),
+                    elements: Some(elements),
+                    unit: row.per.clone(),
+                    agreement: Some(timed.agreement),
+                    samples: samples.map_or(0, |samples| samples.rounds.len()),
+                    ..FigureRow::new(operation.into(), &row.backend, status)
+                },
+                samples,
+                noise: 1.0,
+            })
+        };
+        self.rows.iter().filter_map(figure).collect()
+    }
+
+    fn check(&self) -> Result<(), ReadError> {
+        check_samples(&self.samples)
+    }
+}
+
+/// Counts the memory reads of relations on the backends that can hold the mesh. If
+/// `settings.timing` is set, also measures the times of the relations.
+///
+/// Setting `stop` to true ends the measurement early, with a result of the finished part.
+/// `progress` is called with the current step.
+///
+/// # Errors
+///
+/// Returns the same errors as [`study`].
+pub fn why(
+    study_mesh: &StudyMesh,
+    settings: &WhySettings,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(Progress<'_>),
+) -> Result<Why, StudyError> {
+    let budget = settings
+        .timing
+        .as_ref()
+        .map(|timing| Budget::start(timing.budget));
+    let requested = |relation: &Relation| {
+        settings.relations.is_empty() || settings.relations.contains(relation)
+    };
+    let relations: Vec<Relation> = Relation::ALL.into_iter().filter(requested).collect();
+    let mut study_settings = Settings {
+        backends: settings.backends.clone(),
+        extra: settings.extra.clone(),
+        operations: relations.iter().copied().map(Operation::Relation).collect(),
+        ..Settings::default()
+    };
+    if study_mesh.polygons.face_count() == 0 {
+        return Err(StudyError::NoFaces);
+    }
+    // Counting has no time limit.
+    let timing = settings.timing.as_ref();
+    study_settings.budget = timing.map_or(Duration::ZERO, |timing| timing.budget);
+    let mut run = Run::start(RunSettings::of_study(&study_settings));
+    let (backends, mut rows) = count_all(study_mesh, &study_settings, &relations, stop, progress)?;
+    // The sort is stable: the rows of one relation stay in the order of the backends.
+    rows.sort_by_key(|row| row.reads.relation);
+    let (mut samples, mut warnings) = (Vec::new(), Vec::new());
+    if let (Some(Timing { memory, .. }), Some(budget)) = (&settings.timing, budget)
+        && !stop.load(Ordering::Relaxed)
+    {
+        study_settings.budget = budget.left();
+        let report = study(study_mesh, &study_settings, stop, progress)?;
+        for row in &mut rows {
+            row.timed = timed(row, &report, memory);
+        }
+        run.environment = report.run.environment;
+        (samples, warnings) = (report.samples, report.warnings);
+    }
+    let memory = settings.timing.as_ref().map(|timing| &timing.memory);
+    Ok(Why {
+        run,
+        mesh: study_mesh.report(),
+        backends,
+        model: Model::CURRENT,
+        memory: memory.map(|memory| memory.speeds().to_vec()),
+        rows,
+        samples,
+        warnings,
+        interrupted: stop.load(Ordering::Relaxed),
+    })
+}
+
+fn count_all(
+    study_mesh: &StudyMesh,
+    settings: &Settings,
+    relations: &[Relation],
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(Progress<'_>),
+) -> Result<(Vec<BackendReport>, Vec<WhyRow>), StudyError> {
+    let chosen = settings.chosen_backends()?;
+    let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
+    let (mut backends, mut rows) = (Vec::new(), Vec::new());
+    let all = (chosen.len() * relations.len()) as f64;
+    for (i, backend) in chosen.iter().enumerate() {
+        let mut counting = RowCollector {
+            backend: backend.name(),
+            done: (i * relations.len()) as f64 / all,
+            step: 1.0 / all,
+            rows: &mut rows,
+            progress,
+        };
+        let polygons = &study_mesh.polygons;
+        let verdict = backend.count_reads(polygons, relations, stop, &mut counting);
+        backends.push(unbuilt(backend, polygons, &counts, verdict));
+    }
+    if backends.iter().all(|backend| !backend.holds) {
+        let refusals = backends
+            .into_iter()
+            .map(|b| (b.name, b.reason.unwrap_or_default()));
+        return Err(StudyError::NoneHolds {
+            refusals: refusals.collect(),
+        });
+    }
+    Ok((backends, rows))
+}
+
+struct RowCollector<'a> {
+    backend: &'static str,
+    done: f64,
+    step: f64,
+    rows: &'a mut Vec<WhyRow>,
+    progress: &'a mut dyn FnMut(Progress<'_>),
+}
+
+impl ReadsObserver for RowCollector<'_> {
+    fn relation_started(&mut self, relation: Relation) {
+        (self.progress)(Progress {
+            done: self.done,
+            stage: "counting",
+            task: relation.name(),
+            backend: self.backend,
+        });
+        self.done += self.step;
+    }
+
+    fn relation_counted(&mut self, reads: Reads) {
+        self.rows.push(WhyRow {
+            backend: self.backend.to_owned(),
+            per: ElementKind::queried_by(reads.relation).name().into(),
+            reads,
+            timed: None,
+        });
+    }
+}
+
+/// Returns the time from the report, compared with the speed of memory.
+fn timed(row: &WhyRow, report: &Report, memory: &MemorySpeed) -> Option<Timed> {
+    let mut results = report.rows(Operation::Relation(row.reads.relation));
+    let result = results.find(|result| result.backend == row.backend)?;
+    let ns_per_element = result.ns_per_element?;
+    let speed = memory.at(row.reads.sweep_bytes());
+    let floor_ns = row.reads.moved_bytes / speed.gb_per_s;
+    let waits_ns = row.reads.jumps * speed.latency_ns;
+    Some(Timed {
+        ns_per_element,
+        sampled: result.sampled,
+        agreement: result.agreement,
+        speed,
+        floor_ns,
+        waits_ns,
+        bound: Bound::from_times(ns_per_element, floor_ns, waits_ns),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold::shapes;
+
+    use super::*;
+
+    fn counted(settings: &WhySettings) -> Result<Why, StudyError> {
+        let grid = shapes::triangle_grid(6, 6).expect("a grid");
+        let study_mesh = StudyMesh::new("grid", grid);
+        why(&study_mesh, settings, &AtomicBool::new(false), &mut |_| ())
+    }
+
+    #[test]
+    fn half_of_the_time_determines_the_bound() {
+        for (ns, floor, waits, bound) in [
+            (10.0, 5.0, 0.0, Bound::Bandwidth),
+            (10.0, 5.0, 50.0, Bound::Bandwidth),
+            (10.0, 4.9, 5.0, Bound::Latency),
+            (10.0, 4.9, 4.9, Bound::Work),
+            (2.0, 0.0, 0.0, Bound::Work),
+        ] {
+            assert_eq!(
+                Bound::from_times(ns, floor, waits),
+                bound,
+                "{ns} {floor} {waits}"
+            );
+        }
+    }
+
+    #[test]
+    fn rows_are_sorted_by_relation() {
+        let settings = WhySettings {
+            backends: vec!["half-edge".into(), "polygon-soup".into()],
+            relations: vec![Relation::FaceVertices, Relation::VertexFaces],
+            ..WhySettings::default()
+        };
+        let why = counted(&settings).expect("both can hold the mesh");
+        let rows: Vec<_> = why
+            .rows
+            .iter()
+            .map(|row| {
+                (
+                    row.reads.relation.name(),
+                    row.backend.as_str(),
+                    row.per.as_str(),
+                )
+            })
+            .collect();
+        let expected = [
+            ("vertex_faces", "polygon-soup", "vertex"),
+            ("vertex_faces", "half-edge", "vertex"),
+            ("face_vertices", "polygon-soup", "face"),
+            ("face_vertices", "half-edge", "face"),
+        ];
+        assert_eq!(rows, expected);
+        assert!(why.rows.iter().all(|row| row.timed.is_none()));
+        assert!(why.memory.is_none() && why.samples.is_empty());
+    }
+
+    #[test]
+    fn a_time_is_compared_with_memory_of_the_size_of_the_sweep() {
+        let memory = MemorySpeed::measure(
+            &sixfold_workload::MachineClock::start(),
+            &AtomicBool::new(false),
+        );
+        let memory = memory.expect("not stopped");
+        let settings = WhySettings {
+            backends: vec!["half-edge".into()],
+            relations: vec![Relation::VertexFaces],
+            timing: Some(Timing {
+                budget: Duration::from_millis(20),
+                memory: memory.clone(),
+            }),
+            ..WhySettings::default()
+        };
+        let why = counted(&settings).expect("it can hold the mesh");
+        let [row] = &why.rows[..] else {
+            panic!("one row: {:?}", why.rows);
+        };
+        let timed = row.timed.expect("measured");
+        assert_eq!(timed.speed, memory.speeds()[0], "it fits the smallest");
+        let floor = row.reads.moved_bytes / timed.speed.gb_per_s;
+        assert_eq!(timed.floor_ns, floor);
+        assert_eq!(timed.waits_ns, row.reads.jumps * timed.speed.latency_ns);
+        assert!(timed.ns_per_element > 0.0 && why.mismatches() == 0);
+        assert_eq!(why.memory.as_deref(), Some(memory.speeds()));
+    }
+
+    #[test]
+    fn refusing_backends_are_listed_and_no_backend_is_an_error() {
+        let quads = shapes::torus(4, 4).expect("a torus");
+        let study_mesh = StudyMesh::new("quads", quads);
+        let stop = AtomicBool::new(false);
+        let all = why(&study_mesh, &WhySettings::default(), &stop, &mut |_| ());
+        let all = all.expect("five can hold the mesh");
+        assert_eq!(all.backends.len(), 6);
+        assert_eq!(all.rows.len(), 5 * 9, "a corner table holds triangles");
+        let only = WhySettings {
+            backends: vec!["corner-table".into()],
+            ..WhySettings::default()
+        };
+        let none = why(&study_mesh, &only, &stop, &mut |_| ());
+        assert!(matches!(none, Err(StudyError::NoneHolds { .. })));
+    }
+}

@@ -1,0 +1,633 @@
+//! Comparison of two documents: what changed between machines, compilers or commits.
+//!
+//! Two measurements at different times have no rounds in common. Their times are therefore compared
+//! by the ratio of the medians. The confidence interval of the ratio is computed from the intervals
+//! of both medians. The speed of a machine may also drift between two measurements, and the samples
+//! do not show this drift. [`DRIFT`] is the default limit for the drift.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io;
+
+use serde::Serialize;
+
+use crate::engine::ranking::CLEAR_DIFFERENCE;
+use crate::engine::statistics::{Median, quotient};
+use crate::numbers::counted;
+use crate::results::document::{Results, SCHEMA};
+use crate::results::environment::Environment;
+use crate::results::figure::Figure;
+use crate::results::finding::Finding;
+use crate::results::json::write_json;
+use crate::results::rows::{MeshReport, Standing};
+use crate::results::run::Run;
+
+/// Default limit for the drift between two studies on an unchanged machine, as a ratio of times.
+/// The limit of 20 % is about twice the typical drift of a virtual machine (reports/repeatability).
+pub const DRIFT: f64 = 1.2;
+
+/// Options of a comparison.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CompareSettings {
+    /// If true, each ratio is divided by the median ratio of all operations and backends. Use this
+    /// option for two machines of different speed.
+    pub relative: bool,
+    /// Ratios of times up to this value are ignored, even if the samples show a difference.
+    pub drift: f64,
+}
+
+impl Default for CompareSettings {
+    fn default() -> Self {
+        Self {
+            relative: false,
+            drift: DRIFT,
+        }
+    }
+}
+
+/// The differences between two documents.
+#[derive(Clone, Debug, Serialize)]
+pub struct Changes {
+    /// Version of the JSON schema.
+    pub schema: u32,
+    /// Differences of machines, programs and settings.
+    pub environment: Vec<SettingChange>,
+    /// The time in the second document divided by the time in the first, as the median over all
+    /// entries of `rows`. `None` if `rows` is empty.
+    pub overall: Option<f64>,
+    /// True if each ratio was divided by `overall` before the ratio was compared with the noise.
+    pub relative: bool,
+    /// Ratios of times up to this value are ignored.
+    pub drift: f64,
+    /// The times that both documents have, in the order of the first document.
+    pub rows: Vec<Change>,
+    /// The counts of bytes that differ.
+    pub bytes: Vec<BytesChange>,
+    /// Operations whose fastest backend changed.
+    pub winners: Vec<NewWinner>,
+    /// Measurements that only the first document has.
+    pub only_before: Vec<Measurement>,
+    /// Measurements that only the second document has.
+    pub only_after: Vec<Measurement>,
+    /// Sentences that describe the differences.
+    pub sentences: Vec<String>,
+}
+
+/// A difference between the machines, programs or settings of two documents.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct SettingChange {
+    /// Name of the setting.
+    pub what: &'static str,
+    /// The value in the first document.
+    pub before: String,
+    /// The value in the second document.
+    pub after: String,
+}
+
+/// What was measured: an operation on a backend.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct Measurement {
+    /// The name of the mesh in the first document that has it; empty if the lab made its own mesh.
+    pub mesh: String,
+    /// The name of the command, such as `study`.
+    pub kind: &'static str,
+    /// The order, size or workload; empty in a study.
+    pub case: String,
+    /// The name of the operation, such as `vertex_normal`.
+    pub operation: String,
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+}
+
+/// The time of one operation on one backend in two documents.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Change {
+    /// What was measured.
+    #[serde(flatten)]
+    pub measurement: Measurement,
+    /// Median time in the first document, in nanoseconds.
+    pub before_ns: f64,
+    /// Median time in the second document, in nanoseconds.
+    pub after_ns: f64,
+    /// The median time in the second document divided by the median time in the first.
+    pub ratio: f64,
+    /// Lower end of the 95 % confidence interval of `ratio`; `None` if a document has fewer than
+    /// three samples.
+    pub ci_low: Option<f64>,
+    /// Upper end of the 95 % confidence interval of `ratio`.
+    pub ci_high: Option<f64>,
+    /// Ratios of times up to this value count as noise.
+    pub noise: f64,
+    /// Whether the second time is shorter, longer, or equal within the noise.
+    pub verdict: Verdict,
+    /// True if the checksums differ. The two measurements then did different work.
+    pub other_checksum: bool,
+}
+
+/// A count of bytes that differs between two documents.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct BytesChange {
+    /// The name of the mesh; empty if the lab made its own mesh.
+    pub mesh: String,
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+    /// The operation that allocates the bytes; `None` for the size of the backend.
+    pub operation: Option<String>,
+    /// The bytes in the first document.
+    pub before: usize,
+    /// The bytes in the second document.
+    pub after: usize,
+}
+
+/// The conclusion about the times of one operation on one backend in two documents.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// The second time is shorter by more than the noise.
+    Faster,
+    /// The second time is longer by more than the noise.
+    Slower,
+    /// The difference is within the noise.
+    Same,
+}
+
+/// An operation whose fastest backend changed.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct NewWinner {
+    /// The name of the mesh; empty if the lab made its own mesh.
+    pub mesh: String,
+    /// The order, size or workload; empty in a study.
+    pub case: String,
+    /// The name of the operation, such as `vertex_normal`.
+    pub operation: String,
+    /// The name of the fastest backend in the first document.
+    pub before: String,
+    /// The name of the fastest backend in the second document.
+    pub after: String,
+}
+
+/// The reason why the times of two documents cannot be compared.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum CompareError {
+    /// The two documents have different heap policies or different cache states.
+    #[error(
+        "the first was measured with {option} {before}, the second with {option} {after}, so \
+         their times cannot be compared: measure both with the same {option}"
+    )]
+    OtherMemory {
+        option: &'static str,
+        before: &'static str,
+        after: &'static str,
+    },
+    /// No mesh is in both documents.
+    #[error(
+        "the first is of {before}, the second of {after}: times of different meshes cannot be \
+         compared; measure one mesh twice"
+    )]
+    OtherMesh { before: String, after: String },
+    /// No measurement is in both documents.
+    #[error(
+        "no operation was measured on the same backend in both, so there is nothing to compare: \
+         use the same command with the same --backends and --operations"
+    )]
+    NothingInCommon,
+}
+
+/// Compares two documents. Two measurements are compared if they are of the same command, mesh,
+/// case, operation and backend. Estimated times are not compared.
+///
+/// Meshes are the same if their hashes are equal, or if their names and facts are equal. If each
+/// document has only one mesh, equal facts are enough.
+///
+/// # Errors
+///
+/// Returns an error if the documents have no mesh or no measurement in common, or if the heap
+/// policies or the cache states differ.
+pub fn compare(
+    before: &Results,
+    after: &Results,
+    settings: CompareSettings,
+) -> Result<Changes, CompareError> {
+    let meshes = CommonMeshes::new(before, after);
+    meshes.check()?;
+    let [first, second] = [(before, false), (after, true)]
+        .map(|(results, is_second)| measurements(results, |mesh| meshes.name(mesh, is_second)));
+    let in_both = || {
+        let both = first.in_order.iter().map(|a| (a, second.get(&a.key)));
+        both.filter_map(|(a, b)| Some((a, b?)))
+    };
+    if in_both().next().is_none() {
+        return Err(CompareError::NothingInCommon);
+    }
+    in_both().try_for_each(|(a, b)| check_memory(a.finding, b.finding))?;
+
+    let CompareSettings { relative, drift } = settings;
+    let mut rows: Vec<Change> = in_both().filter_map(|(a, b)| change(a, b, drift)).collect();
+    let overall = Median::from_samples(rows.iter().map(|row| row.ratio)).map(|median| median.value);
+    let divisor = overall.filter(|_| relative).unwrap_or(1.0);
+    for row in &mut rows {
+        row.verdict = verdict(row, divisor);
+    }
+    let mut environment: Vec<SettingChange> = Vec::new();
+    for (a, b) in in_both() {
+        for change in differences(a.finding.run(), b.finding.run()) {
+            if !environment.contains(&change) {
+                environment.push(change);
+            }
+        }
+    }
+    let mut changes = Changes {
+        schema: SCHEMA,
+        environment,
+        overall,
+        relative,
+        drift,
+        rows,
+        bytes: bytes(in_both()),
+        winners: winners(&first, &second),
+        only_before: first.without(&second),
+        only_after: second.without(&first),
+        sentences: Vec::new(),
+    };
+    changes.sentences = changes.describe();
+    Ok(changes)
+}
+
+/// The meshes that two documents have in common.
+struct CommonMeshes<'r> {
+    before: Vec<&'r MeshReport>,
+    after: Vec<&'r MeshReport>,
+}
+
+impl<'r> CommonMeshes<'r> {
+    fn new(before: &'r Results, after: &'r Results) -> Self {
+        let all = |results: &'r Results| {
+            let mut meshes: Vec<&MeshReport> = Vec::new();
+            for mesh in results.findings.iter().flat_map(Finding::meshes) {
+                if !meshes.contains(&mesh) {
+                    meshes.push(mesh);
+                }
+            }
+            meshes
+        };
+        Self {
+            before: all(before),
+            after: all(after),
+        }
+    }
+
+    fn are_same(&self, a: &MeshReport, b: &MeshReport) -> bool {
+        let single = self.before.len() == 1 && self.after.len() == 1;
+        a.sha256 == b.sha256 || (a.facts == b.facts && (single || a.name == b.name))
+    }
+
+    /// Returns an error if both documents have meshes, but none in common.
+    fn check(&self) -> Result<(), CompareError> {
+        let (Some(a), Some(b)) = (self.before.first(), self.after.first()) else {
+            return Ok(());
+        };
+        let mut pairs = self
+            .before
+            .iter()
+            .flat_map(|&a| self.after.iter().map(move |&b| (a, b)));
+        if pairs.any(|(a, b)| self.are_same(a, b)) {
+            return Ok(());
+        }
+        let described = |mesh: &MeshReport| {
+            let vertices = counted(mesh.facts.vertices, "vertex", "vertices");
+            let faces = counted(mesh.facts.faces, "face", "faces");
+            format!("{} ({vertices}, {faces})", mesh.name)
+        };
+        Err(CompareError::OtherMesh {
+            before: described(a),
+            after: described(b),
+        })
+    }
+
+    /// Returns the name of the mesh in the first document that has it.
+    fn name(&self, mesh: &'r MeshReport, is_second: bool) -> &'r str {
+        let same = |other: &&&MeshReport| self.are_same(other, mesh);
+        let first = self.before.iter().filter(|_| is_second).find(same);
+        first.map_or(mesh.name.as_str(), |other| other.name.as_str())
+    }
+}
+
+/// One figure of a document, and the finding that has it.
+struct Measured<'r> {
+    key: Measurement,
+    figure: Figure<'r>,
+    finding: &'r Finding,
+}
+
+/// The measured figures of a document.
+struct AllMeasured<'r> {
+    in_order: Vec<Measured<'r>>,
+    places: BTreeMap<Measurement, usize>,
+}
+
+impl<'r> AllMeasured<'r> {
+    fn get(&self, key: &Measurement) -> Option<&Measured<'r>> {
+        self.places.get(key).map(|&place| &self.in_order[place])
+    }
+
+    /// Returns the measurements that `other` does not have.
+    fn without(&self, other: &Self) -> Vec<Measurement> {
+        let keys = self.in_order.iter().map(|measured| &measured.key);
+        keys.filter(|key| other.get(key).is_none())
+            .cloned()
+            .collect()
+    }
+}
+
+/// Collects the figures that were measured or counted. Of two equal measurements, the first counts.
+fn measurements<'r>(
+    results: &'r Results,
+    name: impl Fn(&'r MeshReport) -> &'r str,
+) -> AllMeasured<'r> {
+    let (mut in_order, mut places) = (Vec::new(), BTreeMap::new());
+    for finding in &results.findings {
+        for figure in finding.figures() {
+            if !figure.row.is_measured() {
+                continue;
+            }
+            let key = Measurement {
+                mesh: figure.mesh.map_or("", &name).to_owned(),
+                kind: finding.kind(),
+                case: figure.case.clone(),
+                operation: figure.row.operation.clone(),
+                backend: figure.row.backend.to_owned(),
+            };
+            if !places.contains_key(&key) {
+                places.insert(key.clone(), in_order.len());
+                in_order.push(Measured {
+                    key,
+                    figure,
+                    finding,
+                });
+            }
+        }
+    }
+    AllMeasured { in_order, places }
+}
+
+fn check_memory(before: &Finding, after: &Finding) -> Result<(), CompareError> {
+    let [a, b] = [before, after].map(|finding| finding.run().environment.memory_settings());
+    for (i, option) in ["--heap", "--caches"].into_iter().enumerate() {
+        let (before, after) = (a[i], b[i]);
+        if before != after {
+            return Err(CompareError::OtherMemory {
+                option,
+                before,
+                after,
+            });
+        }
+    }
+    Ok(())
+}
+
+fn change(before: &Measured<'_>, after: &Measured<'_>, drift: f64) -> Option<Change> {
+    let [a, b] = [before, after].map(|measured| &measured.figure);
+    let (before_ns, after_ns) = (a.row.ns?, b.row.ns?);
+    let quotient = quotient(&b.counted_ns(), &a.counted_ns()).or_else(|| {
+        let value = after_ns / before_ns;
+        value.is_finite().then_some((value, None))
+    });
+    let (ratio, interval) = quotient?;
+    let both = a.row.checksum.zip(b.row.checksum);
+    let comparable = a.row.sample_size == b.row.sample_size;
+    Some(Change {
+        measurement: before.key.clone(),
+        before_ns,
+        after_ns,
+        ratio,
+        ci_low: interval.map(|[low, _]| low),
+        ci_high: interval.map(|[_, high]| high),
+        noise: drift.max(a.noise).max(b.noise),
+        verdict: Verdict::Same,
+        other_checksum: comparable && both.is_some_and(|(a, b)| !nearly_equal(a, b)),
+    })
+}
+
+/// Returns whether two checksums may be of the same work. Sums of `f32` in different orders differ
+/// by at most 10⁻⁴ of their size.
+fn nearly_equal(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-4 * a.abs().max(b.abs())
+}
+
+fn verdict(row: &Change, divisor: f64) -> Verdict {
+    let ratio = row.ratio / divisor;
+    let [low, high] = [row.ci_low, row.ci_high].map(|end| end.map(|end| end / divisor));
+    let (slower, faster) = match low.zip(high) {
+        Some((low, high)) => (low > 1.0, high < 1.0),
+        None => (ratio > CLEAR_DIFFERENCE, ratio < CLEAR_DIFFERENCE.recip()),
+    };
+    if slower && ratio > row.noise {
+        Verdict::Slower
+    } else if faster && ratio < row.noise.recip() {
+        Verdict::Faster
+    } else {
+        Verdict::Same
+    }
+}
+
+fn differences(before: &Run, after: &Run) -> Vec<SettingChange> {
+    fn shown<T: ToString>(value: Option<&T>) -> String {
+        value.map_or_else(|| "not known".into(), ToString::to_string)
+    }
+    let heap = |e: &Environment| {
+        let heap = e.heap.as_ref()?;
+        let pages = heap
+            .transparent_huge_pages
+            .as_deref()
+            .unwrap_or("not known");
+        Some(format!("{}, huge pages: {pages}", heap.allocator))
+    };
+    let facts = |run: &Run| -> [(&'static str, String); 15] {
+        let e = &run.environment;
+        [
+            ("processor", shown(e.cpu_model.as_ref())),
+            ("cores", shown(e.cores.as_ref())),
+            ("system", format!("{} {}", e.os, e.arch)),
+            ("kernel", shown(e.kernel.as_ref())),
+            ("governor", shown(e.governor.as_ref())),
+            ("boost", shown(e.boost.as_ref())),
+            ("compiler", e.rustc.clone()),
+            ("profile", format!("{} -O{}", e.profile, e.opt_level)),
+            ("flags", e.rustflags.clone()),
+            ("sixfold", e.sixfold.clone()),
+            ("commit", shown(e.commit.as_ref())),
+            ("clock", e.clock.clone()),
+            ("allocator", shown(heap(e).as_ref())),
+            ("budget", format!("{} s", run.settings.budget_s)),
+            ("seed", run.settings.seed.to_string()),
+        ]
+    };
+    let pairs = facts(before).into_iter().zip(facts(after));
+    let differs = pairs.filter(|((_, before), (_, after))| before != after);
+    let setting = |((what, before), (_, after))| SettingChange {
+        what,
+        before,
+        after,
+    };
+    differs.map(setting).collect()
+}
+
+/// Returns the counts of bytes that differ.
+fn bytes<'r>(
+    pairs: impl Iterator<Item = (&'r Measured<'r>, &'r Measured<'r>)>,
+) -> Vec<BytesChange> {
+    let mut changes: Vec<BytesChange> = Vec::new();
+    for (a, b) in pairs {
+        let size = (a.figure.backend_bytes, b.figure.backend_bytes, None);
+        let allocated = (
+            a.figure.row.allocated_bytes,
+            b.figure.row.allocated_bytes,
+            Some(a.key.operation.clone()),
+        );
+        for (before, after, operation) in [size, allocated] {
+            let change = before.zip(after).filter(|(before, after)| before != after);
+            changes.extend(change.map(|(before, after)| BytesChange {
+                mesh: a.key.mesh.clone(),
+                backend: a.key.backend.clone(),
+                operation,
+                before,
+                after,
+            }));
+        }
+    }
+    let mut known = BTreeSet::new();
+    changes.retain(|c| {
+        known.insert((
+            c.mesh.clone(),
+            c.backend.clone(),
+            c.operation.clone(),
+            c.before,
+        ))
+    });
+    changes
+}
+
+/// Returns the operations that have one fastest backend in each document, but not the same one.
+fn winners(before: &AllMeasured<'_>, after: &AllMeasured<'_>) -> Vec<NewWinner> {
+    let best = |all: &AllMeasured<'_>| {
+        let best = all.in_order.iter().filter(|measured| {
+            measured.finding.kind() == "study"
+                && measured.figure.row.standing == Some(Standing::Best)
+        });
+        let best: Vec<Measurement> = best.map(|measured| measured.key.clone()).collect();
+        best
+    };
+    let after = best(after);
+    let new = best(before).into_iter().filter_map(|before| {
+        let same = |other: &&Measurement| {
+            (&other.mesh, &other.case, &other.operation)
+                == (&before.mesh, &before.case, &before.operation)
+        };
+        let now = after.iter().find(same)?;
+        (now.backend != before.backend).then(|| NewWinner {
+            mesh: before.mesh,
+            case: before.case,
+            operation: before.operation,
+            before: before.backend,
+            after: now.backend.clone(),
+        })
+    });
+    new.collect()
+}
+
+fn is_or_are(count: usize) -> &'static str {
+    match count {
+        1 => "is",
+        _ => "are",
+    }
+}
+
+impl Changes {
+    /// Iterates over the entries of `rows` in which the second time is shorter or longer, or which
+    /// have different checksums.
+    pub fn changed(&self) -> impl Iterator<Item = &Change> {
+        let changed = |row: &&Change| row.verdict != Verdict::Same || row.other_checksum;
+        self.rows.iter().filter(changed)
+    }
+
+    /// Counts the entries of `rows` with the given verdict.
+    pub fn count(&self, verdict: Verdict) -> usize {
+        self.rows
+            .iter()
+            .filter(|row| row.verdict == verdict)
+            .count()
+    }
+
+    /// Writes the changes as JSON.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of `writer`.
+    pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
+        write_json(self, writer)
+    }
+
+    fn describe(&self) -> Vec<String> {
+        let mut sentences = Vec::new();
+        let (slower, faster) = (self.count(Verdict::Slower), self.count(Verdict::Faster));
+        let same = self.count(Verdict::Same);
+        sentences.push(format!(
+            "Of {}, {faster} {} faster in the second file, {slower} {} slower, and {same} \
+             {} equal within the noise.",
+            counted(self.rows.len(), "measurement", "measurements"),
+            is_or_are(faster),
+            is_or_are(slower),
+            is_or_are(same)
+        ));
+        if let Some(overall) = self.overall {
+            let factor = overall.max(overall.recip());
+            let machines = self.environment.iter().any(|s| s.what == "processor");
+            if factor > self.drift {
+                let hint = match (self.relative, machines) {
+                    (true, _) => ". Each ratio is divided by this median before it is judged",
+                    (false, true) => {
+                        ". The machines differ: to divide each ratio by this median, \
+                                      use --relative"
+                    }
+                    (false, false) => {
+                        ". If a machine was busy or hot, use --relative to divide each ratio by \
+                         this median"
+                    }
+                };
+                sentences.push(format!(
+                    "Overall, the second file has {overall:.2} × the times of the first (median of \
+                     all ratios){hint}."
+                ));
+            }
+        }
+        for winner in &self.winners {
+            sentences.push(format!(
+                "{}: the fastest backend was {} and is now {}.",
+                winner.operation, winner.before, winner.after
+            ));
+        }
+        let others: Vec<String> = self
+            .rows
+            .iter()
+            .filter(|row| row.other_checksum)
+            .map(|row| {
+                let Measurement {
+                    operation, backend, ..
+                } = &row.measurement;
+                format!("{operation} on {backend}")
+            })
+            .collect();
+        if !others.is_empty() {
+            sentences.push(format!(
+                "The checksums of these results differ, so the two measurements did different \
+                 work: {}.",
+                others.join(", ")
+            ));
+        }
+        sentences
+    }
+}
+
+#[cfg(test)]
+mod tests;

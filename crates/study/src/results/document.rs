@@ -1,0 +1,324 @@
+//! The document that all measuring commands write.
+//!
+//! A document lists each run and each mesh once. A finding names them by their places in these
+//! lists. In memory, each finding has its own copy, so that a finding can be used alone.
+
+use std::io;
+
+use serde::{Deserialize, Serialize};
+
+use crate::labs::growth::GrowthReport;
+use crate::labs::orders::OrdersReport;
+use crate::labs::pick::PickReport;
+use crate::labs::study::Report;
+use crate::labs::why::Why;
+use crate::results::finding::Finding;
+use crate::results::json::write_json;
+use crate::results::pool::Pool;
+use crate::results::read::{ReadError, check_schema, parse_json};
+use crate::results::rows::MeshReport;
+use crate::results::run::{Run, Start};
+
+/// The version of the format of [`Results`] in JSON. The number increases when older versions of
+/// Sixfold could misread a new file.
+pub const SCHEMA: u32 = 2;
+
+/// The results of one or more measuring commands.
+#[derive(Clone, Debug, Default)]
+pub struct Results {
+    /// The names of all meshes to study. Each name occurs once. Studies and failures are sorted in
+    /// the order of this list.
+    pub planned: Vec<String>,
+    /// The findings: first the studies, then the findings of other commands.
+    pub findings: Vec<Finding>,
+    /// The meshes that could not be studied.
+    pub failures: Vec<Failed>,
+}
+
+/// A mesh that could not be studied.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct Failed {
+    /// Name of the mesh.
+    pub mesh: String,
+    /// Why the mesh could not be studied.
+    pub reason: String,
+    /// The kind of the reason.
+    pub kind: FailureKind,
+}
+
+/// The kind of reason why a mesh could not be studied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FailureKind {
+    /// The mesh could not be loaded or measured.
+    NotMeasured,
+    /// The mesh is valid, but none of the selected backends can hold it.
+    NoneHolds,
+}
+
+/// The JSON form of a document, to be written.
+#[derive(Serialize)]
+struct Written<'r> {
+    schema: u32,
+    runs: Vec<&'r Run>,
+    meshes: Vec<&'r MeshReport>,
+    planned: &'r [String],
+    missing: usize,
+    failures: &'r [Failed],
+    findings: Vec<WrittenFinding<'r>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pool: Option<Pool>,
+}
+
+#[derive(Serialize)]
+struct WrittenFinding<'r> {
+    /// The place of the run in `runs`.
+    run: usize,
+    /// The places of the meshes in `meshes`.
+    meshes: Vec<usize>,
+    start: Start,
+    #[serde(flatten)]
+    finding: &'r Finding,
+}
+
+/// The JSON form of a document, as read.
+#[derive(Deserialize)]
+struct ReadDocument {
+    runs: Vec<Run>,
+    meshes: Vec<MeshReport>,
+    planned: Vec<String>,
+    failures: Vec<Failed>,
+    findings: Vec<ReadFinding>,
+}
+
+#[derive(Deserialize)]
+struct ReadFinding {
+    run: usize,
+    meshes: Vec<usize>,
+    start: Start,
+    #[serde(flatten)]
+    finding: Finding,
+}
+
+impl<F: Into<Finding>> From<F> for Results {
+    /// Creates a document with one finding.
+    fn from(finding: F) -> Self {
+        let mut results = Self::default();
+        results.add(finding.into());
+        results
+    }
+}
+
+impl Results {
+    /// Creates a document without findings. `planned` are the names of the meshes to study.
+    pub fn new(planned: Vec<String>) -> Self {
+        Self {
+            planned,
+            ..Self::default()
+        }
+    }
+
+    /// Adds a finding. Replaces a study or failure of the same mesh by a new study.
+    pub fn add(&mut self, finding: Finding) {
+        match &finding {
+            Finding::Study(study) => {
+                let name = study.mesh.name.clone();
+                self.remove(&name);
+                self.plan(name);
+                self.findings.push(finding);
+                self.sort();
+            }
+            _ => self.findings.push(finding),
+        }
+    }
+
+    /// Records that a mesh could not be studied. Replaces an earlier study or failure of the mesh.
+    pub fn add_failure(&mut self, failed: Failed) {
+        self.remove(&failed.mesh);
+        self.plan(failed.mesh.clone());
+        self.failures.push(failed);
+        self.sort();
+    }
+
+    pub(crate) fn plan(&mut self, mesh: String) {
+        if !self.planned.contains(&mesh) {
+            self.planned.push(mesh);
+        }
+    }
+
+    fn remove(&mut self, mesh: &str) {
+        self.findings.retain(|finding| match finding {
+            Finding::Study(study) => study.mesh.name != mesh,
+            _ => true,
+        });
+        self.failures.retain(|failed| failed.mesh != mesh);
+    }
+
+    /// Sorts the studies and the failures in the order of the planned meshes. Studies come before
+    /// other findings.
+    pub(crate) fn sort(&mut self) {
+        let place = |mesh: &str| self.planned.iter().position(|other| other == mesh);
+        self.findings.sort_by_key(|finding| match finding {
+            Finding::Study(study) => place(&study.mesh.name),
+            _ => Some(usize::MAX),
+        });
+        self.failures.sort_by_key(|failed| place(&failed.mesh));
+    }
+
+    /// Iterates over the studies.
+    pub fn studies(&self) -> impl Iterator<Item = &Report> {
+        self.findings.iter().filter_map(|finding| match finding {
+            Finding::Study(study) => Some(&**study),
+            _ => None,
+        })
+    }
+
+    /// Iterates over the measurements of a mesh in several orders.
+    pub fn orders(&self) -> impl Iterator<Item = &OrdersReport> {
+        self.findings.iter().filter_map(|finding| match finding {
+            Finding::Orders(orders) => Some(&**orders),
+            _ => None,
+        })
+    }
+
+    /// Iterates over the measurements of a shape in several sizes.
+    pub fn growth(&self) -> impl Iterator<Item = &GrowthReport> {
+        self.findings.iter().filter_map(|finding| match finding {
+            Finding::Growth(growth) => Some(&**growth),
+            _ => None,
+        })
+    }
+
+    /// Iterates over the comparisons of query times with the memory that the queries read.
+    pub fn why(&self) -> impl Iterator<Item = &Why> {
+        self.findings.iter().filter_map(|finding| match finding {
+            Finding::Why(why) => Some(&**why),
+            _ => None,
+        })
+    }
+
+    /// Iterates over the rankings for workloads.
+    pub fn picks(&self) -> impl Iterator<Item = &PickReport> {
+        self.findings.iter().filter_map(|finding| match finding {
+            Finding::Pick(pick) => Some(&**pick),
+            _ => None,
+        })
+    }
+
+    /// Iterates over the names of the planned meshes that have neither a study nor a failure.
+    pub fn missing(&self) -> impl Iterator<Item = &str> {
+        let planned = self.planned.iter().map(String::as_str);
+        planned.filter(|mesh| !self.is_done(mesh))
+    }
+
+    /// Returns whether a mesh has a study or a failure.
+    pub fn is_done(&self, mesh: &str) -> bool {
+        self.studies().any(|study| study.mesh.name == mesh)
+            || self.failures.iter().any(|failed| failed.mesh == mesh)
+    }
+
+    /// Counts the results that differ, for no known reason, from the results of other backends of
+    /// Sixfold.
+    pub fn mismatches(&self) -> usize {
+        self.findings.iter().map(Finding::mismatches).sum()
+    }
+
+    /// Returns true if a measurement was stopped early.
+    pub fn is_interrupted(&self) -> bool {
+        self.findings.iter().any(Finding::is_interrupted)
+    }
+
+    /// Computes the results over all studied meshes, such as mean times.
+    pub fn pool(&self) -> Pool {
+        let studies: Vec<&Report> = self.studies().collect();
+        Pool::new(&studies)
+    }
+
+    /// Writes the document as JSON, in the format that `reports/SCHEMA.md` explains. With studies of
+    /// several meshes, the document also has the results over all meshes ([`Pool`]).
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of `writer`.
+    pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
+        let mut runs: Vec<&Run> = Vec::new();
+        let mut meshes: Vec<&MeshReport> = Vec::new();
+        let written = |finding| {
+            let run: &Run = Finding::run(finding);
+            WrittenFinding {
+                run: place_of(&mut runs, run, Run::is_same),
+                meshes: finding
+                    .meshes()
+                    .iter()
+                    .map(|mesh| place_of(&mut meshes, mesh, |a, b| a == b))
+                    .collect(),
+                start: run.start,
+                finding,
+            }
+        };
+        let findings = self.findings.iter().map(written).collect();
+        let document = Written {
+            schema: SCHEMA,
+            runs,
+            meshes,
+            planned: &self.planned,
+            missing: self.missing().count(),
+            failures: &self.failures,
+            findings,
+            pool: (self.planned.len() > 1).then(|| self.pool()),
+        };
+        write_json(&document, writer)
+    }
+
+    /// Reads the JSON that [`write_json`](Self::write_json) wrote.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the text is truncated or is not JSON, if another program wrote the text,
+    /// if the schema has another version, or if a value is impossible.
+    pub fn read_json(text: &str) -> Result<Self, ReadError> {
+        check_schema(text)?;
+        let document: ReadDocument = parse_json(text)?;
+        let mut results = Self::new(document.planned);
+        let no_entry = |list: &str, place: usize| ReadError::Malformed {
+            cause: format!("a finding names entry {place} of `{list}`, which does not exist"),
+        };
+        for read in document.findings {
+            let mut finding = read.finding;
+            let run = document.runs.get(read.run);
+            let run = run.ok_or_else(|| no_entry("runs", read.run))?;
+            let mesh = |&place: &usize| {
+                let mesh = document.meshes.get(place).cloned();
+                mesh.ok_or_else(|| no_entry("meshes", place))
+            };
+            let meshes: Result<Vec<MeshReport>, ReadError> = read.meshes.iter().map(mesh).collect();
+            let start = read.start;
+            finding.complete(
+                Run {
+                    start,
+                    ..run.clone()
+                },
+                meshes?,
+            )?;
+            results.add(finding);
+        }
+        for failed in document.failures {
+            if !results.is_done(&failed.mesh) {
+                results.add_failure(failed);
+            }
+        }
+        Ok(results)
+    }
+}
+
+/// Returns the place of `value` in `list`. Appends the value if the list has no equal one.
+fn place_of<'r, T>(list: &mut Vec<&'r T>, value: &'r T, equal: impl Fn(&T, &T) -> bool) -> usize {
+    let known = list.iter().position(|other| equal(other, value));
+    known.unwrap_or_else(|| {
+        list.push(value);
+        list.len() - 1
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,158 @@
+//! Single times of findings, in one form for all labs.
+
+use serde::Serialize;
+
+use crate::results::rows::{Agreement, MeshReport, ResultRow, Samples, Standing};
+
+/// One time in a finding: an operation on a backend.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure<'r> {
+    /// The mesh; `None` if the lab made its own mesh.
+    pub mesh: Option<&'r MeshReport>,
+    /// The numbers of vertices, edges and faces of the measured mesh.
+    pub elements_of_mesh: [usize; 3],
+    /// What distinguishes measurements of the same operation in one finding: the order of the
+    /// elements, the size of the shape, or the workload. Empty if there is only one case.
+    pub case: String,
+    /// The size of the backend in bytes; `None` if unknown.
+    pub backend_bytes: Option<usize>,
+    /// The time.
+    pub row: FigureRow<'r>,
+    /// The samples of the time; `None` if there are none.
+    pub samples: Option<&'r Samples>,
+    /// Ratios of times up to this value are noise, as the control of the finding shows.
+    pub noise: f64,
+}
+
+/// The time of an operation on a backend, without the mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FigureRow<'r> {
+    /// The name of the operation. In a pick, `mix` is the whole mix.
+    pub operation: String,
+    /// The name of the backend, such as `half-edge`.
+    pub backend: &'r str,
+    /// How the time was obtained.
+    pub status: Status,
+    /// The median time of one run, or the estimated time, in nanoseconds. `None` if the backend
+    /// refuses the operation.
+    pub ns: Option<f64>,
+    /// The bytes that one run allocates; `None` if they were not counted.
+    pub allocated_bytes: Option<usize>,
+    /// The smallest time of a sample.
+    pub min_ns: Option<f64>,
+    /// The 95 % confidence interval of `ns`.
+    pub interval_ns: Option<[f64; 2]>,
+    /// The number of elements that one run visits.
+    pub elements: Option<u64>,
+    /// The kind of the visited elements, such as `vertex`.
+    pub unit: String,
+    /// The ratio to the fastest backend.
+    pub ratio_to_best: Option<f64>,
+    /// The 95 % confidence interval of `ratio_to_best`.
+    pub ratio_interval: Option<[f64; 2]>,
+    /// The comparison with the other backends.
+    pub standing: Option<Standing>,
+    /// The comparison of the results with those of the other backends; `None` if the lab compares
+    /// all results of a backend at once.
+    pub agreement: Option<Agreement>,
+    /// The number of samples.
+    pub samples: usize,
+    /// The checksum of all results.
+    pub checksum: Option<f64>,
+    /// The number of elements of a sample; `None` if all elements were measured.
+    pub sample_size: Option<usize>,
+}
+
+/// How a time was obtained.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// Whole runs were measured.
+    Measured,
+    /// Runs on some of the elements were measured and scaled to the whole mesh.
+    Sampled,
+    /// The time is an estimate, because a run would exceed the time limit.
+    Estimated,
+    /// Bytes were counted. There is no time.
+    Counted,
+    /// There is no time, because the backend cannot do the operation on this mesh.
+    Refused,
+}
+
+impl<'r> FigureRow<'r> {
+    /// Returns a row without a time.
+    pub(crate) fn new(operation: String, backend: &'r str, status: Status) -> Self {
+        Self {
+            operation,
+            backend,
+            status,
+            ns: None,
+            allocated_bytes: None,
+            min_ns: None,
+            interval_ns: None,
+            elements: None,
+            unit: String::new(),
+            ratio_to_best: None,
+            ratio_interval: None,
+            standing: None,
+            agreement: None,
+            samples: 0,
+            checksum: None,
+            sample_size: None,
+        }
+    }
+
+    pub(crate) fn of_result(row: &'r ResultRow) -> Self {
+        let status = match (row.median_ns, row.sampled) {
+            (None, _) => Status::Estimated,
+            (Some(_), true) => Status::Sampled,
+            (Some(_), false) => Status::Measured,
+        };
+        let pair = |low: Option<f64>, high: Option<f64>| low.zip(high).map(|(l, h)| [l, h]);
+        Self {
+            ns: row.median_ns.or(row.estimated_ns),
+            min_ns: row.min_ns,
+            interval_ns: pair(row.ci_low_ns, row.ci_high_ns),
+            elements: row.elements,
+            unit: row.per.clone(),
+            ratio_to_best: row.ratio_to_best,
+            ratio_interval: pair(row.ratio_ci_low, row.ratio_ci_high),
+            standing: row.standing,
+            agreement: Some(row.agreement),
+            samples: row.samples,
+            checksum: row.checksum,
+            sample_size: row.sample_size,
+            ..Self::new(row.operation.name().into(), &row.backend, status)
+        }
+    }
+
+    /// Returns true if something was measured or counted, not estimated.
+    pub const fn is_measured(&self) -> bool {
+        matches!(
+            self.status,
+            Status::Measured | Status::Sampled | Status::Counted
+        )
+    }
+
+    /// Returns the time per element in nanoseconds.
+    pub fn ns_per_element(&self) -> Option<f64> {
+        Some(self.ns? / self.elements.filter(|&count| count > 0)? as f64)
+    }
+}
+
+impl Figure<'_> {
+    /// Returns the times of all samples that count, in nanoseconds.
+    pub fn counted_ns(&self) -> Vec<f64> {
+        self.samples.map_or_else(Vec::new, Samples::counted_ns)
+    }
+}
+
+/// Finds the samples of an operation on a backend.
+pub(crate) fn samples_of<'r>(
+    samples: &'r [Samples],
+    operation: &str,
+    backend: &str,
+) -> Option<&'r Samples> {
+    let of_it = |s: &&Samples| !s.control && s.operation == operation && s.backend == backend;
+    samples.iter().find(of_it)
+}

@@ -1,0 +1,110 @@
+//! Merging of documents, for example of the shards of a study of many meshes.
+
+use crate::labs::study::Report;
+use crate::results::document::Results;
+use crate::results::finding::Finding;
+
+/// The reason why two documents cannot be merged.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
+pub enum MergeError {
+    /// The studies have different settings, so their times cannot be pooled.
+    #[error(
+        "the settings differ: {what} is {theirs}, expected {ours}; measure again with the same \
+         settings"
+    )]
+    OtherSettings {
+        what: &'static str,
+        ours: String,
+        theirs: String,
+    },
+    /// Both documents have a study of the mesh, but the two meshes are different.
+    #[error(
+        "both have a study of {mesh}, but of different meshes: rename one of the two files and \
+         measure it again"
+    )]
+    OtherMesh { mesh: String },
+    /// Both documents have a study of the mesh.
+    #[error(
+        "both have a study of {mesh}: compare the two with `sixfold compare`, or leave one out"
+    )]
+    SecondStudy { mesh: String },
+}
+
+impl Results {
+    /// Adds the findings of `other`. A study replaces a failure. A finding that `self` has already
+    /// is not added again.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the studies of the two documents have different settings, if both have a
+    /// study of the same mesh, or if two different meshes have the same name. `self` is then
+    /// unchanged.
+    pub fn merge(&mut self, other: Self) -> Result<(), MergeError> {
+        if let (Some(ours), Some(theirs)) = (self.studies().next(), other.studies().next()) {
+            ours.run.settings.check_equal(&theirs.run.settings)?;
+        }
+        self.check_memory(&other)?;
+        for study in other.studies() {
+            let name = &study.mesh.name;
+            let Some(known) = self.studies().find(|known| known.mesh.name == *name) else {
+                continue;
+            };
+            let mesh = name.clone();
+            if known.mesh.sha256 != study.mesh.sha256 {
+                return Err(MergeError::OtherMesh { mesh });
+            }
+            if known.run != study.run {
+                return Err(MergeError::SecondStudy { mesh });
+            }
+        }
+        other.planned.into_iter().for_each(|mesh| self.plan(mesh));
+        for finding in other.findings {
+            let is_known = match &finding {
+                Finding::Study(study) => self
+                    .studies()
+                    .any(|known| known.mesh.name == study.mesh.name),
+                finding => self.findings.iter().any(|known| is_copy(known, finding)),
+            };
+            if !is_known {
+                self.add(finding);
+            }
+        }
+        for failed in other.failures {
+            if !self.is_done(&failed.mesh) {
+                self.add_failure(failed);
+            }
+        }
+        self.sort();
+        Ok(())
+    }
+
+    /// Returns an error if the studies of `other` used another heap policy or cache state. With
+    /// little free memory, a study uses the system's heap instead of the policy in the settings.
+    fn check_memory(&self, other: &Self) -> Result<(), MergeError> {
+        let memory = |study: &Report| study.run.environment.memory_settings();
+        let Some(ours) = self.studies().next().map(memory) else {
+            return Ok(());
+        };
+        match other.studies().map(memory).find(|theirs| *theirs != ours) {
+            None => Ok(()),
+            Some(theirs) => {
+                let i = usize::from(ours[0] == theirs[0]);
+                Err(MergeError::OtherSettings {
+                    what: ["--heap", "--caches"][i],
+                    ours: ours[i].into(),
+                    theirs: theirs[i].into(),
+                })
+            }
+        }
+    }
+}
+
+/// Returns whether two findings are copies of the same measurement.
+fn is_copy(a: &Finding, b: &Finding) -> bool {
+    a.kind() == b.kind()
+        && a.meshes() == b.meshes()
+        && a.run() == b.run()
+        && a.sentences() == b.sentences()
+}

@@ -1,0 +1,390 @@
+//! The rows of findings: times, samples, backends and meshes.
+
+use serde::{Deserialize, Serialize};
+use sixfold::{Capabilities, Facts, TableBytes};
+
+use crate::engine::disturbance::undisturbed;
+use crate::engine::measure::Entry;
+use crate::external::ExternalReport;
+use crate::results::read::ReadError;
+use sixfold_workload::Operation;
+
+/// All samples (timed series of runs) of one operation on one backend. All lists except `first_ns`
+/// contain one value for each sample.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Samples {
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+    /// The name of the measured operation, such as `vertex_normal`. In a pick, `mix` is the whole
+    /// mix.
+    pub operation: String,
+    /// True if these samples belong to the control. The control is a second measurement of one
+    /// backend, which shows the noise.
+    pub control: bool,
+    /// For each sample, the number of the round.
+    pub rounds: Vec<u32>,
+    /// For each sample, the processor time of one run, in nanoseconds. `None` if the processor time
+    /// is unknown.
+    pub cpu_ns: Option<Vec<f64>>,
+    /// For each sample, the wall time of one run, in nanoseconds.
+    pub wall_ns: Vec<f64>,
+    /// For each sample, the number of page faults; `None` if page faults were not counted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub faults: Option<Vec<u64>>,
+    /// For each sample, the slowdown of the machine. A small fixed piece of work is timed before
+    /// and after the sample. The slowdown is the longer time of the fixed work, divided by the time
+    /// of the fixed work on an undisturbed machine. If at least half of the samples have a
+    /// slowdown of at most 1.3, the other samples do not count.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub slowdowns: Vec<f64>,
+    /// The times of first runs, in nanoseconds. A first run uses fresh memory pages and new tables.
+    /// First runs take place after the last round.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub first_ns: Vec<f64>,
+}
+
+impl Samples {
+    /// Returns the samples of an entry; `None` if there are none. `control` tells whether they
+    /// belong to the second copy of the control.
+    pub(crate) fn of_entry(entry: &Entry, backend: &str, control: bool) -> Option<Self> {
+        if entry.samples.is_empty() {
+            return None;
+        }
+        let times = || entry.samples.iter().map(|(_, time)| time);
+        Some(Self {
+            backend: backend.to_owned(),
+            operation: entry.name.to_owned(),
+            control,
+            rounds: entry.samples.iter().map(|(round, _)| *round).collect(),
+            cpu_ns: times().map(|time| time.cpu_ns).collect(),
+            wall_ns: times().map(|time| time.wall_ns).collect(),
+            faults: times().map(|time| time.faults).collect(),
+            slowdowns: entry.slowdowns.clone(),
+            first_ns: entry
+                .first_times
+                .iter()
+                .map(|[first, _]| first.ns())
+                .collect(),
+        })
+    }
+
+    /// Returns the times of all undisturbed samples, in nanoseconds. The times are processor times
+    /// if known, else wall times. If less than half of the samples are undisturbed, returns the
+    /// times of all samples.
+    pub fn counted_ns(&self) -> Vec<f64> {
+        undisturbed(
+            self.cpu_ns.as_ref().unwrap_or(&self.wall_ns),
+            &self.slowdowns,
+        )
+    }
+}
+
+/// The name, the hash and the facts of a mesh.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub struct MeshReport {
+    /// The name of the mesh: a file name or a description.
+    pub name: String,
+    /// The SHA-256 of the positions and faces as measured, as 64 hexadecimal digits. All numbers
+    /// have 32 bits and begin with the lowest byte: the number of vertices, three coordinates for
+    /// each vertex, and for each face the number of corners and the vertices of the corners.
+    pub sha256: String,
+    /// The SHA-256 of the file; `None` if the mesh was not read from a file.
+    pub file_sha256: Option<String>,
+    /// The topological facts of the mesh.
+    #[serde(flatten)]
+    pub facts: Facts,
+    /// Changes that were made to the mesh before the study, as phrases.
+    pub changes: Vec<String>,
+}
+
+/// The memory of a backend on one mesh, or the reason why the backend cannot hold the mesh.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct BackendReport {
+    /// The name of the backend, such as `half-edge`.
+    pub name: String,
+    /// True if the backend can hold the mesh.
+    pub holds: bool,
+    /// Why the backend cannot hold the mesh; `None` if the backend can hold the mesh.
+    pub reason: Option<String>,
+    /// Actual size in bytes; `None` if the backend was not built.
+    pub bytes: Option<usize>,
+    /// Actual size per vertex of the mesh, in bytes.
+    pub bytes_per_vertex: Option<f64>,
+    /// Size by the layout formula of the backend, in bytes; `None` if the backend cannot hold the
+    /// mesh or has no formula.
+    pub layout_bytes: Option<usize>,
+    /// Size by the layout formula per vertex of the mesh, in bytes.
+    pub layout_bytes_per_vertex: Option<f64>,
+    /// Actual size of each table, in bytes.
+    pub tables: Vec<TableBytes>,
+    /// Number of vertices that the backend merged with another vertex of equal coordinates.
+    pub merged_vertices: Option<usize>,
+    /// The capabilities of a structure; `None` for an external program.
+    pub capabilities: Option<Capabilities>,
+    /// The external program; `None` for a structure.
+    pub external: Option<ExternalReport>,
+}
+
+/// The result of one operation on one backend. All times are times of one run on the whole mesh, in
+/// nanoseconds.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct ResultRow {
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+    /// The measured operation, such as `vertex_normal`.
+    pub operation: Operation,
+    /// The median time of the samples; `None` if nothing was measured.
+    pub median_ns: Option<f64>,
+    /// The smallest time of a sample.
+    pub min_ns: Option<f64>,
+    /// The lower end of the 95 % confidence interval of `median_ns`; `None` with fewer than three
+    /// samples.
+    pub ci_low_ns: Option<f64>,
+    /// The upper end of the 95 % confidence interval of `median_ns`.
+    pub ci_high_ns: Option<f64>,
+    /// The number of elements that a whole run visits.
+    pub elements: Option<u64>,
+    /// The kind of the visited elements: `vertex`, `edge`, `face`, `new face`, or `visit`.
+    pub per: String,
+    /// The median time per element, in nanoseconds.
+    pub ns_per_element: Option<f64>,
+    /// The median of the wall times (elapsed times).
+    pub wall_median_ns: Option<f64>,
+    /// The smallest wall time (elapsed time) of a sample.
+    pub wall_min_ns: Option<f64>,
+    /// True if the operation was run on only some of the elements. The times and the number of
+    /// elements are scaled to the whole mesh.
+    pub sampled: bool,
+    /// The number of elements of each kind on which the operation was run; `None` if the operation
+    /// was run on all elements.
+    pub sample_size: Option<usize>,
+    /// The estimated time of a whole run, if no run was measured.
+    pub estimated_ns: Option<f64>,
+    /// A checksum of all results of the operation, for comparison with other backends. `None` if
+    /// nothing was measured or if the sum overflows.
+    pub checksum: Option<f64>,
+    /// The comparison of the checksum with the checksums of other backends.
+    pub agreement: Agreement,
+    /// The comparison of the time with the times of the other backends. `None` if nothing was
+    /// measured or if the backend did other work than the other backends.
+    pub standing: Option<Standing>,
+    /// The time of this backend divided by the time of the fastest backend, as the median over the
+    /// rounds. The fastest backend has the ratio 1.
+    pub ratio_to_best: Option<f64>,
+    /// The lower end of the 95 % confidence interval of `ratio_to_best`.
+    pub ratio_ci_low: Option<f64>,
+    /// The upper end of the 95 % confidence interval of `ratio_to_best`.
+    pub ratio_ci_high: Option<f64>,
+    /// The number of samples (timed series of runs).
+    pub samples: usize,
+    /// The number of consecutive runs in one sample.
+    pub runs_per_sample: u32,
+    /// True if the only sample is the warm-up run, which has cold caches.
+    pub warm_up_only: bool,
+    /// True if the time is only an estimate because the settings do not name the operation.
+    pub by_name_only: bool,
+    /// The largest number of page faults in a sample; `None` if page faults were not counted.
+    pub faults: Option<u64>,
+    /// The number of samples that were measured again because of page faults or other programs.
+    pub retaken: u32,
+    /// The number of samples that do not count because other programs disturbed them.
+    pub disturbed: usize,
+    /// The time of a first run, which uses fresh memory pages and tables of exact size. Use this
+    /// time for a program that runs the operation only once. The value is `median_ns` multiplied by
+    /// the median ratio of a first run to the following run. `None` if first runs were not
+    /// measured, for example because the operation does not allocate.
+    pub first_ns: Option<f64>,
+    /// The number of measured first runs.
+    pub first_samples: usize,
+    /// The largest number of page faults in a first run; `None` if page faults were not counted.
+    pub first_faults: Option<u64>,
+}
+
+impl ResultRow {
+    /// Creates a result without measurements.
+    pub fn new(backend: &str, operation: Operation) -> Self {
+        Self {
+            backend: backend.into(),
+            operation,
+            median_ns: None,
+            min_ns: None,
+            ci_low_ns: None,
+            ci_high_ns: None,
+            elements: None,
+            per: operation.unit().into(),
+            ns_per_element: None,
+            wall_median_ns: None,
+            wall_min_ns: None,
+            sampled: false,
+            sample_size: None,
+            estimated_ns: None,
+            checksum: None,
+            agreement: Agreement::Unchecked,
+            standing: None,
+            ratio_to_best: None,
+            ratio_ci_low: None,
+            ratio_ci_high: None,
+            samples: 0,
+            runs_per_sample: 1,
+            warm_up_only: false,
+            by_name_only: false,
+            faults: None,
+            retaken: 0,
+            disturbed: 0,
+            first_ns: None,
+            first_samples: 0,
+            first_faults: None,
+        }
+    }
+
+    /// Returns `first_ns` divided by `median_ns`; `None` if a value is unknown.
+    pub fn first_ratio(&self) -> Option<f64> {
+        let (first, median) = self.first_ns.zip(self.median_ns)?;
+        (median > 0.0).then(|| first / median)
+    }
+}
+
+/// Tables show the time of a first run if [`ResultRow::first_ratio`] is above this value.
+pub const FIRST_TIME_SHOWN: f64 = 1.1;
+
+/// Two measurements of the same backend (an A/A control). The difference between the two
+/// measurements is the noise of the machine and of the clock.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Control {
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+    /// The ratio of the two measurements for each operation.
+    pub operations: Vec<ControlRow>,
+    /// The longer time divided by the shorter time, as the median over the operations.
+    pub typical: f64,
+    /// The longer time divided by the shorter time, as the maximum over the operations.
+    pub worst: f64,
+}
+
+/// Maximum acceptable ratio between the two columns of a control.
+const UNSTEADY: f64 = 1.05;
+
+/// The difference between two measurements of the same backend in one operation.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+pub struct ControlRow {
+    /// The measured operation, such as `vertex_normal`.
+    pub operation: Operation,
+    /// The time of the second measurement divided by the time of the first measurement, as the
+    /// median over the rounds.
+    pub ratio: f64,
+    /// The lower end of the 95 % confidence interval of `ratio`; `None` with fewer than three
+    /// rounds.
+    pub ci_low: Option<f64>,
+    /// The upper end of the 95 % confidence interval of `ratio`.
+    pub ci_high: Option<f64>,
+}
+
+impl ControlRow {
+    /// Returns true if the times of the two measurements differ by more than 5 % and the 95 %
+    /// confidence interval of `ratio` does not contain 1.
+    pub fn is_unsteady(&self) -> bool {
+        let interval = self.ci_low.zip(self.ci_high);
+        let beyond_chance = interval.is_some_and(|(low, high)| low > 1.0 || high < 1.0);
+        self.difference() > UNSTEADY && beyond_chance
+    }
+
+    /// Returns the longer time of the two measurements divided by the shorter time.
+    pub fn difference(&self) -> f64 {
+        self.ratio.max(self.ratio.recip())
+    }
+}
+
+/// An operation that a backend cannot do on this mesh.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct Refusal {
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+    /// The operation that the backend cannot do, such as `loop_native`.
+    pub operation: Operation,
+    /// Why the backend cannot do the operation.
+    pub reason: String,
+}
+
+/// The result of comparing the checksums of one operation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Agreement {
+    /// The checksum is the same as on another backend, so both backends did the same work.
+    Same,
+    /// The checksum differs because vertices with equal coordinates were merged.
+    Merged,
+    /// The backend refuses different edits than the other backends, so the checksum may differ. For
+    /// example, only some structures can hold the result of an edge collapse.
+    OtherEdits,
+    /// The checksum differs for no known reason, so at least one result is wrong.
+    Mismatch,
+    /// The checksum was not compared, for example because no other backend has a result.
+    Unchecked,
+}
+
+/// The comparison of the time of a backend with the times of the other backends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Standing {
+    /// The backend is measurably faster than all other backends.
+    Best,
+    /// No backend is measurably faster, and at least one backend is equally fast.
+    Tied,
+    /// Another backend is measurably faster.
+    Slower,
+    /// No other backend was measured.
+    Alone,
+}
+
+/// Returns an error if the lists of samples have different lengths, or for an impossible time.
+pub(crate) fn check_samples(samples: &[Samples]) -> Result<(), ReadError> {
+    for one in samples {
+        let of = format!("the samples of {} on {}", one.operation, one.backend);
+        let cpu = one.cpu_ns.as_ref().unwrap_or(&one.wall_ns);
+        let optional = [one.slowdowns.len(), one.faults.as_ref().map_or(0, Vec::len)];
+        let fits = |len: usize| len == one.rounds.len();
+        let fit = fits(one.wall_ns.len()) && fits(cpu.len());
+        if !fit || !optional.into_iter().all(|len| len == 0 || fits(len)) {
+            return malformed(format!("{of} have columns of different lengths"));
+        }
+        if !one.wall_ns.iter().chain(cpu).all(is_time) {
+            return malformed(format!(
+                "{of} include a time that is negative or not finite"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Returns an error for an impossible time or ratio.
+pub(crate) fn check_results<'r>(
+    rows: impl IntoIterator<Item = &'r ResultRow>,
+) -> Result<(), ReadError> {
+    for row in rows {
+        if !row.median_ns.iter().all(is_time) || row.ratio_to_best.is_some_and(|r| r <= 0.0) {
+            let (operation, backend) = (row.operation, &row.backend);
+            return malformed(format!("invalid time or ratio of {operation} on {backend}"));
+        }
+    }
+    Ok(())
+}
+
+/// Returns an error for a ratio that is not positive.
+pub(crate) fn check_control(control: Option<&Control>) -> Result<(), ReadError> {
+    let mut rows = control.into_iter().flat_map(|control| &control.operations);
+    match rows.find(|row| row.ratio <= 0.0) {
+        Some(row) => malformed(format!(
+            "the control of {} has a ratio that is not positive",
+            row.operation
+        )),
+        None => Ok(()),
+    }
+}
+
+fn is_time(ns: &f64) -> bool {
+    *ns >= 0.0 && ns.is_finite()
+}
+
+fn malformed(cause: String) -> Result<(), ReadError> {
+    Err(ReadError::Malformed { cause })
+}

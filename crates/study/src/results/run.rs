@@ -1,0 +1,144 @@
+//! How results were measured: the command, its settings, and the machine.
+
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use serde::{Deserialize, Serialize};
+use sixfold_workload::Operation;
+use sixfold_workload::pages::Policy;
+use sysinfo::System;
+
+use crate::engine::heap::{CacheState, Memory};
+use crate::labs::study::Settings;
+use crate::results::environment::Environment;
+use crate::results::merge::MergeError;
+
+/// How results were measured: the command, its settings, the program and the machine.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub struct Run {
+    /// The command line that repeats the measurement; `None` if the results were not made by the
+    /// command `sixfold`.
+    pub command: Option<String>,
+    /// The settings that all measuring commands share. The settings of one command, such as the
+    /// workload of a pick, are in its finding.
+    pub settings: RunSettings,
+    /// The program and the machine.
+    pub environment: Environment,
+    /// The start of the measurement. In JSON, each finding has its own start.
+    #[serde(skip)]
+    pub start: Start,
+}
+
+/// The start of a measurement.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub struct Start {
+    /// The time of day, in seconds since 1970.
+    pub unix_time: u64,
+    /// Mean number of runnable threads in the minute before the measurement; `None` if unknown.
+    pub load_average: Option<f64>,
+}
+
+/// The settings that all measuring commands share.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub struct RunSettings {
+    /// The names of the requested backends. An empty list means all backends.
+    pub backends: Vec<String>,
+    /// The names of the external programs.
+    pub externals: Vec<String>,
+    /// The requested operations. An empty list means the default of the command.
+    pub operations: Vec<Operation>,
+    /// Time budget of the finding, in seconds.
+    pub budget_s: f64,
+    /// Seed of the random numbers. They determine the order of elements in a sample and the order
+    /// of the measurements, but not the size of a sample.
+    pub seed: u64,
+    /// What happens to freed memory pages.
+    pub heap: Policy,
+    /// State of the processor caches when a timed series of runs begins.
+    pub caches: CacheState,
+    /// True if faces with more than three corners were cut into triangles before the measurement.
+    pub triangulate: bool,
+    /// True if files with degenerate faces were refused.
+    pub strict: bool,
+}
+
+impl Run {
+    /// Describes a measurement that begins now.
+    pub fn start(settings: RunSettings) -> Self {
+        Self {
+            command: None,
+            settings,
+            environment: Environment::detect(),
+            start: Start::now(),
+        }
+    }
+
+    /// Returns whether the command, the settings and the environment are the same.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        let parts = |run: &Self| (run.command.clone(), run.settings.clone());
+        parts(self) == parts(other) && self.environment == other.environment
+    }
+
+    pub(crate) fn with_memory(self, memory: &Memory) -> Self {
+        Self {
+            environment: self.environment.with_memory(memory),
+            ..self
+        }
+    }
+}
+
+impl Start {
+    fn now() -> Self {
+        let since = SystemTime::now().duration_since(UNIX_EPOCH);
+        Self {
+            unix_time: since.map_or(0, |time| time.as_secs()),
+            load_average: cfg!(unix).then(|| System::load_average().one),
+        }
+    }
+}
+
+impl RunSettings {
+    /// Returns the settings of a study.
+    pub fn of_study(settings: &Settings) -> Self {
+        let externals = settings.externals.iter().map(|other| other.name.clone());
+        Self {
+            backends: settings.backends.clone(),
+            externals: externals.collect(),
+            operations: settings.operations.clone(),
+            budget_s: settings.budget.as_secs_f64(),
+            seed: settings.seed,
+            heap: settings.heap,
+            caches: settings.caches,
+            triangulate: false,
+            strict: false,
+        }
+    }
+
+    /// Returns an error if `other` has other settings, because the times of two studies can then
+    /// not be pooled.
+    pub(crate) fn check_equal(&self, other: &Self) -> Result<(), MergeError> {
+        let options = |settings: &Self| -> [(&'static str, String); 9] {
+            let operations: Vec<&str> = settings.operations.iter().map(|o| o.name()).collect();
+            [
+                ("--backends", settings.backends.join(",")),
+                ("--external", settings.externals.join(",")),
+                ("--operations", operations.join(",")),
+                ("--budget", format!("{} s", settings.budget_s)),
+                ("--seed", settings.seed.to_string()),
+                ("--heap", settings.heap.to_string()),
+                ("--caches", settings.caches.name().into()),
+                ("--triangulate", settings.triangulate.to_string()),
+                ("--strict", settings.strict.to_string()),
+            ]
+        };
+        for ((what, ours), (_, theirs)) in options(self).into_iter().zip(options(other)) {
+            if ours != theirs {
+                let [ours, theirs] = [ours, theirs].map(|text| match text.is_empty() {
+                    true => "all".into(),
+                    false => text,
+                });
+                return Err(MergeError::OtherSettings { what, ours, theirs });
+            }
+        }
+        Ok(())
+    }
+}
