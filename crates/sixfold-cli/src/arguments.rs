@@ -13,6 +13,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
+use sixfold::io::Format;
 use sixfold::shapes::Order;
 use sixfold_study::{CacheState, External, Operation, Policy};
 
@@ -108,6 +109,22 @@ Exit codes: 0 success; 2 wrong usage or unusable input; 4 interrupted.";
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
+    #[command(flatten)]
+    pub(crate) files: FileOptions,
+}
+
+/// How meshes are read and written, for all commands.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub(crate) struct FileOptions {
+    /// Write meshes as NAME, whatever the file is called: obj, stl, stl-ascii, ply, ply-ascii, …
+    #[arg(long, global = true, value_name = "NAME", help_heading = "Mesh files")]
+    pub(crate) format: Option<Format>,
+    /// Keep the vertices of STL files apart, three for each facet
+    #[arg(long, global = true, help_heading = "Mesh files")]
+    pub(crate) as_stored: bool,
+    /// Move meshes to the origin before coordinates are rounded to 32 bits
+    #[arg(long, global = true, help_heading = "Mesh files")]
+    pub(crate) recentre: bool,
 }
 
 #[derive(Debug, Subcommand)]

@@ -3,33 +3,18 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use sixfold::io::{LeftOut, ObjMesh, read_obj};
+use sixfold::io::LeftOut;
 use sixfold::{Creases, PolygonMesh, shapes};
 use sixfold_study::{ReadError, StudyMesh};
 
 use crate::failure::Failure;
-use crate::output::is_stdout;
+use crate::mesh_files::read_mesh;
 use crate::text::print_stderr;
 use crate::triangulate::triangulated;
 use sixfold_study::numbers::counted;
 
 /// Maximum number of listed faces that were left out.
 const SHOWN: usize = 5;
-
-/// Reads an OBJ file. Prints a note for each ignored part.
-pub(crate) fn read(path: &Path) -> Result<ObjMesh, Failure> {
-    // Other arguments accept `-` as standard output. Here `-` would be a file name.
-    if is_stdout(path) {
-        return Err(Failure::usage(
-            "-: standard input is not read: write the mesh to a file and name the file",
-        ));
-    }
-    let mesh = read_obj(path).map_err(Failure::usage)?;
-    for notice in &mesh.notices {
-        print_stderr(&format!("note: {}: {notice}", path.display()));
-    }
-    Ok(mesh)
-}
 
 /// Reads a mesh without its degenerate faces. Lists the degenerate faces.
 pub(crate) fn study_mesh(path: &Path) -> Result<StudyMesh, Failure> {
@@ -75,7 +60,7 @@ pub(crate) fn for_study(
 
 /// Reads a mesh without its degenerate faces. Also returns the creases in the file.
 pub(crate) fn with_creases(path: &Path) -> Result<(PolygonMesh, Creases), Failure> {
-    let mesh = read(path)?;
+    let mesh = read_mesh(path)?;
     let (creases, unused) = mesh.creases();
     for crease in &unused {
         print_stderr(&format!("note: {}: {crease}", path.display()));
@@ -138,7 +123,7 @@ fn print_left_out(path: &Path, left_out: &[LeftOut]) {
 }
 
 fn from_file(path: &Path) -> Result<(StudyMesh, Vec<LeftOut>), Failure> {
-    let mesh = read(path)?;
+    let mesh = read_mesh(path)?;
     let facts = mesh.facts();
     let (polygons, left_out) = mesh.into_polygons();
     let mut changes = Vec::new();

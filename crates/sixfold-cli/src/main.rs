@@ -23,6 +23,7 @@ mod inspect;
 mod load;
 mod many;
 mod memory;
+mod mesh_files;
 mod orders;
 mod outcome;
 mod output;
@@ -43,11 +44,12 @@ mod why_text;
 mod workloads;
 
 use std::io::{self, Write};
-use std::path::Path;
 use std::process::ExitCode;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches};
+
+use sixfold::io::Format;
 
 use arguments::{Arguments, Command};
 use failure::Failure;
@@ -62,7 +64,11 @@ fn main() -> ExitCode {
     let arguments = command
         .try_get_matches()
         .and_then(|matches| Arguments::from_arg_matches(&matches));
-    let done = match arguments.map(|arguments| arguments.command) {
+    let command = arguments.map(|arguments| {
+        mesh_files::set_options(arguments.files);
+        arguments.command
+    });
+    let done = match command {
         Err(error) => print_clap_message(&error),
         Ok(None) => study::run(&arguments::Study::default()),
         Ok(Some(Command::Study(arguments))) => study::run(&arguments),
@@ -100,9 +106,7 @@ fn main() -> ExitCode {
 fn print_clap_message(error: &clap::Error) -> Result<ExitCode, Failure> {
     if let (ErrorKind::InvalidSubcommand, Some(ContextValue::String(word))) =
         (error.kind(), error.get(ContextKind::InvalidSubcommand))
-        && Path::new(word)
-            .extension()
-            .is_some_and(|ending| ending.eq_ignore_ascii_case("obj"))
+        && Format::from_path(word).is_some()
     {
         return Err(Failure::usage(format!(
             "`{word}` is a file, not a command: did you mean `sixfold study {word}`?"

@@ -4,6 +4,7 @@ mod bad_input;
 mod changes;
 mod comparing;
 mod external;
+mod formats;
 mod golden;
 mod interrupt;
 mod json_csv;

@@ -262,7 +262,7 @@ fn invalid_places_are_refused_before_anything_is_measured() {
     let sixfold = scans();
     fs::create_dir(sixfold.folder().join("empty")).expect("a folder");
     for (arguments, message) in [
-        (&["study", "empty"][..], "no .obj file"),
+        (&["study", "empty"][..], "no mesh file"),
         (
             &["study", "scans", "--csv", "x.csv"],
             "--csv is for one mesh",

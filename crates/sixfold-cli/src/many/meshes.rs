@@ -1,12 +1,16 @@
 //! Finds the meshes of a study in files and folders.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use sixfold::io::Format;
+use sixfold_study::numbers::counted;
+
 use crate::failure::Failure;
+use crate::text::print_stderr;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Mesh {
@@ -48,7 +52,8 @@ impl FromStr for Shard {
 }
 
 /// Returns the meshes in `places`, without duplicates and sorted by name. Searches folders and
-/// their subfolders for OBJ files. If `places` is empty, returns the built-in mesh.
+/// their subfolders for mesh files, and prints a note about other files. If `places` is empty,
+/// returns the built-in mesh.
 pub(crate) fn find_meshes(places: &[PathBuf]) -> Result<Vec<Mesh>, Failure> {
     let mut meshes: Vec<Mesh> = Vec::new();
     if places.is_empty() {
@@ -59,18 +64,23 @@ pub(crate) fn find_meshes(places: &[PathBuf]) -> Result<Vec<Mesh>, Failure> {
     for place in places {
         let mut files = Vec::new();
         if place.is_dir() {
-            let listed = list_obj_files(place, &mut files);
+            let mut skipped = BTreeMap::new();
+            let listed = list_mesh_files(place, &mut files, &mut skipped);
             listed.map_err(|(folder, cause)| {
                 Failure::usage(format!(
                     "{}: cannot be listed ({cause}): check the permissions of this directory",
                     folder.display()
                 ))
             })?;
+            print_skipped(place, &skipped);
             if files.is_empty() {
                 return Err(Failure::usage(format!(
-                    "{}: no .obj file in this directory or its subdirectories: name another \
-                     directory",
-                    place.display()
+                    "{}: no mesh file in this directory or its subdirectories ({}): name \
+                     another directory",
+                    place.display(),
+                    Format::EXTENSIONS
+                        .map(|ending| format!(".{ending}"))
+                        .join(", ")
                 )));
             }
         } else {
@@ -94,9 +104,31 @@ fn name_of(path: &Path) -> String {
         .map_or_else(|| format!("{path:?}"), ToOwned::to_owned)
 }
 
-/// Lists all OBJ files in `folder` and its subfolders, sorted by name. Skips hidden files. Does not
+/// Prints how many files of a folder were skipped, by the endings of their names.
+fn print_skipped(folder: &Path, skipped: &BTreeMap<String, usize>) {
+    let count: usize = skipped.values().sum();
+    if count > 0 {
+        let endings: Vec<String> = skipped
+            .iter()
+            .map(|(ending, count)| format!("{count} {ending}"))
+            .collect();
+        print_stderr(&format!(
+            "note: {}: skipped {}, whose names do not end in a mesh format: {}",
+            folder.display(),
+            counted(count, "file", "files"),
+            endings.join(", ")
+        ));
+    }
+}
+
+/// Lists all mesh files in `folder` and its subfolders, sorted by name, and counts other files by
+/// the endings of their names. Ignores hidden files, which other programs leave behind. Does not
 /// follow links to folders, because they may form a cycle.
-fn list_obj_files(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), (PathBuf, io::Error)> {
+fn list_mesh_files(
+    folder: &Path,
+    files: &mut Vec<PathBuf>,
+    skipped: &mut BTreeMap<String, usize>,
+) -> Result<(), (PathBuf, io::Error)> {
     let failed = |cause| (folder.to_owned(), cause);
     let entries = fs::read_dir(folder).map_err(failed)?;
     let mut paths = Vec::new();
@@ -114,11 +146,17 @@ fn list_obj_files(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), (PathBu
     }
     paths.sort();
     for (path, is_folder) in paths {
-        let ending = path.extension();
         if is_folder {
-            list_obj_files(&path, files)?;
-        } else if ending.is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
+            list_mesh_files(&path, files, skipped)?;
+        } else if Format::from_path(&path).is_some() {
             files.push(path);
+        } else {
+            let ending = path
+                .extension()
+                .map(|ending| format!(".{}", ending.to_string_lossy()));
+            *skipped
+                .entry(ending.unwrap_or_else(|| "without an ending".into()))
+                .or_insert(0) += 1;
         }
     }
     Ok(())

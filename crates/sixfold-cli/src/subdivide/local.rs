@@ -4,13 +4,13 @@ use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
-use sixfold::io::write_obj;
 use sixfold::subdivision::{LocalError, LocalMesh, Scheme, Selection};
 use sixfold::{FaceId, Point, PolygonMesh, Representation, Visitor, visit};
 
 use crate::arguments::{Select, Subdivide};
 use crate::failure::Failure;
 use crate::load;
+use crate::mesh_files::write_mesh;
 use crate::output::{Output, check_not_overwritten, is_stdout};
 use crate::progress::Spinner;
 use crate::text::{TextOutput, sanitize};
@@ -47,7 +47,7 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
     let refined = refined
         .ok_or_else(|| Failure::usage(format!("no backend is called `{}`", arguments.backend)))??;
     let mesh = refined.polygons();
-    output.finish(|writer| write_obj(mesh, writer))?;
+    write_mesh(output, &arguments.output, mesh, &[])?;
     let mut text = TextOutput::new(!is_stdout(&arguments.output));
     let place = sanitize(&arguments.output.display().to_string());
     let vertices = counted(mesh.vertex_count(), "vertex", "vertices");
