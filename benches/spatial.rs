@@ -66,7 +66,7 @@ fn bench_points<T: SpatialIndex<Point>>(
                 queries
                     .iter()
                     .map(|&q| index.nearest(q))
-                    .for_each(|n| drop(black_box(n)))
+                    .for_each(|n| _ = black_box(n))
             });
         },
     );
@@ -113,7 +113,7 @@ fn bench_surface<T: SpatialIndex<Triangle>>(
                 queries
                     .iter()
                     .map(closest)
-                    .for_each(|point| drop(black_box(point)))
+                    .for_each(|point| _ = black_box(point))
             });
         },
     );
@@ -141,7 +141,7 @@ fn bench_surface<T: SpatialIndex<Triangle>>(
         BenchmarkId::new(format!("first hit/{}", T::NAME), size),
         |bench| {
             let hit = |ray| index.first_hit(ray, f64::INFINITY);
-            bench.iter(|| rays.iter().map(hit).for_each(|hit| drop(black_box(hit))));
+            bench.iter(|| rays.iter().map(hit).for_each(|hit| _ = black_box(hit)));
         },
     );
     group.finish();

@@ -22,9 +22,9 @@
 //!
 //! # Which one?
 //!
-//! [`KdTree`] for vertices and [`Bvh`] for surfaces. The grid is built fastest, but its queries are
-//! fast only if the items fill their box evenly, which a surface does not. The benchmark `spatial`
-//! measures all of them on your machine:
+//! [`Bvh`], unless there are few queries: then [`KdTree`] or [`Octree`], which are built in about half
+//! the time. The grid is built fastest, but its queries are fast only if the items fill their box
+//! evenly, which a surface does not. The benchmark `spatial` measures all of them on your machine:
 //! `cargo bench -p sixfold-benches --bench all -- spatial/`.
 //!
 //! # From a mesh

@@ -181,5 +181,5 @@ fn neighbour<V: Copy>(query: DVec3, item: &VertexPoint<V>) -> Neighbour<V> {
 /// Returns the squared radius, or `None` if the radius is negative or NaN.
 #[inline]
 pub(crate) fn squared_radius(radius: f64) -> Option<f64> {
-    (radius >= 0.0).then(|| radius * radius)
+    (radius >= 0.0).then_some(radius * radius)
 }

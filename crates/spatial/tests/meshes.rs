@@ -103,10 +103,10 @@ fn a_position_that_is_not_finite_is_named() {
 
 #[test]
 fn trees_do_not_depend_on_the_number_of_threads() {
-    fn items<T: SpatialIndex<I>, I: sixfold_spatial::Item>(threads: usize, items: &[I]) -> String
-    where
-        T: std::fmt::Debug,
-    {
+    fn items<T: SpatialIndex<I> + std::fmt::Debug, I: sixfold_spatial::Item>(
+        threads: usize,
+        items: &[I],
+    ) -> String {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let index = pool.expect("threads").install(|| T::build(items.to_vec()));
         format!("{:?}", index.expect("finite"))
