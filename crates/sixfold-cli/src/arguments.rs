@@ -1,6 +1,7 @@
 //! The command-line arguments.
 
 mod comparing;
+mod distance;
 mod memory;
 mod picking;
 mod remeshing;
@@ -18,6 +19,7 @@ use sixfold::shapes::Order;
 use sixfold_study::{CacheState, External, Operation, Policy};
 
 pub(crate) use comparing::{Compare, GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders};
+pub(crate) use distance::Distance;
 pub(crate) use memory::Memory;
 pub(crate) use picking::{Pick, Workloads};
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
@@ -149,6 +151,8 @@ pub(crate) enum Command {
     Compare(Compare),
     /// Show facts about a mesh, and which backends can hold it
     Inspect(Inspect),
+    /// Measure the distance between the surfaces of two meshes
+    Distance(Distance),
     /// Show the memory of each backend, counted in three ways that must agree
     Memory(Memory),
     /// Write a built-in shape

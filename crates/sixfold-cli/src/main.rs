@@ -12,6 +12,7 @@
 
 mod arguments;
 mod compare;
+mod distance;
 mod edits;
 mod facts_text;
 mod failure;
@@ -81,6 +82,7 @@ fn main() -> ExitCode {
         Ok(Some(Command::Report(arguments))) => many::draw(&arguments),
         Ok(Some(Command::Compare(arguments))) => compare::run(&arguments),
         Ok(Some(Command::Inspect(arguments))) => inspect::run(&arguments),
+        Ok(Some(Command::Distance(arguments))) => distance::run(&arguments),
         Ok(Some(Command::Memory(arguments))) => memory::run(&arguments),
         Ok(Some(Command::Generate(arguments))) => generate::run(&arguments),
         Ok(Some(Command::Schemes(arguments))) => schemes::run(&arguments),

@@ -42,6 +42,7 @@ fn help() {
         ("help_pick.txt", &["pick", "--help"]),
         ("help_workloads.txt", &["workloads", "--help"]),
         ("help_inspect.txt", &["inspect", "--help"]),
+        ("help_distance.txt", &["distance", "--help"]),
         ("help_memory.txt", &["memory", "--help"]),
         ("help_compare.txt", &["compare", "--help"]),
         ("help_merge.txt", &["merge", "--help"]),

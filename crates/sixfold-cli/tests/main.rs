@@ -3,6 +3,7 @@
 mod bad_input;
 mod changes;
 mod comparing;
+mod distance;
 mod external;
 mod formats;
 mod golden;

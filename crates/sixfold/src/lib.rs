@@ -13,6 +13,7 @@
 //! | [choose a structure](#choose-a-structure) | the table below, [`MeshQuery::CAPABILITIES`] |
 //! | smooth, triangulate, compute normals | [`operators`] |
 //! | simplify, remesh, make Delaunay | [`remeshing`] |
+//! | find nearest vertices, closest points, ray hits; compare two meshes | [`spatial`] |
 //! | store data at vertices, edges and faces | [`MeshQuery::vertex_map`], [`MeshWithData`] |
 //! | number elements from 0, for matrices | [`MeshQuery::vertex_numbers`] |
 //! | find the boundary | [`MeshQuery::boundary_loops`] |
@@ -171,7 +172,8 @@
 //!
 //! # Features
 //!
-//! - `rayon` (default): native subdivision steps use all threads.
+//! - `rayon` (default): native subdivision steps use all threads; so do builds of spatial indices and
+//!   batches of their queries.
 //! - `serde`: [`Facts`], [`Capabilities`], [`MemoryFootprint`], schemes and orders can be
 //!   serialised.
 //! - `mint`: [`PolygonMesh::new`] takes points and vectors of the crate `mint`, and a [`Point`]
@@ -234,6 +236,8 @@ pub use sixfold_operators as operators;
 pub use sixfold_remeshing as remeshing;
 #[doc(inline)]
 pub use sixfold_shapes as shapes;
+#[doc(inline)]
+pub use sixfold_spatial as spatial;
 #[doc(inline)]
 pub use sixfold_subdivision as subdivision;
 
