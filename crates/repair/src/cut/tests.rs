@@ -132,44 +132,52 @@ proptest! {
     }
 }
 
-/// Builds two boxes of unit cubes that touch only along the z axis; `length` cubes high.
-fn touching_boxes(length: u32) -> PolygonMesh {
-    let mut points = Vec::new();
-    for z in 0..=length {
-        for [x, y] in [[0, 0], [1, 0], [1, 1], [0, 1], [-1, 0], [-1, -1], [0, -1]] {
-            points.push([x as f32, y as f32, z as f32]);
-        }
-    }
+/// Builds two prisms that touch only along the z axis, `length` storeys high. Each of `rings` lists
+/// the corners of a prism in the plane, counter-clockwise from the first of `corners`, the origin.
+fn touching_prisms(corners: &[[f32; 2]], rings: [&[u32]; 2], length: u32) -> PolygonMesh {
+    let storey = corners.len() as u32;
+    let floors = (0..=length).map(|z| corners.iter().map(move |&[x, y]| [x, y, z as f32]));
     let mut faces = Vec::new();
-    for ring in [[0, 1, 2, 3], [0, 4, 5, 6]] {
+    for ring in rings {
         for z in 0..length {
-            for i in 0..4 {
-                let (a, b) = (ring[i] + 7 * z, ring[(i + 1) % 4] + 7 * z);
-                faces.push([a, b, b + 7, a + 7]);
+            for (i, &a) in ring.iter().enumerate() {
+                let b = ring[(i + 1) % ring.len()];
+                let side = [a, b, b + storey, a + storey];
+                faces.push(side.map(|v| v + storey * z).to_vec());
             }
         }
-        let [a, b, c, d] = ring;
-        faces.push([d, c, b, a]);
-        faces.push([a, b, c, d].map(|v| v + 7 * length));
+        faces.push(ring.iter().rev().copied().collect());
+        faces.push(ring.iter().map(|v| v + storey * length).collect());
     }
-    PolygonMesh::new(points, faces).expect("valid")
+    PolygonMesh::new(floors.flatten(), &faces).expect("valid")
 }
 
 #[test]
 fn solids_that_touch_along_edges_are_separated() {
+    let squares = [[0, 0], [1, 0], [1, 1], [0, 1], [-1, 0], [-1, -1], [0, -1]];
+    let squares = squares.map(|corner| corner.map(|x: i8| f32::from(x)));
+    // Faces of different wedges continue each other more straight than faces of one wedge.
+    let wedges = [
+        [0.0, 0.0],
+        [2.0, -1.0],
+        [2.0, 1.0],
+        [-2.0, 1.0],
+        [-2.0, -1.0],
+    ];
     for length in [1, 2, 5] {
-        let mesh = touching_boxes(length);
-        let facts = Facts::from_polygons(&mesh);
-        assert_eq!(facts.non_manifold_edges, length as usize);
-        let repaired = repair(&mesh, &[Step::Cut]).expect("small");
-        let facts = Facts::from_polygons(&repaired.polygons);
-        assert_eq!(
-            (facts.components, facts.closed, facts.genus),
-            (2, true, Some(0)),
-            "{length}"
-        );
-        assert_eq!(repaired.steps[0].counts.edges_cut, length as usize);
-        assert_eq!(repaired.steps[0].counts.vertices_added, length as usize + 1);
+        for mesh in [
+            touching_prisms(&squares, [&[0, 1, 2, 3], &[0, 4, 5, 6]], length),
+            touching_prisms(&wedges, [&[0, 1, 2], &[0, 3, 4]], length),
+        ] {
+            let facts = Facts::from_polygons(&mesh);
+            assert_eq!(facts.non_manifold_edges, length as usize);
+            let repaired = repair(&mesh, &[Step::Cut]).expect("small");
+            let facts = Facts::from_polygons(&repaired.polygons);
+            let found = (facts.components, facts.closed, facts.genus);
+            assert_eq!(found, (2, true, Some(0)), "{length}");
+            assert_eq!(repaired.steps[0].counts.edges_cut, length as usize);
+            assert_eq!(repaired.steps[0].counts.vertices_added, length as usize + 1);
+        }
     }
 }
 
