@@ -32,6 +32,7 @@
 //! - [`check_rows`], [`check_corners`], [`check_cut`]: checks of edits.
 //! - [`FaceSpans`]: the division of corners into faces.
 //! - [`TwinPairs`]: pairs of sides, for building without hashing.
+//! - [`Incidence`]: the sides of any list of faces by edge; [`Partition`]: union–find with parity.
 //! - [`ScannedFaces`]: queries and edits of structures that find the faces at a vertex by a scan.
 //! - [`Distinct`], [`ShortVec`], [`Lookup`]: distinct elements, short lists, and search in lists.
 //! - [`Ranks`], [`for_each_chunk`], [`map_chunks`], [`check_split`]: refinement on several threads.
@@ -134,9 +135,11 @@ pub use editing::{
 };
 pub use face_spans::{FaceSpans, ScatteredFaces};
 pub use holes::Holes;
+pub use incidence::{EdgeSides, Incidence, Side};
 pub use iterator_ext::{IteratorExt, MapInline};
 pub use new_rows::NewRows;
 pub use pairing::{LinkFaces, SideRows, TwinPairs, pair_triangle_sides};
+pub use partition::Partition;
 pub use ranks::Ranks;
 pub use refine::{
     CHUNK_ROWS, all_rows, check_split, chunk_starts, for_each_chunk, map_chunks, rows_of_chunk,

@@ -16,6 +16,17 @@ pub enum Facing {
     Outward,
 }
 
+/// The components that [`oriented_components`] may reverse.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Components {
+    /// All orientable components.
+    #[default]
+    All,
+    /// Components with two faces that disagree. A component that is consistent remains as it is,
+    /// even if it faces inward.
+    Inconsistent,
+}
+
 /// A mesh with consistent orientation, and the reversed faces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Oriented {
@@ -24,6 +35,30 @@ pub struct Oriented {
     pub polygons: PolygonMesh,
     /// The reversed faces, ascending.
     pub reversed: Vec<FaceId>,
+}
+
+/// A mesh whose orientable components are consistent, the faces that were reversed for it, and the
+/// components that are not orientable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OrientedComponents {
+    /// The mesh. The vertices, the order of the faces and their first corners are unchanged.
+    pub polygons: PolygonMesh,
+    /// The faces whose corners were reversed, ascending.
+    pub reversed: Vec<FaceId>,
+    /// The components that are not orientable, in the order of their first faces. None of their
+    /// faces is reversed.
+    pub not_orientable: Vec<NotOrientable>,
+}
+
+/// A component whose faces cannot agree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NotOrientable {
+    /// Its first face.
+    pub face: FaceId,
+    /// The number of its faces.
+    pub faces: usize,
+    /// The ends of an edge at which the faces cannot agree, the lower first.
+    pub ends: [VertexId; 2],
 }
 
 /// Reverses faces until no two faces run along an edge in the same direction.
@@ -43,31 +78,62 @@ pub struct Oriented {
 /// # Errors
 ///
 /// Returns [`OrientationError::NotOrientable`] if the faces of a component cannot agree, with an
-/// edge of the component.
+/// edge of the component. [`oriented_components`] leaves such components as they are.
 ///
 /// # Complexity
 ///
 /// O(n log n) for n corners.
 pub fn oriented(polygons: &PolygonMesh, facing: Facing) -> Result<Oriented, OrientationError> {
+    let OrientedComponents {
+        polygons,
+        reversed,
+        not_orientable,
+    } = oriented_components(polygons, facing, Components::All);
+    match not_orientable.first() {
+        Some(&NotOrientable { ends, .. }) => Err(OrientationError::NotOrientable { ends }),
+        None => Ok(Oriented { polygons, reversed }),
+    }
+}
+
+/// Orients the orientable components of the kind `which` like [`oriented`]; the components that are
+/// not orientable remain unchanged and are named. O(n log n) for n corners.
+pub fn oriented_components(
+    polygons: &PolygonMesh,
+    facing: Facing,
+    which: Components,
+) -> OrientedComponents {
     let faces = polygons.faces();
     let neighbours = side_neighbours(faces);
     let mut reverse: Vec<Option<bool>> = vec![None; faces.len()];
     let mut component = Vec::new();
+    let mut not_orientable = Vec::new();
     for (seed, _) in faces.iter() {
         if reverse[seed.index()].is_some() {
             continue;
         }
         component.clear();
-        orient_component(seed, faces, &neighbours, &mut reverse, &mut component)?;
+        let conflict = orient_component(seed, faces, &neighbours, &mut reverse, &mut component);
+        if let Some(ends) = conflict {
+            not_orientable.push(NotOrientable {
+                face: seed,
+                faces: component.len(),
+                ends,
+            });
+            for f in &component {
+                reverse[f.index()] = Some(false);
+            }
+            continue;
+        }
         let reversed = component
             .iter()
-            .filter(|f| reverse[f.index()] == Some(true));
-        let majority = 2 * reversed.count() > component.len();
+            .filter(|f| reverse[f.index()] == Some(true))
+            .count();
+        let majority = 2 * reversed > component.len();
         let reverse_all = match facing {
-            Facing::Majority => majority,
-            Facing::Outward => {
+            Facing::Outward if which == Components::All || reversed > 0 => {
                 faces_inward(polygons, &neighbours, &reverse, &component).unwrap_or(majority)
             }
+            _ => majority,
         };
         if reverse_all {
             for f in &component {
@@ -75,7 +141,12 @@ pub fn oriented(polygons: &PolygonMesh, facing: Facing) -> Result<Oriented, Orie
             }
         }
     }
-    Ok(reverse_faces(polygons, &reverse))
+    let Oriented { polygons, reversed } = reverse_faces(polygons, &reverse);
+    OrientedComponents {
+        polygons,
+        reversed,
+        not_orientable,
+    }
 }
 
 /// The face across a side, and whether both faces run along the edge in the same direction.
@@ -115,16 +186,17 @@ fn side_neighbours(faces: &FaceList) -> Vec<Neighbour> {
 }
 
 /// Collects the component of `seed`. Decides for each face whether to reverse it, with `seed`
-/// unchanged.
+/// unchanged. Returns the ends of the first edge at which faces cannot agree.
 fn orient_component(
     seed: FaceId,
     faces: &FaceList,
     neighbours: &[Neighbour],
     reverse: &mut [Option<bool>],
     component: &mut Vec<FaceId>,
-) -> Result<(), OrientationError> {
+) -> Option<[VertexId; 2]> {
     reverse[seed.index()] = Some(false);
     component.push(seed);
+    let mut conflict = None;
     let mut head = 0;
     while let Some(&f) = component.get(head) {
         head += 1;
@@ -138,15 +210,14 @@ fn orient_component(
                 component.push(g);
                 reverse_g
             });
-            if decided != reverse_g {
+            if decided != reverse_g && conflict.is_none() {
                 let face = faces.face(f);
                 let (a, b) = (face[i], face[(i + 1) % face.len()]);
-                let ends = [a.min(b), a.max(b)];
-                return Err(OrientationError::NotOrientable { ends });
+                conflict = Some([a.min(b), a.max(b)]);
             }
         }
     }
-    Ok(())
+    conflict
 }
 
 /// Returns whether the component faces inward after the faces in `reverse` are reversed. Returns

@@ -6,6 +6,7 @@ mod memory;
 mod picking;
 mod remeshing;
 mod render;
+mod repair;
 mod reshaping;
 mod subdivision;
 mod why;
@@ -24,6 +25,7 @@ pub(crate) use memory::Memory;
 pub(crate) use picking::{Pick, Workloads};
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
 pub(crate) use render::Render;
+pub(crate) use repair::Repair;
 pub(crate) use reshaping::{Dual, Smooth, Triangulate};
 pub(crate) use subdivision::{Schemes, Select, Subdivide};
 pub(crate) use why::Why;
@@ -173,6 +175,8 @@ pub(crate) enum Command {
     Decimate(Decimate),
     /// Remesh with edges of one length and nearly equilateral triangles
     Remesh(Remesh),
+    /// Repair a mesh: weld, orient, cut, fill holes
+    Repair(Repair),
     /// Draw meshes with their edges and creases, as PNG or SVG
     Render(Render),
 }

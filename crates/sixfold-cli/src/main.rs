@@ -32,6 +32,7 @@ mod pick;
 mod progress;
 mod remesh;
 mod render;
+mod repair;
 mod reshape;
 mod results_table;
 mod schemes;
@@ -93,6 +94,7 @@ fn main() -> ExitCode {
         Ok(Some(Command::Edits(arguments))) => edits::run(&arguments),
         Ok(Some(Command::Decimate(arguments))) => remesh::decimate(&arguments),
         Ok(Some(Command::Remesh(arguments))) => remesh::remesh(&arguments),
+        Ok(Some(Command::Repair(arguments))) => repair::run(&arguments),
         Ok(Some(Command::Render(arguments))) => render::run(&arguments),
     };
     match done {

@@ -49,6 +49,7 @@ fn help() {
         ("help_report.txt", &["report", "--help"]),
         ("help_generate.txt", &["generate", "--help"]),
         ("help_render.txt", &["render", "--help"]),
+        ("help_repair.txt", &["repair", "--help"]),
         ("help_schemes.txt", &["schemes", "--help"]),
         ("help_subdivide.txt", &["subdivide", "--help"]),
         ("help_smooth.txt", &["smooth", "--help"]),

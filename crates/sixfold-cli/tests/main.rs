@@ -16,6 +16,7 @@ mod outputs;
 mod picking;
 mod remeshing;
 mod render;
+mod repair;
 mod reports;
 mod run;
 mod subdivision;

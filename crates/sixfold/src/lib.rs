@@ -13,6 +13,7 @@
 //! | [choose a structure](#choose-a-structure) | the table below, [`MeshQuery::CAPABILITIES`] |
 //! | smooth, triangulate, compute normals | [`operators`] |
 //! | simplify, remesh, make Delaunay | [`remeshing`] |
+//! | find faults and repair them, so that a structure holds the mesh | [`repair::diagnose`], [`repair::repair_for`] |
 //! | find nearest vertices, closest points, ray hits; compare two meshes | [`spatial`] |
 //! | store data at vertices, edges and faces | [`MeshQuery::vertex_map`], [`MeshWithData`] |
 //! | number elements from 0, for matrices | [`MeshQuery::vertex_numbers`] |
@@ -174,8 +175,8 @@
 //!
 //! - `rayon` (default): native subdivision steps use all threads; so do builds of spatial indices and
 //!   batches of their queries.
-//! - `serde`: [`Facts`], [`Capabilities`], [`MemoryFootprint`], schemes and orders can be
-//!   serialised.
+//! - `serde`: [`Facts`], [`Capabilities`], [`MemoryFootprint`], diagnoses, reports of repairs,
+//!   schemes and orders can be serialised.
 //! - `mint`: [`PolygonMesh::new`] takes points and vectors of the crate `mint`, and a [`Point`]
 //!   converts to them.
 
@@ -234,6 +235,8 @@ pub use sixfold_io as io;
 pub use sixfold_operators as operators;
 #[doc(inline)]
 pub use sixfold_remeshing as remeshing;
+#[doc(inline)]
+pub use sixfold_repair as repair;
 #[doc(inline)]
 pub use sixfold_shapes as shapes;
 #[doc(inline)]

@@ -134,7 +134,7 @@ fn triangulation(text: &str) -> Result<Triangulation, String> {
     parse_name(&all, name, text)
 }
 
-fn facing(text: &str) -> Result<Facing, String> {
+pub(super) fn facing(text: &str) -> Result<Facing, String> {
     let name = |facing| match facing {
         Facing::Majority => "majority",
         Facing::Outward => "outward",
