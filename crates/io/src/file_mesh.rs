@@ -8,7 +8,7 @@ use crate::format::Format;
 use crate::narrowing::Narrowing;
 use crate::notice::Notice;
 use crate::obj::{CornerTag, CreaseTag, UnusedCrease, creases_on_polygons};
-use crate::place::{FacePlaces, Place};
+use crate::place::{FacePlaces, Gaps, Place, PolygonPlaces};
 
 /// The vertices and faces of a file.
 ///
@@ -130,20 +130,47 @@ impl FileMesh {
     ///
     /// Panics if `faces` was changed.
     pub fn into_polygons(self) -> (PolygonMesh, Vec<LeftOut>) {
+        let (polygons, left_out, _) = self.into_polygons_with_places();
+        (polygons, left_out)
+    }
+
+    /// Returns the mesh and the faces that were left out like [`into_polygons`](Self::into_polygons),
+    /// and the places of the faces of this mesh in the file. O(corners).
+    ///
+    /// # Panics
+    ///
+    /// Panics if `faces` was changed.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use sixfold_core::FaceId;
+    /// use sixfold_io::Place;
+    ///
+    /// let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 1 2\nf 1 2 3\n";
+    /// let obj = sixfold_io::parse_obj("triangle.obj", text.as_bytes())?;
+    /// let (polygons, left_out, places) = obj.into_polygons_with_places();
+    /// assert_eq!((polygons.face_count(), left_out.len()), (1, 1));
+    /// assert_eq!(places.place(FaceId::new(0), &polygons), Place::Line(5));
+    /// # Ok::<(), sixfold_io::ReadError>(())
+    /// ```
+    pub fn into_polygons_with_places(self) -> (PolygonMesh, Vec<LeftOut>, PolygonPlaces) {
         let first = self.format.first_vertex();
         let mut left_out: Vec<LeftOut> = Vec::new();
         for short in &self.short_faces {
             let reason = LeftOutReason::TooFewCorners;
             left_out.push(LeftOut::new(short.place, &short.corners, reason, first));
         }
+        let mut gaps = Gaps::default();
         for (f, face) in self.faces.iter() {
             if let Some(vertex) = repeated_vertex(face) {
                 let reason = LeftOutReason::RepeatedVertex(number(vertex, first));
                 left_out.push(LeftOut::new(self.face_place(f), face, reason, first));
+                gaps.push(f, face.len());
             }
         }
         left_out.sort_by_key(|left_out| left_out.place);
-        let faces = if left_out.len() == self.short_faces.len() {
+        let faces = if gaps.is_empty() {
             self.faces
         } else {
             let mut kept = FaceList::with_capacity(self.faces.corners().len());
@@ -158,7 +185,9 @@ impl FileMesh {
             kept
         };
         let polygons = PolygonMesh::from_faces(self.positions, faces);
-        (polygons.unwrap_or_else(|error| panic!("{error}")), left_out)
+        let polygons = polygons.unwrap_or_else(|error| panic!("{error}"));
+        let places = PolygonPlaces::new(self.face_places, gaps);
+        (polygons, left_out, places)
     }
 }
 

@@ -128,7 +128,7 @@ pub use narrowing::Narrowing;
 pub use notice::{IgnoredKind, Notice};
 pub use obj::{CornerTag, CreaseTag, Tag, TagFault, UnusedCrease, parse_obj};
 pub use options::{ReadOptions, Welding};
-pub use place::{Location, Place};
+pub use place::{Location, Place, PolygonPlaces};
 pub use ply::PlyHeaderFault;
 pub use read::{read, read_from, read_obj};
 pub use write::{Loss, MeshWriter, WriteError, write, write_obj, write_obj_with_normals};
