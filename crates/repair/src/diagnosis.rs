@@ -8,6 +8,7 @@ use sixfold_operators::{Components, Facing, oriented_components};
 
 use crate::duplicates::Copies;
 use crate::flat::is_flat;
+use crate::step::Step;
 use crate::weld::Places;
 pub use fault::{Fault, FaultKind, Place};
 
@@ -59,11 +60,29 @@ impl Diagnosis {
         faults.filter(|fault| fault.kind.is_refused_by(capabilities))
     }
 
+    /// Returns the steps that repair the faults of one kind in this mesh, in order: those of
+    /// [`FaultKind::repairs`], after the steps that make a mesh an oriented manifold if they need one.
+    pub fn repairs(&self, kind: FaultKind) -> Vec<Step> {
+        let mut steps = Vec::new();
+        if kind == FaultKind::BoundaryEdge {
+            // The first kind needs the most steps.
+            let before = [
+                FaultKind::RepeatedSide,
+                FaultKind::NonManifoldEdge,
+                FaultKind::NonManifoldVertex,
+            ];
+            let mut present = before
+                .into_iter()
+                .filter(|&kind| self.fault(kind).is_some());
+            steps = present.next().map(FaultKind::repairs).unwrap_or_default();
+        }
+        steps.extend(kind.repairs());
+        steps
+    }
+
     /// Returns whether faces have vertices of their own where they should share them, as in files
     /// without shared vertices: at least half of the boundary edges are seams. [`Step::Weld`]
     /// repairs this.
-    ///
-    /// [`Step::Weld`]: crate::Step::Weld
     pub fn looks_unwelded(&self) -> bool {
         self.seam_edges > 0 && 2 * self.seam_edges >= self.boundary_edges
     }

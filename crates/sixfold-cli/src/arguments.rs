@@ -14,7 +14,7 @@ mod why;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Arg, ArgMatches, Args, Parser, Subcommand};
 use sixfold::io::Format;
 use sixfold::shapes::Order;
 use sixfold_study::{CacheState, External, Operation, Policy};
@@ -25,7 +25,7 @@ pub(crate) use memory::Memory;
 pub(crate) use picking::{Pick, Workloads};
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
 pub(crate) use render::Render;
-pub(crate) use repair::Repair;
+pub(crate) use repair::{Repair, repair_options};
 pub(crate) use reshaping::{Dual, Smooth, Triangulate};
 pub(crate) use subdivision::{Schemes, Select, Subdivide};
 pub(crate) use why::Why;
@@ -53,7 +53,7 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study bunny.obj --json - --csv bunny.csv
   sixfold study bunny.obj --external mine='./mine {mesh}'
   sixfold study bunny.obj --report bunny            a page with figures
-  sixfold study scans --report results              all OBJ files in a folder; --resume continues
+  sixfold study scans --report results              all meshes in a folder; --resume continues
 
 How it measures: Each round runs every operation once on every backend, in random order. The clock
 measures the processor time of the thread. The table shows medians. One backend is measured twice in
@@ -99,7 +99,11 @@ schema version.";
 
 const INSPECT_EXAMPLES: &str = "Examples:
   sixfold inspect bunny.obj
+  sixfold inspect scans part.stl             all meshes in a folder, and one more
   sixfold inspect bunny.obj --json -         machine-readable
+
+For each kind of fault it prints the first elements, the line or byte of a face with this element,
+the structures that refuse the mesh for it, and the command that repairs it.
 
 Exit codes: 0 success; 2 wrong usage or unusable input; 4 interrupted.";
 
@@ -113,22 +117,59 @@ Exit codes: 0 success; 2 wrong usage or unusable input; 4 interrupted.";
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
-    #[command(flatten)]
-    pub(crate) files: FileOptions,
 }
 
-/// How meshes are read and written, for all commands.
+// How meshes are read. This is no doc comment, because clap would show it as the help of each command.
 #[derive(Clone, Copy, Debug, Default, Args)]
-pub(crate) struct FileOptions {
-    /// Write meshes as NAME, whatever the file is called: obj, stl, stl-ascii, ply, ply-ascii, …
-    #[arg(long, global = true, value_name = "NAME", help_heading = "Mesh files")]
-    pub(crate) format: Option<Format>,
-    /// Keep the vertices of STL files apart, three for each facet
-    #[arg(long, global = true, help_heading = "Mesh files")]
+#[command(next_help_heading = "Mesh files")]
+pub(crate) struct ReadFiles {
+    /// Do not merge vertices of STL files: each facet has three vertices of its own
+    #[arg(long)]
     pub(crate) as_stored: bool,
     /// Move meshes to the origin before coordinates are rounded to 32 bits
-    #[arg(long, global = true, help_heading = "Mesh files")]
+    #[arg(long)]
     pub(crate) recentre: bool,
+}
+
+// How meshes are written.
+#[derive(Clone, Copy, Debug, Default, Args)]
+#[command(next_help_heading = "Mesh files")]
+pub(crate) struct WriteFiles {
+    /// Format of written meshes: obj, stl, stl-ascii, ply, ply-ascii, off, gltf, glb
+    /// [default: from the file name, or obj]
+    #[arg(long, value_name = "NAME", verbatim_doc_comment)]
+    pub(crate) format: Option<Format>,
+}
+
+/// Adds the options of mesh files to a subcommand that reads or writes meshes: the names and value
+/// names of its arguments show whether it does.
+pub(crate) fn with_file_options(mut command: clap::Command) -> clap::Command {
+    let is_mesh =
+        |argument: &Arg| ["mesh", "meshes", "first"].contains(&argument.get_id().as_str());
+    let is_written = |argument: &Arg| {
+        let names = argument.get_value_names().unwrap_or_default();
+        names.iter().any(|name| name == "OUT")
+    };
+    let reads = command.get_arguments().any(is_mesh);
+    if command.get_arguments().any(is_written) {
+        command = WriteFiles::augment_args(command);
+    }
+    match reads {
+        true => ReadFiles::augment_args(command),
+        false => command,
+    }
+}
+
+/// Returns the options of mesh files of a subcommand; the defaults if it does not have them.
+pub(crate) fn file_options(matches: &ArgMatches) -> (ReadFiles, WriteFiles) {
+    let (mut read, mut write) = (ReadFiles::default(), WriteFiles::default());
+    if let Some((_, matches)) = matches.subcommand() {
+        let is_set = |name| matches.try_get_one(name).ok().flatten() == Some(&true);
+        read.as_stored = is_set("as_stored");
+        read.recentre = is_set("recentre");
+        write.format = matches.try_get_one("format").ok().flatten().copied();
+    }
+    (read, write)
 }
 
 #[derive(Debug, Subcommand)]
@@ -188,8 +229,8 @@ pub(crate) enum Command {
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Study {
-    /// OBJ files, or folders with OBJ files [default: a built-in mesh]
-    #[arg(value_name = "FILE.obj|DIR")]
+    /// Meshes, or folders with meshes [default: a built-in mesh]
+    #[arg(value_name = "MESH|DIR")]
     pub(crate) meshes: Vec<PathBuf>,
     /// Only these backends, by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
@@ -314,10 +355,13 @@ impl Default for Study {
 #[derive(Debug, Args)]
 #[command(after_help = INSPECT_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Inspect {
-    /// The mesh, an OBJ file
-    #[arg(value_name = "FILE.obj")]
-    pub(crate) mesh: PathBuf,
-    /// Write the facts and verdicts as JSON (- for standard output)
+    /// Meshes, or folders with meshes (- for standard input)
+    #[arg(value_name = "MESH|DIR", required = true)]
+    pub(crate) meshes: Vec<PathBuf>,
+    /// Cut every polygon into a fan of triangles first
+    #[arg(long)]
+    pub(crate) triangulate: bool,
+    /// Write the facts, verdicts and faults as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
 }
@@ -338,7 +382,7 @@ pub(crate) struct Generate {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
     /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "FILE.obj")]
+    #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 }
 

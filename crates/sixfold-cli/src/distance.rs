@@ -121,11 +121,12 @@ fn rows_text(rows: &[Row]) -> String {
 
 /// Returns a figure with five significant digits.
 fn figure(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
     let digits = 4 - value.abs().log10().floor() as i32;
-    if value != 0.0 && (0..12).contains(&digits) {
+    if (0..12).contains(&digits) {
         format!("{value:.0$}", digits as usize)
-    } else if value == 0.0 {
-        "0".to_owned()
     } else {
         format!("{value:.4e}")
     }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use sixfold::io::LeftOut;
+use sixfold::io::{LeftOut, PolygonPlaces};
 use sixfold::{Creases, PolygonMesh, shapes};
 use sixfold_study::{ReadError, StudyMesh};
 
@@ -16,11 +16,18 @@ use sixfold_study::numbers::counted;
 /// Maximum number of listed faces that were left out.
 const SHOWN: usize = 5;
 
-/// Reads a mesh without its degenerate faces. Lists the degenerate faces.
-pub(crate) fn study_mesh(path: &Path) -> Result<StudyMesh, Failure> {
-    let (study_mesh, left_out) = from_file(path)?;
+/// Reads a mesh without its degenerate faces, and lists the degenerate faces. `triangulate` cuts
+/// polygons. Also returns the places of the faces, unless they were cut.
+pub(crate) fn for_inspection(
+    path: &Path,
+    triangulate: bool,
+) -> Result<(StudyMesh, Option<PolygonPlaces>), Failure> {
+    let (study_mesh, left_out, places) = from_file(path)?;
     print_left_out(path, &left_out);
-    Ok(study_mesh)
+    match triangulate {
+        true => Ok((triangulated(study_mesh)?, None)),
+        false => Ok((study_mesh, Some(places))),
+    }
 }
 
 /// Reads a mesh for a study. `strict` refuses degenerate faces. `triangulate` cuts polygons.
@@ -29,7 +36,7 @@ pub(crate) fn for_study(
     strict: bool,
     triangulate: bool,
 ) -> Result<StudyMesh, Failure> {
-    let (mut study_mesh, left_out) = from_file(path)?;
+    let (mut study_mesh, left_out, _) = from_file(path)?;
     let file = path.display();
     if !left_out.is_empty() && strict {
         let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
@@ -122,10 +129,10 @@ fn print_left_out(path: &Path, left_out: &[LeftOut]) {
     }
 }
 
-fn from_file(path: &Path) -> Result<(StudyMesh, Vec<LeftOut>), Failure> {
+fn from_file(path: &Path) -> Result<(StudyMesh, Vec<LeftOut>, PolygonPlaces), Failure> {
     let mesh = read_mesh(path)?;
     let facts = mesh.facts();
-    let (polygons, left_out) = mesh.into_polygons();
+    let (polygons, left_out, places) = mesh.into_polygons_with_places();
     let mut changes = Vec::new();
     if !left_out.is_empty() {
         let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
@@ -137,5 +144,5 @@ fn from_file(path: &Path) -> Result<(StudyMesh, Vec<LeftOut>), Failure> {
         polygons,
         changes,
     };
-    Ok((study_mesh, left_out))
+    Ok((study_mesh, left_out, places))
 }

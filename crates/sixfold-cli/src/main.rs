@@ -16,6 +16,7 @@ mod distance;
 mod edits;
 mod facts_text;
 mod failure;
+mod faults_text;
 mod free_memory;
 mod generate;
 mod growth;
@@ -62,15 +63,13 @@ fn main() -> ExitCode {
         .mut_subcommand("study", |study| study.after_help(study::help()))
         .mut_subcommand("orders", |orders| orders.after_help(orders::help()))
         .mut_subcommand("growth", |growth| growth.after_help(growth::help()))
-        .mut_subcommand("generate", |generate| generate.after_help(generate::help()));
-    let arguments = command
-        .try_get_matches()
-        .and_then(|matches| Arguments::from_arg_matches(&matches));
-    let command = arguments.map(|arguments| {
-        mesh_files::set_options(arguments.files);
-        arguments.command
+        .mut_subcommand("generate", |generate| generate.after_help(generate::help()))
+        .mut_subcommands(arguments::with_file_options);
+    let arguments = command.try_get_matches().and_then(|matches| {
+        mesh_files::set_options(arguments::file_options(&matches));
+        Arguments::from_arg_matches(&matches)
     });
-    let done = match command {
+    let done = match arguments.map(|arguments| arguments.command) {
         Err(error) => print_clap_message(&error),
         Ok(None) => study::run(&arguments::Study::default()),
         Ok(Some(Command::Study(arguments))) => study::run(&arguments),

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use sixfold::io::{FileMesh, Format, MeshWriter, ReadOptions, Welding, read, read_from};
 use sixfold::{Point, PolygonMesh};
 
-use crate::arguments::FileOptions;
+use crate::arguments::{ReadFiles, WriteFiles};
 use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
 use crate::text::print_stderr;
@@ -17,14 +17,14 @@ use sixfold_study::numbers::counted;
 const REPORTED_SHIFT: f64 = 1e-5;
 
 /// The options, which are the same for all files of a run.
-static OPTIONS: OnceLock<FileOptions> = OnceLock::new();
+static OPTIONS: OnceLock<(ReadFiles, WriteFiles)> = OnceLock::new();
 
 /// Sets the options. They must be set before the first file is read or written.
-pub(crate) fn set_options(options: FileOptions) {
+pub(crate) fn set_options(options: (ReadFiles, WriteFiles)) {
     OPTIONS.get_or_init(|| options);
 }
 
-fn options() -> FileOptions {
+fn options() -> (ReadFiles, WriteFiles) {
     OPTIONS.get().copied().unwrap_or_default()
 }
 
@@ -32,10 +32,11 @@ fn options() -> FileOptions {
 /// is ignored or changed.
 pub(crate) fn read_mesh(path: &Path) -> Result<FileMesh, Failure> {
     let mut settings = ReadOptions::default();
-    if options().as_stored {
+    let (chosen, _) = options();
+    if chosen.as_stored {
         settings = settings.with_welding(Welding::Nothing);
     }
-    if options().recentre {
+    if chosen.recentre {
         settings = settings.recentred();
     }
     let mesh = match is_stdout(path) {
@@ -75,15 +76,15 @@ fn notes(mesh: &FileMesh) -> Vec<String> {
     let size = (high.as_dvec3() - low.as_dvec3()).length();
     let narrowing = mesh.narrowing;
     if narrowing.merged_vertices > 0 || narrowing.largest_shift > REPORTED_SHIFT * size {
-        let way_out = match options().recentre {
+        let way_out = match options().0.recentre {
             true => "",
             false => ": --recentre moves the mesh to the origin first",
         };
         notes.push(format!("{narrowing}{way_out}"));
     }
     if mesh.origin != [0.0; 3] {
-        let [x, y, z] = mesh.origin;
-        notes.push(format!("moved by {}, {}, {} to the origin", -x, -y, -z));
+        let [x, y, z] = mesh.origin.map(|coordinate| 0.0 - coordinate);
+        notes.push(format!("moved by {x}, {y}, {z} to the origin"));
     }
     notes
 }
@@ -98,7 +99,7 @@ pub(crate) fn write_mesh(
     normals: &[Option<Point>],
 ) -> Result<(), Failure> {
     let by_name = || Format::from_path(path).unwrap_or(Format::Obj);
-    let format = options().format.unwrap_or_else(by_name);
+    let format = options().1.format.unwrap_or_else(by_name);
     let mut writer = MeshWriter::new(polygons);
     if !normals.is_empty() {
         writer = writer.with_normals(normals).map_err(Failure::usage)?;

@@ -1,6 +1,5 @@
 //! `sixfold pick`: finds the backend that fits a mesh and a workload.
 
-use std::path::Path;
 use std::process::ExitCode;
 
 use comfy_table::{Cell, CellAlignment};
@@ -9,6 +8,7 @@ use sixfold_study::{BreakEven, PickReport, PickSettings, Ranked, StudyMesh};
 use crate::arguments::Pick;
 use crate::failure::Failure;
 use crate::load;
+use crate::many::{Mesh, find_meshes};
 use crate::outcome::{command_line, exit_code, warn_of_debug_build};
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
@@ -66,13 +66,12 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
 }
 
 fn study_meshes(arguments: &Pick) -> Result<Vec<StudyMesh>, Failure> {
-    if arguments.meshes.is_empty() {
-        return Ok(vec![load::built_in()]);
-    }
-    let read = |path: &std::path::PathBuf| -> Result<StudyMesh, Failure> {
-        load::for_study(Path::new(path), false, arguments.triangulate)
+    let meshes = find_meshes(&arguments.meshes)?;
+    let read = |mesh: &Mesh| match &mesh.path {
+        Some(path) => load::for_study(path, false, arguments.triangulate),
+        None => Ok(load::built_in()),
     };
-    arguments.meshes.iter().map(read).collect()
+    meshes.iter().map(read).collect()
 }
 
 fn print(report: &PickReport, study_meshes: &[StudyMesh], text: &mut TextOutput) {

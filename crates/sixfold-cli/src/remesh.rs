@@ -218,7 +218,8 @@ impl<W: Work> EditVisitor for EditJob<'_, W> {
     fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output {
         let mesh = M::from_polygons(self.polygons);
         let mut mesh = mesh.map_err(|refusal| {
-            Failure::cannot_hold(format!("{} cannot hold the mesh: {refusal}", M::NAME))
+            let refusal = format!("{} cannot hold the mesh: {refusal}", M::NAME);
+            Failure::cannot_hold(M::NAME, refusal)
         })?;
         warn_of_scans::<M>(self.polygons.face_count());
         let summary = self.work.run(&mut mesh).map_err(remesh_failure)?;

@@ -3,13 +3,13 @@
 use std::process::ExitCode;
 
 use serde::Serialize;
-use sixfold::io::write_obj;
 use sixfold::repair::{RepairError, Repaired, StepReport, repair, repair_for};
 use sixfold::{PolygonMesh, structure_infos};
 
 use crate::arguments::Repair;
 use crate::failure::Failure;
 use crate::load;
+use crate::mesh_files::write_mesh;
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{Spinner, exit_on_interrupt};
 use crate::text::{TextOutput, sanitize};
@@ -44,7 +44,7 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
     });
     spinner.clear();
     let repaired = done.map_err(|error| failure(&error))?;
-    output.finish(|writer| write_obj(&repaired.polygons, writer))?;
+    write_mesh(output, &arguments.output, &repaired.polygons, &[])?;
     if let Some(json) = json {
         let report = Report::new(&polygons, &repaired);
         json.finish(|writer| {

@@ -115,7 +115,8 @@ fn on_backend(
         fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
             let mesh = M::from_polygons(self.0);
             let mesh = mesh.map_err(|refusal| {
-                Failure::cannot_hold(format!("{} cannot hold the mesh: {refusal}", M::NAME))
+                let refusal = format!("{} cannot hold the mesh: {refusal}", M::NAME);
+                Failure::cannot_hold(M::NAME, refusal)
             })?;
             self.1.run(mesh)
         }

@@ -238,8 +238,8 @@ impl Job<'_> {
         self.bar.clear();
         match done {
             Some(Ok(step)) => Ok(step),
-            Some(Err(refusal @ SubdivisionError::Build { .. })) => {
-                Err(Failure::cannot_hold(refusal))
+            Some(Err(refusal @ SubdivisionError::Build { structure, .. })) => {
+                Err(Failure::cannot_hold(structure, refusal))
             }
             Some(Err(refusal)) => Err(Failure::unsupported(refusal)),
             None => Err(Failure::usage(format!("no backend is called `{backend}`"))),

@@ -90,7 +90,7 @@ fn invalid_input_gives_one_error_and_no_picture() {
         (&["mesh.obj", "-o", "out.gif"][..], "OUT.png or OUT.svg"),
         (&["mesh.obj", "-o", "-"], "OUT.png or OUT.svg"),
         (&["mesh.obj"], "--output"),
-        (&["-o", "out.png"], "IN.obj"),
+        (&["-o", "out.png"], "MESH"),
         (
             &["points.obj", "-o", "out.png"],
             "points.obj: the mesh has no faces",

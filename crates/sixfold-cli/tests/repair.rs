@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use crate::bad_input::assert_refused;
-use crate::run::Sixfold;
+use crate::run::{Sixfold, TETRAHEDRON, run_ok, text};
 
 /// Three triangles on one edge.
 const BOOK: &str = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 0 0\nf 1 2 3\nf 2 1 4\nf 2 1 5\n";
@@ -123,4 +123,101 @@ fn wrong_use_is_refused() {
     let holes = ["repair", "book.obj", "--fill-holes", "-o", "out.obj"];
     assert_refused(&sixfold, &holes, 3, "cut the mesh first");
     assert_eq!(sixfold.names(), ["book.obj"], "nothing is written");
+}
+
+/// Returns the commands of a text, as words.
+fn commands(text: &str) -> Vec<Vec<String>> {
+    let lines = text.lines().map(str::trim);
+    let commands = lines.filter_map(|line| line.strip_prefix("sixfold "));
+    commands
+        .map(|command| command.split(' ').map(ToOwned::to_owned).collect())
+        .collect()
+}
+
+#[test]
+fn the_commands_that_inspect_prints_repair_the_mesh() {
+    let sixfold = Sixfold::new();
+    for (name, text) in [("book.obj", BOOK), ("unwelded.obj", UNWELDED)] {
+        sixfold.file(name, text);
+        let commands = commands(&run_ok(&sixfold, &["inspect", name]).stdout);
+        assert!(commands.len() >= 2, "{name}: {commands:?}");
+        for command in commands {
+            let words: Vec<&str> = command.iter().map(String::as_str).collect();
+            run_ok(&sixfold, &words);
+            let after = run_ok(&sixfold, &["inspect", "repaired.obj"]).stdout;
+            let is_held = words[2..].contains(&"--for") || name == "unwelded.obj";
+            assert_eq!(!after.contains("refuse"), is_held, "{words:?}: {after}");
+        }
+    }
+}
+
+#[test]
+fn inspect_names_lines_bytes_and_unshared_vertices() {
+    let sixfold = Sixfold::new();
+    sixfold.file("book.obj", &format!("f 1 1 2\n{BOOK}"));
+    let run = run_ok(&sixfold, &["inspect", "book.obj"]);
+    let fault = "1 edge with three or more faces: v0–v1 (line 7)";
+    assert!(run.stdout.contains(fault), "{run:?}");
+    run_ok(&sixfold, &["triangulate", "book.obj", "-o", "book.stl"]);
+    let run = run_ok(&sixfold, &["inspect", "book.stl"]);
+    let fault = "1 edge with three or more faces: v0–v1 (byte 84)";
+    assert!(run.stdout.contains(fault), "{run:?}");
+    sixfold.file("a.obj", TETRAHEDRON);
+    run_ok(&sixfold, &["triangulate", "a.obj", "-o", "a.stl"]);
+    let run = run_ok(&sixfold, &["inspect", "a.stl", "--as-stored"]);
+    let unshared = "the faces do not share vertices (12 vertices at 4 positions)\n               \
+                    sixfold repair a.stl --weld -o repaired.obj";
+    assert!(run.stdout.contains(unshared), "{run:?}");
+}
+
+#[test]
+fn inspect_takes_several_meshes_and_folders() {
+    let sixfold = Sixfold::new();
+    sixfold.file("book.obj", BOOK);
+    std::fs::create_dir(sixfold.folder().join("scans")).expect("a folder");
+    sixfold.file(
+        "scans/quad.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
+    );
+    let both = ["inspect", "book.obj", "scans", "--json", "all.json"];
+    let run = run_ok(&sixfold, &both);
+    assert!(run.stdout.contains("mesh         book.obj\n"), "{run:?}");
+    assert!(
+        run.stdout.contains("mesh         scans/quad.obj\n"),
+        "{run:?}"
+    );
+    let json = |name: &str| -> Value { serde_json::from_str(&text(&sixfold, name)).expect("JSON") };
+    let all = json("all.json");
+    assert_eq!(all[1]["mesh"]["name"], "scans/quad.obj");
+    let faults = all[0]["diagnosis"]["faults"].as_array().expect("faults");
+    assert_eq!(faults[0]["kind"], "non_manifold_edge");
+    assert_eq!(faults[0]["places"][0]["edge"], serde_json::json!([0, 1]));
+
+    let cut = ["inspect", "scans", "--triangulate", "--json", "one.json"];
+    let run = run_ok(&sixfold, &cut);
+    assert!(run.stdout.contains("2 faces"), "{run:?}");
+    assert_eq!(json("one.json")["mesh"]["faces"], 2);
+
+    sixfold.file("scans/broken.obj", "v 0 0 0\nf 1 2 3\n");
+    let run = sixfold.run(&["inspect", "book.obj", "scans"]);
+    assert_eq!(run.code, Some(2), "{run:?}");
+    let message = "error: scans/broken.obj:2: face names vertex 2";
+    assert!(run.stderr.contains(message), "{run:?}");
+    assert!(
+        run.stderr
+            .contains("error: 1 of 3 meshes could not be read"),
+        "{run:?}"
+    );
+    assert!(
+        run.stdout.contains("mesh         scans/quad.obj\n"),
+        "{run:?}"
+    );
+}
+
+#[test]
+fn a_refusal_names_the_command_that_repairs() {
+    let sixfold = Sixfold::new();
+    sixfold.file("book.obj", BOOK);
+    let command = ["smooth", "book.obj", "-o", "out.obj"];
+    assert_refused(&sixfold, &command, 3, "`sixfold repair --for half-edge`");
 }

@@ -35,7 +35,7 @@ usage or unusable input; 3 none of the selected backends can hold the mesh, or t
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Orders {
-    /// The mesh, an OBJ file; without it, a built-in mesh of 20,000 triangles
+    /// The mesh (- for standard input); without it, a built-in mesh of 20,000 triangles
     #[arg(value_name = "MESH.obj")]
     pub(crate) mesh: Option<PathBuf>,
     /// Only these backends, by name

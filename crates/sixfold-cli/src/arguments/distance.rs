@@ -22,10 +22,10 @@ Exit codes: 0 success; 2 wrong usage or unusable input; 4 interrupted.";
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Distance {
-    /// The first mesh, an OBJ file
+    /// The first mesh (- for standard input)
     #[arg(value_name = "FIRST.obj")]
     pub(crate) first: PathBuf,
-    /// The second mesh, an OBJ file
+    /// The second mesh
     #[arg(value_name = "SECOND.obj")]
     pub(crate) second: PathBuf,
     /// Number of sample points on each surface

@@ -24,8 +24,8 @@ nothing written.";
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Render {
-    /// The meshes, OBJ files
-    #[arg(value_name = "IN.obj", required = true)]
+    /// The meshes
+    #[arg(value_name = "MESH", required = true)]
     pub(crate) meshes: Vec<PathBuf>,
     /// The picture to write; .png or .svg selects the format
     #[arg(short, long, value_name = "OUT.png|OUT.svg")]

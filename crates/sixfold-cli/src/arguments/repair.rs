@@ -30,11 +30,11 @@ Exit codes: 0 success; 2 wrong usage or unusable input; 3 the mesh cannot be rep
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Repair {
-    /// The mesh, an OBJ file
-    #[arg(value_name = "IN.obj")]
+    /// The mesh (- for standard input)
+    #[arg(value_name = "MESH")]
     pub(crate) mesh: PathBuf,
     /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT.obj")]
+    #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
     /// Merge vertices within 0.01, or 0.01% of the diagonal; default 0
     #[arg(long, value_name = "DISTANCE", num_args = 0..=1, require_equals = true, default_missing_value = "0", value_parser = tolerance)]
@@ -64,9 +64,8 @@ pub(crate) struct Repair {
     #[arg(long)]
     pub(crate) cut: bool,
     /// Fill holes, or only those with at most EDGES edges
-    #[arg(long, value_name = "EDGES", num_args = 0..=1,
-        require_equals = true, default_missing_value = "4294967295")]
-    pub(crate) fill_holes: Option<usize>,
+    #[arg(long, value_name = "EDGES", num_args = 0..=1, require_equals = true)]
+    pub(crate) fill_holes: Option<Option<usize>>,
     /// Triangles in holes: smallest (area) or ears
     #[arg(long, value_name = "NAME", default_value = "smallest", value_parser = hole_filling)]
     pub(crate) hole_method: HoleFilling,
@@ -100,7 +99,7 @@ impl Repair {
         });
         let holes = self.fill_holes.map(|max_edges| {
             Step::FillHoles(FillHoles {
-                max_edges: Some(max_edges),
+                max_edges,
                 method: self.hole_method,
             })
         });
@@ -120,6 +119,27 @@ impl Repair {
     }
 }
 
+/// Returns the options that choose these steps; the inverse of [`Repair::steps`] for steps with the
+/// settings of [`FaultKind::repairs`](sixfold::repair::FaultKind::repairs).
+pub(crate) fn repair_options(steps: &[Step]) -> String {
+    let option = |step: &Step| match step {
+        Step::Weld(_) => "--weld",
+        Step::RemoveDuplicateFaces(OppositeFaces::Keep) => "--duplicates",
+        Step::RemoveDuplicateFaces(OppositeFaces::Remove) => "--opposite",
+        Step::RemoveFlatFaces => "--flat",
+        Step::Triangulate(_) => "--triangulate",
+        Step::Orient { facing, .. } => match facing {
+            Facing::Majority => "--orient majority",
+            Facing::Outward => "--orient outward",
+        },
+        Step::Cut => "--cut",
+        Step::FillHoles(_) => "--fill-holes",
+        Step::RemoveIsolatedVertices => "--isolated",
+        _ => unreachable!("no kind of fault needs the step {step}"),
+    };
+    steps.iter().map(option).collect::<Vec<_>>().join(" ")
+}
+
 /// Parses a distance, or a part of the diagonal in percent.
 fn tolerance(text: &str) -> Result<Tolerance, String> {
     let (number, is_relative) = match text.trim().strip_suffix('%') {
@@ -127,6 +147,7 @@ fn tolerance(text: &str) -> Result<Tolerance, String> {
         None => (text.trim(), false),
     };
     match number.parse::<f64>() {
+        Ok(0.0) => Ok(Tolerance::Exact),
         Ok(value) if is_relative => Ok(Tolerance::Relative(value / 100.0)),
         Ok(value) => Ok(Tolerance::Absolute(value)),
         Err(_) => Err("write a distance as 0.01, or a part of the diagonal as 0.01%".into()),
@@ -151,4 +172,26 @@ fn hole_filling(text: &str) -> Result<HoleFilling, String> {
         name,
         text,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+    use sixfold::repair::FaultKind;
+
+    use super::*;
+    use crate::arguments::{Arguments, Command};
+
+    #[test]
+    fn options_choose_the_steps_that_repair_a_fault() {
+        for kind in FaultKind::ALL {
+            let steps = kind.repairs();
+            let line = format!("sixfold repair a.obj {} -o b.obj", repair_options(&steps));
+            let arguments = Arguments::try_parse_from(line.split_whitespace());
+            match arguments.expect("valid options").command {
+                Some(Command::Repair(repair)) => assert_eq!(repair.steps(), steps, "{line}"),
+                other => panic!("{other:?}"),
+            }
+        }
+    }
 }

@@ -151,11 +151,12 @@ impl Visitor for LocalRefinement<'_> {
         for level in 0..self.levels {
             let mesh = M::from_polygons(local.polygons()).map_err(|refusal| {
                 let structure = M::NAME;
-                Failure::cannot_hold(LocalError::Build {
+                let refusal = LocalError::Build {
                     structure,
                     level,
                     refusal,
-                })
+                };
+                Failure::cannot_hold(structure, refusal)
             })?;
             let chosen = match self.selection {
                 Selection::Faces(_) if level > 0 => local.chosen_parts(),
