@@ -36,9 +36,8 @@
 //!
 //! The reader uses the statements `v` and `f`; `fo` is an old name of `f`. A vertex may have a
 //! weight or a colour. A corner may have indices of a texture coordinate and of a normal
-//! (`7/1/3`). An index may count
-//! backwards. A face may come before its vertices. Lines end in LF, CRLF or CR; `\` at the end of a
-//! line continues the line. `#` starts a comment; a comment cannot be continued. The reader also
+//! (`7/1/3`). An index may count backwards. A face may come before its vertices. Lines end in LF,
+//! CRLF or CR; `\` at the end of a line continues the line. `#` starts a comment; a comment cannot be continued. The reader also
 //! uses the tags `t crease` and `t corner` of OpenSubdiv. Vertices of tags count from 0, but
 //! vertices of faces count from 1:
 //!
@@ -71,8 +70,8 @@
 //!   type for the properties, which are known only from the file. It names no line or byte. It took
 //!   3.2 s and 593 MB for 10 million triangles; this reader took 2.1 s and 180 MB.
 //! - `ply-rs-bw` 4 keeps each element in a map from names to values: 1.7 s and 482 MB for 800,000
-//!   triangles, where this reader took 0.15 s and 14 MB. Its trait for other containers gets a
-//!   list of its own for each face.
+//!   triangles, where this reader took 0.15 s and 14 MB. A type with other storage (its trait
+//!   `PropertyAccess`) still gets the corners of each face in a `Vec` of their own.
 //! - `gltf` 1.4 slices buffers by the unchecked numbers of views, so a wrong length is a panic, and
 //!   subtracts 1 from a count that may be 0. Its positions are only those of 32 bits. Reading the
 //!   JSON text with `serde_json` takes one file of structures.

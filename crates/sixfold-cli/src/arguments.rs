@@ -2,6 +2,8 @@
 
 mod comparing;
 mod distance;
+mod files;
+mod inspect;
 mod memory;
 mod picking;
 mod remeshing;
@@ -14,13 +16,14 @@ mod why;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Arg, ArgMatches, Args, Parser, Subcommand};
-use sixfold::io::Format;
+use clap::{Args, Parser, Subcommand};
 use sixfold::shapes::Order;
 use sixfold_study::{CacheState, External, Operation, Policy};
 
 pub(crate) use comparing::{Compare, GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders};
 pub(crate) use distance::Distance;
+pub(crate) use files::{ReadFiles, WriteFiles, file_options, with_file_options};
+pub(crate) use inspect::Inspect;
 pub(crate) use memory::Memory;
 pub(crate) use picking::{Pick, Workloads};
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
@@ -97,16 +100,6 @@ const REPORT_EXAMPLES: &str = "Examples:
 Exit codes: 0 success; 2 wrong usage, or a file that is incomplete, is not a result, or has another
 schema version.";
 
-const INSPECT_EXAMPLES: &str = "Examples:
-  sixfold inspect bunny.obj
-  sixfold inspect scans part.stl             all meshes in a folder, and one more
-  sixfold inspect bunny.obj --json -         machine-readable
-
-For each kind of fault it prints the first elements, the line or byte of a face with this element,
-the structures that refuse the mesh for it, and the command that repairs it.
-
-Exit codes: 0 success; 2 wrong usage or unusable input; 4 interrupted.";
-
 /// Measure which mesh data structure fits a mesh and a workload.
 ///
 /// Builds every backend from the same mesh, runs the same operations on each backend, and compares
@@ -117,59 +110,6 @@ Exit codes: 0 success; 2 wrong usage or unusable input; 4 interrupted.";
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
-}
-
-// How meshes are read. This is no doc comment, because clap would show it as the help of each command.
-#[derive(Clone, Copy, Debug, Default, Args)]
-#[command(next_help_heading = "Mesh files")]
-pub(crate) struct ReadFiles {
-    /// Do not merge vertices of STL files: each facet has three vertices of its own
-    #[arg(long)]
-    pub(crate) as_stored: bool,
-    /// Move meshes to the origin before coordinates are rounded to 32 bits
-    #[arg(long)]
-    pub(crate) recentre: bool,
-}
-
-// How meshes are written.
-#[derive(Clone, Copy, Debug, Default, Args)]
-#[command(next_help_heading = "Mesh files")]
-pub(crate) struct WriteFiles {
-    /// Format of written meshes: obj, stl, stl-ascii, ply, ply-ascii, off, gltf, glb
-    /// [default: from the file name, or obj]
-    #[arg(long, value_name = "NAME", verbatim_doc_comment)]
-    pub(crate) format: Option<Format>,
-}
-
-/// Adds the options of mesh files to a subcommand that reads or writes meshes: the names and value
-/// names of its arguments show whether it does.
-pub(crate) fn with_file_options(mut command: clap::Command) -> clap::Command {
-    let is_mesh =
-        |argument: &Arg| ["mesh", "meshes", "first"].contains(&argument.get_id().as_str());
-    let is_written = |argument: &Arg| {
-        let names = argument.get_value_names().unwrap_or_default();
-        names.iter().any(|name| name == "OUT")
-    };
-    let reads = command.get_arguments().any(is_mesh);
-    if command.get_arguments().any(is_written) {
-        command = WriteFiles::augment_args(command);
-    }
-    match reads {
-        true => ReadFiles::augment_args(command),
-        false => command,
-    }
-}
-
-/// Returns the options of mesh files of a subcommand; the defaults if it does not have them.
-pub(crate) fn file_options(matches: &ArgMatches) -> (ReadFiles, WriteFiles) {
-    let (mut read, mut write) = (ReadFiles::default(), WriteFiles::default());
-    if let Some((_, matches)) = matches.subcommand() {
-        let is_set = |name| matches.try_get_one(name).ok().flatten() == Some(&true);
-        read.as_stored = is_set("as_stored");
-        read.recentre = is_set("recentre");
-        write.format = matches.try_get_one("format").ok().flatten().copied();
-    }
-    (read, write)
 }
 
 #[derive(Debug, Subcommand)]
@@ -347,23 +287,6 @@ impl Default for Study {
             shard: None,
         }
     }
-}
-
-/// Show facts about a mesh, and which backends can hold it.
-///
-/// Measures nothing. Counts the faces that repeat a vertex or have fewer than three corners.
-#[derive(Debug, Args)]
-#[command(after_help = INSPECT_EXAMPLES, verbatim_doc_comment)]
-pub(crate) struct Inspect {
-    /// Meshes, or folders with meshes (- for standard input)
-    #[arg(value_name = "MESH|DIR", required = true)]
-    pub(crate) meshes: Vec<PathBuf>,
-    /// Cut every polygon into a fan of triangles first
-    #[arg(long)]
-    pub(crate) triangulate: bool,
-    /// Write the facts, verdicts and faults as JSON (- for standard output)
-    #[arg(long, value_name = "FILE")]
-    pub(crate) json: Option<PathBuf>,
 }
 
 /// Write a built-in shape.

@@ -1,8 +1,10 @@
 //! Reads the meshes of a scene at their places.
 
+mod triangles;
+
 use sixfold_core::glam::{DMat4, DQuat, DVec3};
 
-use super::accessor::{Elements, elements};
+use super::accessor::elements;
 use super::buffers::Buffers;
 use super::document::{Document, Node, Primitive};
 use super::{GltfFault, fault, item};
@@ -271,122 +273,6 @@ impl<'a, 'b> SceneReader<'a, 'b> {
                 .push_vertex(position, || Place::Item { kind, number })?;
         }
         Ok(())
-    }
-
-    /// Adds the triangles of a primitive, whose first vertex has the row `first`.
-    fn read_triangles(
-        &mut self,
-        primitive: &Primitive,
-        first: usize,
-        vertices: u64,
-        is_mirrored: bool,
-        mesh: usize,
-    ) -> Result<(), ReadError> {
-        if primitive.mode < 4 {
-            return Ok(());
-        }
-        if primitive.mode > 6 {
-            let missing = GltfFault::NoItem {
-                kind: "mode",
-                number: primitive.mode as usize,
-                count: 7,
-            };
-            return Err(fault(self.buffers.name, "mesh", mesh, missing));
-        }
-        let mut indices = match primitive.indices {
-            Some(number) => {
-                let by = ("mesh", mesh);
-                let indices = elements(self.document, self.buffers, number, 1, by)?;
-                Indices::Listed { number, indices }
-            }
-            None => Indices::InOrder(vertices),
-        };
-        self.spend(indices.count().saturating_mul(3))?;
-        let mut last = [0; 3];
-        for i in 0..indices.count() {
-            let row = self.vertex(&mut indices, i, first, vertices)?;
-            last = match (primitive.mode, i) {
-                (6, 0) => [row, row, row],
-                (6, _) => [last[0], last[2], row],
-                _ => [last[1], last[2], row],
-            };
-            let [a, b, c] = last;
-            let is_complete = if primitive.mode == 4 {
-                i % 3 == 2
-            } else {
-                i >= 2
-            };
-            if !is_complete {
-                continue;
-            }
-            let is_strip = primitive.mode == 5;
-            if is_strip && (a == b || b == c || a == c) {
-                let number = mesh;
-                let kind = "mesh";
-                let place = Place::Item { kind, number };
-                self.builder.notices.add(IgnoredKind::StripJoints, place);
-                continue;
-            }
-            // Every other triangle of a strip is turned.
-            let is_turned = (is_strip && i % 2 == 1) != is_mirrored;
-            let triangle = if is_turned { [b, a, c] } else { [a, b, c] };
-            let place = Place::Item {
-                kind: "mesh",
-                number: mesh,
-            };
-            self.builder.push_face(&triangle, place)?;
-        }
-        Ok(())
-    }
-
-    /// Returns the row of the vertex that index `i` names.
-    fn vertex(
-        &self,
-        indices: &mut Indices,
-        i: u64,
-        first: usize,
-        vertices: u64,
-    ) -> Result<u32, ReadError> {
-        let (accessor, index) = match indices {
-            Indices::InOrder(_) => (0, i),
-            Indices::Listed { number, indices } => {
-                let index = indices.index(i);
-                let failed = |f| fault(self.buffers.name, "accessor", *number, f);
-                (*number, index.map_err(failed)?.unsigned_abs())
-            }
-        };
-        if index >= vertices {
-            let place = Place::Item {
-                kind: "accessor",
-                number: accessor,
-            };
-            return Err(ReadError::IndexOutOfRange {
-                at: self.builder.at(place),
-                index: i64::try_from(index).unwrap_or(i64::MAX),
-                vertices: usize::try_from(vertices).unwrap_or(usize::MAX),
-            });
-        }
-        // Both are numbers of vertices that were added.
-        Ok(sixfold_core::row(first + index as usize))
-    }
-}
-
-/// The indices of a primitive.
-enum Indices<'a> {
-    /// The vertices in order.
-    InOrder(u64),
-    Listed {
-        number: usize,
-        indices: Elements<'a>,
-    },
-}
-
-impl Indices<'_> {
-    fn count(&self) -> u64 {
-        match self {
-            Self::InOrder(count) => *count,
-            Self::Listed { indices, .. } => indices.count,
-        }
     }
 }
 
