@@ -32,7 +32,8 @@
 //! - [`check_rows`], [`check_corners`], [`check_cut`]: checks of edits.
 //! - [`FaceSpans`]: the division of corners into faces.
 //! - [`TwinPairs`]: pairs of sides, for building without hashing.
-//! - [`Incidence`]: the sides of any list of faces by edge; [`Partition`]: union–find with parity.
+//! - [`Incidence`]: the sides of any list of faces by edge; [`Partition`]: union–find with parity;
+//!   [`FacesByLowest`]: faces that can have the same vertices.
 //! - [`ScannedFaces`]: queries and edits of structures that find the faces at a vertex by a scan.
 //! - [`Distinct`], [`ShortVec`], [`Lookup`]: distinct elements, short lists, and search in lists.
 //! - [`Ranks`], [`for_each_chunk`], [`map_chunks`], [`check_split`]: refinement on several threads.
@@ -64,6 +65,7 @@ mod element_data;
 mod error;
 mod face_list;
 mod face_spans;
+mod faces_by_lowest;
 mod facts;
 mod follow_edits;
 mod handle;
@@ -134,6 +136,7 @@ pub use editing::{
     VERTEX_HOLES,
 };
 pub use face_spans::{FaceSpans, ScatteredFaces};
+pub use faces_by_lowest::FacesByLowest;
 pub use holes::Holes;
 pub use incidence::{EdgeSides, Incidence, Side};
 pub use iterator_ext::{IteratorExt, MapInline};

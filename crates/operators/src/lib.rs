@@ -52,7 +52,8 @@ pub use dual::dual;
 pub use error::{DualError, OrientationError, SmoothingError, SphereError};
 pub use normals::{NormalWeights, area_vector, face_normals, vertex_normals};
 pub use orientation::{
-    Components, Facing, NotOrientable, Oriented, OrientedComponents, oriented, oriented_components,
+    Components, Facing, NotOrientable, Oriented, OrientedComponents, Reversal, faces_to_reverse,
+    oriented, oriented_components,
 };
 pub use smoothing::{Boundary, Smoothing, Weights, smoothed};
 pub use sphere::projected_to_sphere;

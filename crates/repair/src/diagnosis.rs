@@ -4,7 +4,7 @@ mod fault;
 
 use rustc_hash::FxHashMap;
 use sixfold_core::{Capabilities, Incidence, Pair, PolygonMesh, VertexId};
-use sixfold_operators::{Components, Facing, oriented_components};
+use sixfold_operators::{Components, Facing, faces_to_reverse};
 
 use crate::duplicates::Copies;
 use crate::flat::is_flat;
@@ -101,7 +101,7 @@ pub fn diagnose(polygons: &PolygonMesh, places: usize) -> Diagnosis {
     find_edges(&incidence, &mut found);
     find_vertices(polygons, &incidence, &positions, &mut found);
     find_faces(polygons, &positions, &mut found);
-    find_turned(polygons, &mut found);
+    find_turned(polygons, &incidence, &mut found);
     let boundary_edges = found.faults[FaultKind::BoundaryEdge as usize].count;
     let present = found.faults.into_iter().filter(|fault| fault.count > 0);
     Diagnosis {
@@ -202,12 +202,12 @@ fn find_faces(polygons: &PolygonMesh, positions: &Places, found: &mut Found) {
     }
 }
 
-fn find_turned(polygons: &PolygonMesh, found: &mut Found) {
-    let oriented = oriented_components(polygons, Facing::Outward, Components::All);
-    for f in oriented.reversed {
+fn find_turned(polygons: &PolygonMesh, incidence: &Incidence, found: &mut Found) {
+    let turned = faces_to_reverse(polygons, incidence, Facing::Outward, Components::All);
+    for f in turned.reversed {
         found.add(FaultKind::TurnedFace, Place::Face(f));
     }
-    for component in oriented.not_orientable {
+    for component in turned.not_orientable {
         found.add(FaultKind::NotOrientable, Place::Edge(component.ends));
     }
 }

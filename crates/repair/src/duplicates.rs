@@ -1,7 +1,9 @@
 //! Removal of faces that occur more than once.
 
+use std::ops::Range;
+
 use rustc_hash::FxHashMap;
-use sixfold_core::{FaceId, PolygonMesh, VertexId};
+use sixfold_core::{FaceId, FacesByLowest, PolygonMesh, VertexId};
 
 use crate::error::RepairError;
 use crate::remove::without;
@@ -30,45 +32,57 @@ pub(crate) fn remove(
     without(polygons, |_| true, keeps)
 }
 
-/// The faces of a mesh, grouped by the vertices that they name in cyclic order.
+/// The faces that name the same vertices in cyclic order as another face.
 pub(crate) struct Copies {
-    /// By face: its group, and whether it runs against the order of the group.
-    groups: Vec<(u32, bool)>,
-    /// By group: its first face in each of the two directions.
-    first: Vec<[Option<FaceId>; 2]>,
+    /// By face, if it has a copy: the first face with the same order, and the first face with the
+    /// opposite order.
+    first: FxHashMap<FaceId, (FaceId, Option<FaceId>)>,
 }
 
 impl Copies {
-    /// Groups the faces; O(corners) expected.
+    /// Finds the copies; O(corners), plus O(n log n) for n faces with the same lowest vertex.
     pub(crate) fn new(polygons: &PolygonMesh) -> Self {
         let faces = polygons.faces();
-        let mut canonical = faces.corners().to_vec();
-        let mut reversed = Vec::with_capacity(faces.len());
-        for (f, _) in faces.iter() {
-            reversed.push(make_canonical(&mut canonical[faces.range(f)]));
-        }
-        let mut numbers = FxHashMap::default();
-        let mut first: Vec<[Option<FaceId>; 2]> = Vec::new();
-        let mut groups = Vec::with_capacity(faces.len());
-        for ((f, _), is_reversed) in faces.iter().zip(reversed) {
-            let next = first.len() as u32;
-            let group = *numbers.entry(&canonical[faces.range(f)]).or_insert(next);
-            if group == next {
-                first.push([None; 2]);
+        let by_lowest = FacesByLowest::new(polygons.vertex_count(), faces, |_| true);
+        let mut first = FxHashMap::default();
+        // The faces of a vertex, each with its canonical corners, and whether they are reversed.
+        let mut corners: Vec<VertexId> = Vec::new();
+        let mut listed: Vec<(Range<usize>, FaceId, bool)> = Vec::new();
+        for bucket in by_lowest.several() {
+            corners.clear();
+            listed.clear();
+            for &f in bucket {
+                let start = corners.len();
+                corners.extend_from_slice(faces.face(f));
+                let is_reversed = make_canonical(&mut corners[start..]);
+                listed.push((start..corners.len(), f, is_reversed));
             }
-            first[group as usize][usize::from(is_reversed)].get_or_insert(f);
-            groups.push((group, is_reversed));
+            listed.sort_unstable_by(|a, b| {
+                let by_corners = corners[a.0.clone()].cmp(&corners[b.0.clone()]);
+                by_corners.then(a.1.cmp(&b.1))
+            });
+            let groups = listed.chunk_by(|a, b| corners[a.0.clone()] == corners[b.0.clone()]);
+            for group in groups.filter(|group| group.len() > 1) {
+                let [forward, backward] = [false, true].map(|direction| {
+                    let mut found = group.iter().filter(|(.., reversed)| *reversed == direction);
+                    found.next().map(|&(_, f, _)| f)
+                });
+                for &(_, f, is_reversed) in group {
+                    let (same, opposite) = match is_reversed {
+                        false => (forward, backward),
+                        true => (backward, forward),
+                    };
+                    first.insert(f, (same.expect("the face itself"), opposite));
+                }
+            }
         }
-        Self { groups, first }
+        Self { first }
     }
 
     /// Returns the first face with the same vertices in the same cyclic order as `f`, possibly `f`
     /// itself, and the first face with the same vertices in the opposite order.
     pub(crate) fn first_copies(&self, f: FaceId) -> (FaceId, Option<FaceId>) {
-        let (group, is_reversed) = self.groups[f.index()];
-        let first = self.first[group as usize];
-        let same = first[usize::from(is_reversed)].expect("the face itself");
-        (same, first[usize::from(!is_reversed)])
+        self.first.get(&f).copied().unwrap_or((f, None))
     }
 }
 

@@ -4,8 +4,6 @@ mod grid;
 mod kd_tree;
 mod simple_loops;
 
-use std::cmp::Ordering;
-
 use glam::DVec3;
 use sixfold_core::{Point, PolygonMesh, Slot, VertexId, row};
 
@@ -137,11 +135,7 @@ pub(crate) struct Places {
 impl Places {
     /// Sorts the positions; O(n log n).
     pub(crate) fn new(positions: &[Point]) -> Self {
-        let mut order: Vec<u32> = (0..row(positions.len())).collect();
-        order.sort_unstable_by(|&a, &b| {
-            let by_position = compare(positions[a as usize], positions[b as usize]);
-            by_position.then(a.cmp(&b))
-        });
+        let order = sorted(positions);
         let mut places = Self {
             points: Vec::new(),
             vertices: Vec::new(),
@@ -198,19 +192,31 @@ fn claim(points: &[DVec3], claimed_by: &mut [u32], nearby: &impl Nearby, toleran
     }
 }
 
-/// Compares positions by x, then y, then z; equal positions by the signs of their zeros.
-fn compare(a: Point, b: Point) -> Ordering {
+/// Returns the rows of the positions sorted by x, then y, then z, then the signs of their zeros, then
+/// the row.
+fn sorted(positions: &[Point]) -> Vec<u32> {
+    // The keys are together in memory, so that the sort does not jump to the positions.
+    let mut keys: Vec<([u32; 3], u8, u32)> = (0..row(positions.len()))
+        .zip(positions)
+        .map(|(v, position)| {
+            let coordinates = position.to_array();
+            let is_plus = |x: f32| u8::from(x.to_bits() != (-0.0_f32).to_bits());
+            let [x, y, z] = coordinates.map(is_plus);
+            (coordinates.map(order_of), 4 * x + 2 * y + z, v)
+        })
+        .collect();
+    keys.sort_unstable();
+    keys.into_iter().map(|(.., v)| v).collect()
+}
+
+/// Returns a number whose order is the order of `x`. The numbers of −0 and 0 are equal.
+fn order_of(x: f32) -> u32 {
     // Adding 0 changes −0 to 0.
-    let by_value = (a + Point::ZERO)
-        .to_array()
-        .into_iter()
-        .zip((b + Point::ZERO).to_array())
-        .map(|(a, b)| a.total_cmp(&b));
-    let by_bits = a.to_array().into_iter().zip(b.to_array());
-    by_value
-        .chain(by_bits.map(|(a, b)| a.total_cmp(&b)))
-        .find(|order| order.is_ne())
-        .unwrap_or(Ordering::Equal)
+    let bits = (x + 0.0).to_bits();
+    match bits >> 31 {
+        0 => bits | 1 << 31,
+        _ => !bits,
+    }
 }
 
 /// Replaces every vertex by its representative. New vertices are numbered in the order in which

@@ -28,6 +28,17 @@ proptest! {
         }
     }
 
+    /// A check accepts the meshes that facts show to be good.
+    #[test]
+    fn facts_show_no_more_than_the_check(polygons in damaged(), capabilities in any_capabilities()) {
+        let facts = Facts::from_polygons(&polygons);
+        if capabilities.is_satisfied_by(&facts) {
+            prop_assert_eq!(capabilities.check(&polygons), Ok(()));
+        } else if facts.non_manifold_edges == 0 && capabilities.coincident_vertices {
+            prop_assert!(capabilities.check(&polygons).is_err());
+        }
+    }
+
     /// The numbers agree with the facts, which are computed independently.
     #[test]
     fn numbers_agree_with_facts(polygons in damaged()) {
