@@ -65,12 +65,12 @@
 //!
 //! - `stl_io` 0.11 treats every file that begins with `solid ` as text, also binary ones. It stops
 //!   after the first solid of a text, needs lower case and one line per keyword, and names no line.
-//!   It took 21 s and 665 MB for 10 million facets; this reader took 6.3 s and 247 MB.
+//!   It took 6.5 s and 665 MB for 10 million facets; this reader took 2.0 s and 247 MB.
 //! - `serde-ply` 0.2 reads each text value byte by byte into a string of its own, and needs a Rust
 //!   type for the properties, which are known only from the file. It names no line or byte. It took
-//!   3.2 s and 593 MB for 10 million triangles; this reader took 2.1 s and 180 MB.
-//! - `ply-rs-bw` 4 keeps each element in a map from names to values: 1.7 s and 482 MB for 800,000
-//!   triangles, where this reader took 0.15 s and 14 MB. A type with other storage (its trait
+//!   1.3 s and 593 MB for 10 million triangles; this reader took 0.7 s and 180 MB.
+//! - `ply-rs-bw` 4 keeps each element in a map from names to values: 0.5 s and 482 MB for 800,000
+//!   triangles, where this reader took 0.05 s and 14 MB. A type with other storage (its trait
 //!   `PropertyAccess`) still gets the corners of each face in a `Vec` of their own.
 //! - `gltf` 1.4 slices buffers by the unchecked numbers of views, so a wrong length is a panic, and
 //!   subtracts 1 from a count that may be 0. Its positions are only those of 32 bits. Reading the
