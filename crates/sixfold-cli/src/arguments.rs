@@ -22,7 +22,7 @@ use sixfold_study::{CacheState, External, Operation, Policy};
 
 pub(crate) use comparing::{Compare, GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders};
 pub(crate) use distance::Distance;
-pub(crate) use files::{ReadFiles, WriteFiles, file_options, with_file_options};
+pub(crate) use files::{FileOptions, file_options, with_file_options};
 pub(crate) use inspect::Inspect;
 pub(crate) use memory::Memory;
 pub(crate) use picking::{Pick, Workloads};

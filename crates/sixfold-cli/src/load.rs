@@ -8,7 +8,7 @@ use sixfold::{Creases, PolygonMesh, shapes};
 use sixfold_study::{ReadError, StudyMesh};
 
 use crate::failure::Failure;
-use crate::mesh_files::read_mesh;
+use crate::mesh_files::{cut_polygons, read_mesh};
 use crate::text::print_stderr;
 use crate::triangulate::triangulated;
 use sixfold_study::numbers::counted;
@@ -74,7 +74,7 @@ pub(crate) fn with_creases(path: &Path) -> Result<(PolygonMesh, Creases), Failur
     }
     let (polygons, left_out) = mesh.into_polygons();
     print_left_out(path, &left_out);
-    Ok((polygons, creases))
+    Ok((cut_polygons(path, polygons)?, creases))
 }
 
 /// Reads a mesh for a command that drops creases. Prints a note if there are creases.

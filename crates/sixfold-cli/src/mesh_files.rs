@@ -7,24 +7,26 @@ use std::sync::OnceLock;
 use sixfold::io::{FileMesh, Format, MeshWriter, ReadOptions, Welding, read, read_from};
 use sixfold::{Point, PolygonMesh};
 
-use crate::arguments::{ReadFiles, WriteFiles};
+use crate::arguments::FileOptions;
 use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
 use crate::text::print_stderr;
+use crate::triangulate::triangulated;
+use sixfold_study::StudyMesh;
 use sixfold_study::numbers::counted;
 
 /// Rounding is reported if it moves a vertex by more than this part of the size of the mesh.
 const REPORTED_SHIFT: f64 = 1e-5;
 
 /// The options, which are the same for all files of a run.
-static OPTIONS: OnceLock<(ReadFiles, WriteFiles)> = OnceLock::new();
+static OPTIONS: OnceLock<FileOptions> = OnceLock::new();
 
 /// Sets the options. They must be set before the first file is read or written.
-pub(crate) fn set_options(options: (ReadFiles, WriteFiles)) {
+pub(crate) fn set_options(options: FileOptions) {
     OPTIONS.get_or_init(|| options);
 }
 
-fn options() -> (ReadFiles, WriteFiles) {
+fn options() -> FileOptions {
     OPTIONS.get().copied().unwrap_or_default()
 }
 
@@ -32,7 +34,7 @@ fn options() -> (ReadFiles, WriteFiles) {
 /// is ignored or changed.
 pub(crate) fn read_mesh(path: &Path) -> Result<FileMesh, Failure> {
     let mut settings = ReadOptions::default();
-    let (chosen, _) = options();
+    let chosen = options().read;
     if chosen.as_stored {
         settings = settings.with_welding(Welding::Nothing);
     }
@@ -76,7 +78,7 @@ fn notes(mesh: &FileMesh) -> Vec<String> {
     let size = (high.as_dvec3() - low.as_dvec3()).length();
     let narrowing = mesh.narrowing;
     if narrowing.merged_vertices > 0 || narrowing.largest_shift > REPORTED_SHIFT * size {
-        let way_out = match options().0.recentre {
+        let way_out = match options().read.recentre {
             true => "",
             false => ": --recentre moves the mesh to the origin first",
         };
@@ -89,6 +91,15 @@ fn notes(mesh: &FileMesh) -> Vec<String> {
     notes
 }
 
+/// Cuts the polygons of the mesh in the file at `path`, if the option --triangulate is set.
+pub(crate) fn cut_polygons(path: &Path, polygons: PolygonMesh) -> Result<PolygonMesh, Failure> {
+    if !options().cut.triangulate || polygons.first_polygon().is_none() {
+        return Ok(polygons);
+    }
+    let study_mesh = StudyMesh::new(path.display().to_string(), polygons);
+    triangulated(study_mesh).map(|study_mesh| study_mesh.polygons)
+}
+
 /// Writes a mesh to `output`, which was opened at `path`. The format is that of --format, or of the
 /// ending of `path`; otherwise it is OBJ. Prints a note for everything that the format cannot keep.
 /// `normals` is empty, or has an entry for each vertex.
@@ -99,7 +110,7 @@ pub(crate) fn write_mesh(
     normals: &[Option<Point>],
 ) -> Result<(), Failure> {
     let by_name = || Format::from_path(path).unwrap_or(Format::Obj);
-    let format = options().1.format.unwrap_or_else(by_name);
+    let format = options().write.format.unwrap_or_else(by_name);
     let mut writer = MeshWriter::new(polygons);
     if !normals.is_empty() {
         writer = writer.with_normals(normals).map_err(Failure::usage)?;

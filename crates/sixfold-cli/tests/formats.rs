@@ -108,3 +108,42 @@ fn folders_have_every_format_and_other_files_are_counted() {
         assert!(run.stdout.contains(name), "{name}: {run:?}");
     }
 }
+
+#[test]
+fn every_command_can_cut_polygons() {
+    let sixfold = Sixfold::new();
+    sixfold.file(
+        "quad.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
+    );
+    let cut = "--triangulate";
+    for command in [
+        &["subdivide", "quad.obj", "--scheme", "loop", "-o", "out.obj"][..],
+        &[
+            "remesh",
+            "quad.obj",
+            "--edge-length",
+            "0.5",
+            "-o",
+            "out.obj",
+        ],
+        &[
+            "smooth",
+            "quad.obj",
+            "--backend",
+            "corner-table",
+            "-o",
+            "out.obj",
+        ],
+    ] {
+        assert_eq!(sixfold.run(command).code, Some(3), "{command:?}");
+        run_ok(&sixfold, &[command, &[cut]].concat());
+        let out = Obj::parse(&text(&sixfold, "out.obj"));
+        assert!(
+            out.canonical_faces().iter().all(|face| face.len() == 3),
+            "{command:?}"
+        );
+    }
+    run_ok(&sixfold, &["distance", "quad.obj", "quad.obj", cut]);
+    run_ok(&sixfold, &["memory", "quad.obj", cut]);
+}

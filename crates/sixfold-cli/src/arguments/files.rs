@@ -15,6 +15,15 @@ pub(crate) struct ReadFiles {
     pub(crate) recentre: bool,
 }
 
+// How polygons are read, for commands without an option of this name.
+#[derive(Clone, Copy, Debug, Default, Args)]
+#[command(next_help_heading = "Mesh files")]
+pub(crate) struct CutPolygons {
+    /// Cut every polygon into a fan of triangles first
+    #[arg(id = "cut_polygons", long = "triangulate")]
+    pub(crate) triangulate: bool,
+}
+
 // How meshes are written.
 #[derive(Clone, Copy, Debug, Default, Args)]
 #[command(next_help_heading = "Mesh files")]
@@ -35,8 +44,15 @@ pub(crate) fn with_file_options(mut command: clap::Command) -> clap::Command {
         names.iter().any(|name| name == "OUT")
     };
     let reads = command.get_arguments().any(is_mesh);
+    let has_own = command
+        .get_arguments()
+        .any(|argument| argument.get_id() == "triangulate");
+    let triangulates = command.get_name() == "triangulate";
     if command.get_arguments().any(is_written) {
         command = WriteFiles::augment_args(command);
+    }
+    if reads && !has_own && !triangulates {
+        command = CutPolygons::augment_args(command);
     }
     match reads {
         true => ReadFiles::augment_args(command),
@@ -44,14 +60,23 @@ pub(crate) fn with_file_options(mut command: clap::Command) -> clap::Command {
     }
 }
 
+/// The options of mesh files of a subcommand.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct FileOptions {
+    pub(crate) read: ReadFiles,
+    pub(crate) write: WriteFiles,
+    pub(crate) cut: CutPolygons,
+}
+
 /// Returns the options of mesh files of a subcommand; the defaults if it does not have them.
-pub(crate) fn file_options(matches: &ArgMatches) -> (ReadFiles, WriteFiles) {
-    let (mut read, mut write) = (ReadFiles::default(), WriteFiles::default());
+pub(crate) fn file_options(matches: &ArgMatches) -> FileOptions {
+    let mut options = FileOptions::default();
     if let Some((_, matches)) = matches.subcommand() {
         let is_set = |name| matches.try_get_one(name).ok().flatten() == Some(&true);
-        read.as_stored = is_set("as_stored");
-        read.recentre = is_set("recentre");
-        write.format = matches.try_get_one("format").ok().flatten().copied();
+        options.read.as_stored = is_set("as_stored");
+        options.read.recentre = is_set("recentre");
+        options.write.format = matches.try_get_one("format").ok().flatten().copied();
+        options.cut.triangulate = is_set("cut_polygons");
     }
-    (read, write)
+    options
 }

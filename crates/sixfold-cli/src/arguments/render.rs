@@ -18,8 +18,8 @@ once per mesh, in the order of the meshes. The front of a face is blue; the back
 Seen from the front, the corners of a face run counter-clockwise. A PNG is shaded per sample; an SVG
 has one colour per face.
 
-With --faults, boundary edges are orange, non-manifold edges and vertices are magenta, and
-faces that are turned against their neighbours or into their solid are yellow. `sixfold inspect` lists all
+With --faults, boundary edges are orange, non-manifold edges and vertices are magenta, and faces
+that are turned against their neighbours or into their solid are yellow. `sixfold inspect` lists all
 faults. A mesh with --labels can have at most 2,000 vertices, edges and faces.
 
 Exit codes: 0 success; 2 wrong usage or unusable input; 3 too many faces for an SVG or too many
@@ -53,7 +53,7 @@ pub(crate) struct Render {
     /// Write the names of visible vertices, edges and faces
     #[arg(long)]
     pub(crate) labels: bool,
-    /// Paint boundary edges, non-manifold edges and vertices, and turned faces
+    /// Paint boundary edges, non-manifold elements and turned faces
     #[arg(long)]
     pub(crate) faults: bool,
     /// Sharp edges and corners, in addition to those in the mesh file
