@@ -1,4 +1,4 @@
-//! All answers of a mesh, in a form that is the same for every structure.
+//! The answers to all queries of a mesh, in a form that is the same for every structure.
 
 use std::collections::BTreeMap;
 
@@ -11,9 +11,9 @@ use crate::subject::Subject;
 /// boundary loop. Returns `None` if `M` cannot hold `polygons`.
 ///
 /// Elements have the numbers of the input. Sets are sorted, and cycles start at their lowest
-/// element. The ring of a vertex has a key such as `one_ring v7`; the key is missing if the vertex
-/// has no ring. Boundary loops are lists of vertices. A closed loop has a key such as
-/// `boundary_loop 0`, and an open chain has a key such as `boundary_chain 0`.
+/// element. The key of a one-ring is for example `one_ring v7`; the key is missing if vertex v7 has
+/// no one-ring. Boundary loops are lists of vertices. The key of a closed loop is for example
+/// `boundary_loop 0`, and the key of an open chain is for example `boundary_chain 0`.
 pub fn answers<M: Representation>(
     polygons: &PolygonMesh,
 ) -> Option<BTreeMap<String, Vec<Element>>> {

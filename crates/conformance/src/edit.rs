@@ -1,4 +1,5 @@
-//! Tests of edits: a structure and a model execute the same random scripts and are compared.
+//! Tests of edits. A structure and a model execute the same random scripts of edits, and the
+//! results are compared.
 //!
 //! The model is independent of any structure: faces are lists of numbers, and every rule of
 //! [`MeshEdit`](sixfold_core::MeshEdit) is implemented by brute force. A step of a script selects

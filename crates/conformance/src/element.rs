@@ -9,7 +9,8 @@ use sixfold_core::{FaceId, VertexId};
 pub enum Element {
     /// A vertex.
     Vertex(VertexId),
-    /// An edge, given by its ends: the lower end first. [`Element::edge`] sorts the ends.
+    /// An edge, given by its ends. The first end has the lower number; [`Element::edge`] sorts the
+    /// ends.
     Edge(VertexId, VertexId),
     /// A face.
     Face(FaceId),

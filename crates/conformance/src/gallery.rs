@@ -20,7 +20,7 @@ pub struct GalleryMesh {
     pub polygons: PolygonMesh,
 }
 
-/// Returns all meshes: solids, surfaces of every kind, corner cases of the contract, faulty meshes,
+/// Returns all meshes: solids, surfaces of every kind, corner cases of the queries, faulty meshes,
 /// and the meshes of the lectures.
 pub fn gallery() -> Vec<GalleryMesh> {
     let parts = [

@@ -2,8 +2,8 @@
 //!
 //! A law builds the structure from a given mesh, and panics if the structure breaks the law. The
 //! message contains the structure, the element and the relation. A law skips a mesh that the
-//! capabilities of the structure exclude. Only [`verdict`] tests that the structure refuses such
-//! meshes.
+//! capabilities of the structure exclude. Only [`verdict`] tests that the structure refuses the
+//! meshes that its capabilities exclude.
 #![expect(
     clippy::missing_panics_doc,
     reason = "every law panics if it is broken"
@@ -38,8 +38,8 @@ pub use walk::{oriented_walk, oriented_walk_after_edits};
 
 /// Calls a macro with the name of every law: `for_each_law!(callback! { … })`.
 ///
-/// The callback receives `[laws about a mesh] [laws about a structure] …`. This is the only list of
-/// laws.
+/// The callback receives two lists and its own arguments: `[laws about a mesh] [laws about a
+/// structure] …`. This macro is the only list of laws.
 #[macro_export]
 macro_rules! for_each_law {
     ($callback:ident! { $($arguments:tt)* }) => {

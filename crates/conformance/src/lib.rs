@@ -1,10 +1,11 @@
 //! Tests that every structure implements the traits correctly.
 //!
 //! - [`Oracle`]: the expected answers, computed by brute force from the input faces only.
-//! - [`law`]: the requirements on every structure, one function per law.
+//! - [`law`]: the requirements on every structure. Each requirement is a function, which is called
+//!   a law.
 //! - [`gallery`]: small meshes made by hand, one for each corner case.
-//! - [`strategy`]: random meshes that shrink when a law fails: manifolds of any topology, meshes
-//!   with known faults, and meshes of random faces.
+//! - [`strategy`]: random manifolds of any topology, meshes with known faults, and meshes of random
+//!   faces. The meshes are shrunk when a law fails.
 //! - [`edit`]: a model of edits, random scripts of edits, and a test that compares a structure with
 //!   the model.
 //! - [`suite!`]: a macro that makes one `#[test]` from each law.

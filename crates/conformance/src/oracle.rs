@@ -8,9 +8,9 @@ use crate::element::Element;
 
 /// The expected answer of each query, computed by brute force from lists of corners.
 ///
-/// The code is slow and simple on purpose. The oracle copies FV from the input and derives FE from
-/// FV. The oracle collects the other seven relations from sides and corners into ordered sets. The
-/// oracle uses no structure and no incidence code of `sixfold-core`.
+/// The code is slow and simple on purpose. The oracle copies the relation FV from the input, and
+/// computes FE from FV. For the other seven relations, it collects the sides and corners of the
+/// faces in ordered sets. The oracle uses no structure and no incidence code of `sixfold-core`.
 #[derive(Clone, Debug)]
 pub struct Oracle {
     vertices: usize,
@@ -99,7 +99,7 @@ impl Oracle {
         &self.faces[f.index()]
     }
 
-    /// Returns the elements to which `relation` applies.
+    /// Returns all elements for which `relation` can be queried.
     pub fn domain(&self, relation: Relation) -> Vec<Element> {
         use Relation::*;
         match relation {
@@ -111,14 +111,14 @@ impl Oracle {
         }
     }
 
-    /// Returns the answer of `relation` for `element`. FV and FE have the order of the input; the
-    /// other relations are sorted.
+    /// Returns the answer of `relation` for `element`. The answers of FV and FE have the order of
+    /// the input, and the answers of the other relations are sorted.
     pub fn answer(&self, relation: Relation, element: Element) -> &[Element] {
         let answer = self.answers.get(&(relation, element));
         answer.map_or(&[], Vec::as_slice)
     }
 
-    /// Returns whether `v` is the end of a boundary edge.
+    /// Returns true if `v` is the end of a boundary edge.
     pub fn is_boundary(&self, v: VertexId) -> bool {
         let edges = self.answer(Relation::VertexEdges, Element::Vertex(v));
         edges
@@ -126,8 +126,8 @@ impl Oracle {
             .any(|&edge| self.answer(Relation::EdgeFaces, edge).len() == 1)
     }
 
-    /// Returns the one-ring of `v`, counter-clockwise, and whether the ring is closed; `None` if
-    /// the faces at `v` are not one oriented fan.
+    /// Returns the one-ring of `v`, counter-clockwise. The second value is true if the ring is
+    /// closed. Returns `None` if the faces at `v` are not one oriented fan.
     ///
     /// A closed ring starts at its lowest vertex. An isolated vertex has an empty, open ring.
     pub fn one_ring(&self, v: VertexId) -> Option<(Vec<VertexId>, bool)> {

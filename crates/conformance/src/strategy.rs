@@ -1,4 +1,4 @@
-//! Random meshes that shrink towards a single triangle.
+//! Generators of random meshes. If a test fails, the mesh is shrunk towards a single triangle.
 //!
 //! Random manifolds are constructed in three steps. First, shapes are placed side by side. Then
 //! operations change the shapes (`operation`); the mesh stays manifold. Finally, all elements are
@@ -23,7 +23,7 @@ pub use faults::Fault;
 pub struct Faulty {
     /// The mesh.
     pub polygons: PolygonMesh,
-    /// Faults of the mesh; at least one.
+    /// The faults of the mesh. A faulty mesh has at least one fault.
     pub faults: Vec<Fault>,
 }
 
@@ -55,8 +55,8 @@ pub fn faulty_mesh() -> impl Strategy<Value = Faulty> {
     })
 }
 
-/// Generates random faces over a few vertices. The result is rarely a manifold. In some of the
-/// meshes, several vertices share a position.
+/// Generates random faces over a few vertices. The meshes are rarely manifold. In some meshes,
+/// several vertices have the same position.
 pub fn any_mesh() -> impl Strategy<Value = PolygonMesh> {
     let size = (3..9_u32, 0..10_usize, any::<[bool; 2]>());
     let faces = size.prop_flat_map(|(vertices, faces, shared)| {

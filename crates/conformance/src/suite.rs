@@ -13,7 +13,8 @@ use crate::strategy::{any_mesh, faulty_mesh, manifold_mesh};
 /// Makes one `#[test]` from each law. Example:
 /// `sixfold_conformance::suite!(half_edge::HalfEdgeMesh);`
 ///
-/// Laws about a mesh run on the gallery and on random meshes. A failing random mesh is shrunk and
+/// A law is a requirement that every structure must satisfy. A law about a mesh runs on all
+/// hand-made meshes of the gallery and on random meshes. A failing random mesh is shrunk and
 /// printed on one line. `PROPTEST_CASES` sets the number of random meshes per law.
 #[macro_export]
 macro_rules! suite {
@@ -42,7 +43,7 @@ macro_rules! suite_of_laws {
     };
 }
 
-/// Makes the tests of structures that refine their own tables:
+/// Makes the tests for a structure that refines its own tables:
 /// `sixfold_conformance::refine_suite!(half_edge::HalfEdgeMesh);`
 #[macro_export]
 macro_rules! refine_suite {
@@ -59,7 +60,7 @@ macro_rules! refine_suite {
     };
 }
 
-/// Makes the tests of structures that can be edited:
+/// Makes the tests for a structure that can be edited:
 /// `sixfold_conformance::edit_suite!(half_edge::EditableHalfEdgeMesh);`
 #[macro_export]
 macro_rules! edit_suite {
@@ -86,7 +87,7 @@ macro_rules! edit_suite {
     };
 }
 
-/// Makes the tests of structures that step from side to side:
+/// Makes the tests for a structure that implements `OrientedWalk`:
 /// `sixfold_conformance::walk_suite!(half_edge::HalfEdgeMesh, half_edge::EditableHalfEdgeMesh);`
 ///
 /// The second type is the editable form of the structure. Without the second type, two tests are
@@ -117,13 +118,13 @@ macro_rules! walk_suite {
 /// Number of random meshes per law if `PROPTEST_CASES` is not set.
 const CASES: u32 = 192;
 
-/// Runs `law` of `M` on every mesh of the gallery, and on random manifold, faulty and arbitrary
+/// Calls `law` with every mesh of the gallery, and with random manifold, faulty and arbitrary
 /// meshes.
 ///
 /// # Panics
 ///
-/// Panics if the law is broken. The message shows the mesh. A random mesh is shrunk before it is
-/// shown.
+/// Panics if the structure `M` breaks the law. The message shows the mesh. A random mesh is shrunk
+/// before it is shown.
 pub fn check_law<M: Representation>(name: &str, law: impl Fn(&PolygonMesh)) {
     let name = format!("{}: {name}", M::NAME);
     for entry in gallery() {

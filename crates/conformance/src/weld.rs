@@ -7,7 +7,7 @@ use sixfold_core::{Point, PolygonError, PolygonMesh, VertexId};
 /// Merges vertices with equal positions. The new vertices are numbered in the order in which faces
 /// first use them.
 ///
-/// −0 equals 0. Isolated vertices are dropped, because no face uses them.
+/// The coordinates −0 and 0 are equal. Isolated vertices are dropped.
 ///
 /// # Errors
 ///

@@ -2,9 +2,9 @@
 
 use crate::query::{EdgeMap, MeshQuery};
 
-/// A chain of boundary edges. The chain is closed, unless it ends at a non-manifold edge.
+/// A chain of boundary edges. The chain is closed, unless a non-manifold edge interrupts the chain.
 ///
-/// [`MeshQuery::boundary_loops`] defines which edge follows which.
+/// [`MeshQuery::boundary_loops`] defines the order of the edges.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BoundaryLoop<V, E> {
     /// The vertices, in order. A closed chain has as many vertices as edges; an open chain has one
@@ -16,7 +16,7 @@ pub struct BoundaryLoop<V, E> {
 }
 
 impl<V, E> BoundaryLoop<V, E> {
-    /// Returns whether the last edge leads back to the first vertex.
+    /// Returns whether the chain is closed: its last edge leads back to the first vertex.
     pub fn is_closed(&self) -> bool {
         self.vertices.len() == self.edges.len()
     }

@@ -10,31 +10,32 @@ use crate::incidence::Incidence;
 use crate::pairing::{MAX_CORNERS, MAX_EDGES};
 use crate::polygon_mesh::PolygonMesh;
 
-/// The meshes that a structure can hold beyond closed, oriented triangle manifolds.
+/// The kinds of meshes that a structure can hold. Every structure can hold oriented triangle
+/// manifolds, with or without a boundary. Each field states whether the structure can also hold
+/// meshes with one more property.
 ///
-/// The command line prints this table, constructors take their errors from it, and the conformance
-/// suite tests every structure against it. All six structures can hold meshes with a boundary.
+/// A constructor returns the error that [`check`](Self::check) finds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Capabilities {
-    /// Faces of any degree, not only triangles.
+    /// True if faces can have any degree; false if every face must be a triangle.
     pub polygons: bool,
-    /// Edges with three or more faces.
+    /// True if edges can have three or more faces.
     pub non_manifold_edges: bool,
-    /// Vertices whose faces form more than one fan.
+    /// True if the faces at a vertex can form more than one fan.
     pub non_manifold_vertices: bool,
-    /// Two faces that run along an edge in the same direction.
+    /// True if two faces can run along an edge in the same direction.
     pub inconsistent_orientation: bool,
-    /// Vertices without a face.
+    /// True if vertices without a face are allowed.
     pub isolated_vertices: bool,
-    /// Vertices with equal coordinates stay separate. If false, such vertices become one vertex,
-    /// and a face with two corners at one point is refused. Coordinates are compared without a
-    /// tolerance.
+    /// True if vertices with equal coordinates stay separate. If false, vertices with equal
+    /// coordinates become one vertex, and a face with two corners at the same position is refused.
+    /// Coordinates are compared without a tolerance.
     pub coincident_vertices: bool,
 }
 
 impl Capabilities {
-    /// All capabilities: any polygon mesh.
+    /// The capabilities of a structure that can hold every polygon mesh.
     pub const ALL: Self = Self {
         polygons: true,
         non_manifold_edges: true,
@@ -44,7 +45,8 @@ impl Capabilities {
         coincident_vertices: true,
     };
 
-    /// Oriented manifolds of polygons, isolated vertices allowed.
+    /// The capabilities of a structure that can hold oriented polygon manifolds, and also isolated
+    /// vertices.
     pub const ORIENTED_MANIFOLDS: Self = Self {
         non_manifold_edges: false,
         non_manifold_vertices: false,
@@ -111,14 +113,15 @@ impl Capabilities {
             && self.coincident_vertices
     }
 
-    /// Returns the fault of `polygons` after a constructor has found a fault.
+    /// Returns the error of a constructor that has found a fault in `polygons`.
     ///
-    /// Constructors call this, so that they always return the same error as [`check`](Self::check).
+    /// Constructors call this method, so that they always return the same error as
+    /// [`check`](Self::check).
     ///
     /// # Panics
     ///
-    /// Panics if [`check`](Self::check) finds no fault: then the constructor or the check has a
-    /// bug.
+    /// Panics if [`check`](Self::check) finds no fault, which is a bug in the constructor or in the
+    /// check.
     pub fn build_error(&self, polygons: &PolygonMesh) -> BuildError {
         match self.check(polygons) {
             Err(fault) => fault,

@@ -1,9 +1,9 @@
-//! Conversions between structures and polygon meshes, under the names of the standard library.
+//! Conversions between structures and polygon meshes by the traits `From` and `TryFrom`.
 
 use crate::polygon_mesh::PolygonMesh;
 use crate::representation::Representation;
 
-/// Returns the mesh as [`to_polygons`](Representation::to_polygons) does.
+/// Converts the mesh like [`to_polygons`](Representation::to_polygons).
 impl<M: Representation> From<&M> for PolygonMesh {
     fn from(mesh: &M) -> Self {
         mesh.to_polygons()

@@ -7,15 +7,16 @@ use crate::handle::Pair;
 use crate::polygon_mesh::PolygonMesh;
 use crate::row_id::VertexId;
 
-/// The smallest sharpness that counts as infinite. An infinite sharpness does not decrease from
-/// level to level.
+/// The smallest sharpness that counts as infinite. Unlike a finite sharpness, an infinite sharpness
+/// does not decrease from one subdivision level to the next.
 pub const SHARPNESS_INFINITE: f32 = 10.0;
 
-/// The sharpness of edges and vertices of a [`PolygonMesh`]. Without an entry, the sharpness is 0.
+/// The sharpness of edges and vertices of a [`PolygonMesh`]. An edge or vertex without an entry has
+/// sharpness 0.
 ///
-/// Sharpness is the number of levels for which an edge or a vertex stays sharp; it may be
-/// fractional. If the sharpness is [`SHARPNESS_INFINITE`] or more, the edge or vertex stays sharp
-/// at every level (DeRose, Kass & Truong 1998).
+/// Sharpness is the number of subdivision levels for which an edge or a vertex stays sharp. The
+/// number may be fractional. If the sharpness is [`SHARPNESS_INFINITE`] or more, the edge or vertex
+/// stays sharp at every level (DeRose, Kass & Truong 1998).
 ///
 /// # Invariants
 ///
@@ -76,7 +77,8 @@ impl Creases {
     }
 
     /// Builds creases from entries in any order. The entries must be edges and vertices of a mesh.
-    /// The last entry of each edge or vertex counts; entries of sharpness 0 are dropped.
+    /// If an edge or vertex has several entries, the last entry counts. Entries of sharpness 0 are
+    /// dropped.
     pub fn from_entries(
         mut edges: Vec<(Pair<VertexId>, f32)>,
         mut corners: Vec<(VertexId, f32)>,
@@ -98,12 +100,12 @@ impl Creases {
         self.edges.is_empty() && self.corners.is_empty()
     }
 
-    /// Returns the sharp edges, sorted by their ends.
+    /// Returns the sharp edges with their sharpness, sorted by their ends.
     pub fn edges(&self) -> &[(Pair<VertexId>, f32)] {
         &self.edges
     }
 
-    /// Returns the sharp vertices, sorted.
+    /// Returns the sharp vertices with their sharpness, sorted by vertex.
     pub fn corners(&self) -> &[(VertexId, f32)] {
         &self.corners
     }

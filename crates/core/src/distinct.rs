@@ -11,9 +11,9 @@ const ARRAY_LEN: usize = 16;
 
 /// The distinct items of an iterator, each at its first occurrence.
 ///
-/// The first 16 distinct items are stored in an array and compared one by one. This is fast for
-/// small neighbourhoods. From the 17th distinct item on, a hash set is used. O(1) expected per
-/// item.
+/// The first 16 distinct items are stored in an array and compared one by one, which is fast for
+/// small neighbourhoods. From the 17th distinct item on, the iterator uses a hash set. The expected
+/// time is O(1) per item.
 #[derive(Clone, Debug)]
 pub struct Distinct<I: Iterator> {
     items: I,
@@ -82,10 +82,11 @@ const SET_STEPS: usize = 32;
 /// The distinct items of a walk that can be repeated, each at its first occurrence; empty slots are
 /// skipped.
 ///
-/// This iterator yields the faces across the sides of a face. The last three items are stored,
-/// which is enough for triangles and quads. For larger faces, the walk is repeated to find earlier
-/// items. From 32 steps on, a hash set is used. For triangles and quads, this iterator is faster
-/// than [`Distinct`], because it needs no array in memory. O(1) expected per step.
+/// Structures use this iterator to find the faces across the sides of a face. The iterator stores
+/// the last three items, which is enough for triangles and quads. For larger faces, it repeats the
+/// walk to find earlier items; from 32 steps on, it uses a hash set. For triangles and quads, this
+/// iterator is faster than [`Distinct`], because it needs no array in memory. The expected time is
+/// O(1) per step.
 ///
 /// ```
 /// use sixfold_core::{DistinctWalk, FaceId, Slot};
@@ -104,7 +105,7 @@ pub struct DistinctWalk<W, H: RowId> {
 }
 
 impl<H: RowId, W: Iterator<Item = Slot<H>> + Clone> DistinctWalk<W, H> {
-    /// Builds the iterator from a walk at its start.
+    /// Builds the iterator from a walk that has not made a step yet.
     #[inline(always)]
     pub fn new(walk: W) -> Self {
         Self {

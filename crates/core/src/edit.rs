@@ -7,7 +7,7 @@ use crate::edit_log::{EditLog, OldToNew};
 use crate::query::{EdgeMap, FaceMap, MeshQuery, VertexMap};
 use crate::representation::QueryCost;
 
-/// The error of an edit that `M` refused.
+/// The error type of the edits of the mesh type `M`.
 pub type Refusal<M> =
     EditError<<M as MeshQuery>::Vertex, <M as MeshQuery>::Edge, <M as MeshQuery>::Face>;
 
@@ -28,7 +28,10 @@ macro_rules! edits {
         ///
         /// # Errors
         ///
-        #[doc = concat!("The same as for [`", stringify!($edit), "`](Self::", stringify!($edit), ").")]
+        #[doc = concat!(
+            "Returns the same errors as [`", stringify!($edit),
+            "`](Self::", stringify!($edit), ").",
+        )]
         fn $logged(&mut self, $($argument: $kind,)+ log: &mut impl EditLog<Self>) -> $outcome;
     )+};
 }
@@ -38,19 +41,19 @@ macro_rules! edits {
 /// # Contract
 ///
 /// - **All or nothing.** A refused edit leaves every table unchanged. An edit with an invalid
-///   handle is refused; it does not panic.
-/// - **Legality.** An edit is legal if it satisfies its rule below and the structure can hold the
-///   resulting mesh ([`Capabilities`](crate::Capabilities)). For example, structures that can hold
-///   non-manifold meshes accept edits that make a mesh non-manifold.
-/// - **Handles.** Elements that an edit does not touch keep their handles. In some structures, a
-///   handle is not a row of its own: it is a pair of ends, coordinates, or the corner opposite an
-///   edge. An edit may rename such an element, which means that the handle of the element changes.
-///   The edit reports every created, removed or renamed element to the [`EditLog`].
+///   handle is refused and does not panic.
+/// - **Legality.** An edit is legal if none of the errors in its documentation applies and the
+///   structure can hold the resulting mesh ([`Capabilities`](crate::Capabilities)). For example,
+///   structures that can hold non-manifold meshes accept edits that make a mesh non-manifold.
+/// - **Handles.** Elements that an edit does not touch keep their handles. In some structures, the
+///   handle of an element is a pair of ends, coordinates, or the corner opposite an edge. An edit
+///   may change such a handle; the element is then called renamed. The edit reports every created,
+///   removed or renamed element to the [`EditLog`].
 /// - **Holes.** Counts, iterations, relations and conversions do not contain removed elements. The
-///   row of a removed element becomes a hole. A query with the handle of a hole panics. No row is
-///   reused until [`compact`](Self::compact) closes the holes. If the handle of a removed element
-///   is a pair or coordinates, its relations are empty, and a later edit may create an element with
-///   the same handle.
+///   row of a removed element becomes a hole, and a query with the handle of this row panics. No
+///   row is reused until [`compact`](Self::compact) removes the holes. If the handle of a removed
+///   element is a pair or coordinates, the relations of this handle are empty, and a later edit may
+///   create an element with the same handle.
 /// - **In place.** An edit does not convert or rebuild the mesh. [`EDITS`](Self::EDITS) states how
 ///   much of the mesh an edit reads.
 ///
@@ -59,8 +62,8 @@ macro_rules! edits {
 /// Every edit has a short form, such as [`flip_edge`](Self::flip_edge), and a logged form, such as
 /// [`flip_edge_logged`](Self::flip_edge_logged). The logged form reports all created, removed and
 /// renamed elements to a log. The short form reports nothing. [`EditLog`] describes when to use
-/// which form. In a [`MeshWithData`](crate::MeshWithData), data by vertex, edge or face follows all
-/// edits, in both forms.
+/// which form. A [`MeshWithData`](crate::MeshWithData) updates its data by vertex, edge or face
+/// after every edit, in both forms.
 ///
 /// ```
 /// # use sixfold_core::{MeshEdit, Point, Refusal};
@@ -75,20 +78,21 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// does not support the edit.
     const EDITS: [Option<QueryCost>; Edit::ALL.len()];
 
-    /// The same structure without deleted rows: its type parameter is [`Compact`](crate::Compact).
-    /// Its queries need no check for deleted rows.
+    /// The type of the same structure with the type parameter [`Compact`](crate::Compact). A mesh
+    /// of this type has no deleted rows, so its queries need no check for deleted rows.
     type Compact: MeshQuery<Vertex = Self::Vertex, Edge = Self::Edge, Face = Self::Face>;
 
-    /// Closes all holes and converts to a mesh that cannot have holes; O(mesh) if there are holes.
-    /// Handles change as in [`compact`](Self::compact), but the changes are not reported. If you
-    /// need the new handles, call [`compact_with_map`](Self::compact_with_map) first.
+    /// Removes the rows of deleted elements (holes), and converts to a mesh that cannot have holes.
+    /// O(size of the mesh) if there are holes. Handles change as in [`compact`](Self::compact), but
+    /// the changes are not reported. If you need the new handles, call
+    /// [`compact_with_map`](Self::compact_with_map) first.
     fn into_compact(self) -> Self::Compact;
 
-    /// Converts a compact mesh to one that can be edited; O(1). Handles stay the same.
+    /// Converts a compact mesh to an editable mesh; O(1). All handles stay the same.
     fn from_compact(compact: Self::Compact) -> Self;
 
     edits! {
-        /// Moves `v` to `to`; returns the handle of the vertex afterwards.
+        /// Moves `v` to `to`; returns the handle that the vertex has after the move.
         ///
         /// # Errors
         ///
@@ -105,38 +109,38 @@ pub trait MeshEdit: MeshQuery + Sized {
         /// [`EditError::Unsupported`] if the structure cannot hold a vertex without a face.
         fn add_vertex, add_vertex_logged(at: Point) -> Result<Self::Vertex, Refusal<Self>>;
 
-        /// Adds a face with these `corners`. The corners must be existing vertices, unless vertices
-        /// are identified by coordinates.
+        /// Adds a face with the given `corners`. The corners must be existing vertices, unless
+        /// vertices are identified by coordinates.
         ///
         /// # Errors
         ///
-        /// Refuses fewer than three corners, a repeated corner, and a polygon if only triangles are
-        /// allowed. If only manifolds are allowed, also refuses these cases: a face already runs
-        /// along a side in the same direction; an edge already has two faces; the faces at a corner
-        /// would form more than one fan.
+        /// Refuses fewer than three corners, a repeated corner, and a polygon if the structure
+        /// holds only triangles. If the structure holds only manifolds, also refuses these cases:
+        /// another face already has a side of the new face in the same direction; an edge already
+        /// has two faces; the faces at a corner would form more than one fan.
         fn add_face, add_face_logged(corners: &[Self::Vertex]) -> Result<Self::Face, Refusal<Self>>;
 
-        /// Removes `f`, and the edges that no other face has. The corners of `f` stay, even if they
-        /// become isolated. If vertices are identified by coordinates, corners without a face are
-        /// removed.
+        /// Removes `f`, and the edges that no other face has. The vertices of `f` stay, even if
+        /// they become isolated. Exception: if vertices are identified by coordinates, vertices
+        /// without a face are removed.
         ///
         /// # Errors
         ///
-        /// [`EditError::SeveralFans`] if the remaining faces at a corner would form more than one
-        /// fan.
+        /// [`EditError::SeveralFans`] if the structure holds only manifolds and the remaining faces
+        /// at a corner would form more than one fan.
         fn remove_face, remove_face_logged(f: Self::Face) -> Result<(), Refusal<Self>>;
 
-        /// Removes `v` and all its faces in one edit. The faces are removed as by
-        /// [`remove_face`](Self::remove_face).
+        /// Removes `v` and all its faces in one edit. [`remove_face`](Self::remove_face) describes
+        /// the edges and vertices that are removed together with each face.
         ///
         /// # Errors
         ///
-        /// [`EditError::SeveralFans`] if the remaining faces at another vertex would form more than
-        /// one fan.
+        /// [`EditError::SeveralFans`] if the structure holds only manifolds and the remaining faces
+        /// at another vertex would form more than one fan.
         fn remove_vertex, remove_vertex_logged(v: Self::Vertex) -> Result<(), Refusal<Self>>;
     }
 
-    /// Removes all vertices without a face; returns their number.
+    /// Removes all vertices without a face; returns the number of removed vertices.
     #[inline]
     fn remove_isolated_vertices(&mut self) -> usize {
         self.remove_isolated_vertices_logged(&mut ())
@@ -151,8 +155,9 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// # Errors
         ///
-        /// [`EditError::Unsupported`] if only triangles are allowed; [`EditError::Occupied`] if
-        /// vertices are identified by coordinates and another vertex is at `at`.
+        /// [`EditError::Unsupported`] if the structure holds only triangles;
+        /// [`EditError::Occupied`] if vertices are identified by coordinates and another vertex is
+        /// at `at`.
         fn split_edge, split_edge_logged(
             e: Self::Edge, at: Point,
         ) -> Result<Self::Vertex, Refusal<Self>>;
@@ -171,9 +176,9 @@ pub trait MeshEdit: MeshQuery + Sized {
         /// # Errors
         ///
         /// [`EditError::NotATriangle`] if a face of `e` is not a triangle; [`EditError::SameApex`]
-        /// if only manifold edges are allowed and both triangles have the same third corner;
-        /// [`EditError::Occupied`] if vertices are identified by coordinates and another vertex is
-        /// at `at`.
+        /// if the structure holds only manifold edges and both triangles have the same third
+        /// corner; [`EditError::Occupied`] if vertices are identified by coordinates and another
+        /// vertex is at `at`.
         fn bisect_edge, bisect_edge_logged(
             e: Self::Edge, at: Point,
         ) -> Result<Self::Vertex, Refusal<Self>>;
@@ -189,30 +194,32 @@ pub trait MeshEdit: MeshQuery + Sized {
             f: Self::Face, at: Point,
         ) -> Result<Self::Vertex, Refusal<Self>>;
 
-        /// Cuts `f` in two by an edge between two of its corners; `f` becomes one of the parts.
+        /// Cuts `f` into two faces by a new edge between its corners `ends`, and returns this edge.
+        /// The handle `f` stays the handle of one of the two faces.
         ///
         /// # Errors
         ///
         /// Refuses `ends` that are not corners of `f`, are equal, or are adjacent in `f`.
-        /// [`EditError::EdgeExists`] if only manifold edges are allowed and the two vertices
-        /// already have an edge; [`EditError::Unsupported`] if only triangles are allowed.
+        /// [`EditError::EdgeExists`] if the structure holds only manifold edges and an edge already
+        /// joins the two vertices; [`EditError::Unsupported`] if the structure holds only
+        /// triangles.
         fn split_face, split_face_logged(
             f: Self::Face, ends: [Self::Vertex; 2],
         ) -> Result<Self::Edge, Refusal<Self>>;
 
-        /// Removes `e` and merges its two faces; returns the face that stays. This is the inverse
-        /// of [`split_face`](Self::split_face).
+        /// Removes `e` and merges its two faces; returns the face that stays. This edit is the
+        /// inverse of [`split_face`](Self::split_face).
         ///
         /// # Errors
         ///
         /// Refuses an edge that does not have exactly two faces. Also refuses faces that run along
         /// `e` in the same direction, or that share a vertex other than the ends of `e`.
-        /// [`EditError::Unsupported`] if only triangles are allowed.
+        /// [`EditError::Unsupported`] if the structure holds only triangles.
         fn dissolve_edge, dissolve_edge_logged(e: Self::Edge) -> Result<Self::Face, Refusal<Self>>;
 
-        /// Flips `e` within the quad of its two triangles; returns the handle of the edge
-        /// afterwards. Each face keeps its handle. Each face also keeps one old end of `e`: the
-        /// start of its side along `e`.
+        /// Replaces `e` by the other diagonal of the quad that its two triangles form; returns the
+        /// handle of the flipped edge. Both triangles keep their handles. Each triangle also keeps
+        /// one old end of `e`: the vertex where the side of the triangle along `e` starts.
         ///
         /// ```text
         ///      c            c
@@ -224,16 +231,16 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// # Errors
         ///
-        /// Refuses these cases: `e` does not have exactly two faces; the faces run along `e` in the
-        /// same direction; a face is not a triangle; the two triangles have the same third corner;
-        /// the third corners already have an edge. [`EditError::LowValence`] if an end of `e` has
-        /// only three edges and three faces.
+        /// Refuses the edit in these cases: `e` does not have exactly two faces; the faces run
+        /// along `e` in the same direction; a face is not a triangle; the two triangles have the
+        /// same third corner; an edge already joins the two third corners.
+        /// [`EditError::LowValence`] if an end of `e` has only three edges and three faces.
         fn flip_edge, flip_edge_logged(e: Self::Edge) -> Result<Self::Edge, Refusal<Self>>;
 
-        /// Merges the two ends of `e` into `keep`, and moves `keep` to `to`. Returns the handle of
-        /// this vertex after the edit. Triangles along `e` are removed, and other faces along `e`
-        /// lose a corner. The other two edges of a removed triangle become one edge: the edge at
-        /// `keep` stays.
+        /// Merges the two ends of `e` into the vertex `keep`, and moves `keep` to the position
+        /// `to`. Returns the handle of `keep` after the edit. Triangles along `e` are removed, and
+        /// other faces along `e` lose a corner. The other two edges of a removed triangle become
+        /// one edge: the edge at `keep` stays, and the other edge is removed.
         ///
         /// ```text
         ///      c            c
@@ -245,29 +252,31 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// # Errors
         ///
-        /// Refuses these cases: `keep` is not an end of `e`; both ends of `e` are corners of a
-        /// face, but are not adjacent in the face; a vertex would lose its last face.
-        /// [`EditError::Occupied`] if vertices are identified by coordinates and another vertex is
-        /// at `to`.
+        /// Refuses the edit in these cases: `keep` is not an end of `e`; a face has corners at both
+        /// ends of `e`, but these corners are not adjacent in the face; a vertex would lose its
+        /// last face. [`EditError::Occupied`] if vertices are identified by coordinates and another
+        /// vertex is at `to`.
         ///
-        /// If only manifolds are allowed, also refuses violations of the link condition (Dey et al.
-        /// 1999):
+        /// If the structure holds only manifolds, also refuses violations of the link condition
+        /// (Dey et al. 1999):
         ///
-        /// - [`EditError::CommonNeighbour`]: a vertex is adjacent to both ends, but is not the
-        ///   third corner of a triangle along `e`.
+        /// - [`EditError::CommonNeighbour`]: a vertex is adjacent to both ends of `e`, but is not
+        ///   the third corner of a triangle along `e`.
         /// - [`EditError::AcrossBoundary`]: an inner edge joins two boundary vertices.
         /// - [`EditError::Pillow`]: two triangles would have the same corners.
         fn collapse_edge, collapse_edge_logged(
             e: Self::Edge, keep: Self::Vertex, to: Point,
         ) -> Result<Self::Vertex, Refusal<Self>>;
 
-        /// Splits `v` in two, and adds a triangle on each side of the new edge; returns the new
-        /// vertex. This is the inverse of [`collapse_edge`](Self::collapse_edge) (Hoppe 1996).
+        /// Splits `v` into two vertices, joins them by a new edge, and adds a triangle on each side
+        /// of this edge. Returns the new vertex. This edit is the inverse of
+        /// [`collapse_edge`](Self::collapse_edge) (Hoppe 1996).
         ///
-        /// The new vertex gets the faces counter-clockwise around `v`, from the edge `v`–`right` to
-        /// the edge `v`–`left`. If `left` is `None`, the new edge has only the triangle on its
-        /// right, and the new vertex gets the faces up to the boundary. If `right` is `None`, the
-        /// new vertex gets the faces from the boundary to the edge `v`–`left`.
+        /// The new vertex gets the faces that follow counter-clockwise around `v` from the edge
+        /// `v`–`right` to the edge `v`–`left`. If `left` is `None`, only the triangle on the right
+        /// of the new edge is added, and the new vertex gets the faces up to the boundary. If
+        /// `right` is `None`, the new vertex gets the faces from the boundary to the edge
+        /// `v`–`left`.
         ///
         /// ```text
         ///     left             left
@@ -279,24 +288,24 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// # Errors
         ///
-        /// Refuses these cases: the faces at `v` do not form one oriented fan; `left` or `right` is
-        /// not adjacent to `v`; `left` and `right` are equal, or both are `None`; one of them is
-        /// `None`, but `v` is not on a boundary. [`EditError::Occupied`] if vertices are identified
-        /// by coordinates and another vertex is at `at`.
+        /// Refuses the edit in these cases: the faces at `v` do not form one oriented fan; `left`
+        /// or `right` is not adjacent to `v`; `left` and `right` are equal, or both are `None`;
+        /// `left` or `right` is `None`, but `v` is not on a boundary. [`EditError::Occupied`] if
+        /// vertices are identified by coordinates and another vertex is at `at`.
         fn split_vertex, split_vertex_logged(
             v: Self::Vertex, left: Option<Self::Vertex>, right: Option<Self::Vertex>, at: Point,
         ) -> Result<Self::Vertex, Refusal<Self>>;
     }
 
-    /// Closes all holes; O(mesh). The remaining elements keep their order and get rows without
-    /// gaps. Every changed handle is reported. A table that is less than half used frees its spare
-    /// memory.
+    /// Removes the rows of deleted elements (holes) from all tables; O(size of the mesh). The
+    /// remaining elements keep their order and get rows without gaps. A table that uses less than
+    /// half of its memory frees the unused part.
     #[inline]
     fn compact(&mut self) {
         self.compact_logged(&mut ());
     }
 
-    /// Does [`compact`](Self::compact), and reports all changes to `log`.
+    /// Does [`compact`](Self::compact), and reports every changed handle to `log`.
     fn compact_logged(&mut self, log: &mut impl EditLog<Self>);
 
     /// Returns whether the structure supports `edit`.
@@ -304,7 +313,8 @@ pub trait MeshEdit: MeshQuery + Sized {
         Self::EDITS[edit as usize].is_some()
     }
 
-    /// Closes all holes and returns the new handle of each element; O(mesh).
+    /// Does [`compact`](Self::compact), and returns the new handle of each element; O(size of the
+    /// mesh).
     fn compact_with_map(&mut self) -> OldToNew<Self> {
         let mut vertices: VertexMap<Self, Option<Self::Vertex>> = self.vertex_map(None);
         let mut edges: EdgeMap<Self, Option<Self::Edge>> = self.edge_map(None);

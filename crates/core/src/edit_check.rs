@@ -47,8 +47,9 @@ pub fn check_corners<V: Handle, E: Debug, F: Debug>(
     }
 }
 
-/// Checks that an edge between `ends` can cut a face with these corners; returns the places of the
-/// two ends in the face, the lower first. `is_at` compares a vertex with a corner.
+/// Checks that an edge between `ends` can cut a face with the given `corners`; returns the indices
+/// of the two ends in `corners`, the lower index first. `is_at` tests whether a vertex is at a
+/// corner.
 ///
 /// # Errors
 ///

@@ -4,8 +4,8 @@ use std::fmt::Debug;
 
 use crate::edit_kind::Edit;
 
-/// The reason why an edit was refused; the mesh is unchanged. Elements are given by the handles of
-/// the structure.
+/// The reason why an edit was refused; the mesh is unchanged. The fields name elements by the
+/// handles of the structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
@@ -56,8 +56,10 @@ pub enum EditError<V: Debug, E: Debug, F: Debug> {
         "face {face:?} has {degree} corners, and this edit requires triangles: cut the face first"
     )]
     NotATriangle { face: F, degree: usize },
-    /// A side that a face already runs along in the same direction.
-    #[error("face {face:?} already runs {from:?}→{to:?}: reverse the corners of the new face")]
+    /// A side of a new face that another face already has in the same direction.
+    #[error(
+        "face {face:?} already has the side {from:?}→{to:?}: reverse the corners of the new face"
+    )]
     RepeatedSide { from: V, to: V, face: F },
     /// An edge that already has two faces, in a structure without non-manifold edges.
     #[error(
@@ -89,7 +91,7 @@ pub enum EditError<V: Debug, E: Debug, F: Debug> {
         "both triangles of edge {edge:?} have the same third corner {vertex:?}: choose another edge"
     )]
     SameApex { edge: E, vertex: V },
-    /// An end of the flipped edge that would have too few edges.
+    /// A vertex that would have only two edges after the flip.
     #[error(
         "vertex {vertex:?} has only three edges and three faces, and the flip would leave the \
          vertex with only two edges: choose another edge"
@@ -128,7 +130,7 @@ pub enum EditError<V: Debug, E: Debug, F: Debug> {
     Pillow { edge: E },
     /// A vertex whose faces do not form one oriented fan.
     #[error(
-        "the faces at vertex {vertex:?} are not one oriented fan, so they have no order for a \
+        "the faces at vertex {vertex:?} do not form one oriented fan, so the vertex cannot be \
          split: choose another vertex"
     )]
     NoFan { vertex: V },
@@ -144,7 +146,7 @@ pub enum EditError<V: Debug, E: Debug, F: Debug> {
     /// Only one neighbour, for a vertex that is not on a boundary.
     #[error("vertex {vertex:?} is not on a boundary: give both neighbours")]
     NotOnBoundary { vertex: V },
-    /// More elements than a handle can name.
+    /// More elements of one kind than 32-bit handles can number.
     #[error(
         "more than {limit} {elements}: compact the mesh or split it, because handles have 32 bits"
     )]

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::representation::QueryCost;
 
-/// One kind of edit.
+/// A kind of edit: one method of [`MeshEdit`](crate::MeshEdit).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -54,8 +54,8 @@ impl Edit {
     ];
 
     /// The costs of the edits in a structure that stores adjacency. Moving or adding a vertex costs
-    /// O(1). Removing isolated vertices and compacting read the whole mesh. All other edits read
-    /// the faces around the element.
+    /// O(1). Removing isolated vertices and compacting count as scans, because they read whole
+    /// tables. All other edits read only the faces around the element.
     pub const LOCAL_COSTS: [Option<QueryCost>; Self::ALL.len()] = {
         let mut costs = [Some(QueryCost::Local); Self::ALL.len()];
         costs[Self::SetPosition as usize] = Some(QueryCost::Constant);
@@ -65,9 +65,9 @@ impl Edit {
         costs
     };
 
-    /// The costs of the edits in a structure that searches all faces, if the log ignores reports.
-    /// Adding a face costs O(1). An edit of one face reads only that face. All other edits read the
-    /// whole mesh.
+    /// The costs of the edits in a structure that scans all faces, if the log ignores reports.
+    /// Adding a face costs O(1). Removing, poking or splitting a face reads only this face. All
+    /// other edits count as scans. A structure can replace single costs.
     pub const SCAN_COSTS: [Option<QueryCost>; Self::ALL.len()] = {
         let mut costs = [Some(QueryCost::Scan); Self::ALL.len()];
         costs[Self::AddFace as usize] = Some(QueryCost::Constant);

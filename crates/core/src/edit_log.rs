@@ -1,5 +1,5 @@
-//! Changes of handles by edits: the trait that receives them, a record of them, and the update of
-//! maps.
+//! The changes that edits make to elements and handles: a trait that receives the changes, a record
+//! of the changes, and the update of maps.
 
 use std::fmt;
 
@@ -7,13 +7,13 @@ use crate::handle::{Handle, HandleMap};
 use crate::query::{EdgeMap, FaceMap, MeshQuery, VertexMap};
 
 /// The new handle of each element that existed before [`compact`](crate::MeshEdit::compact); `None`
-/// for rows that were holes.
+/// for the rows of deleted elements.
 pub struct OldToNew<M: MeshQuery> {
-    /// By old vertex.
+    /// The new handle of each vertex, by old handle.
     pub vertices: VertexMap<M, Option<M::Vertex>>,
-    /// By old edge.
+    /// The new handle of each edge, by old handle.
     pub edges: EdgeMap<M, Option<M::Edge>>,
-    /// By old face.
+    /// The new handle of each face, by old handle.
     pub faces: FaceMap<M, Option<M::Face>>,
 }
 
@@ -38,18 +38,19 @@ impl<M: MeshQuery> EditLog<M> for OldToNew<M> {
 /// edit in three steps: drop all removed handles; rename all renamed handles at once, because
 /// elements may exchange handles; add the created handles.
 ///
-/// # When to use which
+/// # Which log to use
 ///
-/// - Data by vertex, edge or face that must stay correct: put it into a
-///   [`MeshWithData`](crate::MeshWithData). The data then follows all edits, including the edits of
-///   algorithms that have no parameter for a log.
-/// - A list of the changes by an edit, for instance to undo the edit or to redraw a part: pass an
-///   [`EditRecord`].
-/// - A reaction to one kind of change, such as collecting removed faces: implement this trait.
-/// - None of these: use the short form of the edit. It passes the log `()`, for which the
-///   structures compute no reports.
+/// - To keep data by vertex, edge or face correct, put the data into a
+///   [`MeshWithData`](crate::MeshWithData). Every edit then updates the data, even in algorithms
+///   that have no parameter for a log.
+/// - To list the changes of an edit, for instance to undo the edit or to redraw a part of the mesh,
+///   pass an [`EditRecord`].
+/// - To react to one kind of change, such as the removal of faces, implement this trait.
+/// - If you do not need the changes, use the short form of the edit, such as `flip_edge`. The short
+///   form passes the log `()`, for which the structures compute no reports.
 pub trait EditLog<M: MeshQuery> {
-    /// Whether the log uses the reports; if false, structures need not compute reports.
+    /// True if the log uses the reports. If this is false, structures can skip the computation of
+    /// reports.
     const USES_REPORTS: bool = true;
 
     /// Reports that `v` was created.
@@ -72,7 +73,7 @@ pub trait EditLog<M: MeshQuery> {
     fn renamed_face(&mut self, _old: M::Face, _new: M::Face) {}
 }
 
-/// Returns whether `log` uses the reports, for code that cannot name its type.
+/// Returns [`EditLog::USES_REPORTS`] of the type of `log`, for code that cannot name this type.
 pub const fn uses_reports<M: MeshQuery, L: EditLog<M>>(_log: &L) -> bool {
     L::USES_REPORTS
 }
@@ -82,7 +83,7 @@ impl<M: MeshQuery> EditLog<M> for () {
     const USES_REPORTS: bool = false;
 }
 
-/// The changes by edits since the record was last cleared.
+/// A log that stores all changes since the record was created or last cleared.
 ///
 /// ```
 /// # use sixfold_core::{EditRecord, HandleMap, MeshEdit, MeshQuery};
@@ -142,7 +143,7 @@ impl<M: MeshQuery> fmt::Debug for EditRecord<M> {
     }
 }
 
-/// Changes of elements of one kind.
+/// The changes of elements of one kind: vertices, edges or faces.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Changes<H> {
     /// The handles of new elements.
@@ -175,19 +176,20 @@ impl<H: Handle> Changes<H> {
         self.created.is_empty() && self.removed.is_empty() && self.renamed.is_empty()
     }
 
-    /// Updates `map` after one edit; O(changes). Removed elements lose their values; a map by row
-    /// keeps the old value in the row. Renamed elements keep their values under the new handles.
-    /// New elements get `initial`.
+    /// Updates `map` after one edit; O(changes). The values of removed elements are dropped, except
+    /// that a [`RowMap`](crate::RowMap) leaves them in their rows. Renamed elements keep their
+    /// values under the new handles. New elements get the value `initial`.
     ///
-    /// The record must hold the changes of one edit; after several edits, apply their records one
-    /// by one.
+    /// These changes must come from a single edit. To apply several edits, keep one record for each
+    /// edit and apply the records in order.
     pub fn apply_to<T: Clone>(&self, map: &mut H::Map<T>, initial: &T) {
         self.apply_with(map, |_, _| initial.clone());
     }
 
-    /// Does [`apply_to`](Self::apply_to), but calls `initial` with the map and the handle of each
-    /// new element to compute its value. In these calls, the map holds the values of all old
-    /// elements under their current handles. It may lack values of new elements.
+    /// Does the same as [`apply_to`](Self::apply_to), but calls `initial` to compute the value of
+    /// each new element. The arguments of `initial` are the map and the handle of the new element.
+    /// During the call, the map holds the values of all old elements under their current handles.
+    /// Other new elements may not have a value yet.
     pub fn apply_with<T: Clone>(
         &self,
         map: &mut H::Map<T>,

@@ -11,39 +11,42 @@ use crate::probe::Probe;
 use crate::row_id::{RowId, row};
 
 /// The type parameter that states whether elements of a mesh can be deleted: [`Editable`] if they
-/// can, otherwise [`Compact`]. The trait is sealed: there are no other implementations.
+/// can, [`Compact`] if they cannot. The trait is sealed, so there are no other implementations.
 ///
 /// Queries of an editable mesh check whether each visited element was deleted; queries of a compact
-/// mesh do not check this. In measurements, this check added some 10 % to the time of sweeps over a
-/// half-edge mesh, and up to 100 % if the work per element was very small.
+/// mesh need no such check. In measurements, the check for deleted elements added some 10 % to the
+/// time of sweeps over a half-edge mesh, and up to 100 % if the work per element was very small.
 pub trait Editing: sealed::Sealed + Clone + Copy + Debug + Send + Sync + 'static {
-    /// Whether there can be holes.
+    /// True if elements can be deleted, so that tables can have holes (rows of deleted elements).
     const CAN_DELETE: bool;
 
-    /// The set of rows that are holes.
+    /// The type of the set of holes of a table. A hole is the row of a deleted element.
     type Holes<P: Probe>: HoleSet<P>;
 
-    /// The faces whose degrees have been edited.
+    /// The type that stores the faces of a mesh after an edit has changed the degree of a face.
     type Scattered<P: Probe>: AsRef<ScatteredFaces<P>> + Clone + Debug + Send + Sync;
 
-    /// Converts the spans of a compact mesh.
+    /// Converts the division of corners into faces from a compact mesh.
     fn spans<P: Probe>(spans: FaceSpans<P>) -> FaceSpans<P, Self>;
 
-    /// Returns an empty set of holes; `name` is the name of its table in an editable mesh.
+    /// Returns an empty set of holes. In an editable mesh, `name` is the name of the table that
+    /// stores the set.
     fn no_holes<P: Probe>(name: &'static str, probe: P) -> Self::Holes<P>;
 
-    /// Returns the same holes, observed by `probe`.
+    /// Returns the same set of holes in a table that reports every access to `probe`.
     fn probed_holes<P: Probe, Q: Probe>(holes: Self::Holes<P>, probe: Q) -> Self::Holes<Q>;
 
-    /// Returns the same faces, observed by `probe`.
+    /// Returns the same faces in tables that report every access to `probe`.
     fn probed_faces<P: Probe, Q: Probe>(faces: Self::Scattered<P>, probe: Q) -> Self::Scattered<Q>;
 }
 
-/// Meshes in which every row of the tables is an element.
+/// The parameter of meshes whose elements cannot be deleted: every row of a table belongs to an
+/// element.
 #[derive(Clone, Copy, Debug)]
 pub struct Compact;
 
-/// Meshes in which rows may be holes, and faces may lie anywhere in the table of corners.
+/// The parameter of meshes whose elements can be deleted. A row can be a hole, and the corners of a
+/// face can be anywhere in the table of corners.
 #[derive(Clone, Copy, Debug)]
 pub struct Editable;
 
@@ -103,14 +106,14 @@ impl Editing for Editable {
     }
 }
 
-/// The name of the table with the bits of deleted vertices.
+/// The name of the table that marks deleted vertices with one bit per vertex row.
 pub const VERTEX_HOLES: &str = "vertex holes";
-/// The name of the table with the bits of deleted edges.
+/// The name of the table that marks deleted edges with one bit per edge row.
 pub const EDGE_HOLES: &str = "edge holes";
-/// The name of the table with the bits of deleted faces.
+/// The name of the table that marks deleted faces with one bit per face row.
 pub const FACE_HOLES: &str = "face holes";
 
-/// A set of rows that are holes.
+/// A set of holes: the rows of deleted elements in a table.
 pub trait HoleSet<P: Probe>: Clone + Debug + Send + Sync {
     /// Returns the number of holes; O(1).
     fn len(&self) -> usize;
@@ -123,7 +126,8 @@ pub trait HoleSet<P: Probe>: Clone + Debug + Send + Sync {
     /// Returns whether `row` is a hole; O(1).
     fn has(&self, row: usize) -> bool;
 
-    /// Returns whether `handle` is an element: its row is below `end` and is not a hole; O(1).
+    /// Returns whether `handle` is the handle of an element: its row is below `end` and is not a
+    /// hole. O(1).
     #[inline]
     fn contains<H: RowId>(&self, handle: H, end: usize) -> bool {
         let row = handle.row() as usize;
@@ -133,8 +137,8 @@ pub trait HoleSet<P: Probe>: Clone + Debug + Send + Sync {
     /// Returns the handles of the rows below `end` that are not holes, ascending; O(end).
     fn handles<H: RowId>(&self, end: usize) -> impl Iterator<Item = H> + Clone;
 
-    /// Returns, for each row below `end`, its row after all holes are closed: the number of rows
-    /// before it that are not holes. O(end).
+    /// Returns, for each row below `end`, the new row of its element after all holes are removed.
+    /// The new row is the number of earlier rows that are not holes. O(end).
     fn new_rows(&self, end: usize) -> Vec<u32> {
         let mut new = 0;
         let mut rows = Vec::with_capacity(end);
@@ -145,10 +149,11 @@ pub trait HoleSet<P: Probe>: Clone + Debug + Send + Sync {
         rows
     }
 
-    /// Returns the name and the bytes of the table of bits, if there is one.
+    /// Returns the name and the bytes of the table that stores the set, or `None` if there is no
+    /// table.
     fn bytes(&self) -> Option<TableBytes>;
 
-    /// Checks that the number of holes is right, and that all holes are rows below `end`.
+    /// Checks that the stored number of holes is correct, and that all holes are rows below `end`.
     ///
     /// # Errors
     ///
@@ -185,8 +190,8 @@ impl<P: Probe> HoleSet<P> for NoHoles {
     }
 }
 
-/// The scattered faces of a [`Compact`] mesh. A compact mesh has no scattered faces, so no value of
-/// this type exists.
+/// The scattered faces of a [`Compact`] mesh. A compact mesh has no scattered faces, so this type
+/// has no values.
 #[derive(Clone, Copy, Debug)]
 pub enum NoScatteredFaces {}
 

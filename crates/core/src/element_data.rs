@@ -1,4 +1,4 @@
-//! Maps by vertex, edge or face that follow edits.
+//! Maps by vertex, edge or face that are updated after every edit.
 
 use std::fmt;
 use std::ops::{Index, IndexMut};
@@ -10,24 +10,25 @@ use crate::handle::Handle;
 use crate::query::MeshQuery;
 use crate::short_vec::ShortVec;
 
-/// A value for each vertex of `M`; the values follow the edits of a
-/// [`MeshWithData`](crate::MeshWithData).
+/// A value for each vertex of the mesh type `M`. In a [`MeshWithData`](crate::MeshWithData), every
+/// edit updates the values.
 pub type VertexData<M, T> = ElementData<M, Vertices, T>;
-/// A value for each edge of `M`; the values follow the edits of a
-/// [`MeshWithData`](crate::MeshWithData).
+/// A value for each edge of the mesh type `M`. In a [`MeshWithData`](crate::MeshWithData), every
+/// edit updates the values.
 pub type EdgeData<M, T> = ElementData<M, Edges, T>;
-/// A value for each face of `M`; the values follow the edits of a
-/// [`MeshWithData`](crate::MeshWithData).
+/// A value for each face of the mesh type `M`. In a [`MeshWithData`](crate::MeshWithData), every
+/// edit updates the values.
 pub type FaceData<M, T> = ElementData<M, Faces, T>;
 
-/// A map together with the initial value of new elements: [`VertexData`], [`EdgeData`] or
-/// [`FaceData`].
+/// A map with a value for each element of one kind, together with the initial value of new
+/// elements. The forms of this type are [`VertexData`], [`EdgeData`] and [`FaceData`].
 ///
 /// After an edit, the values of removed elements are dropped, and renamed elements have their
-/// values under the new handles. New elements get a fixed value, or the value that a rule computes.
-/// `data[handle]` reads and writes the value of an element.
+/// values under the new handles. A new element gets a fixed value, or a value that a function of
+/// the program computes (a rule). `data[handle]` reads and writes the value of an element.
 ///
-/// A rule receives the map and a [`Created`] element with its parents:
+/// The arguments of a rule are the map and a [`Created`] element. Parents are the old elements from
+/// which an edit makes a new element. The table shows the parents of each new element:
 ///
 /// | element | edit | parents |
 /// |---|---|---|
@@ -36,7 +37,7 @@ pub type FaceData<M, T> = ElementData<M, Faces, T>;
 /// | vertex | `split_vertex` | the vertex that was split |
 /// | edge | `split_edge`, `bisect_edge` | for a half of the edge: the other half, which has the value of the edge |
 /// | face | `bisect_edge`, `poke_face`, `split_face` | the face that was cut |
-/// | any | otherwise | none |
+/// | any | any other edit | none |
 ///
 /// ```
 /// use sixfold_core::{FaceData, MeshQuery, VertexData};
@@ -58,7 +59,7 @@ pub type FaceData<M, T> = ElementData<M, Faces, T>;
 /// ```
 ///
 /// Data with a fixed value costs O(changes) for each edit. Data with a rule costs more, because
-/// each edit that splits an element also queries the parents.
+/// each edit that splits an element also queries the mesh for the parents.
 pub struct ElementData<M: MeshQuery, K: ElementKind<M>, T: Clone> {
     values: Map<M, K, T>,
     initial: Initial<M, K, T>,
@@ -75,14 +76,14 @@ enum Initial<M: MeshQuery, K: ElementKind<M>, T: Clone> {
     Rule(Arc<Rule<M, K, T>>),
 }
 
-/// A new element: an argument of the rule of [`ElementData`].
+/// A new element, as an argument of a rule of [`ElementData`].
 pub struct Created<'a, M, H> {
     /// The mesh after the edit.
     pub mesh: &'a M,
-    /// The new element; the map has no value for it yet.
+    /// The handle of the new element. The map has no value for this handle yet.
     pub element: H,
-    /// The current handles of the old elements from which the new element was made. All are of the
-    /// same kind as the new element.
+    /// The current handles of the old elements from which the new element was made. Parents are of
+    /// the same kind as the new element.
     pub parents: &'a [H],
 }
 
@@ -92,7 +93,7 @@ impl<M: MeshQuery, K: ElementKind<M>, T: Clone> ElementData<M, K, T> {
         Self::from_map(K::map(mesh, value.clone()), value)
     }
 
-    /// Returns data with the values of the map `values`; new elements get the value `initial`.
+    /// Returns data with the values in the map `values`; new elements get the value `initial`.
     pub fn from_map(values: Map<M, K, T>, initial: T) -> Self {
         Self {
             values,
@@ -102,7 +103,8 @@ impl<M: MeshQuery, K: ElementKind<M>, T: Clone> ElementData<M, K, T> {
 
     /// Sets the rule that computes the values of new elements, instead of a fixed value.
     ///
-    /// The rule receives the map, with the values of all old elements under their current handles.
+    /// When the rule is called, its map argument holds the values of all old elements under their
+    /// current handles.
     #[must_use]
     pub fn with_rule(
         self,
@@ -114,12 +116,12 @@ impl<M: MeshQuery, K: ElementKind<M>, T: Clone> ElementData<M, K, T> {
         }
     }
 
-    /// Returns the map.
+    /// Returns the map from handles to values.
     pub fn map(&self) -> &Map<M, K, T> {
         &self.values
     }
 
-    /// Converts to the map.
+    /// Converts to the map from handles to values.
     pub fn into_map(self) -> Map<M, K, T> {
         self.values
     }

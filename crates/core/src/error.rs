@@ -25,7 +25,7 @@ pub enum PolygonError {
         "face {face} names vertex {vertex} twice: remove the face, or split the face at this vertex"
     )]
     RepeatedVertex { face: FaceId, vertex: VertexId },
-    /// More elements than a handle can name.
+    /// More elements of one kind than 32-bit handles can number.
     #[error("more than {limit} {elements}: split the mesh, because handles have 32 bits")]
     TooMany {
         elements: &'static str,
@@ -35,14 +35,14 @@ pub enum PolygonError {
 
 /// The reason why a structure cannot hold a polygon mesh.
 ///
-/// Only the first fault is reported. The checks have a fixed order: degree, size, edges with three
-/// faces, orientation, vertices, isolated vertices, coincident corners. Each check reports the
-/// lowest element.
+/// Only the first fault is reported. The checks have a fixed order: polygons, number of elements,
+/// edges with three faces, orientation, vertices with several fans, isolated vertices, coincident
+/// corners. Each check reports the faulty element with the lowest number.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum BuildError {
-    /// More elements than a handle can name.
+    /// More elements of one kind than 32-bit handles can number.
     #[error("more than {limit} {elements}: split the mesh, because handles have 32 bits")]
     TooMany {
         elements: &'static str,
@@ -80,7 +80,7 @@ pub enum BuildError {
     /// A vertex without a face.
     #[error("vertex {vertex} has no face ({count} in total): remove isolated vertices")]
     IsolatedVertex { vertex: VertexId, count: usize },
-    /// Two corners of one face at one point, in a structure that identifies vertices by
+    /// Two corners of a face with the same position, in a structure that identifies vertices by
     /// coordinates.
     #[error("corners {0} and {1} of face {face} have the same coordinates: remove the face, or move a vertex", .vertices[0], .vertices[1])]
     CoincidentCorners {
@@ -94,19 +94,19 @@ pub enum BuildError {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum MoveError {
-    /// Two corners of one face at one point, in a structure that identifies vertices by
+    /// Two corners of a face with the same position, in a structure that identifies vertices by
     /// coordinates.
     #[error(
         "two corners of face {face} would be at one point, and this structure identifies vertices \
-         by their coordinates: keep the corners apart, or choose a structure that shares vertices"
+         by their coordinates: keep the corners apart, or choose another structure"
     )]
     CoincidentCorners { face: FaceId },
-    /// Positions for a different number of vertices.
+    /// A map with positions for a different number of vertices.
     #[error("{given} positions for {vertices} vertices: the map belongs to another mesh")]
     OtherMesh { given: usize, vertices: usize },
 }
 
-/// The reason why a structure cannot refine itself; the mesh is unchanged.
+/// The reason why a structure cannot split its faces; the mesh is unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
@@ -125,13 +125,12 @@ pub enum RefineError {
         "face {face} has {degree} corners, and this split requires triangles: triangulate the mesh"
     )]
     NotATriangle { face: FaceId, degree: usize },
-    /// Two triangles with two common edges. The split would join the midpoints of these edges, or
-    /// the two face points, twice.
+    /// Two triangles that share two edges. The split would create two edges with the same ends.
     #[error(
         "faces {first} and {second} share two edges, so the refined mesh would have two edges with the same ends: cut one of the two faces first, or choose a structure that holds edges with more than two faces"
     )]
     DoubleEdge { first: FaceId, second: FaceId },
-    /// More elements than a handle can name.
+    /// More elements of one kind than 32-bit handles can number.
     #[error(
         "the refined mesh would have {number} {elements}, but 32-bit handles allow at most {limit}: refine fewer levels, or split the mesh"
     )]
@@ -142,8 +141,8 @@ pub enum RefineError {
     },
 }
 
-/// The reason why creases do not fit a mesh; `entry` is the number of the edge or vertex in the
-/// input, counted from 0.
+/// The reason why creases do not fit a mesh; the field `entry` is the number of the faulty edge or
+/// vertex in the input, counted from 0.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
@@ -170,13 +169,14 @@ fn format_faces(faces: &[FaceId]) -> String {
     shown.join(", ") + more
 }
 
-/// An invariant of a structure that does not hold. This is a bug in Sixfold; `validate()` finds it.
+/// The error of `validate()`: a numbered invariant of a structure does not hold. The cause is a bug
+/// in the structure.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{invariant} fails: {detail}")]
 pub struct InvariantError {
     /// The number of the invariant in the structure's documentation (`"I3"`).
     pub invariant: &'static str,
-    /// The element and what is wrong with it.
+    /// A description of the fault, with the element that has the fault.
     pub detail: String,
 }
 

@@ -10,8 +10,8 @@ use crate::table::Table;
 /// Faces as lists of vertices. The lists are not checked: a face may have any number of corners and
 /// name any vertex.
 ///
-/// If all faces have the same degree, no offsets are stored. The first face of another degree adds
-/// a table of offsets.
+/// If all faces have the same degree, no table of offsets is stored. The first face of another
+/// degree adds the table.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FaceList {
     corners: Vec<VertexId>,
@@ -35,7 +35,8 @@ impl FaceList {
     /// # Errors
     ///
     /// [`PolygonError::TooMany`] if there are more than [`MAX_ROWS`] corners;
-    /// [`PolygonError::TooFewCorners`] if the last face is incomplete or `degree` is zero.
+    /// [`PolygonError::TooFewCorners`] if `degree` is zero, or if the number of corners is not a
+    /// multiple of `degree`.
     pub fn uniform(degree: usize, corners: Vec<VertexId>) -> Result<Self, PolygonError> {
         check_corners(corners.len())?;
         let faces = corners.len().checked_div(degree).unwrap_or(0);
@@ -89,7 +90,7 @@ impl FaceList {
         self.faces == 0
     }
 
-    /// Returns the degree of the faces, if it is the same for all.
+    /// Returns the degree of all faces, or `None` if there are no faces or their degrees differ.
     pub fn uniform_degree(&self) -> Option<usize> {
         (self.offsets.is_empty() && self.faces > 0).then(|| self.corners.len() / self.faces)
     }
@@ -103,7 +104,7 @@ impl FaceList {
     ///
     /// # Panics
     ///
-    /// Panics if there is no such face.
+    /// Panics if `face` does not exist.
     pub fn range(&self, face: FaceId) -> Range<usize> {
         let f = face.index();
         assert!(f < self.faces, "no face {face}: there are {}", self.faces);
@@ -117,18 +118,18 @@ impl FaceList {
     ///
     /// # Panics
     ///
-    /// Panics if there is no such face.
+    /// Panics if `face` does not exist.
     pub fn face(&self, face: FaceId) -> &[VertexId] {
         &self.corners[self.range(face)]
     }
 
-    /// Returns every face with its vertices, in order.
+    /// Yields every face with its vertices, in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (FaceId, &[VertexId])> + Clone {
         let faces = row(self.faces);
         (0..faces).map(|f| (FaceId::new(f), self.face(FaceId::new(f))))
     }
 
-    /// Returns the division of the corners into faces, as structures store it.
+    /// Returns the division of the corners into faces, in the form that structures store.
     pub fn spans(&self) -> FaceSpans {
         match self.uniform_degree() {
             Some(degree) => FaceSpans::Uniform {

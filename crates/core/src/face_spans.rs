@@ -1,4 +1,4 @@
-//! The division of corners into faces, as structures store and edit it.
+//! The division of a table of corners into faces, as structures store and edit it.
 
 mod edit;
 #[cfg(test)]
@@ -13,10 +13,12 @@ use crate::probe::{Probe, Untraced};
 use crate::row_id::{FaceId, Slot, row};
 use crate::table::Table;
 
-/// The division of a flat table of corners into faces: one degree for all faces, or a table.
+/// The range of the corners of each face in a flat table of corners. If all faces have the same
+/// degree, only this degree is stored.
 ///
-/// The table of corners is stored separately. A deleted face keeps its row and its corners until
-/// the mesh is compacted. The corners of a deleted face are blank: scans skip blank corners.
+/// The table of corners is stored separately. A deleted face keeps its row and its range of corners
+/// until the mesh is compacted. The corners of a deleted face are blank: they hold a value that no
+/// vertex has, and scans skip them.
 #[derive(Debug)]
 pub enum FaceSpans<P: Probe = Untraced, E: Editing = Compact> {
     /// Every face has `degree` corners.
@@ -28,8 +30,8 @@ pub enum FaceSpans<P: Probe = Untraced, E: Editing = Compact> {
     },
     /// Face `f` has the corners `offsets[f]..offsets[f + 1]`.
     Mixed(Table<u32, P>),
-    /// Each face has its own range of corners, because an edit changed a degree. There may be blank
-    /// corners between faces.
+    /// Each face has its own range of corners, because an edit has changed the degree of a face.
+    /// Between the ranges, there may be blank corners that no face has.
     Scattered(E::Scattered<P>),
 }
 
@@ -53,7 +55,7 @@ impl<P: Probe, E: Editing> Clone for FaceSpans<P, E> {
     }
 }
 
-/// Faces that lie anywhere in the table of corners.
+/// Faces whose corners can be anywhere in the table of corners.
 #[derive(Debug)]
 pub struct ScatteredFaces<P: Probe = Untraced> {
     /// By face: its corners.
@@ -71,7 +73,7 @@ impl<P: Probe> AsRef<Self> for ScatteredFaces<P> {
 }
 
 impl<P: Probe> ScatteredFaces<P> {
-    /// Returns the same faces, observed by `probe`.
+    /// Returns the same faces in tables that report every access to `probe`.
     pub fn probed<Q: Probe>(self, probe: Q) -> ScatteredFaces<Q> {
         ScatteredFaces {
             spans: self.spans.probed(probe.clone()),
@@ -135,7 +137,7 @@ impl Span {
 }
 
 impl<P: Probe, E: Editing> FaceSpans<P, E> {
-    /// Returns the number of rows of faces, deleted ones included.
+    /// Returns the number of faces, including deleted faces.
     #[inline]
     pub fn len(&self) -> usize {
         match self {
@@ -145,7 +147,7 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
         }
     }
 
-    /// Returns whether there are no rows of faces.
+    /// Returns whether there are no faces, not even deleted faces.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -154,7 +156,7 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
     ///
     /// # Panics
     ///
-    /// Panics if there is no such face.
+    /// Panics if `face` does not exist.
     #[inline]
     pub fn range(&self, face: FaceId) -> Range<usize> {
         let f = face.index();
@@ -181,7 +183,7 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
     ///
     /// # Panics
     ///
-    /// May panic if there are no faces, or if the corner is between faces.
+    /// May panic if there are no faces, or if no face has the corner.
     pub fn face_of(&self, corner: usize) -> FaceId {
         let face = match self {
             Self::Uniform { degree, .. } => corner / *degree as usize,
@@ -206,7 +208,7 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
     ///
     /// # Panics
     ///
-    /// Panics if there is no such corner.
+    /// Panics if `corner` does not exist.
     pub fn around(&self, corner: usize) -> (FaceId, [usize; 3]) {
         let face = self.face_of(corner);
         let range = self.range(face);
@@ -216,8 +218,8 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
         (face, [before, corner, after])
     }
 
-    /// Checks that the spans divide `corners` corners into faces of three or more corners,
-    /// including deleted faces.
+    /// Checks that the ranges divide a table of `corners` corners into faces, and that each face
+    /// has at least three corners. Deleted faces are checked, too.
     ///
     /// # Errors
     ///
@@ -245,7 +247,7 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
         Ok(())
     }
 
-    /// Returns the same spans, observed by `probe`.
+    /// Returns the same division into faces, in tables that report every access to `probe`.
     pub fn probed<Q: Probe>(self, probe: Q) -> FaceSpans<Q, E> {
         match self {
             Self::Uniform { degree, faces } => FaceSpans::Uniform { degree, faces },
@@ -254,7 +256,8 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
         }
     }
 
-    /// Returns the bytes of the tables, if there are any.
+    /// Yields the name and the bytes of each table. Yields nothing if all faces have the same
+    /// degree and no table is stored.
     pub fn bytes(&self) -> impl Iterator<Item = TableBytes> {
         let [first, second] = match self {
             Self::Uniform { .. } => [None, None],
@@ -278,7 +281,7 @@ impl<P: Probe> From<FaceSpans<P>> for FaceSpans<P, Editable> {
 }
 
 impl<P: Probe> FaceSpans<P, Editable> {
-    /// Converts to the spans of a mesh that has no holes; `None` if faces are scattered.
+    /// Converts to the division of a compact mesh; `None` for [`Scattered`](Self::Scattered).
     pub fn into_compact(self) -> Option<FaceSpans<P>> {
         match self {
             Self::Uniform { degree, faces } => Some(FaceSpans::Uniform { degree, faces }),

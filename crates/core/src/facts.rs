@@ -1,4 +1,4 @@
-//! The exact topology of a list of faces.
+//! Topological properties of a list of faces.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -10,63 +10,68 @@ use crate::incidence::{Incidence, corners_at_ends};
 use crate::partition::Partition;
 use crate::polygon_mesh::{PolygonMesh, repeated};
 
-/// The topology of a list of faces; exact, and independent of any structure.
+/// Topological properties of a list of faces, computed without any of the structures.
 ///
-/// A face that names a vertex twice is degenerate. It counts only in `degenerate_faces`, `faces`
-/// and `face_degree`; its vertices are not isolated. A face with fewer than three corners counts
-/// only in `degenerate_faces`. All other faces are *used*, and so are their vertices. A field is
-/// `None` if it is not defined for the mesh.
+/// A face that names a vertex twice is degenerate. Such a face counts only in `degenerate_faces`,
+/// `faces` and `face_degree`; its vertices do not count as isolated. A face with fewer than three
+/// corners counts only in `degenerate_faces`. All other faces, and the vertices of these faces, are
+/// called *used*. A field is `None` if its value is not defined for the mesh.
 ///
-/// `genus` is computed from the Euler–Poincaré formula v − e + f = 2(c − g) − h, for c components,
-/// h boundary loops and genus g. For this formula, a vertex with several fans is first cut into one
-/// vertex per fan.
+/// `genus` is computed from the Euler–Poincaré formula v − e + f = 2(c − g) − h, for v vertices, e
+/// edges, f faces, c components, h boundary loops and genus g. Before the vertices are counted for
+/// this formula, a vertex with several fans is cut into one vertex per fan.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Facts {
-    /// Vertices, isolated ones included.
+    /// The number of vertices, including isolated vertices.
     pub vertices: usize,
-    /// Unordered pairs of vertices that follow each other in some face.
+    /// The number of edges: unordered pairs of vertices that are adjacent in a used face.
     pub edges: usize,
-    /// Faces with three corners or more, degenerate ones included.
+    /// The number of faces with three or more corners, including degenerate faces.
     pub faces: usize,
-    /// V − E + F over the used vertices and faces.
+    /// The number of used vertices, minus the number of edges, plus the number of used faces.
     pub euler_characteristic: i64,
-    /// Sets of used faces that are connected by shared edges.
+    /// The number of connected components; faces that share an edge are in the same component.
     pub components: usize,
-    /// Edges with one face.
+    /// The number of edges with exactly one face.
     pub boundary_edges: usize,
-    /// Closed boundary curves, after vertices with several fans are cut into one vertex per fan;
-    /// `None` if there is a non-manifold edge.
+    /// The number of closed boundary curves, after vertices with several fans are cut into one
+    /// vertex per fan. `None` if there is a non-manifold edge.
     /// [`MeshQuery::boundary_loops`](crate::MeshQuery::boundary_loops) lists the curves.
     pub boundary_loops: Option<usize>,
-    /// Edges with three faces or more.
+    /// The number of edges with three or more faces.
     pub non_manifold_edges: usize,
-    /// Used vertices with more than one fan, or at the end of a non-manifold edge.
+    /// The number of used vertices that have more than one fan or are an end of a non-manifold
+    /// edge.
     pub non_manifold_vertices: usize,
-    /// Edges with two faces that run along the edge in the same direction.
+    /// The number of edges with two faces that run along the edge in the same direction.
     pub inconsistent_edges: usize,
-    /// Whether every edge with two faces is consistent; `None` without faces.
+    /// True if, at every edge with two faces, the faces run along the edge in opposite directions.
+    /// `None` if there are no used faces.
     pub consistently_oriented: Option<bool>,
-    /// Whether flipping faces can make every edge with two faces consistent; `None` without faces.
+    /// True if the faces can be flipped so that, at every edge with two faces, the faces run along
+    /// the edge in opposite directions. `None` if there are no used faces.
     pub orientable: Option<bool>,
-    /// Whether there are faces, and no boundary edge.
+    /// True if there are used faces and no boundary edges.
     pub closed: bool,
-    /// The sum of the genera of all components; `None` if a component is not orientable or has a
-    /// non-manifold edge.
+    /// The sum of the genera of all components. `None` if there are no used faces, or if a
+    /// component is not orientable or has a non-manifold edge.
     pub genus: Option<i64>,
-    /// Vertices that no face with three corners or more names.
+    /// The number of vertices that are in no face with three or more corners.
     pub isolated_vertices: usize,
-    /// The number of used faces minus the number of different vertex sets of these faces.
+    /// The number of used faces that have the same set of vertices as an earlier used face.
     pub duplicate_faces: usize,
-    /// Faces that name a vertex twice, and faces with fewer than three corners.
+    /// The number of faces that name a vertex twice or have fewer than three corners.
     pub degenerate_faces: usize,
-    /// The number of edges at a vertex, over the used vertices.
+    /// The distribution of the valence (number of edges at a vertex) over all used vertices.
     pub valence: Option<Distribution>,
-    /// The number of corners of a face.
+    /// The distribution of the degree (number of corners) over all faces with three or more
+    /// corners.
     pub face_degree: Option<Distribution>,
 }
 
-/// The distribution of a count: its extremes, its mean, and how often each value occurs.
+/// The distribution of an integer property, such as the valence: minimum, maximum, mean and
+/// histogram.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Distribution {
@@ -76,7 +81,8 @@ pub struct Distribution {
     pub max: usize,
     /// The arithmetic mean.
     pub mean: f64,
-    /// How often each value occurs; `None` if there are more than 64 different values.
+    /// The number of times that each value occurs. `None` if there are more than 64 different
+    /// values.
     #[cfg_attr(feature = "serde", serde(default, with = "Histogram"))]
     pub hist: Option<BTreeMap<usize, usize>>,
 }
@@ -116,8 +122,8 @@ impl Facts {
         EdgePass::new(vertices, faces, &vec![true; faces.len()]).facts(&named)
     }
 
-    /// Returns the facts of a list of faces, which may be degenerate as in a file; O(corners)
-    /// expected.
+    /// Returns the facts of a list of faces; O(corners) expected. The faces may be degenerate, for
+    /// example if they were read from a file.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! The trait of data that follows edits.
+//! The trait of data that is updated after each edit.
 
 use crate::edit_log::{Changes, EditRecord};
 use crate::handle::Handle;
@@ -8,15 +8,16 @@ use crate::short_vec::ShortVec;
 /// Data that is updated after each edit of a [`MeshWithData`](crate::MeshWithData).
 ///
 /// [`VertexData`](crate::VertexData), [`EdgeData`](crate::EdgeData) and
-/// [`FaceData`](crate::FaceData) implement this trait. Tuples and vectors of such data and mutable
-/// references to such data implement it too. The type `()` stands for no data and costs nothing.
-/// Implement this trait for data of another form, such as a set of selected faces.
+/// [`FaceData`](crate::FaceData) implement this trait. Tuples, vectors and mutable references of
+/// types with this trait also implement this trait. The type `()` stands for no data and costs
+/// nothing. Implement this trait for data of another form, such as a set of selected faces.
 pub trait FollowEdits<M: MeshQuery> {
-    /// Whether the data uses the changes; if false, edits need not compute the changes.
+    /// True if the data uses the changes. If this is false, edits can skip the computation of the
+    /// changes.
     const USES_CHANGES: bool = true;
 
-    /// Returns whether [`follow`](Self::follow) needs the parents of new elements; if false, edits
-    /// need not record the parents.
+    /// Returns whether [`follow`](Self::follow) needs the parents of new elements. If the result is
+    /// false, the parents are not recorded.
     fn uses_parents(&self) -> bool {
         false
     }
@@ -30,16 +31,17 @@ pub trait FollowEdits<M: MeshQuery> {
 pub struct AcceptedEdit<'a, M: MeshQuery> {
     /// The mesh after the edit.
     pub mesh: &'a M,
-    /// The changes by this edit.
+    /// The created, removed and renamed elements of this edit.
     pub changes: &'a EditRecord<M>,
     pub(crate) source: Source<M>,
 }
 
 impl<M: MeshQuery> AcceptedEdit<'_, M> {
     /// Returns the old vertices from which a new vertex was made: the ends of the split edge, the
-    /// corners of the poked face, or the vertex that was split. Empty if the vertex was added.
+    /// corners of the poked face, or the vertex that was split. The list is empty if the vertex was
+    /// not made by a split.
     ///
-    /// If [`uses_parents`](FollowEdits::uses_parents) returns false, no element has parents.
+    /// The list is also empty if [`uses_parents`](FollowEdits::uses_parents) returns false.
     pub fn vertex_parents(&self) -> ShortVec<M::Vertex> {
         let parents: &[M::Vertex] = match &self.source {
             Source::Nothing => &[],
@@ -51,8 +53,8 @@ impl<M: MeshQuery> AcceptedEdit<'_, M> {
         parents.iter().map(renamed).collect()
     }
 
-    /// Returns the other half of a split edge if the new edge `e` is one half of that edge;
-    /// otherwise `None`. The result is a current handle. Costs as much as VE.
+    /// If the new edge `e` is one half of a split edge, returns the current handle of the other
+    /// half. If `e` is another edge, returns `None`. Costs as much as `vertex_edges`.
     pub fn edge_parent(&self, e: M::Edge) -> Option<M::Edge> {
         let Source::Edge { ends, .. } = &self.source else {
             return None;
@@ -75,7 +77,7 @@ impl<M: MeshQuery> AcceptedEdit<'_, M> {
     }
 
     /// Returns the face from which the new face `f` was cut; `None` if `f` was not cut from a face.
-    /// Costs as much as FV.
+    /// Costs as much as `face_vertices`.
     pub fn face_parent(&self, f: M::Face) -> Option<M::Face> {
         let parent = match &self.source {
             Source::Nothing | Source::Vertex(_) => None,
@@ -160,7 +162,7 @@ impl<M: MeshQuery> Source<M> {
     }
 }
 
-/// No data.
+/// The type `()` stands for no data.
 impl<M: MeshQuery> FollowEdits<M> for () {
     const USES_CHANGES: bool = false;
 

@@ -1,4 +1,4 @@
-//! Handles of elements, and data stored by handle.
+//! Handles of elements, and maps from handles to values.
 
 use std::fmt::{self, Debug};
 use std::hash::Hash;
@@ -12,18 +12,20 @@ use crate::row_id::RowId;
 
 /// A value that names an element of a structure: a row, a pair of vertices, or coordinates.
 ///
-/// The type of the handle also determines how data by handle is stored ([`Handle::Map`]).
+/// The type of the handle also determines the type of maps from handles to values
+/// ([`Handle::Map`]).
 pub trait Handle: Copy + Eq + Ord + Hash + Debug + Send + Sync + 'static {
-    /// Data by handle: a vector for rows, a hash map otherwise.
+    /// A map from handles to values: a vector if handles are rows, otherwise a hash map.
     type Map<T: Clone>: HandleMap<Self, T>;
 }
 
-/// Data for each element of one kind, by handle.
+/// A map from the handles of one kind of element to values.
 ///
-/// The map returns its initial value for a handle until another value is written.
+/// For each handle, the map returns an initial value until another value is written for this
+/// handle.
 pub trait HandleMap<H: Copy, T: Clone>: Index<H, Output = T> + IndexMut<H> + Clone {
-    /// Builds a map that returns `value` for every handle; `rows` is the exclusive upper bound of
-    /// handles that are rows.
+    /// Builds a map that returns `value` for every handle. If handles are rows, every row must be
+    /// less than `rows`.
     fn filled(rows: usize, value: T) -> Self;
 
     /// Reserves memory for `more` handles, if the map is a hash map.
@@ -31,8 +33,8 @@ pub trait HandleMap<H: Copy, T: Clone>: Index<H, Output = T> + IndexMut<H> + Clo
         let _ = more;
     }
 
-    /// Stores `value` for `handle`, which may be new; O(1) amortised. A map by row grows if
-    /// necessary; all new rows get `value`.
+    /// Stores `value` for `handle`, which may be new; O(1) amortised. A [`RowMap`] grows if
+    /// necessary, and all rows that it adds get `value`.
     fn insert(&mut self, handle: H, value: T);
 
     /// Removes the value of `handle` after its element was removed; O(1).
@@ -40,7 +42,7 @@ pub trait HandleMap<H: Copy, T: Clone>: Index<H, Output = T> + IndexMut<H> + Clo
 
     /// Moves the value of `old` to `new`; O(1) amortised.
     ///
-    /// This renames one element. If an edit exchanges the handles of several elements,
+    /// This method renames a single element. If an edit exchanges the handles of several elements,
     /// [`Changes::apply_to`](crate::Changes::apply_to) renames all of them at once.
     fn rename(&mut self, old: H, new: H) {
         let value = self[old].clone();
@@ -57,7 +59,7 @@ pub struct RowMap<H, T> {
 }
 
 impl<H, T> RowMap<H, T> {
-    /// Returns the values by row.
+    /// Returns the values in the order of the rows.
     pub fn values(&self) -> &[T] {
         &self.values
     }
@@ -70,7 +72,7 @@ impl<H, T> Default for RowMap<H, T> {
     }
 }
 
-/// Builds the map from the values by row, without copying.
+/// Builds the map from the values in the order of the rows, without copying.
 ///
 /// ```
 /// use sixfold_core::{FaceId, RowMap};
@@ -86,7 +88,7 @@ impl<H, T> From<Vec<T>> for RowMap<H, T> {
     }
 }
 
-/// Returns the values by row, without copying.
+/// Returns the values in the order of the rows, without copying.
 impl<H, T> From<RowMap<H, T>> for Vec<T> {
     fn from(map: RowMap<H, T>) -> Self {
         map.values
@@ -232,19 +234,19 @@ impl<H: Handle, T: Clone> IndexMut<H> for HashHandleMap<H, T> {
     }
 }
 
-/// An edge as the pair of its ends, the lower end first: the handle of an edge in structures
-/// without a table of edges. It prints as `v3–v7`.
+/// An edge as the pair of its ends, the lower end first. Structures without a table of edges use
+/// pairs as edge handles. A pair is printed as `v3–v7`.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Pair<V>([V; 2]);
 
 impl<V: Handle> Pair<V> {
-    /// Returns the edge between `a` and `b`, in either order.
+    /// Returns the edge between `a` and `b`; the order of `a` and `b` does not matter.
     #[inline]
     pub fn new(a: V, b: V) -> Self {
         Self(if a < b { [a, b] } else { [b, a] })
     }
 
-    /// Returns the sides of a face of `degree` corners: side `i` joins corners `i` and `i + 1`.
+    /// Yields the edges of a face of `degree` corners: edge `i` joins corners `i` and `i + 1`.
     ///
     /// ```
     /// use sixfold_core::{Pair, VertexId};

@@ -11,7 +11,7 @@ use crate::table::Table;
 /// The number of rows per word of bits.
 const WORD: usize = u64::BITS as usize;
 
-/// The rows of a structure's tables that are holes, one bit per row.
+/// The holes in the tables of a structure: the rows of deleted elements, stored as one bit per row.
 ///
 /// ```text
 /// row     0 1 2 3 4 5 6 7
@@ -29,7 +29,8 @@ pub struct Holes<P: Probe = Untraced> {
 clone_by_field!(Holes<P: Probe> { words, count });
 
 impl Holes {
-    /// Returns an empty set; `name` is the name of its table of bits, for example `"face holes"`.
+    /// Returns an empty set. `name` is the name of the table that stores the bits, for example
+    /// `"face holes"`.
     pub fn new(name: &'static str) -> Self {
         Self {
             words: Table::new(name, "64 rows", Vec::new()),
@@ -39,7 +40,7 @@ impl Holes {
 }
 
 impl<P: Probe> Holes<P> {
-    /// Returns the same holes, observed by `probe`.
+    /// Returns the same set of holes in a table that reports every access to `probe`.
     pub fn probed<Q: Probe>(self, probe: Q) -> Holes<Q> {
         Holes {
             words: self.words.probed(probe),
@@ -51,7 +52,8 @@ impl<P: Probe> Holes<P> {
     ///
     /// # Panics
     ///
-    /// Panics if the row is already a hole: deleting twice is a bug of the caller.
+    /// Panics if the row is already a hole, because deleting an element twice is a bug of the
+    /// caller.
     pub fn insert(&mut self, row: usize) {
         while self.words.len() <= row / WORD {
             self.words.push(0);
@@ -62,8 +64,8 @@ impl<P: Probe> Holes<P> {
         self.count += 1;
     }
 
-    /// Makes every row below `end` a hole for which `is_unused` returns true. Calls `report` with
-    /// each new hole, ascending, and returns the number of new holes; O(end).
+    /// Makes each row below `end` a hole if `is_unused` returns true for the row. Calls `report`
+    /// with each new hole, ascending, and returns the number of new holes; O(end).
     pub fn insert_unused<H: RowId>(
         &mut self,
         end: usize,
@@ -81,14 +83,14 @@ impl<P: Probe> Holes<P> {
         self.count - before
     }
 
-    /// Removes all holes and frees their memory, after compaction.
+    /// Makes the set empty and frees its memory. This is the last step of compaction.
     pub fn clear(&mut self) {
         self.words.clear();
         self.count = 0;
     }
 
     /// Returns the rows below `end` that are not holes, ascending; O(end). The probe does not
-    /// record this.
+    /// record the reads.
     #[inline]
     pub fn rows(&self, end: usize) -> impl Iterator<Item = u32> + Clone + use<'_, P> {
         let words = self.words.rows();
@@ -141,8 +143,8 @@ impl<P: Probe> HoleSet<P> for Holes<P> {
 
 impl<P: Probe> Holes<P> {
     /// Removes the rows that are holes from `table`; the other rows move down and keep their order.
-    /// The set must describe the rows of this table. A table that is less than half used frees its
-    /// spare memory. O(rows). The probe does not record this.
+    /// The holes must be rows of `table`. A table that uses less than half of its memory frees the
+    /// unused part. O(rows). The probe does not record the change.
     pub fn compact_table<T: Copy>(&self, table: &mut Table<T, P>) {
         let mut to = 0;
         let end = table.len();

@@ -26,14 +26,14 @@ pub struct EdgeSides<'a> {
     pub sides: &'a [Side],
 }
 
-/// The use of an edge by faces.
+/// An edge, the number of its faces, and whether these faces run along it in different directions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EdgeUse {
     /// The two ends, the lower first.
     pub ends: [VertexId; 2],
     /// The number of faces along the edge.
     pub faces: usize,
-    /// Whether no two of these faces run along the edge in the same direction.
+    /// True if at most one face runs along the edge in each of the two directions.
     pub opposed: bool,
 }
 

@@ -5,48 +5,58 @@
 //!
 //! The crate `sixfold` exports the following items.
 //!
-//! - [`PolygonMesh`]: the neutral input and output; positions, and faces as index lists.
-//! - [`MeshQuery`]: the nine relations of Weiler (1985) and their contract.
-//! - [`OrientedWalk`]: steps from side to side, along faces and around vertices.
-//! - [`Representation`]: the trait of all structures, with their construction and memory.
-//! - [`LocalQueries`]: the trait of structures whose queries never scan, as a bound for algorithms.
-//! - [`Handle`] and [`HandleMap`]: handles of elements, and data stored by handle; [`Numbers`]:
-//!   numbers of elements from 0.
-//! - [`BoundaryLoop`]: a chain of boundary edges.
+//! - [`PolygonMesh`]: the input and output of every structure: vertex positions, and faces as lists
+//!   of vertex numbers.
+//! - [`MeshQuery`]: the nine relations between vertices, edges and faces (Weiler 1985), and their
+//!   contract.
+//! - [`OrientedWalk`]: steps along the sides of a face and around a vertex.
+//! - [`Representation`]: the trait of all structures: construction, conversion and memory.
+//! - [`LocalQueries`]: a trait bound for algorithms: structures whose queries never read all faces.
+//! - [`Handle`] and [`HandleMap`]: handles of vertices, edges and faces, and maps from handles to
+//!   values.
+//! - [`Numbers`]: vertices, edges or faces with numbers from 0 without gaps.
+//! - [`BoundaryLoop`]: boundary edges that form a chain.
 //! - [`BuildError`]: the reason why a structure refuses a mesh; [`Capabilities`]: the check that
 //!   finds this reason.
-//! - [`Refine`] and [`Split`]: structures that split every face in their own tables.
+//! - [`Refine`] and [`Split`]: subdivision steps that split every face in the structure's own
+//!   tables.
 //! - [`MeshEdit`], [`EditRecord`] and [`EditError`]: edits in place, the record of created, removed
 //!   and renamed elements, and the reason why an edit is refused.
-//! - [`MeshWithData`]: a mesh together with data by vertex, edge or face that follows its edits.
-//! - [`Creases`]: the sharpness of edges and vertices under subdivision.
-//! - [`Facts`]: the exact topology of a face list, independent of any structure.
+//! - [`MeshWithData`]: a mesh together with values for its vertices, edges or faces; each edit of
+//!   the mesh also updates the values.
+//! - [`Creases`]: the edges and vertices that stay sharp under subdivision, and for how many
+//!   levels.
+//! - [`Facts`]: topological properties of a list of faces, such as the genus and the number of
+//!   components.
 //!
 //! # For authors of structures
 //!
-//! - [`Table`], [`Slot`], [`row_id!`] and [`RowId`]: rows, and handles that are rows.
-//! - [`Editing`]: the type parameter of meshes without deletion ([`Compact`]) and with deletion
-//!   ([`Editable`]).
-//! - [`Holes`]: the rows of deleted elements; [`NewRows`]: the rows of the remaining elements after
-//!   the holes are closed.
-//! - [`check_rows`], [`check_corners`], [`check_cut`]: checks of edits.
-//! - [`FaceSpans`]: the division of corners into faces.
-//! - [`TwinPairs`]: pairs of sides, for building without hashing.
+//! - [`Table`], [`Slot`], [`row_id!`] and [`RowId`]: tables, and handles that are row numbers.
+//! - [`Editing`]: the type parameter of a mesh that states whether elements can be deleted:
+//!   [`Editable`] if they can, [`Compact`] if they cannot.
+//! - [`Holes`]: the rows of deleted elements; [`NewRows`]: the new rows of all other elements after
+//!   the rows of deleted elements are removed.
+//! - [`check_rows`], [`check_corners`], [`check_cut`]: checks that an edit is allowed.
+//! - [`FaceSpans`]: the range of corners of each face in a flat table.
+//! - [`TwinPairs`]: the half-edges of a list of faces in pairs, found without hashing.
 //! - [`Incidence`]: the sides of any list of faces by edge; [`Partition`]: union–find with parity;
 //!   [`FacesByLowest`]: faces that can have the same vertices.
-//! - [`ScannedFaces`]: queries and edits of structures that find the faces at a vertex by a scan.
-//! - [`Distinct`], [`ShortVec`], [`Lookup`]: distinct elements, short lists, and search in lists.
-//! - [`Ranks`], [`for_each_chunk`], [`map_chunks`], [`check_split`]: refinement on several threads.
+//! - [`ScannedFaces`]: queries and edits of structures that scan all corners to find the faces at a
+//!   vertex.
+//! - [`Distinct`], [`ShortVec`], [`Lookup`]: an iterator without repeated items, short lists, and
+//!   search in short lists.
+//! - [`Ranks`], [`for_each_chunk`], [`map_chunks`], [`check_split`]: helpers for refinement, some
+//!   of which use several threads.
 //!
 //! # For measurements
 //!
 //! - [`Measured`] and [`Counts`]: the memory of a structure, computed by formula.
-//! - [`Probe`], [`Traced`] and [`Access`]: reads and writes of tables.
+//! - [`Probe`], [`Traced`] and [`Access`]: records of the reads and writes of tables.
 //!
 //! # Features
 //!
-//! No feature is on by default. `rayon`: refinement on all threads. `serde`: reading and writing of
-//! facts, capabilities, costs and memory tables. `mint`: positions as points and vectors of the
+//! No feature is on by default. `rayon`: refinement on all threads. `serde`: serialisation of
+//! facts, capabilities, costs and memory tables. `mint`: positions can be points and vectors of the
 //! crate `mint`.
 
 mod boundary;

@@ -1,4 +1,4 @@
-//! Structures without queries that scan the mesh.
+//! Structures whose queries never scan the mesh.
 
 use crate::representation::{QueryCost, Representation};
 
@@ -19,7 +19,7 @@ use crate::representation::{QueryCost, Representation};
 /// ```
 ///
 /// Implement this trait with [`local_queries!`](crate::local_queries), which checks the costs. The
-/// law `costs` of the conformance suite compares the costs with the reads of the structure.
+/// test `costs` of the conformance suite compares the declared costs with the observed reads.
 #[diagnostic::on_unimplemented(
     message = "queries of `{Self}` may scan all faces of the mesh",
     label = "this structure does not implement `LocalQueries`",
@@ -53,7 +53,8 @@ impl CostsAreLocal {
 
 /// Implements [`LocalQueries`] for structures: `local_queries!(HalfEdgeMesh, EditableHalfEdgeMesh);`
 ///
-/// The build fails if the costs of a structure contain [`QueryCost::Scan`]. The check is a constant:
+/// The build fails if the costs of a structure contain [`QueryCost::Scan`], because the check is
+/// evaluated at compile time. This example does not compile for the same reason:
 ///
 /// ```compile_fail,E0080
 /// use sixfold_core::QueryCost;

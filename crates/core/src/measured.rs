@@ -1,4 +1,4 @@
-//! The part of a structure's API that only measurements use.
+//! The part of the interface of a structure that only measurements use.
 
 use crate::probe::Probe;
 use crate::query::MeshQuery;
@@ -15,12 +15,12 @@ pub struct Counts {
     pub faces: usize,
     /// The number of corners of all faces.
     pub corners: usize,
-    /// Whether all faces have the same degree.
+    /// True if all faces have the same degree.
     pub uniform: bool,
 }
 
 impl Counts {
-    /// Returns the bytes of the table of face offsets; 0 if all faces have the same degree.
+    /// Returns the size of the table of face offsets in bytes; 0 if all faces have the same degree.
     pub const fn offset_bytes(&self) -> usize {
         if self.uniform {
             0
@@ -32,12 +32,13 @@ impl Counts {
 
 /// A structure whose memory can be predicted and whose reads can be counted.
 ///
-/// Sixfold's studies need this trait; programs that use a mesh do not.
+/// Only the measurements of Sixfold need this trait.
 pub trait Measured: Representation {
-    /// The same structure, in which every access to a table is reported to a probe.
+    /// The type of the same structure in which a probe records every access to a table.
     type Probed<P: Probe>: MeshQuery<Vertex = Self::Vertex, Edge = Self::Edge, Face = Self::Face>;
 
-    /// Returns the bytes of the layout for a mesh of these sizes, computed by formula.
+    /// Returns the number of bytes that all tables need for a mesh of the given sizes, computed by
+    /// formula.
     fn layout_bytes(counts: &Counts) -> usize;
 
     /// Returns the same mesh; `probe` records every access to a table.

@@ -1,4 +1,4 @@
-//! A mesh together with data that follows its edits.
+//! A mesh together with data that every edit updates.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -12,15 +12,15 @@ use crate::follow_edits::{AcceptedEdit, FollowEdits, Source};
 use crate::query::MeshQuery;
 use crate::representation::QueryCost;
 
-/// A mesh together with data by vertex, edge or face that follows its edits.
+/// A mesh together with data by vertex, edge or face. Every edit of the mesh also updates the data.
 ///
-/// This type implements [`MeshQuery`] and [`MeshEdit`] with the handles of the mesh `M`. So it can
-/// be passed to every algorithm that edits meshes, such as decimation and remeshing. After each
-/// edit, the data `D` is updated through [`FollowEdits`]. `D` is usually
+/// This type implements [`MeshQuery`] and [`MeshEdit`] with the handles of the mesh `M`. A
+/// `MeshWithData` can therefore be passed to every algorithm that edits meshes, such as decimation
+/// and remeshing. After each edit, the data `D` is updated through [`FollowEdits`]. `D` is usually
 /// [`VertexData`](crate::VertexData), [`EdgeData`](crate::EdgeData), [`FaceData`](crate::FaceData),
 /// or a tuple or vector of these types. The data `()` costs nothing.
 ///
-/// Only the edits of this type can change the mesh.
+/// The mesh can be changed only by the edits of `MeshWithData`.
 ///
 /// ```
 /// use sixfold_core::{EdgeData, FaceData, MeshEdit, MeshQuery, MeshWithData, Point, Refusal};
@@ -76,7 +76,7 @@ impl<M: MeshQuery, D> MeshWithData<M, D> {
         &self.data
     }
 
-    /// Returns the data, for changes of its values.
+    /// Returns the data for writing.
     #[inline]
     pub fn data_mut(&mut self) -> &mut D {
         &mut self.data
@@ -250,7 +250,8 @@ impl<M: MeshEdit, D: FollowEdits<M>> MeshEdit for MeshWithData<M, D> {
 
     type Compact = MeshWithData<M::Compact, D>;
 
-    /// Closes all holes, updates the data, and converts to a mesh that cannot have holes.
+    /// Removes the rows of deleted elements (holes), updates the data, and converts to a mesh that
+    /// cannot have holes.
     fn into_compact(mut self) -> Self::Compact {
         self.compact();
         MeshWithData::new(self.mesh.into_compact(), self.data)

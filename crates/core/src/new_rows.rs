@@ -1,4 +1,4 @@
-//! The rows of elements after holes are closed.
+//! The new rows of elements after the rows of deleted elements are removed.
 
 use crate::Point;
 use crate::editing::HoleSet;
@@ -9,8 +9,8 @@ use crate::probe::Probe;
 use crate::query::MeshQuery;
 use crate::row_id::{RowId, VertexId};
 
-/// The new row of each element after the holes of a table are closed. The new row is the number of
-/// rows before the element that are not holes.
+/// The new row of each element after the holes (rows of deleted elements) of a table are removed.
+/// The new row of an element is the number of earlier rows that are not holes.
 ///
 /// ```text
 /// old row   0 1 2 3 4 5 6 7
@@ -24,7 +24,8 @@ pub struct NewRows {
 }
 
 impl NewRows {
-    /// Numbers the rows below `end` that are not holes; O(end), or O(1) if there are no holes.
+    /// Computes the new rows of all rows below `end` that are not holes; O(end), or O(1) if there
+    /// are no holes.
     pub fn from_holes<P: Probe>(holes: &impl HoleSet<P>, end: usize) -> Self {
         let rows = if holes.is_empty() {
             Vec::new()
@@ -34,7 +35,7 @@ impl NewRows {
         Self { rows }
     }
 
-    /// Returns whether every row stays, because there are no holes.
+    /// Returns true if there are no holes, so that every element keeps its row.
     #[inline]
     pub fn is_unchanged(&self) -> bool {
         self.rows.is_empty()
@@ -59,8 +60,8 @@ impl NewRows {
         }
     }
 
-    /// Does the same as [`for_each_renamed`](Self::for_each_renamed), for elements whose handles
-    /// are pairs.
+    /// Does the same as [`for_each_renamed`](Self::for_each_renamed), for edges whose handles are
+    /// pairs of vertices.
     pub fn for_each_renamed_pair<H: RowId>(
         &self,
         elements: impl Iterator<Item = Pair<H>>,
@@ -75,12 +76,14 @@ impl NewRows {
         }
     }
 
-    /// Returns the polygons of `mesh`, with vertices numbered by their new rows. `positions` are by
-    /// old row. `corners` is an estimate of the number of corners, to reserve memory.
+    /// Returns the polygons of `mesh`, with vertices numbered by their new rows. `positions` has
+    /// one position for each old row. `corners` is an estimate of the number of corners, which is
+    /// used to reserve memory.
     ///
     /// # Panics
     ///
-    /// Panics if the faces of `mesh` are not valid polygons; the invariants of `mesh` exclude this.
+    /// Panics if the faces of `mesh` are not valid polygons, which the invariants of `mesh`
+    /// exclude.
     pub fn polygons<M: MeshQuery<Vertex = VertexId>>(
         &self,
         mesh: &M,

@@ -11,13 +11,13 @@ const NO_NUMBER: u32 = u32::MAX;
 
 /// Elements of one kind, numbered from 0 without gaps.
 ///
-/// Matrices and index buffers need such numbers. A handle is not always such a number: it may be
-/// coordinates, a pair of vertices, or a row in a table with deleted rows.
-/// [`MeshQuery::vertex_numbers`], [`edge_numbers`] and [`face_numbers`] number all elements in the
-/// order in which the mesh lists them. [`Numbers::new`] numbers a selection of elements, for
-/// example only the free vertices of a system with a fixed boundary.
+/// Matrices and index buffers need numbers from 0 without gaps. The handle of an element may
+/// instead be coordinates, a pair of vertices, or a row of a table that also has rows of deleted
+/// elements. [`MeshQuery::vertex_numbers`], [`edge_numbers`] and [`face_numbers`] number all
+/// elements in the order in which the mesh lists them. [`Numbers::new`] numbers a selection of
+/// elements, for example only the free vertices of a system with a fixed boundary.
 ///
-/// The numbers describe the mesh at the time when they were built. Edits do not change the numbers.
+/// The numbers describe the mesh at the time when they were built; later edits do not change them.
 ///
 /// [`MeshQuery::vertex_numbers`]: crate::MeshQuery::vertex_numbers
 /// [`edge_numbers`]: crate::MeshQuery::edge_numbers
@@ -42,9 +42,9 @@ pub struct Numbers<H: Handle> {
 }
 
 impl<H: Handle> Numbers<H> {
-    /// Numbers `handles` in their order; each handle must occur once. `rows` is the exclusive upper
-    /// bound of handles that are rows, such as [`MeshQuery::vertex_rows`]. O(rows + handles)
-    /// expected.
+    /// Numbers `handles` in their order; each handle must occur once. If handles are rows, `rows`
+    /// must be larger than every row; for example, pass [`MeshQuery::vertex_rows`]. O(rows +
+    /// handles) expected.
     ///
     /// ```
     /// use sixfold_core::{MeshQuery, Numbers};
@@ -59,7 +59,7 @@ impl<H: Handle> Numbers<H> {
     /// # Panics
     ///
     /// Panics if there are more handles than [`MAX_ROWS`](crate::MAX_ROWS), or if a handle is a row
-    /// outside `rows`.
+    /// that is not below `rows`.
     ///
     /// [`MeshQuery::vertex_rows`]: crate::MeshQuery::vertex_rows
     pub fn new(rows: usize, handles: impl Iterator<Item = H>) -> Self {
@@ -72,27 +72,27 @@ impl<H: Handle> Numbers<H> {
         Self { handles, numbers }
     }
 
-    /// Returns how many elements are numbered; O(1).
+    /// Returns the number of elements that have a number; O(1).
     pub fn len(&self) -> usize {
         self.handles.len()
     }
 
-    /// Returns whether no element is numbered; O(1).
+    /// Returns true if no element has a number; O(1).
     pub fn is_empty(&self) -> bool {
         self.handles.is_empty()
     }
 
-    /// Returns the number of `handle`, or `None` if it has no number; O(1) expected.
+    /// Returns the number of `handle`, or `None` if `handle` has no number; O(1) expected.
     ///
     /// # Panics
     ///
-    /// Panics if `handle` is a row outside the mesh.
+    /// Panics if `handle` is a row that is not below the `rows` of [`new`](Self::new).
     #[inline]
     pub fn get(&self, handle: H) -> Option<u32> {
         Some(self.numbers[handle]).filter(|&number| number != NO_NUMBER)
     }
 
-    /// Returns the handle of `number`; O(1).
+    /// Returns the handle that has the number `number`; O(1).
     ///
     /// # Panics
     ///
@@ -102,7 +102,7 @@ impl<H: Handle> Numbers<H> {
         self.handles[number as usize]
     }
 
-    /// Returns the handles by number.
+    /// Returns all handles in the order of their numbers.
     pub fn handles(&self) -> &[H] {
         &self.handles
     }

@@ -3,11 +3,11 @@
 use crate::handle::Handle;
 use crate::query::MeshQuery;
 
-/// Data by side of `M`.
+/// A map that holds a value for each side of the mesh type `M`.
 pub type SideMap<M, T> = <<M as OrientedWalk>::Side as Handle>::Map<T>;
 
-/// Steps from side to side. A side is an edge together with one face that runs along it; the side
-/// has the direction of the face.
+/// Steps from one side of a face to another side. A side is an edge of one particular face; its
+/// direction is counter-clockwise around this face.
 ///
 /// ```text
 ///      ◄── next_side(s) ── ● target
@@ -18,25 +18,27 @@ pub type SideMap<M, T> = <<M as OrientedWalk>::Side as Handle>::Map<T>;
 ///      ─── prev_side(s) ─► ● origin
 /// ```
 ///
-/// Most relations of [`MeshQuery`] yield sets. This trait adds an order: [`next_side`] and
-/// [`prev_side`] step along a face, [`ccw_side`] and [`cw_side`] around a vertex. The half-edge
-/// mesh, the winged-edge mesh, the corner table and the face-vertex mesh implement this trait. The
-/// other two structures do not: they would scan all faces for every step around a vertex.
+/// Most relations of [`MeshQuery`] are not ordered. This trait adds ordered steps: [`next_side`]
+/// and [`prev_side`] step along a face, and [`ccw_side`] and [`cw_side`] step around a vertex. The
+/// half-edge mesh, the winged-edge mesh, the corner table and the face-vertex mesh implement this
+/// trait. The indexed face set and the polygon soup do not implement this trait, because every step
+/// around a vertex would scan all faces.
 ///
 /// # Contract
 ///
 /// - **Sides.** A face of degree n has n sides. An edge has one side for each of its faces, so a
 ///   boundary edge has one side.
-/// - **Order.** `face_sides(f)` has the order of FV and FE: side `i` starts at corner `i` and runs
-///   along edge `i`. `edge_sides` and `outgoing_sides` yield sets; their order is not guaranteed.
+/// - **Order.** `face_sides(f)` has the order of `face_vertices(f)` and `face_edges(f)`: side `i`
+///   starts at corner `i` and runs along edge `i`. The order of `edge_sides` and of
+///   `outgoing_sides` is not guaranteed.
 /// - **Twin.** Two sides are twins if they are the only sides of their edge and run in opposite
 ///   directions. So the twin of the twin is the side itself. A side has no twin in three cases: its
-///   edge is on a boundary, the edge has three or more faces, or its two faces run along the edge
-///   in the same direction.
+///   edge is on a boundary, the edge has three or more faces, or the two faces of the edge run
+///   along it in the same direction.
 /// - **No cache.** As in [`MeshQuery`], each result is computed from the stored tables alone.
-/// - **Handles.** A side is valid until the next edit; an [`EditLog`](crate::EditLog) does not report
-///   changes of sides. If a side is out of range, or its face was deleted, every method panics or
-///   returns an element that does not exist.
+/// - **Handles.** The handle of a side is valid until the next edit; an [`EditLog`](crate::EditLog)
+///   does not report changes of sides. If the handle of a side is out of range or the face of the
+///   side was deleted, every method panics or returns an element that does not exist.
 ///
 /// # Complexity
 ///
@@ -51,7 +53,7 @@ pub type SideMap<M, T> = <<M as OrientedWalk>::Side as Handle>::Map<T>;
 /// | `face_sides`, for each side | O(1) | O(1) | O(1) | O(1) |
 /// | `outgoing_sides`, for each side | O(1) | O(1) | O(1) | O(degree) |
 ///
-/// In the last column, "an end" is the end of the edge that has fewer faces.
+/// In the column face-vertex, "an end" is the end of the edge that has fewer faces.
 ///
 /// # Panics
 ///
@@ -86,19 +88,19 @@ pub trait OrientedWalk: MeshQuery {
     /// The handle of a side.
     type Side: Handle;
 
-    /// Yields the sides of `f`, counter-clockwise in the order of FV.
+    /// Yields the sides of `f`, counter-clockwise in the order of `face_vertices(f)`.
     fn face_sides(&self, f: Self::Face) -> impl Iterator<Item = Self::Side>;
     /// Yields the sides of `e`, one for each face of `e`.
     fn edge_sides(&self, e: Self::Edge) -> impl Iterator<Item = Self::Side>;
     /// Yields the sides that start at `v`, one for each face at `v`.
     fn outgoing_sides(&self, v: Self::Vertex) -> impl Iterator<Item = Self::Side>;
 
-    /// Returns the side after `s` along its face. That side starts at the target of `s`.
+    /// Returns the side after `s` along the face of `s`. The returned side starts where `s` ends.
     fn next_side(&self, s: Self::Side) -> Self::Side;
-    /// Returns the side before `s` along its face. That side ends at the origin of `s`.
+    /// Returns the side before `s` along the face of `s`. The returned side ends where `s` starts.
     fn prev_side(&self, s: Self::Side) -> Self::Side;
-    /// Returns the twin of `s`: the only other side of its edge, if that side runs in the opposite
-    /// direction. Otherwise returns `None`.
+    /// Returns the twin of `s`, or `None` if `s` has no twin. A side has a twin if its edge has
+    /// exactly two sides and these sides run in opposite directions.
     fn twin_side(&self, s: Self::Side) -> Option<Self::Side>;
 
     /// Returns the vertex where `s` starts.
@@ -107,18 +109,18 @@ pub trait OrientedWalk: MeshQuery {
     fn side_target(&self, s: Self::Side) -> Self::Vertex {
         self.side_origin(self.next_side(s))
     }
-    /// Returns the face that runs along `s`. The face is on the left of `s`.
+    /// Returns the face of `s`, which is on the left of `s`.
     fn side_face(&self, s: Self::Side) -> Self::Face;
     /// Returns the edge of `s`.
     fn side_edge(&self, s: Self::Side) -> Self::Edge;
 
     /// Returns the next side around the origin of `s`, counter-clockwise: the twin of the side
-    /// before `s`. Returns `None` if that side has no twin, for example at the end of a fan.
+    /// before `s`. Returns `None` if the side before `s` has no twin, for example at a boundary.
     fn ccw_side(&self, s: Self::Side) -> Option<Self::Side> {
         self.twin_side(self.prev_side(s))
     }
     /// Returns the next side around the origin of `s`, clockwise: the side after the twin of `s`.
-    /// Returns `None` if `s` has no twin, for example at the start of a fan.
+    /// Returns `None` if `s` has no twin, for example at a boundary.
     fn cw_side(&self, s: Self::Side) -> Option<Self::Side> {
         self.twin_side(s).map(|twin| self.next_side(twin))
     }

@@ -1,4 +1,4 @@
-//! Twin pairs: the edges of an oriented manifold, found without hashing.
+//! Twin pairs: the two half-edges of each edge of an oriented manifold, found without hashing.
 
 use crate::face_list::FaceList;
 use crate::row_id::{FaceId, RowId, VertexId};
@@ -12,13 +12,15 @@ pub(crate) const MAX_CORNERS: usize = (u32::MAX / 2) as usize;
 /// bits.
 pub(crate) const MAX_EDGES: usize = (u32::MAX / 4) as usize;
 
-/// The half-edge of every corner.
+/// The half-edges of a list of faces, numbered in pairs: two half-edges for each edge.
 ///
-/// Half-edge `2e` runs from the lower to the higher end of edge `e`, and half-edge `2e + 1` in the
-/// other direction. Edges are numbered in the order of their lower ends.
+/// Half-edge `2e` runs from the lower to the higher end of edge `e`, and half-edge `2e + 1` runs in
+/// the other direction. Edges are numbered in the order of their lower ends. The lower end is the
+/// end with the lower vertex number.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TwinPairs {
-    /// By corner: the half-edge that starts at the corner and runs along its face.
+    /// For each corner, the half-edge that starts at the corner and runs along the face of the
+    /// corner.
     pub half_of_corner: Vec<u32>,
     /// The number of edges.
     pub edge_count: usize,
@@ -27,27 +29,28 @@ pub struct TwinPairs {
 impl TwinPairs {
     /// Pairs the sides of `faces`; O(corners + vertices).
     ///
-    /// A counting sort puts the sides into buckets by lower end. In each bucket, a table by higher
-    /// end finds the two sides of an edge.
+    /// A counting sort puts the sides into one bucket for each lower end. Within a bucket, a table
+    /// indexed by the higher end finds the two sides of an edge.
     ///
     /// Returns `None` if two sides run along one edge in the same direction, or if there are too
-    /// many corners or edges. An edge with three faces always has two such sides.
-    /// [`Capabilities::check`](crate::Capabilities::check) returns the reason.
+    /// many corners or edges. An edge with three faces always has two sides in the same direction.
+    /// [`Capabilities::check`](crate::Capabilities::check) returns the reason why this function
+    /// returns `None`.
     ///
-    /// Scratch: 8 bytes per corner and 8 bytes per vertex; [`with_rows`](Self::with_rows) needs
-    /// less.
+    /// The temporary memory is 8 bytes per corner and 8 bytes per vertex.
+    /// [`with_rows`](Self::with_rows) needs less temporary memory.
     pub fn new(vertices: usize, faces: &FaceList) -> Option<Self> {
         let mut rows = vec![(0_u32, 0_u32); faces.corners().len()];
         Self::with_rows(vertices, faces, &mut rows[..])
     }
 
-    /// Pairs sides like [`new`](Self::new), but stores the sorted sides in `rows`, with one place
-    /// per corner. `rows` can be an unused table of the caller. The content of `rows` is arbitrary
-    /// afterwards.
+    /// Does the same as [`new`](Self::new), but stores the sorted sides in `rows`, which must have
+    /// an entry for each corner. `rows` can be an unused table of the caller. Afterwards, the
+    /// content of `rows` is arbitrary.
     ///
     /// # Panics
     ///
-    /// Panics if there are fewer places than corners.
+    /// Panics if `rows` has fewer entries than there are corners.
     #[inline(always)]
     pub fn with_rows<R: SideRows + ?Sized>(
         vertices: usize,
@@ -95,7 +98,7 @@ impl TwinPairs {
         })
     }
 
-    /// Links every face of `faces`, in order.
+    /// Calls [`LinkFaces::link_face`] of `tables` for every face of `faces`, in order.
     ///
     /// If all faces are triangles, or all faces are quads, the loop over the corners is unrolled.
     // Always inlined: otherwise the loop loads the addresses of the tables for every corner.
@@ -127,21 +130,23 @@ fn link_uniform<const DEGREE: usize>(
     }
 }
 
-/// The tables of a structure during construction.
+/// The tables of a structure that is being built from a list of faces.
 pub trait LinkFaces {
-    /// Links the face `f`. The half-edge `halves[i]` runs along `f` and starts at `corners[i]`.
+    /// Stores the half-edges of the face `f` in the tables. The half-edge `halves[i]` runs along
+    /// `f` and starts at `corners[i]`.
     fn link_face(&mut self, f: FaceId, corners: &[VertexId], halves: &[u32]);
 }
 
-/// Places for the sorted sides of faces, one per corner.
+/// Temporary memory for the sorted sides of faces, with one entry per corner.
 ///
-/// A constructor can implement this trait for unused rows of its result. Then the sorted sides need
-/// no additional memory.
+/// A constructor can implement this trait for unused rows of the mesh that it builds. The sorted
+/// sides then need no additional memory.
 pub trait SideRows {
-    /// Writes the higher end and the tag of a side to place `at`. The tag is never `u32::MAX`.
+    /// Writes a side to entry `at`: its higher end, and a tag that encodes the corner and the
+    /// direction of the side. The tag is never `u32::MAX`.
     fn write(&mut self, at: usize, high: VertexId, tag: u32);
 
-    /// Returns the higher end and the tag at place `at`.
+    /// Returns the higher end and the tag of the side in entry `at`.
     fn read(&self, at: usize) -> (VertexId, u32);
 }
 
@@ -158,14 +163,15 @@ impl SideRows for [(u32, u32)] {
     }
 }
 
-/// Pairs the sides of triangles without numbering their edges; O(corners + vertices).
+/// Finds the two sides of each edge of a triangle mesh, without numbers for the edges; O(corners +
+/// vertices).
 ///
-/// A side is identified by its opposite corner. For the first side of an edge, calls
-/// `pair(side, side)`. For the second side, calls `pair(second, first)`. A boundary edge has only a
-/// first side.
+/// A side is identified by the number of its opposite corner. For the first side of each edge, the
+/// function calls `pair(first, first)`. For the second side, the function calls
+/// `pair(second, first)`. A boundary edge has only a first side.
 ///
-/// `highs` is scratch memory with one row per corner. `highs` can be an unused table of the caller.
-/// Returns scratch memory of 4 bytes per corner, which the caller can reuse, and the number of
+/// `highs` is temporary memory with one row per corner; it can be an unused table of the caller.
+/// Returns a vector with 4 bytes per corner, whose memory the caller can reuse, and the number of
 /// edges. Returns `None` in the same cases as [`TwinPairs::new`].
 ///
 /// # Panics

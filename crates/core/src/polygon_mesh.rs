@@ -1,4 +1,4 @@
-//! The neutral mesh: the input and output of every structure.
+//! The polygon mesh: the input and output of every structure.
 
 use std::fmt;
 
@@ -11,16 +11,17 @@ use crate::iterator_ext::IteratorExt;
 use crate::measured::Counts;
 use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
 
-/// Positions and polygons: the mesh as a list of faces, independent of any structure.
+/// A mesh as a list of vertex positions and a list of polygons. Every structure is built from a
+/// polygon mesh and can be converted to a polygon mesh.
 ///
 /// # Invariants
 ///
-/// - I1  Every face has at least three corners. The vertices of its corners exist and are
-///   different.
+/// - I1  Every face has at least three corners. The corners of a face are existing vertices, and no
+///   two corners are the same vertex.
 /// - I2  There are at most [`MAX_ROWS`] vertices, faces and corners.
 ///
 /// Nothing else is guaranteed: edges with three faces, inconsistently oriented faces, and isolated
-/// or coincident vertices are allowed. The capabilities of a structure state which of these meshes
+/// or coincident vertices are allowed. The capabilities of a structure state which polygon meshes
 /// the structure can hold.
 ///
 /// # Examples
@@ -46,7 +47,8 @@ impl PolygonMesh {
     /// vertex numbers, counted from 0.
     ///
     /// A position is a [`Point`] or three numbers (`[f32; 3]` or a tuple). With the feature `mint`,
-    /// a position can be a point or vector of the crate `mint`. `into()` converts a [`Point`] back.
+    /// a position can be a point or vector of the crate `mint`. `into()` converts a [`Point`] back
+    /// to one of these types.
     ///
     /// ```
     /// # use sixfold_core::PolygonMesh;
@@ -59,7 +61,8 @@ impl PolygonMesh {
     ///
     /// # Errors
     ///
-    /// Returns the first face that violates I1, or the elements whose number violates I2.
+    /// Returns an error for the first face that violates I1, or if a number of elements violates
+    /// I2.
     pub fn new<P: Into<Point>, F: AsRef<[u32]>>(
         positions: impl IntoIterator<Item = P>,
         faces: impl IntoIterator<Item = F>,
@@ -75,7 +78,8 @@ impl PolygonMesh {
     ///
     /// # Errors
     ///
-    /// Returns the first face that violates I1, or the elements whose number violates I2.
+    /// Returns an error for the first face that violates I1, or if a number of elements violates
+    /// I2.
     pub fn from_faces(positions: Vec<Point>, faces: FaceList) -> Result<Self, PolygonError> {
         if positions.len() > MAX_ROWS {
             return Err(PolygonError::TooMany {
@@ -111,8 +115,8 @@ impl PolygonMesh {
         self.faces.corners().len()
     }
 
-    /// Returns the sizes that determine the memory of a structure; the caller provides the number
-    /// of `edges`. O(1).
+    /// Returns the sizes that determine the memory of a structure. The polygon mesh does not store
+    /// the number of `edges`, so the caller passes it. O(1).
     pub fn counts(&self, edges: usize) -> Counts {
         Counts {
             vertices: self.vertex_count(),
@@ -123,13 +127,13 @@ impl PolygonMesh {
         }
     }
 
-    /// Returns every vertex.
+    /// Returns an iterator over all vertices.
     pub fn vertices(&self) -> impl ExactSizeIterator<Item = VertexId> + Clone {
         let vertices = row(self.positions.len());
         (0..vertices).map(VertexId::new)
     }
 
-    /// Returns the position of each vertex.
+    /// Returns the positions of all vertices, in order.
     pub fn positions(&self) -> &[Point] {
         &self.positions
     }
@@ -138,7 +142,7 @@ impl PolygonMesh {
     ///
     /// # Panics
     ///
-    /// Panics if there is no such vertex.
+    /// Panics if `v` does not exist.
     pub fn position(&self, v: VertexId) -> Point {
         self.positions[v.index()]
     }
@@ -149,7 +153,7 @@ impl PolygonMesh {
     }
 
     /// Returns the first face that is not a triangle, and its degree; O(faces), or O(1) if all
-    /// faces have one degree.
+    /// faces have the same degree.
     pub fn first_polygon(&self) -> Option<(FaceId, usize)> {
         if self.faces.uniform_degree() == Some(3) {
             return None;
@@ -160,7 +164,8 @@ impl PolygonMesh {
 
     /// Returns the vertices whose faces form more than one fan, ascending; O(corners) expected.
     ///
-    /// Faces that share an edge at the vertex are in the same fan. Orientation does not matter.
+    /// Two faces at a vertex are in the same fan if they share an edge at this vertex. The
+    /// orientation of the faces does not matter.
     pub fn vertices_of_several_fans(&self) -> Vec<VertexId> {
         let incidence = Incidence::new(self.vertex_count(), &self.faces, |_| true);
         let fans = incidence.several_fans(&self.faces).into_iter();
@@ -169,7 +174,8 @@ impl PolygonMesh {
         vertices
     }
 
-    /// Returns every edge once, ordered by its ends; O(corners) expected.
+    /// Returns every edge once, with the number of its faces, ordered by its ends; O(corners)
+    /// expected.
     pub fn edge_uses(&self) -> Vec<EdgeUse> {
         let incidence = Incidence::new(self.vertex_count(), &self.faces, |_| true);
         incidence.edges().map(EdgeUse::from_sides).collect()
@@ -206,8 +212,9 @@ impl PolygonMesh {
     /// Returns the mesh with every polygon cut into a fan of triangles from its first corner;
     /// O(corners).
     ///
-    /// This suits convex faces. For other faces the triangles may overlap, and two polygons that
-    /// share two corners may be cut along the same edge. The vertices are unchanged.
+    /// The result is correct for convex faces; for other faces, the triangles may overlap. If two
+    /// polygons share two corners that are not adjacent, both polygons may be cut along the same
+    /// edge. The vertices are unchanged.
     ///
     /// # Errors
     ///

@@ -36,11 +36,11 @@ pub enum AccessKind {
 /// One read or write of one row of one table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Access {
-    /// Read or write.
+    /// Whether the row was read or written.
     pub kind: AccessKind,
     /// The name of the table.
     pub table: &'static str,
-    /// The row.
+    /// The number of the row.
     pub row: usize,
     /// The number of bytes read or written.
     pub bytes: usize,

@@ -6,14 +6,15 @@ use crate::capability::Capabilities;
 use crate::handle::{Handle, HandleMap};
 use crate::numbering::Numbers;
 
-/// Data by vertex of `M`.
+/// A map that holds a value for each vertex of the mesh type `M`.
 pub type VertexMap<M, T> = <<M as MeshQuery>::Vertex as Handle>::Map<T>;
-/// Data by edge of `M`.
+/// A map that holds a value for each edge of the mesh type `M`.
 pub type EdgeMap<M, T> = <<M as MeshQuery>::Edge as Handle>::Map<T>;
-/// Data by face of `M`.
+/// A map that holds a value for each face of the mesh type `M`.
 pub type FaceMap<M, T> = <<M as MeshQuery>::Face as Handle>::Map<T>;
 
-/// The nine relations between vertices, edges and faces (Weiler 1985).
+/// The nine relations between vertices, edges and faces (Weiler 1985). Each relation is abbreviated
+/// by two letters: VF stands for `vertex_faces`, FV for `face_vertices`.
 ///
 /// ```text
 ///            vertices V        edges E          faces F
@@ -27,29 +28,33 @@ pub type FaceMap<M, T> = <<M as MeshQuery>::Face as Handle>::Map<T>;
 /// - **Elements.** An edge is an unordered pair of vertices that follow each other in some face; no
 ///   two edges have the same ends. A face has at least three corners, at different vertices.
 /// - **Once.** A relation yields each element once, and never the element that is queried. For
-///   example, two faces that share two edges yield each other only once. Two faces with the same
-///   corners also yield each other only once. The relations of an isolated vertex are empty.
-/// - **Symmetry.** `f ∈ VF(v)` exactly if `v ∈ FV(f)`; likewise VE/EV, EF/FE, VV, EE and FF.
-/// - **Order.** FV and FE run counter-clockwise in the order of the input, from an arbitrary start.
-///   Side `i` joins corners `i` and `i + 1`. The other seven relations are sets; their order is not
-///   guaranteed.
-/// - **Iteration.** `next` and `fold` yield the same items. This also holds if `next` takes the
-///   first items and `fold` the rest.
-/// - **No cache.** Each result is computed from the stored tables alone; nothing is kept between
+///   example, if two faces share several edges, `face_faces` of each of the two faces yields the
+///   other face once. The relations of an isolated vertex are empty.
+/// - **Symmetry.** VF and FV are inverse: `vertex_faces(v)` contains `f` exactly if
+///   `face_vertices(f)` contains `v`. VE and EV are inverse, too, and so are EF and FE. VV, EE and
+///   FF are symmetric: if element `a` is in the result for element `b`, then `b` is in the result
+///   for `a`.
+/// - **Order.** `face_vertices` and `face_edges` run counter-clockwise around the face, in the
+///   order of the input, from an arbitrary start. Edge `i` of a face joins corners `i` and `i + 1`.
+///   All relations except these two are sets: the order of their elements is not guaranteed.
+/// - **Iteration.** The iterator of a relation yields the same items by `next` and by `fold`, even
+///   if `next` takes the first items and `fold` takes the remaining items.
+/// - **No cache.** Each result is computed from the stored tables alone; nothing is stored between
 ///   calls. If the tables have no links for a query, the query scans all faces.
 /// - **Handles.** A handle is valid until the next edit. A query panics if its handle is out of
-///   range or belongs to a deleted element; the message names the handle. A handle of another mesh
-///   may panic or give a wrong result; it is always memory-safe.
+///   range or belongs to a deleted element; the message names the handle. The use of a handle of
+///   another mesh may panic or give a wrong result, but is always memory-safe.
 ///
 /// # Panics
 ///
-/// Every method that takes a handle panics if the mesh has no such element. Some handles are
-/// coordinates (of a vertex) or a pair of ends (of an edge). If such a handle has no element, its
-/// relations are empty instead.
+/// A query panics if the mesh has no element with the given handle. Exception: if the handle is the
+/// coordinates of a vertex or the pair of ends of an edge, the relations of a missing element are
+/// empty. The methods `contains_vertex`, `contains_edge` and `contains_face` return false for a
+/// missing element.
 pub trait MeshQuery {
-    /// The handle of a vertex: a row, or the coordinates.
+    /// The handle of a vertex: a row number, or the coordinates of the vertex.
     type Vertex: Handle;
-    /// The handle of an edge: a row, or the pair of its ends.
+    /// The handle of an edge: a row number, a corner opposite the edge, or the pair of its ends.
     type Edge: Handle;
     /// The handle of a face.
     type Face: Handle;
@@ -79,41 +84,44 @@ pub trait MeshQuery {
     /// Returns the position of `v`.
     fn position(&self, v: Self::Vertex) -> Point;
 
-    /// VV: yields the other ends of the edges at `v`, its one-ring.
+    /// VV: yields the vertices that are joined to `v` by an edge (the one-ring of `v`).
     fn vertex_vertices(&self, v: Self::Vertex) -> impl Iterator<Item = Self::Vertex>;
-    /// VE: yields the edges that end at `v`; their number is the valence.
+    /// VE: yields the edges that have `v` as an end.
     fn vertex_edges(&self, v: Self::Vertex) -> impl Iterator<Item = Self::Edge>;
-    /// VF: yields the faces with a corner at `v`.
+    /// VF: yields the faces that have a corner at `v`.
     fn vertex_faces(&self, v: Self::Vertex) -> impl Iterator<Item = Self::Face>;
     /// EV: returns the two ends of `e`.
     fn edge_vertices(&self, e: Self::Edge) -> [Self::Vertex; 2];
     /// EE: yields the edges that share an end with `e`.
     fn edge_edges(&self, e: Self::Edge) -> impl Iterator<Item = Self::Edge>;
-    /// EF: yields the faces along `e`; a boundary edge has one.
+    /// EF: yields the faces that have `e` as a side. A boundary edge has exactly one face.
     fn edge_faces(&self, e: Self::Edge) -> impl Iterator<Item = Self::Face>;
-    /// FV: yields the corners of `f`. The other eight relations follow from this one.
+    /// FV: yields the vertices at the corners of `f`, in order.
     fn face_vertices(&self, f: Self::Face) -> impl Iterator<Item = Self::Vertex>;
-    /// FE: yields the sides of `f`.
+    /// FE: yields the edges of `f`, in the order of its corners.
     fn face_edges(&self, f: Self::Face) -> impl Iterator<Item = Self::Edge>;
     /// FF: yields the faces that share an edge with `f`.
     fn face_faces(&self, f: Self::Face) -> impl Iterator<Item = Self::Face>;
 
-    /// Returns the edge between `a` and `b`, if there is one; costs as much as VE and EV.
+    /// Returns the edge between `a` and `b`, or `None` if there is no such edge. Costs as much as
+    /// `vertex_edges(a)`, plus `edge_vertices` for each of these edges.
     fn edge_between(&self, a: Self::Vertex, b: Self::Vertex) -> Option<Self::Edge> {
         self.vertex_edges(a)
             .find(|&e| self.edge_vertices(e).contains(&b) && a != b)
     }
 
-    /// Returns a face with corners at both `a` and `b`, if there is one; costs as much as VF and
-    /// FV. If there are several, returns any of them. The face need not have an edge between the
-    /// two vertices.
+    /// Returns a face that has corners at `a` and at `b`, or `None` if there is no such face. If
+    /// several faces have both corners, returns any of these faces. The two corners need not be
+    /// adjacent in the face. Costs as much as `vertex_faces(a)`, plus `face_vertices` for each of
+    /// these faces.
     fn common_face(&self, a: Self::Vertex, b: Self::Vertex) -> Option<Self::Face> {
         self.vertex_faces(a)
             .find(|&f| self.face_vertices(f).any(|v| v == b))
     }
 
-    /// Returns the vertex of triangle `f` that is not an end of `e`; costs as much as EV and FV.
-    /// Returns `None` if `f` is not a triangle, or if `e` is not a side of `f`.
+    /// Returns the vertex of triangle `f` that is not an end of `e`; costs as much as
+    /// `edge_vertices(e)` and `face_vertices(f)`. Returns `None` if `f` is not a triangle, or if
+    /// `e` is not a side of `f`.
     fn opposite_vertex(&self, f: Self::Face, e: Self::Edge) -> Option<Self::Vertex> {
         let ends = self.edge_vertices(e);
         let mut corners = self.face_vertices(f);
@@ -122,54 +130,60 @@ pub trait MeshQuery {
         is_triangle.then(|| three.into_iter().find(|v| !ends.contains(v)))?
     }
 
-    /// Returns the number of edges at `v`; costs as much as VE.
+    /// Returns the number of edges at `v`; costs as much as `vertex_edges(v)`.
     fn valence(&self, v: Self::Vertex) -> usize {
         self.vertex_edges(v).count()
     }
 
-    /// Returns the number of corners of `f`; costs as much as FV.
+    /// Returns the number of corners of `f`; costs as much as `face_vertices(f)`.
     fn degree(&self, f: Self::Face) -> usize {
         self.face_vertices(f).count()
     }
 
-    /// Returns whether exactly one face lies along `e`; costs as much as EF.
+    /// Returns whether `e` has exactly one face; costs as much as `edge_faces(e)`.
     fn is_boundary_edge(&self, e: Self::Edge) -> bool {
         let mut faces = self.edge_faces(e);
         faces.next().is_some() && faces.next().is_none()
     }
 
-    /// Returns whether a boundary edge ends at `v`; costs as much as VE, plus EF for each edge.
+    /// Returns whether `v` is an end of a boundary edge; costs as much as `vertex_edges(v)`, plus
+    /// `edge_faces` for each of these edges.
     fn is_boundary_vertex(&self, v: Self::Vertex) -> bool {
         self.vertex_edges(v).any(|e| self.is_boundary_edge(e))
     }
 
-    /// Returns whether `v` is a vertex of this mesh: false after it was deleted or renamed.
+    /// Returns whether `v` is the handle of a vertex of this mesh. The result is false if an edit
+    /// has deleted the vertex or changed its handle.
     ///
-    /// O(1) if vertices are rows; costs as much as VF if vertices are identified by coordinates.
+    /// O(1) if vertex handles are row numbers; costs as much as `vertex_faces` if they are
+    /// coordinates.
     fn contains_vertex(&self, v: Self::Vertex) -> bool {
         self.vertices().any(|vertex| vertex == v)
     }
 
-    /// Returns whether `e` is an edge of this mesh: false after it was deleted or renamed.
+    /// Returns whether `e` is the handle of an edge of this mesh. The result is false if an edit
+    /// has deleted the edge or changed its handle.
     ///
-    /// Use this method to check a list of edges that was made before edits. If a later edit created
-    /// an edge with the same handle, this returns true.
+    /// Use this method to check an edge handle that was stored before an edit. The result is also
+    /// true if a later edit created another edge with this handle.
     ///
-    /// O(1) if edges are rows or corners; costs as much as VE if an edge is the pair of its ends.
+    /// O(1) if edge handles are rows or corners; costs as much as `vertex_edges` if they are pairs
+    /// of ends.
     fn contains_edge(&self, e: Self::Edge) -> bool {
         self.edges().any(|edge| edge == e)
     }
 
-    /// Returns whether `f` is a face of this mesh: false after it was deleted. O(1).
+    /// Returns whether `f` is the handle of a face of this mesh; false for a deleted face. O(1).
     fn contains_face(&self, f: Self::Face) -> bool {
         self.faces().any(|face| face == f)
     }
 
-    /// Returns an exclusive upper bound of the vertex rows; 0 if vertex handles are not rows. O(1).
+    /// Returns a number that is larger than every vertex row; 0 if vertex handles are not rows.
+    /// O(1).
     fn vertex_rows(&self) -> usize;
-    /// Returns an exclusive upper bound of the edge rows; 0 if edge handles are not rows. O(1).
+    /// Returns a number that is larger than every edge row; 0 if edge handles are not rows. O(1).
     fn edge_rows(&self) -> usize;
-    /// Returns an exclusive upper bound of the face rows; O(1).
+    /// Returns a number that is larger than every face row; O(1).
     fn face_rows(&self) -> usize;
 
     /// Returns a map that holds `value` for every vertex.
@@ -199,22 +213,23 @@ pub trait MeshQuery {
         Numbers::new(self.face_rows(), self.faces())
     }
 
-    /// Returns the number of faces along each edge; 255 stands for 255 or more.
+    /// Returns the number of faces of each edge; the value 255 stands for 255 or more faces.
     ///
-    /// This is one pass over FE. On a structure that scans for EF, the pass takes O(corners) time,
-    /// but one EF query per edge would take O(edges · corners).
+    /// This method queries `face_edges` once for each face, which takes O(corners) time in total.
+    /// On a structure that scans all faces for each `edge_faces` query, one such query for each
+    /// edge would take O(edges · corners) time.
     fn edge_face_counts(&self) -> EdgeMap<Self, u8> {
         boundary::edge_face_counts(self)
     }
 
-    /// Returns the edges with exactly one face, in the order of [`edges`](Self::edges); costs as
-    /// much as [`edge_face_counts`](Self::edge_face_counts).
+    /// Returns the edges that have exactly one face, in the order of [`edges`](Self::edges); costs
+    /// as much as [`edge_face_counts`](Self::edge_face_counts).
     fn boundary_edges(&self) -> Vec<Self::Edge> {
         let counts = self.edge_face_counts();
         self.edges().filter(|&e| counts[e] == 1).collect()
     }
 
-    /// Returns the boundary loops: chains of boundary edges, with the hole on the left.
+    /// Returns the boundary loops: chains of boundary edges with the hole on their left.
     ///
     /// ```text
     ///    ┌───┬───┬───┐
@@ -226,31 +241,33 @@ pub trait MeshQuery {
     ///    └───┴───┴───┘
     /// ```
     ///
-    /// - Every boundary edge is in exactly one loop, once.
+    /// - Every boundary edge is in exactly one loop, and occurs in this loop once.
     /// - At a vertex, a loop continues to the other boundary edge of the same fan of faces. If two
     ///   holes meet at a vertex, one loop runs around both holes and visits the vertex twice.
-    /// - A chain ends where its fan reaches an edge with three or more faces. All other chains are
-    ///   [closed](BoundaryLoop::is_closed).
-    /// - Each edge runs in the direction opposite to its face. Edges are ordered by the place of
-    ///   their start in [`vertices`](Self::vertices), then by the place of their end. If the faces
-    ///   of a loop disagree in orientation, the loop has the direction of its first edge in this
-    ///   order.
-    /// - A closed loop starts with its first edge in this order, and the loops are sorted by their
-    ///   first edges. So structures that list the vertices in the same order return the same loops.
+    /// - A chain ends at a vertex if its fan of faces there reaches an edge with three or more
+    ///   faces. A chain without such an end is [closed](BoundaryLoop::is_closed).
+    /// - Each edge of a loop runs in the direction opposite to its face. Boundary edges are ordered
+    ///   by the index of their start vertex in the sequence [`vertices`](Self::vertices), then by
+    ///   the index of their end vertex. If the faces of a loop disagree in orientation, the loop
+    ///   has the direction of the edge that comes first in this order.
+    /// - A closed loop starts with the edge that comes first in the order of boundary edges. The
+    ///   loops are sorted by their first edges. Structures that list the vertices in the same order
+    ///   therefore return the same loops.
     ///
-    /// If FV and FE are local, this takes O(corners) time expected, plus O(n log n) for the n
-    /// corners at boundary vertices.
+    /// If `face_vertices` and `face_edges` do not scan all faces, the expected time is O(corners),
+    /// plus O(n log n) for the n corners at boundary vertices.
     fn boundary_loops(&self) -> Vec<BoundaryLoop<Self::Vertex, Self::Edge>> {
         boundary::boundary_loops(self)
     }
 
-    /// Returns the neighbours of a manifold vertex, counter-clockwise. At a boundary vertex, the
-    /// ring runs from one boundary edge to the other. Otherwise, the start of the ring is
-    /// arbitrary.
+    /// Returns the vertices adjacent to the manifold vertex `v`, counter-clockwise. At a boundary
+    /// vertex, the ring starts at one boundary edge and ends at the other boundary edge. At an
+    /// inner vertex, the start of the ring is arbitrary.
     ///
     /// Returns `None` if the faces at `v` do not form one consistently oriented fan. The ring of an
-    /// isolated vertex is empty. The time is O(valence log valence) in addition to VF and FV.
-    /// Structures that store the order override this method.
+    /// isolated vertex is empty. The cost is O(valence log valence), plus `vertex_faces(v)` and
+    /// `face_vertices` for each face at `v`. Structures that can find the order without sorting
+    /// override this method.
     ///
     /// ```text
     ///      c ───── b        faces (v, a, b), (v, b, c):  a, b, c

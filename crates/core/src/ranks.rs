@@ -1,4 +1,4 @@
-//! Consecutive numbers for the members of a set of rows.
+//! Consecutive numbers for the members of a set of numbers.
 
 use crate::refine::{CHUNK_ROWS, all_rows, for_each_chunk};
 use crate::row_id::row;
@@ -6,7 +6,8 @@ use crate::row_id::row;
 /// The number of items of a [`Block`].
 const BLOCK: usize = u64::BITS as usize;
 
-/// A set of items `0..items`, and the rank of each member: its place among the members.
+/// A subset of the numbers `0..items`, which are called items. The items in the subset are its
+/// members. The rank of a member is the number of smaller members.
 ///
 /// ```text
 /// item     0 1 2 3 4 5 6 7
@@ -15,8 +16,8 @@ const BLOCK: usize = u64::BITS as usize;
 /// ```
 ///
 /// The set stores one bit per item and one count per block of 64 items (Jacobson 1989): 16 bytes
-/// for 64 items. If every item is a member, the set stores nothing, because the rank of an item is
-/// the item.
+/// for 64 items. If every item is a member, nothing is stored, because the rank of an item is then
+/// the item itself.
 #[derive(Clone, Debug, Default)]
 pub struct Ranks {
     blocks: Vec<Block>,
@@ -32,9 +33,9 @@ struct Block {
 }
 
 impl Ranks {
-    /// Replaces the set by the items that `is_member` selects. Each row has `N` items: the `j`-th
-    /// item of row `i` is `N * i + j`. O(items), on the threads of the current rayon pool;
-    /// allocated memory is reused.
+    /// Replaces the subset by the items for which `is_member` returns true. Each row has `N` items:
+    /// the `j`-th item of row `i` is `N * i + j`. O(items), on the threads of the current rayon
+    /// pool. Allocated memory is reused.
     ///
     /// # Panics
     ///
@@ -54,8 +55,8 @@ impl Ranks {
         }
     }
 
-    /// Replaces the set like [`fill`](Self::fill), with the number of the row as an additional
-    /// argument; stores blocks even if every item is a member.
+    /// Does the same as [`fill`](Self::fill), but passes the number of the row to `is_member` as an
+    /// additional argument. Stores one bit per item even if every item is a member.
     ///
     /// # Panics
     ///
@@ -93,7 +94,7 @@ impl Ranks {
         self.members = before as usize;
     }
 
-    /// Returns the number of items, members or not; O(1).
+    /// Returns the number of items, including items that are not members; O(1).
     pub fn items(&self) -> usize {
         self.items
     }
@@ -153,7 +154,11 @@ impl Ranks {
     ///
     /// Panics if `rank` is not less than the number of missing items.
     pub fn select_missing(&self, rank: usize) -> usize {
-        assert!(rank < self.missing(), "no gap {rank} of {}", self.missing());
+        assert!(
+            rank < self.missing(),
+            "no missing item {rank} of {}",
+            self.missing()
+        );
         // The number of missing items before a block.
         let gaps = |block: usize| BLOCK * block - self.blocks[block].before as usize;
         let (mut low, mut high) = (0, self.blocks.len());

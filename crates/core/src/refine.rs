@@ -1,4 +1,4 @@
-//! Connectivity refinement: a step of subdivision in a structure's own tables.
+//! Refinement of the connectivity: one step of subdivision in a structure's own tables.
 
 use std::fmt;
 use std::ops::Range;
@@ -9,7 +9,8 @@ use crate::measured::Counts;
 use crate::representation::Representation;
 use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
 
-/// A way to split every face of a mesh at once; it does not define positions.
+/// A rule that splits every face of a mesh at once. The rule defines the connectivity of the
+/// refined mesh, but not the positions of its vertices.
 ///
 /// ```text
 ///   Quads                    Triangles                Sqrt3
@@ -38,12 +39,12 @@ pub enum Split {
     Quads,
     /// Splits every triangle into four, with edge points (Loop 1987).
     Triangles,
-    /// Splits every triangle into three, with a face point; then flips every old inner edge
-    /// (Kobbelt 2000). If `trisect` is set, every boundary edge is cut in three; otherwise boundary
-    /// edges are unchanged. The new vertices on boundary edges come last, in the order of
-    /// `edges()`. Each boundary edge has two new vertices, in the direction of its face.
+    /// Splits every triangle into three at a face point, then flips every old inner edge (Kobbelt
+    /// 2000). If `trisect` is true, every boundary edge is cut into three edges; if it is false,
+    /// boundary edges are unchanged. The new vertices on boundary edges come last, in the order of
+    /// `edges()`: two for each boundary edge, in the direction of its face.
     Sqrt3 {
-        /// Whether boundary edges are cut in three.
+        /// True if boundary edges are cut into three edges.
         trisect: bool,
     },
 }
@@ -58,16 +59,17 @@ impl Split {
         }
     }
 
-    /// Returns whether the split requires that all faces are triangles.
+    /// Returns whether the split requires a mesh in which all faces are triangles.
     pub const fn needs_triangles(self) -> bool {
         !matches!(self, Self::Quads)
     }
 
     /// Returns the sizes of the refined mesh, computed by formula. `boundary` is the number of
-    /// edges with one face; only the √3 split with `trisect` uses this number. Sizes beyond `usize`
-    /// saturate.
+    /// edges with one face; only the √3 split with `trisect` uses this number. A size that does not
+    /// fit in `usize` is replaced by `usize::MAX`.
     ///
-    /// For quads and triangles, the sizes are correct even if edges have three or more faces.
+    /// For [`Quads`](Self::Quads) and [`Triangles`](Self::Triangles), the sizes are correct even if
+    /// edges have three or more faces.
     pub const fn refined_counts(self, counts: &Counts, boundary: usize) -> Counts {
         let &Counts {
             vertices: v,
@@ -117,10 +119,11 @@ impl fmt::Display for Split {
     }
 }
 
-/// A structure that can split all faces in its own tables, without rebuilding.
+/// A structure that can split all faces in its own tables, without conversion to polygons.
 ///
-/// The structure computes only the connectivity. The subdivision scheme computes the positions: it
-/// queries the parent mesh and writes the positions of the child through
+/// The refined mesh is called the child; the mesh before the split is called the parent. The
+/// structure computes only the connectivity of the child. The subdivision scheme queries the
+/// parent, computes the positions of the child, and writes them through
 /// [`positions_mut`](Self::positions_mut).
 ///
 /// # Contract
@@ -128,25 +131,27 @@ impl fmt::Display for Split {
 /// - The child is the mesh that [`Split`] defines, with the same faces, orientation and order of
 ///   vertices. It satisfies every invariant of the structure. Each structure defines the order of
 ///   its faces and edges; [`parent`](Self::parent) returns the parent of a face.
-/// - The tables of the child are overwritten in place if they are large enough. So repeated
-///   refinement into the same mesh allocates nothing.
-/// - With the feature `rayon` the work runs on the threads of the current rayon pool; otherwise it
-///   runs on one thread. The child has the same bytes for any number of threads.
-/// - The additional memory is at most a tenth of the bytes of the two meshes. Refinement uses no
-///   hash table, no [`from_polygons`](Representation::from_polygons) and no intermediate
-///   `PolygonMesh`.
+/// - The tables of the child are overwritten in place if they are large enough. Repeated refinement
+///   into the same mesh therefore allocates nothing.
+/// - With the feature `rayon`, refinement runs on the threads of the current rayon pool; without
+///   this feature, refinement runs on one thread. The child has the same bytes for any number of
+///   threads.
+/// - The temporary memory has at most a tenth of the bytes of the parent and the child together.
+///   Refinement uses no hash table, no [`from_polygons`](Representation::from_polygons) and no
+///   intermediate `PolygonMesh`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot split its own tables",
-    note = "face-vertex, winged-edge and half-edge meshes and corner tables can, if they are compact: \
-            `mesh.into_compact()`"
+    note = "these structures can split their tables after `mesh.into_compact()`: FaceVertexMesh, \
+            WingedEdgeMesh, HalfEdgeMesh, CornerTable"
 )]
 pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
     /// The splits that the structure supports. `Sqrt3` stands for both values of `trisect`.
     const SPLITS: &'static [Split];
 
-    /// The numbers of the edges, computed once per mesh; the memory is reused for the next mesh.
+    /// The type that stores the numbers of the edges. The numbers are computed once per mesh, and
+    /// their memory is reused for the next mesh.
     ///
-    /// If edges are not rows, this type is a table by corner.
+    /// If edge handles are not rows, this type stores data for each corner.
     type EdgeNumbers: Default + Send + Sync;
 
     /// Returns a mesh without elements, as a target for refinement.
@@ -155,9 +160,9 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
     /// Numbers the edges in the order of `edges()`; O(corners) or less.
     fn number_edges(&self, numbers: &mut Self::EdgeNumbers);
 
-    /// Divides the numbered edges into chunks of a few thousand, for parallel passes. Returns the
-    /// first number of each chunk, followed by the number of edges. Returns `[0]` for a mesh
-    /// without edges.
+    /// Divides the numbered edges into chunks of a few thousand edges, so that several threads can
+    /// share the work. Returns the first number of each chunk, followed by the number of edges.
+    /// Returns `[0]` for a mesh without edges.
     fn edge_chunks(&self, numbers: &Self::EdgeNumbers) -> Vec<usize>;
 
     /// Returns the edges of one chunk, in the order of their numbers.
@@ -167,13 +172,14 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
         chunk: usize,
     ) -> impl Iterator<Item = Self::Edge>;
 
-    /// Returns the number of `e`: its place in `edges()`. O(1), or O(valence) if edges are not
-    /// rows.
+    /// Returns the number of `e`: its index in the sequence `edges()`. O(1), or O(valence) if edge
+    /// handles are not rows.
     fn edge_number(&self, numbers: &Self::EdgeNumbers, e: Self::Edge) -> usize;
 
-    /// Overwrites `child` with the split mesh; the caller must write the positions of the child.
+    /// Overwrites `child` with the refined mesh. The positions of `child` are then arbitrary, so
+    /// the caller must write all of them.
     ///
-    /// `numbers` are the edge numbers of this mesh.
+    /// `numbers` must be the result of [`number_edges`](Self::number_edges) for this mesh.
     ///
     /// # Errors
     ///
@@ -182,8 +188,8 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
     /// - the split is not in [`SPLITS`](Self::SPLITS);
     /// - a face is not a triangle, but the split requires triangles;
     /// - two triangles share two edges, and the structure allows at most two faces per edge;
-    /// - the child would have too many elements for its handles. This is checked before any
-    ///   allocation.
+    /// - the child would have too many elements for its handles. The number of elements is checked
+    ///   before any allocation.
     fn split_into(
         &self,
         split: Split,
@@ -191,27 +197,29 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
         child: &mut Self,
     ) -> Result<(), RefineError>;
 
-    /// Returns the face of this mesh that contains `child`, a face of the mesh after `split`; O(1),
-    /// or O(log faces) if degrees are mixed or there is a boundary. `numbers` are the edge numbers
-    /// of this mesh.
+    /// Returns the face of this mesh from which `split` makes the face `child` of the refined mesh.
+    /// O(1), or O(log faces) if faces have different degrees or the mesh has a boundary. `numbers`
+    /// must be the result of [`number_edges`](Self::number_edges) for this mesh.
     ///
-    /// In the √3 split, a triangle can lie across an old inner edge. Its parent is the face whose
-    /// side along that edge starts at the triangle's old vertex.
+    /// In the √3 split, a triangle of the refined mesh can lie across an inner edge of this mesh.
+    /// The parent of such a triangle is the face whose side along this edge starts at the old
+    /// vertex of the triangle.
     fn parent(&self, numbers: &Self::EdgeNumbers, split: Split, child: FaceId) -> FaceId;
 
-    /// Returns all positions by vertex, for writing.
+    /// Returns the positions of all vertices, in order, for writing.
     fn positions_mut(&mut self) -> &mut [Point];
 
-    /// Returns all positions by vertex.
+    /// Returns the positions of all vertices, in order.
     fn position_rows(&self) -> &[Point];
 }
 
-/// Checks the split and the size of the child; returns the sizes of the child. This is the first
-/// step of every [`Refine::split_into`].
+/// Checks that the structure supports `split` and that the refined mesh is not too large. Returns
+/// the sizes of the refined mesh. Every [`Refine::split_into`] calls this function first.
 ///
 /// # Errors
 ///
-/// Returns an error if the split is not supported, or if the child would have too many elements.
+/// Returns an error if the split is not supported, or if the refined mesh would have too many
+/// elements.
 pub fn check_split<M: Refine>(
     split: Split,
     counts: &Counts,
@@ -240,28 +248,29 @@ pub fn check_split<M: Refine>(
     Ok(refined)
 }
 
-/// The number of rows that a thread takes at a time. It is small enough to divide the work evenly,
-/// and large enough to outweigh the overhead.
+/// The number of rows that a thread takes at a time. The number is small enough to divide the work
+/// evenly between threads, and large enough that the overhead of threads hardly matters.
 pub const CHUNK_ROWS: usize = 4096;
 
 /// Returns the first row of each chunk of [`CHUNK_ROWS`] rows, followed by the number of rows.
-/// Structures whose edges are rows return this as their [`edge_chunks`](Refine::edge_chunks).
+/// Structures whose edge handles are rows implement [`edge_chunks`](Refine::edge_chunks) by this
+/// function.
 pub fn chunk_starts(rows: usize) -> Vec<usize> {
     (0..rows).step_by(CHUNK_ROWS).chain([rows]).collect()
 }
 
-/// Returns the rows of one chunk of [`chunk_starts`].
+/// Returns the rows of the chunk with the number `chunk`, for the chunks of [`chunk_starts`].
 pub fn rows_of_chunk(rows: usize, chunk: usize) -> Range<u32> {
     let start = (chunk * CHUNK_ROWS).min(rows);
     row(start)..row((start + CHUNK_ROWS).min(rows))
 }
 
-/// Calls `work` with every chunk of `rows` and the number of its first row. Chunks have `len` rows;
-/// the last chunk may have fewer. With the feature `rayon`, the threads of the current rayon pool
-/// share the chunks.
+/// Calls `work` for every chunk of `rows`, with the number of the first row and the rows of the
+/// chunk. Chunks have `len` rows; the last chunk may have fewer rows. With the feature `rayon`, the
+/// threads of the current rayon pool share the chunks.
 ///
-/// On one thread, this is a plain loop. The values that `work` writes must depend only on the rows,
-/// not on their chunk. Then the result is the same on any number of threads.
+/// On one thread, the chunks are processed in a plain loop. If the values that `work` writes depend
+/// only on the rows of its chunk, the result is the same on any number of threads.
 pub fn for_each_chunk<T: Send>(rows: &mut [T], len: usize, work: impl Fn(usize, &mut [T]) + Sync) {
     #[cfg(feature = "rayon")]
     if rows.len() > len && rayon::current_num_threads() > 1 {
@@ -274,13 +283,14 @@ pub fn for_each_chunk<T: Send>(rows: &mut [T], len: usize, work: impl Fn(usize, 
     }
 }
 
-/// Calls `work` like [`for_each_chunk`], for chunks of different lengths: chunk `i` has the rows
-/// `starts[i]..starts[i + 1]`. `work` gets the number of the chunk. The results of `work` are
-/// returned in the order of the chunks.
+/// Calls `work` for every chunk of `rows`, and returns the results in the order of the chunks.
+/// Chunks may differ in length: chunk `i` has the rows `starts[i]..starts[i + 1]`. The arguments of
+/// `work` are the number of the chunk, the range of its rows, and the rows. With the feature
+/// `rayon`, the threads of the current rayon pool share the chunks.
 ///
 /// # Panics
 ///
-/// Panics if `starts` do not ascend from 0 to the number of rows.
+/// Panics if the values of `starts` do not ascend from 0 to the number of rows.
 pub fn map_chunks<T: Send, R: Send>(
     rows: &mut [T],
     starts: &[usize],

@@ -9,7 +9,7 @@ use crate::polygon_mesh::PolygonMesh;
 use crate::query::{MeshQuery, VertexMap};
 use crate::row_id::{FaceId, VertexId};
 
-/// One of the nine relations.
+/// One of the nine relations of [`MeshQuery`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -86,7 +86,7 @@ pub enum QueryCost {
 }
 
 impl QueryCost {
-    /// Returns whether none of `costs` is a scan.
+    /// Returns true if none of `costs` is [`Scan`](Self::Scan).
     pub const fn are_local(costs: &[Self; 9]) -> bool {
         let mut i = 0;
         while i < costs.len() {
@@ -103,16 +103,16 @@ impl QueryCost {
 ///
 /// # Contract
 ///
-/// - `from_polygons` succeeds exactly if [`CAPABILITIES`](MeshQuery::CAPABILITIES)`.check`
-///   succeeds; otherwise both return the same error. The only exception is a mesh with too many
-///   elements for the handles of the structure.
+/// - `from_polygons` and [`CAPABILITIES`](MeshQuery::CAPABILITIES)`.check` both succeed, or both
+///   return the same error. The only exception is a mesh with too many elements for the handles of
+///   the structure.
 /// - `faces()` and `vertices()` keep the order of the input. Exception: if vertices are identified
-///   by coordinates, they have the order in which the faces first name them.
+///   by coordinates, `vertices()` has the order in which the faces first name the vertices.
 /// - `to_polygons(from_polygons(m))` equals `m`, except that a face may start at another corner. If
 ///   vertices are identified by coordinates, vertices with equal coordinates become one vertex, and
-///   the result has the order of `vertices()`.
+///   the vertices of the result are in the order of `vertices()`.
 pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
-    /// The name for users, for example `half-edge`.
+    /// The name of the structure for users, for example `half-edge`.
     const NAME: &'static str;
 
     /// How much of the mesh each relation reads, in the order of [`Relation::ALL`].
@@ -123,15 +123,16 @@ pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
         Self::COSTS[relation as usize]
     }
 
-    /// Returns whether no relation scans all faces.
+    /// Returns true if no relation scans all faces.
     ///
-    /// The bound [`LocalQueries`](crate::LocalQueries) requires this at compile time.
+    /// The trait bound [`LocalQueries`](crate::LocalQueries) requires at compile time that no
+    /// relation scans.
     fn is_local() -> bool {
         QueryCost::are_local(&Self::COSTS)
     }
 
     /// Returns the path of the type, for example `sixfold_half_edge::HalfEdgeMesh`. The first part
-    /// is the crate.
+    /// of the path is the name of the crate.
     fn type_path() -> &'static str {
         std::any::type_name::<Self>()
     }
@@ -152,16 +153,17 @@ pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
     /// Returns the handle that face `f` of `polygons` has in `from_polygons(polygons)`; O(1).
     fn face_handle(polygons: &PolygonMesh, f: FaceId) -> Self::Face;
 
-    /// Moves every vertex to its position in `positions`; O(vertices), or O(corners) if corners do
-    /// not share vertices.
+    /// Moves every vertex to its position in `positions`; O(vertices), or O(corners) if vertices
+    /// are identified by coordinates.
     ///
     /// If vertices are identified by coordinates, their handles change, and vertices that move to
-    /// one position become one vertex.
+    /// the same position become one vertex.
     ///
     /// # Errors
     ///
-    /// Returns [`MoveError`] if the map belongs to another mesh. If vertices are identified by
-    /// coordinates, also returns this error if two corners of a face would be at one position.
+    /// Returns [`MoveError::OtherMesh`] if the number of positions differs from the number of
+    /// vertices. A structure that identifies vertices by coordinates returns
+    /// [`MoveError::CoincidentCorners`] if two corners of a face would have the same position.
     /// After an error, every vertex has its old position.
     fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError>;
 
@@ -172,6 +174,6 @@ pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
     ///
     /// # Errors
     ///
-    /// Returns the number of the first invariant that fails, and the place where it fails.
+    /// Returns the number of the first invariant that fails, and the element at which it fails.
     fn validate(&self) -> Result<(), InvariantError>;
 }

@@ -7,11 +7,12 @@ use crate::table::Table;
 const BLOCK: usize = 64;
 
 impl<T, P: Probe> Table<T, P> {
-    /// Scans the whole table for the rows that `hits` finds in its blocks, in order.
+    /// Scans the whole table in blocks, and yields in order the rows that `hits` selects.
     ///
-    /// `hits` gets a block of up to 64 rows and returns one bit for each row; the lowest bit
-    /// belongs to the first row. [`hits_in`] computes these bits for one condition. Every row is
-    /// read once, just before `hits` gets its block.
+    /// `hits` gets a block of up to 64 rows and returns one bit for each row of the block. The bit
+    /// is 1 if the row is selected; the lowest bit belongs to the first row. [`hits_in`] computes
+    /// these bits for one condition. Each row is read once, immediately before `hits` is called
+    /// with the block of the row.
     ///
     /// ```
     /// use sixfold_core::{Table, hits_in};
@@ -31,10 +32,12 @@ impl<T, P: Probe> Table<T, P> {
     }
 }
 
-/// Tests a block of up to 64 rows with `is_hit`; returns one bit for each row.
+/// Tests a block of up to 64 rows with `is_hit`, and returns one bit for each row: 1 if `is_hit` is
+/// true.
 ///
-/// Few blocks contain a hit. So the whole block is tested first; this test has no branch and
-/// compiles to vector instructions. The rows are tested one by one only if the block has a hit.
+/// Few blocks contain a hit. Therefore a first loop tests the whole block without a branch, so that
+/// the compiler can use vector instructions. If the block has a hit, a second loop computes the
+/// bits row by row.
 #[inline]
 pub fn hits_in<T>(block: &[T], is_hit: impl Fn(&T) -> bool) -> u64 {
     if let Ok(block) = <&[T; BLOCK]>::try_from(block)

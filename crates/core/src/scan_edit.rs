@@ -1,10 +1,11 @@
-//! The edits of structures that scan: their legality, their effect on the faces, and their reports.
+//! The edits of structures that scan all corners: the check of an edit, its effect on the faces,
+//! and its reports.
 //!
 //! An edit that adds a vertex receives the new handle as an argument. Each edit first checks all
 //! conditions and then changes the faces. The structure itself updates its table of vertices.
 //!
-//! If the log ignores reports, an edit of one face reads only that face. Otherwise, a scan finds
-//! the other faces with the same sides and corners.
+//! If the log ignores reports, an edit of one face reads only this face. If the log uses reports, a
+//! scan also finds the other faces with the same sides and corners.
 
 mod collapse;
 mod edges;
@@ -24,7 +25,7 @@ use crate::short_vec::ShortVec;
 
 type Refusal<V> = EditError<V, Pair<V>, FaceId>;
 
-/// A mesh with the handle types of [`ScannedFaces`].
+/// A mesh with the handle types of [`ScannedFaces`]: edges are pairs of vertices.
 pub trait ScannedMesh<V>: MeshQuery<Vertex = V, Edge = Pair<V>, Face = FaceId> {}
 
 impl<V, M: MeshQuery<Vertex = V, Edge = Pair<V>, Face = FaceId>> ScannedMesh<V> for M {}
@@ -51,7 +52,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         check_rows("corners", self.corners.len() + corners, MAX_ROWS)
     }
 
-    /// Returns whether a corner is at `v`; one scan.
+    /// Returns whether a face has a corner at `v`; one scan of all corners.
     pub fn has_vertex(&self, v: V) -> bool {
         self.scan(SearchSet::One(v)).next().is_some()
     }
@@ -110,8 +111,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         self.holes.insert(f.index());
     }
 
-    /// Closes the gaps of deleted faces; O(corners). The structure reports its own vertices and
-    /// edges.
+    /// Removes the rows and the corners of deleted faces, and reports the new handles of faces;
+    /// O(corners). The structure itself reports new handles of vertices and edges.
     pub fn compact<M: ScannedMesh<V>>(&mut self, log: &mut impl EditLog<M>) {
         if uses_reports(log) {
             for (new, old) in (0..).map(FaceId::new).zip(self.handles()) {

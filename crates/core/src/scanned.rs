@@ -14,22 +14,23 @@ use crate::row_id::{FaceId, VertexId};
 use crate::scan::hits_in;
 use crate::table::Table;
 
-/// The handle of a vertex in a structure that scans, and its form in the table of corners.
+/// The handle of a vertex in a structure that scans all corners. Each row of the table of corners
+/// stores such a handle.
 pub trait ScannedVertex: Handle {
-    /// The content of a row of the table of corners.
+    /// The type of the rows of the table of corners.
     type Corner: Copy;
-    /// A set of vertices, to test whether a corner is at one of them.
+    /// A set of vertices, to test whether a corner is at a vertex of the set.
     type Set;
-    /// A handle that no vertex has. Corners of deleted faces have this handle, and no scan searches
-    /// for it.
+    /// A handle that no vertex has. Corners of deleted faces store this handle. No scan searches
+    /// for this handle.
     const BLANK: Self;
-    /// Whether vertices are identified by coordinates. If so, every vertex has a face, and no two
-    /// vertices are at one position.
+    /// True if vertices are identified by coordinates. Then every vertex has a face, and no two
+    /// vertices have the same position.
     const IS_POSITION: bool;
 
     /// Returns the vertex of a corner.
     fn from_corner(corner: Self::Corner) -> Self;
-    /// Returns the vertex in the form of a corner.
+    /// Returns the row of a corner that is at this vertex.
     fn corner(self) -> Self::Corner;
     /// Returns whether `corner` is at this vertex.
     fn is_at(self, corner: &Self::Corner) -> bool;
@@ -39,10 +40,10 @@ pub trait ScannedVertex: Handle {
     fn is_in(corner: &Self::Corner, set: &Self::Set) -> bool;
 }
 
-/// A corner is the handle of its vertex.
+/// Each row of the table of corners is the handle of the vertex at the corner.
 impl ScannedVertex for VertexId {
     type Corner = Self;
-    /// One bit for each row up to the highest member.
+    /// A bit for each vertex row, up to the highest row in the set.
     type Set = Vec<u64>;
     const BLANK: Self = Self::new(u32::MAX);
     const IS_POSITION: bool = false;
@@ -88,7 +89,7 @@ pub enum SearchSet<V, S> {
     One(V),
     /// Two vertices.
     Two([V; 2]),
-    /// Three or four vertices; three vertices are stored with a repeated vertex.
+    /// Three or four vertices. If there are three, the last vertex is stored twice.
     Four([V; 4]),
     /// Any number of vertices.
     Many(S),
@@ -107,8 +108,8 @@ impl<V: ScannedVertex> SearchSet<V, V::Set> {
         }
     }
 
-    /// Builds the set of every second corner of a face. Each side of the face has an end in this
-    /// set.
+    /// Builds the set of the first, third, fifth … corner of a face. Every side of the face has an
+    /// end in this set.
     pub fn every_second(face: &[V::Corner]) -> Self {
         match *face {
             [a, _, c] | [a, _, c, _] => Self::Two([a, c].map(V::from_corner)),
@@ -139,7 +140,7 @@ impl<V: ScannedVertex> SearchSet<V, V::Set> {
 /// A corner that a scan found.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<V> {
-    /// The row of the corner.
+    /// The row of the corner in the table of corners.
     pub corner: usize,
     /// The face of the corner.
     pub face: FaceId,
@@ -158,23 +159,24 @@ impl<V: Handle> Hit<V> {
         self.before == v || self.after == v
     }
 
-    /// Returns the two sides that end at the corner.
+    /// Returns the two edges of the face that have the vertex of the corner as an end.
     #[inline]
     pub fn sides(&self) -> [Pair<V>; 2] {
         [self.before, self.after].map(|end| Pair::new(end, self.at))
     }
 }
 
-/// The faces of a structure that stores no other connectivity: lists of corners, one after another.
+/// The faces of a structure that stores no connectivity except the corners of each face. The
+/// corners of all faces are in one table, face after face.
 ///
-/// Every query and every edit scans all corners to find the faces at a vertex or along an edge.
-/// When a face is deleted or moved to another place in the table, its old corners become blank.
-/// Scans do not find blank corners.
+/// Queries and edits scan all corners to find the faces at a vertex or along an edge. When a face
+/// is deleted or moved to other rows, its old rows get a value that no vertex has. These rows are
+/// called blank, and scans do not find them.
 #[derive(Debug)]
 pub struct ScannedFaces<V: ScannedVertex, P: Probe = Untraced, E: Editing = Compact> {
     /// The corners, face by face.
     pub corners: Table<V::Corner, P>,
-    /// The division of the corners into faces, deleted ones included.
+    /// The range of the corners of each face, including deleted faces.
     pub spans: FaceSpans<P, E>,
     /// The rows of deleted faces.
     pub holes: E::Holes<P>,
@@ -183,7 +185,7 @@ pub struct ScannedFaces<V: ScannedVertex, P: Probe = Untraced, E: Editing = Comp
 clone_by_field!(ScannedFaces<V: ScannedVertex, P: Probe, E: Editing> { corners, spans, holes });
 
 impl<V: ScannedVertex, E: Editing> ScannedFaces<V, Untraced, E> {
-    /// Builds the faces that `spans` define in `corners`.
+    /// Builds the faces from a table of corners and the ranges of the corners of each face.
     pub fn new(corners: Vec<V::Corner>, spans: FaceSpans) -> Self {
         Self {
             corners: Table::new("corners", "corner", corners),
@@ -194,7 +196,8 @@ impl<V: ScannedVertex, E: Editing> ScannedFaces<V, Untraced, E> {
 }
 
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
-    /// Converts to faces of a compact mesh; `None` if there are holes or scattered faces.
+    /// Converts to the faces of a mesh without deleted elements. Returns `None` if a face was
+    /// deleted or if an edit changed the degree of a face.
     pub fn into_compact(self) -> Option<ScannedFaces<V, P>> {
         let spans = self
             .spans
@@ -219,7 +222,7 @@ impl<V: ScannedVertex, P: Probe> From<ScannedFaces<V, P>> for ScannedFaces<V, P,
 }
 
 impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
-    /// Returns the same faces, observed by `probe`.
+    /// Returns the same faces in tables that report every access to `probe`.
     pub fn probed<Q: Probe>(self, probe: Q) -> ScannedFaces<V, Q, E> {
         ScannedFaces {
             corners: self.corners.probed(probe.clone()),
@@ -239,7 +242,7 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
         self.len() == 0
     }
 
-    /// Returns every face, in order.
+    /// Yields the handle of every face, in order.
     #[inline]
     pub fn handles(&self) -> impl Iterator<Item = FaceId> {
         self.holes.handles(self.spans.len())
@@ -255,7 +258,7 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
     ///
     /// # Panics
     ///
-    /// Panics if there is no such face, or if it was deleted.
+    /// Panics if `f` does not exist or was deleted.
     #[inline]
     pub fn face(&self, f: FaceId) -> &[V::Corner] {
         let corners = self.corners.read_range(self.spans.range(f));
@@ -281,7 +284,7 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
         Pair::sides(corners.len(), |i| V::from_corner(corners[i]))
     }
 
-    /// Scans all corners for those at a vertex in `set`, in order.
+    /// Scans all corners, and yields the row of every corner at a vertex in `set`, in order.
     #[inline]
     pub fn scan(
         &self,
@@ -290,8 +293,8 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
         self.corners.scan(move |block| set.hits(block))
     }
 
-    /// Scans like [`scan`](Self::scan); returns each corner with its face and the vertices before
-    /// and after it.
+    /// Scans like [`scan`](Self::scan), but yields each corner with its face and with the vertices
+    /// before and after the corner.
     #[inline]
     pub fn hits(
         &self,
@@ -311,20 +314,22 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
         })
     }
 
-    /// VV; one scan.
+    /// VV: yields the vertices adjacent to `v`; one scan of all corners.
     pub fn vertex_vertices(&self, v: V) -> impl Iterator<Item = V> {
         let hits = self.hits(SearchSet::One(v));
         hits.flat_map(|hit| [hit.before, hit.after]).distinct()
     }
 
-    /// VF; one scan. A face has at most one corner at `v`, so no face is yielded twice.
+    /// VF: yields the faces at `v`; one scan of all corners. A face has at most one corner at `v`,
+    /// so no face is yielded twice.
     #[inline]
     pub fn vertex_faces(&self, v: V) -> impl Iterator<Item = FaceId> {
         let corners = self.scan(SearchSet::One(v));
         corners.map_inline(|corner| self.spans.face_of(corner))
     }
 
-    /// EE; one scan. The result is collected, because only the end of the scan shows whether `e`
+    /// EE: yields the edges that share an end with `e`; one scan of all corners. The scan is
+    /// complete before the first edge is yielded, because only a complete scan shows whether `e`
     /// exists.
     pub fn edge_edges(&self, e: Pair<V>) -> impl Iterator<Item = Pair<V>> + use<V, P, E> {
         let mut edges = Vec::new();
@@ -339,7 +344,8 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
         edges.into_iter()
     }
 
-    /// EF; one scan. A face has at most one corner at the first end, so no face is yielded twice.
+    /// EF: yields the faces along `e`; one scan of all corners. A face has at most one corner at
+    /// the first end of `e`, so no face is yielded twice.
     pub fn edge_faces(&self, e: Pair<V>) -> impl Iterator<Item = FaceId> {
         let [a, b] = e.ends();
         let corners = self.scan(SearchSet::One(a));
@@ -351,7 +357,8 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
         })
     }
 
-    /// FF; one scan for every second corner of `f`. Each side of `f` has an end at such a corner.
+    /// FF: yields the faces that share an edge with `f`. One scan searches for every second corner
+    /// of `f`, because each side of `f` has an end at one of these corners.
     pub fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
         let set = SearchSet::every_second(self.face(f));
         let mut sides: Vec<Pair<V>> = self.face_edges(f).collect();
@@ -364,14 +371,14 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
         hits.distinct()
     }
 
-    /// Returns the bytes of all tables.
+    /// Yields the name and the bytes of each table.
     pub fn bytes(&self) -> impl Iterator<Item = TableBytes> {
         let corners = std::iter::once(self.corners.bytes());
         corners.chain(self.spans.bytes()).chain(self.holes.bytes())
     }
 
-    /// Checks that the holes are faces. Also checks that a corner is blank if and only if no face
-    /// has the corner. Requires that the spans pass their own [check](FaceSpans::check).
+    /// Checks that the deleted faces are rows of `spans`, and that a corner is blank exactly if no
+    /// face has the corner. The caller must check `spans` first ([`FaceSpans::check`]).
     ///
     /// # Errors
     ///

@@ -9,12 +9,14 @@ const INLINE_LEN: usize = 16;
 /// enough for nearly every vertex; a longer list is stored on the heap.
 pub type ShortVec<T> = SmallVec<[T; INLINE_LEN]>;
 
-/// Search for items in a list: one by one if there are few, by bisection if there are many.
+/// Search in a list. A list of up to 16 items is searched item by item, and a longer list by
+/// bisection.
 pub trait Lookup<T> {
-    /// Sorts the items if [`has`](Self::has) needs it; O(items log items).
+    /// Sorts the list if it has more than 16 items, as [`has`](Self::has) requires; O(n log n) for
+    /// n items.
     fn sort_for_lookup(&mut self);
 
-    /// Returns whether `item` is in the list; O(log items) if there are many. The caller must call
+    /// Returns whether `item` is in the list; O(log n) for n items. The caller must call
     /// [`sort_for_lookup`](Self::sort_for_lookup) first.
     fn has(&self, item: T) -> bool;
 }

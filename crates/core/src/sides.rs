@@ -141,8 +141,7 @@ pub(crate) fn fill_buckets(
 }
 
 impl<P: Probe, E: Editing> FaceSpans<P, E> {
-    /// Returns every edge of the faces once, ordered by the lower end. Faces that are holes are
-    /// skipped.
+    /// Yields every edge of the faces once, ordered by the lower end. Deleted faces are skipped.
     ///
     /// A counting sort puts the higher ends into one bucket for each lower end. In each bucket,
     /// each higher end is yielded at its first occurrence. O(corners + vertices).

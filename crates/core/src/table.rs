@@ -1,4 +1,4 @@
-//! Rows of one kind, observed by a probe.
+//! A table: rows of one kind, and a probe that records every access to a row.
 
 use std::fmt;
 use std::ops::Range;
@@ -22,7 +22,8 @@ pub struct Table<T, P: Probe = Untraced> {
 }
 
 impl<T> Table<T> {
-    /// Builds a table called `name` with one row per `element` (`"vertex"`, `"half-edge"`).
+    /// Builds a table called `name`. `element` is the kind of element that a row describes, for
+    /// example `"vertex"`.
     pub fn new(name: &'static str, element: &'static str, rows: Vec<T>) -> Self {
         Self {
             rows,
@@ -34,7 +35,7 @@ impl<T> Table<T> {
 }
 
 impl<T, P: Probe> Table<T, P> {
-    /// Returns the same rows, observed by `probe`.
+    /// Returns a table that has the same rows and reports every access to `probe`.
     pub fn probed<Q: Probe>(self, probe: Q) -> Table<T, Q> {
         let Self {
             rows,
@@ -56,7 +57,7 @@ impl<T, P: Probe> Table<T, P> {
         self.rows.len()
     }
 
-    /// Returns whether there are no rows.
+    /// Returns whether the table has no rows.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
@@ -66,7 +67,7 @@ impl<T, P: Probe> Table<T, P> {
     ///
     /// # Panics
     ///
-    /// Panics if the table has no such row; the message names the table, the element and the row.
+    /// Panics if the table has no row `row`; the message names the table, the element and the row.
     #[inline]
     pub fn read(&self, row: usize) -> &T {
         self.probe.read(self.name, row, size_of::<T>());
@@ -80,7 +81,7 @@ impl<T, P: Probe> Table<T, P> {
     ///
     /// # Panics
     ///
-    /// Panics if the table lacks one of these rows; the message names the table, the element and
+    /// Panics if the table does not have both rows; the message names the table, the element and
     /// the row.
     #[inline]
     pub fn read_pair(&self, pair: usize) -> &[T; 2] {
@@ -96,7 +97,7 @@ impl<T, P: Probe> Table<T, P> {
     ///
     /// # Panics
     ///
-    /// Panics if the table lacks one of these rows.
+    /// Panics if the table does not have all rows of `range`.
     #[inline]
     pub fn read_range(&self, range: Range<usize>) -> &[T] {
         for row in range.clone() {
@@ -112,7 +113,7 @@ impl<T, P: Probe> Table<T, P> {
     ///
     /// # Panics
     ///
-    /// Panics if the table has no such row; the message names the table, the element and the row.
+    /// Panics if the table has no row `row`; the message names the table, the element and the row.
     #[inline]
     pub fn write(&mut self, row: usize) -> &mut T {
         self.probe.write(self.name, row, size_of::<T>());
@@ -140,7 +141,7 @@ impl<T, P: Probe> Table<T, P> {
         }
     }
 
-    /// Returns a table of other rows, observed by the same probe.
+    /// Returns a table with the given rows and with the probe of this table.
     pub fn new_like<U>(
         &self,
         name: &'static str,
@@ -160,23 +161,22 @@ impl<T, P: Probe> Table<T, P> {
         self.probe.clone()
     }
 
-    /// Replaces all rows. The probe does not record this.
+    /// Replaces all rows. The probe does not record the change.
     pub fn replace(&mut self, rows: Vec<T>) {
         self.rows = rows;
     }
 
-    /// Drops the rows from `len` on. The probe does not record this.
+    /// Drops the rows from `len` on. The probe does not record the change.
     pub fn truncate(&mut self, len: usize) {
         self.rows.truncate(len);
     }
 
-    /// Drops all rows and frees their memory. The probe does not record this.
+    /// Drops all rows and frees their memory. The probe does not record the change.
     pub fn clear(&mut self) {
         self.rows = Vec::new();
     }
 
-    /// Frees spare memory if less than half of the capacity is used. The probe does not record
-    /// this.
+    /// Frees spare memory if less than half of the capacity is used. The probe records no access.
     pub fn shrink_if_half_empty(&mut self) {
         if self.rows.len() < self.rows.capacity() / 2 {
             self.rows.shrink_to_fit();
@@ -195,9 +195,9 @@ impl<T, P: Probe> Table<T, P> {
         &mut self.rows
     }
 
-    /// Changes the number of rows to `len`. The content of the rows is arbitrary, so the caller
-    /// must overwrite all rows. Allocates only if the capacity is too small. The probe does not
-    /// record this.
+    /// Changes the number of rows to `len`. Afterwards, the content of all rows is arbitrary, so
+    /// the caller must overwrite every row. Allocates only if the capacity is too small. The probe
+    /// does not record the change.
     pub fn resize(&mut self, len: usize, blank: T)
     where
         T: Copy,
@@ -233,12 +233,12 @@ impl<T, P: Probe> Table<T, P> {
 
 impl<P: Probe> Table<Point, P> {
     /// Moves every vertex to its position in `positions`; O(vertices). The probe does not record
-    /// this. This implements [`set_positions`](crate::Representation::set_positions) for structures
-    /// with a table of positions.
+    /// the change. Structures with a table of positions implement
+    /// [`Representation::set_positions`](crate::Representation::set_positions) by this method.
     ///
     /// # Errors
     ///
-    /// [`MoveError::OtherMesh`] if the numbers of vertices differ.
+    /// [`MoveError::OtherMesh`] if the number of positions differs from the number of rows.
     pub fn set_positions(&mut self, positions: &RowMap<VertexId, Point>) -> Result<(), MoveError> {
         let (given, vertices) = (positions.values().len(), self.rows.len());
         if given != vertices {
@@ -259,8 +259,8 @@ impl<T: Clone, P: Probe> Clone for Table<T, P> {
         }
     }
 
-    /// Copies the rows into the memory of this table. Allocates only if the rows do not fit, and
-    /// keeps spare capacity.
+    /// Copies the rows of `source` into the memory of this table. Allocates only if the rows do not
+    /// fit. Spare capacity stays.
     fn clone_from(&mut self, source: &Self) {
         self.rows.clone_from(&source.rows);
         self.name = source.name;

@@ -77,8 +77,8 @@ impl<P: Probe, E: Editing> Iterator for CornersAt<'_, P, E> {
 }
 
 impl<P: Probe, E: Editing> CornerTable<E, P> {
-    /// Returns the corners at `v`, counter-clockwise. At a boundary vertex, the corners go
-    /// from one boundary edge to the other boundary edge.
+    /// Returns the corners at `v`, counter-clockwise. If `v` is on a boundary, the first and the
+    /// last corner are each next to a boundary edge.
     ///
     /// # Panics
     ///

@@ -1,10 +1,11 @@
 //! Corner table: a triangle mesh in two arrays, the vertex and the opposite corner of each corner.
 //!
-//! Use it for large triangle meshes with neighbour queries. It is the smallest structure that
-//! answers every query without a search of the whole mesh. A renderer accepts its `vertex` table as
-//! an index list. It does not hold polygons or edges with three faces: building from such a mesh
-//! returns an error. Start at [`generic::CornerTable`]; its numbered invariants define the tables.
-//! The structure follows Rossignac, Safonova & Szymczak, *3D compression made simple* (2001).
+//! Use a corner table for large triangle meshes whose neighbours are queried. A corner table is the
+//! smallest structure that answers every query about an element without a search of the whole mesh.
+//! The `vertex` table is also an index list for a renderer. If a mesh has a polygon with more than
+//! three sides or an edge with three faces, building returns an error. [`generic::CornerTable`]
+//! documents the tables and their numbered invariants. The structure follows Rossignac, Safonova &
+//! Szymczak, *3D compression made simple* (2001).
 //!
 //! | holds | |
 //! |---|---|
@@ -12,6 +13,8 @@
 //! | polygons, edges with three faces, vertices with two fans, faces with inconsistent orientation | no: the error names the elements |
 //!
 //! # Complexity
+//!
+//! A query has two letters, for vertex (V), edge (E) or face (F): VE lists the edges of a vertex.
 //!
 //! | query | cost | reads |
 //! |---|---|---|
@@ -24,19 +27,20 @@
 //! | FE, FF | O(1) | three rows of `opposite`, adjacent in memory |
 //! | listing or counting edges | O(corners) | `opposite`, once |
 //! | building | O(corners + vertices) | |
-//! | refining (triangles, √3) | O(corners + vertices) | each row once; every new row has a closed formula |
+//! | refining (triangles, √3) | O(corners + vertices) | each row once; a formula gives every new row |
 //!
 //! # Edits
 //!
-//! [`MeshEdit`](sixfold_core::MeshEdit) works in place. Deleted rows stay as holes until `compact`.
+//! [`MeshEdit`](sixfold_core::MeshEdit) changes the tables in place. The rows of deleted elements
+//! stay in the tables until `compact` removes the rows.
 //!
 //! | edit | cost | rows that change |
 //! |---|---|---|
 //! | `set_position` | O(1) | one row of `positions` |
 //! | `add_vertex` | O(1) | a new row of `positions` and of `corner` |
-//! | `add_face` | O(valence) to find the place | a new triangle; `opposite` across its sides, `corner` of its vertices |
-//! | `remove_face` | O(1) | its rows; `opposite` across its sides, `corner` of its vertices |
-//! | `remove_vertex` | O(valence) | as for `remove_face`, for all its triangles |
+//! | `add_face` | O(valence) to find its place around each vertex | a new triangle; `opposite` across its sides, `corner` of its vertices |
+//! | `remove_face` | O(1) | the rows of the triangle; `opposite` across its sides, `corner` of its vertices |
+//! | `remove_vertex` | O(valence) | as for `remove_face`, for all triangles of the vertex |
 //! | `remove_isolated_vertices` | O(vertices) | one bit per removed vertex |
 //! | `bisect_edge` | O(1) | two rows of `vertex`, two new triangles, `opposite` across four corners |
 //! | `poke_face` | O(1) | one row of `vertex`, two new triangles, `opposite` across four corners |
@@ -46,23 +50,26 @@
 //! | `split_edge`, `split_face`, `dissolve_edge` | | not supported: the results are polygons |
 //! | `compact` | O(corners + vertices) | every row |
 //!
-//! The handle of an edge is the lower of the two corners that face the edge. If an edit changes
-//! this corner, the edit reports the new handle to the [`EditLog`](sixfold_core::EditLog).
+//! A corner faces the edge of its triangle that the corner does not touch. The handle of an edge is
+//! the lower of the two corners that face the edge. If an edit changes this corner, the edit
+//! reports the new handle to the [`EditLog`](sixfold_core::EditLog).
 //!
-//! Corner `c` belongs to triangle `c / 3`. `next` and `prev` are computed, not stored. A table by
-//! edge has one row per corner; half of the rows are unused.
+//! Corner `c` belongs to triangle `c / 3`. `next` and `prev` are computed, not stored. A map of
+//! values for edges has one row per corner. In a closed mesh, half of these rows are unused.
 //!
 //! # What limits the speed of the sweeps
 //!
-//! Around a vertex, each step waits for the row that the previous step read. A step is a load and
-//! the computation of `prev`: a multiplication for `c % 3`, a comparison and a selection. A step
-//! takes about ten cycles if the tables are in the nearest cache. If the vertices are visited in
-//! order, these steps limit VV, VE, VF and EE. Smoothing took 18 ns per vertex on 2,562 vertices
-//! and 27 ns per vertex on 40,962 vertices (icospheres, one core of a shared AMD EPYC). In random
-//! order, the latency of the cache or of the memory is the limit at each step. A vertex takes 58 ns
-//! on 82,000 triangles. On 1.3 million triangles, a vertex takes 390 ns, which is one memory access
-//! per neighbour. FV, FE and FF read three rows in sequence, so their limit is the work with the
-//! result. EF and the list of the edges have the same limit, at 1.5 ns per edge.
+//! In a walk around a vertex, each step waits for the row that the previous step read. A step
+//! consists of a load and the computation of `prev`: a multiplication for `c % 3`, a comparison and
+//! a selection. A step takes about ten cycles if the tables are in the first-level cache. If the
+//! vertices are visited in order, the time of these steps limits the queries VV, VE, VF and EE.
+//! Smoothing took 18 ns per vertex of a mesh with 2,562 vertices, and 27 ns per vertex of a mesh
+//! with 40,962 vertices (icospheres, one core of a shared AMD EPYC). If the vertices are visited in
+//! random order, each step waits for the cache or the memory. In random order, a vertex takes 58 ns
+//! in a mesh of 82,000 triangles. In a mesh of 1.3 million triangles, a vertex takes 390 ns in
+//! random order, which is the time of one memory access per neighbour. The queries FV, FE and FF
+//! read three consecutive rows, so the caller's work with the rows takes most of the time. The
+//! query EF and the list of edges take 1.5 ns per edge, also mostly for the caller's work.
 //!
 //! # Examples
 //!
@@ -74,7 +81,7 @@
 //! let polygons = PolygonMesh::new(square, [[0, 1, 2], [0, 2, 3]])?;
 //! let mesh = CornerTable::from_polygons(&polygons)?;
 //!
-// Counter-clockwise, from one boundary edge to the other.
+//! // Counter-clockwise, from one boundary edge to the other.
 //! let v = VertexId::new(0);
 //! assert!(mesh.vertex_vertices(v).eq([1, 2, 3].map(VertexId::new)));
 //!
@@ -100,22 +107,23 @@ pub use refine::EdgeNumbers;
 
 /// The mesh type with its type parameters, for generic code.
 ///
-/// Programs use the two types of the crate root instead.
+/// Most programs use the types [`CornerTable`](crate::CornerTable) and
+/// [`EditableCornerTable`](crate::EditableCornerTable) instead.
 pub mod generic {
     pub use crate::mesh::CornerTable;
 }
 
-/// A corner table that cannot delete elements: a [`generic::CornerTable`] without holes.
+/// A corner table that cannot delete elements: a [`generic::CornerTable`] without deleted rows.
 pub type CornerTable = generic::CornerTable;
 
 /// A corner table that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): a
-/// [`generic::CornerTable`] with holes.
+/// [`generic::CornerTable`] that can contain deleted rows.
 pub type EditableCornerTable = generic::CornerTable<sixfold_core::Editable>;
 
 /// The traits and types that all Sixfold structures share.
 pub use sixfold_core;
 
-/// Imports for a program: the types of this structure, and the traits of its queries and edits.
+/// Imports for a program: the types of this structure, and the traits of mesh queries and edits.
 ///
 /// ```
 /// use sixfold_corner_table::prelude::*;

@@ -6,22 +6,23 @@ use sixfold_core::{
 };
 
 row_id! {
-    /// The handle of one corner, `c7`; the corners of triangle `t` are `3t`, `3t + 1` and `3t + 2`.
+    /// The handle of one corner, printed as `c7`. Triangle `t` has the corners `3t`, `3t + 1` and
+    /// `3t + 2`.
     pub struct CornerId, "c"
 }
 
 row_id! {
-    /// The handle of one edge, `e7`: the lower of the two corners that face the edge.
+    /// The handle of one edge, printed as `e7`: the lower of the two corners that face the edge.
     ///
-    /// A table by edge has one row per corner; a closed mesh uses half of the rows.
+    /// A map of values for edges has one row per corner. A closed mesh uses half of these rows.
     pub struct EdgeCorner, "e"
 }
 
 impl CornerId {
     /// Returns the next corner in its triangle, counter-clockwise.
     ///
-    /// Every step around a vertex waits for the result. So the function uses a comparison and one
-    /// multiplication instead of the two divisions in `3 * (c / 3) + (c + 1) % 3`.
+    /// Every step around a vertex waits for the result of `next`. So `next` uses a comparison and
+    /// one multiplication instead of the two divisions in `3 * (c / 3) + (c + 1) % 3`.
     #[inline]
     pub const fn next(self) -> Self {
         let c = self.index() as u32;
@@ -64,30 +65,33 @@ impl EdgeCorner {
 ///              opposite(c)
 /// ```
 ///
-/// If an edge is a boundary edge, `opposite` and the operators that use `opposite` return `None`.
+/// At a boundary edge, `opposite` and all operators that use `opposite` return `None`.
 ///
 /// # Invariants
 ///
-/// - I1  Triangle `t` has the corners `3t`, `3t + 1`, `3t + 2`, at three vertices of the mesh.
+/// - I1  Triangle `t` has the corners `3t`, `3t + 1`, `3t + 2`, at three different vertices of the
+///   mesh.
 /// - I2  `opposite(opposite(c))` is `c`; `opposite(c)` is `None` if `c` faces a boundary edge.
 /// - I3  `c` and `opposite(c)` face the same edge from its two sides: `vertex(next(c))` is
 ///   `vertex(prev(opposite(c)))`, and `vertex(prev(c))` is `vertex(next(opposite(c)))`.
 /// - I4  `corner(v)` is a corner at `v`, or `None` if `v` is isolated.
-/// - I5  If `v` is on a boundary, `corner(v)` is the first corner of the fan and has no `unswing`.
-/// - I6  Swinging from `corner(v)` visits all corners at `v`: every vertex is manifold.
+/// - I5  If `v` is on a boundary, `corner(v)` is the first corner counter-clockwise, so `unswing`
+///   of this corner is `None`.
+/// - I6  Repeated `swing` from `corner(v)` visits all corners at `v`. So every vertex is manifold.
 /// - I7  No two edges have the same ends.
-/// - I8  The corners of a deleted triangle have the vertex row `u32::MAX`, and each is its own
-///   opposite. No other corner is its own opposite. A deleted vertex has no corner. `face_holes`
-///   and `vertex_holes` contain exactly the deleted rows.
+/// - I8  The corners of a deleted triangle have the vertex row `u32::MAX`, and each of these
+///   corners is its own opposite. No corner of another triangle is its own opposite. A deleted
+///   vertex has no corner. `face_holes` and `vertex_holes` contain exactly the deleted rows.
 ///
-/// I1 to I7 apply to elements that are not deleted. A corner names an edge if and only if its
-/// opposite has a higher row or is `None`. By I8, a corner of a deleted triangle therefore names no
-/// edge.
+/// I1 to I7 apply to elements that are not deleted. The handle of an edge is a corner that faces
+/// the edge, with an opposite that has a higher row or is `None`. By I8, a corner of a deleted
+/// triangle is therefore not the handle of an edge.
 ///
 /// # Memory
 ///
-/// The tables use 16 bytes per vertex and 24 bytes per triangle. A large closed mesh uses 64 bytes,
-/// or 16 words, per vertex. After the first deletion, the tables also use one bit per row.
+/// The tables use 16 bytes per vertex and 24 bytes per triangle. For a large closed mesh, this is
+/// 64 bytes per vertex, or 16 words of 4 bytes. After the first deletion, the tables also use one
+/// bit per row.
 #[derive(Debug)]
 pub struct CornerTable<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,
@@ -118,9 +122,10 @@ impl<P: Probe> From<CornerTable<Compact, P>> for CornerTable<Editable, P> {
 /// The vertex row of the corners of a deleted triangle.
 pub(crate) const NO_VERTEX: VertexId = VertexId::new(u32::MAX);
 
-/// The operators of the corner table (Rossignac et al.), each O(1). An operator that reads a table
-/// panics if the row does not exist. The operators do not check for deleted triangles: for a corner
-/// of a deleted triangle, they return the values of I8.
+/// The operators of the corner table (Rossignac et al.). Each operator takes O(1) time. An operator
+/// that reads a table panics if the row does not exist. The operators do not check whether a
+/// triangle was deleted: for a corner of a deleted triangle, they return the values of invariant
+/// I8.
 impl<P: Probe, E: Editing> CornerTable<E, P> {
     /// Returns the vertex at the corner `c`.
     #[inline]
@@ -128,61 +133,64 @@ impl<P: Probe, E: Editing> CornerTable<E, P> {
         *self.vertex.read(c.index())
     }
 
-    /// Returns the corner across the edge that `c` faces, or `None` at a boundary edge.
+    /// Returns the corner across the edge that `c` faces, or `None` if the edge is a boundary edge.
     #[inline]
     pub fn opposite(&self, c: CornerId) -> Option<CornerId> {
         self.opposite.read(c.index()).get()
     }
 
-    /// Returns the next corner in the triangle, counter-clockwise; reads no table.
+    /// Returns the next corner in the triangle, counter-clockwise, without reading a table.
     #[inline]
     pub fn next(&self, c: CornerId) -> CornerId {
         c.next()
     }
 
-    /// Returns the previous corner in the triangle, counter-clockwise; reads no table.
+    /// Returns the previous corner in the triangle, without reading a table.
     #[inline]
     pub fn prev(&self, c: CornerId) -> CornerId {
         c.prev()
     }
 
-    /// Returns the triangle of the corner `c`; reads no table.
+    /// Returns the triangle of the corner `c`, without reading a table.
     #[inline]
     pub fn triangle(&self, c: CornerId) -> FaceId {
         c.triangle()
     }
 
-    /// Returns the corner across the edge from `vertex(c)` to `vertex(next(c))`.
+    /// Returns the corner across the edge from `vertex(c)` to `vertex(next(c))`, or `None` if the
+    /// edge is a boundary edge.
     #[inline]
     pub fn left(&self, c: CornerId) -> Option<CornerId> {
         self.opposite(c.prev())
     }
 
-    /// Returns the corner across the edge from `vertex(c)` to `vertex(prev(c))`.
+    /// Returns the corner across the edge from `vertex(c)` to `vertex(prev(c))`, or `None` if the
+    /// edge is a boundary edge.
     #[inline]
     pub fn right(&self, c: CornerId) -> Option<CornerId> {
         self.opposite(c.next())
     }
 
-    /// Returns the next corner around the vertex of `c`, counter-clockwise, or `None` at the end of
-    /// an open fan.
+    /// Returns the next corner around the vertex of `c`, counter-clockwise, or `None` if a boundary
+    /// edge comes first.
     #[inline]
     pub fn swing(&self, c: CornerId) -> Option<CornerId> {
         self.right(c).map(CornerId::next)
     }
 
-    /// Returns the previous corner around the vertex of `c`, or `None` at the start of an open fan.
+    /// Returns the next corner around the vertex of `c`, clockwise, or `None` if a boundary edge
+    /// comes first.
     #[inline]
     pub fn unswing(&self, c: CornerId) -> Option<CornerId> {
         self.left(c).map(CornerId::prev)
     }
 }
 
-/// Conversions between vertices, triangles, edges and corners. Each conversion panics if a row does
-/// not exist.
+/// Conversions between vertices, triangles, edges and corners. Each function panics if the row of
+/// its argument does not exist.
 impl<P: Probe, E: Editing> CornerTable<E, P> {
     /// Returns a corner at `v`, or `None` if `v` is isolated; O(1). If `v` is on a boundary,
-    /// returns the first corner of the fan.
+    /// returns the first corner at `v` counter-clockwise.
     #[inline]
     pub fn corner_at(&self, v: VertexId) -> Option<CornerId> {
         let corner = self.corner.read(v.index()).get();
@@ -192,7 +200,7 @@ impl<P: Probe, E: Editing> CornerTable<E, P> {
         corner
     }
 
-    /// Returns the three corners of `t`, counter-clockwise; O(1).
+    /// Returns the three corners of the triangle `t`, counter-clockwise; O(1).
     #[inline]
     pub fn corners_of(&self, t: FaceId) -> [CornerId; 3] {
         if 3 * t.index() >= self.vertex.len() || *self.vertex.read(3 * t.index()) == NO_VERTEX {
@@ -201,19 +209,19 @@ impl<P: Probe, E: Editing> CornerTable<E, P> {
         corners_of(t)
     }
 
-    /// Returns the edge that `c` faces; O(1).
+    /// Returns the edge that the corner `c` faces; O(1).
     #[inline]
     pub fn edge(&self, c: CornerId) -> EdgeCorner {
         edge_between(c, *self.opposite.read(c.index()))
     }
 
-    /// Returns whether `c` faces a boundary edge; O(1).
+    /// Returns whether the edge that `c` faces is a boundary edge; O(1).
     #[inline]
     pub fn is_boundary(&self, c: CornerId) -> bool {
         self.opposite(c).is_none()
     }
 
-    /// Returns the number of corners: three for each triangle.
+    /// Returns the number of corners: three for each triangle that was not deleted.
     #[inline]
     pub fn corner_count(&self) -> usize {
         self.vertex.len() - 3 * self.face_holes.len()
@@ -351,25 +359,25 @@ pub(crate) fn names_edge(c: CornerId, across: Slot<CornerId>) -> bool {
     Slot::some(c) < across
 }
 
-/// The tables as they are in memory, for export and for the caller's own loops. The tables contain
-/// the holes (I8) of all deletions since the last [`compact`](sixfold_core::MeshEdit::compact).
+/// The tables as they are in memory, for export and for the caller's own loops. Deleted rows (I8)
+/// stay in the tables until the next call of [`compact`](sixfold_core::MeshEdit::compact).
 impl<P: Probe, E: Editing> CornerTable<E, P> {
-    /// Returns the positions by vertex.
+    /// Returns the position of each vertex.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
     }
 
-    /// Returns one corner for each vertex (I4).
+    /// Returns one corner of each vertex (I4).
     pub fn vertex_corners(&self) -> &[Slot<CornerId>] {
         self.corner.rows()
     }
 
-    /// Returns the vertices by corner: three rows per triangle.
+    /// Returns the vertex of each corner: three rows per triangle.
     pub fn corner_vertices(&self) -> &[VertexId] {
         self.vertex.rows()
     }
 
-    /// Returns the opposite corners by corner.
+    /// Returns the opposite corner of each corner.
     pub fn opposite_corners(&self) -> &[Slot<CornerId>] {
         self.opposite.rows()
     }

@@ -22,7 +22,7 @@ impl<P: Probe, E: Editing> MeshQuery for CornerTable<E, P> {
         self.vertex_holes.handles(self.positions.len())
     }
 
-    /// Lists every corner that names an edge; reads `opposite` once.
+    /// Lists the handles of all edges. Reads `opposite` once.
     #[inline]
     fn edges(&self) -> impl Iterator<Item = EdgeCorner> {
         Edges::new(self)
@@ -37,7 +37,7 @@ impl<P: Probe, E: Editing> MeshQuery for CornerTable<E, P> {
         self.positions.len() - self.vertex_holes.len()
     }
 
-    /// Counts the boundary edges; O(corners).
+    /// Counts the boundary edges to compute the number of edges; O(corners).
     fn edge_count(&self) -> usize {
         let opposite = self.opposite.read_range(0..self.opposite.len());
         let boundary = opposite.iter().filter(|across| across.get().is_none());

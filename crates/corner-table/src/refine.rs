@@ -17,9 +17,9 @@ use crate::mesh::{CornerId, EdgeCorner, edge_between, named_edge, names_edge};
 /// Number of corners in one chunk of whole triangles.
 const CHUNK_CORNERS: usize = 3 * CHUNK_ROWS;
 
-/// The numbers of the edges.
+/// A number for each edge, from 0.
 ///
-/// The number of an edge is the rank of the corner that names the edge.
+/// The corners that are edge handles are numbered in ascending order.
 #[derive(Clone, Debug, Default)]
 pub struct EdgeNumbers {
     /// The corners that name an edge.

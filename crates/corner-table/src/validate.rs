@@ -30,7 +30,8 @@ fn corners<E: Editing>(mesh: &CornerTable<E>) -> impl Iterator<Item = CornerId> 
 fn check_table_lengths<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
     let (corners, opposites) = (mesh.corner_vertices().len(), mesh.opposite_corners().len());
     if !corners.is_multiple_of(3) || opposites != corners {
-        let detail = format!("`vertex` has {corners} rows, `opposite` {opposites}: not 3 per face");
+        let detail =
+            format!("`vertex` has {corners} rows, `opposite` has {opposites} rows: not 3 per face");
         return fails("I1", detail);
     }
     if mesh.vertex_corners().len() != mesh.positions().len() {
@@ -55,7 +56,7 @@ fn check_holes<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> 
         if marks != [deleted; 2] {
             return fails(
                 "I8",
-                format!("the rows of {c} and `face_holes` disagree on its deletion"),
+                format!("the rows of {c} and `face_holes` disagree on whether {c} was deleted"),
             );
         }
     }

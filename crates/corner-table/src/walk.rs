@@ -6,11 +6,11 @@ use sixfold_core::{
 
 use crate::mesh::{CornerId, CornerTable, EdgeCorner, NO_VERTEX};
 
-/// The corner where a side starts names the side. Side `c` runs from `vertex(c)` to
-/// `vertex(next(c))`; corner `prev(c)` faces side `c`.
+/// The corner where a side starts is the handle of the side. Side `c` runs from `vertex(c)` to
+/// `vertex(next(c))`. The corner `prev(c)` faces side `c`.
 ///
-/// Every method is O(1). The steps along a face and `side_face` read no table; all other methods
-/// read one row. `ccw_side` is [`swing`](CornerTable::swing), `cw_side` is
+/// Every method takes O(1) time, or O(1) time for each item. The steps along a face and `side_face`
+/// read no table. `ccw_side` is [`swing`](CornerTable::swing), and `cw_side` is
 /// [`unswing`](CornerTable::unswing).
 impl<P: Probe, E: Editing> OrientedWalk for CornerTable<E, P> {
     type Side = CornerId;
@@ -26,7 +26,8 @@ impl<P: Probe, E: Editing> OrientedWalk for CornerTable<E, P> {
         facing.into_iter().flatten().map_inline(CornerId::next)
     }
 
-    /// Yields the sides counter-clockwise. At a boundary vertex, starts at the boundary.
+    /// Yields the sides counter-clockwise. At a boundary vertex, the first side runs along a
+    /// boundary edge.
     #[inline]
     fn outgoing_sides(&self, v: VertexId) -> impl Iterator<Item = CornerId> {
         self.corners_at(v)

@@ -25,7 +25,7 @@ impl<E: Editing> Representation for FaceVertexMesh<E> {
         }
     }
 
-    /// Copies the face list and sorts the faces by their vertices; O(corners + vertices).
+    /// Copies the face list and collects the faces of each vertex; O(corners + vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         let faces = polygons.faces();
         let (fans, pool) = incident_faces(polygons.vertex_count(), faces);

@@ -7,8 +7,9 @@ use sixfold_core::{CHUNK_ROWS, FaceId, FaceSpans, Pair, VertexId, row};
 
 use crate::FaceVertexMesh;
 
-/// The number of each edge, stored by corner. The entry of a corner is the number of the edge along
-/// the side that starts at the corner. The number of an edge is its position in `edges()`.
+/// The number of each edge. The numbers are stored by corner: the entry of a corner is the number
+/// of the edge from this corner to the next corner. The number of an edge is its position in
+/// `edges()`.
 ///
 /// ```text
 ///    c ──3── b     corners   a b c │ a d b      edges  0 ab, 1 ac, 2 ad  by the lower end, then
@@ -18,7 +19,7 @@ use crate::FaceVertexMesh;
 ///    a ──2── d
 /// ```
 ///
-/// Uses four bytes per corner and four bytes per vertex.
+/// The numbers use four bytes per corner and four bytes per vertex.
 #[derive(Clone, Debug, Default)]
 pub struct EdgeNumbers {
     pub(crate) by_corner: Vec<u32>,

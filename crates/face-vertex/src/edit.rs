@@ -240,7 +240,7 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
         Ok(n)
     }
 
-    /// `f` keeps the part between the two ends in the corner order of `f`.
+    /// Face `f` keeps the corners between the two ends, in the corner order of `f`.
     fn split_face_logged(
         &mut self,
         f: FaceId,
@@ -270,7 +270,7 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
         Ok(e)
     }
 
-    /// Keeps the face that runs along `e` from the lower end.
+    /// Keeps the face that runs along `e` from the lower end of `e`.
     fn dissolve_edge_logged(
         &mut self,
         e: Edge,
@@ -354,7 +354,7 @@ impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
         self.split_fan(v, [left, right], at, log)
     }
 
-    /// Sorts the fans by vertex, and each fan by face.
+    /// Stores the fans in the order of the vertices, and the faces of each fan in ascending order.
     fn compact_logged(&mut self, log: &mut impl EditLog<Self>) {
         self.compact_tables(log);
     }

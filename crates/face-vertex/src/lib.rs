@@ -1,11 +1,13 @@
 //! Face-vertex mesh: shared vertices, a vertex list for each face, a face list for each vertex.
 //!
-//! Use it if the main query is the faces around a vertex, for example for normals. Use it also if
-//! the input is unrestricted: it holds every polygon mesh. Edges are not stored; an edge is the
-//! [pair](sixfold_core::Pair) of its ends. FV, FE, EV and VF take O(1) per item; the other five
-//! relations search the faces around the element. All edits of [`MeshEdit`](sixfold_core::MeshEdit)
-//! are supported and local. An edit is refused only if the edit breaks its own rule. Start at
-//! [`generic::FaceVertexMesh`]; its four invariants define the tables.
+//! Use a face-vertex mesh if the main query is the faces around a vertex, for example for normals.
+//! Use a face-vertex mesh also if the input is unrestricted, because the structure holds every
+//! polygon mesh. Edges are not stored; the handle of an edge is the [pair](sixfold_core::Pair) of
+//! its ends. A query has two letters, for vertex (V), edge (E) or face (F): VF lists the faces of a
+//! vertex. The queries FV, FE, EV and VF take O(1) per item. The other five queries search the
+//! faces around the element. All edits of [`MeshEdit`](sixfold_core::MeshEdit) are supported. An
+//! edit is refused only if the edit breaks its own rule. [`generic::FaceVertexMesh`] documents the
+//! tables and their four invariants.
 
 mod circulate;
 mod construct;
@@ -24,22 +26,24 @@ pub use walk::{CornerMap, FaceSide};
 
 /// The mesh type with its type parameters, for generic code.
 ///
-/// Programs use the two types of the crate root instead.
+/// Most programs use the types [`FaceVertexMesh`](crate::FaceVertexMesh) and
+/// [`EditableFaceVertexMesh`](crate::EditableFaceVertexMesh) instead.
 pub mod generic {
     pub use crate::mesh::FaceVertexMesh;
 }
 
-/// A face-vertex mesh that cannot delete elements: a [`generic::FaceVertexMesh`] without holes.
+/// A face-vertex mesh that cannot delete elements: a [`generic::FaceVertexMesh`] without deleted
+/// rows.
 pub type FaceVertexMesh = generic::FaceVertexMesh;
 
 /// A face-vertex mesh that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): a
-/// [`generic::FaceVertexMesh`] with holes.
+/// [`generic::FaceVertexMesh`] that can contain deleted rows.
 pub type EditableFaceVertexMesh = generic::FaceVertexMesh<sixfold_core::Editable>;
 
 /// The traits and types that all Sixfold structures share.
 pub use sixfold_core;
 
-/// Imports for a program: the types of this structure, and the traits of its queries and edits.
+/// Imports for a program: the types of this structure, and the traits of mesh queries and edits.
 ///
 /// ```
 /// use sixfold_face_vertex::prelude::*;

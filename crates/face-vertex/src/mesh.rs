@@ -17,24 +17,30 @@ use sixfold_core::{
 ///    a ────── d     pool       f0 f1 │ f0 f1 │ f0 │ f1 │ …  the faces around a, b, c, d …
 /// ```
 ///
+/// The fan of a vertex is the list of its faces. The fans are stored in one table, the pool. A
+/// place is an entry of the pool.
+///
 /// - I1  Face `f` has the corners `spans.range(f)`. The ranges of faces are disjoint. Until an edit
-///   changes a degree, the ranges are consecutive and cover the whole table. A face has at least
-///   three vertices; they all exist and are distinct.
+///   changes the degree of a face, the ranges are consecutive and cover the whole table. A face has
+///   at least three vertices, which all exist and are distinct.
 /// - I2  The fans of two vertices do not overlap in the pool.
 /// - I3  The fan of `v` contains exactly the faces with a corner at `v`, each once.
 /// - I4  Deleted and unused entries are blank. A corner that belongs to no face or to a deleted
 ///   face contains vertex `u32::MAX`. A place outside all fans contains face `u32::MAX`. The fan of
-///   a deleted vertex is [`Fan::DELETED`]. The holes are exactly the deleted vertices and faces.
+///   a deleted vertex is [`Fan::DELETED`]. `vertex_holes` and `face_holes` contain exactly the
+///   deleted vertices and faces.
 ///
-/// A large closed triangle mesh uses 17 words per vertex: 3 for positions, 6 for corners, 2 for
-/// fans and 6 for the pool. With mixed degrees, the mesh uses one more word per face. A fan stores
-/// its start and its length, so a fan that grows can move alone to the end of the pool. A deletion
-/// adds one bit per row of vertices or of faces. An edit of degrees adds two words per face and one
-/// word per corner.
+/// A large closed triangle mesh uses 17 words of 4 bytes per vertex: 3 for positions, 6 for
+/// corners, 2 for fans and 6 for the pool. If the faces have different degrees, the mesh uses one
+/// more word per face. A fan stores its start and its length, so a fan that grows can move to the
+/// end of the pool without the other fans. The first deletion adds one bit per row of vertices or
+/// of faces. An edit that changes the degree of a face adds two words per face and one word per
+/// corner.
 ///
 /// # Complexity
 ///
-/// `length` is the number of faces in a fan; `d` is the degree of these faces.
+/// In this table, `length` is the number of faces in a fan, and `d` is the degree of these faces. A
+/// query has two letters, for vertex (V), edge (E) or face (F): VE lists the edges of a vertex.
 ///
 /// | query | reads | time |
 /// |---|---|---|
@@ -43,52 +49,53 @@ use sixfold_core::{
 /// | EV | the handle itself | O(1), reads no table |
 /// | VV, VE | the corners of the fan | O(length · d) expected |
 /// | EF | the corners of the shorter fan of the two ends | O(length · d) |
-/// | EE | the corners of both fans | O(lengths · d) expected |
-/// | FF | for each side, as EF | O(sides · length · d) expected |
-/// | `vertices`, `faces` | the holes, if there are any | O(1) per item |
+/// | EE | the corners of the fans of both ends | O(lengths · d) expected |
+/// | FF | for each side of the face, the corners of the shorter fan of its two ends | O(sides · length · d) expected |
+/// | `vertices`, `faces` | the deleted rows, if there are any | O(1) per item |
 /// | `edges`, `edge_count` | all corners | O(corners + vertices), without hashing |
 ///
-/// Sweeps over VF and FV read tables from start to end. In cache, the limit is the loop over six
-/// items (VF) or three items (FV). In larger meshes, the limit is the number of bytes: 32 per
-/// vertex for VF (8 of fans, 24 of pool), and 12 per triangle for FV. The other sweeps jump from
-/// the pool to the corners of six faces per vertex, then compare the vertices at these corners. In
-/// a well ordered mesh, the comparisons limit VV. In a shuffled mesh, the latency of the jumps
-/// limits VV.
+/// A pass over all vertices with VF, or over all faces with FV, reads the tables from start to end.
+/// If the tables fit in the cache, the loop over the six items (VF) or three items (FV) takes most
+/// of the time. In larger meshes, the number of bytes limits the speed. VF reads 32 bytes per
+/// vertex (8 of fans, 24 of pool), and FV reads 12 bytes per triangle. The other queries jump from
+/// the pool to the corners of the faces, then compare the vertices at these corners. In a mesh with
+/// a good order, the comparisons limit the speed of VV. In a mesh with a random order, the latency
+/// of the jumps limits the speed of VV.
 ///
-/// Splitting every face ([`Refine`](sixfold_core::Refine)) takes O(corners · d + vertices).
-/// Numbering the edges takes the same time.
+/// Splitting every face ([`Refine`](sixfold_core::Refine)) takes O(corners · d + vertices) time.
+/// Numbering the edges also takes O(corners · d + vertices) time.
 ///
-/// Edits ([`MeshEdit`](sixfold_core::MeshEdit)) rewrite corners and repair fans. A fan that shrinks
-/// stays in place and leaves blanks behind its last face. A fan that grows uses such a blank. If
-/// there is no blank, the fan moves to the end of the pool and reserves blanks for as many faces
-/// again. So a fan that grows face by face moves O(log length) times.
-/// [`compact`](sixfold_core::MeshEdit::compact) removes the blanks. Every edit except the last two
-/// in the table is local. `n` is the length of a fan, `d` the degree of a face at the edited
-/// element.
+/// Edits ([`MeshEdit`](sixfold_core::MeshEdit)) write corners and change fans. A fan that shrinks
+/// stays in place and leaves blank places behind its last face. A fan that grows uses a blank place
+/// behind its last face. If there is no blank place, the fan moves to the end of the pool and gets
+/// twice as many places as before, or eight places if that is more. So a fan that grows face by
+/// face moves O(log length) times. [`compact`](sixfold_core::MeshEdit::compact) removes the blank
+/// places. `remove_isolated_vertices` and `compact` read the whole mesh. In the table of edits, `n`
+/// is the length of a fan, and `d` is the degree of a face at the edited element.
 ///
 /// | edit | time | writes |
 /// |---|---|---|
 /// | `set_position` | O(1) | the position |
 /// | `add_vertex` | O(1) | a position, an empty fan |
-/// | `add_face` | O(d) | d new corners, a place in d fans |
-/// | `remove_face` | O(d · n) | blanks in its corners and in d places |
-/// | `remove_vertex` | O(n · d · n) | the same for each face of its fan |
-/// | `split_edge` | O(n · d) | the corners of its faces, at the end of the table; a new fan |
-/// | `bisect_edge` | O(n) | a corner in each face, three in each new face; four fans for two faces |
-/// | `poke_face` | O(d · n) | a corner, three in each new face; d fans, and a new one |
+/// | `add_face` | O(d) | d new corners, one place in each of d fans |
+/// | `remove_face` | O(d · n) | blanks in the d corners of the face, and in one place of each of d fans |
+/// | `remove_vertex` | O(n · d · n) | as `remove_face`, for each face of the vertex |
+/// | `split_edge` | O(n · d) | the corners of the faces at the edge, at the end of the table; a new fan |
+/// | `bisect_edge` | O(n) | one corner in each face at the edge, three in each new face; four fans if the edge has two faces |
+/// | `poke_face` | O(d · n) | the corners of the face, three in each new face; d fans, and a new fan |
 /// | `split_face` | O(d · n) | the corners of both parts, the fans of the new part |
 /// | `dissolve_edge` | O(n · d) | the corners of both faces, the fans of the removed face |
-/// | `flip_edge` | O(n) | a corner of each face, a place in four fans |
-/// | `collapse_edge` | O(n · d) | a corner in each face of the removed end, the fans of both ends and of the third corners |
-/// | `split_vertex` | O(n · d + n log n) | a corner in each face that the new vertex gets, four fans |
-/// | `remove_isolated_vertices` | O(vertices) | their fans |
+/// | `flip_edge` | O(n) | one corner of each face, one place in each of four fans |
+/// | `collapse_edge` | O(n · d) | one corner in each face of the removed end, the fans of both ends and of the third corners |
+/// | `split_vertex` | O(n · d + n log n) | one corner in each face that the new vertex gets, four fans |
+/// | `remove_isolated_vertices` | O(vertices) | the fans of the removed vertices |
 /// | `compact` | O(corners + vertices) | all tables |
 ///
-/// An edit of degrees changes the degree of a face, or adds a face of another degree to a uniform
-/// mesh. `split_edge`, `split_face` and `dissolve_edge` always change degrees. `add_face`,
-/// `poke_face` and `collapse_edge` change degrees only if a face is not a triangle. The first edit
-/// of degrees after a `compact` builds a table of spans and a table of owners
-/// ([`FaceSpans::Scattered`]) in O(corners).
+/// Some edits change the degree of a face, or add a face of another degree to a mesh whose faces
+/// all have one degree. `split_edge`, `split_face` and `dissolve_edge` always change degrees.
+/// `add_face`, `poke_face` and `collapse_edge` change degrees only if a face is not a triangle. The
+/// first edit that changes degrees after a `compact` takes O(corners) time: it builds a table with
+/// the range of each face and a table with the face of each corner ([`FaceSpans::Scattered`]).
 ///
 /// # Examples
 ///
@@ -138,24 +145,24 @@ pub(crate) const BLANK_CORNER: VertexId = VertexId::new(u32::MAX);
 /// The face in a blank place of the pool.
 pub(crate) const BLANK_PLACE: FaceId = FaceId::new(u32::MAX);
 
-/// The range of the pool with the faces around one vertex.
+/// The range of one vertex in the pool. This range contains the faces around the vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Fan {
-    /// The row of the first face.
+    /// The row of the first face in the pool.
     pub start: u32,
-    /// Number of faces.
+    /// Number of faces around the vertex.
     pub len: u32,
 }
 
 impl Fan {
-    /// The fan of a deleted vertex. The range is beyond every pool, so a read fails the bounds
-    /// check.
+    /// The fan of a deleted vertex. Its range is beyond the end of every pool, so a read of this
+    /// range fails the bounds check.
     pub const DELETED: Self = Self {
         start: u32::MAX,
         len: u32::MAX,
     };
 
-    /// Returns the rows of the fan in the pool.
+    /// Returns the rows of the pool that contain the faces of this fan.
     #[inline]
     pub fn range(self) -> Range<usize> {
         let start = self.start as usize;
@@ -164,18 +171,18 @@ impl Fan {
 }
 
 impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
-    /// Returns the position of each vertex, as stored.
+    /// Returns the position of each vertex, including deleted vertices.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
     }
 
-    /// Returns the vertex of each corner, face by face, as stored. Corners of deleted faces are
-    /// blank.
+    /// Returns the vertex of each corner, face by face. A corner that belongs to no face contains
+    /// vertex `u32::MAX`.
     pub fn corners(&self) -> &[VertexId] {
         self.corners.rows()
     }
 
-    /// Returns the ranges of corners of the faces.
+    /// Returns the range of corners of each face.
     pub fn spans(&self) -> &FaceSpans<P, E> {
         &self.spans
     }
@@ -185,12 +192,12 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         self.fans.rows()
     }
 
-    /// Returns the faces around all vertices, as stored. Places outside all fans are blank.
+    /// Returns the table with the faces around each vertex. Unused rows contain face `u32::MAX`.
     pub fn pool(&self) -> &[FaceId] {
         self.pool.rows()
     }
 
-    /// Returns the vertices of `f`, in order.
+    /// Returns the vertices of `f`, in the order of its corners.
     ///
     /// # Panics
     ///

@@ -18,7 +18,7 @@ impl<P: Probe, E: Editing> MeshQuery for FaceVertexMesh<E, P> {
         self.vertex_holes.handles(self.fans.len())
     }
 
-    /// Lists the edges in the order of their lower ends.
+    /// Lists the edges, sorted by their lower ends.
     #[inline]
     fn edges(&self) -> impl Iterator<Item = Pair<VertexId>> {
         self.spans
@@ -69,7 +69,7 @@ impl<P: Probe, E: Editing> MeshQuery for FaceVertexMesh<E, P> {
         e.ends()
     }
 
-    /// Lists the other edges at both ends. If `e` is not an edge, the result is empty.
+    /// Lists the other edges at both ends of `e`. If `e` is not an edge, the result is empty.
     #[inline]
     fn edge_edges(&self, e: Pair<VertexId>) -> impl Iterator<Item = Pair<VertexId>> {
         let [a, b] = e.ends();

@@ -14,7 +14,7 @@
 //! The [number](EdgeNumbers) of an edge gives the vertex in its middle. The pool stores the fans of
 //! the child in the order of its vertices, without gaps:
 //!
-//! - The fan of an old vertex has the part at the vertex of each face of the old fan.
+//! - For each face of its old fan, the fan of an old vertex has the part at the vertex.
 //! - The fan of a face point has the parts of the face, in order.
 //! - The fan of an edge point has the parts at both ends of each side along the edge. For
 //!   triangles, the fan also has the middle part.
@@ -51,7 +51,7 @@ impl Refine for FaceVertexMesh {
         }
     }
 
-    /// O(corners · degree + vertices).
+    /// Takes O(corners · degree + vertices) time.
     fn number_edges(&self, numbers: &mut EdgeNumbers) {
         numbers.fill(self);
     }
@@ -60,7 +60,7 @@ impl Refine for FaceVertexMesh {
         numbers.chunks.iter().map(|chunk| chunk.edge).collect()
     }
 
-    /// Searches the fans of the lower ends.
+    /// Searches the fans of the lower ends of the edges.
     fn edges_of_chunk(
         &self,
         numbers: &EdgeNumbers,
@@ -87,7 +87,7 @@ impl Refine for FaceVertexMesh {
         numbers.by_corner[side as usize] as usize
     }
 
-    /// O(corners · degree + vertices).
+    /// Takes O(corners · degree + vertices) time.
     fn split_into(
         &self,
         split: Split,
@@ -127,7 +127,7 @@ impl Refine for FaceVertexMesh {
         Ok(())
     }
 
-    /// O(1), or O(log faces) for mixed degrees.
+    /// Takes O(1) time, or O(log faces) for faces with different degrees.
     fn parent(&self, _: &EdgeNumbers, split: Split, child: FaceId) -> FaceId {
         match split {
             Split::Quads => self.spans.face_of(child.index()),

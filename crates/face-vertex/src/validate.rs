@@ -45,7 +45,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         let fails = |detail: String| Err(InvariantError::new("I2", detail));
         if self.fans.len() != self.positions.len() {
             let (fans, vertices) = (self.fans.len(), self.positions.len());
-            return fails(format!("{fans} fans for {vertices} vertices"));
+            return fails(format!("there are {fans} fans for {vertices} vertices"));
         }
         let mut owner = vec![None; self.pool.len()];
         for v in self.vertices() {
@@ -82,7 +82,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
             } else if let Some(f) = fan.iter().find(|f| expected.binary_search(f).is_err()) {
                 format!("contains {f}, which has no corner there")
             } else if let Some(f) = expected.iter().find(|f| fan.binary_search(f).is_err()) {
-                format!("lacks {f}")
+                format!("does not contain {f}")
             } else {
                 continue;
             };
@@ -120,7 +120,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         let named = named.count();
         if named != corners {
             return fails(format!(
-                "{named} corners are not blank, but faces have {corners}"
+                "{named} corners are not blank, but the faces have {corners} corners"
             ));
         }
         let fans = self.vertices().map(|v| self.fans.rows()[v.index()]);
@@ -129,7 +129,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         let named = named.count();
         if named != places {
             return fails(format!(
-                "{named} places are not blank, but fans have {places}"
+                "{named} places are not blank, but the fans have {places} places"
             ));
         }
         Ok(())
@@ -212,7 +212,7 @@ mod tests {
             "I2 fails: the fan of v1 reaches beyond the pool"
         );
         broken.fans = Table::new("fans", "vertex", Vec::new());
-        assert_eq!(fault(&broken), "I2 fails: 0 fans for 4 vertices");
+        assert_eq!(fault(&broken), "I2 fails: there are 0 fans for 4 vertices");
     }
 
     #[test]
@@ -225,7 +225,10 @@ mod tests {
         let expected = "I3 fails: the fan of v1 contains f1, which has no corner there";
         assert_eq!(fault(&broken), expected);
         broken.fans.rows_mut()[1].len = 0;
-        assert_eq!(fault(&broken), "I3 fails: the fan of v1 lacks f0");
+        assert_eq!(
+            fault(&broken),
+            "I3 fails: the fan of v1 does not contain f0"
+        );
     }
 
     #[test]
@@ -253,7 +256,7 @@ mod tests {
         broken.corners.rows_mut()[3..].fill(BLANK_CORNER);
         assert_eq!(
             fault(&broken),
-            "I4 fails: 6 places are not blank, but fans have 3"
+            "I4 fails: 6 places are not blank, but the fans have 3 places"
         );
         for place in [1, 4, 5] {
             broken.pool.rows_mut()[place] = BLANK_PLACE;
@@ -261,7 +264,7 @@ mod tests {
         assert_eq!(broken.validate(), Ok(()));
         let mut broken = triangles();
         broken.pool.push(FaceId::new(0));
-        let expected = "I4 fails: 7 places are not blank, but fans have 6";
+        let expected = "I4 fails: 7 places are not blank, but the fans have 6 places";
         assert_eq!(fault(&broken), expected);
     }
 

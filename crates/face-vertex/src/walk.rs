@@ -11,14 +11,14 @@ use sixfold_core::{
 use crate::mesh::{BLANK_CORNER, FaceVertexMesh, deleted_face};
 
 row_id! {
-    /// A row of the table of corners.
+    /// The row of a corner in the table of corners.
     struct CornerId, "c"
 }
 
-/// The handle of one side, `f3c10`: its face, and the row of the corner where it starts in
-/// [`corners`](FaceVertexMesh::corners).
+/// The handle of one side, printed as `f3c10`: the face 3, and the row 10 of the corner where the
+/// side starts. The row is a row of [`corners`](FaceVertexMesh::corners).
 ///
-/// The face is stored to avoid a search for the face of the corner.
+/// The handle contains the face, to avoid a search for the face of the corner.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FaceSide {
     face: FaceId,
@@ -92,9 +92,10 @@ impl<T> IndexMut<FaceSide> for CornerMap<T> {
     }
 }
 
-/// The steps along a face are O(1) and read no corner. Twins are not stored. Therefore `twin_side`,
-/// `cw_side`, `ccw_side` and `edge_sides` take O(length · degree): they search the faces at one end
-/// of the edge. `outgoing_sides` takes O(degree) for each side.
+/// The steps along a face take O(1) time. Twins are not stored. Therefore `twin_side`, `cw_side`,
+/// `ccw_side` and `edge_sides` search the faces at one end of the edge. Each of these methods takes
+/// O(length · degree) time, for a vertex with `length` faces. `outgoing_sides` takes O(degree) time
+/// for each side.
 impl<P: Probe, E: Editing> OrientedWalk for FaceVertexMesh<E, P> {
     type Side = FaceSide;
 
@@ -117,7 +118,7 @@ impl<P: Probe, E: Editing> OrientedWalk for FaceVertexMesh<E, P> {
         })
     }
 
-    /// Yields the sides in the order of the fan.
+    /// Yields the sides of `v` in the order in which the faces of `v` are stored.
     #[inline]
     fn outgoing_sides(&self, v: VertexId) -> impl Iterator<Item = FaceSide> {
         let fan = self.fan(v).iter();

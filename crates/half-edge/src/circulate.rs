@@ -31,8 +31,8 @@ impl<P: Probe, E: Editing> Iterator for AroundFace<'_, P, E> {
 }
 
 impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
-    /// Iterates over the half-edges that leave `v`, clockwise. At a boundary vertex, starts on the
-    /// boundary loop.
+    /// Yields the half-edges that leave `v`, clockwise. At a boundary vertex, the first half-edge
+    /// is on the boundary loop.
     ///
     /// # Panics
     ///
@@ -42,7 +42,7 @@ impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
         Leaving(self.spokes(v))
     }
 
-    /// Iterates over the half-edges with `f` on their left, counter-clockwise.
+    /// Yields the half-edges that have `f` on their left, counter-clockwise.
     ///
     /// # Panics
     ///

@@ -20,8 +20,8 @@ impl<E: Editing> Representation for HalfEdgeMesh<E> {
         }
     }
 
-    /// Pairs the sides, links the half-edges of each face, then links the boundary loops; O(corners
-    /// + vertices).
+    /// Pairs the sides, links the half-edges of each face, then links the boundary loops.
+    /// O(corners + vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         let error = || Self::CAPABILITIES.build_error(polygons);
         let faces = polygons.faces();

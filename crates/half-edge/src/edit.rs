@@ -21,11 +21,11 @@ use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh, NO_HALF};
 /// The error of an edit, without the type of the probe.
 type Refusal = sixfold_core::Refusal<EditableHalfEdgeMesh>;
 
-/// Each edit relinks a few half-edges. The edits are the operators of Mäntylä (1988), without a
-/// stored `prev`.
+/// Each edit relinks a few half-edges. The edits follow the operators of Mäntylä (1988), but
+/// without a stored `prev`.
 ///
-/// An edit reads each row of its check once. To find the half-edge before another, an edit searches
-/// along the face or around the vertex. Every edit keeps `leaving` correct (I5).
+/// To find the half-edge before a given half-edge, an edit searches along the face or around the
+/// vertex. Every edit keeps invariant I5: `leaving` of a boundary vertex has no face.
 impl<P: Probe> MeshEdit for HalfEdgeMesh<Editable, P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
 

@@ -1,9 +1,10 @@
-//! Half-edge mesh: every edge is two directed half-edges, each with a face on its left.
+//! Half-edge mesh: every edge is stored as two directed half-edges, each with a face or a boundary
+//! loop on its left.
 //!
-//! Use it to walk around vertices and to change connectivity. It does not hold edges with three
-//! faces: building a mesh with such edges returns an error. Start at [`generic::HalfEdgeMesh`]; its
-//! numbered invariants define the tables. The structure follows Weiler (1985) and Mäntylä (1988).
-//! Its twin pairs follow Campagna, Kobbelt & Seidel (1998).
+//! Use a half-edge mesh to walk around vertices and to change connectivity. A half-edge mesh cannot
+//! hold edges with three faces: building a mesh with such edges returns an error. Start at
+//! [`generic::HalfEdgeMesh`], whose numbered invariants define the tables. The structure follows
+//! Weiler (1985) and Mäntylä (1988). The pairs of twins follow Campagna, Kobbelt & Seidel (1998).
 //!
 //! | holds | |
 //! |---|---|
@@ -25,13 +26,13 @@
 //! | edit ([`MeshEdit`](sixfold_core::MeshEdit)) | cost | rows that change |
 //! |---|---|---|
 //! | `set_position`, `add_vertex` | O(1) | the vertex |
-//! | `add_face` | O(valence) of its corners | its sides, new edges, the half-edges before and after them |
-//! | `remove_face` | O(valence) of its corners | its sides, the half-edges before and after the removed ones |
+//! | `add_face` | O(valence) of its corners | sides of the face, new edges, adjacent half-edges |
+//! | `remove_face` | O(valence) of its corners | sides of the face, adjacent half-edges |
 //! | `remove_vertex` | the sum of `remove_face` over its faces | as for `remove_face`, for all its faces |
 //! | `remove_isolated_vertices` | O(vertices) | the isolated vertices |
-//! | `split_edge` | O(degree) of one face | both half-edges, a new edge, the half-edge before |
+//! | `split_edge` | O(degree) of one face | the edge, a new edge, the half-edge before the edge |
 //! | `bisect_edge` | O(1) | both triangles, two or three new edges |
-//! | `poke_face` | O(degree) | its sides, one new edge per side |
+//! | `poke_face` | O(degree) | the sides of the face, one new edge per side |
 //! | `split_face` | O(degree + valence) | the sides of one part, a new edge, the half-edge before it |
 //! | `dissolve_edge` | O(degree) of both faces | the sides of one face, the half-edges before the edge |
 //! | `flip_edge` | O(smaller valence) of the third corners | the six half-edges of two triangles |
@@ -39,24 +40,27 @@
 //! | `split_vertex` | O(valence) | the half-edges that leave the new vertex, up to three new edges |
 //! | `compact` | O(mesh) | all |
 //!
-//! Here, degree and valence are the degree of a face and the valence of a vertex at the edited
-//! element. Vertices, edges and faces keep their handles until `compact`. Until then, the rows of
-//! deleted elements are holes.
+//! In the table of edits, degree means the degree of a face at the edited element, and valence
+//! means the valence of a vertex at the edited element. Vertices, edges and faces keep their
+//! handles until the mesh is compacted. Until the mesh is compacted, the rows of deleted elements
+//! stay in the tables as holes.
 //!
-//! The handles of vertices, edges and faces are row numbers. A loop over all elements reads no
-//! table, except the bits of the holes. `prev` is not stored: finding the half-edge before another
-//! costs O(degree) along a face and O(valence) along a boundary. A stored `prev` makes the record
-//! wider. In a test, it slowed every sweep (one-rings by 6 to 20 %) and made no function of this
-//! crate faster.
+//! The handles of vertices, edges and faces are row numbers. A loop over all handles reads no
+//! table, except the bits that mark deleted elements. `prev` is not stored: finding the half-edge
+//! before a given half-edge costs O(degree) along a face and O(valence) along a boundary. A stored
+//! `prev` makes the record wider. In a test, a stored `prev` slowed every sweep (one-rings by 6 to
+//! 20 %) and made no function of this crate faster.
 //!
 //! # What limits the speed of the sweeps
 //!
-//! A step around a vertex is about nine instructions and one load. The next step waits for this
-//! load. On 82,000 triangles in a good order, a one-ring sweep takes 12 ns per vertex, 2 ns per
-//! step. The records are then in the nearer caches, and the number of instructions is the limit. In
-//! random order, the sweep takes 26 ns per vertex. Each vertex then touches about ten cache lines
-//! that are not in the nearer caches. FF reads two records per side. In a breadth-first search, FF
-//! takes about 110 instructions per face, and the number of instructions is the limit.
+//! A step around a vertex takes about nine instructions and one load, and the next step waits for
+//! the load. On 82,000 triangles whose neighbours are close in memory (a good order), a one-ring
+//! sweep takes 12 ns per vertex, or 2 ns per step. In a good order, the records are in the nearer
+//! caches, so the number of instructions limits the speed. On the same triangles in random order,
+//! the sweep takes 26 ns per vertex. In random order, the sweep touches about ten cache lines per
+//! vertex that are not in the nearer caches. An FF query reads two records per side. In a
+//! breadth-first search, an FF query takes about 110 instructions, and the number of instructions
+//! limits the speed.
 //!
 //! # Examples
 //!
@@ -90,16 +94,17 @@ pub use mesh::{Half, HalfEdgeId};
 
 /// The mesh type with its type parameters, for generic code.
 ///
-/// Programs use the two types of the crate root instead.
+/// Programs use the two type aliases in the crate root instead.
 pub mod generic {
     pub use crate::mesh::HalfEdgeMesh;
 }
 
-/// A half-edge mesh that cannot delete elements: a [`generic::HalfEdgeMesh`] without holes.
+/// A half-edge mesh whose elements cannot be deleted: a [`generic::HalfEdgeMesh`] with its default
+/// parameters.
 pub type HalfEdgeMesh = generic::HalfEdgeMesh;
 
 /// A half-edge mesh that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): a
-/// [`generic::HalfEdgeMesh`] with holes.
+/// [`generic::HalfEdgeMesh`] with the parameter [`Editable`](sixfold_core::Editable).
 pub type EditableHalfEdgeMesh = generic::HalfEdgeMesh<sixfold_core::Editable>;
 
 /// The traits and types that all Sixfold structures share.

@@ -128,7 +128,7 @@ impl<P: Probe, E: Editing> MeshQuery for HalfEdgeMesh<E, P> {
         self.first.len()
     }
 
-    /// Reverses the walk around `v`, which is clockwise.
+    /// Collects the walk around `v`, which is clockwise, and reverses its order.
     fn one_ring(&self, v: VertexId) -> Option<impl Iterator<Item = VertexId>> {
         let mut ring: Vec<VertexId> = self.vertex_vertices(v).collect();
         ring.reverse();

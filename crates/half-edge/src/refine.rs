@@ -1,4 +1,5 @@
-//! Refinement: splits every face in the structure's own tables, in closed form.
+//! Refinement: splits every face in the structure's own tables. Every new row is computed by a
+//! formula.
 
 mod midpoints;
 mod sqrt3;
@@ -15,11 +16,13 @@ use sixfold_core::{
 use crate::HalfEdgeMesh;
 use crate::mesh::{Half, HalfEdgeId};
 
-/// Every half-edge row of the child has a formula from rows of the parent.
+/// Every half-edge row of the refined mesh (the child) is computed by a formula from rows of this
+/// mesh (the parent).
 ///
 /// A half-edge with a face stands for the corner where the half-edge starts. `#h` is the number of
-/// the corner of `h`, in the order of the half-edges. On a closed mesh, `#h` is `h`. On an open
-/// mesh, [`Ranks`] counts the corners. Boundary half-edges have no corner, but have children.
+/// the corner of `h`; corners are numbered in the order of the half-edges. On a closed mesh, `#h`
+/// equals `h`. On an open mesh, [`Ranks`] computes `#h`, because boundary half-edges have no
+/// corner. A boundary half-edge of the parent is split into half-edges of the child, too.
 ///
 /// # Complexity
 ///
@@ -32,7 +35,8 @@ impl Refine for HalfEdgeMesh {
         Split::Sqrt3 { trisect: false },
     ];
 
-    /// The numbers of the corners. The number of an edge is its row.
+    /// The numbers of the corners. The number of an edge needs no table, because the number is the
+    /// row of the edge.
     type EdgeNumbers = Ranks;
 
     fn empty() -> Self {

@@ -61,7 +61,7 @@ fn check_holes<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError>
     }
     for (f, &first) in mesh.first_rows().iter().enumerate() {
         if (first == NO_HALF) != mesh.face_holes.has(f) {
-            return fails("I9", format!("deletion marks of f{f} disagree"));
+            return fails("I9", format!("the deletion marks of f{f} disagree"));
         }
     }
     Ok(())
@@ -86,7 +86,7 @@ fn check_handles<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantErro
     let leaving = mesh.leaving_rows().iter().filter_map(|slot| slot.get());
     let along = mesh.faces().map(|f| mesh.half_along(f));
     match leaving.chain(along).find(|&h| !is_half(h)) {
-        Some(h) => fails("I5", format!("{h} is referred to, but missing")),
+        Some(h) => fails("I5", format!("a row refers to {h}, which does not exist")),
         None => Ok(()),
     }
 }
@@ -103,7 +103,7 @@ fn check_permutation<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), Invariant
     for h in halves(mesh) {
         let next = mesh.next(h);
         if std::mem::replace(&mut reached[next.index()], true) {
-            return fails("I2", format!("two half-edges have the next {next}"));
+            return fails("I2", format!("two half-edges have the same next {next}"));
         }
     }
     Ok(())

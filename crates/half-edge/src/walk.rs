@@ -1,4 +1,4 @@
-//! The walk from side to side: a side is a half-edge with a face.
+//! Steps from side to side: a side is a half-edge that has a face.
 
 use sixfold_core::{
     EdgeId, Editing, FaceId, HandleMap, IteratorExt, OrientedWalk, Probe, SideMap, Slot, VertexId,
@@ -8,12 +8,12 @@ use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
 /// A side is a half-edge with a face on its left.
 ///
-/// `prev_side` and `ccw_side` take O(degree), because `prev` is not stored. Every other method is
-/// O(1) and reads one or two half-edges.
+/// A step with `prev_side` or `ccw_side` takes O(degree), because `prev` is not stored. Every other
+/// step takes O(1).
 ///
 /// No method returns a half-edge on a boundary loop, because such a half-edge is not a side. At a
-/// boundary, `twin_side` returns `None`, but [`twin`](HalfEdgeMesh::twin) returns the half-edge on
-/// the boundary loop.
+/// boundary edge, `twin_side` returns `None`, but [`twin`](HalfEdgeMesh::twin) returns the
+/// half-edge on the boundary loop.
 impl<P: Probe, E: Editing> OrientedWalk for HalfEdgeMesh<E, P> {
     type Side = HalfEdgeId;
 
@@ -28,7 +28,8 @@ impl<P: Probe, E: Editing> OrientedWalk for HalfEdgeMesh<E, P> {
         halves.filter_map(|(h, half)| half.face.get().map(|_| h))
     }
 
-    /// Yields the sides clockwise. At a boundary vertex, starts at the boundary.
+    /// Yields the sides that start at `v`, clockwise. At a boundary vertex, the first side belongs
+    /// to a face at the boundary.
     #[inline]
     fn outgoing_sides(&self, v: VertexId) -> impl Iterator<Item = HalfEdgeId> {
         // Each face at v has one half-edge that arrives at v; the next half-edge leaves v.

@@ -31,7 +31,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         compact.into()
     }
 
-    /// O(1).
+    /// Takes O(1) time.
     fn set_position_logged(
         &mut self,
         v: VertexId,
@@ -43,7 +43,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         Ok(v)
     }
 
-    /// O(1).
+    /// Takes O(1) time.
     fn add_vertex_logged(
         &mut self,
         at: Point,
@@ -55,7 +55,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         Ok(v)
     }
 
-    /// O(degree); one scan if the log records events.
+    /// Takes O(degree) time, and one scan if the log records edits.
     fn add_face_logged(
         &mut self,
         corners: &[VertexId],
@@ -65,7 +65,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         self.faces.add_face(corners, log)
     }
 
-    /// O(degree); one scan if the log records events.
+    /// Takes O(degree) time, and one scan if the log records edits.
     fn remove_face_logged(
         &mut self,
         f: FaceId,
@@ -74,7 +74,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         self.faces.remove_face(f, log)
     }
 
-    /// One scan; two if the log records events.
+    /// Takes one scan, or two scans if the log records edits.
     fn remove_vertex_logged(
         &mut self,
         v: VertexId,
@@ -87,7 +87,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         Ok(())
     }
 
-    /// Reads all corners; uses temporary memory of one byte per vertex.
+    /// Reads all corners, with temporary memory of one byte per vertex.
     fn remove_isolated_vertices_logged(&mut self, log: &mut impl EditLog<Self>) -> usize {
         let mut used = vec![false; self.positions.len()];
         let corners = &self.faces.corners;
@@ -101,7 +101,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
             .insert_unused(used.len(), |v| !used[v], |v| log.removed_vertex(v))
     }
 
-    /// One scan.
+    /// Takes one scan.
     fn split_edge_logged(
         &mut self,
         e: Pair<VertexId>,
@@ -114,7 +114,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         Ok(m)
     }
 
-    /// One scan.
+    /// Takes one scan.
     fn bisect_edge_logged(
         &mut self,
         e: Pair<VertexId>,
@@ -127,7 +127,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         Ok(m)
     }
 
-    /// O(degree).
+    /// Takes O(degree) time.
     fn poke_face_logged(
         &mut self,
         f: FaceId,
@@ -140,7 +140,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         Ok(m)
     }
 
-    /// O(degree); one scan if the log records events.
+    /// Takes O(degree) time, and one scan if the log records edits.
     fn split_face_logged(
         &mut self,
         f: FaceId,
@@ -150,7 +150,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         self.faces.split_face(f, ends, log)
     }
 
-    /// One scan.
+    /// Takes one scan.
     fn dissolve_edge_logged(
         &mut self,
         e: Pair<VertexId>,
@@ -159,7 +159,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         self.faces.dissolve_edge(e, log)
     }
 
-    /// Two scans.
+    /// Takes two scans.
     fn flip_edge_logged(
         &mut self,
         e: Pair<VertexId>,
@@ -168,7 +168,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         self.faces.flip_edge(e, log)
     }
 
-    /// One scan; two if a third corner may have no other face.
+    /// Takes one scan, or two scans if the removed triangles may be the last faces of a vertex.
     fn collapse_edge_logged(
         &mut self,
         e: Pair<VertexId>,
@@ -184,7 +184,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         Ok(keep)
     }
 
-    /// One scan.
+    /// Takes one scan.
     fn split_vertex_logged(
         &mut self,
         v: VertexId,

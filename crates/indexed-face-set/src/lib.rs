@@ -1,31 +1,34 @@
 //! Indexed face set: shared vertices, a vertex list for each face, and no other tables.
 //!
-//! Files and renderers use this form. Use it to read faces in order, or to keep a mesh in memory
-//! without queries. It is the smallest structure with shared vertices. It holds every polygon mesh.
-//! FV, FE and EV take O(1) per item. Every query of a neighbourhood scans all corners, because no
-//! table stores neighbours. Start at [`generic::IndexedFaceSet`]; its three invariants define the
-//! tables.
+//! Files and renderers use the form of an indexed face set. Use an indexed face set to read faces
+//! in order, or to keep a mesh in memory without queries. The indexed face set is the smallest
+//! structure with shared vertices, and holds every polygon mesh. A query has two letters, for
+//! vertex (V), edge (E) or face (F): FV lists the vertices of a face. The queries FV, FE and EV
+//! take O(1) per item. Every query of a neighbourhood scans all corners, because no table stores
+//! neighbours. [`generic::IndexedFaceSet`] documents the tables and their three invariants.
 //!
-//! Edges are not stored; an edge is the [pair](sixfold_core::Pair) of its ends.
+//! Edges are not stored; the handle of an edge is the [pair](sixfold_core::Pair) of its ends.
 //!
 //! # What limits the speed of a scan
 //!
 //! A scan reads 4 bytes per corner, once and in order. A scan compares many corners at a time with
-//! the given vertex, without a branch. In cache, the comparisons are the limit (0.08 ns per corner
-//! on 82,000 triangles, 50 GB/s). In larger meshes, the memory bandwidth is the limit (0.16 ns per
-//! corner on 1.3 million triangles, 0.6 ms per query). A scan of a polygon soup reads three times
-//! as many bytes and compares three times as many words.
+//! the given vertex, without a branch. If the table of corners fits in the cache, a scan takes 0.08
+//! ns per corner (82,000 triangles, 50 GB/s), and the comparisons limit its speed. In larger
+//! meshes, a scan takes 0.16 ns per corner (1.3 million triangles, 0.6 ms per query), and the
+//! memory bandwidth limits its speed. A scan of a polygon soup reads three times as many bytes and
+//! compares three times as many words.
 //!
-//! The scattered writes of its counting sort limit `edges`: 3.4 ns per corner in cache, 13 ns per
-//! corner in larger meshes.
+//! The method `edges` sorts the sides by vertex. The writes of this sort go to scattered addresses
+//! and limit the speed of `edges`: 3.4 ns per corner in cache, 13 ns per corner in larger meshes.
 //!
 //! # Editing
 //!
-//! All edits are supported. Edits of one face need no scan. Moving or adding a vertex needs no
-//! scan. Every other edit begins with a scan; an edge flip needs two scans. Use the structure to
-//! edit a few places, or to add and remove faces, which takes O(1) per corner. For many edits of
-//! edges, use a structure that stores neighbours. [`ScannedFaces`](sixfold_core::ScannedFaces)
-//! implements the scan and the face edits of this structure and of the polygon soup.
+//! All edits are supported. Edits of one face need no scan. Moving a vertex and adding a vertex
+//! need no scan either. Every other edit begins with a scan, and an edge flip needs two scans. Use
+//! the structure to edit a few elements, or to add and remove faces, which takes O(1) per corner.
+//! For many edits of edges, use a structure that stores neighbours.
+//! [`ScannedFaces`](sixfold_core::ScannedFaces) implements the scan and the face edits of the
+//! indexed face set and of the polygon soup.
 //!
 //! # Examples
 //!
@@ -51,22 +54,24 @@ mod validate;
 
 /// The mesh type with its type parameters, for generic code.
 ///
-/// Programs use the two types of the crate root instead.
+/// Most programs use the types [`IndexedFaceSet`](crate::IndexedFaceSet) and
+/// [`EditableIndexedFaceSet`](crate::EditableIndexedFaceSet) instead.
 pub mod generic {
     pub use crate::mesh::IndexedFaceSet;
 }
 
-/// An indexed face set that cannot delete elements: a [`generic::IndexedFaceSet`] without holes.
+/// An indexed face set that cannot delete elements: a [`generic::IndexedFaceSet`] without deleted
+/// rows.
 pub type IndexedFaceSet = generic::IndexedFaceSet;
 
 /// An indexed face set that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): a
-/// [`generic::IndexedFaceSet`] with holes.
+/// [`generic::IndexedFaceSet`] that can contain deleted rows.
 pub type EditableIndexedFaceSet = generic::IndexedFaceSet<sixfold_core::Editable>;
 
 /// The traits and types that all Sixfold structures share.
 pub use sixfold_core;
 
-/// Imports for a program: the types of this structure, and the traits of its queries and edits.
+/// Imports for a program: the types of this structure, and the traits of mesh queries and edits.
 ///
 /// ```
 /// use sixfold_indexed_face_set::prelude::*;

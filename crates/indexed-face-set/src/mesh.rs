@@ -12,25 +12,26 @@ use sixfold_core::{
 ///    │ f0  /  │     positions  a  b  c  d …             by vertex
 ///    │   /    │     corners    a  b  c │ a  d  b │ …    by corner
 ///    │ /  f1  │                └─ f0 ─┘└─ f1 ─┘
-///    a ────── d     that f0 and f1 share the edge a–b is not stored: only a scan finds it
+///    a ────── d     the link between f0 and f1 is not stored: only a scan finds it
 /// ```
 ///
 /// # Invariants
 ///
-/// - I1  Face `f` has the corners `spans.range(f)`, at least three. The ranges are consecutive and
-///   cover the whole table. After an edit has changed a degree, unused corners can be between the
-///   ranges.
+/// - I1  Face `f` has the corners `spans.range(f)`, which are at least three. The ranges are
+///   consecutive and cover the whole table. After an edit has changed the degree of a face, unused
+///   corners can be between the ranges.
 /// - I2  The vertices at the corners of a face exist and are distinct.
-/// - I3  Holes are rows of vertices and of faces. Exactly two kinds of corners are blank: the
-///   corners of deleted faces, and the unused corners between faces. A blank corner has no vertex.
-///   A deleted vertex keeps its last position, which is not used.
+/// - I3  The hole tables list the rows of deleted vertices and of deleted faces. Exactly two kinds
+///   of corners are blank: the corners of deleted faces, and the unused corners between faces. A
+///   blank corner has no vertex. A deleted vertex keeps its last position, which is not used.
+///
 /// # Memory
 ///
-/// A large closed triangle mesh uses 9 words per vertex: 3 for positions and 6 for corners. With
-/// mixed degrees, the mesh uses one more word per face. After an edit that changes a degree, the
-/// mesh uses two words per face and one word per corner instead. After a deletion, the mesh uses
-/// one more bit per row. [`compact`](sixfold_core::MeshEdit::compact) removes the additions of
-/// edits and deletions.
+/// A large closed triangle mesh uses 9 words of 4 bytes per vertex: 3 for positions and 6 for
+/// corners. If the faces have different degrees, the mesh uses one more word per face. After an
+/// edit that changes the degree of a face, the mesh instead uses two more words per face and one
+/// more word per corner. After a deletion, the mesh uses one more bit per row.
+/// [`compact`](sixfold_core::MeshEdit::compact) frees the additional memory of edits and deletions.
 ///
 /// # Complexity
 ///
@@ -39,12 +40,13 @@ use sixfold_core::{
 /// | FV, FE | the corners of the face | O(1) per item |
 /// | EV | the handle itself | O(1), reads no table |
 /// | VF, VV, VE, EF, EE | all corners, in one scan | O(corners) expected |
-/// | FF | all corners, in one scan | O(corners + degree log degree) expected; above degree 8 also O(vertices) |
-/// | `vertices`, `faces` | the holes, if there are any | O(1) per item |
+/// | FF | all corners, in one scan | O(corners + degree log degree) expected; also O(vertices) if the degree is above 8 |
+/// | `vertices`, `faces` | the deleted rows, if there are any | O(1) per item |
 /// | `edges`, `edge_count` | all corners | O(corners + vertices), without hashing |
 ///
-/// Each corner that a scan finds costs O(1), or O(log faces) with mixed degrees, to find its face.
-/// After an edit of degrees, a table stores the face of each corner, and the cost is O(1) again.
+/// Finding the face of a corner costs O(1), or O(log faces) if the faces have different degrees. A
+/// scan does this for each corner at the given vertex. After an edit that changes a degree, a table
+/// stores the face of each corner, and the cost is O(1) again.
 ///
 /// # Edits
 ///
@@ -52,20 +54,21 @@ use sixfold_core::{
 /// |---|---|---|
 /// | `set_position` | the vertex | its position |
 /// | `add_vertex` | nothing | a new position |
-/// | `add_face` | its corners | new corners, a new span |
+/// | `add_face` | the given corners | new corners, a new span |
 /// | `remove_face`, `split_face`, `poke_face` | the corners of the face | the corners of the face and of new faces |
 /// | `split_edge`, `dissolve_edge` | all corners, in one scan | the faces at the edge, which may move to the end of the table |
-/// | `bisect_edge` | all corners, in one scan | a corner of each face, and a new face for each |
-/// | `flip_edge` | all corners, in two scans | one corner of each face |
+/// | `bisect_edge` | all corners, in one scan | a corner of each face at the edge, and a new face for each of these faces |
+/// | `flip_edge` | all corners, in two scans | one corner of each of the two faces |
 /// | `collapse_edge` | all corners, in one scan, rarely two | the corners at the removed vertex |
 /// | `split_vertex` | all corners, in one scan | the corners that the new vertex gets, and two new faces |
-/// | `remove_vertex` | all corners, in one scan | the corners of its faces |
+/// | `remove_vertex` | all corners, in one scan | the corners of the faces at the vertex |
 /// | `remove_isolated_vertices` | all corners | one bit per removed vertex |
 /// | `compact` | everything | everything |
 ///
 /// If a log records the edits, `add_face`, `remove_face`, `remove_vertex` and `split_face` need one
-/// more scan, to find the sides that remain. The structure holds every polygon mesh. So an edit is
-/// refused only if the edit breaks its own rule or a handle is not valid.
+/// more scan, to find the edges that other faces have. The structure holds every polygon mesh. So
+/// an edit is refused only if the edit breaks its own rule, if a handle is not valid, or if the
+/// tables are full.
 #[derive(Debug)]
 pub struct IndexedFaceSet<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,
@@ -88,22 +91,22 @@ impl<P: Probe> From<IndexedFaceSet<Compact, P>> for IndexedFaceSet<Editable, P> 
 }
 
 impl<P: Probe, E: Editing> IndexedFaceSet<E, P> {
-    /// Returns the position of each vertex, as stored, including deleted vertices.
+    /// Returns the position of each vertex, including deleted vertices.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
     }
 
-    /// Returns the vertex of each corner, face by face, as stored, including blank corners.
+    /// Returns the vertex of each corner, face by face, including blank corners.
     pub fn corners(&self) -> &[VertexId] {
         self.faces.corners.rows()
     }
 
-    /// Returns the ranges of corners of the faces, including deleted faces.
+    /// Returns the range of corners of each face, including deleted faces.
     pub fn spans(&self) -> &FaceSpans<P, E> {
         &self.faces.spans
     }
 
-    /// Returns the vertices of `f`, in order.
+    /// Returns the vertices of `f`, in the order of its corners.
     ///
     /// # Panics
     ///

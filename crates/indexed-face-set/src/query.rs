@@ -18,7 +18,7 @@ impl<P: Probe, E: Editing> MeshQuery for IndexedFaceSet<E, P> {
         self.vertex_holes.handles(self.positions.len())
     }
 
-    /// Lists the edges in the order of their lower ends.
+    /// Lists the edges, sorted by their lower ends.
     fn edges(&self) -> impl Iterator<Item = Pair<VertexId>> {
         let faces = &self.faces;
         let vertices = self.positions.len();

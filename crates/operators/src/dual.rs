@@ -21,18 +21,18 @@ use crate::error::DualError;
 /// ```
 ///
 /// The vertices of the dual have the order of `faces()`, and the faces of the dual have the order
-/// of `vertices()`. In the dual of the dual, a face may start at another corner. If two faces share
-/// several edges, the dual has several edges with the same two ends. Structures for manifolds then
-/// reject the dual.
+/// of `vertices()`. The dual of the dual has the faces of the mesh, but a face may start at another
+/// corner. If two faces share several edges, the dual has several edges with the same two ends.
+/// Structures for manifolds then reject the dual.
 ///
 /// # Errors
 ///
-/// Returns a [`DualError`] with a boundary edge, an isolated vertex, a vertex of valence below 3,
-/// or the reason why the mesh is not an oriented manifold.
+/// Returns a [`DualError`] if the mesh has a boundary edge, an isolated vertex or a vertex of
+/// valence below 3, or if the mesh is not an oriented manifold.
 ///
 /// # Complexity
 ///
-/// O(corners).
+/// O(corners) time.
 ///
 /// # Examples
 ///

@@ -3,14 +3,14 @@
 use glam::DVec3;
 use sixfold_core::{FaceMap, MeshQuery, Point, VertexMap};
 
-/// The weight of each face around a vertex in the vertex normal.
+/// The weight of a face in the normal of each of its vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NormalWeights {
-    /// The area of the face. Needs no extra work.
+    /// The area of the face. This weight needs no extra computation.
     #[default]
     Area,
-    /// The angle of the face at the vertex (Thürmer & Wüthrich 1998). The result does not depend on
-    /// how the surface is cut into faces.
+    /// The angle of the face at the vertex (Thürmer & Wüthrich 1998). With this weight, the normal
+    /// does not depend on how the surface is cut into faces.
     Angle,
 }
 
@@ -24,8 +24,8 @@ pub enum NormalWeights {
 ///      └── p0             of any shape; for bent polygons n is a mean.
 /// ```
 ///
-/// A face without area has the normal zero. Method by Newell, in Sutherland, Sproull & Schumacker
-/// (1974).
+/// A face without area has the normal zero. The method is Newell's method, described by Sutherland,
+/// Sproull & Schumacker (1974).
 pub fn face_normals<M: MeshQuery>(mesh: &M) -> FaceMap<M, Point> {
     let mut normals = mesh.face_map(Point::ZERO);
     mesh.faces().for_each(|f| {
@@ -45,8 +45,8 @@ pub fn area_vector(corners: impl IntoIterator<Item = DVec3>) -> DVec3 {
     newell.normal / 2.0
 }
 
-/// Returns the unit normal of every vertex: the mean of its face normals, weighted by `weights`;
-/// O(corners).
+/// Returns the unit normal of every vertex, which is the mean of the normals of its faces, weighted
+/// by `weights`. Takes O(corners) time.
 ///
 /// ```text
 ///           n                 area    n ∝ Σ A(f) n(f)
@@ -57,9 +57,9 @@ pub fn area_vector(corners: impl IntoIterator<Item = DVec3>) -> DVec3 {
 ///       f0  v
 /// ```
 ///
-/// The normal is zero if the vertex has no faces or if the face normals cancel. One pass over the
-/// faces adds the share of each face to its corners, so no structure searches for the faces of a
-/// vertex.
+/// The normal is zero if the vertex has no faces or if the weighted face normals add up to zero.
+/// One pass over the faces adds the weighted normal of each face to its vertices, so no structure
+/// searches for the faces of a vertex.
 pub fn vertex_normals<M: MeshQuery>(mesh: &M, weights: NormalWeights) -> VertexMap<M, Point> {
     let mut sums = mesh.vertex_map(DVec3::ZERO);
     let mut corners = Vec::new();

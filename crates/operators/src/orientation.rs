@@ -5,14 +5,15 @@ use sixfold_core::{FaceId, FaceList, Incidence, Partition, PolygonMesh, Slot, Ve
 
 use crate::error::OrientationError;
 
-/// The rule that chooses one of the two orientations of each component.
+/// The rule that chooses one of the two possible orientations of each component.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Facing {
-    /// The orientation of the majority of faces. In a tie, the orientation of the first face.
+    /// The orientation that most faces of the component have. In a tie, the first face keeps its
+    /// orientation.
     #[default]
     Majority,
-    /// Outward if the component is closed and encloses a volume; otherwise as with
-    /// [`Majority`](Self::Majority).
+    /// Outward if the component is closed and encloses a volume. For other components, the rule
+    /// [`Majority`](Self::Majority) applies.
     Outward,
 }
 
@@ -27,13 +28,13 @@ pub enum Components {
     Inconsistent,
 }
 
-/// A mesh with consistent orientation, and the reversed faces.
+/// A mesh with consistent orientation, and the list of the reversed faces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Oriented {
-    /// The mesh. The vertices, the order of the faces and the first corner of each face are
-    /// unchanged.
+    /// The mesh after the faces were reversed. The vertices, the order of the faces and the first
+    /// corner of each face are unchanged.
     pub polygons: PolygonMesh,
-    /// The reversed faces, ascending.
+    /// The reversed faces, in ascending order.
     pub reversed: Vec<FaceId>,
 }
 
@@ -61,7 +62,8 @@ pub struct NotOrientable {
     pub ends: [VertexId; 2],
 }
 
-/// Reverses faces until no two faces run along an edge in the same direction.
+/// Reverses faces until the faces of every edge with exactly two faces run along the edge in
+/// opposite directions.
 ///
 /// ```text
 ///     ──→──              ──→──
@@ -72,17 +74,18 @@ pub struct NotOrientable {
 ///                        ──←──
 /// ```
 ///
-/// Each component is oriented independently. With [`Facing::Outward`], the wall of a cavity inside
-/// a solid therefore faces away from the cavity.
+/// Each component is oriented independently of the other components. With [`Facing::Outward`], the
+/// wall of a cavity inside a solid therefore faces away from the cavity.
 ///
 /// # Errors
 ///
-/// Returns [`OrientationError::NotOrientable`] if the faces of a component cannot agree, with an
-/// edge of the component. [`oriented_components`] leaves such components as they are.
+/// Returns [`OrientationError::NotOrientable`] with an edge if the faces of a component cannot have
+/// a consistent orientation. [`oriented_components`] leaves such components
+/// unchanged.
 ///
 /// # Complexity
 ///
-/// O(n log n) for n corners.
+/// O(n log n) time for n corners.
 pub fn oriented(polygons: &PolygonMesh, facing: Facing) -> Result<Oriented, OrientationError> {
     let OrientedComponents {
         polygons,
@@ -123,8 +126,8 @@ pub struct Reversal {
     pub not_orientable: Vec<NotOrientable>,
 }
 
-/// Returns the faces that [`oriented_components`] reverses, without building the mesh. `incidence` has
-/// the sides of all faces of `polygons`. O(corners).
+/// Returns the faces that [`oriented_components`] reverses, without building the mesh. `incidence`
+/// has the sides of all faces of `polygons`. Takes O(corners) time.
 ///
 /// # Panics
 ///
@@ -254,8 +257,8 @@ impl Agreement {
         self.components[f.index()] as usize
     }
 
-    /// Returns for each component whether it faces inward after its faces in `reverse` are reversed.
-    /// `None` if the component is open or encloses no volume.
+    /// Returns for each component whether it faces inward after its faces in `reverse` are
+    /// reversed; `None` if the component is open or encloses no volume.
     ///
     /// The sum of det(a, b, c) / 6 over all triangles is the signed volume. The coordinates are
     /// relative to a vertex of the component.
@@ -346,7 +349,8 @@ fn orient_component(
     conflict
 }
 
-/// Builds the mesh with these faces reversed, which are ascending. Each face keeps its first corner.
+/// Builds the mesh with these faces reversed. The faces are ascending. Each face keeps its first
+/// corner.
 fn reverse_faces(polygons: &PolygonMesh, reversed: &[FaceId]) -> PolygonMesh {
     let faces = polygons.faces();
     let mut list = FaceList::with_capacity(faces.corners().len());

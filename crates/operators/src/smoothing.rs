@@ -1,4 +1,4 @@
-//! Laplacian smoothing, by uniform and by cotangent weights.
+//! Laplacian smoothing, with uniform or cotangent weights.
 
 use glam::DVec3;
 use sixfold_core::{MeshQuery, Point, VertexMap};
@@ -9,7 +9,8 @@ use crate::laplacian::{Laplacian, WeightedSum};
 /// The weight of each neighbour of a vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Weights {
-    /// Equal weights (Field 1988), which also even out the shapes of faces.
+    /// Equal weights for all neighbours (Field 1988). These weights also even out the shapes of
+    /// faces.
     #[default]
     Uniform,
     /// Weights from the two angles opposite to the edge (Pinkall & Polthier 1993). These weights
@@ -23,24 +24,26 @@ pub enum Boundary {
     /// Boundary vertices do not move.
     #[default]
     Fixed,
-    /// A boundary vertex moves towards the mean of its two neighbours on the boundary. A vertex
-    /// that does not have exactly two boundary edges does not move.
+    /// A boundary vertex with exactly two boundary edges moves towards the mean of its two
+    /// neighbours on the boundary. A vertex with another number of boundary edges does not move.
     Curve,
 }
 
 /// The options of [`smoothed`].
 ///
-/// The default is ten iterations with step 0.5 and uniform weights, with the boundary fixed.
+/// The default is ten iterations with step 0.5, uniform weights and a fixed boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Smoothing {
     /// The weight of each neighbour.
     pub weights: Weights,
-    /// The treatment of the boundary.
+    /// The treatment of vertices on boundary edges.
     pub boundary: Boundary,
-    /// λ, from 0 to 1: the part of the way to the mean of its neighbours that a vertex moves.
+    /// The step λ, from 0 to 1. A vertex moves by this fraction of the way to the mean of its
+    /// neighbours.
     pub step: f64,
-    /// μ < −λ: a step in the opposite direction after each step, which keeps the volume (Taubin
-    /// 1995). Taubin's values are λ = 0.33 and μ = −0.34.
+    /// The step back μ, with μ < −λ. After each step, a vertex moves by the fraction −μ in the
+    /// opposite direction, which keeps the volume of the mesh (Taubin 1995). Taubin's values are λ
+    /// = 0.33 and μ = −0.34.
     pub step_back: Option<f64>,
     /// The number of iterations.
     pub iterations: usize,
@@ -76,7 +79,7 @@ impl Smoothing {
     }
 }
 
-/// Returns the positions of all vertices after moving them towards their neighbours.
+/// Returns the positions of all vertices after the vertices are moved towards their neighbours.
 ///
 /// ```text
 ///        p              p ← p + λ L(p)     L(p): from p to the mean of its neighbours,
@@ -85,25 +88,26 @@ impl Smoothing {
 ///     a ─── b           a step back        p ← p + μ L(p)
 /// ```
 ///
-/// Isolated vertices do not move. With cotangent weights, vertices without a triangle that has
-/// reliable angles do not move. Cotangents are computed again at every step. With obtuse triangles,
-/// a weight can be negative, and steps above 0.5 can then overshoot.
+/// Isolated vertices do not move. With cotangent weights, a vertex does not move if all its
+/// triangles are too flat to have reliable angles. The cotangents are computed again at every step.
+/// A weight can be negative if triangles are obtuse, and a step above 0.5 can then move a vertex
+/// too far.
 ///
 /// The mesh and its handles do not change. If a structure identifies a vertex by its coordinates, a
 /// later call of [`set_positions`] changes the handles, and vertices with the same new position
-/// become one vertex. That call returns an error if two corners of one face have the same new
-/// position.
+/// become one vertex. [`set_positions`] returns an error if two corners of one face have the same
+/// new position.
 ///
 /// # Errors
 ///
-/// Returns [`SmoothingError::Step`] or [`SmoothingError::StepBack`] for steps that would not
-/// smooth. With cotangent weights, returns [`SmoothingError::NotATriangle`] for the first face that
-/// is not a triangle.
+/// Returns [`SmoothingError::Step`] or [`SmoothingError::StepBack`] if the steps would not make the
+/// mesh smoother. With cotangent weights, returns [`SmoothingError::NotATriangle`] for the first
+/// face that is not a triangle.
 ///
 /// # Complexity
 ///
-/// O(corners) to read the mesh. Each iteration takes O(edges) with uniform weights and O(faces)
-/// with cotangent weights.
+/// Reading the mesh takes O(corners) time. Each iteration takes O(vertices + edges) time with
+/// uniform weights and O(vertices + faces) time with cotangent weights.
 ///
 /// # Examples
 ///

@@ -4,7 +4,7 @@ use sixfold_core::{MeshQuery, Point, VertexId, VertexMap, row};
 
 use crate::error::SphereError;
 
-/// Returns all positions, moved along rays from `centre` to the sphere of `radius`; O(vertices).
+/// Returns all positions, moved along rays from `centre` to the sphere with `radius`; O(vertices).
 ///
 /// ```text
 ///         ╭───●───╮          p' = c + r (p − c) / |p − c|
@@ -18,13 +18,13 @@ use crate::error::SphereError;
 ///
 /// Returns [`SphereError::InvalidSphere`] if the radius is not above 0, or if the radius or the
 /// centre is not finite. Returns [`SphereError::NoDirection`] for the first vertex that is at the
-/// centre or not finite.
+/// centre or that has a coordinate that is not finite.
 ///
 /// # Examples
 ///
 /// This example divides an icosahedron with frequency 6: every edge into 6 parts, every triangle
-/// into 36. The points are then projected to the sphere, as for a geodesic dome. The key of a point
-/// is its corners and weights, so faces share the points on their common edges.
+/// into 36 triangles. The points are then projected to the sphere, as for a geodesic dome. A map
+/// finds the points that two faces share: its key is the corners of the triangle and their weights.
 ///
 /// ```
 /// use std::collections::BTreeMap;

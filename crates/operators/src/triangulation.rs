@@ -5,17 +5,18 @@ use sixfold_core::{FaceList, HandleMap, HashHandleMap, Pair, PolygonError, Polyg
 
 use crate::ear_clipping::EarClipping;
 
-/// The method that cuts polygons.
+/// The method that cuts a polygon into triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Triangulation {
-    /// A fan from the first corner: fast, but correct for convex faces only.
+    /// A fan of triangles from the first corner. This method is fast, but correct only for convex
+    /// faces.
     Fan,
-    /// Ear clipping (Meisters 1975): correct for every simple polygon.
+    /// Ear clipping (Meisters 1975). This method is correct for every simple polygon.
     #[default]
     EarClipping,
 }
 
-/// Returns the mesh with every polygon of `n` corners replaced by `n − 2` triangles.
+/// Returns the mesh with each polygon of `n` corners replaced by `n − 2` triangles.
 ///
 /// ```text
 ///    d ─────── c           d ─────── c
@@ -25,26 +26,30 @@ pub enum Triangulation {
 ///    a ─────── b           a ─────── b
 /// ```
 ///
-/// No vertex is added. Triangles have the orientation of their polygon. Triangular faces are
-/// unchanged. [`EarClipping`](Triangulation::EarClipping) also has these properties:
+/// The result has the same vertices. Triangles have the orientation of their polygon. A face with
+/// three corners is unchanged. [`EarClipping`](Triangulation::EarClipping) also has these
+/// properties:
 ///
-/// - The triangles of a simple planar polygon do not overlap and are not flat, even if corners are
-///   collinear. A bent polygon is projected along the axis nearest to its Newell normal.
-/// - A polygon that is not simple also gets `n − 2` triangles. These triangles may overlap or be
-///   flat.
-/// - The ear with the best shape is cut first.
+/// - The triangles of a simple planar polygon do not overlap and are not flat, even if some corners
+///   of the polygon are collinear. A polygon that is not planar is projected along the axis nearest
+///   to its Newell normal.
+/// - A polygon that is not simple also gets `n − 2` triangles, but these triangles may overlap or
+///   be flat.
+/// - An ear is a triangle at a convex corner whose third side (the diagonal) runs inside the
+///   polygon. The ear with the best shape is cut first.
 /// - Ear clipping avoids diagonals that are already edges of the mesh, because such an edge would
 ///   get three or more faces. If every ear of a polygon has such a diagonal, one of these ears is
 ///   cut. Structures for manifolds then reject the mesh and name the edge.
 ///
 /// # Errors
 ///
-/// Returns [`PolygonError::TooMany`] if the triangles have too many corners for an index.
+/// Returns [`PolygonError::TooMany`] if the triangles have more corners than 32-bit indices can
+/// number.
 ///
 /// # Complexity
 ///
-/// Fans: O(corners). Ear clipping: O(n·(r + log n)) for a face with `n` corners and `r` corners
-/// that are not convex; O(n²) in the worst case.
+/// A fan takes O(corners) time. Ear clipping takes O(n·(r + log n)) time for a face with `n`
+/// corners, of which `r` corners are not convex; the worst case is O(n²).
 ///
 /// # Examples
 ///

@@ -45,7 +45,7 @@ impl<E: Editing> Representation for PolygonSoup<E> {
         Ok(mesh)
     }
 
-    /// Numbers the vertices in the order of `vertices()`; O(corners) expected.
+    /// Numbers the vertices in the order of `vertices()`. Takes O(corners) expected time.
     fn to_polygons(&self) -> PolygonMesh {
         let mut names: FxHashMap<SoupVertex, VertexId> = FxHashMap::default();
         let mut positions = Vec::new();
@@ -73,7 +73,8 @@ impl<E: Editing> Representation for PolygonSoup<E> {
         f
     }
 
-    /// Moves every corner to the position of its vertex in the map; O(corners) expected.
+    /// Moves every corner to the position that the map has for its vertex. Takes O(corners)
+    /// expected time.
     fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError> {
         let corners = self.corners().iter();
         let moved = corners.map(|corner| {

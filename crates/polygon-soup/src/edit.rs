@@ -34,7 +34,7 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         compact.into()
     }
 
-    /// One scan. The vertex and its edges get new handles.
+    /// Takes one scan. The vertex and its edges get new handles.
     fn set_position_logged(
         &mut self,
         v: SoupVertex,
@@ -58,7 +58,8 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         })
     }
 
-    /// O(degree); one scan if the log records events. A corner may be at a new position.
+    /// Takes O(degree) time, and one scan if the log records edits. A corner may be at a new
+    /// position.
     fn add_face_logged(
         &mut self,
         corners: &[SoupVertex],
@@ -67,7 +68,7 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         self.faces.add_face(corners, log)
     }
 
-    /// O(degree); one scan if the log records events.
+    /// Takes O(degree) time, and one scan if the log records edits.
     fn remove_face_logged(
         &mut self,
         f: FaceId,
@@ -76,7 +77,7 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         self.faces.remove_face(f, log)
     }
 
-    /// One scan; two if the log records events.
+    /// Takes one scan, or two scans if the log records edits.
     fn remove_vertex_logged(
         &mut self,
         v: SoupVertex,
@@ -90,7 +91,7 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         0
     }
 
-    /// One scan.
+    /// Takes one scan.
     fn split_edge_logged(
         &mut self,
         e: Pair<SoupVertex>,
@@ -102,7 +103,7 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         Ok(m)
     }
 
-    /// One scan.
+    /// Takes one scan.
     fn bisect_edge_logged(
         &mut self,
         e: Pair<SoupVertex>,
@@ -114,7 +115,7 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         Ok(m)
     }
 
-    /// One scan, to check that the position is free.
+    /// Takes one scan, to check that the position is free.
     fn poke_face_logged(
         &mut self,
         f: FaceId,
@@ -126,7 +127,7 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         Ok(m)
     }
 
-    /// O(degree); one scan if the log records events.
+    /// Takes O(degree) time, and one scan if the log records edits.
     fn split_face_logged(
         &mut self,
         f: FaceId,
@@ -136,7 +137,7 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         self.faces.split_face(f, ends, log)
     }
 
-    /// One scan.
+    /// Takes one scan.
     fn dissolve_edge_logged(
         &mut self,
         e: Pair<SoupVertex>,
@@ -145,7 +146,7 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         self.faces.dissolve_edge(e, log)
     }
 
-    /// Two scans.
+    /// Takes two scans.
     fn flip_edge_logged(
         &mut self,
         e: Pair<SoupVertex>,
@@ -154,8 +155,8 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         self.faces.flip_edge(e, log)
     }
 
-    /// One scan; two if a third corner may have no other face. `to` may be the position of the
-    /// removed end.
+    /// Takes one scan, or two scans if the removed triangles may be the last faces of a vertex.
+    /// `to` may be the position of the removed end.
     fn collapse_edge_logged(
         &mut self,
         e: Pair<SoupVertex>,
@@ -168,7 +169,7 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         Ok(to)
     }
 
-    /// One scan.
+    /// Takes one scan.
     fn split_vertex_logged(
         &mut self,
         v: SoupVertex,

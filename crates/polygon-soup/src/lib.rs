@@ -1,18 +1,19 @@
-//! Polygon soup: every face stores the coordinates of its own corners, and faces share nothing.
+//! Polygon soup: every face stores the coordinates of its own corners, and faces share no data.
 //!
-//! STL files have this form, and a renderer can use it unchanged. Use it to transfer all faces at
-//! once. Every query of a neighbourhood scans all corners, because no table stores neighbours. FV,
-//! FE and EV take O(1) per item; the other six relations take O(corners). Start at
-//! [`generic::PolygonSoup`]; its four invariants define the tables.
+//! STL files have the form of a polygon soup, and a renderer can use this form unchanged. Use a
+//! polygon soup to transfer all faces at once. A query has two letters, for vertex (V), edge (E) or
+//! face (F): FV lists the vertices of a face. The queries FV, FE and EV take O(1) per item. The
+//! other six queries scan all corners, because no table stores neighbours. [`generic::PolygonSoup`]
+//! documents the table and its four invariants.
 //!
-//! A vertex *is* its coordinates here ([`SoupVertex`]). So vertices with the same coordinates are
-//! one vertex, and moving a vertex changes its handle. [`SoupVertex`] explains how to merge points
-//! that are nearly equal. The structure cannot hold a face with two corners at one point, or a
-//! vertex without faces.
+//! A vertex *is* its coordinates in a polygon soup ([`SoupVertex`]). So corners with the same
+//! coordinates are one vertex, and moving a vertex changes its handle. [`SoupVertex`] explains how
+//! to merge points that are nearly equal. A polygon soup cannot hold a face with two corners at one
+//! point, or a vertex without faces.
 //!
 //! Adding and removing faces takes O(1) per corner. Nearly every other edit begins with a scan of
 //! all corners. For many edits, use another structure. [`ScannedFaces`](sixfold_core::ScannedFaces)
-//! implements the scan and the edits, also for the indexed face set.
+//! implements the scan and the edits of the polygon soup and of the indexed face set.
 
 mod construct;
 mod edit;
@@ -25,22 +26,23 @@ pub use vertex::SoupVertex;
 
 /// The mesh type with its type parameters, for generic code.
 ///
-/// Programs use the two types of the crate root instead.
+/// Most programs use the types [`PolygonSoup`](crate::PolygonSoup) and
+/// [`EditablePolygonSoup`](crate::EditablePolygonSoup) instead.
 pub mod generic {
     pub use crate::mesh::PolygonSoup;
 }
 
-/// A polygon soup that cannot delete elements: a [`generic::PolygonSoup`] without holes.
+/// A polygon soup that cannot delete elements: a [`generic::PolygonSoup`] without deleted rows.
 pub type PolygonSoup = generic::PolygonSoup;
 
 /// A polygon soup that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): a
-/// [`generic::PolygonSoup`] with holes.
+/// [`generic::PolygonSoup`] that can contain deleted rows.
 pub type EditablePolygonSoup = generic::PolygonSoup<sixfold_core::Editable>;
 
 /// The traits and types that all Sixfold structures share.
 pub use sixfold_core;
 
-/// Imports for a program: the types of this structure, and the traits of its queries and edits.
+/// Imports for a program: the types of this structure, and the traits of mesh queries and edits.
 ///
 /// ```
 /// use sixfold_polygon_soup::prelude::*;

@@ -13,25 +13,25 @@ use crate::vertex::SoupVertex;
 ///     \  f0  /   / \        corners   a  b  c │ a  d  b │ …      by corner
 ///      \    /   /   \                 └─ f0 ─┘└─ f1 ─┘
 ///       \  /   / f1  \
-///        a    a ───── d     the edge a–b is in the table twice; that it is shared is not stored
+///        a    a ───── d     the table has the edge a–b twice, but no link between f0 and f1
 /// ```
 ///
-/// - I1  Face `f` has the corners `spans.range(f)`, at least three. The ranges are consecutive and
-///   cover the whole table. After an edit has changed a degree, unused corners can be between the
-///   ranges.
+/// - I1  Face `f` has the corners `spans.range(f)`, which are at least three. The ranges are
+///   consecutive and cover the whole table. After an edit has changed the degree of a face, unused
+///   corners can be between the ranges.
 /// - I2  No coordinate is −0; construction, [`set_positions`] and edits write 0 instead.
 /// - I3  The corners of one face are at different positions. [`set_positions`] returns an error if
 ///   two corners of a face would coincide. Every edit returns an error if the position of a new
 ///   vertex is already used.
-/// - I4  Holes are rows of faces. Exactly two kinds of corners are blank: the corners of deleted
-///   faces, and the unused corners between faces. A blank corner is a NaN that no [`SoupVertex`]
-///   has.
+/// - I4  The hole table lists the rows of deleted faces. Exactly two kinds of corners are blank:
+///   the corners of deleted faces, and the unused corners between faces. A blank corner contains a
+///   NaN that no [`SoupVertex`] contains.
 ///
-/// A large closed triangle mesh uses 18 words per vertex, three points per face. With mixed
-/// degrees, the mesh uses one more word per face. After an edit that changes a degree, the mesh
-/// uses two more words per face and one more per corner. After a deletion, the mesh uses one more
-/// bit per face. [`compact`](sixfold_core::MeshEdit::compact) removes the additions of edits and
-/// deletions.
+/// A large closed triangle mesh uses 18 words of 4 bytes per vertex: two faces of three points. If
+/// the faces have different degrees, the mesh uses one more word per face. After an edit that
+/// changes the degree of a face, the mesh instead uses two more words per face and one more word
+/// per corner. After a deletion, the mesh uses one more bit per face.
+/// [`compact`](sixfold_core::MeshEdit::compact) frees the additional memory of edits and deletions.
 ///
 /// # Complexity
 ///
@@ -44,9 +44,10 @@ use crate::vertex::SoupVertex;
 /// | `vertices`, `edges` | all corners | O(corners) expected, with a hash set |
 /// | `vertex_count`, `edge_count` | all corners | O(corners) expected, with a hash set |
 ///
-/// Each corner that a scan finds costs O(1), or O(log faces) with mixed degrees, to find its face.
-/// A scan reads 12 bytes per corner, once and in order. If the table fits the cache, the limit is
-/// the three comparisons per corner. In larger meshes, the limit is the memory bandwidth.
+/// Finding the face of a corner costs O(1), or O(log faces) if the faces have different degrees. A
+/// scan does this for each corner at the given vertex. A scan reads 12 bytes per corner, once and
+/// in order. If the table of corners fits in the cache, the three comparisons per corner limit the
+/// speed. In larger meshes, the memory bandwidth limits the speed.
 ///
 /// # Edits
 ///
@@ -54,22 +55,22 @@ use crate::vertex::SoupVertex;
 /// |---|---|---|
 /// | `set_position` | all corners, in one scan | the corners at the vertex, and its handle |
 /// | `add_vertex` | | not supported: a vertex is the position of a corner |
-/// | `add_face` | its corners | new corners, a new span |
+/// | `add_face` | the given corners | new corners, a new span |
 /// | `remove_face`, `split_face` | the corners of the face | the corners of the face and of the new face |
 /// | `poke_face` | all corners, in one scan | the corners of the face, and new faces |
 /// | `split_edge`, `dissolve_edge` | all corners, in one scan | the faces at the edge, which may move to the end of the table |
-/// | `bisect_edge` | all corners, in one scan | a corner of each face, and a new face for each |
-/// | `flip_edge` | all corners, in two scans | one corner of each face |
+/// | `bisect_edge` | all corners, in one scan | a corner of each face at the edge, and a new face for each of these faces |
+/// | `flip_edge` | all corners, in two scans | one corner of each of the two faces |
 /// | `collapse_edge` | all corners, in one scan, rarely two | the corners at the removed vertex, and the corners at the kept end if the kept end moves |
 /// | `split_vertex` | all corners, in one scan | the corners that the new vertex gets, and two new faces |
-/// | `remove_vertex` | all corners, in one scan | the corners of its faces |
+/// | `remove_vertex` | all corners, in one scan | the corners of the faces at the vertex |
 /// | `remove_isolated_vertices` | nothing | nothing: no vertex is isolated |
 /// | `compact` | everything | everything |
 ///
 /// The scan for an edge also checks that the position of a new vertex is free. If a log records the
 /// edits, `add_face`, `remove_face`, `remove_vertex` and `split_face` need one more scan, to find
-/// the vertices and sides that remain. An edit is refused if the edit breaks its own rule or if two
-/// vertices would coincide.
+/// the vertices and edges that other faces have. An edit is refused if the edit breaks its own
+/// rule, if two vertices would coincide, or if the tables are full.
 ///
 /// [`set_positions`]: sixfold_core::Representation::set_positions
 ///
@@ -103,12 +104,12 @@ impl<P: Probe> From<PolygonSoup<Compact, P>> for PolygonSoup<Editable, P> {
 }
 
 impl<P: Probe, E: Editing> PolygonSoup<E, P> {
-    /// Returns the position of each corner, face by face, as stored, including blank corners.
+    /// Returns the position of each corner, face by face, including blank corners.
     pub fn corners(&self) -> &[Point] {
         self.faces.corners.rows()
     }
 
-    /// Returns the ranges of corners of the faces, including deleted faces.
+    /// Returns the range of corners of each face, including deleted faces.
     pub fn spans(&self) -> &FaceSpans<P, E> {
         &self.faces.spans
     }

@@ -18,12 +18,12 @@ impl<P: Probe, E: Editing> MeshQuery for PolygonSoup<E, P> {
         ..Capabilities::ALL
     };
 
-    /// Lists the vertices in the order of their first corners in the faces.
+    /// Lists the vertices in the order in which the faces first contain them.
     fn vertices(&self) -> impl Iterator<Item = SoupVertex> {
         self.faces().flat_map(|f| self.face_vertices(f)).distinct()
     }
 
-    /// Lists the edges in the order of their first sides in the faces.
+    /// Lists the edges in the order in which the faces first contain them.
     fn edges(&self) -> impl Iterator<Item = Pair<SoupVertex>> {
         self.faces().flat_map(|f| self.face_edges(f)).distinct()
     }

@@ -7,21 +7,21 @@ use std::hash::{Hash, Hasher};
 use rustc_hash::FxHashSet;
 use sixfold_core::{Handle, HashHandleMap, Point, ScannedVertex};
 
-/// A vertex of a soup: the bits of its coordinates, with −0 as 0.
+/// A vertex of a polygon soup: the bits of its coordinates. A coordinate −0 is stored as 0.
 ///
 /// Two corners are at one vertex if and only if the bits of their coordinates are equal. The order
-/// of handles has no geometric meaning.
+/// of vertices has no geometric meaning.
 ///
 /// # Points that are nearly equal
 ///
-/// Vertices that differ only by rounding errors stay different vertices. Handles are keys of maps,
-/// so they need [`Eq`] and [`Hash`]. A comparison with a tolerance is not transitive, so it cannot
-/// be [`Eq`]: with a tolerance of 1, the points 0 and 0.8 are equal and the points 0.8 and 1.6 are
-/// equal, but the points 0 and 1.6 are not.
+/// Vertices that differ only by rounding errors are different vertices. Handles are keys of maps,
+/// so handles need [`Eq`] and [`Hash`]. A comparison with a tolerance is not transitive, so such a
+/// comparison cannot be [`Eq`]. For example, with a tolerance of 1, the points 0 and 0.8 are equal
+/// and the points 0.8 and 1.6 are equal, but the points 0 and 1.6 are not equal.
 ///
-/// Merge such points before you build the soup. For example, round the positions to a grid: points
-/// with the same rounded position are then one vertex. Two close points on different sides of a
-/// boundary between grid cells stay different.
+/// Merge points that are nearly equal before you build the soup. For example, round the positions
+/// to a grid: points with the same rounded position are then one vertex. Two close points on
+/// different sides of a boundary between grid cells stay different.
 ///
 /// ```
 /// use sixfold_polygon_soup::prelude::*;
@@ -44,7 +44,7 @@ use sixfold_core::{Handle, HashHandleMap, Point, ScannedVertex};
 pub struct SoupVertex([u32; 3]);
 
 impl SoupVertex {
-    /// Returns the vertex at `point`. A face need not have a corner there.
+    /// Returns the vertex at `point`. No face needs a corner at `point`.
     #[inline]
     pub fn at(point: Point) -> Self {
         // −0 + 0 is 0.

@@ -1,9 +1,10 @@
 //! Relation tables: the relations of a mesh that a program queries often, stored as flat tables.
 //!
-//! Use them for many sweeps over a mesh that does not change. A row is a slice, and the rows of a
-//! sweep follow one another in memory. Building a table takes one sweep over the structure. Tables
-//! do not follow later edits of the mesh. Start at [`Numbering`], which numbers the elements. The
-//! tables use these numbers as row indices and as items.
+//! Use relation tables for many sweeps over a mesh that does not change. Each row is a slice, and
+//! consecutive rows are adjacent in memory. Building a table takes one sweep over the structure. A
+//! later edit of the mesh does not change the tables. Start at [`Numbering`], which numbers the
+//! elements of a mesh and builds the tables. The row indices and the items of a table are numbers
+//! of elements.
 //!
 //! ```text
 //!   offsets   0     3        7  …        row v of `vertex_faces` is items[offsets[v]..offsets[v + 1]];

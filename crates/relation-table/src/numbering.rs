@@ -1,4 +1,4 @@
-//! The nine relation tables of a mesh, and the numbers of its elements in them.
+//! The numbers of the elements of a mesh, and its nine relation tables.
 
 use std::cell::OnceCell;
 
@@ -8,9 +8,9 @@ use crate::table::{RelationTable, TabulationError};
 
 /// The elements of a mesh, numbered in the order in which the structure lists them.
 ///
-/// If handles are rows and nothing was removed, the number of an element is its row. Vertices,
-/// edges and faces are numbered separately. All elements of one kind are numbered when the first
-/// number of this kind is needed.
+/// If handles are rows and no element was removed, the number of an element is its row. Vertices,
+/// edges and faces are numbered separately. A kind of element is numbered when one of its numbers
+/// is first needed.
 pub struct Numbering<'m, M: MeshQuery> {
     mesh: &'m M,
     vertices: OnceCell<Numbers<M::Vertex>>,
@@ -27,7 +27,8 @@ macro_rules! tabulate {
         ///
         /// # Errors
         ///
-        /// Returns [`TabulationError`] if there are more items than a 32-bit offset can address.
+        /// Returns [`TabulationError`] if the table would have more items than a 32-bit offset can
+        /// address.
         pub fn $name(&self) -> Result<RelationTable<$from, $to>, TabulationError> {
             let mesh = self.mesh;
             RelationTable::collect(Relation::$relation, mesh.$all(), |element, items| {
@@ -38,7 +39,7 @@ macro_rules! tabulate {
 }
 
 impl<'m, M: MeshQuery> Numbering<'m, M> {
-    /// Creates the numbering of `mesh`. The elements are numbered later.
+    /// Creates the numbering of `mesh`. Elements are numbered when their numbers are first needed.
     pub fn new(mesh: &'m M) -> Self {
         Self {
             mesh,
@@ -48,43 +49,44 @@ impl<'m, M: MeshQuery> Numbering<'m, M> {
         }
     }
 
-    /// Returns the numbers of the vertices. The first call numbers them: O(vertices).
+    /// Returns the numbers of all vertices. The first call takes O(vertices) time, later calls
+    /// O(1).
     #[inline]
     pub fn vertices(&self) -> &Numbers<M::Vertex> {
         self.vertices.get_or_init(|| self.mesh.vertex_numbers())
     }
 
-    /// Returns the numbers of the edges. The first call numbers them: O(edges).
+    /// Returns the numbers of all edges. The first call takes O(edges) time, later calls O(1).
     #[inline]
     pub fn edges(&self) -> &Numbers<M::Edge> {
         self.edges.get_or_init(|| self.mesh.edge_numbers())
     }
 
-    /// Returns the numbers of the faces. The first call numbers them: O(faces).
+    /// Returns the numbers of all faces. The first call takes O(faces) time, later calls O(1).
     #[inline]
     pub fn faces(&self) -> &Numbers<M::Face> {
         self.faces.get_or_init(|| self.mesh.face_numbers())
     }
 
-    /// Returns the row of `v` in the tables; O(1). The first call numbers all vertices.
+    /// Returns the row of `v` in the tables; O(1), except that the first call numbers all vertices.
     #[inline]
     pub fn vertex(&self, v: M::Vertex) -> VertexId {
         VertexId::new(self.vertices()[v])
     }
 
-    /// Returns the row of `e` in the tables; O(1). The first call numbers all edges.
+    /// Returns the row of `e` in the tables; O(1), except that the first call numbers all edges.
     #[inline]
     pub fn edge(&self, e: M::Edge) -> EdgeId {
         EdgeId::new(self.edges()[e])
     }
 
-    /// Returns the row of `f` in the tables; O(1). The first call numbers all faces.
+    /// Returns the row of `f` in the tables; O(1), except that the first call numbers all faces.
     #[inline]
     pub fn face(&self, f: M::Face) -> FaceId {
         FaceId::new(self.faces()[f])
     }
 
-    /// Returns the positions of the vertices, by vertex number.
+    /// Returns the positions of all vertices, in the order of the vertex numbers.
     pub fn positions(&self) -> Vec<Point> {
         let vertices = self.mesh.vertices();
         vertices.map(|v| self.mesh.position(v)).collect()

@@ -7,8 +7,8 @@ use sixfold_core::{Relation, RowId};
 
 /// One relation of a whole mesh: a row of elements of kind `B` for each element of kind `A`.
 ///
-/// The rows have the order of the elements in the structure. The items of a row have the order of
-/// the query.
+/// The rows are in the order in which the structure lists the elements. The items of a row are in
+/// the order in which the query yields them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RelationTable<A, B> {
     /// Index of the first item of each row, then the number of items. Empty if `stride` is not 0.
@@ -83,13 +83,13 @@ impl<A: RowId, B: RowId> RelationTable<A, B> {
     ///
     /// # Panics
     ///
-    /// Panics if the table has no such row.
+    /// Panics if the table has no row for `element`.
     #[inline]
     pub fn row(&self, element: A) -> &[B] {
         &self.items[self.range(element.row() as usize)]
     }
 
-    /// Returns all rows with their elements, in order.
+    /// Yields each element of kind `A` with its row, in order.
     pub fn iter(&self) -> impl Iterator<Item = (A, &[B])> {
         let row = |row: usize| {
             (

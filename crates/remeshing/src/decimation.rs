@@ -21,9 +21,10 @@ const WATCH_INTERVAL: usize = 1024;
 /// The target of a decimation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// This number of faces, or one face fewer: a collapse can remove two faces.
+    /// This number of faces. The result can have one face fewer, because a collapse can remove two
+    /// faces.
     Faces(usize),
-    /// This fraction of the faces of the mesh, from 0 to 1.
+    /// This fraction of the faces of the input, from 0 to 1.
     Ratio(f64),
 }
 
@@ -47,20 +48,21 @@ impl Target {
 /// The treatment of vertices on boundary edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Boundary {
-    /// The boundary is simplified like the surface. Planes perpendicular to the surface keep the
-    /// shape of the boundary.
+    /// The boundary is simplified like the surface. Planes perpendicular to the surface preserve
+    /// the shape of the boundary.
     #[default]
     Follow,
-    /// Boundary vertices stay where they are.
+    /// Boundary vertices do not move.
     Fixed,
 }
 
-/// Options of a decimation. By default, half of the faces remain and the boundary is simplified.
+/// The options of a decimation. By default, half of the faces remain and the boundary is
+/// simplified.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decimation {
-    /// The target.
+    /// The number of faces to keep.
     pub target: Target,
-    /// The treatment of the boundary.
+    /// The treatment of vertices on boundary edges.
     pub boundary: Boundary,
 }
 
@@ -81,42 +83,42 @@ pub struct Decimated {
     pub faces: usize,
     /// The number of collapsed edges.
     pub collapses: usize,
-    /// The number of refused collapses. A collapse is refused if it is illegal or would turn a face
-    /// over.
+    /// The number of refused collapses. A collapse is refused if the collapse is illegal or would
+    /// turn a face over.
     pub refused: usize,
-    /// The largest quadric error of a collapse: a sum of squared distances to the planes of faces,
-    /// each multiplied by the area of the face.
+    /// The largest error of a collapse. The error is a sum of squared distances to the planes of
+    /// faces. Each squared distance is multiplied by the area of its face.
     pub max_error: f64,
     /// The reason why the decimation ended.
     pub stop: Stop,
 }
 
-/// Collapses the edge with the lowest error, until the target is reached or no legal collapse is
-/// left.
+/// Collapses the edges with the lowest error, until the mesh has the target number of faces or no
+/// legal collapse is left.
 ///
-/// The error of a vertex is a sum over the faces that the vertex represents. Each face contributes
-/// the squared distance to its plane, multiplied by the area of the face. The merged vertex is
-/// placed where the sum of both errors is least. If there is no single such place, the best of
-/// three points is used: the two ends and their midpoint. Boundary edges add planes perpendicular
-/// to the surface, which keep the shape of the boundary. A collapse is refused if it would turn a
-/// face over or break the link condition. A refused collapse is tried again after one of its ends
-/// has changed.
+/// The error of a vertex is a sum over its faces in the input and the faces of all vertices that
+/// were merged into it. Each face contributes the squared distance to its plane, multiplied by the
+/// area of the face. The merged vertex is placed where the sum of the errors of both ends is least.
+/// If there are many such points, the merged vertex is placed at the best of three points: the two
+/// ends and their midpoint. Boundary edges add planes perpendicular to the surface, which preserve
+/// the shape of the boundary. A collapse is refused if it would turn a face over or break the link
+/// condition. A refused collapse is tried again after one of its ends has changed.
 ///
-/// Errors are rounded into buckets; the errors in one bucket differ by at most an eighth. A round
-/// collapses all edges of the lowest bucket, in the order of the mesh. If an end of an edge has
-/// changed, the queue entry of the edge is outdated. Outdated entries are dropped when they are
-/// taken out of the queue.
+/// Errors are rounded into buckets, so that the errors in one bucket differ by at most an eighth. A
+/// round collapses all edges of the bucket with the lowest errors, sorted by vertex numbers. If an
+/// end of an edge has changed, the queue entry of the edge is outdated. Outdated entries are
+/// dropped when the entries are taken out of the queue.
 ///
 /// # Errors
 ///
-/// Returns [`RemeshError`] if a face is not a triangle, a position is not finite or the ratio is
-/// not from 0 to 1. The mesh is then unchanged.
+/// Returns [`RemeshError`] if a face is not a triangle, if a position is not finite, or if the
+/// ratio is not from 0 to 1. The mesh is then unchanged.
 ///
 /// # Complexity
 ///
-/// O(edges log edges), plus the structure's cost of VF, VV and `collapse_edge` for each collapse.
-/// On structures that scan all faces, each collapse takes O(faces). There are fewer collapses than
-/// faces.
+/// O(edges log edges) time, plus the structure's cost of the queries VF and VV and of
+/// `collapse_edge` for each collapse. If the structure scans all faces, each collapse takes
+/// O(faces) time. The number of collapses is less than the number of faces.
 pub fn decimate<M: MeshEdit>(
     mesh: &mut M,
     decimation: &Decimation,
@@ -124,12 +126,12 @@ pub fn decimate<M: MeshEdit>(
     decimate_watched(mesh, decimation, &mut |_| ControlFlow::Continue(()))
 }
 
-/// Decimates like [`decimate`], and calls `watch` with the number of faces every 1024 collapses;
-/// `watch` can end the decimation.
+/// Decimates like [`decimate`], and calls `watch` with the number of faces after every 1024
+/// collapses. The function `watch` can end the decimation.
 ///
 /// # Errors
 ///
-/// The same as for [`decimate`].
+/// Returns the errors of [`decimate`].
 pub fn decimate_watched<M: MeshEdit>(
     mesh: &mut M,
     decimation: &Decimation,

@@ -1,4 +1,4 @@
-//! Delaunay flipping by the cotangent criterion.
+//! Delaunay flips by the cotangent criterion.
 
 use glam::DVec3;
 use rustc_hash::FxHashSet;
@@ -23,14 +23,16 @@ const TOLERANCE: f64 = 1e-7;
 pub struct Flipped {
     /// The number of flipped edges.
     pub flips: usize,
-    /// The number of refused flips. A flip is refused if it is illegal or would fold the surface.
+    /// The number of refused flips. A flip is refused if the flip is illegal or would fold the
+    /// surface.
     pub refused: usize,
-    /// The reason why flipping ended. [`Stop::Done`] means that every edge is Delaunay or its flip
-    /// was refused.
+    /// The reason why flipping ended. [`Stop::Done`] means that every edge meets the Delaunay
+    /// criterion or its flip was refused.
     pub stop: Stop,
 }
 
-/// Flips edges whose two opposite angles add up to more than π, until no such edge can be flipped.
+/// Flips edges whose two opposite angles add up to more than π, until none of these edges can be
+/// flipped.
 ///
 /// ```text
 ///       c                 cot ∠c + cot ∠d < 0:  the circle around a b c contains d,
@@ -41,8 +43,8 @@ pub struct Flipped {
 /// ```
 ///
 /// In a plane, the result is the Delaunay triangulation (Lawson 1977). On a surface, a flip changes
-/// the shape. A flip is refused if a new triangle would face away from the two old triangles. There
-/// are at most 16 flips per edge of the mesh.
+/// the shape. A flip is refused if a new triangle would face away from the two old triangles. The
+/// number of flips is at most 16 times the number of edges.
 ///
 /// # Errors
 ///
@@ -50,7 +52,8 @@ pub struct Flipped {
 ///
 /// # Complexity
 ///
-/// O(edges log edges), plus the structure's cost of VE, EF and `flip_edge` for each flip.
+/// O(edges log edges) time, plus the structure's cost of the queries VE and EF and of `flip_edge`
+/// for each flip.
 pub fn flip_to_delaunay<M: MeshEdit>(mesh: &mut M) -> Result<Flipped, RemeshError> {
     let numbering = Numbering::new(mesh)?;
     let mut stack = numbering.edges(mesh);

@@ -1,10 +1,11 @@
 //! Errors of the operators.
 //!
-//! A vertex is given by its index in `vertices()`, and a face by its index in `faces()`.
+//! An error identifies a vertex by its index in `vertices()` and a face by its index in `faces()`.
 
 use sixfold_core::{FaceId, VertexId};
 
-/// The reason why an operator refuses a mesh or its options. The operator has not changed the mesh.
+/// The reason why an operator refuses a mesh or its options. The operator then leaves the mesh
+/// unchanged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
@@ -21,7 +22,7 @@ pub enum RemeshError {
     #[error("the ratio {ratio} is not from 0 to 1: give the fraction of the faces to keep")]
     BadRatio { ratio: f64 },
     /// The edge length is not a finite positive number.
-    #[error("the edge length {length} is not a finite positive number: choose one above 0")]
+    #[error("the edge length {length} is not a finite positive number: choose a length above 0")]
     BadLength { length: f64 },
     /// The edge length is too short for the precision of the positions.
     #[error(
@@ -35,7 +36,7 @@ pub enum RemeshError {
         step: f64,
         minimum: f64,
     },
-    /// The edge length would need more faces than allowed.
+    /// The mesh would need more faces with this edge length than the options allow.
     #[error(
         "the edge length {length} would need about {faces:.0} triangles, but only {limit} are \
          allowed: choose a greater length, or allow more triangles"

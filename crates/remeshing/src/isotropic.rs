@@ -1,4 +1,5 @@
-//! Isotropic remeshing: split long, collapse short, flip to even valences, smooth.
+//! Isotropic remeshing: splits long edges, collapses short edges, improves valences by flips, and
+//! smooths.
 
 use std::ops::ControlFlow;
 
@@ -24,7 +25,7 @@ const MIN_STEPS: f64 = 4.0;
 /// Maximum movement of a vertex that counts as no movement, as a fraction of the target length.
 const TOLERANCE: f64 = 1e-3;
 
-/// Options of remeshing. By default, at most 10 iterations and 10 million faces.
+/// The options of remeshing. The defaults are at most 10 iterations and at most 10 million faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remeshing {
     /// The target length of edges, in the units of the mesh.
@@ -66,8 +67,8 @@ pub struct Remeshed {
 
 /// Makes all edges about `edge_length` long, and brings valences closer to six.
 ///
-/// Each iteration has four passes (Botsch & Kobbelt 2004, without the projection back to the
-/// original surface):
+/// Each iteration has four passes (Botsch & Kobbelt 2004, but without the projection of the
+/// vertices to the original surface):
 ///
 /// 1. Split edges longer than 4/3 of the target length in the middle.
 /// 2. Collapse edges shorter than 4/5 of the target length, unless this makes an edge longer than
@@ -75,9 +76,9 @@ pub struct Remeshed {
 /// 3. Flip edges if this brings valences closer to six, or to four on a boundary.
 /// 4. Move inner vertices within their tangent planes towards the middle of their neighbours.
 ///
-/// Boundary vertices do not move. They are removed only if the boundary is straight there. No edit
-/// turns a face over or breaks the link condition. Sharp inner edges are rounded, and the mesh
-/// shrinks there by about the target length.
+/// Boundary vertices do not move. A boundary vertex is removed only if the boundary is straight at
+/// this vertex. No pass turns a face over, and no collapse breaks the link condition. Sharp inner
+/// edges become round, and the mesh shrinks at these edges by about the target length.
 ///
 /// Remeshing ends early if an iteration changes almost nothing.
 ///
@@ -89,26 +90,26 @@ pub struct Remeshed {
 /// - A position is not finite.
 /// - The edge length is not a finite positive number.
 /// - The edge length is too short for the precision of the positions.
-/// - The edge length needs more faces than allowed. The number of faces is estimated from the area
-///   and from the edges to be split.
+/// - The edge length needs more faces than the options allow. The number of faces is estimated from
+///   the area and from the edges to be split.
 ///
-/// If there is an error, the mesh is unchanged.
+/// After an error, the mesh is unchanged.
 ///
 /// # Complexity
 ///
-/// O(edges log edges) for each iteration, plus the structure's cost of the queries and of one edit
-/// for each edge. The maximum number of faces limits the number of splits. Each of the other passes
-/// visits each edge once.
+/// Each iteration takes O(edges log edges) time, plus the structure's cost of the queries and of
+/// one edit for each edge. The maximum number of faces limits the number of splits. The other
+/// passes visit each edge or each vertex once.
 pub fn remesh<M: MeshEdit>(mesh: &mut M, remeshing: &Remeshing) -> Result<Remeshed, RemeshError> {
     remesh_watched(mesh, remeshing, &mut |_| ControlFlow::Continue(()))
 }
 
 /// Remeshes like [`remesh`], and calls `watch` before each iteration with the number of finished
-/// iterations. `watch` can end the remeshing.
+/// iterations. The function `watch` can end the remeshing.
 ///
 /// # Errors
 ///
-/// The same as for [`remesh`].
+/// Returns the errors of [`remesh`].
 pub fn remesh_watched<M: MeshEdit>(
     mesh: &mut M,
     remeshing: &Remeshing,
@@ -125,8 +126,7 @@ pub fn remesh_watched<M: MeshEdit>(
     };
     // Uses the larger of two estimates of the number of faces: the area filled with equilateral
     // triangles, and triangles along the long edges. The second estimate is for faces with almost
-    // no
-    // area.
+    // no area.
     let area: f64 = mesh.faces().map(|f| cross(mesh, f).length() / 2.0).sum();
     let lengths = mesh.edges().map(|e| {
         let [a, b] = mesh.edge_vertices(e).map(|v| at(mesh, v));

@@ -7,17 +7,18 @@
 //! | [`flip_to_delaunay`] | flips edges whose two opposite angles add up to more than π | O(edges log edges + flips) | Lawson 1977 |
 //!
 //! Each operator is written once, with [`MeshEdit`] and the queries, and runs on every structure.
-//! On a structure that scans all faces to find neighbours, every step scans all faces. All
-//! decisions depend on vertex numbers. Vertices are numbered in the order in which the faces list
-//! them, and sums are computed in this order. Therefore **every structure makes the same mesh, to
-//! the bit**, from the same manifold. Only the order of the faces in the result depends on the
-//! structure. A second operator can therefore make different meshes from these results. To avoid
-//! this, first build all structures again from one [`PolygonMesh`].
+//! If a structure scans all faces to find neighbours, every step of an operator scans all faces.
+//! All decisions depend on vertex numbers. The vertices are numbered in the order in which the
+//! faces list them, and sums are computed in the order of the numbers. Therefore **every structure
+//! makes the same mesh, to the bit**, from the same manifold. Only the order of the faces in the
+//! result depends on the structure. If a second operator runs on these results, the order of the
+//! faces can change its result. To avoid this difference, first build all structures again from one
+//! [`PolygonMesh`].
 //!
 //! [`PolygonMesh`]: sixfold_core::PolygonMesh
 //!
-//! Only meshes of triangles are accepted. Boundaries keep their shape. Removed elements leave
-//! unused rows in the tables; [`MeshEdit::compact`] removes these rows.
+//! An operator accepts only meshes of triangles. Boundaries keep their shape. Removed elements
+//! leave unused rows in the tables; [`MeshEdit::compact`] removes these rows.
 //!
 //! ```
 //! use sixfold_half_edge::EditableHalfEdgeMesh;
@@ -33,7 +34,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! If the mesh is a [`MeshWithData`], data stored by vertex, edge or face follows the edits:
+//! If the mesh is a [`MeshWithData`], the data of vertices, edges and faces is updated by each
+//! edit:
 //!
 //! ```
 //! use sixfold_core::{FaceData, MeshQuery, MeshWithData, Representation, VertexData};
@@ -91,6 +93,6 @@ pub enum Stop {
     NoLegalEdit,
     /// The operator reached its maximum number of faces or flips.
     LimitReached,
-    /// The `watch` function ended the operator.
+    /// The function `watch` ended the operator.
     Requested,
 }

@@ -1,4 +1,4 @@
-//! Edges with the faces at them.
+//! The edges of a mesh, each with its faces.
 
 use sixfold_core::{Pair, PolygonMesh, VertexId, row};
 

@@ -16,29 +16,30 @@ pub enum RenderError {
     NoMesh,
     /// The picture is too wide or too high, or has too many pixels.
     #[error(
-        "a picture of {width} × {height} pixels is too large: at most {MAX_SIDE} per side and {MAX_PIXELS} in total"
+        "a picture of {width} × {height} pixels is too large: use at most {MAX_SIDE} \
+         pixels per side and {MAX_PIXELS} pixels in total"
     )]
     TooLarge { width: u32, height: u32 },
-    /// A panel would be too small.
+    /// The part of the picture for one mesh would be too small.
     #[error(
-        "a picture of {width} × {height} pixels is too small for a row of {panels}: give each \
-         mesh at least {MIN_PANEL} × {MIN_PANEL} pixels"
+        "a picture of {width} × {height} pixels is too small for {panels} meshes in a row: \
+         give each mesh at least {MIN_PANEL} × {MIN_PANEL} pixels"
     )]
     TooSmall {
         width: u32,
         height: u32,
         panels: usize,
     },
-    /// An angle is not finite, or the elevation is out of range.
+    /// An angle of the view is not finite, or the elevation is outside −90° to 90°.
     #[error(
         "azimuth {azimuth} and elevation {elevation} are not valid: give both in degrees, the \
          elevation from -90 to 90"
     )]
     View { azimuth: f64, elevation: f64 },
-    /// The samples do not fit into memory.
-    #[error("not enough memory for {bytes} bytes of samples: make the picture smaller")]
+    /// There is not enough memory for the depth buffer.
+    #[error("not enough memory for a depth buffer of {bytes} bytes: make the picture smaller")]
     Memory { bytes: usize },
-    /// One of the meshes, counted from 0, cannot be drawn.
+    /// The mesh with the number `mesh`, counted from 0, cannot be drawn.
     #[error("mesh {} of the row: {fault}", .mesh + 1)]
     Mesh { mesh: usize, fault: MeshFault },
 }
@@ -54,7 +55,7 @@ pub enum MeshFault {
     /// A vertex of a face has a coordinate that is infinite or NaN.
     #[error("vertex {vertex} has a coordinate that is not finite: correct the coordinate")]
     NotFinite { vertex: VertexId },
-    /// All faces are in one point.
+    /// All corners of all faces have the same position.
     #[error("all faces lie in one point: there is nothing to draw")]
     NoExtent,
     /// There are too many visible faces for an SVG.

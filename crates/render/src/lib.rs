@@ -1,7 +1,8 @@
 //! A software renderer for meshes with their edges and creases, in parallel projection.
 //!
-//! [`draw`] makes pixels, and [`Picture::write_png`] writes the pixels. [`draw_svg`] makes lines
-//! and polygons. Several [`RenderMesh`]s are drawn in a row at one scale, each in its own panel.
+//! [`draw`] makes a [`Picture`] of pixels, and [`Picture::write_png`] writes the picture as PNG.
+//! [`draw_svg`] makes a picture of lines and polygons as SVG. If there are several
+//! [`RenderMesh`]es, they are drawn in a row at one scale, each in its own panel.
 //!
 //! ```text
 //!               ┌ layout: vertex positions     ┐
@@ -10,8 +11,8 @@
 //! ```
 //!
 //! A depth buffer (Catmull 1974) with several samples per pixel determines which lines and surfaces
-//! are hidden. The visibility test of a line uses the centre of the line. The same input gives the
-//! same bytes.
+//! are hidden. The test of whether a line is visible ignores the width of the line. For the same
+//! input, the renderer makes the same bytes.
 
 mod depth_order;
 mod edges;

@@ -1,4 +1,4 @@
-//! Drawing of pixels.
+//! Drawing of a picture as pixels.
 
 use std::io::{self, Write};
 
@@ -27,7 +27,8 @@ impl Picture {
         self.size
     }
 
-    /// Returns red, green and blue (sRGB) of each pixel, row by row from the top left.
+    /// Returns the colours of the pixels, row by row from the top left. Each pixel has three bytes:
+    /// red, green and blue (sRGB).
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
@@ -51,9 +52,10 @@ impl Picture {
     }
 }
 
-/// Draws the meshes in a row; O(corners · log corners + samples covered).
+/// Draws the meshes in a row. Time: O(c log c + s), for c corners of faces and s covered samples.
 ///
-/// Memory: 14 bytes per sample, for one panel at a time. A pixel has at most sixteen samples.
+/// A sample is a point of the depth buffer; a pixel has at most sixteen samples. The function needs
+/// 14 bytes per sample, for one panel at a time.
 ///
 /// # Errors
 ///

@@ -45,14 +45,14 @@ pub struct Faults {
 /// The width and height of a picture in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {
-    /// From left to right.
+    /// The width, from left to right.
     pub width: u32,
-    /// From top to bottom.
+    /// The height, from top to bottom.
     pub height: u32,
 }
 
 impl Size {
-    /// Returns the default size of a picture with this number of panels.
+    /// Returns the default size of a picture with `panels` meshes in a row.
     pub fn for_panels(panels: usize) -> Self {
         const PANEL: u32 = 480;
         let panels = u32::try_from(panels.max(1)).unwrap_or(u32::MAX);
@@ -91,7 +91,7 @@ pub enum Up {
     Z,
 }
 
-/// The direction of view, in parallel projection without perspective.
+/// The direction of view. The projection is parallel, without perspective.
 ///
 /// ```text
 ///     up │  ╱ to the viewer            azimuth     around the upward axis, from the front to the right
@@ -110,7 +110,7 @@ impl View {
     /// Azimuth and elevation of the isometric view, in degrees.
     pub const ISO: [f64; 2] = [45.0, 35.264_389_682_754_66];
 
-    /// Creates the view from these angles, in degrees.
+    /// Creates the view with this azimuth and elevation, in degrees.
     ///
     /// # Errors
     ///
@@ -146,9 +146,10 @@ impl View {
 /// The normals that the lighting uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shading {
-    /// The normal of each face: every face looks flat.
+    /// The lighting uses the normal of each face, so that every face looks flat.
     Flat,
-    /// Smooth normals. Faces at an angle of at most 40° are one smooth surface, except at a crease.
+    /// The lighting uses smooth normals. Two adjacent faces at an angle of at most 40° look like
+    /// one smooth surface, except at a crease.
     #[default]
     Smooth,
 }
@@ -162,9 +163,9 @@ pub struct Settings {
     pub view: View,
     /// The normals that the lighting uses.
     pub shading: Shading,
-    /// Whether to draw the edges that are not sharp. Sharp edges are always drawn.
+    /// True to draw also the edges that are not sharp. Sharp edges are always drawn.
     pub edges: bool,
-    /// Whether to draw all edges, including hidden edges, and no faces.
+    /// True to draw all edges, including hidden edges, and no faces.
     pub wireframe: bool,
     /// Whether to write the names of visible vertices (`v0`), edges (`e0`) and faces (`f0`). Edges are
     /// numbered by their lower end, then by their higher end.

@@ -1,4 +1,4 @@
-//! Drawing of lines and polygons as SVG.
+//! Drawing of a picture as lines and polygons in SVG.
 
 use std::fmt::Write;
 
@@ -13,15 +13,15 @@ use crate::picture::VisibleParts;
 use crate::settings::{RenderMesh, Settings, Size};
 use crate::strokes::Stroke;
 
-/// Maximum number of visible faces per mesh. Viewers fail with more faces.
+/// Maximum number of visible faces of a mesh in an SVG file. SVG viewers fail to show more faces.
 pub const MAX_SVG_FACES: usize = 50_000;
 
-/// Draws the meshes in a row, as the text of an SVG file. The cost is the cost of
+/// Draws the meshes in a row, and returns the text of an SVG file. Time and memory are as for
 /// [`draw`](crate::draw).
 ///
-/// Visible faces are polygons, each in one colour, painted from back to front. Lines are the
-/// visible parts of edges, with the visibility test of [`draw`](crate::draw). If two faces
-/// intersect, one of them wrongly appears in front of the other.
+/// Visible faces are polygons, each in one colour, painted from back to front. The visible parts of
+/// edges are lines. [`draw`](crate::draw) uses the same test of whether a part is visible. If two
+/// faces intersect, one of them wrongly appears in front of the other.
 ///
 /// # Errors
 ///

@@ -174,11 +174,11 @@ fn text(
     text += &common::introduction(machine, "editing_report", "reports/editing", rounds);
     writeln!(
         text,
-        " The meshes are tori of 1,058 to 1,036,800 triangles. Each edit is done at up to {PLACES} places spread over a fresh copy of the mesh, in no particular order ({PLACES_SCANNED} places if the structure scans). An untimed edit comes first, because it reallocates full tables. Legality is checked as usual; edit records are not used.\n\n![Time per edit over the faces of the mesh](growth.svg)\n"
+        " The meshes are tori of 1,058 to 1,036,800 triangles. Each edit is done at up to {PLACES} places of a fresh copy of the mesh ({PLACES_SCANNED} places if the structure scans all faces). The places are spread over the mesh, in no particular order. An untimed edit comes first, because the first edit reallocates full tables. Every edit checks whether it is legal. No edit writes a log of its changes.\n\n![Time per edit over the faces of the mesh](growth.svg)\n"
     )?;
     writeln!(
         text,
-        "\n## One edit\n\nTime at 16,200 faces, then two exponents of growth: from 1,058 to 16,200 faces (in cache), and from there to 1,036,800 (beyond). About 0 means constant time, about 1 a scan.\n"
+        "\n## One edit\n\nEach cell has the time at 16,200 faces and two exponents of growth: from 1,058 to 16,200 faces (in the cache), and from 16,200 to 1,036,800 faces (larger than the cache). An exponent of about 0 means that the time is constant. An exponent of about 1 means that the edit scans the whole mesh.\n"
     )?;
     table(&mut text, samples, Edit::ALL.map(Edit::name), |points| {
         let at = points
@@ -203,7 +203,7 @@ fn text(
     })?;
     writeln!(
         text,
-        "\n## Whole workloads\n\nTime per face of the mesh, or per edge to be flipped, at 1,058 faces and on the largest mesh; then the exponent of growth of the total time from 16,200 faces on.\n"
+        "\n## Whole workloads\n\nEach cell has two times and an exponent. The two times are for 1,058 faces and for the largest mesh, per face of the mesh (`flip_all`: per edge to be flipped). The exponent is the growth of the total time from 16,200 faces on.\n"
     )?;
     table(
         &mut text,

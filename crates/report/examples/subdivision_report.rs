@@ -38,12 +38,13 @@ const MAX_RUN_NS: f64 = 4e8;
 const CONCLUSIONS: &str = "
 ## What it shows
 
-The gather method queries EF and VV at every point. A soup and an indexed face set have to search for these, so their
-time per face grows with the size of the mesh. Scattering avoids the searches, because it queries only relations that
-both store. The face set, which has little to build, is then the fastest of all that rebuild from polygons. Among the
-structures that store adjacency, only those with expensive walks become faster by scattering. Native steps avoid the
-rebuilding, and with it most of the time. Refining into the tables of the previous run also avoids the first touch of
-new memory.
+The method `gather` queries the relations EF and VV for every new point. A polygon soup and an indexed face set must search
+for the answers, so their time per face grows with the size of the mesh. The method `scatter` avoids the searches, because
+it uses only relations that every structure stores. The indexed face set takes little time to build. Therefore it is the
+fastest structure with `scatter`. Of the structures that store adjacent elements, only structures with expensive walks are
+faster with `scatter` than with `gather`. The method `native` does not build the structure again, which takes most of the
+time of the other methods. If `native` writes into the tables of the previous run, it also avoids the first access to new
+memory pages.
 ";
 
 /// A scheme, a method and a structure.
@@ -141,7 +142,7 @@ fn text(
     let mut text = String::from("# Cost of subdivision on each structure\n\n");
     text += &common::introduction(machine, "subdivision_report", "reports/subdivision", rounds);
     text += " The control mesh is a geodesic sphere of 5,120 triangles. Times are for all levels, in nanoseconds per face of the last level.\n\n";
-    text += "`gather` queries the neighbourhood of each new point, `scatter` makes one pass over the faces; after both, the structure is built again from polygons. `native_fresh` splits the structure's own tables into newly allocated tables, `native` into those of the previous run.\n\n![Nanoseconds per new face, by size](growth.svg)\n";
+    text += "`gather` queries the neighbourhood of each new point, and `scatter` makes one pass over the faces. After `gather` and `scatter`, the structure is built again from polygons. `native_fresh` and `native` split the structure's own tables. `native_fresh` writes the result into newly allocated tables, and `native` writes the result into the tables of the previous run.\n\n![Nanoseconds per new face, by size](growth.svg)\n";
     for scheme in SCHEMES {
         writeln!(text, "\n## {scheme}\n")?;
         let mut head = String::from("| | structure |");
@@ -171,7 +172,7 @@ fn text(
         }
     }
     text += CONCLUSIONS;
-    text += "\n–: left out, because the previous level took more than 0.4 s, or the structure cannot hold quads.\n";
+    text += "\nThe sign – means that the level was not measured: the previous level took more than 0.4 s, or the structure cannot hold quads.\n";
     Ok(text)
 }
 

@@ -14,11 +14,11 @@ use crate::colours::{BACKGROUND, GRID_COLOUR, TEXT_COLOUR, dark_rules};
 /// A figure with its numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Figure {
-    /// Name for links and files, such as `heat-map`.
+    /// Name of the figure in links and file names, such as `heat-map`.
     pub id: String,
     /// Title.
     pub title: String,
-    /// How to read the figure.
+    /// Text that explains how to read the figure.
     pub caption: String,
     /// The picture as an SVG element.
     pub svg: String,

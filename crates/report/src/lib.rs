@@ -1,12 +1,13 @@
 //! Reports on studies: one self-contained HTML page, or Markdown with figures.
 //!
-//! [`ReportPage::new`] draws the figures of a [`Collection`] and of its labs. Each figure has a
-//! table of numbers and the command that reproduces the figure. Each mark of a figure has a title
-//! with its name and value, which browsers show under the pointer.
+//! A *lab* is an additional measurement besides the study: the orders of elements, growth, the
+//! reads of queries, or a workload. [`ReportPage::new`] draws the figures of a [`Collection`] of
+//! studies and labs. Each figure has a table of numbers and the command that reproduces the figure.
+//! Browsers show the name and the value of a mark when the pointer is over the mark.
 //!
 //! [`ReportPage::html`] returns one file that needs no network. The page supports light and dark
-//! mode, printing and small screens. [`ReportPage::markdown`] returns a text for a repository. Its
-//! figures are separate SVG files.
+//! mode, printing and small screens. [`ReportPage::markdown`] returns Markdown for a repository,
+//! which links to separate SVG files.
 
 mod colours;
 mod figure;
@@ -31,26 +32,27 @@ pub struct ReportPage {
     pub machines: Vec<String>,
     /// Sentences about the figures.
     pub sentences: Vec<String>,
-    /// Possible problems, with advice.
+    /// Possible faults of the measurement, with remedies.
     pub warnings: Vec<String>,
-    /// Figures over all meshes, or of the only mesh.
+    /// Figures for all meshes together, or for the mesh if there is only one.
     pub figures: Vec<Figure>,
-    /// Sections for the labs: orders, growth, reads of queries, workloads.
+    /// Sections for additional measurements: orders of elements, growth, reads of queries,
+    /// workloads.
     pub labs: Vec<Section>,
     /// Sections for the meshes; empty if there is only one mesh.
     pub meshes: Vec<Section>,
-    /// Meshes that could not be studied, with the reasons.
+    /// Meshes that could not be studied: the name of each mesh, and the reason.
     pub failures: Vec<(String, String)>,
-    /// Meshes that are not studied yet.
+    /// Names of the meshes that are not studied yet.
     pub missing: Vec<String>,
 }
 
-/// The part of a report about one mesh or one lab.
+/// The part of a report about one mesh or one additional measurement.
 #[derive(Clone, Debug)]
 pub struct Section {
     /// Title.
     pub title: String,
-    /// Facts about the mesh or the lab, in one line.
+    /// A description of the mesh or of the measurement, in one line.
     pub facts: String,
     /// Sentences about the figures.
     pub sentences: Vec<String>,
@@ -59,7 +61,8 @@ pub struct Section {
 }
 
 impl ReportPage {
-    /// Draws `collection`. Results without a recorded command show `command`.
+    /// Draws the figures of `collection`. If the command that made a result is unknown, the figure
+    /// shows `command`.
     pub fn new(collection: &Collection, command: &str) -> Self {
         figures::page(collection, command)
     }

@@ -6,7 +6,8 @@ use crate::ReportPage;
 use crate::figure::{Figure, Table};
 
 impl ReportPage {
-    /// Returns the page as Markdown. The page links to its figures as `figures/ID.svg`.
+    /// Returns the page as Markdown. The page links to each figure as `figures/ID.svg`, where ID is
+    /// the `id` of the figure.
     pub fn markdown(&self) -> String {
         let mut text = format!(
             "# {}\n\n```sh\n{}\n```\n\n",

@@ -19,11 +19,11 @@ pub struct Panel {
     pub x_label: String,
     /// Label of the vertical axis.
     pub y_label: String,
-    /// For each structure, its points. Structures without points are left out.
+    /// The name of each structure, and its points (x, y). A structure without points is not drawn.
     pub lines: Vec<(&'static str, Vec<(f64, f64)>)>,
 }
 
-/// Draws `panels` as one SVG, in rows of `columns` panels, with one legend.
+/// Draws `panels` as one SVG with a common legend. Each row has `columns` panels.
 pub fn panels(title: &str, columns: usize, panels: &[Panel]) -> String {
     let rows = panels.len().div_ceil(columns);
     let (mut plots, mut layouts) = (Vec::new(), Vec::new());

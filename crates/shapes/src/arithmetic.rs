@@ -1,7 +1,8 @@
 //! Sine, cosine and exponential function, computed with + − × ÷ only.
 //!
-//! The functions of the platform differ in the last bits between machines; IEEE arithmetic and
-//! square roots do not differ. So a shape has the same coordinates on every machine.
+//! The trigonometric functions of different platforms differ in the last bits. IEEE arithmetic and
+//! square roots are the same on every platform. So a shape has the same coordinates on every
+//! machine.
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, LN_2, LOG2_E};
 

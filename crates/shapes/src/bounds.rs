@@ -1,4 +1,4 @@
-//! Bounding boxes of solids, and lattices over the boxes.
+//! Bounding boxes of solids, and lattices of cubes that cover a box.
 
 use crate::error::ShapeError;
 use crate::marching::{Lattice, MARGIN};

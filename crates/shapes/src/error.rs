@@ -5,8 +5,8 @@
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message shows the meaning of each field")]
 pub enum ShapeError {
-    /// A parameter is outside the range of the shape.
-    #[error("{parameter} = {value}: choose from {min} to {max}")]
+    /// A parameter is outside the range that the shape accepts.
+    #[error("{parameter} = {value} is out of range: choose a value from {min} to {max}")]
     OutOfRange {
         parameter: &'static str,
         value: f64,
@@ -22,7 +22,7 @@ pub enum ShapeError {
         limit: u64,
     },
     /// A count is not an integer.
-    #[error("{parameter} = {value}: choose a whole number from {min} to {max}")]
+    #[error("{parameter} = {value} is not an integer: choose a whole number from {min} to {max}")]
     NotInteger {
         parameter: &'static str,
         value: f64,
@@ -42,10 +42,10 @@ pub enum ShapeError {
         shape: &'static str,
         parameter: &'static str,
     },
-    /// The control points do not fill a grid.
+    /// The number of control points is not a multiple of the number of columns.
     #[error("{points} control points do not fill rows of {columns}: add or remove points")]
     RaggedNet { points: usize, columns: usize },
-    /// The field is not positive far away from the origin.
+    /// The solid is unbounded: its field is not positive far away from the origin.
     #[error("the solid is unbounded: raise the level of the blobs, or inflate by less")]
     Unbounded,
     /// The solid is empty, or too thin for the lattice.

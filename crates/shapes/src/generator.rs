@@ -1,4 +1,4 @@
-//! Every shape by name, with its parameters as data, for the command line.
+//! The list of all shapes by name, with their parameters and descriptions, for the command line.
 
 use sixfold_core::PolygonMesh;
 
@@ -17,7 +17,7 @@ pub struct Generator {
     pub name: &'static str,
     /// Description in one line.
     pub summary: &'static str,
-    /// Parameters, in order.
+    /// The parameters, in the order of the help text.
     pub parameters: &'static [Parameter],
     build: fn(&[f64]) -> Result<PolygonMesh, ShapeError>,
 }
@@ -33,9 +33,10 @@ pub struct Parameter {
     pub default: f64,
     /// Minimum value.
     pub min: f64,
-    /// Maximum value. The other parameters of a shape may lower this limit.
+    /// Maximum value. If other parameters of the shape are large, the shape may accept only smaller
+    /// values.
     pub max: f64,
-    /// Whether the value must be an integer.
+    /// True if the value must be an integer.
     pub is_integer: bool,
 }
 
@@ -85,8 +86,8 @@ impl Generator {
     /// Fails in these cases:
     ///
     /// - A name is unknown or given twice.
-    /// - A value is out of range, or is not the integer that it must be.
-    /// - The shape returns an error.
+    /// - A value is out of range, or is not an integer although the parameter requires an integer.
+    /// - The function that makes the shape returns an error.
     pub fn build(&self, values: &[(&str, f64)]) -> Result<PolygonMesh, ShapeError> {
         let mut given: Vec<Option<f64>> = vec![None; self.parameters.len()];
         for &(name, value) in values {
@@ -119,7 +120,7 @@ impl Generator {
     }
 }
 
-/// Returns the generator with this name.
+/// Returns the generator with this name, or `None` if the name is unknown.
 pub fn generator(name: &str) -> Option<&'static Generator> {
     GENERATORS.iter().find(|generator| generator.name == name)
 }
@@ -142,7 +143,7 @@ const STEPS_M: Parameter = Parameter::count("m", "cells from left to right", 20,
 const STEPS_N: Parameter = Parameter::count("n", "cells from bottom to top", 20, 1, MAX_SEGMENTS);
 /// The number of triangles. With fewer than `min` triangles, thin parts of the shape would be lost.
 const fn faces(min: usize) -> Parameter {
-    let meaning = "number of triangles, accurate to 5 % or 20";
+    let meaning = "number of triangles, to within 5 % or 20 triangles";
     Parameter::count("faces", meaning, 5_000, min, MAX_FACES)
 }
 
@@ -198,19 +199,19 @@ pub const GENERATORS: &[Generator] = &[
     },
     Generator {
         name: "triangle-grid",
-        summary: "unit squares cut in two",
+        summary: "unit squares, each cut into two triangles",
         parameters: GRID,
         build: |v| planar::triangle_grid(count(v[0]), count(v[1])),
     },
     Generator {
         name: "mixed-grid",
-        summary: "unit squares, every other one cut in two",
+        summary: "unit squares; every second square is cut into two triangles",
         parameters: GRID,
         build: |v| planar::mixed_grid(count(v[0]), count(v[1])),
     },
     Generator {
         name: "grid-with-hole",
-        summary: "unit squares with a hole: the middle third in both directions",
+        summary: "unit squares with one hole in the middle, a third as wide and as high",
         parameters: &[
             Parameter::count("m", "cells from left to right", 20, 3, MAX_SIDE),
             Parameter::count("n", "cells from bottom to top", 20, 3, MAX_SIDE),
@@ -219,7 +220,7 @@ pub const GENERATORS: &[Generator] = &[
     },
     Generator {
         name: "grid-with-holes",
-        summary: "unit squares with one-cell holes that do not touch",
+        summary: "unit squares with missing squares that do not touch each other",
         parameters: &[
             GRID[0],
             GRID[1],
@@ -241,13 +242,13 @@ pub const GENERATORS: &[Generator] = &[
     },
     Generator {
         name: "torus",
-        summary: "a ring of quads",
+        summary: "a torus of quads",
         parameters: TORUS,
         build: |v| surfaces::torus(count(v[0]), count(v[1])),
     },
     Generator {
         name: "triangle-torus",
-        summary: "a ring of triangles, every vertex of valence 6",
+        summary: "a torus of triangles; every vertex has valence 6",
         parameters: TORUS,
         build: |v| surfaces::triangle_torus(count(v[0]), count(v[1])),
     },
@@ -267,7 +268,7 @@ pub const GENERATORS: &[Generator] = &[
         name: "uv-sphere",
         summary: "a sphere of meridians and parallels",
         parameters: &[
-            Parameter::count("m", "meridians", 32, 3, MAX_SEGMENTS),
+            Parameter::count("m", "number of meridians", 32, 3, MAX_SEGMENTS),
             Parameter::count("n", "bands between the poles", 16, 2, MAX_SEGMENTS),
         ],
         build: |v| solids::uv_sphere(count(v[0]), count(v[1])),
@@ -277,7 +278,7 @@ pub const GENERATORS: &[Generator] = &[
         summary: "an icosahedron with divided edges, projected to a sphere",
         parameters: &[Parameter::count(
             "frequency",
-            "parts of each edge",
+            "number of parts of each edge",
             6,
             1,
             MAX_FREQUENCY,
@@ -287,7 +288,7 @@ pub const GENERATORS: &[Generator] = &[
     Generator {
         name: "genus",
         summary: "a closed bar of quads with holes through it",
-        parameters: &[Parameter::count("g", "holes", 2, 0, MAX_SIDE)],
+        parameters: &[Parameter::count("g", "number of holes", 2, 0, MAX_SIDE)],
         build: |v| genus::genus(count(v[0])),
     },
     Generator {

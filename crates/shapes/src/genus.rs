@@ -7,7 +7,7 @@ use crate::error::{MAX_SIDE, ShapeError, check_corners, check_count};
 
 /// Builds a bar of unit cubes with `g` holes through it: a closed surface of quads with genus `g`.
 ///
-/// V = 16(g + 1), E = 36g + 28, F = 18g + 14; χ = 2 − 2g.
+/// V = 16(g + 1), E = 36g + 28, F = 18g + 14; V − E + F = 2 − 2g.
 ///
 /// ```text
 ///   ┌──┬──┬──┬──┬──┐

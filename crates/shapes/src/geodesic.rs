@@ -11,8 +11,9 @@ pub(crate) const MAX_FREQUENCY: usize = 5_982;
 
 /// Builds an icosahedron with each edge cut into `frequency` parts, projected to the unit sphere.
 ///
-/// V = 10f² + 2, E = 30f², F = 20f². Twelve vertices have valence 5, all others have valence 6.
-/// This is class I of Buckminster Fuller's spheres.
+/// With f = `frequency`: V = 10f² + 2, E = 30f², F = 20f². Twelve vertices have valence 5, and all
+/// other vertices have valence 6. In Buckminster Fuller's classification, the mesh is a geodesic
+/// sphere of class I.
 ///
 /// ```text
 ///          c

@@ -11,8 +11,10 @@
 //! | smooth union | (f + g − √(f² + g² − 2αfg)) / (1 + α) |
 //! | blobs | level − Σ a·exp(−b·\|p − c\|²) |
 //!
-//! The smooth union is Rvachev's R-function. On its surface, it is zero at the same points as the
-//! union, so the blend is visible only on other levels. To see the blend,
+//! In the table, f and g are the fields of two solids, and α is a number from 0 to 1. A blob has
+//! strength a, sharpness b and centre c; p is the point at which the field is evaluated. The smooth
+//! union is Rvachev's R-function. The smooth union and the union are zero at the same points, so
+//! the blend is visible only at other levels of the field. To see the blend,
 //! [inflate](Field::inflated) the field a little.
 //!
 //! ```
@@ -41,18 +43,18 @@ const MIN_VALUE: f64 = 1e-6;
 /// in pairs, then join the pairs in pairs.
 const MAX_DEPTH: usize = 500;
 
-/// One Gaussian bell of a sum: `strength` · exp(−`sharpness` · |p − `centre`|²).
+/// A Gaussian bell. Its value at the point p is `strength` · exp(−`sharpness` · |p − `centre`|²).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blob {
     /// Centre of the bell.
     pub centre: [f64; 3],
-    /// Height at the centre; a negative height makes a dent.
+    /// Value at the centre. A negative value makes a dent in the solid.
     pub strength: f64,
-    /// Rate at which the bell falls off with the squared distance.
+    /// Factor of the squared distance from the centre. A large factor makes a narrow bell.
     pub sharpness: f64,
 }
 
-/// A solid, as a function that is negative inside it.
+/// A solid, given by a function of the position that is negative inside the solid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
     node: Node,
@@ -159,8 +161,8 @@ impl Field {
         self.combined(other, Node::Difference)
     }
 
-    /// Returns the union with a smooth blend. The blend is smoothest for `alpha` = 0; for `alpha` =
-    /// 1 there is no blend.
+    /// Returns the union of the two solids with a smooth blend. The blend is smoothest if `alpha`
+    /// is 0. If `alpha` is 1, there is no blend.
     ///
     /// # Errors
     ///
@@ -170,7 +172,8 @@ impl Field {
         self.combined(other, |parts| Node::SmoothUnion { parts, alpha })
     }
 
-    /// Moves the surface to the level `by`: the solid grows, or shrinks if `by` is negative.
+    /// Moves the surface to the points where the field has the value `by`. The solid grows if `by`
+    /// is positive, and shrinks if `by` is negative.
     ///
     /// # Errors
     ///
@@ -205,9 +208,10 @@ impl Field {
         self.node.at(point)
     }
 
-    /// Builds the surface from about `faces` triangles: closed, manifold, oriented outward.
+    /// Builds the surface of the solid from about `faces` triangles. The mesh is closed, manifold
+    /// and oriented outward.
     ///
-    /// The number of triangles differs from `faces` by at most 5 %, or by at most 20 if that is
+    /// The number of triangles differs from `faces` by at most 5 % or 20 triangles, whichever is
     /// more. The mesh comes from marching tetrahedra (Doi and Koide 1991) on a lattice of cubes.
     /// Parts and gaps that are thinner than a cube of the lattice may be lost. No two vertices have
     /// the same position. The field is evaluated near the surface only.
@@ -218,7 +222,7 @@ impl Field {
     ///
     /// - `faces` is outside 100 to 4,000,000.
     /// - The solid is unbounded, or contains no lattice point.
-    /// - No lattice gives the number of faces.
+    /// - No lattice gives the requested number of faces.
     /// - The lattice is too fine for memory, or for `f32` at these coordinates.
     pub fn polygonised(&self, faces: usize) -> Result<PolygonMesh, ShapeError> {
         fitting::check_faces(faces)?;

@@ -1,4 +1,5 @@
-//! Meshes that are built by formula, with element counts in closed form.
+//! Meshes that are built by formula. The table has the numbers V of vertices, E of edges and F of
+//! faces. The other letters are parameters of the shape, and χ = V − E + F.
 //!
 //! | shape | V | E | F | χ |
 //! |---|---|---|---|---|
@@ -25,9 +26,10 @@
 //!
 //! Faces of closed shapes are oriented outward. Faces of flat shapes run counter-clockwise as seen
 //! from above. No two vertices have the same position, except possibly in patches. A shape is the
-//! same on every machine, because the code calls no trigonometric function of the platform.
-//! Parameters outside the documented ranges return a [`ShapeError`] before anything is allocated.
-//! [`Order`] changes the order of any mesh; [`GENERATORS`] lists all shapes by name.
+//! same on every machine, because the code calls no trigonometric function of the platform. If a
+//! parameter is outside its documented range, the function of the shape returns a [`ShapeError`]
+//! before it allocates memory. [`Order`] changes the order of the elements of any mesh.
+//! [`GENERATORS`] lists all shapes by name.
 //!
 //! ```
 //! use sixfold_core::Facts;

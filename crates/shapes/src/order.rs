@@ -1,4 +1,4 @@
-//! The same mesh in another order: only handles and places in memory change.
+//! Reordering of the vertices and faces of a mesh. The shape of the mesh does not change.
 
 use std::fmt;
 use std::str::FromStr;
@@ -14,14 +14,14 @@ use sixfold_core::{FaceId, FaceList, Point, PolygonMesh, VertexId, row};
     derive(serde_with::DeserializeFromStr, serde_with::SerializeDisplay)
 )]
 pub enum Order {
-    /// The order of the given mesh.
+    /// The given order: the mesh is not reordered.
     #[default]
     Given,
     /// Random order. See [`shuffled`].
     Shuffled,
-    /// Along a space-filling curve. See [`morton`].
+    /// The order of a space-filling curve. See [`morton`].
     Morton,
-    /// A breadth-first walk over the faces. See [`breadth_first`].
+    /// The order of a breadth-first walk over the faces. See [`breadth_first`].
     BreadthFirst,
 }
 
@@ -81,7 +81,7 @@ impl fmt::Display for Order {
     }
 }
 
-/// The error for an unknown name of an order.
+/// The error for a name that is not the name of an order.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unknown order {given:?}: choose from {}", Order::ALL.map(Order::name).join(", "))]
 pub struct UnknownOrder {
@@ -101,7 +101,7 @@ impl FromStr for Order {
 }
 
 /// Returns the mesh with its vertices and faces in random order. Each face starts at a random
-/// corner. O(corners).
+/// corner. Time: O(corners).
 ///
 /// The same seed gives the same order on every machine (ChaCha8, shuffle of Fisher and Yates).
 pub fn shuffled(mesh: &PolygonMesh, seed: u64) -> PolygonMesh {
@@ -118,9 +118,9 @@ fn shuffle(mesh: &PolygonMesh, seed: u64) -> Reordered {
 /// Returns the mesh in the order of the space-filling curve of Morton (1966). Elements that are
 /// near each other in space are then mostly near each other in memory.
 ///
-/// Positions are rounded to a grid of 2²¹ steps per side. The code of a position has the bits of
-/// its three coordinates in turn. Vertices are sorted by their codes, and faces by the codes of
-/// their centres. Elements with equal codes keep their order. O(n log n).
+/// Positions are rounded to a grid of 2²¹ steps per side. The code of a position interleaves the
+/// bits of its three coordinates. Vertices are sorted by their codes, and faces by the codes of
+/// their centres. Elements with equal codes keep their order. Time: O(n log n) for n elements.
 pub fn morton(mesh: &PolygonMesh) -> PolygonMesh {
     sort_by_morton_code(mesh).mesh
 }
@@ -155,11 +155,12 @@ fn sort_by_morton_code(mesh: &PolygonMesh) -> Reordered {
     reordered(mesh, &vertices, &faces, |_| 0)
 }
 
-/// Returns the mesh in the order of a breadth-first walk over its faces from vertex 0; O(corners).
+/// Returns the mesh in the order of a breadth-first walk over its faces from vertex 0. Time:
+/// O(corners).
 ///
 /// For each vertex in turn, the walk visits the faces around this vertex and appends the new
-/// vertices of these faces. If all found vertices are processed, the walk continues at the lowest
-/// vertex that is left.
+/// vertices of these faces. When all found vertices are processed, the walk continues at the
+/// unvisited vertex with the lowest number.
 pub fn breadth_first(mesh: &PolygonMesh) -> PolygonMesh {
     sort_breadth_first(mesh).mesh
 }

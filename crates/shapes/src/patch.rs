@@ -1,4 +1,4 @@
-//! Curved patches over a net of control points: Bézier and uniform B-spline.
+//! Curved patches over a net of control points: Bézier patches and uniform B-spline patches.
 
 use sixfold_core::{Point, PolygonMesh};
 
@@ -11,7 +11,7 @@ pub(crate) const MAX_DEGREE: usize = 32;
 /// Maximum number of control points along one direction.
 pub(crate) const MAX_CONTROL_POINTS: usize = 1024;
 
-/// A grid of control points for a patch, row by row.
+/// A grid of control points for a curved patch. The points are stored row by row.
 ///
 /// # Invariants
 ///
@@ -24,13 +24,14 @@ pub struct ControlNet {
 }
 
 impl ControlNet {
-    /// Builds a net from its rows, one after the other. Each row has `columns` points.
+    /// Builds a net. `points` contains the rows one after the other, and each row has `columns`
+    /// points.
     ///
     /// # Errors
     ///
     /// Fails in these cases:
     ///
-    /// - The last row is not full.
+    /// - The last row has fewer than `columns` points.
     /// - There are fewer than 2 or more than 1024 rows or columns.
     /// - A coordinate is not finite.
     pub fn new(columns: usize, points: &[Point]) -> Result<Self, ShapeError> {
@@ -55,7 +56,7 @@ impl ControlNet {
         Ok(Self { columns, points })
     }
 
-    /// Builds a saddle over the square from −1 to 1. The control points have the height x² − y².
+    /// Builds a saddle. The control points are at (x, y, x² − y²), for x and y from −1 to 1.
     ///
     /// # Errors
     ///
@@ -64,8 +65,8 @@ impl ControlNet {
         Self::over_square(columns, rows, |_, _, x, y| x * x - y * y)
     }
 
-    /// Builds waves over the square from −1 to 1. Every second point of a row is a hill or a
-    /// hollow.
+    /// Builds waves, for x and y from −1 to 1. Every second control point of a row is above or
+    /// below the plane z = 0.
     ///
     /// # Errors
     ///
@@ -114,8 +115,8 @@ impl ControlNet {
 /// of the net.
 ///
 /// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn. In each direction, the degree is one less
-/// than the number of control points. For some nets, vertices coincide. Time: O(degree²) per vertex
-/// (de Casteljau).
+/// than the number of control points. For some nets, vertices of the patch coincide. Time:
+/// O(degree²) per vertex (de Casteljau).
 ///
 /// # Errors
 ///
@@ -133,14 +134,14 @@ pub fn bezier_patch(net: &ControlNet, m: usize, n: usize) -> Result<PolygonMesh,
 /// directions.
 ///
 /// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn. The patch has (columns − degree) × (rows −
-/// degree) pieces. Most patches pass through no control point. For some nets, vertices coincide.
-/// Time: O(degree²) per vertex (de Boor).
+/// degree) pieces. Most patches pass through no control point. For some nets, vertices of the patch
+/// coincide. Time: O(degree²) per vertex (de Boor).
 ///
 /// # Errors
 ///
 /// Fails in these cases:
 ///
-/// - `degree` is outside 1 to 32, or not less than the number of rows and columns.
+/// - `degree` is outside 1 to 32, or is not less than the number of rows or of columns.
 /// - `m` or `n` is outside 1 to 2²⁰.
 /// - There are more than 2³¹ − 1 corners.
 pub fn b_spline_patch(

@@ -45,9 +45,11 @@ pub fn triangle_grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     )
 }
 
-/// Builds `m` × `n` unit squares. Every second square is cut in two triangles, as on a chess board.
+/// Builds `m` × `n` unit squares. Every second square, as on a chess board, is cut into two
+/// triangles.
 ///
-/// c = ⌊mn/2⌋ squares are cut: V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1) + c, F = mn + c.
+/// The number of cut squares is c = ⌊mn/2⌋.
+/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1) + c, F = mn + c.
 ///
 /// # Errors
 ///
@@ -93,8 +95,8 @@ pub fn triangle_tiling(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     grid_of_cells("triangle-tiling", [m, n], corners, position, cell)
 }
 
-/// Builds a frame: `m` × `n` unit squares without the middle a × b squares, with a = ⌊m/3⌋ and b =
-/// ⌊n/3⌋.
+/// Builds a frame: `m` × `n` unit squares without the a × b squares in the middle. Here a = ⌊m/3⌋
+/// and b = ⌊n/3⌋.
 ///
 /// V = (m + 1)(n + 1) − (a − 1)(b − 1), E = m(n + 1) + n(m + 1) − a(b − 1) − b(a − 1), F = mn − ab.
 ///
@@ -116,7 +118,8 @@ pub fn grid_with_hole(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
 
 /// Builds `m` × `n` unit squares with `holes` missing squares. No two missing squares touch.
 ///
-/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn − holes; 1 + holes boundary loops.
+/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn − holes. The mesh has 1 + holes boundary
+/// loops.
 ///
 /// ```text
 ///   ┌──┬──┬──┬──┬──┐

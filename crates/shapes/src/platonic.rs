@@ -15,7 +15,8 @@ use crate::builder::MeshBuilder;
 /// The golden ratio, (1 + √5) / 2.
 const PHI: f64 = 1.618_033_988_749_895;
 
-/// Builds a tetrahedron: four triangles, on every second corner of the cube ±1.
+/// Builds a tetrahedron: four triangles. The vertices are every second corner of the cube with the
+/// corners (±1, ±1, ±1).
 pub fn tetrahedron() -> PolygonMesh {
     solid(
         &[
@@ -86,8 +87,8 @@ pub fn octahedron() -> PolygonMesh {
     )
 }
 
-/// Builds a dodecahedron: twelve pentagons. The vertices are the corners of the cube ±1, and the
-/// cyclic permutations of (0, ±φ, ±1/φ).
+/// Builds a dodecahedron: twelve pentagons. The vertices are (±1, ±1, ±1), and the cyclic
+/// permutations of (0, ±φ, ±1/φ), with φ = (1 + √5)/2.
 pub fn dodecahedron() -> PolygonMesh {
     const Q: f64 = PHI - 1.0;
     solid(
@@ -131,7 +132,7 @@ pub fn dodecahedron() -> PolygonMesh {
 }
 
 /// Builds an icosahedron: twenty triangles. The vertices are the cyclic permutations of (0, ±1,
-/// ±φ).
+/// ±φ), with φ = (1 + √5)/2.
 pub fn icosahedron() -> PolygonMesh {
     solid(&ICOSAHEDRON_VERTICES, &ICOSAHEDRON_FACES)
 }

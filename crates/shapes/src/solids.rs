@@ -8,7 +8,7 @@ use crate::arithmetic::unit_circle;
 use crate::builder::MeshBuilder;
 use crate::error::{MAX_SEGMENTS, ShapeError, check_corners, check_count};
 
-/// Builds two `n`-gons joined by `n` quads. For `n = 4`, this is a cube.
+/// Builds a prism: two `n`-gons joined by `n` quads. A prism with `n` = 4 is a cube.
 ///
 /// V = 2n, E = 3n, F = n + 2.
 ///
@@ -29,8 +29,8 @@ pub fn prism(n: usize) -> Result<PolygonMesh, ShapeError> {
     Ok(builder.build())
 }
 
-/// Builds two `n`-gons, one rotated by half a step, joined by `2n` triangles. For `n = 3`, this is
-/// an octahedron.
+/// Builds an antiprism: two `n`-gons, one of them rotated by half a step, joined by `2n` triangles.
+/// An antiprism with `n` = 3 is an octahedron.
 ///
 /// V = 2n, E = 4n, F = 2n + 2.
 ///

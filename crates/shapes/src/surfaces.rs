@@ -10,7 +10,7 @@ use crate::error::{MAX_SEGMENTS, ShapeError, check_corners, check_count};
 /// circle is 1.
 const TUBE: f64 = 0.4;
 
-/// Builds a torus of `m` × `n` quads: `m` around the axis, `n` around the tube.
+/// Builds a torus of `m` × `n` quads: `m` quads around the axis, and `n` quads around the tube.
 ///
 /// V = mn, E = 2mn, F = mn; χ = 0.
 ///

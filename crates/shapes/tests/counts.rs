@@ -331,7 +331,10 @@ fn grids_with_holes() {
                 check(&name, &mesh, &expected);
             }
             let error = sixfold_shapes::grid_with_holes(m, n, max_holes + 1).expect_err("no room");
-            let message = format!("holes = {}: choose from 0 to {max_holes}", max_holes + 1);
+            let message = format!(
+                "holes = {} is out of range: choose a value from 0 to {max_holes}",
+                max_holes + 1
+            );
             assert_eq!(error.to_string(), message);
         }
     }

@@ -75,7 +75,7 @@ fn messages_name_parameter_value_and_range() {
     let message = |made: Result<PolygonMesh, ShapeError>| made.expect_err("refused").to_string();
     assert_eq!(
         message(sixfold_shapes::torus(2, 5)),
-        "m = 2: choose from 3 to 1048576"
+        "m = 2 is out of range: choose a value from 3 to 1048576"
     );
     assert_eq!(
         message(sixfold_shapes::grid(40_000, 50_000)),
@@ -84,11 +84,11 @@ fn messages_name_parameter_value_and_range() {
     let torus = generator("torus").expect("a shape");
     assert_eq!(
         message(torus.build(&[("m", 3.5)])),
-        "m = 3.5: choose a whole number from 3 to 1048576"
+        "m = 3.5 is not an integer: choose a whole number from 3 to 1048576"
     );
     assert_eq!(
         message(torus.build(&[("m", f64::NAN)])),
-        "m = NaN: choose from 3 to 1048576"
+        "m = NaN is out of range: choose a value from 3 to 1048576"
     );
     assert_eq!(
         message(torus.build(&[("q", 3.0)])),

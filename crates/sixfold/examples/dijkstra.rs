@@ -13,7 +13,8 @@ use sixfold::prelude::*;
 mod common;
 
 /// Returns for every vertex the length of the shortest path from `source` along edges, or infinity
-/// if there is no path. O(E log E) if the structure answers `vertex_vertices` locally.
+/// if there is no path. Time: O(E log E) for E edges, if a query of `vertex_vertices` does not scan
+/// the mesh.
 pub fn distances<M: MeshQuery>(mesh: &M, source: M::Vertex) -> VertexMap<M, f64> {
     let mut distances = mesh.vertex_map(f64::INFINITY);
     distances[source] = 0.0;

@@ -1,5 +1,5 @@
 //! Feature edges, chained into polylines. Feature edges are sharp edges and boundary edges. A
-//! polyline ends at a branching vertex.
+//! polyline ends at a vertex that does not have exactly two feature edges.
 //!
 //! ```sh
 //! cargo run --example feature_lines -- mesh.obj
@@ -13,8 +13,8 @@ use sixfold::prelude::*;
 mod common;
 
 /// Returns the polylines of all feature edges, as lists of vertices. A closed polyline ends with
-/// its first vertex. An edge is a feature if it does not have exactly two faces, or if the angle
-/// between the normals of its faces is above `degrees`.
+/// its first vertex. An edge is a feature edge if it does not have exactly two faces, or if the
+/// angle between the normals of its two faces is above `degrees`.
 pub fn feature_lines<M: MeshQuery>(mesh: &M, degrees: f32) -> Vec<Vec<M::Vertex>> {
     let features = feature_edges(mesh, degrees);
     let mut lines = Lines {

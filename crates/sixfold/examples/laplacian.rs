@@ -16,7 +16,7 @@ mod common;
 /// their values are added.
 pub type Triplet = (u32, u32, f64);
 
-/// A matrix. Each vertex has one row and one column.
+/// A sparse matrix with one row and one column for each vertex.
 pub struct Laplacian<M: MeshQuery> {
     /// The row and column of each vertex.
     pub numbers: Numbers<M::Vertex>,
@@ -24,9 +24,9 @@ pub struct Laplacian<M: MeshQuery> {
     pub triplets: Vec<Triplet>,
 }
 
-/// Returns the matrix L. The entry for vertex i and its neighbour j is (cot α + cot β) / 2. Here α
-/// and β are the angles opposite the edge i–j. The entry of vertex i on the diagonal is the
-/// negative sum of the other entries in its row.
+/// Returns the cotangent Laplacian of `mesh`. The entry for vertex i and its neighbour j is
+/// (cot α + cot β) / 2. Here α and β are the angles opposite the edge i–j. The entry of vertex i on
+/// the diagonal is the negative sum of the other entries in its row.
 ///
 /// # Errors
 ///

@@ -12,8 +12,8 @@ use sixfold::prelude::*;
 
 mod common;
 
-/// Returns the number of the region of each face, from 0, and the number of regions. The angle
-/// between the normals of a face and of the first face of its region is at most `degrees`.
+/// Returns the region of each face, as a number from 0, and the number of regions. In each region,
+/// the angle between the normal of a face and the normal of the first face is at most `degrees`.
 pub fn regions<M: MeshQuery>(mesh: &M, degrees: f32) -> (FaceMap<M, Option<usize>>, usize) {
     let normals = face_normals(mesh);
     let least_cosine = degrees.to_radians().cos();

@@ -16,7 +16,7 @@ mod common;
 /// of `length` (Botsch and Kobbelt 2004). Returns the number of cut edges and the number of
 /// collapsed edges.
 ///
-/// Each list of edges is made before the edits. `contains_edge` finds the edges that still exist.
+/// All edges are listed before the edits. An edge that an earlier edit has removed is skipped.
 pub fn remesh<M: MeshEdit>(mesh: &mut M, length: f32) -> [usize; 2] {
     let mut cut = 0;
     let edges: Vec<_> = mesh.edges().collect();

@@ -33,8 +33,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Or build a mesh from arrays. If the structure cannot hold the mesh, the error names the
-//! elements:
+//! A mesh can also be built from arrays. If a structure cannot hold a mesh, the error names the
+//! faulty elements:
 //!
 //! ```
 //! use sixfold::prelude::*;
@@ -109,16 +109,16 @@
 //! | [`IndexedFaceSet`] | any polygons | 36 | store, convert, visit all faces |
 //! | [`PolygonSoup`] | any polygons, vertices by coordinates | 72 | transfer faces, as STL does |
 //!
-//! Polygon soups and indexed face sets scan all faces to find neighbours. The bytes per vertex
-//! apply to large closed triangle meshes. If you do not know which structure to choose, use
+//! Polygon soups and indexed face sets scan all faces to find neighbours. The column *bytes per
+//! vertex* is for large closed triangle meshes. If you do not know which structure to choose, use
 //! [`HalfEdgeMesh`] for manifolds and [`FaceVertexMesh`] for other meshes. The command `sixfold
 //! pick` measures a workload on your mesh. [`structures!`] lists all structures, and [`visit`]
 //! selects one structure at run time.
 //!
 //! # Require local queries
 //!
-//! Polygon soups and indexed face sets answer most queries by a scan of all faces. An algorithm
-//! with the bound [`LocalQueries`] does not accept these structures:
+//! Polygon soups and indexed face sets answer most queries by a scan of all faces. The trait bound
+//! [`LocalQueries`] excludes polygon soups and indexed face sets:
 //!
 //! ```
 //! use sixfold::prelude::*;
@@ -145,9 +145,9 @@
 //!
 //! # Walk in order
 //!
-//! Most queries yield elements without an order. [`OrientedWalk`] steps from side to side in order:
-//! along a face, around a vertex, or straight across quads as in this example. Four structures
-//! implement [`OrientedWalk`].
+//! Most queries yield elements in no particular order. [`OrientedWalk`] steps from side to side; a
+//! side is an edge as one face runs along it. A walk can follow a face, turn around a vertex, or
+//! run straight across quads as in the example below. Four structures implement [`OrientedWalk`].
 //!
 //! ```
 //! use sixfold::prelude::*;
@@ -176,7 +176,7 @@
 //! - `rayon` (default): native subdivision steps use all threads; so do builds of spatial indices and
 //!   batches of their queries.
 //! - `serde`: [`Facts`], [`Capabilities`], [`MemoryFootprint`], diagnoses, reports of repairs,
-//!   schemes and orders can be serialised.
+//!   subdivision schemes and mesh orders can be serialised.
 //! - `mint`: [`PolygonMesh::new`] takes points and vectors of the crate `mint`, and a [`Point`]
 //!   converts to them.
 

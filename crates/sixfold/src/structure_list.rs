@@ -6,13 +6,13 @@ use sixfold_core::{
 
 /// Calls a macro with the list of all structures: `structures!([callback] arguments…)`.
 ///
-/// This is the only list of structures: a seventh structure needs one more line here. A line starts
-/// with the type for queries. Two other types may follow: `edit` is the type that can be edited,
-/// and `refine` is the type that splits its own tables. All types of a line have the same name
-/// ([`Representation::NAME`](sixfold_core::Representation::NAME)).
+/// This macro is the only list of structures. For a seventh structure, add one line. Each line
+/// starts with the type for queries. Two other types may follow: `edit` is the type that can be
+/// edited, and `refine` is the type that splits its own tables. All types of a line have the same
+/// name ([`Representation::NAME`](sixfold_core::Representation::NAME)).
 ///
-/// The callback gets its arguments, followed by the lines. If you need only one type of each line,
-/// use [`for_each_representation!`](crate::for_each_representation),
+/// The callback gets the arguments, followed by all lines of the list. If you need only one type of
+/// each line, use [`for_each_representation!`](crate::for_each_representation),
 /// [`for_each_editable!`](crate::for_each_editable) or
 /// [`for_each_refinable!`](crate::for_each_refinable) instead.
 #[macro_export]
@@ -66,9 +66,9 @@ macro_rules! for_each_representation {
     };
 }
 
-/// Repeats a macro body for each structure that can be edited, with `M` as an alias of its
-/// [`Editable`](sixfold_core::Editable) type, like
-/// [`for_each_representation!`](crate::for_each_representation).
+/// Repeats a macro body for each structure that can be edited. In the body, `M` is an alias of the
+/// [`Editable`](sixfold_core::Editable) type of the structure. The macro is called in the same way
+/// as [`for_each_representation!`](crate::for_each_representation).
 #[macro_export]
 macro_rules! for_each_editable {
     ($mesh:ident => $body:block) => {
@@ -76,8 +76,8 @@ macro_rules! for_each_editable {
     };
 }
 
-/// Repeats a macro body for each structure that refines its own tables, like
-/// [`for_each_representation!`](crate::for_each_representation).
+/// Repeats a macro body for each structure that refines its own tables. The macro is called in the
+/// same way as [`for_each_representation!`](crate::for_each_representation).
 #[macro_export]
 macro_rules! for_each_refinable {
     ($mesh:ident => $body:block) => {
@@ -87,7 +87,7 @@ macro_rules! for_each_refinable {
 
 /// A generic function that is called with a structure selected at run time.
 ///
-/// A call selects the type; the function itself uses static dispatch.
+/// The structure is selected once per call. The code of the function uses static dispatch.
 pub trait Visitor {
     /// The result of a visit.
     type Output;
@@ -106,7 +106,7 @@ pub trait EditVisitor {
 }
 
 /// A generic function that is called with a refinable structure selected at run time. A refinable
-/// structure splits its own tables.
+/// structure can split all faces within its own tables.
 pub trait RefineVisitor {
     /// The result of a visit.
     type Output;
@@ -122,10 +122,10 @@ pub struct StructureInfo {
     pub name: &'static str,
     /// The meshes that the structure can hold.
     pub capabilities: Capabilities,
-    /// How much of the mesh each relation reads.
+    /// How much of the mesh a query of each relation reads.
     pub costs: [QueryCost; 9],
-    /// How much of the mesh each edit reads, in the order of [`Edit::ALL`]; `None` for an edit that
-    /// is not available.
+    /// For each edit in the order of [`Edit::ALL`], how much of the mesh the edit reads. `None` if
+    /// the structure does not support the edit.
     pub edits: [Option<QueryCost>; Edit::ALL.len()],
     /// The splits that the structure can apply to its own tables ([`Refine::SPLITS`]).
     pub splits: &'static [Split],
@@ -161,7 +161,7 @@ impl StructureInfo {
         }
     }
 
-    /// Returns whether at least one edit is available.
+    /// Returns true if the structure supports at least one edit.
     pub fn is_editable(&self) -> bool {
         self.edits.iter().any(Option::is_some)
     }
@@ -198,7 +198,7 @@ pub fn visit_all<V: Visitor>(visitor: &mut V) -> Vec<V::Output> {
     outputs
 }
 
-/// Calls `visitor` for the structure with this name; `None` if the name is unknown.
+/// Calls `visitor` for the structure with this name. Returns `None` if the name is unknown.
 pub fn visit<V: Visitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
     for_each_representation!(M => {
         if name == M::NAME {

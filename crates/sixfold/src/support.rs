@@ -1,11 +1,11 @@
-//! Which subdivision scheme runs on which structure.
+//! The subdivision schemes that each structure supports.
 
 use sixfold_core::Split;
 use sixfold_subdivision::{Method, Scheme};
 
 use crate::structure_list::{StructureInfo, structure_infos};
 
-/// Whether and how one structure supports one scheme.
+/// How one structure supports one subdivision scheme.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Support {
@@ -13,16 +13,16 @@ pub struct Support {
     pub backend: &'static str,
     /// The scheme.
     pub scheme: Scheme,
-    /// Available methods. [`Method::Native`] is available if the structure can split its own tables
-    /// as the scheme requires.
+    /// The methods of subdivision that the structure supports. [`Method::Native`] is in the list if
+    /// the structure can split its own tables as the scheme requires.
     pub methods: Vec<Method>,
-    /// Whether the structure can hold the result of a step. If this is false, one step is possible
-    /// and returns polygons, but no second step is possible.
+    /// True if the structure can hold the result of a subdivision step. If false, one step is
+    /// possible and returns polygons, but a second step is not possible.
     pub holds_result: bool,
 }
 
 impl Support {
-    /// Returns the default method: the last available method.
+    /// Returns the default method: the last method in `methods`.
     pub fn default_method(&self) -> Option<Method> {
         self.methods.last().copied()
     }

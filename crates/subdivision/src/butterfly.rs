@@ -1,8 +1,8 @@
 //! Modified butterfly: splits every triangle into four; interpolating, C¹.
 //!
-//! Zorin, Schröder & Sweldens (1996); the stencil between regular vertices is that of Dyn, Levin &
-//! Gregory (1990) with w = 0. Old vertices stay. A vertex is regular if it has six triangles around
-//! it, or three at a boundary.
+//! The scheme is that of Zorin, Schröder & Sweldens (1996). The stencil between regular vertices is
+//! that of Dyn, Levin & Gregory (1990) with w = 0. Old vertices keep their positions. A vertex is
+//! regular if it has six triangles, or three triangles on a boundary.
 //!
 //! ```text
 //!   both ends regular                    one end extraordinary, valence K: around this end v
@@ -18,12 +18,12 @@
 //!
 //! At boundaries:
 //!
-//! - The point of a boundary edge depends only on boundary vertices: (−1/16, 9/16, 9/16, −1/16)
-//!   along the boundary (Dyn, Gregory & Levin 1987). Two meshes with the same boundary therefore
-//!   still fit together.
-//! - If a corner of the regular stencil lies beyond a boundary edge, the corner is replaced by a
-//!   ghost. The ghost is the reflection of the third vertex of the triangle at this edge (Zorin,
-//!   Schröder & Sweldens 1996):
+//! - The point of a boundary edge depends only on boundary vertices. Their weights along the
+//!   boundary are (−1/16, 9/16, 9/16, −1/16) (Dyn, Gregory & Levin 1987). Two meshes with the same
+//!   boundary therefore still fit together.
+//! - If a corner of the regular stencil lies beyond a boundary edge, a ghost replaces the corner.
+//!   The ghost is the reflection of the third vertex of the triangle at this edge (Zorin, Schröder
+//!   & Sweldens 1996):
 //!
 //! ```text
 //!        a ───── b      a boundary edge, c inside:  ghost = a + b − c
@@ -32,9 +32,10 @@
 //!            c
 //! ```
 //!
-//! - An extraordinary boundary vertex, with k ≠ 3 triangles, has the masks of Zorin & Schröder
-//!   (2000), see [`boundary_weights`].
-//! - The paper has no mask for an inner vertex of valence 2. The points of its edges are midpoints.
+//! - An extraordinary boundary vertex has k ≠ 3 triangles. Its masks are those of Zorin & Schröder
+//!   (2000); see [`boundary_weights`].
+//! - The paper has no mask for an inner vertex of valence 2. The points of the edges of this vertex
+//!   are midpoints.
 
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};

@@ -9,20 +9,23 @@ use crate::options::Boundary;
 use crate::subdivision::Subdivision;
 
 impl Subdivision {
-    /// Returns the sharpness before the first step of `mesh`, which was built from `polygons`. The
-    /// result contains `creases`. The elements in the list below also get infinite sharpness. The
-    /// result uses the numbers of `mesh.to_polygons()`. Takes O(corners) expected time.
+    /// Returns the sharpness of edges and vertices before the first step of `mesh`, which was built
+    /// from `polygons`. The result contains `creases`, numbered as in `mesh.to_polygons()`. These
+    /// elements also get infinite sharpness:
     ///
-    /// - With [`Boundary::EdgeAndCorner`], vertices with exactly one face.
+    /// - Vertices with exactly one face, if the boundary rule is [`Boundary::EdgeAndCorner`].
     /// - Edges with three or more faces, and edges with two faces that run along the edge in the
-    ///   same direction. Boundary edges are not in the list: every step finds them.
-    /// - Vertices at such edges, and vertices with several fans. Exception: a vertex inside a curve
-    ///   of such edges moves along the curve, as on a crease. Such a vertex has two of these edges,
-    ///   no boundary edge, and more faces than edges.
+    ///   same direction. Boundary edges are not in this list, because every step finds them.
+    /// - Vertices of several fans, and ends of the edges of the previous item. Exception: a vertex
+    ///   with two of these edges, no boundary edge, and more faces than edges. This vertex moves
+    ///   along the curve of the two edges, as on a crease.
+    ///
+    /// Takes O(corners) expected time.
     ///
     /// # Errors
     ///
-    /// Returns [`SubdivisionError::NoCreases`] if the scheme has no rules for `creases`.
+    /// Returns [`SubdivisionError::NoCreases`] if there are `creases` and the scheme has no rules
+    /// for creases.
     pub fn control_creases<M: Representation>(
         &self,
         mesh: &M,
@@ -84,8 +87,9 @@ impl Subdivision {
 
     /// Returns for each face of the control mesh whether the boundary rule leaves out the face.
     /// With [`Boundary::None`], a face is left out if one of its vertices has a boundary edge that
-    /// is not infinitely sharp in `creases`. Returns `None` if no face is left out. O(corners)
-    /// expected.
+    /// is not infinitely sharp in `creases`. Returns `None` if the boundary rule is not
+    /// [`Boundary::None`], or if the scheme has no rules for creases. Takes O(corners) expected
+    /// time.
     pub fn left_out(&self, polygons: &PolygonMesh, creases: &Creases) -> Option<Vec<bool>> {
         if self.boundary != Boundary::None || !self.scheme.kind().creases {
             return None;
@@ -135,9 +139,9 @@ impl VertexCounts {
     }
 }
 
-/// Converts the creases of `polygons` to the numbers of `mesh.to_polygons()`. Needed for structures
-/// that identify a vertex by its coordinates. If two edges or vertices have become one, the higher
-/// sharpness is used.
+/// Converts the creases of `polygons` to the numbers of `mesh.to_polygons()`. A structure that
+/// identifies a vertex by its coordinates can have other numbers than `polygons`. If two edges or
+/// two vertices have become one, the higher sharpness is used.
 pub fn renumbered<M: Representation>(
     mesh: &M,
     polygons: &PolygonMesh,

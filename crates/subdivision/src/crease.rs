@@ -1,8 +1,9 @@
 //! Sharpness: its effect on the points of a step, and the sharpness at the next level.
 //!
 //! The rules are the rules of DeRose, Kass & Truong (1998), with fractional sharpness. A step first
-//! places all points as if nothing were sharp. This module then places the points at sharp edges
-//! and vertices again. Every scheme and method uses the same rules.
+//! places all points as if no edge and no vertex were sharp. The code of this file then places the
+//! points at sharp edges and vertices again. All schemes with creases and all methods use these
+//! rules.
 //!
 //! ```text
 //!   sharp edges at a vertex       kind         new position

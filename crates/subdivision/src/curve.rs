@@ -11,34 +11,35 @@
 //!       a         b   (a + 6v + b)/8                  a         b
 //! ```
 //!
-//! The limit of the first method is the uniform cubic B-spline, which is C² (Lane & Riesenfeld
-//! 1980). The limit of the second method is the quadratic B-spline, which is C¹ (Riesenfeld 1975).
-//! Both limits lie in the convex hull of the polygon.
+//! The limit of "add edge midpoints, add struts" is the uniform cubic B-spline, which is C² (Lane &
+//! Riesenfeld 1980). The limit of "cut corners" is the quadratic B-spline, which is C¹ (Riesenfeld
+//! 1975). Both limits lie in the convex hull of the polygon.
 
 use sixfold_core::{MAX_ROWS, Point};
 
 use crate::error::CurveError;
 use crate::mask::midpoint;
 
-/// The treatment of the ends of a polygon, or of the rows of a grid.
+/// The treatment of the two ends of a polygon, or of the rows or columns of a grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Ends {
-    /// There are no ends: the last point is joined to the first.
+    /// The polygon is closed: the last point is joined to the first point.
     Closed,
-    /// The ends stay, like a boundary with fixed corners. The curve is computed as if the polygon
-    /// had one more point beyond each end. For the cubic B-spline, this point is the neighbour of
-    /// the end, mirrored at the end. For Chaikin, this point equals the end.
+    /// The ends keep their positions, like a boundary with fixed corners. The curve is computed as
+    /// if the polygon had one more point beyond each end. For the cubic B-spline, the additional
+    /// point is the neighbour of the end, reflected at the end. For Chaikin's curve, the additional
+    /// point equals the end.
     #[default]
     Kept,
-    /// The ends are dropped because they have only one neighbour. The limit is the B-spline of the
+    /// The ends are removed because an end has only one neighbour. The limit is the B-spline of the
     /// given points.
     Dropped,
 }
 
-/// Returns the points of a polygon after `levels` steps of "add midpoints, add struts". The points
-/// converge to the uniform cubic B-spline. O(points of the result).
+/// Refines a polygon with `levels` steps of "add midpoints, add struts", and returns the points.
+/// The points converge to the uniform cubic B-spline. Takes O(points of the result) time.
 ///
-/// From n points, a step makes:
+/// A step on n points returns:
 ///
 /// - 2n points if the polygon is closed
 /// - 2n − 1 points if the ends are kept
@@ -46,9 +47,9 @@ pub enum Ends {
 ///
 /// # Errors
 ///
-/// Returns an error for more than [`MAX_ROWS`] points in the result, or too few points in `points`.
-/// The minimum is 3 points if the polygon is closed, 2 points if the ends are kept, and 4 points if
-/// the ends are dropped.
+/// Returns an error if the result has more than [`MAX_ROWS`] points, or if `points` has too few
+/// points. The minimum is 3 points if the polygon is closed, 2 points if the ends are kept, and 4
+/// points if the ends are dropped.
 ///
 /// # Examples
 ///
@@ -71,15 +72,15 @@ pub fn cubic_b_spline(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<P
     )
 }
 
-/// Returns the points of a polygon after its corners are cut `levels` times. The points converge to
-/// the uniform quadratic B-spline (Chaikin 1974). O(points of the result).
+/// Cuts the corners of a polygon `levels` times, and returns the points. The points converge to the
+/// uniform quadratic B-spline (Chaikin 1974). Takes O(points of the result) time.
 ///
-/// From n points, a step makes 2n points, or 2n − 2 points if the ends are dropped.
+/// A step on n points returns 2n points, or 2n − 2 points if the ends are dropped.
 ///
 /// # Errors
 ///
-/// Returns an error for more than [`MAX_ROWS`] points in the result, or too few points in `points`.
-/// The minimum is 3 points, or 2 points if the ends are kept.
+/// Returns an error if the result has more than [`MAX_ROWS`] points, or if `points` has too few
+/// points. The minimum is 3 points, or 2 points if the ends are kept.
 pub fn chaikin(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<Point>, CurveError> {
     let (loss, least) = match ends {
         Ends::Closed => (0, 3),
@@ -91,10 +92,11 @@ pub fn chaikin(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<Point>, 
     })
 }
 
-/// Returns the point of the uniform cubic B-spline of `points` at the parameter `t`: the limit of
-/// [`cubic_b_spline`]. Control point i has the parameter i. O(1).
+/// Returns the point of the uniform cubic B-spline of `points` at the parameter `t`. The curve is
+/// the limit of [`cubic_b_spline`]. Control point i has the parameter i. Takes O(1) time.
 ///
-/// Returns `None` if there are too few points, or if `t` is outside the domain for n points:
+/// Returns `None` if there are too few points, or if `t` is outside the domain. The domain for n
+/// points is:
 ///
 /// - ends kept: from 0 to n − 1
 /// - ends dropped: from 1 to n − 2

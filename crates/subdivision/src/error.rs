@@ -48,13 +48,13 @@ pub enum SubdivisionError {
          vertex, or choose catmull-clark or loop"
     )]
     NonManifoldVertex { scheme: Scheme, vertex: VertexId },
-    /// The structure cannot be refined.
+    /// The structure cannot split its own tables for this mesh.
     #[error(transparent)]
     Refine(#[from] RefineError),
     /// There are more elements than 32-bit handles can number.
     #[error(transparent)]
     Polygons(#[from] PolygonError),
-    /// The structure cannot hold the refined mesh.
+    /// The structure cannot hold the mesh of a level.
     #[error("{structure} cannot hold level {level}: {refusal}")]
     Build {
         structure: &'static str,
@@ -63,29 +63,29 @@ pub enum SubdivisionError {
     },
 }
 
-/// The reason why points do not define a curve or a patch.
+/// The reason why the given points do not define a curve or a patch.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message explains each field")]
 pub enum CurveError {
-    /// A direction has too few points.
+    /// A curve, or a row or column of a patch, has too few points.
     #[error(
-        "{given} points are too few, because ends of this kind need at least {least}: add points, \
-         or keep the ends"
+        "{given} points are too few, because this treatment of the ends needs at least {least} \
+         points: add points, or keep the ends"
     )]
     TooFewPoints { given: usize, least: usize },
-    /// There are more points than 32-bit handles can number.
+    /// The result would have more points than 32-bit handles can number.
     #[error(
-        "{levels} levels of {given} points make too many points, because 32-bit handles allow at \
-         most {limit}: refine fewer levels"
+        "{levels} levels make too many points from {given} points, because 32-bit handles allow at \
+         most {limit} points: refine fewer levels"
     )]
     TooManyPoints {
         given: usize,
         levels: u32,
         limit: usize,
     },
-    /// The last row is incomplete.
-    #[error("{given} points do not fill rows of {columns}: add or remove points")]
+    /// The last row of the grid is incomplete.
+    #[error("{given} points do not fill rows of {columns} points: add or remove points")]
     RaggedGrid { given: usize, columns: usize },
 }
 
@@ -102,7 +102,7 @@ pub enum LocalError {
     /// A chosen face does not exist.
     #[error("face {face} does not exist: the mesh has {faces} faces, counted from 0")]
     MissingFace { face: FaceId, faces: usize },
-    /// A box has NaN or swapped bounds.
+    /// A bound of the box is NaN, or the lower bound is above the upper bound.
     #[error("{min} to {max} is not a box: give the lower coordinates first")]
     BadBox { min: Point, max: Point },
     /// An angle is outside 0 to 180 degrees.
@@ -114,7 +114,7 @@ pub enum LocalError {
     /// There are more elements than 32-bit handles can number.
     #[error(transparent)]
     Polygons(#[from] PolygonError),
-    /// The structure cannot hold the mesh.
+    /// The structure cannot hold the mesh of a level.
     #[error("{structure} cannot hold level {level}: {refusal}")]
     Build {
         structure: &'static str,

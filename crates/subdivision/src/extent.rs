@@ -1,14 +1,14 @@
-//! Computes the size of a refined mesh in advance.
+//! Computes the size of a subdivided mesh in advance.
 
 use sixfold_core::{Counts, PolygonMesh, Split};
 
 use crate::scheme::Scheme;
 use crate::subdivision::Subdivision;
 
-/// The size of a mesh: the numbers that determine the size at the next level.
+/// The size of a mesh, with the numbers that determine the size at the next level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Extent {
-    /// Numbers of vertices, edges, faces and corners.
+    /// The numbers of vertices, edges, faces and corners.
     pub counts: Counts,
     /// Number of edges with one face.
     pub boundary_edges: usize,
@@ -21,7 +21,7 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// Returns the extent of `polygons`; O(corners) expected.
+    /// Returns the size of `polygons`. Takes O(corners) expected time.
     pub fn from_polygons(polygons: &PolygonMesh) -> Self {
         let mut corners = vec![0_usize; polygons.vertex_count()];
         for v in polygons.faces().corners() {
@@ -101,12 +101,13 @@ impl Extent {
 }
 
 impl Subdivision {
-    /// Returns the extent of a mesh after step `level`; O(1). The first step has level 0.
+    /// Returns the size of a mesh after step `level`, where the first step has level 0. Takes O(1)
+    /// time.
     ///
-    /// The sizes are exact for manifolds. They include faces that the boundary rule leaves out
-    /// later. For Catmull–Clark, Loop, bilinear and midpoint, the numbers of vertices, edges and
-    /// faces are also exact if an edge has three or more faces. Sizes above `usize::MAX` saturate.
-    /// A Doo–Sabin result is reported with mixed degrees.
+    /// The sizes are exact for manifolds. The sizes include the faces that the boundary rule leaves
+    /// out later. For Catmull–Clark, Loop, bilinear and midpoint, the numbers of vertices, edges
+    /// and faces are also exact if an edge has three or more faces. A size above `usize::MAX` is
+    /// reported as `usize::MAX`. The result of a Doo–Sabin step is reported with mixed degrees.
     pub fn refined_extent(&self, extent: &Extent, level: u32) -> Extent {
         match self.split(level) {
             Some(split) => extent.face_split(split),

@@ -8,13 +8,14 @@ use crate::scheme::Method;
 use crate::step::Step;
 use crate::subdivision::Subdivision;
 
-/// Runs `levels` steps. A structure of type `M` is built for each step. Calls `watch` with the
-/// level and its number of faces after every step. With 0 levels, returns the mesh itself.
+/// Runs `levels` steps of a scheme. A structure of type `M` is built for each step. After each
+/// step, calls `watch` with the level and the number of faces of the level. With 0 levels, returns
+/// the mesh without a change.
 ///
 /// # Errors
 ///
 /// Returns an error if the scheme cannot split the mesh, or if `M` cannot hold the mesh. Returns
-/// [`SubdivisionError::NoMethod`] for [`Method::Native`]: use [`subdivide_native`].
+/// [`SubdivisionError::NoMethod`] for [`Method::Native`]; [`subdivide_native`] runs this method.
 pub fn subdivide<M: Representation>(
     subdivision: &Subdivision,
     method: Method,
@@ -59,7 +60,7 @@ pub fn subdivide<M: Representation>(
 
 /// Runs `levels` steps in the tables of a structure of type `M`, which is built once. With the
 /// feature `rayon`, steps use the threads of the current rayon pool. The result equals the result
-/// of [`subdivide`], except that faces and edge points have the order of the structure.
+/// of [`subdivide`], but faces and edge points have the order of the structure.
 ///
 /// # Errors
 ///
@@ -101,10 +102,12 @@ pub fn subdivide_native<M: Refine>(
     Ok(without_faces(Step { polygons, creases }, left_out))
 }
 
+/// Builds a structure of type `M` from the polygons of a level.
 ///
 /// # Errors
 ///
-/// Returns [`SubdivisionError::Build`] with the reason and the level. The control mesh has level 0.
+/// Returns [`SubdivisionError::Build`] with the level, and with the reason why `M` cannot hold the
+/// mesh. The control mesh has level 0.
 pub fn build_level<M: Representation>(
     polygons: &PolygonMesh,
     level: u32,

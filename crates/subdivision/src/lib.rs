@@ -1,8 +1,8 @@
-//! Subdivision schemes. The code of each scheme runs on any structure, by up to three methods.
+//! Subdivision schemes. The code of each scheme runs on any mesh structure, by up to three methods.
 //!
-//! - [`Scheme`]: the schemes. [`Kind`]: the classification of a scheme.
-//! - [`Subdivision`]: a scheme with its options. Runs one step by [`gather`](Subdivision::gather),
-//!   [`scatter`](Subdivision::scatter) or [`refine_into`](Subdivision::refine_into).
+//! - [`Scheme`]: the list of schemes. [`Kind`]: the properties of a scheme.
+//! - [`Subdivision`]: a scheme with its options. [`gather`](Subdivision::gather),
+//!   [`scatter`](Subdivision::scatter) and [`refine_into`](Subdivision::refine_into) run one step.
 //! - [`subdivide`], [`subdivide_native`]: several steps from polygons to polygons.
 //! - [`Extent`]: the size of the result, computed in advance.
 //! - [`limit`](Subdivision::limit): the limit positions and normals of the vertices, as
@@ -11,8 +11,8 @@
 //!   tensor-product patches.
 //! - [`refine_locally`]: splits the triangles of a [`Selection`] and keeps the mesh conforming.
 //!
-//! Each scheme has its weights in its own file. A later pass, in `crease.rs`, places the points at
-//! sharp edges and vertices for all schemes and methods.
+//! Each scheme has its weights in its own file. The file `crease.rs` computes the points at sharp
+//! edges and vertices, for all schemes with creases and all methods.
 
 mod bilinear;
 mod butterfly;

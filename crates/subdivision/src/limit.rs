@@ -2,8 +2,8 @@
 //! levels.
 //!
 //! A step multiplies the neighbourhood of a vertex by a matrix. The matrix has the same left
-//! eigenvectors at every level. The eigenvector of the eigenvalue 1 gives the limit position. The
-//! eigenvectors of the next two eigenvalues give tangents.
+//! eigenvectors at every level. The left eigenvector of the eigenvalue 1 gives the limit position.
+//! The left eigenvectors of the next two eigenvalues give tangents.
 //!
 //! ```text
 //!   smooth, Catmull–Clark       smooth, Loop          crease            corner
@@ -31,28 +31,28 @@ use crate::tangent::{Fan, Surface, far_corner, normal, rounding};
 /// The limit of a vertex after infinitely many levels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitPoint {
-    /// The neighbourhood of the vertex gives the limit.
+    /// The limit exists, and the neighbourhood of the vertex gives its position.
     Defined {
         /// The position on the limit surface.
         position: Point,
         /// The normal of the limit surface.
         normal: LimitNormal,
     },
-    /// No mask gives the limit at this level.
+    /// No mask gives the limit of the vertex at this level.
     Undefined(NoLimit),
 }
 
-/// The normal of the limit surface at a vertex. Normals have length 1. From the side to which the
-/// normal points, faces run counter-clockwise.
+/// The normal of the limit surface at a vertex. Normals have length 1. Seen from the side to which
+/// the normal points, faces run counter-clockwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitNormal {
-    /// One normal.
+    /// The vertex has one normal.
     One(Point),
     /// A crease passes through the vertex, and each side of the crease has its own normal. The two
-    /// crease edges lead to two neighbours. The first normal belongs to the faces that follow
-    /// counter-clockwise after the neighbour with the lower number.
+    /// edges of the crease lead to two neighbours. The first normal belongs to the faces that
+    /// follow counter-clockwise after the neighbour with the lower number.
     TwoSides([Point; 2]),
-    /// No mask gives a normal. The possible reasons are:
+    /// No mask gives a normal for the vertex. The possible reasons are:
     ///
     /// - The vertex is a corner with several faces.
     /// - An adjacent face is not a quad (Catmull–Clark only).
@@ -66,17 +66,18 @@ pub enum LimitNormal {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum NoLimit {
-    /// The vertex or one of its edges has finite sharpness. The limit is defined at a later level.
+    /// The vertex or one of its edges has a sharpness above 0 that is not infinite. The limit is
+    /// defined at a later level.
     SemiSharp,
     /// A face at the vertex is not a quad, and the Catmull–Clark mask needs quads. The limit is
-    /// defined at the next level.
+    /// defined after the next step.
     NotAllQuads,
-    /// Exactly one crease edge meets the vertex. There is no limit mask for this case.
+    /// Exactly one crease edge ends at the vertex. The crate has no limit mask for this case.
     Dart,
 }
 
 impl LimitPoint {
-    /// Returns the limit position, if it is defined.
+    /// Returns the limit position, or `None` if the limit is undefined.
     pub fn position(self) -> Option<Point> {
         match self {
             Self::Defined { position, .. } => Some(position),
@@ -84,7 +85,8 @@ impl LimitPoint {
         }
     }
 
-    /// Returns the normal, if it is defined. On a crease, returns the mean of both sides.
+    /// Returns the normal, or `None` if the normal is undefined. On a crease, returns the mean of
+    /// the normals of both sides.
     pub fn normal(self) -> Option<Point> {
         match self {
             Self::Defined { normal, .. } => match normal {
@@ -105,17 +107,16 @@ impl Subdivision {
     /// Returns the limit of each vertex of `mesh` after infinitely many levels, for Catmull–Clark
     /// and Loop.
     ///
-    /// `creases` are the creases of `mesh.to_polygons()`. They come from
-    /// [`control_creases`](Self::control_creases) or from the step that made the mesh. Next to
-    /// faces that are not quads, Catmull–Clark has limits only on creases and at corners. After one
-    /// step, all faces are quads. Takes O(valence log valence) per vertex, plus the costs of EF,
-    /// VV, VF and FV.
-    /// VV, VF and FV.
+    /// `creases` are the creases of `mesh.to_polygons()`, from
+    /// [`control_creases`](Self::control_creases) or from the step that made the mesh. At a face
+    /// that is not a quad, Catmull–Clark has limits only on creases and at corners. After one step,
+    /// all faces are quads. Each vertex takes O(valence log valence) time, plus the costs of the
+    /// queries EF, VV, VF and FV.
     ///
     /// # Errors
     ///
-    /// Returns [`SubdivisionError::NoLimit`] for other schemes. Returns
-    /// [`SubdivisionError::NotATriangle`] for a face that Loop cannot split.
+    /// Returns [`SubdivisionError::NoLimit`] for schemes other than Catmull–Clark and Loop. Returns
+    /// [`SubdivisionError::NotATriangle`] if the scheme is Loop and a face is not a triangle.
     pub fn limit<M: MeshQuery>(
         &self,
         mesh: &M,

@@ -1,9 +1,10 @@
-//! Local refinement: splits only chosen triangles, and the other triangles that must be split to
-//! keep the mesh conforming. In a conforming mesh, no corner lies inside a side.
+//! Local refinement: splits the chosen triangles and the other triangles that must be split to keep
+//! the mesh conforming. In a conforming mesh, no corner lies inside a side.
 //!
-//! Red-green refinement after Bank, Sherman & Weiser (1983). A chosen face becomes *red*: it is
-//! split in four. A face with two or three split sides also becomes red, until there are no more
-//! such faces. A face with one split side becomes *green*: it is split in two halves.
+//! Red-green refinement after Bank, Sherman & Weiser (1983). A chosen face becomes *red*, which
+//! means that the face is split in four. A face with two or three split sides also becomes red,
+//! until no more faces change. A face with one split side becomes *green*, which means that the
+//! face is split in two halves.
 //!
 //! ```text
 //!    red             green            green that must be split again: its parent becomes red
@@ -15,9 +16,9 @@
 //!  a───m───b        a───m───b               a─x─m───b                 a─x─m───b   (a, m, q) is green
 //! ```
 //!
-//! Every face therefore has the shape of a face of the first mesh, or of half of such a face. So
-//! the angles do not become smaller with each level. New vertices are midpoints of edges; old
-//! vertices do not move.
+//! Every face therefore has the shape of a face of the first mesh, or the shape of half of such a
+//! face. So the angles do not become smaller with each level. New vertices are midpoints of edges;
+//! old vertices do not move.
 
 use sixfold_core::{
     EdgeMap, FaceId, FaceList, MAX_ROWS, MeshQuery, Numbers, Point, PolygonError, PolygonMesh,
@@ -31,14 +32,18 @@ use crate::select::{Selection, triangle};
 /// Runs `levels` steps of local refinement. A structure of type `M` is built for each step.
 ///
 /// If the selection is a list of faces, the parts of these faces are chosen at the next level. A
-/// box or an angle selects faces again at every level. Takes O(faces) per level, plus the costs of
-/// FE, EF and FV.
-/// FE, EF and FV.
+/// box or an angle selects faces again at every level. Each level takes O(faces) time, plus the
+/// costs of the queries FE, EF and FV.
 ///
 /// # Errors
 ///
-/// Returns an error for an invalid selection, a face that is not a triangle, an edge that is too
-/// short to be halved, more faces than a 32-bit handle can number, or a mesh that `M` cannot hold.
+/// Returns an error in these cases:
+///
+/// - The selection is invalid.
+/// - A face is not a triangle.
+/// - An edge is too short to be halved.
+/// - There are more faces than a 32-bit handle can number.
+/// - `M` cannot hold the mesh.
 ///
 /// # Examples
 ///
@@ -78,13 +83,14 @@ pub fn refine_locally<M: Representation>(
     Ok(local)
 }
 
-/// A triangle mesh after local refinement, with the origin of each face.
+/// A triangle mesh after local refinement. [`origins`](Self::origins) returns for each face the
+/// face of the first mesh that contains it.
 ///
 /// # Invariants
 ///
 /// - L1  Every face is a triangle.
-/// - L2  Green faces come in pairs, one after the other: (a, m, c) and (m, b, c), the halves of
-///   (a, b, c).
+/// - L2  Green faces are the two halves of a split face. The halves of a face (a, b, c) are the
+///   consecutive faces (a, m, c) and (m, b, c).
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocalMesh {
     polygons: PolygonMesh,
@@ -128,19 +134,20 @@ impl LocalMesh {
         Ok(Self { polygons, kinds })
     }
 
-    /// Returns the mesh. The vertices of the previous mesh come first, then the midpoints. The
-    /// parts of a face are consecutive.
+    /// Returns the polygons of the refined mesh. The vertices of the previous mesh come first, then
+    /// the midpoints. The parts of a face are consecutive.
     pub fn polygons(&self) -> &PolygonMesh {
         &self.polygons
     }
 
-    /// Returns for each face the face of the first mesh that contains it.
+    /// Returns for each face the face of the first mesh that contains this face.
     pub fn origins(&self) -> impl ExactSizeIterator<Item = FaceId> {
         self.kinds.iter().map(|kind| kind.origin)
     }
 
-    /// Returns whether `f` is half of a face. A half is not split. Instead, the two halves are
-    /// joined again, and the whole face is split in four.
+    /// Returns whether `f` is green, which means that `f` is half of a split face. A later step
+    /// does not split a half. Instead, the two halves are joined again, and the whole face is split
+    /// in four.
     ///
     /// # Panics
     ///
@@ -149,7 +156,7 @@ impl LocalMesh {
         self.kinds[f.index()].half.is_some()
     }
 
-    /// Returns the parts of the faces that were chosen in the last step.
+    /// Returns the new faces that are parts of the faces chosen in the last step.
     pub fn chosen_parts(&self) -> Vec<FaceId> {
         let kinds = (0..).map(FaceId::new).zip(&self.kinds);
         let chosen = kinds.filter(|(_, kind)| kind.chosen);
@@ -159,12 +166,12 @@ impl LocalMesh {
     /// Runs one step: splits the faces `chosen`, and other faces to keep the mesh conforming.
     /// `mesh` is any structure that was built from [`polygons`](Self::polygons). `chosen` contains
     /// face numbers in the order of the mesh. If an edge has more than two faces, the rules apply
-    /// to all these faces.
+    /// to all faces of the edge.
     ///
     /// # Errors
     ///
-    /// Returns an error for a face that does not exist, an edge that is too short to be halved, or
-    /// more faces than a 32-bit handle can number.
+    /// Returns an error for a face that does not exist, for an edge that is too short to be halved,
+    /// or if there are more faces than a 32-bit handle can number.
     ///
     /// # Panics
     ///

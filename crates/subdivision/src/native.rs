@@ -1,6 +1,6 @@
 //! Native: the structure splits its own tables, and the new points are computed with queries.
 //!
-//! The structure is not built again: [`Refine`] defines the place of each new record. Points are
+//! The structure is not built again: [`Refine`] defines the row of each new element. Points are
 //! computed independently of each other, with the queries and rules of a gather. So the points are
 //! the same on any number of threads.
 

@@ -1,6 +1,6 @@
-//! The options besides the scheme.
+//! The options of a scheme.
 
-/// The treatment of the boundary.
+/// The treatment of the boundary of the mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -9,14 +9,14 @@
 )]
 #[non_exhaustive]
 pub enum Boundary {
-    /// Boundary edges and vertices with exactly one face are infinitely sharp.
+    /// Boundary edges are infinitely sharp, and so are vertices with exactly one face.
     #[default]
     EdgeAndCorner,
-    /// Boundary edges are infinitely sharp. The boundary becomes a B-spline curve with rounded
-    /// corners.
+    /// Boundary edges are infinitely sharp. The boundary becomes a B-spline curve, which rounds the
+    /// corners of the mesh.
     EdgeOnly,
     /// Faces at a boundary vertex are left out of the result, unless all boundary edges of the
-    /// vertex have infinite sharpness in the input. The faces that are left out still influence the
+    /// vertex have infinite sharpness in the input. A face that is left out still influences the
     /// adjacent faces.
     None,
 }
@@ -25,7 +25,7 @@ impl Boundary {
     /// All boundary rules.
     pub const ALL: [Self; 3] = [Self::EdgeAndCorner, Self::EdgeOnly, Self::None];
 
-    /// Returns the name on the command line and in files.
+    /// Returns the name of the rule on the command line and in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::EdgeAndCorner => "edge-and-corner",
@@ -35,7 +35,7 @@ impl Boundary {
     }
 }
 
-/// The rule for the sharpness of the halves of an edge.
+/// The rule that computes the sharpness of the two halves of an edge after a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -47,9 +47,9 @@ pub enum Creasing {
     /// Each half gets the sharpness of the edge minus 1.
     #[default]
     Uniform,
-    /// The half at an end gets 3/4 of the sharpness of the edge, plus 1/4 of the mean of the other
-    /// semi-sharp edges at this end, minus 1. Sharpness then varies along a crease like Chaikin's
-    /// curve.
+    /// The half at an end gets 3/4 of the sharpness of the edge, plus 1/4 of the mean sharpness of
+    /// the other semi-sharp edges at this end, minus 1. Sharpness then varies along a crease like
+    /// the points of Chaikin's curve.
     Chaikin,
 }
 
@@ -57,7 +57,7 @@ impl Creasing {
     /// Both rules.
     pub const ALL: [Self; 2] = [Self::Uniform, Self::Chaikin];
 
-    /// Returns the name on the command line and in files.
+    /// Returns the name of the rule on the command line and in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Uniform => "uniform",
@@ -78,7 +78,7 @@ pub enum LoopWeights {
     /// The weights of Loop (1987).
     #[default]
     Loop,
-    /// The weights of Warren (1995): 3/(8n), and 3/16 at valence 3.
+    /// The weights of Warren (1995): 3/(8n) for valence n, but 3/16 for valence 3.
     Warren,
 }
 
@@ -86,7 +86,7 @@ impl LoopWeights {
     /// Both sets of weights.
     pub const ALL: [Self; 2] = [Self::Loop, Self::Warren];
 
-    /// Returns the name on the command line and in files.
+    /// Returns the name of the weights on the command line and in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Loop => "loop",

@@ -1,7 +1,7 @@
 //! Tensor-product B-spline patches: curves along the rows and columns of a grid of control points.
 //!
-//! Catmull & Clark (1978) start from such patches: a step of the bicubic patch puts a point on
-//! every face, edge and vertex of the grid.
+//! Catmull & Clark (1978) derive their scheme from bicubic patches. A step of a bicubic patch puts
+//! a point on every face, edge and vertex of the grid.
 //!
 //! ```text
 //!   a ─── e ─── b      face point     f   (a + b + c + d)/4
@@ -12,7 +12,8 @@
 //! ```
 //!
 //! The three rules are products of the two rules of a curve: the midpoint (1, 1)/2 and the strut
-//! (1, 6, 1)/8. A step therefore runs a curve step along every row, and then along every column.
+//! (1, 6, 1)/8. A step of the patch therefore runs a step of a curve along every row, and then
+//! along every column.
 
 use sixfold_core::{FaceList, MAX_ROWS, Point, PolygonError, PolygonMesh, VertexId};
 
@@ -21,16 +22,17 @@ use crate::error::CurveError;
 
 /// Control points in rows, and the uniform bicubic B-spline patch that they define.
 ///
-/// With [`Ends::Dropped`] in both directions, m × n points define (m − 3) × (n − 3) bicubic pieces,
-/// and the grid shrinks towards them. With [`Ends::Kept`], the four corners do not move. The
-/// boundary then consists of B-spline curves between the corners, like Catmull–Clark with
-/// `edge-and-corner`. [`Ends::Closed`] makes tubes and tori.
+/// With [`Ends::Dropped`] in both directions, m × n control points define (m − 3) × (n − 3) bicubic
+/// pieces, and each step shrinks the grid towards these pieces. With [`Ends::Kept`] in both
+/// directions, the four corners do not move, and the boundary consists of B-spline curves between
+/// the corners. Catmull–Clark with the boundary rule `edge-and-corner` has the same boundary.
+/// [`Ends::Closed`] makes tubes and tori.
 ///
 /// # Invariants
 ///
 /// - G1  Every row has the same number of points.
-/// - G2  The minimum number of points in a row or column is 2 for kept ends, 3 for closed ends, and
-///   4 for dropped ends.
+/// - G2  A row or column has at least 2 points if its ends are kept, 3 points if its ends are
+///   closed, and 4 points if its ends are dropped.
 ///
 /// # Examples
 ///
@@ -53,12 +55,12 @@ pub struct ControlGrid {
 }
 
 impl ControlGrid {
-    /// Builds a grid from rows of `columns` points, row after row. `ends` contains the ends of the
-    /// rows, then the ends of the columns.
+    /// Builds a grid from `points`, row after row, with `columns` points in a row. `ends` contains
+    /// the treatment of the ends of the rows, then of the ends of the columns.
     ///
     /// # Errors
     ///
-    /// Returns an error if the last row is incomplete, or if a direction has too few points.
+    /// Returns an error if the last row is incomplete, or if a row or a column has too few points.
     pub fn new(
         columns: usize,
         points: impl Into<Vec<Point>>,
@@ -102,11 +104,11 @@ impl ControlGrid {
         &self.points
     }
 
-    /// Returns the grid after `levels` steps. O(points of the result).
+    /// Returns the grid after `levels` steps. Takes O(points of the result) time.
     ///
     /// # Errors
     ///
-    /// Returns an error for more than [`MAX_ROWS`] points in the result.
+    /// Returns an error if the result has more than [`MAX_ROWS`] points.
     pub fn refined(&self, levels: u32) -> Result<Self, CurveError> {
         let mut sizes = [self.columns, self.rows()];
         // Checked before the first step. Sizes grow with every level (G2), so this loop ends early.
@@ -154,14 +156,16 @@ impl ControlGrid {
         }
     }
 
-    /// Returns the point of the patch at (`u`, `v`): the limit of [`refined`](Self::refined). The
-    /// control point in column i of row j has the parameters (i, j). O(rows).
+    /// Returns the point of the patch at the parameters (`u`, `v`). This point lies on the limit of
+    /// [`refined`](Self::refined). The control point in column i of row j has the parameters (i,
+    /// j). Takes O(rows) time.
     ///
-    /// Returns `None` for parameters outside the domain of a direction with n points:
+    /// Returns `None` if a parameter is outside its domain. The domain of a direction with n points
+    /// is:
     ///
     /// - ends kept: from 0 to n − 1
     /// - ends dropped: from 1 to n − 2
-    /// - ends joined: every parameter, because the patch is periodic
+    /// - ends closed: every parameter, because the patch is periodic
     pub fn evaluate(&self, u: f64, v: f64) -> Option<Point> {
         let [of_rows, of_columns] = self.ends;
         let rows = self.points.chunks(self.columns);
@@ -170,14 +174,15 @@ impl ControlGrid {
         cubic_b_spline_at(&column?, of_columns, v)
     }
 
-    /// Returns the first and the last parameter along the rows, then along the columns.
+    /// Returns the lowest and the highest parameter along the rows, then along the columns.
     pub fn domain(&self) -> [(f64, f64); 2] {
         let sizes = [self.columns, self.rows()];
         std::array::from_fn(|direction| cubic_domain(sizes[direction], self.ends[direction]))
     }
 
-    /// Returns the grid as quads. They are counter-clockwise if rows run to the right and columns
-    /// run up. Vertex j · columns + i is the point in column i of row j. O(points).
+    /// Returns the grid as a mesh of quads. The quads are counter-clockwise if rows run to the
+    /// right and columns run up. The point in column i of row j becomes vertex j · `columns` + i.
+    /// Takes O(points) time.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! The schemes and their classification.
+//! The subdivision schemes and their properties.
 
 use std::fmt;
 
@@ -8,15 +8,15 @@ use sixfold_core::Split;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum Scheme {
-    /// Catmull & Clark (1978).
+    /// The scheme of Catmull & Clark (1978).
     CatmullClark,
-    /// Loop (1987).
+    /// The scheme of Loop (1987).
     Loop,
-    /// Kobbelt (2000).
+    /// The √3 scheme of Kobbelt (2000).
     Sqrt3,
-    /// Zorin, Schröder & Sweldens (1996).
+    /// The modified butterfly scheme of Zorin, Schröder & Sweldens (1996).
     Butterfly,
-    /// Doo & Sabin (1978).
+    /// The scheme of Doo & Sabin (1978).
     DooSabin,
     /// Splits every triangle into four at the midpoints of its edges.
     Midpoint,
@@ -38,31 +38,32 @@ pub enum Primitive {
     VertexSplit,
 }
 
-/// The classification of a scheme.
+/// The properties of a scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Kind {
-    /// The elements that are split.
+    /// Whether a step splits faces or vertices.
     pub primitive: Primitive,
-    /// The accepted input: `triangles` or `polygons`.
+    /// The faces of the input: `triangles` or `polygons`.
     pub takes: &'static str,
-    /// The output: `triangles`, `quads`, or `polygons`.
+    /// The faces of the output: `triangles`, `quads` or `polygons`.
     pub makes: &'static str,
-    /// Whether old vertices keep their positions.
+    /// True if the vertices of the input keep their positions.
     pub interpolating: bool,
     /// The smoothness of the limit surface at regular vertices and at extraordinary vertices.
     pub continuity: &'static str,
-    /// The factor by which the number of faces grows per step, after several steps.
+    /// The factor by which one step multiplies the number of faces, after several steps.
     pub growth: &'static str,
-    /// The behaviour at boundaries.
+    /// The behaviour of the scheme at boundaries.
     pub boundary: &'static str,
-    /// Whether the scheme has rules for creases.
+    /// True if the scheme has rules for creases.
     pub creases: bool,
-    /// The split of faces in the tables of a structure; `None` if the scheme does not split faces.
+    /// How the faces are split in the tables of a structure; `None` if the scheme does not split
+    /// faces.
     pub split: Option<Split>,
-    /// Whether the scheme can run as one pass over the faces.
+    /// True if the scheme can run as one pass over the faces.
     pub scatter: bool,
-    /// The publication.
+    /// The publication that describes the scheme.
     pub source: &'static str,
 }
 
@@ -78,7 +79,8 @@ impl Scheme {
         Self::Bilinear,
     ];
 
-    /// Returns the name on the command line and in files, for example `catmull-clark`.
+    /// Returns the name of the scheme on the command line and in files, for example
+    /// `catmull-clark`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::CatmullClark => "catmull-clark",
@@ -96,7 +98,7 @@ impl Scheme {
         Self::ALL.into_iter().find(|scheme| scheme.name() == name)
     }
 
-    /// Returns the classification.
+    /// Returns the properties of the scheme.
     pub const fn kind(self) -> Kind {
         const BASE: Kind = Kind {
             primitive: Primitive::FaceSplit,
@@ -184,7 +186,7 @@ impl serde::Serialize for Scheme {
     }
 }
 
-/// A way to run a scheme. All methods give the same mesh.
+/// A way to run a scheme. All methods give the same mesh, except for the order of its elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -192,12 +194,13 @@ impl serde::Serialize for Scheme {
     serde(rename_all = "kebab-case")
 )]
 pub enum Method {
-    /// Queries VV, VF and EF for the neighbourhood of every new point.
+    /// Computes each new point with queries of its neighbourhood (VV, VF and EF).
     Gather,
-    /// Runs one pass over the faces and adds their values to data at vertices and edges. Queries
-    /// only FV and FE.
+    /// Runs one pass over the faces and adds the values of each face to its vertices and edges.
+    /// Queries only the vertices and edges of each face (queries FV and FE).
     Scatter,
-    /// Computes points with queries. The structure splits its own tables and is not built again.
+    /// Computes each new point with queries. The structure splits its own tables, and no new
+    /// structure is built.
     Native,
 }
 
@@ -205,7 +208,7 @@ impl Method {
     /// All methods.
     pub const ALL: [Self; 3] = [Self::Gather, Self::Scatter, Self::Native];
 
-    /// Returns the name on the command line and in files.
+    /// Returns the name of the method on the command line and in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Gather => "gather",

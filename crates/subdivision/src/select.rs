@@ -4,25 +4,26 @@ use sixfold_core::{FaceId, MeshQuery, Point};
 
 use crate::error::LocalError;
 
-/// A selection of faces of a triangle mesh.
+/// A selection of faces of a triangle mesh, for [`refine_locally`](crate::refine_locally).
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Selection {
-    /// These faces. At later levels, the parts of these faces.
+    /// The faces with these numbers. At later levels, the parts of these faces are selected.
     Faces(Vec<FaceId>),
     /// The faces that share at least one point with a box. The surface of the box belongs to the
-    /// box, and a box inside a face selects the face. Bounds may be infinite. The box selects faces
-    /// again at every level.
+    /// box. A box that lies inside a face selects the face. The bounds may be infinite. The box
+    /// selects faces again at every level.
     Box {
-        /// The minimum coordinates.
+        /// The minimum coordinates of the box.
         min: Point,
-        /// The maximum coordinates.
+        /// The maximum coordinates of the box.
         max: Point,
     },
-    /// The faces at sharp folds. At a fold, the angle between the normals of two adjacent faces is
-    /// above this angle in degrees, from 0 to 180. Faces at edges with three or more faces are
-    /// selected too. Faces without area are ignored. The angle selects faces again at every level.
-    /// New points lie on the old faces, so the faces at the same folds are selected again.
+    /// The faces at folds. At a fold, the angle between the normals of two adjacent faces is
+    /// greater than this angle. The angle is in degrees, from 0 to 180. Faces at an edge with three
+    /// or more faces are also selected. Two adjacent faces are not a fold if one of them has no
+    /// area. The angle selects faces again at every level. New points lie on the old faces, so the
+    /// faces at the same folds are selected again.
     Angle(f32),
 }
 
@@ -31,8 +32,8 @@ impl Selection {
     ///
     /// # Errors
     ///
-    /// Returns an error for a face that does not exist, a box with NaN or swapped bounds, or an
-    /// angle outside 0 to 180 degrees.
+    /// Returns an error for a face that does not exist, for a box with a NaN bound or with a lower
+    /// bound above the upper bound, and for an angle outside 0 to 180 degrees.
     pub fn check(&self, faces: usize) -> Result<(), LocalError> {
         match self {
             Self::Faces(list) => Self::check_faces(list, faces),
@@ -51,12 +52,12 @@ impl Selection {
         }
     }
 
-    /// Returns the numbers of the selected faces, in the order of [`MeshQuery::faces`]. O(faces),
-    /// or O(edges) for an angle, plus the costs of FV and EF.
+    /// Returns the numbers of the selected faces, in the order of [`MeshQuery::faces`]. Takes
+    /// O(faces) time, or O(edges) time for an angle, plus the costs of the queries FV and EF.
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`check`](Self::check), and an error for a face that is not a
+    /// Returns the errors of [`check`](Self::check). Also returns an error for a face that is not a
     /// triangle.
     pub fn faces<M: MeshQuery>(&self, mesh: &M) -> Result<Vec<FaceId>, LocalError> {
         self.check(mesh.face_count())?;

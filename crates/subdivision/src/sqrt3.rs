@@ -1,6 +1,6 @@
 //! √3: splits every triangle into three; approximating, C² except at extraordinary vertices.
 //!
-//! Kobbelt (2000). A step adds a face point in each triangle, then flips every old inner edge. A
+//! Kobbelt (2000). A step adds a face point in each triangle, then flips every old inner edge. So a
 //! step triples the number of faces. Two steps cut each old edge in three and each triangle in
 //! nine.
 //!
@@ -13,16 +13,17 @@
 //!    a ─────── b        a ─────── b        α = (4 − 2 cos(2π/n))/9
 //! ```
 //!
-//! Boundary edges are not flipped. Steps 1, 3, … leave boundary edges and vertices unchanged. Steps
-//! 2, 4, … cut boundary edges in three, by the mask of a cubic B-spline curve:
+//! Boundary edges are not flipped. The odd steps (1, 3, …) leave boundary edges and vertices
+//! unchanged. The even steps (2, 4, …) cut boundary edges in three, by the mask of a cubic B-spline
+//! curve:
 //!
 //! ```text
 //!    p₀ ──── p₁ ──── p₂           p₁ ↦ (4 p₀ + 19 p₁ + 4 p₂)/27
 //!        •  •  •  •               before it (10 p₀ + 16 p₁ + p₂)/27, after it (p₀ + 16 p₁ + 10 p₂)/27
 //! ```
 //!
-//! A boundary vertex with more than two boundary edges does not move. A new point next to this
-//! vertex is at a third of its edge. An isolated vertex does not move.
+//! A boundary vertex with more than two boundary edges does not move. A new point next to such a
+//! vertex lies at a third of its edge. An isolated vertex does not move.
 
 use std::f64::consts::TAU;
 

@@ -10,9 +10,9 @@ pub struct Step {
     /// The refined mesh. The parts of one face are consecutive.
     ///
     /// After a face split, the vertices are the old vertices, then the face points, then the edge
-    /// points, each in the order of the old structure. After a vertex split, the vertices are the
-    /// corners of the old faces. The faces come first from old faces, then from old edges, then
-    /// from old vertices.
+    /// points. Each of these groups has the order of the old structure. After a vertex split, the
+    /// vertices are the corners of the old faces. The faces come first from old faces, then from
+    /// old edges, then from old vertices.
     pub polygons: PolygonMesh,
     /// The creases of [`polygons`](Self::polygons).
     pub creases: Creases,

@@ -30,16 +30,17 @@ macro_rules! by_mask {
 pub struct Subdivision {
     /// The scheme.
     pub scheme: Scheme,
-    /// The treatment of the boundary, for Catmull–Clark and Loop.
+    /// The treatment of the boundary. Only Catmull–Clark and Loop use this option.
     pub boundary: Boundary,
-    /// The rule for the sharpness of the halves of an edge, for Catmull–Clark and Loop.
+    /// The rule for the sharpness of the two halves of an edge. Only Catmull–Clark and Loop use
+    /// this option.
     pub creasing: Creasing,
-    /// The weights of extraordinary vertices, for Loop.
+    /// The weights of extraordinary vertices. Only Loop uses this option.
     pub loop_weights: LoopWeights,
 }
 
 impl Subdivision {
-    /// Builds `scheme` with the default options.
+    /// Returns `scheme` with the default options.
     pub fn new(scheme: Scheme) -> Self {
         Self {
             scheme,
@@ -49,9 +50,9 @@ impl Subdivision {
         }
     }
 
-    /// Runs one step with queries for each new point.
+    /// Runs one step that computes each new point with queries.
     ///
-    /// `creases` are the creases of `mesh.to_polygons()`. They come from
+    /// `creases` are the creases of `mesh.to_polygons()`, from
     /// [`control_creases`](Self::control_creases) or from the previous step. `level` is the number
     /// of previous steps.
     ///
@@ -72,7 +73,7 @@ impl Subdivision {
         })
     }
 
-    /// Runs one step with one pass over the faces. The result equals the result of
+    /// Runs one step as one pass over the faces. The result equals the result of
     /// [`gather`](Self::gather), except for the order of the edge points. The edge points have the
     /// order in which the faces list the edges.
     ///
@@ -95,15 +96,16 @@ impl Subdivision {
     }
 
     /// Runs one step in the tables of the structure, stores the result in `child`, and returns the
-    /// creases of `child`. The tables of `child` are reused if they are large enough. Runs on the
-    /// threads of the current rayon pool. The result has the same bytes on any number of threads.
+    /// creases of `child`. The tables of `child` are reused if the tables are large enough. The
+    /// step runs on the threads of the current rayon pool. The result has the same bytes for any
+    /// number of threads.
     ///
-    /// This function overwrites `numbers`. `numbers` may be reused for other meshes.
+    /// The step overwrites `numbers`, so `numbers` may come from another mesh.
     ///
     /// # Errors
     ///
     /// Returns an error if the scheme cannot split the mesh, or if the structure cannot split its
-    /// own tables. If there is an error, `child` is unchanged.
+    /// own tables. After an error, `child` is unchanged.
     pub fn refine_into<M: Refine>(
         &self,
         mesh: &M,
@@ -120,8 +122,8 @@ impl Subdivision {
         })
     }
 
-    /// Returns how step `level` splits faces; `None` if the step does not split faces. The first
-    /// step has level 0.
+    /// Returns how the step `level` splits faces; `None` if the step does not split faces. The
+    /// first step has level 0.
     pub fn split(&self, level: u32) -> Option<Split> {
         match self.scheme.kind().split? {
             Split::Sqrt3 { .. } => Some(Split::Sqrt3 {

@@ -3,7 +3,7 @@
 //! At smooth vertices, the tangents are sums of the neighbours, weighted with cosines and with
 //! sines (Halstead, Kass & DeRose 1993; Loop 1987). Next to a crease, the tangents were derived for
 //! the step rules of this crate; see [`Sector`]. The tangents of Biermann, Levin & Zorin (2000) do
-//! not apply, because their step rules are different.
+//! not apply, because those tangents need other step rules.
 
 use std::f64::consts::{PI, TAU};
 

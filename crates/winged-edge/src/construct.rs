@@ -23,8 +23,8 @@ impl<E: Editing> Representation for WingedEdgeMesh<E> {
         }
     }
 
-    /// Pairs the sides, writes each side into its edge, then links the boundary loops; O(corners +
-    /// vertices).
+    /// Pairs the sides, writes each side into the record of its edge, then links the boundary
+    /// loops. O(corners + vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         let error = || Self::CAPABILITIES.build_error(polygons);
         let faces = polygons.faces();

@@ -9,7 +9,7 @@ use crate::wings::{Side, Wings};
 /// One edge: a row of the table `edges`.
 ///
 /// The edge runs from start to end along its left face, and from end to start along its right face.
-/// `next` and `prev` of a side follow this direction.
+/// On each side, `next` and `prev` follow the direction of the edge along that side.
 ///
 /// The record has 32 bytes and is aligned to 32 bytes, so every step of a walk touches one cache
 /// line. Without the alignment, every second record would lie across two cache lines.
@@ -57,25 +57,26 @@ impl Edge {
         sides.find(|&side| self.faces[side.index()] == Slot::NONE)
     }
 
-    /// Returns the start and the end.
+    /// Returns the two ends of the edge: start, then end.
     #[inline]
     pub fn ends(&self) -> [VertexId; 2] {
         self.ends
     }
 
-    /// Returns the faces on the left and on the right; `None` if there is no face.
+    /// Returns the face on the left and the face on the right. An entry is `None` if there is no
+    /// face on that side.
     #[inline]
     pub fn faces(&self) -> [Option<FaceId>; 2] {
         self.faces.map(Slot::get)
     }
 
-    /// Returns the next edges along the left and along the right.
+    /// Returns the next edge along the left side, and the next edge along the right side.
     #[inline]
     pub fn next(&self) -> [EdgeId; 2] {
         self.next.both()
     }
 
-    /// Returns the previous edges along the left and along the right.
+    /// Returns the previous edge along the left side, and the previous edge along the right side.
     #[inline]
     pub fn prev(&self) -> [EdgeId; 2] {
         self.prev.both()

@@ -1,11 +1,11 @@
 //! Edits in place: the implementation of [`MeshEdit`], after Baumgart (1975).
 //!
 //! Both wings of both sides are stored, so an edit links and unlinks an edge without a search. Two
-//! steps of an edit cost O(valence): the check of the edit, and the change of the ends of the edges
-//! at a vertex.
+//! steps of an edit can cost O(valence): the check before the edit, and replacing a vertex by
+//! another vertex in all edges at the vertex.
 //!
-//! Every edit checks before it writes. Below, a run `a→b` is the edge between `a` and `b`, along
-//! the side where the edge runs from `a` to `b`.
+//! Every edit does all checks before the first write. In these modules, a run `a→b` is the edge
+//! between `a` and `b`, along the side where the edge runs from `a` to `b`.
 
 use sixfold_core::{
     Compact, EdgeId, Edit, EditLog, Editable, FaceId, MeshEdit, NoHoles, Point, Probe, QueryCost,
@@ -72,7 +72,7 @@ impl<P: Probe> MeshEdit for WingedEdgeMesh<Editable, P> {
         Ok(self.push_vertex(at, log))
     }
 
-    /// O(corners), plus the valence of each corner where a new edge starts.
+    /// O(degree of the new face), plus the valence of each corner where a new edge starts.
     fn add_face_logged(
         &mut self,
         corners: &[VertexId],
@@ -90,7 +90,7 @@ impl<P: Probe> MeshEdit for WingedEdgeMesh<Editable, P> {
         self.remove(f, log)
     }
 
-    /// O(n) for n corners of the faces of `v`; O(n log n) if some of these faces are not triangles.
+    /// O(n) if the faces of `v` are triangles, otherwise O(n log n), for n corners of these faces.
     fn remove_vertex_logged(
         &mut self,
         v: VertexId,
@@ -140,7 +140,7 @@ impl<P: Probe> MeshEdit for WingedEdgeMesh<Editable, P> {
         self.poke(f, at, log)
     }
 
-    /// O(degree), plus the valence of one end. The smaller part becomes the new face.
+    /// O(degree), plus the valence of one end. The part with fewer sides becomes the new face.
     fn split_face_logged(
         &mut self,
         f: FaceId,
@@ -150,7 +150,7 @@ impl<P: Probe> MeshEdit for WingedEdgeMesh<Editable, P> {
         self.split_between(f, ends, log)
     }
 
-    /// O(degree) of both faces. The larger face stays.
+    /// O(degree) of both faces. The face with more sides stays.
     fn dissolve_edge_logged(
         &mut self,
         e: EdgeId,

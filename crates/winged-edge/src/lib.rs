@@ -1,10 +1,11 @@
-//! Winged-edge mesh: one record for every edge, with two ends, two faces and four wings.
+//! Winged-edge mesh: one record for every edge, with two ends, two faces and four neighbouring
+//! edges (wings).
 //!
-//! Use it if most queries are about edges, or if an edge must be one object with one record. It
-//! does not hold edges with three faces: building a mesh with such edges returns an error. It is
-//! the oldest structure that finds a neighbour in constant time. Start at
-//! [`generic::WingedEdgeMesh`]; its numbered invariants define the tables. The structure follows
-//! Baumgart (1972, 1975).
+//! Use a winged-edge mesh if most queries are about edges, or if an edge must be one object with
+//! one record. A winged-edge mesh cannot hold edges with three faces: building a mesh with such
+//! edges returns an error. The winged-edge mesh is the oldest structure that finds a neighbour in
+//! constant time. Start at [`generic::WingedEdgeMesh`], whose numbered invariants define the
+//! tables. The structure follows Baumgart (1972, 1975).
 //!
 //! | holds | |
 //! |---|---|
@@ -17,20 +18,20 @@
 //! | EV, EF | O(1) | one edge |
 //! | EE | O(valence) of both ends | the edge, then one edge per neighbour |
 //! | FV, FE, FF | O(degree) | `sides`, then one edge per side |
-//! | refining (quads, triangles) | O(edges + vertices) | each edge and its four wings, in closed form |
+//! | refining (quads, triangles) | O(edges + vertices) | each edge and its four wings |
 //!
-//! The handles of vertices, edges and faces are row numbers. A loop over all elements reads no
-//! table, except the bits of the holes.
+//! The handles of vertices, edges and faces are row numbers. A loop over all handles reads no
+//! table, except the bits that mark deleted elements.
 //!
 //! | edit ([`MeshEdit`](sixfold_core::MeshEdit)) | cost | rows that change |
 //! |---|---|---|
 //! | `set_position`, `add_vertex` | O(1) | one vertex |
 //! | `add_face` | O(degree), plus the valence of each corner where a new edge starts | its sides, and at each corner the boundary edges |
-//! | `remove_face` | O(degree) | its sides, and at each corner the boundary edges |
+//! | `remove_face` | O(degree) | the sides of the face, and at each corner the boundary edges |
 //! | `remove_vertex` | O(corners of its faces) | its faces and edges, the outline of these faces, the boundary edges at the outline |
-//! | `split_edge` | O(1) | the edge, a new edge, the two wings at its end |
-//! | `bisect_edge` | O(1) | as for `split_edge`, and all sides of its triangles |
-//! | `poke_face` | O(degree) | its sides, one new edge per side |
+//! | `split_edge` | O(1) | the edge, a new edge, the two wings at the end of the edge |
+//! | `bisect_edge` | O(1) | as for `split_edge`, and all sides of the triangles of the edge |
+//! | `poke_face` | O(degree) | the sides of the face, one new edge per side |
 //! | `split_face` | O(degree + valence) | the sides of the smaller part, a new edge, two wings |
 //! | `dissolve_edge` | O(degree) of both faces | the edge, its four wings, the sides of the smaller face |
 //! | `flip_edge` | O(smaller valence) of the third corners | the edge and its four wings |
@@ -38,23 +39,24 @@
 //! | `split_vertex` | O(valence) | the edges that get the new vertex, the edges to the sides, up to three new edges |
 //! | `remove_isolated_vertices`, `compact` | O(rows) | all |
 //!
-//! Both wings of both sides are stored, so an edit links and unlinks an edge without a search. Two
-//! steps of an edit need a walk: the check of the edit, and the change of the ends of the edges at
-//! a vertex.
+//! Both wings of both sides are stored, so an edit links and unlinks an edge without a search. Only
+//! two steps of an edit can need a walk: the check before the edit, and replacing a vertex by
+//! another vertex in all edges at the vertex.
 //!
 //! # The side test
 //!
-//! The walks around both ends of an edge and along both faces of the edge visit the same record. So
-//! every step must test on which side of the edge the walk is. A walk around a vertex tests whether
-//! the edge starts at this vertex. A walk along a face tests whether the face is on the left of the
-//! edge. The test is one comparison with the record that the step has just read. On a mesh in
-//! random order, a branch would be mispredicted every second time. Therefore the result selects
-//! between two loaded values, without a branch.
+//! The walks around both ends of an edge and along both faces of the edge visit the same record.
+//! Therefore every step must test on which side of the edge the walk is. A walk around a vertex
+//! tests whether the edge starts at this vertex. A walk along a face tests whether the face is on
+//! the left of the edge. The side test is one comparison with the record that the step has just
+//! read. On a mesh in random order, a branch on the result of the test would be mispredicted every
+//! second time. Therefore the code has no branch: the result selects between two loaded values.
 //!
-//! The half-edge mesh of this workspace needs no side test. The table shows the time relative to
-//! the half-edge mesh (82,000 triangles):
+//! The half-edge mesh of Sixfold needs no side test. A mesh is in a good order if neighbours are
+//! close in memory. The table shows the time of the winged-edge mesh divided by the time of the
+//! half-edge mesh, for 82,000 triangles in a good order and in random order:
 //!
-//! | operation | in order | shuffled |
+//! | operation | good order | random order |
 //! |---|---|---|
 //! | count incident faces and corners | 1.6× | 1.5× |
 //! | smoothing over VV | 1.5× | 1.3× |
@@ -62,17 +64,17 @@
 //! | all nine relations | 1.3× | 1.2× |
 //! | breadth-first search over FF | 1.1× | 1.0× |
 //!
-//! The test costs least if a walk waits for memory. A step reads only one record, in one cache
-//! line.
+//! The side test costs least if a walk waits for memory. A step of a walk reads only one record,
+//! which is in one cache line.
 //!
 //! # What limits the speed of the sweeps
 //!
 //! If the mesh is in the cache, latency limits VV, VE, VF, FV, FE and FF. Each step waits for the
-//! record of the previous step, for the comparison and for the selection. This takes about 8
-//! cycles, and 6 cycles in the half-edge mesh. If the mesh is not in the cache, each step waits for
-//! one cache line. Bandwidth limits EV and EF: they read the records in order and use 8 of 32
-//! bytes. Building has two limits: the counting sort that pairs the sides, which takes half of the
-//! time, and the writes of one record per side.
+//! record of the previous step, for the comparison and for the selection. A step takes about 8
+//! cycles, compared with 6 cycles in the half-edge mesh. If the mesh is not in the cache, each step
+//! waits for one cache line. Memory bandwidth limits EV and EF: both queries read the records in
+//! order, and use 8 of the 32 bytes of each record. Building has two expensive parts: the counting
+//! sort that pairs the sides, which takes half of the time, and writing one record per side.
 //!
 //! # Examples
 //!
@@ -107,16 +109,17 @@ pub use walk::EdgeSide;
 
 /// The mesh type with its type parameters, for generic code.
 ///
-/// Programs use the two types of the crate root instead.
+/// Programs use the two type aliases in the crate root instead.
 pub mod generic {
     pub use crate::mesh::WingedEdgeMesh;
 }
 
-/// A winged-edge mesh that cannot delete elements: a [`generic::WingedEdgeMesh`] without holes.
+/// A winged-edge mesh whose elements cannot be deleted: a [`generic::WingedEdgeMesh`] with its
+/// default parameters.
 pub type WingedEdgeMesh = generic::WingedEdgeMesh;
 
 /// A winged-edge mesh that can be edited ([`MeshEdit`](sixfold_core::MeshEdit)): a
-/// [`generic::WingedEdgeMesh`] with holes.
+/// [`generic::WingedEdgeMesh`] with the parameter [`Editable`](sixfold_core::Editable).
 pub type EditableWingedEdgeMesh = generic::WingedEdgeMesh<sixfold_core::Editable>;
 
 /// The traits and types that all Sixfold structures share.

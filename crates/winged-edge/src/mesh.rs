@@ -1,4 +1,4 @@
-//! The tables, their invariants, and the classic operators.
+//! The tables of a winged-edge mesh, their invariants, and the classic operators.
 
 use sixfold_core::{
     Compact, EDGE_HOLES, EdgeId, Editable, Editing, FACE_HOLES, FaceId, HoleSet, Point, Probe,
@@ -7,7 +7,8 @@ use sixfold_core::{
 
 use crate::edge::{Edge, NO_EDGE, Run};
 
-/// A mesh of edges that store their ends, their faces and the four edges around them.
+/// A mesh of edges. Each edge stores its two ends, its two faces, and the next and previous edge
+/// along each face (four wings).
 ///
 /// ```text
 ///     left_next(e)         right_prev(e)
@@ -23,29 +24,31 @@ use crate::edge::{Edge, NO_EDGE, Run};
 ///     left_prev(e)         right_next(e)
 /// ```
 ///
-/// A boundary edge also has wings on its side without a face. These wings follow the boundary loop,
-/// so every walk returns to its start.
+/// A boundary edge also has wings on its side without a face. The wings on the side without a face
+/// follow the boundary loop, so every walk returns to its start.
 ///
 /// # Invariants
 ///
 /// A *run* is an edge along one of its sides, from its origin to its target. The run on the left
 /// side goes from start to end. The run on the right side goes from end to start.
 ///
-/// - I1  The two ends of an edge differ. The two faces of an edge differ; one of them may be empty.
-///   Every handle in the tables refers to an existing row.
+/// - I1  The two ends of an edge differ. The two faces of an edge differ; one of the two may be
+///   missing. Every handle in the tables refers to an existing row.
 /// - I2  The next wing of a run starts at the target of the run. The previous wing of a run ends at
 ///   the origin of the run.
-/// - I3  A run and its next wing have the same face; along a boundary loop, this face is empty.
-/// - I4  `next` and `prev` are inverse to each other.
+/// - I3  A run and its next wing have the same face. Along a boundary loop, the face is empty.
+/// - I4  `prev` is the inverse of `next`: for every run, the previous run of the next run is the
+///   run itself.
 /// - I5  `spoke(v)` is an edge with the end `v`, or empty if `v` is isolated. If `v` is on a
-///   boundary, the run of this edge from `v` has no face on the right.
-/// - I6  All edges at `v` are one cycle of steps around it: every vertex is manifold.
-/// - I7  `side(f)` is an edge with face `f`. The cycle along `f` has at least three vertices, each
-///   once.
+///   boundary, the run of `spoke(v)` from `v` has no face on the right.
+/// - I6  The steps around `v` visit all edges at `v` in one cycle: every vertex is manifold.
+/// - I7  `side(f)` is an edge with face `f`. The cycle of runs along `f` has at least three
+///   vertices, each once.
 /// - I8  No two edges have the same ends.
-/// - I9  Exactly the bits of deleted vertices, edges and faces are set. The spoke of a deleted
-///   vertex is empty. The ends of a deleted edge, and the side of a deleted face, hold values that
-///   no row has. Elements that are not deleted never refer to deleted elements.
+/// - I9  The bits in the tables of holes are set exactly for deleted vertices, edges and faces. The
+///   spoke of a deleted vertex is empty. The ends of a deleted edge, and the side of a deleted
+///   face, hold values that no row has. Elements that are not deleted never refer to deleted
+///   elements.
 ///
 /// # Memory
 ///
@@ -81,8 +84,8 @@ impl<P: Probe> From<WingedEdgeMesh<Compact, P>> for WingedEdgeMesh<Editable, P> 
     }
 }
 
-/// The fields of an edge. Each function is O(1), reads one record, and panics if the edge does not
-/// exist.
+/// The fields of edges. Each function is O(1), reads one row of a table, and panics if the row does
+/// not exist or its element was deleted.
 impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
     /// Returns the record of `e`.
     #[inline]
@@ -124,25 +127,29 @@ impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
         self.edge(e).faces()[1]
     }
 
-    /// Returns the wing at the end of `e`, on its left: the next edge along the left face.
+    /// Returns the next edge after `e` along the left face of `e`, or along the boundary loop if
+    /// there is no face.
     #[inline]
     pub fn left_next(&self, e: EdgeId) -> EdgeId {
         self.edge(e).next()[0]
     }
 
-    /// Returns the wing at the start of `e`, on its left: the previous edge along the left face.
+    /// Returns the edge before `e` along the left face of `e`, or along the boundary loop if there
+    /// is no face.
     #[inline]
     pub fn left_prev(&self, e: EdgeId) -> EdgeId {
         self.edge(e).prev()[0]
     }
 
-    /// Returns the wing at the start of `e`, on its right: the next edge along the right face.
+    /// Returns the next edge after `e` along the right face of `e`, or along the boundary loop if
+    /// there is no face.
     #[inline]
     pub fn right_next(&self, e: EdgeId) -> EdgeId {
         self.edge(e).next()[1]
     }
 
-    /// Returns the wing at the end of `e`, on its right: the previous edge along the right face.
+    /// Returns the edge before `e` along the right face of `e`, or along the boundary loop if there
+    /// is no face.
     #[inline]
     pub fn right_prev(&self, e: EdgeId) -> EdgeId {
         self.edge(e).prev()[1]
@@ -155,7 +162,7 @@ impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
     }
 
     /// Returns an edge at `v`, or `None` if `v` is isolated. If `v` is on a boundary, returns the
-    /// first edge counter-clockwise.
+    /// boundary edge from which a counter-clockwise walk visits all faces at `v`.
     ///
     /// # Panics
     ///
@@ -203,8 +210,8 @@ fn no_such_face(f: FaceId) -> ! {
 }
 
 /// Steps from an edge around a vertex or a face: Baumgart's ECCW, ECW and OTHER. Each step is O(1)
-/// and reads one record. A step panics in two cases: the vertex is not an end of the edge, or the
-/// edge is not a side of the face.
+/// and reads one record. A step panics if the edge does not exist, if the vertex is not an end of
+/// the edge, or if the edge is not a side of the face.
 impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
     /// Returns the end of `e` that is not `v`.
     #[inline]
@@ -212,7 +219,7 @@ impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
         self.run_from(e, v).target()
     }
 
-    /// Returns the face of `e` that is not `f`, or `None` on a boundary.
+    /// Returns the face of `e` that is not `f`, or `None` if `e` is a boundary edge.
     #[inline]
     pub fn other_face(&self, e: EdgeId, f: FaceId) -> Option<FaceId> {
         self.run_along(e, f).across().get()
@@ -256,25 +263,25 @@ impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
     }
 }
 
-/// The tables as they are in memory, for export and for the caller's own loops. I9 defines the rows
-/// of deleted elements.
+/// The tables as they are in memory, for export and for the caller's own loops. Invariant I9 of the
+/// mesh defines the content of the rows of deleted elements.
 impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
-    /// Returns the positions by vertex.
+    /// Returns the position of each vertex, in the order of the vertex rows.
     pub fn positions(&self) -> &[Point] {
         self.positions.rows()
     }
 
-    /// Returns one edge for each vertex (I5).
+    /// Returns one edge at each vertex (invariant I5), in the order of the vertex rows.
     pub fn spoke_rows(&self) -> &[Slot<EdgeId>] {
         self.spokes.rows()
     }
 
-    /// Returns the records by edge.
+    /// Returns the record of each edge, in the order of the edge rows.
     pub fn edge_records(&self) -> &[Edge] {
         self.edges.rows()
     }
 
-    /// Returns one edge for each face (I7).
+    /// Returns one edge of each face (invariant I7), in the order of the face rows.
     pub fn side_rows(&self) -> &[EdgeId] {
         self.sides.rows()
     }

@@ -1,9 +1,11 @@
-//! Refinement: splits every face in the structure's own tables, in closed form.
+//! Refinement: splits every face in the structure's own tables. Every new row is computed by a
+//! formula.
 //!
 //! A *run* is an edge along one of its sides. The runs with a face have the ranks 0, 1, 2 …, edge
 //! by edge, left before right. A run with a face stands for the corner where the run starts; the
-//! rank gives the rows of this corner in the child. Below, `o` is the origin of a run, h₀ and h₁
-//! are the halves of the run, and `r` is the edge that the run adds inside its face.
+//! rank determines the rows of this corner in the refined mesh (the child). Below, `o` is the
+//! origin of a run, h₀ and h₁ are the halves of the run, and `r` is the edge that the run adds
+//! inside its face.
 //!
 //! ```text
 //!              Quads                               Triangles
@@ -19,8 +21,8 @@
 //!
 //! Edge `e` becomes two edges: 2e from its start to its middle, and 2e + 1 from its middle to its
 //! end. The run on side s (0 left, 1 right) has h₀ = 2e + s and h₁ = 2e + 1 − s. In the table, the
-//! parent has E edges and C corners. f is the number of the face, k the rank of the run, k₋ the
-//! rank of the run before, and k₊ the rank of the run after:
+//! mesh before the split (the parent) has E edges and C corners. f is the number of the face, k the
+//! rank of the run, k₋ the rank of the run before, and k₊ the rank of the run after:
 //!
 //! | | face | next | prev |
 //! |---|---|---|---|
@@ -32,7 +34,7 @@
 //! | r = 2E + k, triangles: left, m to m₋ | k | h₁ of the run before | h₀ |
 //! | and right, m₋ to m | C + f | 2E + k₊ | 2E + k₋ |
 //!
-//! If a side has no face, h₁ follows h₀ there.
+//! On a side without a face, h₁ is the next edge after h₀.
 
 use std::ops::Range;
 
@@ -49,7 +51,8 @@ use crate::wings::{Side, Wings};
 impl Refine for WingedEdgeMesh {
     const SPLITS: &'static [Split] = &[Split::Quads, Split::Triangles];
 
-    /// The ranks of the runs with a face. The number of an edge is its row.
+    /// The ranks of the runs with a face. The number of an edge needs no table, because the number
+    /// is the row of the edge.
     type EdgeNumbers = Ranks;
 
     fn empty() -> Self {
@@ -131,7 +134,7 @@ impl Refine for WingedEdgeMesh {
         Ok(())
     }
 
-    /// O(1) on a closed mesh, else O(log edges).
+    /// O(1) on a closed mesh, otherwise O(log edges).
     fn parent(&self, numbers: &Ranks, split: Split, child: FaceId) -> FaceId {
         if let (Split::Triangles, Some(middle)) =
             (split, child.index().checked_sub(numbers.members()))

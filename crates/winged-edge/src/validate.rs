@@ -57,11 +57,11 @@ fn check_holes<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantErro
     }
     let edge_differs = |&e: &usize| mesh.edge_holes.has(e) != mesh.edge_records()[e].is_deleted();
     if let Some(e) = (0..edges).find(edge_differs) {
-        return fails("I9", format!("deletion marks of e{e} disagree"));
+        return fails("I9", format!("the deletion marks of e{e} disagree"));
     }
     let face_differs = |&f: &usize| mesh.face_holes.has(f) != (mesh.side_rows()[f] == NO_EDGE);
     match (0..faces).find(face_differs) {
-        Some(f) => fails("I9", format!("deletion marks of f{f} disagree")),
+        Some(f) => fails("I9", format!("the deletion marks of f{f} disagree")),
         None => Ok(()),
     }
 }
@@ -93,8 +93,8 @@ fn check_handles<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantEr
     let spokes = mesh.vertices().filter_map(|v| mesh.spoke(v));
     let mut named = spokes.chain(mesh.faces().map(|f| mesh.side(f)));
     match named.find(|&e| !has_edge(e) || mesh.edge_holes.has(e.index())) {
-        Some(e) if has_edge(e) => fails("I9", format!("{e} is referred to, but deleted")),
-        Some(e) => fails("I1", format!("{e} is referred to, but missing")),
+        Some(e) if has_edge(e) => fails("I9", format!("a row refers to {e}, which was deleted")),
+        Some(e) => fails("I1", format!("a row refers to {e}, which does not exist")),
         None => Ok(()),
     }
 }

@@ -1,4 +1,5 @@
-//! The walk from side to side: a side is an edge along its left or its right.
+//! Steps from side to side: a side is an edge in the direction of its left face or of its right
+//! face.
 
 use sixfold_core::{
     EdgeId, Editing, FaceId, HandleMap, IteratorExt, OrientedWalk, Probe, RowId, SideMap, Slot,
@@ -10,8 +11,8 @@ use crate::mesh::WingedEdgeMesh;
 use crate::wings::Side;
 
 row_id! {
-    /// The handle of one side of an edge, `s7`; edge `e` has the left side `2e` and the right side
-    /// `2e + 1`.
+    /// The handle of one side of an edge, printed as `s7`. Edge `e` has the left side `2e` and the
+    /// right side `2e + 1`.
     pub struct EdgeSide, "s"
 }
 
@@ -39,8 +40,8 @@ impl EdgeSide {
     }
 }
 
-/// Every method is O(1). `next_side` and `prev_side` read two edges; all other methods read one
-/// edge.
+/// Every step is O(1). A step with `next_side` or `prev_side` reads two edge records, because the
+/// side of the next edge must be determined.
 impl<P: Probe, E: Editing> OrientedWalk for WingedEdgeMesh<E, P> {
     type Side = EdgeSide;
 
@@ -57,7 +58,8 @@ impl<P: Probe, E: Editing> OrientedWalk for WingedEdgeMesh<E, P> {
         sides.filter_map(move |(side, face)| face.get().map(|_| EdgeSide::from_edge(e, side)))
     }
 
-    /// Yields the sides counter-clockwise. At a boundary vertex, starts at the boundary.
+    /// Yields the sides that start at `v`, counter-clockwise. At a boundary vertex, the first side
+    /// belongs to a face at the boundary.
     #[inline]
     fn outgoing_sides(&self, v: VertexId) -> impl Iterator<Item = EdgeSide> {
         let runs = self.runs_from(v);

@@ -1,9 +1,9 @@
-//! One edit, with the element numbers of the model.
+//! Edits whose elements are given by their numbers in the model.
 
 use sixfold_core::{Edit, Point};
 
-/// An edit with its elements: vertices and faces by their number in the [`Model`](super::Model),
-/// edges by their ends.
+/// An edit, and the elements to which it applies. Vertices and faces are given by their numbers in
+/// the [`Model`](super::Model), and edges by the numbers of their two ends.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(
     missing_docs,
@@ -49,7 +49,7 @@ pub enum Action {
     FlipEdge {
         ends: [usize; 2],
     },
-    /// The first end is kept.
+    /// Collapses an edge. The first of its two ends is kept.
     CollapseEdge {
         ends: [usize; 2],
         to: Point,

@@ -1,4 +1,4 @@
-//! A mesh as plain lists, with every edit by brute force.
+//! A mesh as plain lists, with a brute-force implementation of every edit.
 
 mod edits;
 
@@ -14,7 +14,7 @@ use crate::weld::position_key;
 pub struct Rules {
     /// Meshes that the structure can hold.
     pub capabilities: Capabilities,
-    /// Whether the structure supports each edit, in the order of [`Edit::ALL`].
+    /// For each edit in the order of [`Edit::ALL`]: true if the structure supports the edit.
     pub supported: [bool; Edit::ALL.len()],
 }
 
@@ -28,7 +28,8 @@ impl Rules {
     }
 }
 
-/// Positions and faces by number; the numbers of removed elements are not reused.
+/// A mesh as a list of positions and a list of faces. The numbers of removed elements are not
+/// reused.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
     positions: Vec<Option<Point>>,
@@ -68,7 +69,7 @@ impl Model {
     }
 
     /// Returns each edge with its faces. The flag of a face is true if the face runs along the edge
-    /// from the lower to the higher end.
+    /// from the end with the lower number to the other end.
     pub fn edges(&self) -> BTreeMap<[usize; 2], Vec<(usize, bool)>> {
         let mut edges: BTreeMap<_, Vec<_>> = BTreeMap::new();
         for (f, face) in self.faces() {
@@ -82,7 +83,7 @@ impl Model {
         edges
     }
 
-    /// Returns the other ends of the edges at `v`.
+    /// Returns the vertices that an edge joins to `v`.
     pub fn neighbours(&self, v: usize) -> BTreeSet<usize> {
         let faces = self.faces().filter(|(_, face)| face.contains(&v));
         let sides = faces.flat_map(|(_, face)| sides(face).collect::<Vec<_>>());
@@ -96,7 +97,8 @@ impl Model {
         count(self.vertices().count()) - count(self.edges().len()) + count(self.faces().count())
     }
 
-    /// Converts the model to polygons. Numbers of removed vertices are left out.
+    /// Converts the model to polygons. The remaining vertices are renumbered from 0, in their
+    /// order.
     ///
     /// # Panics
     ///

@@ -20,12 +20,13 @@ use crate::law::check_numbers;
 use crate::subject::stored_mesh;
 use crate::weld::position_key;
 
-/// A mesh, its model, and a map from the elements of the model to the handles of the structure.
+/// A mesh under test, the model of this mesh, and maps from the elements of the model to the
+/// handles of the structure.
 #[derive(Clone)]
 pub struct ModelTest<M: MeshEdit> {
-    /// Mesh under test.
+    /// The mesh under test.
     pub mesh: M,
-    /// Expected mesh.
+    /// The model: the expected mesh.
     pub model: Model,
     rules: Rules,
     vertices: BTreeMap<usize, M::Vertex>,
@@ -69,7 +70,7 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         })
     }
 
-    /// Returns whether `action` is legal for this structure, according to the model.
+    /// Returns true if `action` is legal for this structure, according to the model.
     pub fn is_legal(&self, action: &Action) -> bool {
         self.model.after(action, &self.rules).is_some()
     }
@@ -78,7 +79,8 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
     ///
     /// # Panics
     ///
-    /// Panics if the mesh and the model differ in acceptance, faces, positions, handles or record.
+    /// Panics if only one of the mesh and the model accepts the action. Panics if, after the
+    /// action, the faces, the positions, the handles or the recorded changes differ from the model.
     /// Also panics if an invariant of the mesh is broken.
     pub fn apply(&mut self, action: &Action) -> bool {
         let name = M::NAME;
@@ -128,7 +130,7 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
     }
 
     /// Applies `action` to `mesh`, and reports the changes to `log`. `mesh` must have the same
-    /// handles as the mesh under test. Returns the vertex that was made or moved.
+    /// handles as the mesh under test. Returns the vertex that the action made or moved.
     ///
     /// # Errors
     ///
@@ -167,7 +169,7 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         self.faces[&f]
     }
 
-    /// Returns whether both tests have meshes with equal positions and equal faces.
+    /// Returns true if the meshes of both tests have equal positions and equal faces.
     pub fn is_same_mesh(&self, other: &Self) -> bool {
         let [first, second] = [self, other].map(|test| test.mesh.to_polygons());
         sorted_faces(&first) == sorted_faces(&second)
@@ -193,7 +195,7 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
             && mesh.faces().all(|f| mesh.contains_face(f));
         assert!(
             contained,
-            "{}: does not contain an element of its own",
+            "{}: a contains_… method returns false for an element of the mesh",
             M::NAME
         );
         for &removed in &self.removed {
@@ -233,7 +235,7 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
                 Ok(found) => panic!("{name}: {shown} was removed but has {found} faces or corners"),
                 Err(panic) => assert!(
                     panic.message.contains(&shown) || self.mentions_end(&panic.message, removed),
-                    "{name}: {shown} was removed, but the message does not name it: {}",
+                    "{name}: {shown} was removed, but the panic message does not name it: {}",
                     panic.message
                 ),
             }
@@ -280,12 +282,12 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         assert_eq!(
             compact.face_rows(),
             compact.face_count(),
-            "{}: holes",
+            "{}: face rows (left) and faces (right) after into_compact",
             M::NAME
         );
         let mesh = M::from_compact(compact);
         if let Err(broken) = mesh.validate() {
-            panic!("{}: made compact and editable again: {broken}", M::NAME);
+            panic!("{}: after into_compact and from_compact: {broken}", M::NAME);
         }
         let (got, expected) = (mesh.to_polygons(), self.mesh.to_polygons());
         let same = got.positions() == expected.positions()
@@ -300,7 +302,7 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
             positions[v] = 2.0 * mesh.position(v);
         }
         if let Err(refusal) = mesh.set_positions(&positions) {
-            panic!("{}: set_positions of its own vertices: {refusal}", M::NAME);
+            panic!("{}: set_positions fails: {refusal}", M::NAME);
         }
         if let Err(broken) = mesh.validate() {
             panic!("{}: after all vertices moved: {broken}", M::NAME);

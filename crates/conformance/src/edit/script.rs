@@ -10,7 +10,7 @@ use super::model::Model;
 /// Maximum number of faces of a mesh to which scripts add faces.
 const MANY_FACES: usize = 48;
 
-/// One step: the kind of edit, and numbers that select its elements.
+/// One step of a script: the kind of edit, and numbers that select the elements to edit.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
     /// Kind of the edit.
@@ -19,8 +19,8 @@ pub struct Step {
     pub picks: [u16; 4],
 }
 
-/// Generates up to `max_steps` steps with kinds from `edits`. Removals, `Compact`, `AddVertex` and
-/// `SetPosition` are less frequent than other edits.
+/// Generates a script of up to `max_steps` steps. The kinds of edits are from `edits`. Removals,
+/// `Compact`, `AddVertex` and `SetPosition` are less frequent than other edits.
 pub fn script(edits: &[Edit], max_steps: usize) -> impl Strategy<Value = Vec<Step>> + use<> {
     let weight = |edit: &Edit| match edit {
         Edit::RemoveVertex | Edit::RemoveIsolatedVertices | Edit::Compact => 1,
@@ -39,8 +39,8 @@ pub fn script(edits: &[Edit], max_steps: usize) -> impl Strategy<Value = Vec<Ste
 }
 
 impl Step {
-    /// Returns the action of this step on `model`, or `None` if `model` has no element for the
-    /// action. `number` determines the position of a new vertex.
+    /// Returns the action that this step executes on `model`, or `None` if `model` has no element
+    /// for the action. `number` determines the position of a new vertex.
     pub fn action(&self, model: &Model, number: usize) -> Option<Action> {
         let at = self.new_position(model, number)?;
         let vertex = || pick(&model.vertices().collect::<Vec<_>>(), self.pick(0));

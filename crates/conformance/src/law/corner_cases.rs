@@ -1,4 +1,4 @@
-//! The answers that the contract requires in corner cases, written by hand.
+//! The required answers in corner cases, written by hand.
 
 use sixfold_core::Representation;
 
@@ -164,7 +164,7 @@ const CASES: &[Case] = &[
     },
 ];
 
-/// The answers in the corner cases of the contract equal a table made by hand.
+/// In corner cases, the answers of the structure equal a table made by hand.
 pub fn corner_cases<M: Representation>() {
     let gallery = gallery();
     let mut compared = 0;
@@ -195,7 +195,7 @@ pub fn corner_cases<M: Representation>() {
     }
     assert!(
         compared > 0,
-        "{}: can hold no mesh of the corner cases",
+        "{}: cannot hold any mesh of the corner cases",
         M::NAME
     );
 }

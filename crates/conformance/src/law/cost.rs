@@ -9,7 +9,8 @@ use sixfold_core::{
 use crate::gallery::double_cone;
 use crate::oracle::Oracle;
 
-/// `COSTS` agrees with the measured reads of tables; `cost` and `is_local` agree with `COSTS`.
+/// The declared costs `COSTS` agree with the measured reads of tables. `cost` and `is_local` agree
+/// with `COSTS`.
 ///
 /// - Constant: the number of reads per item is bounded, for any size of mesh and any valence.
 /// - Local: if the valence is bounded, the number of reads is bounded for any size of mesh.
@@ -67,8 +68,8 @@ const WALK_METHODS: [&str; 11] = [
 /// The number of [`WALK_METHODS`] that need only the face of the side.
 const WITHIN_A_FACE: usize = 6;
 
-/// No step of a walk scans. The cost of a step within a face does not depend on the valence of its
-/// corners. The law counts reads of tables on the meshes of [`costs`].
+/// No step of a walk scans the mesh. The cost of a step within a face does not depend on the
+/// valence of the corners of the face. The law counts reads of tables on the meshes of [`costs`].
 pub fn oriented_walk_costs<M>()
 where
     M: Measured + OrientedWalk,
@@ -133,7 +134,8 @@ where
     maxima
 }
 
-/// `memory()` equals `layout_bytes` within 2 %, for uniform and for mixed degrees.
+/// `memory()` equals `layout_bytes` within 2 %, on triangle meshes and on meshes with faces of
+/// different degrees.
 pub fn memory<M: Measured>() {
     let mixed = sixfold_shapes::mixed_grid(40, 40).expect("a grid of this size can be built");
     let mut measured = 0;

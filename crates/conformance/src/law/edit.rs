@@ -1,4 +1,4 @@
-//! Laws about edits, which are compared with the model of [`edit`](crate::edit).
+//! Laws that compare the edits of a structure with the model of [`edit`](crate::edit).
 
 use std::cell::{Cell, RefCell};
 use std::fmt::Debug;
@@ -13,9 +13,9 @@ use crate::edit::{Action, ModelTest, Step};
 /// Maximum number of tried steps for each accepted step of an edit.
 const MAX_STEPS_PER_ACCEPTED: usize = 12;
 
-/// Random scripts have the same effect on the structure and on the model. After every step, mesh
-/// and model are equal, handles and records agree, and the invariants hold. A refused edit changes
-/// nothing. All relations are checked after every 16 steps.
+/// Random scripts have the same effect on the structure and on the model. After every step, the
+/// mesh equals the model, the handles agree with the reported changes, and the invariants hold. A
+/// refused edit does not change the mesh. All relations are checked after every 16 steps.
 ///
 /// `PROPTEST_CASES` sets the number of scripts.
 pub fn edits<M: Representation + MeshEdit + Debug>() {
@@ -93,7 +93,7 @@ fn check_acceptance<M: MeshEdit + Representation>(counts_by_edit: &[[usize; 2]; 
     }
 }
 
-/// `EDITS` agrees with the measured accesses to rows.
+/// The declared costs `EDITS` agree with the measured accesses to rows.
 ///
 /// - Constant and Local: the number of accesses does not depend on the size of the mesh.
 /// - Scan: the number of accesses grows with the mesh. Declaring a scan for a cheaper edit is

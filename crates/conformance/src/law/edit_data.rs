@@ -45,9 +45,9 @@ type Subject<M, D> = MeshWithData<M, (D, Numbers<M, Vec<u32>>)>;
 
 type Numbers<M, T> = (VertexData<M, T>, EdgeData<M, T>, FaceData<M, T>);
 
-/// Data in a [`MeshWithData`] follows random scripts of edits. After every step, the data equals a
-/// brute-force replay of the reports, and the rules received the correct parents. After a script,
-/// `into_compact` and `from_compact` keep the data.
+/// Data in a [`MeshWithData`] follows random scripts of edits. After every step, the data equals
+/// data that was updated by brute force from the reported changes. The rules for new elements
+/// receive the correct parents. After a script, `into_compact` and `from_compact` keep the data.
 ///
 /// `PROPTEST_CASES` sets the number of scripts.
 pub fn data_follows_edits<M: Representation + MeshEdit + Debug>() {

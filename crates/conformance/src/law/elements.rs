@@ -12,8 +12,8 @@ use crate::element::Element;
 use crate::subject::{Subject, stored_mesh};
 use crate::weld::position_key;
 
-/// Iterators yield each element once, and counts agree. Faces and vertices have the order of the
-/// contract.
+/// `vertices`, `edges` and `faces` yield each element once, and the counts agree. Vertices and
+/// faces have the required order.
 pub fn elements<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -110,7 +110,8 @@ pub fn positions<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// Maps contain the initial value for every handle. After a write, they contain the new value.
+/// A new map contains the initial value for every handle. After a write, the map contains the new
+/// value.
 pub fn maps<M: Representation>(polygons: &PolygonMesh) {
     let Some(Subject { mesh, .. }) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -136,7 +137,8 @@ where
     }
 }
 
-/// `vertex_numbers`, `edge_numbers` and `face_numbers` number the elements from 0, in their order.
+/// `vertex_numbers`, `edge_numbers` and `face_numbers` number the elements from 0, in the order of
+/// the iterators.
 pub fn numbers<M: Representation>(polygons: &PolygonMesh) {
     if let Some(subject) = Subject::<M>::from_polygons(polygons) {
         check_numbers(&subject.mesh, M::NAME);
@@ -162,9 +164,11 @@ fn check_kind<H: Handle>(name: &str, handles: Vec<H>, numbers: &Numbers<H>) {
 }
 
 /// If a handle is a row that does not exist, queries panic with a message that contains the handle.
-/// If a handle consists of coordinates that are not in the mesh, its relations are empty.
+/// If a handle consists of coordinates that are not in the mesh, the answers of its relations are
+/// empty.
 ///
-/// The law uses the handles of a strip of triangles that is larger than the mesh and far away.
+/// The law uses handles of another mesh: a strip of triangles that has more elements and is far
+/// away.
 pub fn missing_handles<M: Representation>(polygons: &PolygonMesh) {
     let Some(Subject { mesh, .. }) = Subject::<M>::from_polygons(polygons) else {
         return;

@@ -66,7 +66,7 @@ fn check_undo_count<M: Representation + MeshEdit>(edits: &[Edit], count: usize) 
     let offered = edits.iter().all(|&edit| M::supports(edit));
     assert!(
         !offered || count >= 10,
-        "{}: {edits:?} undone only {count} times",
+        "{}: {edits:?} were undone only {count} times",
         M::NAME
     );
 }
@@ -194,7 +194,7 @@ fn assert_same<M: Representation + MeshEdit + Debug>(
 ) {
     assert!(
         got.is_same_mesh(from),
-        "{}: {did} do not restore the mesh",
+        "{}: the edits {did} do not restore the mesh",
         M::NAME
     );
 }

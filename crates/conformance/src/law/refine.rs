@@ -21,8 +21,9 @@ fn splits<M: Refine>() -> Vec<Split> {
     splits
 }
 
-/// The child of every split is valid, and has the expected faces, edges and parents. An impossible
-/// split returns the matching error. Edges are numbered in the order of `edges()`.
+/// The refined mesh of every split is valid, and has the expected faces, edges and parent faces. An
+/// impossible split returns the error that describes the reason. Edges are numbered in the order of
+/// `edges()`.
 pub fn refine<M: Refine>(polygons: &PolygonMesh) {
     let Some(Subject { mesh, input, .. }) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -83,7 +84,7 @@ pub fn refine<M: Refine>(polygons: &PolygonMesh) {
     }
 }
 
-/// A refined mesh of many chunks is the same on one thread and on three threads.
+/// A large mesh has the same refined mesh on one thread and on three threads.
 pub fn refine_in_parallel<M: Refine>() {
     let pool = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();

@@ -123,8 +123,9 @@ pub fn symmetry<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// `one_ring` runs counter-clockwise; at a boundary vertex, it runs from boundary to boundary. The
-/// ring exists if and only if the faces form one consistently oriented fan.
+/// `one_ring` runs counter-clockwise around a vertex. At a boundary vertex, `one_ring` starts and
+/// ends at the boundary. A one-ring exists if and only if the faces at the vertex form one
+/// consistently oriented fan.
 pub fn one_ring<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -145,7 +146,7 @@ pub fn one_ring<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// Counts, boundary predicates, membership and shared elements agree with the relations.
+/// Valence, degree, boundary tests, membership tests and shared elements agree with the relations.
 pub fn predicates<M: Representation>(polygons: &PolygonMesh) {
     let Some(Subject {
         mesh,
@@ -214,7 +215,7 @@ pub fn predicates<M: Representation>(polygons: &PolygonMesh) {
 }
 
 /// `boundary_edges`, `boundary_loops` and `edge_face_counts` agree with the faces. The number of
-/// loops agrees with [`Facts`].
+/// boundary loops agrees with [`Facts`].
 pub fn boundary_loops<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -243,8 +244,8 @@ pub fn boundary_loops<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// Each iterator yields the same items by `next` and by `fold`. The same holds for `fold` after
-/// some calls of `next`.
+/// Each iterator yields the same items by `next` and by `fold`. After some calls of `next`, `fold`
+/// yields the remaining items.
 pub fn folds<M: Representation>(polygons: &PolygonMesh) {
     if let Some(subject) = Subject::<M>::from_polygons(polygons) {
         check_folds(&subject.mesh, M::NAME);

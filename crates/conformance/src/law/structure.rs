@@ -29,7 +29,7 @@ pub fn verdict<M: Representation>(polygons: &PolygonMesh) {
 }
 
 /// `to_polygons` returns the mesh from which the structure was built; each face may start at
-/// another corner. The result can be used to build the structure again.
+/// another corner. The structure can be built again from the returned mesh.
 pub fn round_trip<M: Representation>(polygons: &PolygonMesh) {
     let Some(Subject { mesh, input, .. }) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -38,7 +38,10 @@ pub fn round_trip<M: Representation>(polygons: &PolygonMesh) {
     assert_same::<M>("to_polygons", &out, &input);
     match M::from_polygons(&out) {
         Ok(again) => assert_same::<M>("a second to_polygons", &again.to_polygons(), &input),
-        Err(e) => panic!("{}: from_polygons of its own to_polygons: {e}", M::NAME),
+        Err(e) => panic!(
+            "{}: cannot be built from the result of to_polygons: {e}",
+            M::NAME
+        ),
     }
 }
 
@@ -146,7 +149,8 @@ fn check_invariants<M: Representation>(mesh: &M) {
     }
 }
 
-/// A probed copy gives the same answers in the same order, and the probe records its reads.
+/// A copy with a probe gives the same answers in the same order. The probe records the reads of the
+/// copy.
 pub fn probed<M: Measured>(polygons: &PolygonMesh) {
     let Some(Subject {
         mesh,

@@ -32,8 +32,8 @@ pub fn oriented_walk<M: Representation + OrientedWalk>(polygons: &PolygonMesh) {
     expected.check_missing(missing.expect("the larger mesh has sides"));
 }
 
-/// Steps from side to side agree with the corners of the faces during random scripts of edits. The
-/// sides of a removed face do not exist.
+/// Steps from side to side agree with the corners of the faces during random scripts of edits.
+/// After a face is removed, its sides do not exist.
 ///
 /// `PROPTEST_CASES` sets the number of scripts.
 pub fn oriented_walk_after_edits<M: Representation + MeshEdit + OrientedWalk + Debug>() {
@@ -151,7 +151,11 @@ impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
         let (mesh, name) = (self.mesh, self.name);
         let expected: Vec<M::Side> = self.sides.iter().map(|s| s.side).collect();
         let distinct: BTreeSet<M::Side> = expected.iter().copied().collect();
-        assert_eq!(distinct.len(), expected.len(), "{name}: two sides are one");
+        assert_eq!(
+            distinct.len(),
+            expected.len(),
+            "{name}: two sides are equal"
+        );
         assert!(mesh.sides().eq(expected), "{name}: sides()");
         assert_eq!(mesh.side_count(), self.sides.len(), "{name}: side_count()");
     }

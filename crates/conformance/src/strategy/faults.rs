@@ -5,7 +5,7 @@ use super::builder::MeshBuilder;
 /// A fault of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// The orientation of one face differs from its adjacent faces.
+    /// One face is oriented in the opposite way to its adjacent faces.
     TurnedFace,
     /// An edge has three faces or more.
     ThirdFace,
@@ -20,7 +20,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// All faults. Faults are added to a mesh in this order.
+    /// All kinds of faults, in the order in which they are added to a mesh.
     pub const ALL: [Self; 6] = [
         Self::TurnedFace,
         Self::ThirdFace,

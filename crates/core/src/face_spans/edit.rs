@@ -7,11 +7,11 @@ use crate::probe::Probe;
 use crate::row_id::{FaceId, Slot, row};
 use crate::table::Table;
 
-/// `corners` is the table that these spans divide. The caller must check the limits on the numbers
-/// of faces and corners beforehand.
+/// In these methods, `corners` is the table of corners that is divided into faces. The caller must
+/// check beforehand that the numbers of faces and corners stay within their limits.
 impl<P: Probe> FaceSpans<P, Editable> {
     /// Adds a face at the end of the table; O(degree) amortised. The first face of another degree
-    /// adds a table of spans, which takes O(corners) once.
+    /// adds a table with the range of each face, which takes O(corners) time once.
     pub fn push<T: Copy>(&mut self, corners: &mut Table<T, P>, face: &[T]) -> FaceId {
         let id = FaceId::new(row(self.len()));
         if let Self::Uniform { degree, faces } = self {
@@ -42,8 +42,8 @@ impl<P: Probe> FaceSpans<P, Editable> {
     }
 
     /// Replaces the corners of `f`; O(degree) amortised. If the face gets more corners than before,
-    /// all its corners move to the end of the table. The first change of a degree adds a table of
-    /// spans, which takes O(corners) once.
+    /// all its corners move to the end of the table. The first change of a degree adds a table with
+    /// the range of each face, which takes O(corners) time once.
     pub fn rewrite<T: Copy>(&mut self, corners: &mut Table<T, P>, f: FaceId, face: &[T], blank: T) {
         let old = self.range(f);
         if face.len() != old.len() {
@@ -76,15 +76,15 @@ impl<P: Probe> FaceSpans<P, Editable> {
         }
     }
 
-    /// Makes the corners of a deleted face blank; O(degree).
+    /// Overwrites all corners of the deleted face `f` with `blank`; O(degree).
     pub fn blank<T: Copy>(&self, corners: &mut Table<T, P>, f: FaceId, blank: T) {
         for corner in self.range(f) {
             *corners.write(corner) = blank;
         }
     }
 
-    /// Closes the gaps of deleted faces in `corners`; O(corners). The probe does not record this. A
-    /// table that is less than half used frees its spare memory.
+    /// Removes the corners of deleted faces from `corners`; O(corners). The probe does not record
+    /// the change. A table that uses less than half of its memory frees the unused part.
     pub fn compact<T: Copy>(&mut self, corners: &mut Table<T, P>, holes: &Holes<P>) {
         match self {
             Self::Uniform { degree, faces } => {

@@ -80,8 +80,9 @@ impl<V: ScannedVertex> Star<V> {
 }
 
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
-    /// Merges the two ends of `e` into `keep`, whose handle becomes `to`. This takes one scan, and
-    /// another scan for each third corner that may have no other face.
+    /// Merges the two ends of `e` into `keep`, whose handle becomes `to`. The edit takes one scan
+    /// of all corners, and another scan for each third corner of a removed triangle that may have
+    /// no other face.
     ///
     /// # Errors
     ///
@@ -205,8 +206,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         Ok(())
     }
 
-    /// Moves `v` to `to`; one scan. The handle changes, because vertices are identified by
-    /// coordinates.
+    /// Moves `v` to `to`; one scan of all corners. The handle of the vertex changes from `v` to
+    /// `to`, because vertices are identified by coordinates.
     ///
     /// # Errors
     ///

@@ -96,11 +96,11 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         }
     }
 
-    /// Inserts the new vertex `m` into `e` and into each face of `e`; one scan.
+    /// Inserts the new vertex `m` into `e` and into each face of `e`; one scan of all corners.
     ///
     /// # Errors
     ///
-    /// Refuses a missing edge, and an occupied position.
+    /// Refuses a missing edge, and a position that another vertex has.
     pub fn split_edge<M: ScannedMesh<V>>(
         &mut self,
         e: Pair<V>,
@@ -124,12 +124,13 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         Ok(())
     }
 
-    /// Inserts the new vertex `m` into `e` and cuts each triangle of `e` in two at `m`; one scan.
+    /// Inserts the new vertex `m` into `e` and cuts each triangle of `e` in two at `m`; one scan of
+    /// all corners.
     ///
     /// # Errors
     ///
-    /// Refuses a missing edge, an edge with a face that is not a triangle, and an occupied
-    /// position.
+    /// Refuses a missing edge, an edge with a face that is not a triangle, and a position that
+    /// another vertex has.
     pub fn bisect_edge<M: ScannedMesh<V>>(
         &mut self,
         e: Pair<V>,
@@ -157,7 +158,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         Ok(())
     }
 
-    /// Removes `e` and merges its two faces into the first face in the table; one scan.
+    /// Removes `e` and merges its two faces into the face that comes first in the table; one scan
+    /// of all corners.
     ///
     /// # Errors
     ///
@@ -190,7 +192,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         Ok(first.face)
     }
 
-    /// Flips `e` within the quad of its two triangles; two scans.
+    /// Replaces `e` by the other diagonal of the quad that its two triangles form; two scans of all
+    /// corners.
     ///
     /// ```text
     ///      c            c

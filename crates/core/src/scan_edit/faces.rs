@@ -12,8 +12,9 @@ use crate::scanned::{ScannedFaces, ScannedVertex, SearchSet};
 use crate::short_vec::ShortVec;
 
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
-    /// Adds a face with these `corners`, which are existing vertices or positions of new vertices.
-    /// O(degree); if the log uses reports, one more scan finds the sides that already exist.
+    /// Adds a face with the given `corners`, which are existing vertices or positions of new
+    /// vertices. O(degree); if the log uses reports, a scan of all corners finds the sides that
+    /// already exist.
     ///
     /// # Errors
     ///
@@ -39,8 +40,9 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         Ok(f)
     }
 
-    /// Removes `f`; O(degree). If the log uses reports, one more scan finds the sides that other
-    /// faces have. If vertices are identified by coordinates, corners without a face are removed.
+    /// Removes `f`; O(degree). If the log uses reports, a scan of all corners finds the sides that
+    /// other faces have. If vertices are identified by coordinates, vertices without a face are
+    /// removed.
     ///
     /// # Errors
     ///
@@ -55,8 +57,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         Ok(())
     }
 
-    /// Removes the faces at `v`; one scan. If the log uses reports, a second scan finds the sides
-    /// that other faces have.
+    /// Removes all faces at `v`; one scan of all corners. If the log uses reports, a second scan
+    /// finds the sides that other faces have.
     ///
     /// # Errors
     ///
@@ -123,11 +125,12 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     }
 
     /// Cuts `f` into triangles around the new vertex `m`; `f` becomes the triangle at its first
-    /// side. O(degree); if vertices are identified by coordinates, one more scan searches for `m`.
+    /// side. O(degree); if vertices are identified by coordinates, a scan of all corners searches
+    /// for `m`.
     ///
     /// # Errors
     ///
-    /// Refuses a missing face, and an occupied position.
+    /// Refuses a missing face, and a position that another vertex has.
     pub fn poke_face<M: ScannedMesh<V>>(
         &mut self,
         f: FaceId,
@@ -158,9 +161,9 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         Ok(())
     }
 
-    /// Cuts `f` in two between `ends`; `f` becomes the part from the earlier to the later corner.
-    /// O(degree); if the log uses reports, one more scan searches the other faces for an edge
-    /// between `ends`.
+    /// Cuts `f` into two faces by an edge between `ends`. The handle `f` stays the handle of the
+    /// part from the earlier to the later of the two corners. O(degree); if the log uses reports, a
+    /// scan of all corners searches the other faces for an edge between `ends`.
     ///
     /// # Errors
     ///

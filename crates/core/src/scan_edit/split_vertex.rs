@@ -10,8 +10,9 @@ use crate::query::ring;
 use crate::scanned::{ScannedFaces, ScannedVertex};
 
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
-    /// Splits `v`; one scan. The new vertex `n` gets the faces counter-clockwise from `right` to
-    /// `left`. If `right` or `left` is `None`, the faces start or end at the boundary instead.
+    /// Splits `v`; one scan of all corners. The new vertex `n` gets the faces that follow
+    /// counter-clockwise around `v` from `right` to `left`. If `right` is `None`, these faces start
+    /// at the boundary. If `left` is `None`, they end at the boundary.
     ///
     /// ```text
     ///              left

@@ -1,4 +1,4 @@
-//! Compaction: closes the holes.
+//! Compaction: removes the rows of deleted elements.
 
 use sixfold_core::{EditLog, Editable, MeshQuery, NewRows, Probe, RowId};
 

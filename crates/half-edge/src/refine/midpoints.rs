@@ -2,8 +2,8 @@
 //!
 //! Half-edge `h` runs from vertex `v` along face `f`. `p` is the half-edge before `h`, `n` the
 //! half-edge after `h`, and `t` the twin of `h`. `#h` is the number of the corner of `h`. The
-//! midpoint m(h) cuts `h` in two: e(h) is the early half, l(h) the late half. The corner of `h`
-//! adds one edge inside the face: i(h) and its twin j(h).
+//! midpoint m(h) cuts `h` into two halves: e(h) starts where `h` starts, and l(h) ends where `h`
+//! ends. The corner of `h` adds one edge inside the face: i(h) and its twin j(h).
 //!
 //! ```text
 //!   Quads                                  Triangles
@@ -15,7 +15,8 @@
 //!     v ─── e(h) ──► m(h) ── l(h) ─►        v ─ e(h) ─► m(h) ── l(h) ─►
 //! ```
 //!
-//! The parent has E edges and C corners. In the table, f is the face point of `f`:
+//! The mesh before the split (the parent) has E edges and C corners. In the column "origin" of the
+//! table, f is the face point of `f`; in the column "face", f is the number of the face:
 //!
 //! | half-edge of the child | row | next | origin | face |
 //! |---|---|---|---|---|
@@ -28,8 +29,8 @@
 //! | e(b), on the boundary | 2b | l(b) | v | none |
 //! | l(b), on the boundary | 2(b ^ 1) + 1 | e(n) | m(b) | none |
 //!
-//! Edge e becomes the edges 2e and 2e + 1, whose four rows are adjacent. A thread takes a range of
-//! edges and writes two ranges of rows.
+//! Edge e becomes the edges 2e and 2e + 1, whose four rows are adjacent. Each thread processes a
+//! range of edges and writes two ranges of rows.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

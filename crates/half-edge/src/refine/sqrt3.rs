@@ -1,9 +1,9 @@
 //! Triangles split at face points, with their edges flipped.
 //!
 //! Half-edge `h` runs from vertex `a` to vertex `b` along face `f`. `p` is the half-edge before
-//! `h`, and `n` the half-edge after `h`. The twin `t` of `h` has face `g`. In the child, row `h`
-//! runs from the face point g to the face point f. The corner of `h` adds one edge: the spoke s(h)
-//! from `a` to f, with its twin r(h).
+//! `h`, and `n` the half-edge after `h`. The twin `t` of `h` has face `g`. In the refined mesh (the
+//! child), row `h` runs from the face point g to the face point f. The corner of `h` adds one edge:
+//! the spoke s(h) from `a` to f, with its twin r(h).
 //!
 //! ```text
 //!             g            x = next(t)            f           ▲ y + 4  ▲ y + 6   to f;
@@ -14,7 +14,8 @@
 //!       an inner edge               a boundary edge           the same edge cut in three
 //! ```
 //!
-//! With E edges and C corners in the parent, and `#h` the number of the corner of `h`:
+//! The mesh before the split (the parent) has E edges and C corners. `#h` is the number of the
+//! corner of `h`:
 //!
 //! | half-edge of the child | row | next | origin | face |
 //! |---|---|---|---|---|
@@ -25,10 +26,11 @@
 //! | s(h), p ^ 1 without a face | 2(E + #h) | r(p) | a | #p |
 //! | r(h), t without a face | s(h) + 1 | h | f | #h |
 //!
-//! Boundary half-edges do not change, unless boundary edges are cut in three. The `j`-th boundary
-//! edge then gets the points q and q', and eight rows from y = 2(E + C) + 8j on. Two more triangles
-//! lie beside #h (q' b f): C + 2j (a q f) and C + 2j + 1 (q q' f). The boundary half-edge keeps its
-//! row and runs from `b` to q'. Half-edge y + 1 runs from q' to q, and y + 3 from q to `a`.
+//! Boundary half-edges do not change, unless boundary edges are cut into three edges. If they are
+//! cut, the `j`-th boundary edge gets the points q and q', and eight rows from y = 2(E + C) + 8j
+//! on. Two more triangles lie beside #h (q' b f): C + 2j (a q f) and C + 2j + 1 (q q' f). The
+//! boundary half-edge keeps its row and runs from `b` to q'. Half-edge y + 1 runs from q' to q, and
+//! y + 3 from q to `a`.
 
 use sixfold_core::{FaceId, MeshQuery, Slot};
 

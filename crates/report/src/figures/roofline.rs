@@ -1,5 +1,5 @@
-//! Times of queries over the bytes that they move. A query on the line of a memory speed can become
-//! faster only if it moves fewer bytes.
+//! A figure with the time of each query over the bytes that the query moves. Lines show the speed
+//! of memory. A query on such a line can become faster only if the query moves fewer bytes.
 
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::plots::Plot;
