@@ -287,7 +287,7 @@ def check(figure, results):
         return check_ranking(figure, lab["ranking"], lab["workload"]["name"])
     pooled = len(results["meshes"]) > 1 and not figure["mesh"]
     if pooled:
-        rows = results["pooled"]
+        rows = results["groups"][0]["pooled"]
         columns = list(dict.fromkeys(row["backend"] for row in rows))
     else:
         [study] = [s for s in studies if s["mesh"]["name"] == figure["mesh"]] if figure["mesh"] else studies

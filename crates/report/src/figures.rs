@@ -9,7 +9,7 @@ mod ranking;
 mod roofline;
 
 use sixfold_study::numbers::{counted, grouped};
-use sixfold_study::{Collection, Environment, Labs, MeshReport, Report};
+use sixfold_study::{Collection, Environment, Labs, MeshReport, Pool, Report};
 
 use crate::{Figure, ReportPage, Section};
 
@@ -33,6 +33,7 @@ pub(crate) fn page(collection: &Collection, command: &str) -> ReportPage {
         _ => None,
     };
     let labs = labs(&collection.labs, command);
+    let pool = collection.pool();
     let title = match (single, &labs[..]) {
         (Some(study), _) => format!("Mesh data structures on {}", study.mesh.name),
         (None, [lab]) if collection.meshes.is_empty() => lab.title.clone(),
@@ -69,16 +70,17 @@ pub(crate) fn page(collection: &Collection, command: &str) -> ReportPage {
         machines,
         sentences: match single {
             Some(study) => [vec![facts(&study.mesh)], study.sentences.clone()].concat(),
-            None => collection.sentences.clone(),
+            None => pool.sentences.clone(),
         },
         warnings: {
-            let warnings = single.map_or_else(Vec::new, |study| study.warnings.clone());
+            let warnings = single.map_or(&pool.warnings, |study| &study.warnings);
+            let warnings = warnings.clone();
             let interrupted = is_interrupted(collection).then(|| INTERRUPTED.to_owned());
             warnings.into_iter().chain(interrupted).collect()
         },
         figures: match single {
             Some(study) => study_figures(study, command),
-            None => pooled_figures(collection, command),
+            None => pooled_figures(&pool, command),
         },
         meshes: match single {
             Some(_) => Vec::new(),
@@ -207,10 +209,10 @@ fn section_figures(study: &Report, place: usize, command: &str) -> Vec<Figure> {
     figures
 }
 
-fn pooled_figures(collection: &Collection, command: &str) -> Vec<Figure> {
+fn pooled_figures(pool: &Pool, command: &str) -> Vec<Figure> {
     let mut figures = Vec::new();
-    figures.extend(heat_map::pooled(collection, command));
-    figures.extend(ranking::pooled(collection, command));
+    figures.extend(heat_map::pooled(pool, command));
+    figures.extend(ranking::pooled(pool, command));
     figures
 }
 

@@ -17,6 +17,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
 use sixfold::shapes::Order;
 use sixfold_study::{CacheState, External, Operation, Policy};
 
@@ -39,13 +40,13 @@ const EXAMPLES: &str = "Examples:
   sixfold                                    study the built-in mesh
   sixfold study bunny.obj                    study your own mesh
   sixfold pick --workload smoothing bunny.obj
-  sixfold inspect bunny.obj                  facts about the mesh, and which backends can hold it
+  sixfold inspect bunny.obj                  facts about the mesh; structures that can hold it
   sixfold generate geodesic frequency=20 -o ball.obj
   sixfold subdivide --scheme loop --levels 2 bunny.obj -o smooth.obj
   sixfold decimate --ratio 0.1 bunny.obj -o small.obj
 
 Exit codes: 0 success; 1 finished with a negative answer, such as results that differ;
-2 wrong usage or unusable input; 3 not supported by this backend or scheme;
+2 wrong usage or unusable input; 3 not supported by the structure or scheme;
 4 interrupted, finished results are kept.";
 
 /// Text after the options in `study --help`; the lists of names follow it.
@@ -59,35 +60,34 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study scans --report results              all meshes in a folder; --resume continues
 
 How it measures: Each round runs every operation once on every backend, in random order. The clock
-measures the processor time of the thread. The table shows medians. One backend is measured twice in
-each round: the difference between its two times is the noise, and smaller differences count as
-ties.
+measures the processor time of the thread. The table shows the median over the rounds. In each
+round, one backend is measured twice. The difference between its two times is the noise, and smaller
+differences count as ties.
 
-Seed: The seed determines the random order. A slow operation may run on a sample of the elements.
-The seed also determines the elements in this sample. The number of these elements depends on
-measured times, so it can differ between two runs with the same seed.
+Seed: The seed determines the random order of the runs. A slow operation may run on a random sample
+of the elements. The seed also determines the elements of the sample. The size of the sample depends
+on measured times, so two studies with the same seed can have samples of different sizes.
 
-Interruption: Ctrl-C stops after the current sample and keeps the finished results. A second Ctrl-C
-stops at once, with exit code 130.
+Interruption: Ctrl-C stops after the current timed run and keeps the finished results. A second
+Ctrl-C stops at once, with exit code 130.
 
-Memory: With --heap kept, the process keeps freed pages, so that no sample needs fresh pages. The
-rows `first time` show the time on fresh pages. With --heap system, the allocator of the platform
-manages freed pages. The time of an operation that allocates memory then depends on the operations
-that ran before it. With --caches cold, each sample is one run, and the caches are filled with other
-data before each sample. `compare` and `merge` refuse to mix results with different --heap or
---caches.
+Memory: With --heap kept, the process keeps freed memory pages, and timed runs use these pages
+again. The rows `first time` of the table show the time on new pages. With --heap system, the
+allocator decides which freed pages it keeps. The time of an operation that allocates memory then
+depends on the previous operations. With --caches cold, the caches are filled with other data before
+each timed run. `compare` and `merge` refuse results that differ in --heap or --caches.
 
 Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold), or the results of an
 external program differ; 2 wrong usage or unusable input; 3 none of the selected backends can hold
 the mesh; 4 interrupted, finished results are kept.";
 
 const MERGE_EXAMPLES: &str = "Examples:
-  sixfold study scans --shard 1/2 --report one      on one machine
-  sixfold study scans --shard 2/2 --report two      on another
+  sixfold study scans --shard 1/2 --report one      part 1, on one machine
+  sixfold study scans --shard 2/2 --report two      part 2, on another machine
   sixfold merge one two --report all
 
-All shards must have the same list of mesh names and the same settings. If several shards contain
-the same mesh, the results of the first of these shards are used.
+A shard is the result of one part of a study. All shards must have the same list of mesh names and
+the same settings. If several shards contain the same mesh, `merge` uses the first of these shards.
 
 Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold); 2 wrong usage, or
 shards with different mesh names or settings.";
@@ -100,11 +100,23 @@ const REPORT_EXAMPLES: &str = "Examples:
 Exit codes: 0 success; 2 wrong usage, or a file that is incomplete, is not a result, or has another
 schema version.";
 
+const COMPLETIONS_EXAMPLES: &str = "Examples:
+  sixfold completions bash > ~/.local/share/bash-completion/completions/sixfold
+  sixfold completions fish > ~/.config/fish/completions/sixfold.fish
+
+Exit codes: 0 success; 2 wrong usage.";
+
+const MANUAL_EXAMPLES: &str = "Examples:
+  sixfold manual | man -l -
+  sixfold manual --to ~/.local/share/man/man1
+
+Exit codes: 0 success; 2 wrong usage, or a file that cannot be written.";
+
 /// Measure which mesh data structure fits a mesh and a workload.
 ///
-/// Builds every backend from the same mesh, runs the same operations on each backend, and compares
-/// the times. Without a command, sixfold studies a built-in mesh of about 20,000 triangles for
-/// about 20 seconds.
+/// Builds six data structures from the same mesh, runs the same operations on each of them, and
+/// compares the times. A backend is one of these structures, or an external program. Without a
+/// command, sixfold studies a built-in mesh of about 20,000 triangles for about 20 seconds.
 #[derive(Debug, Parser)]
 #[command(name = "sixfold", version, after_help = EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Arguments {
@@ -114,33 +126,33 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Measure the time and memory of each backend for a mesh
+    /// Measure the time and memory of each mesh data structure
     Study(Study),
-    /// Find the backend that fits a mesh and a workload
+    /// Find the data structure that fits a mesh and a workload
     Pick(Pick),
     /// List the built-in workloads and the programs they model
     Workloads(Workloads),
-    /// Explain the time of queries by the memory that they read
+    /// Explain the time of queries by the memory that the queries read
     Why(Why),
-    /// Measure how the order of a mesh in memory affects each backend
+    /// Measure how the order of vertices and faces in memory affects the times
     Orders(Orders),
-    /// Measure how the cost of each backend grows with the size of the mesh
+    /// Measure how the times grow with the size of the mesh
     Growth(Growth),
-    /// Merge the shards of a study of many meshes
+    /// Merge the results of a study that ran in several parts
     Merge(Merge),
     /// Draw saved results on one page
     Report(Draw),
-    /// Show the differences between two studies that exceed the noise
+    /// Compare two studies, and show the differences that exceed the noise
     Compare(Compare),
-    /// Show facts about a mesh, and which backends can hold it
+    /// Show facts about a mesh, and which data structures can hold the mesh
     Inspect(Inspect),
     /// Measure the distance between the surfaces of two meshes
     Distance(Distance),
-    /// Show the memory of each backend, counted in three ways that must agree
+    /// Count the memory of each data structure in three ways that must agree
     Memory(Memory),
     /// Write a built-in shape
     Generate(Generate),
-    /// List the subdivision schemes, and which backends support them
+    /// List the subdivision schemes, and the data structures that support each scheme
     Schemes(Schemes),
     /// Refine a mesh with a subdivision scheme
     Subdivide(Subdivide),
@@ -150,55 +162,80 @@ pub(crate) enum Command {
     Dual(Dual),
     /// Cut polygons into triangles
     Triangulate(Triangulate),
-    /// List the edits of each backend, and how much of the mesh they visit
+    /// List the edits of each data structure, and how much of the mesh each edit visits
     Edits(Edits),
     /// Make a mesh coarser: collapse the edges with the least error first
     Decimate(Decimate),
-    /// Remesh with edges of one length and nearly equilateral triangles
+    /// Replace the triangles of a mesh by nearly equilateral triangles of one size
     Remesh(Remesh),
     /// Repair a mesh: weld, orient, cut, fill holes
     Repair(Repair),
     /// Draw meshes with their edges and creases, as PNG or SVG
     Render(Render),
+    /// Print a script that completes commands and options in a shell
+    Completions(Completions),
+    /// Print or write manual pages
+    Manual(Manual),
 }
 
-/// Measure the time and memory of each backend for a mesh.
+/// Print a script that completes commands and options in a shell.
+#[derive(Debug, Args)]
+#[command(after_help = COMPLETIONS_EXAMPLES, verbatim_doc_comment)]
+pub(crate) struct Completions {
+    /// The shell
+    #[arg(value_name = "SHELL")]
+    pub(crate) shell: Shell,
+}
+
+/// Print or write manual pages.
 ///
-/// Prints facts about the mesh, which backends can hold it, and for each backend the time of every
-/// operation and the bytes per vertex.
+/// Without --to, prints the manual page of sixfold. With --to, writes this page and one page for
+/// each command.
+#[derive(Debug, Args)]
+#[command(after_help = MANUAL_EXAMPLES, verbatim_doc_comment)]
+pub(crate) struct Manual {
+    /// Write all pages to DIR
+    #[arg(long, value_name = "DIR")]
+    pub(crate) to: Option<PathBuf>,
+}
+
+/// Measure the time and memory of each mesh data structure.
+///
+/// Prints facts about the mesh, and which backends (data structures) can hold the mesh. Prints for
+/// each backend the time of every operation and the bytes per vertex.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Study {
     /// Meshes, or folders with meshes [default: a built-in mesh]
     #[arg(value_name = "MESH|DIR")]
     pub(crate) meshes: Vec<PathBuf>,
-    /// Only these backends, by name
+    /// Use only these data structures (backends), by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
-    /// Only these operations, by name
+    /// Run only these operations, by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = operation)]
     pub(crate) operations: Vec<Operation>,
-    /// Time to measure each mesh: 20s, 500ms, 2m
-    #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration, allow_hyphen_values = true)]
-    pub(crate) budget: Duration,
-    /// Seed of the random order and of the sampled elements
+    /// Total time, such as 20s or 2m [default: 20s for each mesh and lab]
+    #[arg(long, value_name = "TIME", value_parser = duration, allow_hyphen_values = true)]
+    pub(crate) budget: Option<Duration>,
+    /// Seed of the random order and of random samples
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) memory: MemoryState,
-    /// Measure another program as one more column; may be repeated
+    /// Also measure another program; may be repeated
     #[arg(long = "external", value_name = "NAME=COMMAND")]
     pub(crate) externals: Vec<External>,
     /// Time limit for one answer of an external program
     #[arg(long, value_name = "TIME", default_value = "60s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) patience: Duration,
-    /// Cut every polygon into a fan of triangles first
+    /// First cut every polygon into a fan of triangles
     #[arg(long)]
     pub(crate) triangulate: bool,
     /// Refuse a file with degenerate faces instead of leaving them out
     #[arg(long)]
     pub(crate) strict: bool,
-    /// Write everything as JSON (- for standard output)
+    /// Write all results as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
     /// Write one line per result as CSV (- for standard output)
@@ -207,13 +244,13 @@ pub(crate) struct Study {
     /// Write report.html, report.md, results.json and results.csv to DIR
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
-    /// Labs to add for one mesh: orders,growth,why or none [default: all]
+    /// Labs (extra measurements): orders,growth,why or none [default: all]
     #[arg(long, value_name = "NAME,…", requires = "report")]
     pub(crate) labs: Option<LabSelection>,
     /// Continue the study in the folder of --report
     #[arg(long, requires = "report")]
     pub(crate) resume: bool,
-    /// Study every n-th mesh, from the i-th on; then use `sixfold merge`
+    /// Study part i of n of the meshes; `sixfold merge` joins the parts
     #[arg(long, value_name = "i/n", requires = "report")]
     pub(crate) shard: Option<Shard>,
 }
@@ -221,10 +258,10 @@ pub(crate) struct Study {
 /// How freed pages and the caches are treated while times are measured.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub(crate) struct MemoryState {
-    /// Freed pages: kept (by the process) or system
+    /// Freed memory: kept (by the process) or system
     #[arg(long, value_name = "POLICY", default_value = "kept")]
     pub(crate) heap: Policy,
-    /// Caches before each sample: warm or cold
+    /// Caches before each timed run: warm or cold
     #[arg(long, value_name = "STATE", default_value = "warm", value_parser = cache_state)]
     pub(crate) caches: CacheState,
 }
@@ -235,11 +272,11 @@ fn cache_state(name: &str) -> Result<CacheState, String> {
         .ok_or_else(|| format!("unknown cache state `{name}`: choose `warm` or `cold`"))
 }
 
-/// Merge the shards of a study of many meshes.
+/// Merge the results of a study that ran in several parts.
 #[derive(Debug, Args)]
 #[command(after_help = MERGE_EXAMPLES)]
 pub(crate) struct Merge {
-    /// Results of `sixfold study --shard i/n --report DIR`
+    /// Results of `sixfold study --shard i/n --report DIR`, for each part i
     #[arg(value_name = "DIR|FILE.json", required = true)]
     pub(crate) shards: Vec<PathBuf>,
     /// Write report.html, report.md, results.json and results.csv to DIR
@@ -252,8 +289,8 @@ pub(crate) struct Merge {
 
 /// Draw saved results on one page.
 ///
-/// Takes results of `study`, `orders`, `growth`, `why` and `pick`, with at most one study. Measures
-/// nothing.
+/// Reads results of `study`, `orders`, `growth`, `why` and `pick`. At most one of the results may
+/// be a study. This command measures nothing.
 #[derive(Debug, Args)]
 #[command(after_help = REPORT_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Draw {
@@ -272,7 +309,7 @@ impl Default for Study {
             meshes: Vec::new(),
             backends: Vec::new(),
             operations: Vec::new(),
-            budget: settings.budget,
+            budget: None,
             seed: settings.seed,
             memory: MemoryState::default(),
             externals: Vec::new(),

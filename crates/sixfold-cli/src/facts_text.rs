@@ -1,10 +1,35 @@
 //! Text about the facts of a mesh and about the backends that can hold the mesh.
 
 use sixfold::{Distribution, Facts};
-use sixfold_study::{BackendReport, MeshReport};
+use sixfold_study::{BackendReport, MeshReport, Settings, StudyMesh};
 
-use crate::text::{hanging_indent, sanitize};
+use crate::text::{TextOutput, hanging_indent, sanitize};
 use sixfold_study::numbers::{counted, grouped};
+
+/// Prints what is known before a measurement: the facts of a mesh, and the backends that can hold
+/// it. Prints nothing if none of the named backends can hold the mesh, because an error follows.
+/// No names means all backends.
+pub(crate) fn print_before_measuring(
+    study_mesh: &StudyMesh,
+    settings: &Settings,
+    text: &mut TextOutput,
+) {
+    let (Ok(chosen), Ok(())) = (settings.chosen_backends(), settings.check_externals()) else {
+        return; // the measurement returns this error
+    };
+    let polygons = &study_mesh.polygons;
+    if !chosen
+        .iter()
+        .any(|backend| backend.info.check(polygons).is_ok())
+    {
+        return;
+    }
+    // Checking takes seconds for large meshes.
+    text.print_line(&facts_text(&study_mesh.report()));
+    text.print_line("");
+    let inspection = sixfold_study::inspect(study_mesh, &chosen);
+    text.print_line(&verdicts_text(&inspection.mesh, &inspection.backends));
+}
 
 pub(crate) fn facts_text(mesh: &MeshReport) -> String {
     let facts = &mesh.facts;

@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
     let stop = interrupt_flag(arguments.memory.heap);
     let json = Output::open_if(arguments.json.as_ref())?;
     warn_of_debug_build();
-    let report = measure(&settings, &stop)?;
+    let report = measure(&settings, &stop, &Bar::new())?;
 
     let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
     print(&report, &mut text);
@@ -58,6 +58,7 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
 pub(crate) fn measure(
     settings: &GrowthSettings,
     stop: &AtomicBool,
+    bar: &Bar,
 ) -> Result<GrowthReport, Failure> {
     let needed = sixfold_study::growth_bytes(settings).map_err(Failure::usage)?;
     let largest = counted(settings.to, "face", "faces");
@@ -66,7 +67,6 @@ pub(crate) fn measure(
         needed,
         "choose a smaller --to, or fewer --backends",
     )?;
-    let bar = Bar::new();
     let report = sixfold_study::growth(settings, stop, &mut |at| bar.show(at));
     bar.clear();
     let mut report = report.map_err(|error| match error {
@@ -133,10 +133,10 @@ fn print(report: &GrowthReport, text: &mut TextOutput) {
 }
 
 const LEGEND: &str = "Each cell has the ns per element, and the smallest cache that can hold the \
-    structure (– if no known cache is large enough). * best at that size; = tied with the best; \
-    ~ measured on a sample of the elements; ? estimated, not run. power: the total time is \
-    proportional to this power of the number of faces, ± standard error. in cache: the power for \
-    the sizes that fit into the last cache. beyond: the power for the larger sizes.";
+    structure (– if no known cache is large enough). * fastest at this size; = tied with the \
+    fastest; ~ measured on a sample of the elements; ? estimated, not run. power: the exponent p \
+    if the total time is proportional to F^p for F faces, ± standard error. in cache: the power \
+    for the sizes that fit into the last cache. beyond: the power for the larger sizes.";
 
 /// Returns the table with a row per size and fitted line, and a column per backend.
 fn table(report: &GrowthReport, operation: Operation, bold: bool) -> String {

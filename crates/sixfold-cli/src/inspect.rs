@@ -28,7 +28,7 @@ struct Inspected {
 /// Inspects the meshes. If there are several, continues after a mesh that cannot be read.
 pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
     exit_on_interrupt();
-    let meshes = find_meshes(&arguments.meshes)?;
+    let meshes = find_meshes(&arguments.meshes, &mut |note| print_stderr(note))?;
     let paths: Vec<&Path> = meshes.iter().filter_map(|m| m.path.as_deref()).collect();
     for path in &paths {
         check_outputs(Some(path), &[("--json", arguments.json.as_ref())])?;
@@ -37,6 +37,12 @@ pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
     let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
     let mut inspected = Vec::new();
     let mut failed = 0;
+    for mesh in &meshes {
+        if let Some(problem) = &mesh.problem {
+            failed += 1;
+            print_stderr(&format!("error: {}: {problem}", mesh.name));
+        }
+    }
     for path in &paths {
         if !inspected.is_empty() {
             text.print_line("");
@@ -67,7 +73,7 @@ pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
         _ => Err(Failure::usage(format!(
             "{failed} of {} meshes could not be read: correct the files that the messages above \
              name",
-            paths.len()
+            meshes.len()
         ))),
     }
 }

@@ -21,6 +21,7 @@ mod free_memory;
 mod generate;
 mod growth;
 mod heap;
+mod help;
 mod inspect;
 mod load;
 mod many;
@@ -46,11 +47,12 @@ mod why;
 mod why_text;
 mod workloads;
 
+use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
+use clap::FromArgMatches;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{CommandFactory, FromArgMatches};
 
 use sixfold::io::Format;
 
@@ -58,14 +60,8 @@ use arguments::{Arguments, Command};
 use failure::Failure;
 
 fn main() -> ExitCode {
-    // These help texts list the names of shapes, backends and operations.
-    let command = Arguments::command()
-        .mut_subcommand("study", |study| study.after_help(study::help()))
-        .mut_subcommand("orders", |orders| orders.after_help(orders::help()))
-        .mut_subcommand("growth", |growth| growth.after_help(growth::help()))
-        .mut_subcommand("generate", |generate| generate.after_help(generate::help()))
-        .mut_subcommands(arguments::with_file_options);
-    let arguments = command.try_get_matches().and_then(|matches| {
+    let matches = help::definition().try_get_matches_from(words());
+    let arguments = matches.and_then(|matches| {
         mesh_files::set_options(arguments::file_options(&matches));
         Arguments::from_arg_matches(&matches)
     });
@@ -95,6 +91,8 @@ fn main() -> ExitCode {
         Ok(Some(Command::Remesh(arguments))) => remesh::remesh(&arguments),
         Ok(Some(Command::Repair(arguments))) => repair::run(&arguments),
         Ok(Some(Command::Render(arguments))) => render::run(&arguments),
+        Ok(Some(Command::Completions(arguments))) => help::completions(&arguments),
+        Ok(Some(Command::Manual(arguments))) => help::manual(&arguments),
     };
     match done {
         Ok(code) => code,
@@ -103,6 +101,15 @@ fn main() -> ExitCode {
             ExitCode::from(code)
         }
     }
+}
+
+/// Returns the words of the command line. `help --help` means `help`, which clap does not know.
+fn words() -> Vec<OsString> {
+    let mut words: Vec<OsString> = std::env::args_os().collect();
+    if words.get(1).is_some_and(|word| word == "help") {
+        words.retain(|word| word != "--help" && word != "-h");
+    }
+    words
 }
 
 /// Prints the message of clap: the help, the version, or an error in the arguments.

@@ -10,12 +10,14 @@ mod pooled_table;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use sixfold_study::{
     Collection, Failed, FailureKind, Report, Settings, SharedSettings, StudyError, StudyMesh,
 };
 
 use crate::arguments::Study;
+use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
 use crate::load;
 use crate::outcome::{command_line, studies_exit_code, warn_of_debug_build};
@@ -38,10 +40,18 @@ const NONE_HOLDS: &str = "none of the selected backends can hold the mesh";
 /// Studies the selected meshes without a finished study. If a mesh cannot be loaded, lists the mesh
 /// and continues.
 pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Failure> {
-    let meshes = find_meshes(&arguments.meshes)?;
+    let meshes = find_meshes(&arguments.meshes, &mut |note| print_stderr(note))?;
     let single = meshes.len() == 1;
     check_files(arguments, &meshes)?;
     let selected_labs = labs::selected_labs(arguments.labs.as_ref(), single)?;
+    let parts = match single {
+        true => 1 + selected_labs.len(),
+        false => meshes.len(),
+    };
+    let settings = &Settings {
+        budget: part_of_budget(arguments, parts),
+        ..settings.clone()
+    };
     let names = meshes.iter().map(|mesh| mesh.name.clone()).collect();
     let mut collection = Collection::new(names, shared_settings(arguments, settings));
     let stop = interrupt_flag(settings.heap);
@@ -59,18 +69,26 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
     let selected = unfinished(&meshes, arguments.shard, &collection);
     warn_of_debug_build();
     let mut text = TextOutput::new(!uses_stdout(arguments));
+    let loaded = match &meshes[..] {
+        [mesh @ Mesh { problem: None, .. }] => Some(load_mesh(mesh, arguments)),
+        _ => None,
+    };
+    if let Some(Ok(study_mesh)) = &loaded {
+        print_before_measuring(study_mesh, settings, &mut text);
+    }
     let run = Run {
         arguments,
         settings,
         single,
+        labs: selected_labs.len(),
+        loaded: loaded.as_ref(),
         folder: folder.as_ref(),
         stop: &stop,
     };
     run.study(&selected, &mut collection, &mut text)?;
-    if let ([_], [mesh], Some(folder)) = (&collection.studies[..], &meshes[..], &folder) {
-        let study_mesh = load_mesh(mesh, arguments)?;
+    if let ([_], Some(Ok(study_mesh)), Some(folder)) = (&collection.studies[..], &loaded, &folder) {
         let runner = labs::LabRunner {
-            study_mesh: &study_mesh,
+            study_mesh,
             settings,
             folder,
             resumed: selected.is_empty(),
@@ -80,12 +98,18 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
     }
     let interrupted = stop.load(Ordering::Relaxed);
     let mut written = print_and_write(&collection, single, text, json, csv);
+    let none_studied = collection.studies.is_empty() && !interrupted && arguments.shard.is_none();
+    let not_measured = |failed: &Failed| failed.kind == FailureKind::NotMeasured;
     if let Some(folder) = &folder {
-        written = written.and(folder.write_report(&collection, &command_line()));
+        // A report on nothing would look like a result.
+        match none_studied && collection.failures.iter().all(not_measured) {
+            true => folder.remove_failures(),
+            false => written = written.and(folder.write_report(&collection, &command_line())),
+        }
     }
-    if collection.studies.is_empty() && !interrupted && arguments.shard.is_none() {
+    if none_studied {
         written?;
-        return Err(none_studied(&collection.failures));
+        return Err(failure_of_all(&collection.failures));
     }
     let mismatches = collection.labs.mismatches();
     studies_exit_code(written, &collection.studies, mismatches, interrupted)
@@ -107,6 +131,15 @@ fn check_files(arguments: &Study, meshes: &[Mesh]) -> Result<(), Failure> {
         ));
     }
     Ok(())
+}
+
+/// Returns the time of one of `parts` equal parts: a mesh or a lab. A shard takes its part of the
+/// meshes and of the time.
+fn part_of_budget(arguments: &Study, parts: usize) -> Duration {
+    match arguments.budget {
+        Some(total) => total.div_f64(parts.max(1) as f64),
+        None => Settings::default().budget,
+    }
 }
 
 /// Returns the meshes of the shard without results in `collection`.
@@ -154,6 +187,10 @@ struct Run<'a> {
     settings: &'a Settings,
     /// Whether only one mesh is studied. No progress line is printed in this case.
     single: bool,
+    /// The number of labs after the study.
+    labs: usize,
+    /// The only mesh, or the reason why it cannot be loaded; `None` for several meshes.
+    loaded: Option<&'a Result<StudyMesh, Failure>>,
     /// The folder in which finished studies are saved.
     folder: Option<&'a Folder>,
     stop: &'a AtomicBool,
@@ -172,7 +209,7 @@ impl Run<'_> {
             if self.stop.load(Ordering::Relaxed) {
                 break;
             }
-            let position = format!("{} of {}", done + 1, meshes.len());
+            let position = format!("{} of {}", done + 1, meshes.len() + self.labs);
             let Some(result) = self.measure_mesh(mesh, &position) else {
                 break; // interrupted during this mesh
             };
@@ -195,16 +232,29 @@ impl Run<'_> {
             let mesh = mesh.name.clone();
             Some(Err(Failed { mesh, reason, kind }))
         };
-        let study_mesh = match (load_mesh(mesh, self.arguments), &mesh.path) {
+        if let Some(problem) = &mesh.problem {
+            return failed(FailureKind::NotMeasured, problem.clone());
+        }
+        let own;
+        let loaded = match self.loaded {
+            Some(loaded) => loaded,
+            None => {
+                own = load_mesh(mesh, self.arguments);
+                &own
+            }
+        };
+        let study_mesh = match (loaded, &mesh.path) {
             (Ok(study_mesh), _) => study_mesh,
-            (Err(failure), None) => return failed(FailureKind::NotMeasured, failure.message),
+            (Err(failure), None) => {
+                return failed(FailureKind::NotMeasured, failure.message.clone());
+            }
             (Err(failure), Some(path)) => {
                 let reason = without_path(&failure.message, path);
                 return failed(FailureKind::NotMeasured, reason);
             }
         };
         let bar = Bar::new();
-        let report = sixfold_study::study(&study_mesh, self.settings, self.stop, &mut |at| {
+        let report = sixfold_study::study(study_mesh, self.settings, self.stop, &mut |at| {
             let stage = format!("{position}, {}: {}", mesh.name, at.stage);
             bar.show(sixfold_study::Progress {
                 stage: &stage,
@@ -291,12 +341,16 @@ fn print(collection: &Collection, text: &mut TextOutput) {
         let missing = counted(collection.missing.len(), "mesh is", "meshes are");
         text.print_line(&format!("! {missing} not studied yet"));
     }
-    if !collection.pooled.is_empty() {
+    let pool = collection.pool();
+    if !pool.all().is_empty() {
         text.print_line("");
-        text.print_line(&pooled_table::pooled_table(collection, text.bold()));
+        text.print_line(&pooled_table::pooled_table(&pool, text.bold()));
         text.print_line("");
-        for sentence in &collection.sentences {
+        for sentence in &pool.sentences {
             text.print_line(&hanging_indent("- ", sentence));
+        }
+        for warning in &pool.warnings {
+            text.print_line(&hanging_indent("! ", &sanitize(warning)));
         }
     }
     for failed in &collection.failures {
@@ -305,8 +359,8 @@ fn print(collection: &Collection, text: &mut TextOutput) {
     }
 }
 
-/// Returns the failure of a run without any finished study.
-fn none_studied(failures: &[Failed]) -> Failure {
+/// Returns the failure of a run in which no mesh could be studied.
+fn failure_of_all(failures: &[Failed]) -> Failure {
     let mut kinds = failures.iter().map(|failed| failed.kind);
     match kinds.all(|kind| kind == FailureKind::NoneHolds) {
         true => Failure::unsupported(

@@ -11,7 +11,7 @@ use sixfold_study::{
 };
 
 use crate::arguments::{ORDERS_EXAMPLES, Orders};
-use crate::facts_text::{facts_text, verdicts_text};
+use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
 use crate::load;
@@ -45,9 +45,10 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
         ..Settings::default()
     };
     warn_of_debug_build();
-    let report = measure(&study_mesh, &settings, &stop)?;
-
     let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
+    print_before_measuring(&study_mesh, &settings, &mut text);
+    let report = measure(&study_mesh, &settings, &stop, &Bar::new())?;
+
     print(&report, &mut text);
     let mut done = text.finish();
     if let Some(output) = json {
@@ -61,6 +62,7 @@ pub(crate) fn measure(
     study_mesh: &StudyMesh,
     settings: &Settings,
     stop: &AtomicBool,
+    bar: &Bar,
 ) -> Result<OrdersReport, Failure> {
     let needed = sixfold_study::orders_bytes(study_mesh, settings).map_err(Failure::usage)?;
     check_free_memory(
@@ -68,7 +70,6 @@ pub(crate) fn measure(
         needed,
         "choose fewer --backends, or a smaller mesh",
     )?;
-    let bar = Bar::new();
     let report = sixfold_study::orders(study_mesh, settings, stop, &mut |at| bar.show(at));
     bar.clear();
     let mut report = report.map_err(|error| match error {
@@ -93,9 +94,6 @@ pub(crate) fn default_operations() -> String {
 }
 
 fn print(report: &OrdersReport, text: &mut TextOutput) {
-    text.print_line(&facts_text(&report.mesh));
-    text.print_line("");
-    text.print_line(&verdicts_text(&report.mesh, &report.backends));
     for comparison in &report.comparisons {
         let rows: Vec<&OrderRow> = report.rows(comparison.operation).collect();
         if !rows.is_empty() {
@@ -122,10 +120,11 @@ fn print(report: &OrdersReport, text: &mut TextOutput) {
     text.print_line(&hanging_indent("", &settings));
 }
 
-const LEGEND: &str = "Each cell has the ns per element, and the ratio to the best order of that \
+const LEGEND: &str = "Each cell has the ns per element, and the ratio to the best order of the \
     backend. * best order of the backend; = tied with the best order; ~ measured on a sample of \
-    the elements; ? estimated, not run; m the backend merges vertices; ! WRONG: the result differs \
-    from the other results. worst/best: time in the worst order, divided by the time in the best \
+    the elements; ? estimated, not run; m the backend merges vertices at one position; \
+    e the backend refuses edits that other backends accept; ! WRONG: the result differs from the \
+    other results. worst/best: time in the worst order, divided by the time in the best \
     order (– if the difference is within the noise).";
 
 /// Returns the table with a row per backend and a column per order.
@@ -177,6 +176,7 @@ fn cell(OrderRow { row, .. }: &OrderRow, bold: bool) -> Cell {
     let note = match row.agreement {
         Agreement::Mismatch => "!",
         Agreement::Merged => "m",
+        Agreement::OtherEdits => "e",
         _ => "",
     };
     let (each, ratio) = (short_figure(each), ratio.unwrap_or_default());

@@ -87,7 +87,7 @@ fn print_different_work(study: &Report, row: &ResultRow) {
     let (name, operation, mesh) = (&row.backend, row.operation, &study.mesh.name);
     print_stderr(&format!(
         "error: {mesh}: {name}: the checksum of {operation} is {theirs}, but {ours} on the \
-         built-in backends. The program did different work, so its times are not comparable: \
+         built-in backends. The results differ, so the times of the program are not comparable: \
          correct the program"
     ));
 }

@@ -1,9 +1,12 @@
 //! `sixfold pick`: finds the backend that fits a mesh and a workload.
 
 use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
 
 use comfy_table::{Cell, CellAlignment};
-use sixfold_study::{BreakEven, PickReport, PickSettings, Ranked, StudyMesh};
+use sixfold_study::{
+    BreakEven, Part, PickReport, PickSettings, Prediction, Ranked, StudyMesh, Workload,
+};
 
 use crate::arguments::Pick;
 use crate::failure::Failure;
@@ -20,7 +23,7 @@ use sixfold_study::numbers::{counted, duration, figure, grouped};
 /// The exit code if no backend qualifies.
 const NONE_QUALIFIES: u8 = 1;
 
-/// Prints the text before the files are written, so that it is not lost if writing a file fails.
+/// Prints the text before the files are written, so that the text is not lost if writing fails.
 pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     for mesh in &arguments.meshes {
         check_outputs(Some(mesh), &[("--json", arguments.json.as_ref())])?;
@@ -41,6 +44,8 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
         heap: arguments.heap,
     };
     warn_of_debug_build();
+    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
+    print_before_measuring(&study_meshes, &settings, &stop, &mut text);
     let bar = Bar::new();
     let report = sixfold_study::pick(&study_meshes, &settings, &stop, &mut |done, what| {
         bar.set(done, what)
@@ -49,8 +54,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     let mut report = report.map_err(Failure::usage)?;
     report.environment.command = Some(command_line());
 
-    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
-    print(&report, &study_meshes, &mut text);
+    print(&report, &mut text);
     let mut done = text.finish();
     if let Some(output) = json {
         done = done.and(output.finish(|writer| report.write_json(writer)));
@@ -66,46 +70,94 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
 }
 
 fn study_meshes(arguments: &Pick) -> Result<Vec<StudyMesh>, Failure> {
-    let meshes = find_meshes(&arguments.meshes)?;
-    let read = |mesh: &Mesh| match &mesh.path {
-        Some(path) => load::for_study(path, false, arguments.triangulate),
-        None => Ok(load::built_in()),
+    let meshes = find_meshes(&arguments.meshes, &mut |note| print_stderr(note))?;
+    let read = |mesh: &Mesh| match (&mesh.path, &mesh.problem) {
+        (Some(path), _) => load::for_study(path, false, arguments.triangulate),
+        (None, Some(problem)) => Err(Failure::usage(format!("{}: {problem}", mesh.name))),
+        (None, None) => Ok(load::built_in()),
     };
     meshes.iter().map(read).collect()
 }
 
-fn print(report: &PickReport, study_meshes: &[StudyMesh], text: &mut TextOutput) {
+/// Prints the facts that are known before the measurement: the meshes, the mix, and the backends
+/// that qualify. Also prints the predicted costs for the first mesh. Prints nothing if an error
+/// follows.
+fn print_before_measuring(
+    study_meshes: &[StudyMesh],
+    settings: &PickSettings,
+    stop: &AtomicBool,
+    text: &mut TextOutput,
+) {
     for study_mesh in study_meshes {
         let vertices = counted(study_mesh.polygons.vertex_count(), "vertex", "vertices");
         let faces = counted(study_mesh.polygons.face_count(), "face", "faces");
-        text.print_line(&hanging_indent(
-            "Mesh:     ",
-            &format!("{}: {vertices}, {faces}", study_mesh.name),
-        ));
+        let line = format!("{}: {vertices}, {faces}", sanitize(&study_mesh.name));
+        text.print_line(&hanging_indent("Mesh:     ", &line));
     }
-    let summary = format!("{}. {}", report.workload.name, report.workload.summary);
+    let workload = &settings.workload;
+    let summary = format!("{}. {}", workload.name, workload.summary);
     text.print_line(&hanging_indent("Workload: ", &sanitize(summary.trim())));
-    let operations = counted(
-        report.operations.round() as usize,
-        "operation",
-        "operations",
-    );
-    let mix: Vec<String> = report
-        .workload
-        .mix
-        .iter()
-        .map(|part| format!("{} {}", part.weight, part.action))
-        .collect();
-    let rebuilt = match report.workload.rebuilds {
+    let weighted = |part: &Part| format!("{} {}", part.weight, part.action);
+    let mix: Vec<String> = workload.mix.iter().map(weighted).collect();
+    let operations = operations(study_meshes, workload);
+    let rebuilt = match workload.rebuilds {
         0 => String::new(),
         times => format!(", rebuilt {}", counted(times as usize, "time", "times")),
     };
-    let mix = mix.join(", ");
-    text.print_line(&hanging_indent(
-        "Mix:      ",
-        &format!("{mix}; {}; {operations}{rebuilt}", report.workload.access),
-    ));
+    let mix = format!(
+        "{}; {}; {operations}{rebuilt}",
+        mix.join(", "),
+        workload.access
+    );
+    text.print_line(&hanging_indent("Mix:      ", &mix));
+    let first = study_meshes.first();
+    if let Some(Ok(prediction)) = first.map(|mesh| sixfold_study::predict(mesh, settings, stop)) {
+        for (name, line) in predicted_lines(&prediction) {
+            text.print_line(&hanging_indent(name, &line));
+        }
+    }
     text.print_line("");
+}
+
+/// Returns the number of operations in one use of the mesh, as the mean over the meshes.
+fn operations(study_meshes: &[StudyMesh], workload: &Workload) -> String {
+    let on = |study_mesh: &StudyMesh| {
+        let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
+        workload.operations_on(&counts)
+    };
+    let sum: f64 = study_meshes.iter().map(on).sum();
+    let mean = sum / study_meshes.len().max(1) as f64;
+    counted(mean.round() as usize, "operation", "operations")
+}
+
+/// Returns the prediction in a few lines, each with its title.
+fn predicted_lines(prediction: &Prediction) -> Vec<(&'static str, String)> {
+    let mut lines = Vec::new();
+    let local = || prediction.candidates.iter().filter(|p| p.scans.is_empty());
+    let counted = local().map(|p| Some(format!("{} {}", p.backend, figure(p.lines?))));
+    let counted: Option<Vec<String>> = counted.collect();
+    if let Some(counted) = counted.filter(|counted| !counted.is_empty()) {
+        let text = format!("{} cache lines per operation", counted.join(", "));
+        lines.push(("Reads:    ", text));
+    }
+    let scanning = prediction.candidates.iter().filter(|p| !p.scans.is_empty());
+    let scanning: Vec<&str> = scanning.map(|p| p.backend.as_str()).collect();
+    if !scanning.is_empty() {
+        let text = format!(
+            "{} scan all faces for each element: expect much longer times",
+            scanning.join(", ")
+        );
+        lines.push(("Scans:    ", text));
+    }
+    for excluded in &prediction.excluded {
+        let text = format!("{}: {}", excluded.backend, sanitize(&excluded.reason));
+        lines.push(("Excluded: ", text));
+    }
+    lines
+}
+
+/// Prints the results, which follow [`print_before_measuring`].
+fn print(report: &PickReport, text: &mut TextOutput) {
     if !report.ranking.is_empty() {
         text.print_line(&ranking(report));
         text.print_line("");
@@ -114,10 +166,8 @@ fn print(report: &PickReport, study_meshes: &[StudyMesh], text: &mut TextOutput)
         text.print_line(&hanging_indent("- ", sentence));
     }
     for excluded in &report.excluded {
-        text.print_line(&hanging_indent(
-            "- ",
-            &format!("{} is excluded: {}.", excluded.backend, excluded.reason),
-        ));
+        let line = format!("{} is excluded: {}.", excluded.backend, excluded.reason);
+        text.print_line(&hanging_indent("- ", &line));
     }
     for warning in &report.warnings {
         text.print_line(&hanging_indent("! ", warning));
@@ -183,10 +233,10 @@ fn ranking(report: &PickReport) -> String {
             "\nrelation-tables: flat tables of only the relations in the mix, made from {over}"
         );
     }
-    text + "\n1st build: time to build on fresh pages\n\
-            again: time to build on pages that were used before\n\
-            pays after: number of operations after which the first build has paid off,\n\
-            compared with keeping the indexed face set"
+    text + "\n1st build: time of the first build, on new memory pages\n\
+            again: time of a later build, on memory pages that were used before\n\
+            pays after: number of operations after which the first build saves time,\n\
+            compared with an indexed face set that is already built"
 }
 
 /// Formats a ratio as `1.04`, `12.3` or `1,230`.

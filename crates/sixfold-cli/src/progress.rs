@@ -14,17 +14,23 @@ use crate::text::print_stderr;
 /// Number of steps of a full bar.
 const STEPS: u64 = 1000;
 
-/// A progress bar on standard error. It is shown only on a terminal.
+/// A progress bar on standard error. The bar is shown only on a terminal.
 pub(crate) struct Bar(Option<ProgressBar>);
 
 impl Bar {
     pub(crate) fn new() -> Self {
+        Self::after("")
+    }
+
+    /// Returns a bar whose texts begin with `prefix`, such as `2 of 4: `.
+    pub(crate) fn after(prefix: &str) -> Self {
         if !io::stderr().is_terminal() {
             return Self(None);
         }
-        let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}");
+        let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {prefix}{msg}");
         let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
-        Self(Some(ProgressBar::new(STEPS).with_style(style)))
+        let bar = ProgressBar::new(STEPS).with_style(style);
+        Self(Some(bar.with_prefix(prefix.to_owned())))
     }
 
     /// Shows the finished part, from 0 to 1, and the current step.
@@ -38,10 +44,10 @@ impl Bar {
         let Progress {
             done,
             stage,
-            operation,
+            task,
             backend,
         } = progress;
-        self.set(done, &format!("{stage} {operation} on {backend}"));
+        self.set(done, &format!("{stage} {task} on {backend}"));
     }
 
     pub(crate) fn clear(&self) {

@@ -8,7 +8,7 @@ use sixfold_study::{
     Standing,
 };
 
-use crate::text::{WIDTH, hanging_indent, wrap};
+use crate::text::{hanging_indent, width};
 use sixfold_study::numbers::{duration, figure};
 
 /// The style of tables: two spaces between columns, and a line under the header.
@@ -50,9 +50,8 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
 
     for operation in Operation::ALL {
         let rows: Vec<&ResultRow> = report.rows(operation).collect();
-        let refused = |refusal: &Refusal| refusal.operation == operation;
-        if rows.is_empty() && !report.refusals.iter().any(refused) {
-            continue;
+        if rows.is_empty() {
+            continue; // left_out_notes has the reasons
         }
         let mut line = vec![Cell::new(operation.name()), Cell::new(operation.unit())];
         for backend in &columns {
@@ -85,7 +84,7 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
         lines.extend(below.map(|(_, warning)| hanging_indent("  ↑ ", warning)));
     }
     let mut text = lines.join("\n");
-    for line in signs.legend(report) {
+    for line in signs.legend() {
         text += "\n";
         text += &line;
     }
@@ -200,6 +199,7 @@ fn cell(row: &ResultRow, intervals: bool, bold: bool, signs: &mut Signs) -> Cell
     let note = match row.agreement {
         Agreement::Mismatch => signs.record('!'),
         Agreement::Merged => signs.record('m'),
+        Agreement::OtherEdits => signs.record('e'),
         _ => ' ',
     };
     let Some(each) = row.ns_per_element else {
@@ -250,7 +250,7 @@ impl Signs {
         sign
     }
 
-    fn legend(&self, report: &Report) -> Vec<String> {
+    fn legend(&self) -> Vec<String> {
         let meanings = [
             ('*', "best"),
             (
@@ -265,29 +265,37 @@ impl Signs {
             ('~', "measured on a sample of the elements"),
             ('?', "estimated, not run"),
             ('±', "95 % interval of the median"),
-            ('m', "the backend merges vertices"),
+            ('m', "the backend merges vertices at one position"),
+            (
+                'e',
+                "the backend refuses edits that others accept, so its times are not compared",
+            ),
             ('!', "WRONG: the result differs from the other backends"),
         ];
         let used = meanings.iter().filter(|(sign, _)| self.used.contains(sign));
-        let first_times = "first time: one run on fresh pages, with tables without spare capacity";
+        let first_times = "first time: one run on new pages, with tables without spare capacity";
         let first_times = self.first_times.then(|| first_times.to_owned());
         let parts = used.map(|(sign, meaning)| format!("{sign} {meaning}"));
         // A legend line may end only between two signs.
         let mut lines: Vec<String> = Vec::new();
         for part in parts.chain(first_times) {
             match lines.last_mut() {
-                Some(line) if line.chars().count() + 2 + part.chars().count() <= WIDTH => {
+                Some(line) if line.chars().count() + 2 + part.chars().count() <= width() => {
                     *line += "; ";
                     *line += &part;
                 }
                 _ => lines.push(part),
             }
         }
-        let mut notes = refusal_notes(report);
-        notes.extend(report.results.iter().filter_map(not_run_note));
-        lines.extend(notes.iter().flat_map(|note| wrap(note, WIDTH)));
         lines
     }
+}
+
+/// Explains why figures are missing or only estimated, one paragraph for each reason.
+pub(crate) fn left_out_notes(report: &Report) -> Vec<String> {
+    let mut notes = refusal_notes(report);
+    notes.extend(report.results.iter().filter_map(not_run_note));
+    notes
 }
 
 /// Explains why an operation is only estimated.

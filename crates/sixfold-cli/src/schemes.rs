@@ -103,8 +103,8 @@ fn matrix() -> String {
     let mut text = methods.trim_fmt();
     text += "\n\nG gather: each new point queries its neighbours. S scatter: one pass over the \
         faces.";
-    text += "\nN native: the structure refines its own tables, on all threads. G and S build it \
-        again.";
+    text += "\nN native: the structure refines its own tables, on all threads. G and S build \
+        the structure again.";
     if once {
         text += "\n1  only one step is possible, because the structure cannot hold the result.";
     }

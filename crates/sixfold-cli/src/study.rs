@@ -4,18 +4,18 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use sixfold_study::{
-    Environment, Operation, Report, SCHEMA, Settings, StudyError, StudyMesh, Timer,
+    BackendReport, Environment, Operation, Report, SCHEMA, Settings, StudyError, StudyMesh, Timer,
 };
 
 use crate::arguments::{STUDY_EXAMPLES, Study};
-use crate::facts_text::{facts_text, verdicts_text};
+use crate::facts_text::{print_before_measuring, verdicts_text};
 use crate::failure::Failure;
 use crate::load;
 use crate::many;
 use crate::outcome::{command_line, studies_exit_code, warn_of_debug_build};
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{Bar, interrupt_flag};
-use crate::results_table::results_table;
+use crate::results_table::{left_out_notes, results_table};
 use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::counted;
 
@@ -26,7 +26,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         externals: arguments.externals.clone(),
         external_timeout: arguments.patience,
         operations: arguments.operations.clone(),
-        budget: arguments.budget,
+        budget: arguments.budget.unwrap_or(Settings::default().budget),
         seed: arguments.seed,
         heap: arguments.memory.heap,
         caches: arguments.memory.caches,
@@ -53,6 +53,10 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         None => load::built_in(),
     };
     warn_of_debug_build();
+    let data = [&arguments.json, &arguments.csv];
+    let data_on_stdout = data.into_iter().flatten().any(|path| is_stdout(path));
+    let mut text = TextOutput::new(!data_on_stdout);
+    print_before_measuring(&study_mesh, &settings, &mut text);
     let bar = Bar::new();
     let report = sixfold_study::study(&study_mesh, &settings, &stop, &mut |at| bar.show(at));
     bar.clear();
@@ -70,9 +74,6 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         Err(error) => return Err(Failure::usage(error)),
     };
 
-    let data = [&arguments.json, &arguments.csv];
-    let data_on_stdout = data.into_iter().flatten().any(|path| is_stdout(path));
-    let mut text = TextOutput::new(!data_on_stdout);
     print(&report, &mut text);
     let done = text.finish().and(write_files(&report, json, csv));
 
@@ -129,10 +130,14 @@ fn refusals(study_mesh: &StudyMesh, settings: &Settings) -> Result<Report, Failu
     })
 }
 
+/// Prints the results, which follow [`print_before_measuring`]. External programs say only when they
+/// run whether they can hold the mesh.
 pub(crate) fn print(report: &Report, text: &mut TextOutput) {
-    text.print_line(&facts_text(&report.mesh));
-    text.print_line("");
-    text.print_line(&verdicts_text(&report.mesh, &report.backends));
+    let programs = report.backends.iter().filter(|b| b.external.is_some());
+    let programs: Vec<BackendReport> = programs.cloned().collect();
+    if !programs.is_empty() {
+        text.print_line(&verdicts_text(&report.mesh, &programs));
+    }
     text.print_line("");
     text.print_line(&results_table(report, text.bold()));
     text.print_line("");
@@ -141,6 +146,9 @@ pub(crate) fn print(report: &Report, text: &mut TextOutput) {
     }
     for warning in &report.warnings {
         text.print_line(&hanging_indent("! ", warning));
+    }
+    for note in left_out_notes(report) {
+        text.print_line(&hanging_indent("", &note));
     }
     text.print_line("");
     let most = report.results.iter().map(|row| row.samples).max();

@@ -4,8 +4,9 @@ use comfy_table::{Cell, ContentArrangement, Table};
 use sixfold::structure_infos;
 
 use crate::results_table::STYLE;
+use crate::text::{WIDTH, width};
 
-/// Returns an empty table with `header`. Cells have no line breaks.
+/// Returns an empty table with `header`. Cells break only in a narrow terminal.
 pub(crate) fn table(header: Vec<Cell>) -> Table {
     let mut table = Table::new();
     table
@@ -13,6 +14,12 @@ pub(crate) fn table(header: Vec<Cell>) -> Table {
         .set_content_arrangement(ContentArrangement::Disabled)
         .force_no_tty()
         .set_header(header);
+    let width = width();
+    if width < WIDTH {
+        table
+            .set_content_arrangement(ContentArrangement::Dynamic)
+            .set_width(width as u16);
+    }
     table
 }
 

@@ -1,4 +1,4 @@
-//! Text for users. It is suppressed if data is written to standard output.
+//! Text for users. The text is suppressed if data is written to standard output.
 
 use std::io::{self, IsTerminal, Write};
 
@@ -9,6 +9,16 @@ pub(crate) use sixfold_study::sanitize;
 
 /// Maximum width of text, in columns.
 pub(crate) const WIDTH: usize = 100;
+/// Minimum width of text. In a narrower terminal, the terminal breaks lines.
+const MIN_WIDTH: usize = 40;
+
+/// Returns the width of text, in columns: the width of the terminal, or [`WIDTH`] if this is less
+/// or if standard output is not a terminal.
+pub(crate) fn width() -> usize {
+    let terminal = terminal_size::terminal_size_of(io::stdout());
+    let width = terminal.map_or(WIDTH, |(width, _)| usize::from(width.0));
+    width.clamp(MIN_WIDTH, WIDTH)
+}
 
 pub(crate) struct TextOutput {
     enabled: bool,
@@ -85,7 +95,7 @@ pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
 /// `first`.
 pub(crate) fn hanging_indent(first: &str, text: &str) -> String {
     let indent = first.chars().count();
-    let lines = wrap(text, WIDTH.saturating_sub(indent));
+    let lines = wrap(text, width().saturating_sub(indent));
     let gap = format!("\n{}", " ".repeat(indent));
     format!("{first}{}", lines.join(&gap))
 }

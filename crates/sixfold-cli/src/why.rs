@@ -5,11 +5,11 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use sixfold_study::{
-    MachineClock, MemorySpeed, Policy, StudyError, StudyMesh, Timing, WhySettings,
+    Budget, MachineClock, MemorySpeed, Policy, Settings, StudyError, StudyMesh, Timing, WhySettings,
 };
 
 use crate::arguments::Why;
-use crate::facts_text::{facts_text, verdicts_text};
+use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
 use crate::load;
 use crate::outcome::{command_line, exit_code, warn_of_debug_build};
@@ -18,7 +18,7 @@ use crate::progress::{Bar, Spinner, interrupt_flag};
 use crate::text::{TextOutput, hanging_indent};
 use crate::why_text::{legend, memory_text, relation_text, sentence};
 
-/// Prints the text before the files are written, so that it is not lost if writing a file fails.
+/// Prints the text before the files are written, so that the text is not lost if writing fails.
 pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     check_outputs(
         arguments.mesh.as_deref(),
@@ -43,9 +43,14 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
         relations: arguments.relations.clone(),
         ..WhySettings::default()
     };
-    let why = measure(&study_mesh, settings, budget, &stop)?;
-
     let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
+    let chosen = Settings {
+        backends: arguments.backends.clone(),
+        ..Settings::default()
+    };
+    print_before_measuring(&study_mesh, &chosen, &mut text);
+    let why = measure(&study_mesh, settings, budget, &stop, &Bar::new())?;
+
     print(&why, !arguments.relations.is_empty(), &mut text);
     let mut done = text.finish();
     if let Some(output) = json {
@@ -60,9 +65,9 @@ pub(crate) fn measure(
     mut settings: WhySettings,
     budget: Option<Duration>,
     stop: &AtomicBool,
+    bar: &Bar,
 ) -> Result<sixfold_study::Why, Failure> {
     settings.timing = budget.and_then(|budget| timing(budget, stop));
-    let bar = Bar::new();
     let why = sixfold_study::why(study_mesh, &settings, stop, &mut |at| bar.show(at));
     bar.clear();
     let mut why = why.map_err(|error| match error {
@@ -77,19 +82,17 @@ pub(crate) fn measure(
 
 /// Measures the speed of memory. Returns `None` if interrupted.
 fn timing(budget: Duration, stop: &AtomicBool) -> Option<Timing> {
+    let budget = Budget::start(budget);
     let spinner = Spinner::start("measuring the speed of memory".into());
     let memory = MemorySpeed::measure(&MachineClock::start(), stop);
     spinner.clear();
     Some(Timing {
-        budget,
+        budget: budget.left(),
         memory: memory?,
     })
 }
 
 fn print(why: &sixfold_study::Why, with_sentences: bool, text: &mut TextOutput) {
-    text.print_line(&facts_text(&why.mesh));
-    text.print_line("");
-    text.print_line(&verdicts_text(&why.mesh, &why.backends));
     if let Some(buffers) = &why.memory {
         text.print_line("");
         text.print_line(&memory_text(buffers));

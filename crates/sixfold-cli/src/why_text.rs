@@ -191,8 +191,8 @@ fn describe_times(timed: &Timed) -> String {
         Bound::Work => "bound by the work of the query itself, not by memory",
     };
     format!(
-        " At {speed} GB/s, moving these bytes takes {floor} ns. The jumps take {waits} ns. \
-         The measured time is {measured} ns: it is {verdict}."
+        " At {speed} GB/s, moving the bytes of one element takes {floor} ns. Waiting for its jumps \
+         takes {waits} ns. The measured time is {measured} ns and is {verdict}."
     )
 }
 
@@ -236,19 +236,19 @@ pub(crate) fn legend(why: &Why) -> String {
         (
             "moved",
             "minimum number of bytes per element that a sweep moves from memory: each line of the \
-             sweep counts once. In a row with ~, all lines of each query count.",
+             sweep counts once. In a row with ~, the lines of each query are counted separately.",
         ),
     ];
     let timed = [
         (
             "floor",
-            "ns per element to move these bytes in order. The speed is that of the largest buffer \
-             above that is not larger than the memory that the sweep touches.",
+            "ns per element to read the bytes of `moved` sequentially. The speed is that of the \
+             largest measured buffer that is not larger than the memory that the sweep touches.",
         ),
         (
             "waits",
-            "ns per element for the jumps, if each jump waits for the previous jump, at the \
-             latency of the same buffer",
+            "ns per element for the jumps, if each jump waits for the previous jump. The latency \
+             is that of the buffer that is used for `floor`.",
         ),
         (
             "measured",
@@ -256,9 +256,10 @@ pub(crate) fn legend(why: &Why) -> String {
         ),
         (
             "bound by",
-            "bandwidth: floor is at least half of the measured time. latency: otherwise, if waits \
-             is at least half of the measured time. work: in all other cases; the time then goes \
-             into reading nearby data, comparing and branching.",
+            "bandwidth: `floor` is at least half of the measured time. latency: `floor` is less, \
+             but `waits` is at least half of the measured time. work: `floor` and `waits` are both \
+             less than half; most of the time is spent on reading nearby data, comparing and \
+             branching.",
         ),
     ];
     let counted = [("by table", "number of reads of a query in each table")];
@@ -273,7 +274,7 @@ pub(crate) fn legend(why: &Why) -> String {
     let last = [
         (
             "~",
-            &*format!("only {sample} evenly spaced elements are queried, instead of all"),
+            &*format!("only {sample} evenly spaced elements are queried, not all elements"),
         ),
         ("", listing),
     ];

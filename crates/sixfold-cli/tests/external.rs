@@ -36,7 +36,7 @@ fn study_with_program(mode: &str, more: &[&str]) -> (Sixfold, Run) {
         "study",
         "t.obj",
         "--budget",
-        "300ms",
+        "1s",
         "--operations",
         "boundary,edge_length",
         "--json",
@@ -225,9 +225,12 @@ fn invalid_commands_are_refused_before_anything_is_measured() {
     let sixfold = Sixfold::new();
     for (given, message) in [
         ("run {mesh}", "has no name"),
-        ("a b=run {mesh}", "not a column name"),
+        ("a b=run {mesh}", "not a program name"),
         ("a=run", "no {mesh}"),
-        ("half-edge=run {mesh}", "two columns are called `half-edge`"),
+        (
+            "half-edge=run {mesh}",
+            "two backends or programs are called `half-edge`",
+        ),
     ] {
         let run = sixfold.run(&["study", "--external", given]);
         assert_eq!(run.code, Some(2), "{given}: {run:?}");

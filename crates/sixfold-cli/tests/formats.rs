@@ -97,12 +97,11 @@ fn folders_have_every_format_and_other_files_are_counted() {
     std::fs::create_dir(sixfold.folder().join("scans")).expect("a folder");
     run_ok(&sixfold, &["triangulate", "a.obj", "-o", "scans/a.stl"]);
     run_ok(&sixfold, &["triangulate", "a.obj", "-o", "scans/b.ply"]);
-    for name in ["notes.txt", "more.txt", "Makefile"] {
+    for name in ["notes.txt", "more.fbx", "other.FBX", "shape.x3d"] {
         sixfold.file(&format!("scans/{name}"), "text");
     }
     let run = run_ok(&sixfold, &["study", "scans", "--budget", "50ms"]);
-    let note = "note: scans: skipped 3 files, whose names do not end in a mesh format: 2 .txt, 1 \
-                without an ending";
+    let note = "note: scans: files of other formats are left out (2 .fbx, 1 .x3d)";
     assert!(run.stderr.contains(note), "{run:?}");
     for name in ["scans/a.stl", "scans/b.ply"] {
         assert!(run.stdout.contains(name), "{name}: {run:?}");

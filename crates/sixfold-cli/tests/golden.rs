@@ -58,6 +58,8 @@ fn help() {
         ("help_edits.txt", &["edits", "--help"]),
         ("help_decimate.txt", &["decimate", "--help"]),
         ("help_remesh.txt", &["remesh", "--help"]),
+        ("help_completions.txt", &["completions", "--help"]),
+        ("help_manual.txt", &["manual", "--help"]),
     ] {
         golden(name, &printed(&sixfold, arguments));
     }

@@ -7,6 +7,7 @@ mod distance;
 mod external;
 mod formats;
 mod golden;
+mod help_texts;
 mod interrupt;
 mod json_csv;
 mod many;

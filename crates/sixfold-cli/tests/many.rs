@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::bad_input::assert_refused;
 use crate::run::{Run, Sixfold, TETRAHEDRON, run_ok, text};
 
-const QUICK_ARGUMENTS: [&str; 4] = ["--budget", "60ms", "--operations", "boundary,edge_length"];
+const QUICK_ARGUMENTS: [&str; 4] = ["--budget", "400ms", "--operations", "boundary,edge_length"];
 
 /// Writes three valid meshes, one of them in a subfolder, and a broken mesh.
 fn scans() -> Sixfold {
@@ -74,7 +74,7 @@ fn all_meshes_of_a_folder_are_studied_and_failures_are_listed() {
     assert!(reason.contains("line 2"), "{reason}");
     assert_eq!(report["missing"], Value::Array(Vec::new()));
     assert!(run.stderr.contains("broken.obj"), "{}", run.stderr);
-    let pooled = report["pooled"].as_array().expect("rows");
+    let pooled = report["groups"][0]["pooled"].as_array().expect("rows");
     assert_eq!(pooled.len(), 12);
     for row in pooled {
         assert_eq!(row["meshes"], 3, "{row}");
@@ -215,7 +215,10 @@ fn merged_shards_equal_a_single_run() {
     }
     assert_eq!(names(&merged["studies"]), names(&single["studies"]));
     let keys = |report: &Value| -> Vec<(Value, Value)> {
-        let rows = report["pooled"].as_array().expect("rows").iter();
+        let rows = report["groups"][0]["pooled"]
+            .as_array()
+            .expect("rows")
+            .iter();
         rows.map(|row| (row["backend"].clone(), row["operation"].clone()))
             .collect()
     };
@@ -285,6 +288,39 @@ fn invalid_places_are_refused_before_anything_is_measured() {
     assert_eq!(run.code, Some(2), "{run:?}");
     assert!(
         run.stderr.contains("none of the meshes could be studied"),
+        "{run:?}"
+    );
+    let run = sixfold.run(&["study", "none.obj", "only.obj", "--report", "nothing"]);
+    assert_eq!(run.code, Some(2), "{run:?}");
+    assert!(!sixfold.folder().join("nothing").exists(), "no report");
+}
+
+#[test]
+fn places_without_meshes_do_not_stop_the_others() {
+    let sixfold = scans();
+    fs::create_dir(sixfold.folder().join("empty")).expect("a folder");
+    fs::create_dir(sixfold.folder().join("prints")).expect("a folder");
+    sixfold.file("prints/part.STL", "solid");
+    sixfold.file("scans/b.ply", "ply");
+    let run = sixfold.run(&[
+        "study",
+        "empty",
+        "prints",
+        "scans/a.OBJ",
+        "--budget",
+        "50ms",
+    ]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    for message in [
+        "empty: not studied: no .obj file in this directory",
+        "prints: not studied: no .obj file in this directory or its subdirectories, but 1 .stl: convert",
+    ] {
+        assert!(run.stderr.contains(message), "{message}: {run:?}");
+    }
+    let run = sixfold.run(&["study", "scans", "--budget", "50ms"]);
+    assert!(
+        run.stderr
+            .contains("note: scans: files of other formats are left out (1 .ply)"),
         "{run:?}"
     );
 }

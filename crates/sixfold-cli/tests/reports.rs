@@ -9,7 +9,7 @@ use crate::run::{Run, Sixfold, TETRAHEDRON, run_ok, text};
 
 /// Studies half-edge and corner table on one mesh. `more` are additional arguments.
 fn study(sixfold: &Sixfold, more: &[&str]) -> Run {
-    let mut arguments = vec!["study", "grid.obj", "--budget", "300ms"];
+    let mut arguments = vec!["study", "grid.obj", "--budget", "1200ms"];
     arguments.extend(["--backends", "half-edge,corner-table"]);
     arguments.extend(["--operations", "vertex_vertices,boundary"]);
     arguments.extend(more);
@@ -66,7 +66,7 @@ fn the_report_of_one_mesh_has_orders_growth_and_a_roofline() {
         assert_eq!(opened, closed, "{id} is not XML");
     }
     // The page, the data and each figure have the command that reproduces them.
-    let command = "sixfold study grid.obj --budget 300ms --backends 'half-edge,corner-table'";
+    let command = "sixfold study grid.obj --budget 1200ms --backends 'half-edge,corner-table'";
     let markdown = text(&sixfold, "out/report.md");
     assert!(
         markdown.matches(command).count() > drawn.len(),
@@ -116,18 +116,11 @@ fn a_lab_that_cannot_be_measured_is_reported_and_left_out() {
         .concat(),
     );
     assert_eq!(run.code, Some(0), "{run:?}");
-    assert!(
-        run.stderr.contains("without orders: a budget of 50 ms"),
-        "{}",
-        run.stderr
-    );
     let none = "without why: none of the selected operations is a relation";
     assert!(run.stderr.contains(none), "{}", run.stderr);
     let labs = &json(&sixfold, "out/results.json")["labs"];
-    assert_eq!(
-        (&labs["orders"], &labs["why"]),
-        (&Value::Array(vec![]), &Value::Array(vec![]))
-    );
+    let count = |lab: &str| labs[lab].as_array().map(Vec::len);
+    assert_eq!((count("orders"), count("why")), (Some(1), Some(0)));
 }
 
 #[test]

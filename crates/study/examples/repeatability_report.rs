@@ -1,5 +1,7 @@
-//! Repeats one study many times. For each operation, counts the studies in which each backend is
-//! best or tied. Also reports how many 95 % intervals contain the median of all studies.
+//! Repeats one study many times and reports how much the results vary. For each operation, the
+//! report counts the studies in which each backend is the fastest or tied with the fastest. The
+//! report also counts the 95 % confidence intervals that contain the median of all studies, and the
+//! large differences that are found, and estimates the drift of the machine between studies.
 //!
 //! ```sh
 //! cargo run --release -p sixfold-study --example repeatability_report -- \
@@ -18,7 +20,7 @@ use std::time::{Duration, Instant};
 
 use sixfold::{Relation, shapes};
 use sixfold_study::{
-    Environment, Operation, Report, ResultRow, Settings, Standing, StudyMesh, study,
+    Environment, Operation, Report, ResultRow, Settings, Standing, StudyMesh, UNSEEN_DRIFT, study,
 };
 
 /// Minimum ratio of two backends whose order should be the same in all studies.
@@ -85,8 +87,10 @@ fn report_text(reports: &[Report], environment: &Environment, seconds: u64, each
     );
     text += &winners(reports);
     text += &orders(reports);
+    text += &differences(reports);
     text += &coverage(reports);
     text += &drift(reports);
+    text += &unseen_drift(reports);
     text
 }
 
@@ -183,12 +187,81 @@ fn orders(reports: &[Report]) -> String {
     text
 }
 
+/// Reports how often a backend that is more than 10 % slower than the best is called slower.
+fn differences(reports: &[Report]) -> String {
+    let (mut slower, mut all) = (0, 0);
+    for operation in Relation::ALL.map(Operation::Relation) {
+        for backend in &reports[0].backends {
+            let rows: Vec<&ResultRow> = reports
+                .iter()
+                .filter_map(|report| report.rows(operation).find(|r| r.backend == backend.name))
+                .collect();
+            let ratios: Vec<f64> = rows.iter().filter_map(|row| row.ratio_to_best).collect();
+            if ratios.is_empty() || median(&ratios) <= GAP {
+                continue;
+            }
+            let called = |row: &&&ResultRow| row.standing == Some(Standing::Slower);
+            slower += rows.iter().filter(called).count();
+            all += ratios.len();
+        }
+    }
+    format!(
+        "## Differences from the best backend\n\nA backend whose median ratio to the best is above {GAP} is called slower in {slower} of {all} cases\n\
+         ({:.1} %).\n\n",
+        100.0 * slower as f64 / all as f64
+    )
+}
+
+/// Returns the medians of the times of a backend in all studies, and the variances that the studies
+/// show by themselves. Both are of logarithms. Leaves out studies with fewer than six samples.
+fn seen_variances(reports: &[Report], operation: Operation, backend: &str) -> Vec<[f64; 2]> {
+    /// The 97.5 % quantiles of Student's distribution with 5 degrees of freedom, and of the normal
+    /// distribution: a half-width consists of a seen and an unseen part.
+    const QUANTILES: [f64; 2] = [2.570_582, 1.959_964];
+    let of = |report: &Report| {
+        let row = report.rows(operation).find(|row| row.backend == backend)?;
+        let enough = row.samples >= 6 && !row.sampled;
+        let half_width = (row.ci_high_ns? / row.ci_low_ns?).ln() / 2.0;
+        let seen = half_width.powi(2) - (QUANTILES[1] * UNSEEN_DRIFT).powi(2);
+        let median_ns = row.median_ns?;
+        enough.then(|| [median_ns.ln(), seen / QUANTILES[0].powi(2)])
+    };
+    reports.iter().filter_map(of).collect()
+}
+
+/// Reports the standard deviation between studies that the samples of one study do not show.
+fn unseen_drift(reports: &[Report]) -> String {
+    let mut variances = Vec::new();
+    for operation in Relation::ALL.map(Operation::Relation) {
+        for backend in &reports[0].backends {
+            let cells = seen_variances(reports, operation, &backend.name);
+            if cells.len() < 3 {
+                continue;
+            }
+            let count = cells.len() as f64;
+            let mean = cells.iter().map(|[log, _]| log).sum::<f64>() / count;
+            let squares: f64 = cells.iter().map(|[log, _]| (log - mean).powi(2)).sum();
+            let seen = cells.iter().map(|[_, seen]| seen).sum::<f64>() / count;
+            variances.push(squares / (count - 1.0) - seen);
+        }
+    }
+    if variances.is_empty() {
+        return String::new();
+    }
+    format!(
+        "\n## Drift that one study does not show\n\nThe variance between the studies minus the variance that each study shows gives a standard deviation of\n\
+         {:.1} % (the median over all backends and relations, without scans). The intervals assume {:.1} %.\n",
+        100.0 * median(&variances).max(0.0).sqrt(),
+        100.0 * UNSEEN_DRIFT
+    )
+}
+
 /// Reports how often the interval of one study contains the median of all studies.
 fn coverage(reports: &[Report]) -> String {
     let mut text = String::from(
         "## Coverage of the intervals\n\nThe share of 95 % intervals that contain the median over all studies, and their width (upper minus lower end,\n\
-         divided by the median of the study; the median over all intervals). Nanoseconds drift with the machine from\n\
-         study to study, which an interval within one study cannot include; ratios drift less.\n\n\
+         divided by the median of the study; the median over all intervals). The intervals include a drift\n\
+         from study to study, which the samples of one study do not show.\n\n\
          | interval of | contain it | intervals | width |\n|---|---|---|---|\n",
     );
     let of_time = |row: &ResultRow| Some([row.ci_low_ns?, row.median_ns?, row.ci_high_ns?]);
@@ -243,6 +316,9 @@ fn coverage(reports: &[Report]) -> String {
             );
         }
     }
+    if text.ends_with("|---|---|---|---|\n") {
+        text += "| none: too few samples | – | 0 | – |\n";
+    }
     let noises: Vec<f64> = reports
         .iter()
         .filter_map(|report| Some(report.control.as_ref()?.typical))
@@ -260,8 +336,7 @@ fn coverage(reports: &[Report]) -> String {
     text
 }
 
-/// Reports how far a figure varies between studies. The interval of one study does not include this
-/// variation.
+/// Reports how far a figure varies between studies.
 fn drift(reports: &[Report]) -> String {
     let ratios = |operation: Operation, backend: &str| -> Vec<f64> {
         let rows = reports.iter().filter_map(|report| {

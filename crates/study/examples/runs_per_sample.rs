@@ -4,18 +4,19 @@
 //! cargo run --release -p sixfold-study --example runs_per_sample -- 21
 //! ```
 //!
-//! Argument: the number of rounds. Each round runs every operation that changes the mesh, and a mix
-//! with edits, in samples of 1 run and of 50 runs. The rounds are divided into five passes. Each
-//! pass builds the structures again, because addresses and machine speed can stay the same for
-//! seconds. The program prints the medians of the ratios. The exit code is 1 if a median differs
-//! from 1 by more than 5 %.
+//! Argument: the number of rounds. Each round runs the operations that build or change a mesh, and
+//! a workload with edits, in samples of 1 run and of 50 runs. The rounds are divided into five
+//! passes. Each pass builds the structures again, because addresses and machine speed can stay the
+//! same for seconds. For each operation, the program prints the median over the rounds of the time
+//! in samples of 1 run divided by the time in samples of 50 runs. The exit code is 1 if a median
+//! differs from 1 by more than 5 %.
 
 use std::collections::BTreeMap;
 use std::process::ExitCode;
 
 use sixfold::{Facts, PolygonMesh, shapes};
 use sixfold_study::{Backend, Clock, MachineClock, Operation, Policy, Series, pages};
-use sixfold_workload::{Access, Draw, Job, MixBackend, Route, Schedule, built_in, prepare_mix};
+use sixfold_workload::{Access, Draw, Job, Route, Schedule, Task, built_in, prepare_mix};
 
 const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corner-table"];
 const OPERATIONS: [&str; 8] = [
@@ -85,10 +86,7 @@ fn operations(
     let mut lines = Vec::new();
     for name in OPERATIONS {
         let operation: Operation = name.parse().expect("an operation");
-        let job = Job {
-            operation,
-            sample: None,
-        };
+        let job = Job::from(operation);
         let mut time = |runs| {
             let run = subject.run(&job, &Series::with_runs(runs, clock).with_untimed(1));
             run.refusal.is_none().then(|| run.time.ns())
@@ -119,26 +117,14 @@ fn mix(
     let backend = Backend::find(structure).expect("a structure");
     let prepared = prepare_mix(&backend, polygons, &draw, &schedule, &route);
     let mut mixer = prepared.expect("it can be edited");
-    let turns = turns_in_a_run(&schedule, mixer.as_ref());
+    let job = Job::new(Task::Mix);
     let mut time = |runs| {
-        // The untimed runs take as long as the longer sample.
-        mixer.run(0, turns, MANY as usize, clock);
-        let run = mixer.run(turns, turns, runs, clock);
-        run.time.ns() / run.operations as f64
+        // Untimed runs for as long as the longer sample, as in a pick.
+        let series = Series::with_runs(runs, clock).with_untimed(MANY);
+        mixer.run(&job, &series).time.ns()
     };
-    let ratios = (0..rounds).map(|_| time(1) / time(MANY as usize));
+    let ratios = (0..rounds).map(|_| time(1) / time(MANY));
     (format!("mix of {name}"), ratios.collect())
-}
-
-/// Returns the number of turns on one copy in `sixfold pick`, at most 16.
-fn turns_in_a_run(schedule: &Schedule, mixer: &dyn MixBackend) -> u64 {
-    let fits = |part: usize, turns: u64| {
-        schedule.operations_within(part, turns) <= mixer.cycle_length(part)
-    };
-    let most = schedule
-        .edits()
-        .map(|part| (1..=16).take_while(|&turns| fits(part, turns)).count());
-    most.min().unwrap_or(1).max(1) as u64
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

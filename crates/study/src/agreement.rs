@@ -9,7 +9,7 @@ use crate::report::Agreement;
 use sixfold_workload::Clock;
 use sixfold_workload::Operation;
 use sixfold_workload::field_sum;
-use sixfold_workload::{Job, Outcome, Series, TimedBackend};
+use sixfold_workload::{Job, Outcome, Series, Task, TimedBackend};
 
 /// Maximum relative difference of two `f32` sums of the same terms in different orders.
 const TOLERANCE: f64 = 1e-4;
@@ -36,18 +36,28 @@ pub(crate) fn compare_checksums(
             return Agreement::Unchecked;
         };
         let others = entries.iter().filter(|other| {
-            other.job.operation == entry.job.operation
+            same_work(other.job.task, entry.job.task)
                 && other.subject != entry.subject
                 && other.outcome.is_some()
                 && is_reference(subjects, other.subject)
         });
         // Prefer a full run as the reference: its backend can also run the sample in little time.
         let mut others: Vec<&Entry> = others.collect();
-        others.sort_by_key(|other| other.job.sample.is_some());
+        // Prefer a backend that refuses the same edits, because it does the same work.
+        let refuses_others =
+            |other: &Entry| other.outcome.is_some_and(|o| o.refused != outcome.refused);
+        others.sort_by_key(|other| {
+            let task_differs = other.job.task != entry.job.task;
+            (
+                refuses_others(other),
+                task_differs,
+                other.job.sample.is_some(),
+            )
+        });
         let Some(other) = others.first() else {
             return Agreement::Unchecked;
         };
-        let pair = if other.job == entry.job {
+        let pair = if (other.job.sample, other.job.first) == (entry.job.sample, entry.job.first) {
             Some(outcome).zip(other.outcome)
         } else if stop.load(Ordering::Relaxed) {
             None
@@ -60,9 +70,15 @@ pub(crate) fn compare_checksums(
         let Some((outcome, reference)) = pair else {
             return Agreement::Unchecked;
         };
-        let operation = entry.job.operation;
-        if agree(operation, outcome.checksum, reference.checksum, polygons) {
-            // After a merge, fewer elements can give the same checksum.
+        if outcome.refused != reference.refused && outcome.checksum != reference.checksum {
+            return Agreement::OtherEdits;
+        }
+        let same = match entry.operation() {
+            Some(operation) => agree(operation, outcome.checksum, reference.checksum, polygons),
+            None => outcome.checksum == reference.checksum,
+        };
+        if same {
+            // Merged vertices can give the same checksum from fewer elements.
             match outcome.elements == reference.elements {
                 true => Agreement::Same,
                 false if subjects[entry.subject].is_external() => Agreement::Mismatch,
@@ -78,6 +94,13 @@ pub(crate) fn compare_checksums(
         }
     };
     entries.iter().map(agreement).collect()
+}
+
+/// Returns whether two tasks have the same result. All methods of a subdivision scheme make the same
+/// surface.
+fn same_work(a: Task, b: Task) -> bool {
+    let scheme = |task: Task| task.operation().and_then(Operation::scheme);
+    a == b || (scheme(a).is_some() && scheme(a) == scheme(b))
 }
 
 /// Returns the sample size of `job`. A full run has the size `usize::MAX`.
@@ -167,6 +190,7 @@ mod tests {
     struct Fixed {
         checksum: f64,
         merged: usize,
+        refused: u64,
         /// Whether a full run causes a panic.
         samples_only: bool,
     }
@@ -191,15 +215,21 @@ mod tests {
             let outcome = Outcome {
                 checksum: self.checksum * part,
                 elements: 10 - self.merged as u64,
+                refused: self.refused,
             };
             Run::done(series.clock.now(), Some(outcome))
         }
     }
 
     fn agreements(subjects: &[(f64, usize, bool)]) -> Vec<Agreement> {
+        let subjects: Vec<_> = subjects.iter().map(|&(c, m, s)| (c, m, s, 0)).collect();
+        agreements_with_refusals(&subjects)
+    }
+
+    fn agreements_with_refusals(subjects: &[(f64, usize, bool, u64)]) -> Vec<Agreement> {
         let clock = MachineClock::start();
         let (mut boxed, mut entries): (Vec<Box<dyn TimedBackend>>, Vec<Entry>) = Default::default();
-        for (i, &(checksum, merged, sampled)) in subjects.iter().enumerate() {
+        for (i, &(checksum, merged, sampled, refused)) in subjects.iter().enumerate() {
             let mut entry = Entry::new(i, Operation::Boundary);
             entry.job.sample = sampled.then_some(ElementSample {
                 scanned: [true; 3],
@@ -209,6 +239,7 @@ mod tests {
             let mut subject = Fixed {
                 checksum,
                 merged,
+                refused,
                 samples_only,
             };
             entry.outcome = subject
@@ -219,6 +250,20 @@ mod tests {
         }
         let stop = AtomicBool::new(false);
         compare_checksums(&entries, &mut boxed, &pillow(), &clock, &stop)
+    }
+
+    #[test]
+    fn backends_that_refuse_the_same_edits_must_agree() {
+        use Agreement::{Mismatch, OtherEdits, Same};
+        let three = |checksum: f64, refused: u64| {
+            let one = (8.0, 0, false, 0);
+            agreements_with_refusals(&[one, one, (checksum, 0, false, refused)])
+        };
+        assert_eq!(three(9.0, 2), [Same, Same, OtherEdits]);
+        assert_eq!(three(8.0, 2), [Same; 3]);
+        assert_eq!(three(9.0, 0), [Same, Same, Mismatch]);
+        let [some, all] = [(8.0, 0, false, 0), (9.0, 0, false, 2)];
+        assert_eq!(agreements_with_refusals(&[some, some, all, all]), [Same; 4]);
     }
 
     #[test]

@@ -1,9 +1,9 @@
-//! The memory audit: layout formula, table sizes and allocator count of each backend.
+//! The memory audit: counts the bytes of each backend in three ways.
 //!
-//! The three numbers are found independently and must be equal. The formula of a layout uses only
-//! the element counts of the mesh. The sum over the tables uses the capacities of the tables. The
-//! allocator counts the bytes that it hands out. A difference is a fault in Sixfold: a wrong
-//! formula, spare capacity, or memory that no table reports.
+//! The three numbers of bytes are found independently and must be equal. The layout formula uses
+//! only the numbers of elements of the mesh. The sum over the tables uses the capacity of each
+//! table. The allocator counts the bytes that it hands out. A difference is a fault in Sixfold: a
+//! wrong formula, spare capacity, or memory that no table reports.
 
 use std::io;
 
@@ -33,7 +33,7 @@ pub struct Audit {
     pub schema: u32,
     /// Name and facts of the mesh.
     pub mesh: MeshReport,
-    /// The backends, in the order requested.
+    /// The backends, in the requested order.
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendAudit>,
 }
@@ -41,49 +41,55 @@ pub struct Audit {
 /// The memory of one backend.
 #[derive(Clone, Debug, Serialize)]
 pub struct BackendAudit {
-    /// Layout bytes, table bytes, and whether the backend holds the mesh.
+    /// The bytes by the layout formula, the bytes of the tables, and whether the backend can hold
+    /// the mesh.
     #[serde(flatten)]
     pub backend: BackendReport,
-    /// Layout words per vertex of this mesh; `None` if the backend does not hold the mesh.
+    /// Size by the layout formula, in words of 4 bytes per vertex of this mesh. `None` if the
+    /// backend cannot hold the mesh.
     pub layout_words_per_vertex: Option<f64>,
-    /// Layout words per vertex of a very large closed triangle mesh. Such a mesh has 2 faces and 3
-    /// edges per vertex.
+    /// Size by the layout formula for a very large closed triangle mesh, in words of 4 bytes per
+    /// vertex. A very large closed triangle mesh has about 2 faces and 3 edges per vertex.
     pub closed_triangles_words_per_vertex: f64,
-    /// Bytes that the allocator counted; `None` if the mesh is refused.
+    /// Bytes that the allocator counted; `None` if the backend cannot hold the mesh.
     pub counted_bytes: Option<usize>,
-    /// Counted bytes per vertex of the mesh.
+    /// Bytes that the allocator counted, per vertex of the mesh.
     pub counted_bytes_per_vertex: Option<f64>,
     /// Peak memory while the backend is built, in bytes. The input polygons are not included.
     pub peak_bytes: Option<usize>,
-    /// Peak bytes divided by counted bytes.
+    /// `peak_bytes` divided by `counted_bytes`.
     pub peak_to_counted: Option<f64>,
-    /// Whether the three numbers are equal; `None` if the mesh is refused.
+    /// True if the layout formula, the tables and the allocator give the same number of bytes.
+    /// `None` if the backend cannot hold the mesh.
     pub agrees: Option<bool>,
-    /// The bytes that operations allocate; empty if they were not counted.
+    /// The bytes that operations allocate; empty if these bytes were not counted.
     pub operations: Vec<OperationBytes>,
 }
 
 /// The bytes that one run of an operation allocates on one backend.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OperationBytes {
-    /// The operation.
+    /// The operation that allocates, such as `build`.
     pub operation: Operation,
-    /// Bytes requested from the allocator during the timed part; `None` if nothing was run.
+    /// Bytes that the timed part of the operation requests from the allocator. `None` if the
+    /// operation was not run.
     pub allocated_bytes: Option<usize>,
-    /// Bytes of the result; `None` if nothing was run.
+    /// Bytes of the result of the operation; `None` if the operation was not run.
     pub result_bytes: Option<usize>,
     /// Allocated bytes divided by the bytes of the result.
     pub allocated_to_result: Option<f64>,
-    /// Why the operation was not run.
+    /// Why the operation was not run; `None` if the operation was run.
     pub reason: Option<String>,
-    /// Whether the operation was not run because the structure scans all faces for each element.
+    /// True if the operation was not run because it scans all faces for each element.
     pub scans: bool,
 }
 
-/// Builds each of `backends` from the mesh, one at a time, and counts its bytes with `heap`.
+/// Builds each of `backends` from the mesh, one backend at a time, and counts the bytes with
+/// `heap`.
 ///
-/// Each backend is counted until two counts in a row are equal, because other threads may allocate
-/// at the same time. `counting` is called before each backend.
+/// Each backend is counted until two counts in a row are equal, but at most eight times, because
+/// other threads may allocate at the same time. The closure `counting` is called before each
+/// backend is counted.
 pub fn audit(
     study_mesh: &StudyMesh,
     backends: &[Backend],
@@ -94,7 +100,8 @@ pub fn audit(
     let counts = polygons.counts(study_mesh.facts.edges);
     let backends = backends.iter().map(|backend| {
         counting(backend);
-        BackendAudit::new(backend, count_bytes(backend, polygons, heap), &counts)
+        let measured = count_bytes(backend, polygons, heap);
+        BackendAudit::new(backend, polygons, measured, &counts)
     });
     Audit {
         schema: SCHEMA,
@@ -104,11 +111,12 @@ pub fn audit(
 }
 
 /// Counts the bytes that operations allocate, and adds the counts to `audit`. Every operation that
-/// allocates is run on every backend that holds the mesh. `audit` must be the result for `backends`
-/// and `study_mesh`.
+/// allocates is run on every backend that holds the mesh. An operation that scans all faces for
+/// each element is not run on a large mesh. `audit` must be the result of [`audit()`] for
+/// `backends` and `study_mesh`.
 ///
-/// A run is repeated until two runs agree on the smallest number of bytes, because other threads
-/// may allocate at the same time.
+/// A run is repeated until two runs allocate the same smallest number of bytes, but at most eight
+/// times, because other threads may allocate at the same time.
 pub fn count_allocations(
     audit: &mut Audit,
     study_mesh: &StudyMesh,
@@ -184,7 +192,8 @@ fn count_bytes(
 }
 
 impl Audit {
-    /// Describes each difference between the three numbers.
+    /// Describes each difference between the bytes of the layout formula, of the tables and of the
+    /// allocator.
     pub fn faults(&self) -> Vec<String> {
         self.backends
             .iter()
@@ -192,7 +201,8 @@ impl Audit {
             .collect()
     }
 
-    /// Returns an error if no backend holds the mesh.
+    /// Returns the error for a mesh that no backend can hold; `None` if some backend can hold the
+    /// mesh.
     pub fn refusal_error(&self) -> Option<StudyError> {
         let refusal = |BackendAudit { backend, .. }: &BackendAudit| {
             let reason = backend.reason.clone()?;
@@ -215,12 +225,13 @@ impl Audit {
 impl BackendAudit {
     fn new(
         backend: &Backend,
+        polygons: &PolygonMesh,
         measured: Result<MeasuredMemory, BuildError>,
         counts: &Counts,
     ) -> Self {
         let closed_triangles = closed_triangles_words(backend);
         let (report, measured) = match measured {
-            Err(refusal) => (unbuilt(backend, counts, Err(refusal)), None),
+            Err(refusal) => (unbuilt(backend, polygons, counts, Err(refusal)), None),
             Ok(measured) => {
                 let bytes = measured.memory.total();
                 let report = BackendReport {
@@ -228,7 +239,7 @@ impl BackendAudit {
                     bytes_per_vertex: per_vertex(bytes, counts),
                     tables: measured.memory.tables,
                     merged_vertices: Some(measured.merged_vertices),
-                    ..unbuilt(backend, counts, Ok(()))
+                    ..unbuilt(backend, polygons, counts, Ok(()))
                 };
                 (report, Some((measured.counted, measured.peak)))
             }

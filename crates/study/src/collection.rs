@@ -1,8 +1,11 @@
-//! Studies of many meshes: one by one, and pooled.
+//! Studies of many meshes, and means over the meshes.
 //!
-//! Results differ more between meshes than between rounds. A pooled figure is the geometric mean of
-//! one ratio per mesh. The ratio compares a backend with the fastest backend on the same mesh. The
-//! interval is found by resampling the meshes (bootstrap).
+//! Times differ more between meshes than between the rounds of one study. A mean over meshes is
+//! therefore the geometric mean of one ratio per mesh: the time of a backend divided by the time of
+//! the fastest backend on the same mesh. The confidence interval of the mean is computed by
+//! resampling the meshes (bootstrap). [`Pool`] contains the means.
+
+mod pool;
 
 use std::io;
 
@@ -13,15 +16,17 @@ use sixfold_workload::pages::Policy;
 use crate::heap::CacheState;
 use crate::labs::Labs;
 use crate::read::{ReadError, Results, check_schema, parse_json};
-use crate::report::{Agreement, Report, SCHEMA, Standing, into_io_error, write_json};
-use crate::statistics::geometric_mean;
+use crate::report::{Report, SCHEMA, into_io_error, write_json};
 
-/// Studies of several meshes, with the same settings.
+pub use pool::{Group, Holding, Overall, Pool, Pooled, Purpose};
+
+/// The studies of several meshes, measured with the same settings.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Collection {
     /// Version of the JSON schema.
     pub schema: u32,
-    /// Names of all meshes. `studies`, `failures` and `missing` have the same order.
+    /// Names of all meshes. The lists `studies`, `failures` and `missing` are sorted in the order
+    /// of this list.
     pub meshes: Vec<String>,
     /// The settings that all studies share.
     pub settings: SharedSettings,
@@ -29,41 +34,36 @@ pub struct Collection {
     pub studies: Vec<Report>,
     /// The meshes that could not be studied.
     pub failures: Vec<Failed>,
-    /// The meshes without a result so far.
+    /// The names of the meshes that have neither a study nor a failure.
     pub missing: Vec<String>,
-    /// Figures over all meshes, by operation, then by backend.
-    pub pooled: Vec<Pooled>,
-    /// Sentences about the pooled figures.
-    #[serde(rename = "words")]
-    pub sentences: Vec<String>,
-    /// Results of the other labs.
+    /// Results of other measuring commands, such as `sixfold pick`.
     #[serde(default)]
     pub labs: Labs,
 }
 
-/// Settings that must be equal for studies to be merged.
+/// The settings of several studies. Two collections can be merged only if their settings are equal.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct SharedSettings {
-    /// The backends; an empty list means all backends.
+    /// The names of the backends. An empty list means all backends.
     pub backends: Vec<String>,
-    /// External programs, by the names of their columns.
+    /// The names of the external programs.
     pub externals: Vec<String>,
-    /// The operations; an empty list means all operations.
+    /// The operations. An empty list means all operations.
     pub operations: Vec<Operation>,
     /// Time budget of each study, in seconds.
     pub budget_s: f64,
-    /// Seed of the random samples and orders.
+    /// Seed of the random numbers of each study.
     pub seed: u64,
-    /// The policy for freed pages. Files of older versions have no policy; they used the system's
-    /// policy.
+    /// What happens to freed memory pages. A file without this field is of an older version, which
+    /// used [`Policy::System`].
     #[serde(default = "system_heap")]
     pub heap: Policy,
-    /// State of the caches at the start of a sample.
+    /// State of the processor caches before each timed sample.
     #[serde(default)]
     pub caches: CacheState,
-    /// Whether polygons were cut into triangles first.
+    /// True if faces with more than three corners were cut into triangles before the study.
     pub triangulate: bool,
-    /// Whether files with degenerate faces were refused.
+    /// True if files with degenerate faces were refused.
     pub strict: bool,
 }
 
@@ -76,9 +76,10 @@ fn system_heap() -> Policy {
 pub struct Failed {
     /// Name of the mesh.
     pub mesh: String,
-    /// Why it could not be studied.
+    /// Why the mesh could not be studied.
     pub reason: String,
-    /// The kind of reason. Files of older versions do not have this field.
+    /// The kind of the reason. For a file of an older version without this field, the value is
+    /// `NotMeasured`.
     #[serde(default)]
     pub kind: FailureKind,
 }
@@ -94,34 +95,12 @@ pub enum FailureKind {
     NoneHolds,
 }
 
-/// The pooled results of one operation on one backend.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct Pooled {
-    /// The backend.
-    pub backend: String,
-    /// The operation.
-    pub operation: Operation,
-    /// Number of meshes with a measurement.
-    pub meshes: usize,
-    /// Number of meshes on which only this backend is the fastest.
-    pub best: usize,
-    /// Number of meshes on which this backend is tied with the fastest.
-    pub tied: usize,
-    /// Geometric mean of the ratios to the fastest backend on each mesh.
-    pub ratio_to_best: f64,
-    /// Lower end of the 95 % bootstrap interval of that mean; `None` with fewer than three meshes.
-    pub ci_low: Option<f64>,
-    /// Upper end of the 95 % bootstrap interval of that mean.
-    pub ci_high: Option<f64>,
-    /// Geometric mean of the time per element, in nanoseconds.
-    pub ns_per_element: Option<f64>,
-}
-
-/// The error for adding a second study to a page.
+/// The error of [`Collection::add`] for a second study. The page of a report can show only one
+/// study or collection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "is a second study, but a page can show only one: to study several meshes, use `sixfold \
-     study` with --report DIR"
+    "is a second study, but a page can show only one study: to study several meshes, use \
+     `sixfold study` with --report DIR"
 )]
 pub struct SecondStudy;
 
@@ -131,7 +110,7 @@ pub struct SecondStudy;
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum MergeError {
     /// The lists of meshes differ.
-    #[error("the lists of meshes differ: {which}; use results of one study")]
+    #[error("the lists of meshes differ: {which}; merge only parts of one study")]
     OtherMeshes { which: String },
     /// The settings differ.
     #[error(
@@ -146,7 +125,7 @@ pub enum MergeError {
 }
 
 impl Collection {
-    /// Creates a collection of `meshes` without results.
+    /// Creates a collection without results. `meshes` are the names of the meshes to study.
     pub fn new(meshes: Vec<String>, settings: SharedSettings) -> Self {
         Self {
             schema: SCHEMA,
@@ -155,8 +134,6 @@ impl Collection {
             settings,
             studies: Vec::new(),
             failures: Vec::new(),
-            pooled: Vec::new(),
-            sentences: Vec::new(),
             labs: Labs::default(),
         }
     }
@@ -166,8 +143,9 @@ impl Collection {
         Self::new(Vec::new(), SharedSettings::default())
     }
 
-    /// Adds the results of one file: a study, a collection or a lab. For studies of several meshes,
-    /// use [`merge`](Self::merge), which compares the settings.
+    /// Adds the results of one file: a study, a collection, or the results of another measuring
+    /// command. To combine studies of several meshes, use [`merge`](Self::merge), which checks that
+    /// the settings are equal.
     ///
     /// # Errors
     ///
@@ -194,19 +172,20 @@ impl Collection {
         Ok(())
     }
 
-    /// Adds the study of a mesh. Replaces an older study of the same mesh.
+    /// Adds the study of a mesh. Removes an earlier study or failure of the same mesh.
     pub fn add_study(&mut self, study: Report) {
         let mesh = study.mesh.name.clone();
         self.remove(&mesh);
         self.studies.push(study);
-        self.sort_and_pool();
+        self.sort();
     }
 
-    /// Records that a mesh could not be studied.
+    /// Records that a mesh could not be studied. Removes an earlier study or failure of the same
+    /// mesh.
     pub fn add_failure(&mut self, failed: Failed) {
         self.remove(&failed.mesh);
         self.failures.push(failed);
-        self.sort_and_pool();
+        self.sort();
     }
 
     fn remove(&mut self, mesh: &str) {
@@ -243,13 +222,13 @@ impl Collection {
                 self.studies.push(study);
             }
         }
-        self.sort_and_pool();
+        self.sort();
         for failed in other.failures {
             if self.missing.contains(&failed.mesh) {
                 self.failures.push(failed);
             }
         }
-        self.sort_and_pool();
+        self.sort();
         Ok(())
     }
 
@@ -274,7 +253,7 @@ impl Collection {
         }
     }
 
-    fn sort_and_pool(&mut self) {
+    fn sort(&mut self) {
         let index = |mesh: &str| self.meshes.iter().position(|other| other == mesh);
         self.studies.sort_by_key(|study| index(&study.mesh.name));
         self.failures.sort_by_key(|failed| index(&failed.mesh));
@@ -284,21 +263,34 @@ impl Collection {
         };
         let missing = self.meshes.iter().filter(|mesh| !done(mesh));
         self.missing = missing.cloned().collect();
-        self.pooled = pooled(&self.studies);
-        self.sentences = sentences(&self.pooled);
     }
 
-    /// Writes the collection as JSON.
+    /// Computes the means and the other results over all meshes.
+    pub fn pool(&self) -> Pool {
+        Pool::new(&self.studies)
+    }
+
+    /// Writes the collection and the results over all meshes ([`Pool`]) as JSON.
     ///
     /// # Errors
     ///
     /// Returns the errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
-        write_json(self, writer)
+        #[derive(Serialize)]
+        struct WithPool<'a> {
+            #[serde(flatten)]
+            collection: &'a Collection,
+            #[serde(flatten)]
+            pool: Pool,
+        }
+
+        let pool = self.pool();
+        let collection = self;
+        write_json(&WithPool { collection, pool }, writer)
     }
 
-    /// Writes one CSV line per sample, after a header line: `mesh`, `backend`, `operation`,
-    /// `control`, `round`, `cpu_ns`, `wall_ns`.
+    /// Writes a header line and one CSV line per timed sample. The columns are `mesh`, `backend`,
+    /// `operation`, `control`, `round`, `cpu_ns` and `wall_ns`.
     ///
     /// # Errors
     ///
@@ -332,8 +324,8 @@ impl Collection {
     ///
     /// # Errors
     ///
-    /// Returns an error if the text is truncated, is not JSON, or comes from another program,
-    /// schema or command.
+    /// Returns an error if the text is truncated or is not JSON, if another program or command
+    /// wrote the text, or if the schema has another version.
     pub fn read_json(text: &str) -> Result<Self, ReadError> {
         check_schema(text)?;
         let collection: Self = parse_json(text)?;
@@ -374,102 +366,6 @@ impl SharedSettings {
         }
         Ok(())
     }
-}
-
-/// Pools each operation on each backend over the meshes with a measurement.
-fn pooled(studies: &[Report]) -> Vec<Pooled> {
-    let mut backends: Vec<&str> = Vec::new();
-    for study in studies {
-        for backend in &study.backends {
-            if !backends.contains(&backend.name.as_str()) {
-                backends.push(&backend.name);
-            }
-        }
-    }
-    let mut pooled = Vec::new();
-    for operation in Operation::ALL {
-        for &backend in &backends {
-            let rows = studies.iter().filter_map(|study| {
-                let mut rows = study.rows(operation);
-                rows.find(|row| row.backend == backend && row.agreement != Agreement::Mismatch)
-            });
-            let (mut best, mut tied) = (0, 0);
-            let (mut ratios, mut times) = (Vec::new(), Vec::new());
-            for row in rows {
-                let Some(ratio) = row.ratio_to_best else {
-                    continue;
-                };
-                ratios.push(ratio);
-                times.extend(row.ns_per_element);
-                let alone = matches!(row.standing, Some(Standing::Best | Standing::Alone));
-                best += usize::from(alone);
-                tied += usize::from(row.standing == Some(Standing::Tied));
-            }
-            let Some((ratio_to_best, interval)) = geometric_mean(&ratios) else {
-                continue;
-            };
-            pooled.push(Pooled {
-                backend: backend.into(),
-                operation,
-                meshes: ratios.len(),
-                best,
-                tied,
-                ratio_to_best,
-                ci_low: interval.map(|[low, _]| low),
-                ci_high: interval.map(|[_, high]| high),
-                ns_per_element: geometric_mean(&times).map(|(mean, _)| mean),
-            });
-        }
-    }
-    pooled
-}
-
-fn sentences(pooled: &[Pooled]) -> Vec<String> {
-    let mut sentences = Vec::new();
-    for rows in pooled.chunk_by(|a, b| a.operation == b.operation) {
-        let most = rows.iter().map(|row| row.meshes).max().unwrap_or(0);
-        let leader = rows
-            .iter()
-            .filter(|row| row.meshes == most)
-            .min_by(|a, b| a.ratio_to_best.total_cmp(&b.ratio_to_best));
-        let Some(leader) = leader.filter(|_| rows.len() > 1) else {
-            continue;
-        };
-        let Pooled {
-            backend,
-            operation,
-            meshes,
-            best,
-            tied,
-            ratio_to_best,
-            ..
-        } = leader;
-        let better = rows
-            .iter()
-            .filter(|row| row.meshes < most && row.ratio_to_best < *ratio_to_best);
-        let better = better.map(|row| {
-            let (name, ratio) = (&row.backend, row.ratio_to_best);
-            format!("{name} {ratio:.2} × on {}", row.meshes)
-        });
-        let better: Vec<String> = better.collect();
-        let elsewhere = match better.is_empty() {
-            true => String::new(),
-            false => format!(
-                ". Some backends have a lower ratio, but on fewer meshes: {}",
-                better.join(", ")
-            ),
-        };
-        let ties = match tied {
-            0 => String::new(),
-            _ => format!(" and tied for the fastest on {tied}"),
-        };
-        sentences.push(format!(
-            "{operation}: {backend} leads the backends measured on all {meshes} meshes. On \
-             average, {backend} takes {ratio_to_best:.2} × the time of the fastest. {backend} is \
-             the single fastest on {best}{ties}{elsewhere}."
-        ));
-    }
-    sentences
 }
 
 #[cfg(test)]

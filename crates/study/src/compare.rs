@@ -1,8 +1,9 @@
 //! Comparison of two studies of one mesh: what changed between machines, compilers or commits.
 //!
-//! Two studies have no common rounds. A ratio is therefore the quotient of two medians. The
-//! interval is found by resampling both studies (bootstrap). A machine may also drift from one
-//! study to the next, which the samples do not show. [`DRIFT`] is the default limit for the drift.
+//! Two studies have no rounds in common. The ratio of two times is therefore the ratio of their
+//! medians. The confidence interval of the ratio is computed by resampling both studies
+//! (bootstrap). The speed of a machine may also drift between two studies, and the samples of a
+//! study do not show this drift. [`DRIFT`] is the default limit for the drift.
 
 use std::io;
 
@@ -11,21 +12,22 @@ use sixfold_workload::Operation;
 
 use crate::control::noise;
 use crate::environment::Environment;
+use crate::numbers::counted;
 use crate::ranking::CLEAR_DIFFERENCE;
 use crate::report::{RawSamples, Report, ResultRow, SCHEMA, Standing, write_json};
 use crate::statistics::{Median, quotient};
 
-/// Default limit for the drift of an unchanged machine, as a ratio of times. It is about twice the
-/// typical drift of a virtual machine (reports/repeatability).
+/// Default limit for the drift between two studies on an unchanged machine, as a ratio of times.
+/// The limit of 20 % is about twice the typical drift of a virtual machine (reports/repeatability).
 pub const DRIFT: f64 = 1.2;
 
 /// Options of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompareSettings {
-    /// Whether to divide each ratio by the median ratio of all rows. This is useful for two
-    /// machines of different speed.
+    /// If true, each ratio is divided by the median ratio of all operations and backends. Use this
+    /// option for two machines of different speed.
     pub relative: bool,
-    /// Maximum ratio that is ignored, even if the samples show a difference.
+    /// Ratios of times up to this value are ignored, even if the samples show a difference.
     pub drift: f64,
 }
 
@@ -43,32 +45,33 @@ impl Default for CompareSettings {
 pub struct Changes {
     /// Version of the JSON schema.
     pub schema: u32,
-    /// Names of the two meshes if their facts differ. The rows then compare different work.
-    pub meshes: Option<[String; 2]>,
-    /// Differences between the studies in machine, program and settings.
+    /// Differences of machines, programs and settings.
     pub environment: Vec<SettingChange>,
-    /// Median over all rows of the second time divided by the first time.
+    /// The time in the second study divided by the time in the first study, as the median over all
+    /// rows. `None` if there are no rows.
     pub overall: Option<f64>,
-    /// Whether each ratio was divided by `overall`.
+    /// True if each ratio was divided by `overall` before the ratio was judged.
     pub relative: bool,
-    /// Maximum ratio that is ignored.
+    /// Ratios of times up to this value are ignored.
     pub drift: f64,
-    /// The rows that both studies measured, in the order of the first study.
+    /// The times of the operations and backends that both studies measured, in the order of the
+    /// first study.
     pub rows: Vec<Change>,
-    /// Backends whose size in bytes changed: name, size before, size after.
+    /// Backends whose size changed: the name, the bytes in the first study, and the bytes in the
+    /// second study.
     pub bytes: Vec<(String, usize, usize)>,
     /// Operations whose fastest backend changed.
     pub winners: Vec<NewWinner>,
-    /// Rows that only the first study has, as `operation on backend`.
+    /// Measurements that only the first study has, as `operation on backend`.
     pub only_before: Vec<String>,
-    /// Rows that only the second study has, as `operation on backend`.
+    /// Measurements that only the second study has, as `operation on backend`.
     pub only_after: Vec<String>,
-    /// The differences as sentences.
+    /// Sentences that describe the differences.
     #[serde(rename = "words")]
     pub sentences: Vec<String>,
 }
 
-/// A difference between two environments.
+/// A difference between the machines, programs or settings of two studies.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct SettingChange {
     /// Name of the setting.
@@ -79,32 +82,33 @@ pub struct SettingChange {
     pub after: String,
 }
 
-/// One operation on one backend, in both studies.
+/// The times of one operation on one backend in two studies.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Change {
-    /// The backend.
+    /// The name of the backend, such as `half-edge`.
     pub backend: String,
-    /// The operation.
+    /// The measured operation, such as `vertex_normal`.
     pub operation: Operation,
-    /// Median of the first study, in nanoseconds.
+    /// Median time in the first study, in nanoseconds.
     pub before_ns: f64,
-    /// Median of the second study, in nanoseconds.
+    /// Median time in the second study, in nanoseconds.
     pub after_ns: f64,
-    /// The second median divided by the first.
+    /// The median time in the second study divided by the median time in the first study.
     pub ratio: f64,
-    /// Lower end of the 95 % interval of `ratio`; `None` if a study has fewer than three samples.
+    /// Lower end of the 95 % confidence interval of `ratio`; `None` if a study has fewer than three
+    /// samples.
     pub ci_low: Option<f64>,
-    /// Upper end of the 95 % interval of `ratio`.
+    /// Upper end of the 95 % confidence interval of `ratio`.
     pub ci_high: Option<f64>,
-    /// Maximum ratio that is noise.
+    /// Ratios of times up to this value count as noise.
     pub noise: f64,
-    /// The conclusion.
+    /// Whether the second study is faster, slower or equal within the noise.
     pub verdict: Verdict,
-    /// Whether the checksums differ. The two studies then did different work.
+    /// True if the checksums differ. The two studies then did different work.
     pub other_checksum: bool,
 }
 
-/// The conclusion about one row.
+/// The conclusion about the times of one operation on one backend in two studies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -119,11 +123,11 @@ pub enum Verdict {
 /// An operation whose fastest backend changed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct NewWinner {
-    /// The operation.
+    /// The measured operation, such as `vertex_normal`.
     pub operation: Operation,
-    /// The fastest backend of the first study.
+    /// The name of the fastest backend in the first study.
     pub before: String,
-    /// The fastest backend of the second study.
+    /// The name of the fastest backend in the second study.
     pub after: String,
 }
 
@@ -142,18 +146,41 @@ pub enum CompareError {
         before: &'static str,
         after: &'static str,
     },
+    /// The studies are of different meshes.
+    #[error(
+        "the first is of {before} ({before_counts}), the second of {after} ({after_counts}): times of different meshes cannot be compared; measure one mesh twice"
+    )]
+    OtherMesh {
+        before: String,
+        before_counts: String,
+        after: String,
+        after_counts: String,
+    },
 }
 
-/// Compares `after` with `before`.
+/// Compares two studies of one mesh.
 ///
 /// # Errors
 ///
-/// Returns an error if the heap policies or the cache states differ.
+/// Returns an error if the meshes, the heap policies or the cache states of the studies differ.
 pub fn compare(
     before: &Report,
     after: &Report,
     settings: CompareSettings,
 ) -> Result<Changes, CompareError> {
+    if before.mesh.facts != after.mesh.facts {
+        let counts = |report: &Report| {
+            let facts = &report.mesh.facts;
+            let vertices = counted(facts.vertices, "vertex", "vertices");
+            format!("{vertices}, {}", counted(facts.faces, "face", "faces"))
+        };
+        return Err(CompareError::OtherMesh {
+            before: before.mesh.name.clone(),
+            before_counts: counts(before),
+            after: after.mesh.name.clone(),
+            after_counts: counts(after),
+        });
+    }
     let memory = [before, after].map(|report| report.environment.memory_settings());
     for (i, option) in ["--heap", "--caches"].into_iter().enumerate() {
         let [before, after] = [memory[0][i], memory[1][i]];
@@ -182,10 +209,8 @@ pub fn compare(
     for row in &mut rows {
         row.verdict = verdict(row, divisor);
     }
-    let same_mesh = before.mesh.facts == after.mesh.facts;
     let mut changes = Changes {
         schema: SCHEMA,
-        meshes: (!same_mesh).then(|| [before.mesh.name.clone(), after.mesh.name.clone()]),
         environment: differences(&before.environment, &after.environment),
         overall,
         relative,
@@ -338,14 +363,22 @@ fn winners(before: &Report, after: &Report) -> Vec<NewWinner> {
     new.collect()
 }
 
+fn is_or_are(count: usize) -> &'static str {
+    match count {
+        1 => "is",
+        _ => "are",
+    }
+}
+
 impl Changes {
-    /// Iterates over the rows that are faster or slower, or have a different checksum.
+    /// Iterates over the rows in which the second study is faster or slower, or has another
+    /// checksum.
     pub fn changed(&self) -> impl Iterator<Item = &Change> {
         let changed = |row: &&Change| row.verdict != Verdict::Same || row.other_checksum;
         self.rows.iter().filter(changed)
     }
 
-    /// Counts the rows with `verdict`.
+    /// Counts the rows that have this `verdict`.
     pub fn count(&self, verdict: Verdict) -> usize {
         self.rows
             .iter()
@@ -364,18 +397,15 @@ impl Changes {
 
     fn describe(&self) -> Vec<String> {
         let mut sentences = Vec::new();
-        if let Some([before, after]) = &self.meshes {
-            sentences.push(format!(
-                "The meshes differ ({before}, {after}), so the two studies did different work: \
-                 compare only the ratios between backends."
-            ));
-        }
         let (slower, faster) = (self.count(Verdict::Slower), self.count(Verdict::Faster));
         let same = self.count(Verdict::Same);
         sentences.push(format!(
-            "Of {} figures, {faster} are faster in the second study, {slower} are slower, and \
-             {same} are equal within the noise.",
-            self.rows.len()
+            "Of {}, {faster} {} faster in the second study, {slower} {} slower, and {same} {} \
+             equal within the noise.",
+            counted(self.rows.len(), "measurement", "measurements"),
+            is_or_are(faster),
+            is_or_are(slower),
+            is_or_are(same)
         ));
         if let Some(overall) = self.overall {
             let factor = overall.max(overall.recip());
@@ -412,7 +442,7 @@ impl Changes {
             .collect();
         if !others.is_empty() {
             sentences.push(format!(
-                "The checksums of these figures differ, so the two studies did different work: {}.",
+                "The checksums of these results differ, so the two studies did different work: {}.",
                 others.join(", ")
             ));
         }

@@ -1,20 +1,10 @@
 //! The control: one backend measured as two columns, to find the noise.
 
-use sixfold::QueryCost;
-
 use crate::measure::Entry;
 use crate::ranking::{NO_DIFFERENCE, ratio};
 use crate::report::{Control, ControlRow};
 use crate::statistics::Median;
 use sixfold_workload::Operation;
-use sixfold_workload::TimedBackend;
-
-/// Returns the subject to measure twice: the first subject that never scans.
-pub(crate) fn measured_twice(subjects: &[Box<dyn TimedBackend + '_>]) -> usize {
-    let scans = |subject: &dyn TimedBackend| subject.costs().contains(&QueryCost::Scan);
-    let found = subjects.iter().position(|subject| !scans(subject.as_ref()));
-    found.unwrap_or(0)
-}
 
 /// Compares the two columns of `backend`: the subjects `first` and `second`.
 pub(crate) fn control(
@@ -24,12 +14,14 @@ pub(crate) fn control(
     backend: &str,
 ) -> Option<Control> {
     let find = |subject: usize, operation: Operation| {
-        let same = |e: &&Entry| e.subject == subject && e.job.operation == operation;
+        let same = |e: &&Entry| e.subject == subject && e.operation() == Some(operation);
         entries.iter().find(same)
     };
     let mut operations = Vec::new();
     for again in entries.iter().filter(|e| e.subject == second) {
-        let operation = again.job.operation;
+        let Some(operation) = again.operation() else {
+            continue;
+        };
         let Some(once) = find(first, operation) else {
             continue;
         };

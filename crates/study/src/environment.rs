@@ -15,20 +15,21 @@ use sixfold_workload::{Cache, caches};
 /// The machine, the program and the settings of a measurement.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Environment {
-    /// The command that reproduces the figures, if it was recorded.
+    /// The command that reproduces the results; `None` if the command was not recorded.
     #[serde(default)]
     pub command: Option<String>,
     /// Version of Sixfold.
     pub sixfold: String,
-    /// Commit of the program, with `-dirty` if files were changed. `None` without a repository.
+    /// Git commit of the program, with `-dirty` if files were changed after the commit. `None` if
+    /// the program was built outside a repository.
     pub commit: Option<String>,
-    /// Version of the compiler.
+    /// Version of the Rust compiler.
     pub rustc: String,
     /// Build profile: `release`, `dist` (with link-time optimisation) or `debug`.
     pub profile: String,
     /// Optimisation level: `0` to `3`, `s` or `z`.
     pub opt_level: String,
-    /// Additional flags of the compiler.
+    /// Additional flags of the Rust compiler.
     pub rustflags: String,
     /// Target triple of the build.
     pub target: String,
@@ -42,19 +43,21 @@ pub struct Environment {
     pub cpu_model: Option<String>,
     /// Number of threads that can run at the same time.
     pub cores: Option<usize>,
-    /// Caches of the first core; empty if unknown.
+    /// Caches of the first processor core; empty if unknown.
     pub caches: Vec<Cache>,
-    /// Bytes of memory; `None` if unknown.
+    /// Size of the main memory, in bytes; `None` if unknown.
     pub memory_bytes: Option<u64>,
     /// Frequency governor of the processor, such as `performance`; `None` if unknown.
     pub governor: Option<String>,
-    /// Whether the processor may exceed its nominal frequency for a time; `None` if unknown.
+    /// True if the processor may exceed its nominal frequency for a short time; `None` if unknown.
     pub boost: Option<bool>,
     /// Mean number of runnable threads in the minute before the study; `None` if unknown.
     pub load_average: Option<f64>,
-    /// Clock of the times: `thread-cpu` or `wall`.
+    /// Clock that measured the times: `thread-cpu` (processor time of the thread) or `wall`
+    /// (elapsed time).
     pub clock: String,
-    /// The heap. `None` in results of older versions, which used the system's heap.
+    /// The allocator, and what happens to freed memory pages. `None` in results of older versions,
+    /// which used the settings of the system.
     #[serde(default)]
     pub heap: Option<HeapReport>,
     /// How the caches were prepared before each sample. `None` in results of older versions, which
@@ -63,14 +66,14 @@ pub struct Environment {
     pub cache_state: Option<CachesReport>,
     /// Start of the study, in seconds since 1970.
     pub unix_time: u64,
-    /// Seed of the random samples and orders.
+    /// Seed of the random numbers of the study.
     pub seed: u64,
     /// Time budget of the study, in seconds.
     pub budget_s: f64,
 }
 
 impl Environment {
-    /// Describes the machine and the program.
+    /// Describes the machine and the program. Records `seed` and `budget_s`.
     pub fn detect(seed: u64, budget_s: f64) -> Self {
         let what = RefreshKind::nothing()
             .with_cpu(CpuRefreshKind::nothing())
@@ -117,7 +120,7 @@ impl Environment {
         }
     }
 
-    /// Returns phrases about heap and caches.
+    /// Returns phrases that describe the settings of the heap and of the caches.
     pub fn memory_phrases(&self) -> Vec<String> {
         let mut phrases = Vec::new();
         if let Some(heap) = &self.heap {

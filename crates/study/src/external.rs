@@ -1,5 +1,5 @@
-//! External programs as columns of a study. Every program that follows the line protocol can take
-//! part.
+//! External programs that take part in a study beside the structures. Every program that follows
+//! the line protocol below can take part.
 //!
 //! ```text
 //! sixfold                                     the program, started with the path of the mesh
@@ -10,8 +10,9 @@
 //!    │ ─── end of input ───────────────────────▶ │   it ends
 //! ```
 //!
-//! The program reads one JSON object per line and answers with one line. It times its own runs, so
-//! the times do not include the pipe. `benches/external/README.md` describes the protocol.
+//! The program reads one JSON object per line and answers with one line. The program measures the
+//! time of its own runs, so the times do not include the communication with Sixfold.
+//! `benches/external/README.md` describes the protocol.
 
 mod program;
 mod subject;
@@ -39,13 +40,13 @@ use subject::ExternalSubject;
 /// Placeholder for the path of the mesh.
 const MESH: &str = "{mesh}";
 
-/// Default time limit for an answer.
+/// Default time limit for one answer of an external program.
 pub const EXTERNAL_TIMEOUT: Duration = Duration::from_secs(60);
 
-/// A program that is measured as one more column.
+/// An external program that is measured beside the structures.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct External {
-    /// The name of the column.
+    /// The name of the program in the results.
     pub name: String,
     /// The program and its arguments; `{mesh}` stands for the path of an OBJ file.
     pub command: Vec<String>,
@@ -58,8 +59,8 @@ pub struct ExternalReport {
     pub command: Vec<String>,
     /// The library that the program measures, with its version.
     pub library: Option<String>,
-    /// Whether freed pages are kept for Sixfold's backends but not for this program. Allocations of
-    /// this program may then cause page faults.
+    /// True if freed memory pages are kept for Sixfold's structures but not for this program.
+    /// Allocations of this program may then cause page faults.
     #[serde(default)]
     pub own_heap: bool,
 }
@@ -69,15 +70,16 @@ pub struct ExternalReport {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum ExternalError {
-    /// The equals sign is missing.
+    /// The text has no equals sign between the name and the command.
     #[error("`{given}` has no name: write NAME='COMMAND {{mesh}}'")]
     NoName { given: String },
-    /// The name contains a character that tables or files cannot show.
+    /// The name is empty, is too long, or contains a character that is not allowed.
     #[error(
-        "`{name}` is not a column name: use up to 32 letters, digits, dots, hyphens and underscores"
+        "`{name}` is not a program name: use up to 32 letters, digits, dots, hyphens and \
+         underscores"
     )]
     BadName { name: String },
-    /// A quote is not closed.
+    /// The command contains a quote that is not closed.
     #[error("the command of {name} has an unclosed quote: close the quote in {command}")]
     OpenQuote { name: String, command: String },
     /// The command is empty, or no argument contains `{mesh}`.
@@ -213,8 +215,8 @@ mod tests {
         assert_eq!(arguments, ["run", "a b", "--mesh=/tmp/a c.obj"]);
         for (given, expected) in [
             ("run {mesh}", "has no name"),
-            ("a b=run {mesh}", "not a column name"),
-            ("=run {mesh}", "not a column name"),
+            ("a b=run {mesh}", "not a program name"),
+            ("=run {mesh}", "not a program name"),
             ("a=run 'x {mesh}", "unclosed quote"),
             ("a=run", "has no {mesh}"),
             ("a={mesh}", "has no {mesh}"),

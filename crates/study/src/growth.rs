@@ -1,12 +1,14 @@
-//! The growth lab: measures how the time of an operation grows with the mesh.
+//! Measures how the time of an operation grows with the size of the mesh.
 //!
-//! One shape is made in several sizes. The ratio of two successive sizes is constant. At each size
-//! all structures are measured in rounds, as in a study. A straight line is fitted to the
-//! logarithms of size and time. The slope of the line is the exponent. Exponent 1 means a constant
-//! time per element. Exponent 2 means a scan of all faces per element.
+//! One shape is built with several numbers of faces. The ratio of two successive numbers is
+//! constant. At each size, all structures are measured in rounds, as in a study. A straight line is
+//! fitted to the logarithms of the number of faces and of the time. The slope of the line is the
+//! exponent of the growth. The exponent is 1 if the time per element is constant. The exponent is 2
+//! if each element needs a scan of all faces.
 //!
-//! The time per element also depends on the caches. Therefore a second line is fitted to the sizes
-//! that fit into the last cache, and a third line to the larger sizes.
+//! The time per element also depends on the processor caches. A second line is therefore fitted to
+//! the sizes at which the structure fits into the last-level cache. A third line is fitted to the
+//! larger sizes.
 
 mod budgets;
 mod fits;
@@ -19,8 +21,6 @@ use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use serde::{Deserialize, Serialize};
 use sixfold::shapes::Order;
 use sixfold::{Facts, PolygonMesh};
@@ -31,12 +31,12 @@ pub use settings::{GrowthError, GrowthSettings, growth_bytes};
 pub use shapes::{SCALABLE_SHAPES, ScalableShape};
 
 use crate::agreement::compare_checksums;
-use crate::control::{control, measured_twice};
 use crate::environment::Environment;
 use crate::heap::Memory;
-use crate::measure::{Measurement, Progress};
+use crate::measure::Progress;
 use crate::report::{Agreement, Control, Refusal, ResultRow, SCHEMA, write_json};
 use crate::study::{StudyError, is_skewed, prepare, refusals, results, scans};
+use crate::trial::{Columns, Measured, Trial};
 use budgets::SizeBudgets;
 use fits::{cache_limits, fits};
 use settings::Plan;
@@ -52,35 +52,37 @@ pub struct GrowthReport {
     pub shape: String,
     /// Order of the elements in memory.
     pub order: Order,
-    /// The measured backends, as tables list them.
+    /// The names of the measured backends.
     pub backends: Vec<String>,
     /// The backends that cannot hold the shape.
     #[serde(rename = "unheld")]
     pub refused_by: Vec<BackendRefusal>,
     /// The finished sizes, smallest first.
     pub sizes: Vec<SizeReport>,
-    /// Approximate face counts of the sizes that were left out for lack of time.
+    /// Approximate numbers of faces of the sizes that were left out because there was too little
+    /// time.
     pub left_out: Vec<usize>,
-    /// The fitted lines, by operation, then by backend.
+    /// The fitted lines, sorted by operation, then by backend.
     pub fits: Vec<Fit>,
-    /// The caches of this machine; empty if unknown.
+    /// The processor caches of this machine; empty if unknown.
     pub caches: Vec<Cache>,
-    /// The sizes at which layouts outgrow caches, by cache, then by backend.
+    /// The number of faces at which each structure becomes larger than each cache. Sorted by cache,
+    /// then by backend.
     #[serde(rename = "cache_ends")]
     pub cache_limits: Vec<CacheLimit>,
-    /// Sentences about the tables.
+    /// Sentences that describe the results.
     #[serde(rename = "words")]
     pub sentences: Vec<String>,
-    /// Whether the command was interrupted before the last size.
+    /// True if the measurement was stopped early. Some sizes may then be missing.
     pub interrupted: bool,
-    /// The machine and the program.
+    /// The machine, the program and the settings.
     pub environment: Environment,
 }
 
 /// A backend that cannot hold the shape.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct BackendRefusal {
-    /// Name of the backend.
+    /// The name of the backend, such as `half-edge`.
     pub backend: String,
     /// Why the backend cannot hold the shape.
     pub reason: String,
@@ -98,27 +100,29 @@ pub struct SizeReport {
     /// Size of each backend in bytes.
     #[serde(rename = "weights")]
     pub backend_bytes: Vec<BackendBytes>,
-    /// The rows of a study.
+    /// The times of each operation on each backend.
     pub results: Vec<ResultRow>,
     /// Operations that a backend cannot do.
     pub refusals: Vec<Refusal>,
-    /// The backend that was measured twice.
+    /// The comparison of two measurements of one backend, which shows the noise. `None` if no
+    /// backend was measured twice.
     pub control: Option<Control>,
 }
 
 /// The size of a backend in bytes.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct BackendBytes {
-    /// The backend.
+    /// The name of the backend, such as `half-edge`.
     pub backend: String,
     /// Allocated bytes, including spare capacity.
     pub bytes: usize,
-    /// Smallest cache level that can hold these bytes; `None` if no known cache can.
+    /// Smallest level of a cache that can hold these bytes; `None` if no known cache is large
+    /// enough.
     pub fits_in: Option<u8>,
 }
 
 impl GrowthReport {
-    /// Counts the results that differ from those of other backends without a known reason.
+    /// Counts the results that differ from the results of other backends without a known reason.
     pub fn mismatches(&self) -> usize {
         let rows = self.sizes.iter().flat_map(|size| &size.results);
         rows.filter(|row| row.agreement == Agreement::Mismatch)
@@ -135,11 +139,10 @@ impl GrowthReport {
     }
 }
 
-/// Measures all sizes within the budget of `settings`. Everything is run at least once at each
-/// size, even if this exceeds the budget. Sizes that cannot be built in the remaining time are left
-/// out.
+/// Measures a shape in several sizes, within the time budget of `settings`. A size is left out if
+/// its structures cannot be built in the remaining time.
 ///
-/// Setting `stop` ends the command early. The report then contains the finished sizes.
+/// Setting `stop` to true ends the measurement early, with a report of the finished sizes.
 ///
 /// # Errors
 ///
@@ -295,30 +298,30 @@ impl Sweep<'_> {
             return Err(StudyError::NoneHolds { refusals }.into());
         }
         self.refused_by = refused_by;
-        let first = measured_twice(&subjects);
-        let second = subjects.len();
-        let is_first = |backend: &&Backend| backend.name() == subjects[first].name();
-        let again = backends.iter().find(is_first);
-        let again = again.and_then(|b| b.prepare(mesh, draw.as_ref()).ok());
-        subjects.extend(again.map(|(subject, _)| subject));
+        let names: Vec<String> = subjects.iter().map(|s| s.name().to_owned()).collect();
+        let mut columns = Columns::new(subjects, Vec::new(), |first| {
+            let backend = backends.iter().find(|b| b.name() == names[first])?;
+            let (subject, _) = backend.prepare(mesh, draw.as_ref()).ok()?;
+            Some(subject)
+        });
         let clock = MachineClock::start();
-        let mut measurement = Measurement {
-            control: (subjects.len() > second).then_some(second),
-            subjects: &mut subjects,
-            population: [counts.vertices, counts.edges, counts.faces],
+        let mut trial = Trial {
+            counts,
             skewed,
             clock: &clock,
             memory,
             budget: budget(),
             named: !self.settings.study.operations.is_empty(),
-            random: ChaCha8Rng::seed_from_u64(seed.wrapping_add(step as u64)),
+            seed: seed.wrapping_add(step as u64),
             stop: self.stop,
             progress,
         };
-        let mut entries = measurement.measure(operations);
-        let control = control(&entries, first, second, subjects[first].name());
-        entries.retain(|entry| entry.subject != second);
-        let agreements = compare_checksums(&entries, &mut subjects, mesh, &clock, self.stop);
+        let entries = columns.entries(operations);
+        let Measured {
+            entries, control, ..
+        } = trial.run(&mut columns, entries);
+        let subjects = &mut columns.subjects;
+        let agreements = compare_checksums(&entries, subjects, mesh, &clock, self.stop);
         if self.stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
@@ -328,8 +331,8 @@ impl Sweep<'_> {
             edges: counts.edges,
             faces: counts.faces,
             backend_bytes,
-            results: results(&entries, agreements, &subjects, mesh, control.as_ref()),
-            refusals: refusals(&entries, &subjects),
+            results: results(&entries, agreements, subjects, mesh, control.as_ref()),
+            refusals: refusals(&entries, subjects),
             control,
         }))
     }

@@ -15,14 +15,14 @@ const KEPT_FACTOR: u64 = 2;
 /// Divisor of the resident memory that gives the number of bytes to touch in advance.
 const RESERVE_PART: u64 = 4;
 
-/// Whether the caches hold the mesh when a sample begins.
+/// The state of the processor caches when a timed sample begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CacheState {
     /// The caches keep the data of the previous runs.
     #[default]
     Warm,
-    /// The caches hold other data. A sample is one run.
+    /// The caches hold other data than the mesh. Each sample is a single run.
     Cold,
 }
 
@@ -30,7 +30,7 @@ impl CacheState {
     /// Both states.
     pub const ALL: [Self; 2] = [Self::Warm, Self::Cold];
 
-    /// Returns the name in options: `warm` or `cold`.
+    /// Returns the name of the state in command-line options: `warm` or `cold`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Warm => "warm",
@@ -39,14 +39,16 @@ impl CacheState {
     }
 }
 
-/// How the caches are prepared before each sample.
+/// How the processor caches are prepared before each timed sample.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct CachesReport {
-    /// Whether the caches hold the mesh.
+    /// The state of the caches when a sample begins.
     pub state: CacheState,
-    /// Number of bytes written before each sample; 0 if warm.
+    /// Number of bytes that are written before each sample to replace the content of the caches. 0
+    /// if the caches are warm.
     pub written_bytes: usize,
-    /// Last cache level whose content is replaced; `None` if warm or unknown.
+    /// Highest cache level whose content is replaced. `None` if the caches are warm or the level is
+    /// unknown.
     pub defeats_level: Option<u8>,
 }
 
@@ -182,9 +184,9 @@ fn min_free_bytes() -> u64 {
     (all as f64 * MIN_FREE) as u64
 }
 
-/// Returns the bytes that this program can still allocate; `None` if unknown. This is the minimum
-/// of three values: the free memory, the limit of the control group, and the limit of the address
-/// space.
+/// Returns the bytes that this program can still allocate; `None` if unknown. The result is the
+/// minimum of three values: the free memory, the memory that the control group still allows, and
+/// the free part of the address space.
 pub fn free_memory() -> Option<u64> {
     let mut system = System::new();
     system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());

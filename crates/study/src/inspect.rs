@@ -3,6 +3,7 @@
 use sixfold::{BuildError, Facts, PolygonMesh};
 use sixfold_core::Counts;
 
+use crate::refusal::reason;
 use crate::report::{BackendReport, Inspection, MeshReport, SCHEMA};
 use sixfold_workload::Backend;
 
@@ -11,7 +12,7 @@ use sixfold_workload::Backend;
 pub struct StudyMesh {
     /// Origin of the mesh, such as its file name.
     pub name: String,
-    /// Facts of the file. Degenerate faces are counted.
+    /// Topological facts of the file, including the number of degenerate faces.
     pub facts: Facts,
     /// The mesh without the degenerate faces of the file.
     pub polygons: PolygonMesh,
@@ -20,7 +21,7 @@ pub struct StudyMesh {
 }
 
 impl StudyMesh {
-    /// Computes the facts of a mesh; O(corners) expected.
+    /// Creates a mesh to study and computes its facts. The expected time is O(corners).
     pub fn new(name: impl Into<String>, polygons: PolygonMesh) -> Self {
         Self {
             name: name.into(),
@@ -30,7 +31,8 @@ impl StudyMesh {
         }
     }
 
-    pub(crate) fn report(&self) -> MeshReport {
+    /// Returns the name and the facts of the mesh, in the format of reports.
+    pub fn report(&self) -> MeshReport {
         MeshReport {
             name: self.name.clone(),
             facts: self.facts.clone(),
@@ -39,8 +41,8 @@ impl StudyMesh {
     }
 }
 
-/// Finds the backends that can hold the mesh, without building them; O(corners) expected per
-/// backend.
+/// Checks which backends can hold the mesh, without building the backends. The expected time is
+/// O(corners) per backend.
 pub fn inspect(study_mesh: &StudyMesh, backends: &[Backend]) -> Inspection {
     let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
     let backends = backends.iter().map(|backend| {
@@ -49,7 +51,7 @@ pub fn inspect(study_mesh: &StudyMesh, backends: &[Backend]) -> Inspection {
             true => Ok(()),
             false => backend.info.check(&study_mesh.polygons),
         };
-        unbuilt(backend, &counts, verdict)
+        unbuilt(backend, &study_mesh.polygons, &counts, verdict)
     });
     Inspection {
         schema: SCHEMA,
@@ -61,10 +63,12 @@ pub fn inspect(study_mesh: &StudyMesh, backends: &[Backend]) -> Inspection {
 /// Returns the report of a backend that is not built.
 pub(crate) fn unbuilt(
     backend: &Backend,
+    polygons: &PolygonMesh,
     counts: &Counts,
     verdict: Result<(), BuildError>,
 ) -> BackendReport {
-    let reason = verdict.err().map(|refusal| refusal.to_string());
+    let refusal = verdict.err();
+    let reason = refusal.map(|refusal| reason(&refusal, &backend.info.capabilities, polygons));
     let holds = reason.is_none();
     let layout_bytes = holds.then(|| (backend.layout_bytes)(counts));
     BackendReport {

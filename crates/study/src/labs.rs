@@ -1,4 +1,4 @@
-//! Results of the labs that a report shows beside studies.
+//! Results of measuring commands that a report shows beside studies.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,22 +9,23 @@ use crate::pick::PickReport;
 use crate::read::Results;
 use crate::why::Why;
 
-/// Results of the measuring commands besides `sixfold study`.
+/// Results of the measuring commands other than `sixfold study`.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(default)]
 pub struct Labs {
-    /// A mesh in several orders.
+    /// Results of `sixfold orders`: one mesh with its elements in several orders.
     pub orders: Vec<OrdersReport>,
-    /// A shape in several sizes.
+    /// Results of `sixfold growth`: one shape in several sizes.
     pub growth: Vec<GrowthReport>,
-    /// Bytes that queries read, and their times relative to the speed of memory.
+    /// Results of `sixfold why`: the bytes that queries read, compared with the times of the
+    /// queries.
     pub why: Vec<Why>,
-    /// Rankings for workloads.
+    /// Results of `sixfold pick`: rankings of backends for workloads.
     pub picks: Vec<PickReport>,
 }
 
 impl Labs {
-    /// Counts the results that differ from those of other backends without a known reason.
+    /// Counts the results that differ from the results of other backends without a known reason.
     pub fn mismatches(&self) -> usize {
         let orders = self.orders.iter().map(OrdersReport::mismatches);
         let growth = self.growth.iter().map(GrowthReport::mismatches);
@@ -33,7 +34,7 @@ impl Labs {
         orders.chain(growth).chain(why).chain(picks).sum()
     }
 
-    /// Returns whether a lab was interrupted.
+    /// Returns true if one of the measurements was stopped early.
     pub fn interrupted(&self) -> bool {
         let orders = self.orders.iter().map(|orders| orders.interrupted);
         let growth = self.growth.iter().map(|growth| growth.interrupted);
@@ -59,7 +60,7 @@ impl Labs {
         self.picks.append(&mut others.picks);
     }
 
-    /// Adds `results`; ignores studies and collections.
+    /// Adds the results of one command. Studies and collections are ignored.
     pub fn add(&mut self, results: Results) {
         match results {
             Results::Orders(orders) => self.orders.push(*orders),

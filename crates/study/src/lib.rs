@@ -1,20 +1,25 @@
-//! Workloads, interleaved measurement and reports: which structure fits this mesh and this work?
+//! Measures which mesh data structure is fastest for a mesh and a workload, and makes reports.
 //!
-//! [`study()`] builds every requested backend and runs the [`Operation`]s on them in interleaved
-//! rounds. It compares checksums to prove that all backends did the same work, and returns a
-//! [`Report`]. [`orders`] does this for one mesh in several orders. [`growth`] does this for one
+//! A backend is a mesh data structure or an external program that takes part in a measurement.
+//! [`study()`] builds the requested backends, times [`Operation`]s on them, and returns a
+//! [`Report`]. The measurement consists of rounds. In each round, the backends take turns in random
+//! order. [`study()`] also compares checksums of the results, because all backends must do the same
+//! work. [`orders`] measures one mesh with its elements in several orders. [`growth`] measures one
 //! shape in many sizes.
 //!
 //! [`inspect`] describes a mesh and the backends that can hold it. [`pick`] ranks the backends for
-//! a workload. [`compare`] compares two studies. A [`Collection`] pools the studies of many meshes.
-//! [`audit`] counts the bytes of each backend in three ways, which must agree. [`why`] counts the
-//! bytes that relations read, and compares their times with the speed of memory.
+//! a workload. [`compare`] compares two studies. A [`Collection`] holds the studies of many meshes
+//! and computes means over the meshes. [`audit`] counts the bytes of each backend in three ways and
+//! reports differences. [`why`] counts the bytes that queries read, and compares the times of the
+//! queries with the speed of memory.
 //!
-//! `reports/SCHEMA.md` explains the figures. This crate has no command line and prints nothing. It
-//! reports progress to a closure and stops when a flag is set.
+//! The file `reports/SCHEMA.md` explains the values in the results. This crate has no command line
+//! and prints nothing. Long functions report their progress to a closure, and stop early when a
+//! flag is set.
 
 mod agreement;
 mod audit;
+mod budget;
 mod collection;
 mod compare;
 mod control;
@@ -33,6 +38,7 @@ mod pick;
 mod plan;
 mod ranking;
 mod read;
+mod refusal;
 mod report;
 mod runner;
 mod sanitize;
@@ -43,12 +49,15 @@ mod slope;
 mod statistics;
 mod study;
 mod timer;
+mod trial;
 mod warnings;
 mod why;
 
 pub use audit::{Audit, BackendAudit, OperationBytes, audit, count_allocations};
+pub use budget::Budget;
 pub use collection::{
-    Collection, Failed, FailureKind, MergeError, Pooled, SecondStudy, SharedSettings,
+    Collection, Failed, FailureKind, Group, Holding, MergeError, Overall, Pool, Pooled, Purpose,
+    SecondStudy, SharedSettings,
 };
 pub use compare::{
     Change, Changes, CompareError, CompareSettings, DRIFT, NewWinner, SettingChange, Verdict,
@@ -69,8 +78,8 @@ pub use orders::{
     OrdersReport, StructureEffect, orders, orders_bytes,
 };
 pub use pick::{
-    BreakEven, Excluded, MeshRanking, Need, PartCost, PickError, PickReport, PickSettings, Ranked,
-    UnknownNeed, pick,
+    BreakEven, Choice, EQUAL_UP_TO, Excluded, MeshRanking, Need, PartCost, PickError, PickReport,
+    PickSettings, Predicted, Prediction, Ranked, TurningPoint, UnknownNeed, pick, predict,
 };
 pub use read::{ReadError, Results};
 pub use report::{
@@ -81,7 +90,7 @@ pub use runner::{BackendRun, BackendRunner};
 pub use sanitize::sanitize;
 pub use sixfold_workload::pages::{self, HeapReport, Policy, UnknownPolicy};
 pub use sixfold_workload::{
-    Access, Action, Amount, EditPlaceError, Workload, WorkloadError, built_in, built_ins,
+    Access, Action, Amount, EditPlaceError, Part, Workload, WorkloadError, built_in, built_ins,
 };
 pub use sixfold_workload::{
     Allocated, AllocationCounter, Backend, BufferSpeed, Cache, CacheFlusher, Clock, EditPass,
@@ -90,6 +99,7 @@ pub use sixfold_workload::{
     Time, UnknownOperation, Way, caches, timed, unknown,
 };
 pub use slope::Slope;
+pub use statistics::UNSEEN_DRIFT;
 pub use study::{Settings, StudyError, study};
 pub use timer::Timer;
 pub use why::{Bound, Model, Timed, Timing, Why, WhyRow, WhySettings, why};

@@ -1,14 +1,14 @@
 //! The measuring loop: a warm-up that plans the samples, then rounds until the budget is spent.
 //!
-//! In every round each operation runs on every structure, in random order. Slow changes of the
-//! machine (frequency, heat, other programs) then affect all structures alike. They hardly affect
-//! the ratios within a round.
+//! In each round, operations run on every structure, in random order. Slow operations take part
+//! only in some rounds. Slow changes of the machine (frequency, heat, other programs) then affect
+//! all structures alike. These changes hardly affect the ratios of times within a round.
 //!
-//! A sample repeats a short operation until the clock can resolve the time. Untimed runs come
-//! before the sample. They bring the data of the structure into the caches.
+//! A sample repeats a short operation until the clock can resolve the time. Before the sample,
+//! untimed runs bring the data of the structure into the caches.
 //!
-//! If there is time, all structures are built again between rounds, at other addresses. Operations
-//! that allocate are also measured on fresh pages, after the last round.
+//! If there is time, all structures are built again between rounds, at other addresses. After the
+//! last round, operations that allocate are also measured on fresh memory pages.
 
 use std::hint::black_box;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -25,7 +25,7 @@ use sixfold_workload::Operation;
 use sixfold_workload::pages;
 use sixfold_workload::{Clock, Time};
 use sixfold_workload::{
-    Job, MIN_TIMED_NS, Outcome, Run, Series, Start, TimedBackend, exceeds_second_level,
+    Job, MIN_TIMED_NS, Outcome, Run, Series, Start, Task, TimedBackend, exceeds_second_level,
 };
 
 /// Maximum number of rounds.
@@ -46,11 +46,20 @@ pub(crate) const LONG_RUN_NS: f64 = 10_000_000.0;
 const LARGE_WARM_UP_RUNS: u32 = 4;
 const LARGE_WARM_UP_NS: f64 = 20_000_000.0;
 
-/// One operation on one structure: the plan of its measurement, and the results.
+/// One task on one backend: the plan of its measurement, and the results.
 #[derive(Clone, Debug)]
 pub(crate) struct Entry {
     pub(crate) subject: usize,
     pub(crate) job: Job,
+    /// The name of the task, for display.
+    pub(crate) name: &'static str,
+    /// Whether a run of a task of a mix scans all faces. Operations are planned by the costs of
+    /// their relations instead.
+    pub(crate) scans: bool,
+    /// Whether the clock stops between runs of the task.
+    pub(crate) pauses_clock: bool,
+    /// The entry takes part in every n-th round at most.
+    pub(crate) least_every: u32,
     /// Number of runs before the clock starts.
     pub(crate) untimed: u32,
     /// Number of timed runs in one sample.
@@ -82,14 +91,23 @@ pub(crate) struct Entry {
 }
 
 impl Entry {
+    /// Creates an entry for an operation that is not planned yet.
     pub(crate) fn new(subject: usize, operation: Operation) -> Self {
-        let job = Job {
-            operation,
-            sample: None,
-        };
+        Self {
+            pauses_clock: operation.pauses_clock(),
+            ..Self::of_task(subject, Task::Operation(operation), operation.name())
+        }
+    }
+
+    /// Creates an entry for a task that is not planned yet.
+    pub(crate) fn of_task(subject: usize, task: Task, name: &'static str) -> Self {
         Self {
             subject,
-            job,
+            job: Job::new(task),
+            name,
+            scans: false,
+            pauses_clock: false,
+            least_every: 1,
             untimed: 1,
             runs: 1,
             every: 1,
@@ -107,8 +125,13 @@ impl Entry {
         }
     }
 
-    /// Returns the time of a first run. This is the median time, multiplied by the median ratio of
-    /// a first run to the run after it.
+    /// Returns the operation; `None` for a task of a mix.
+    pub(crate) fn operation(&self) -> Option<Operation> {
+        self.job.task.operation()
+    }
+
+    /// Returns the time of a first run: the median time multiplied by the median ratio of first
+    /// runs to the runs right after them.
     pub(crate) fn first_ns(&self) -> Option<f64> {
         let median = Median::from_samples(self.times().iter().map(|(_, time)| time.ns()))?;
         let ratio = |[first, later]: &[Time; 2]| first.ns() / later.ns().max(1.0);
@@ -123,7 +146,7 @@ impl Entry {
     /// sampled.
     fn has_first_time(&self) -> bool {
         let measured = !self.samples.is_empty() && self.job.sample.is_none();
-        measured && self.job.operation.allocates()
+        measured && self.job.task.allocates()
     }
 
     /// Returns the samples that count. If there are no samples, returns the warm-up run.
@@ -140,25 +163,24 @@ impl Entry {
         let whole = self.samples.iter().filter(|_| self.job.sample.is_none());
         let shortest = whole.map(|(_, time)| time.ns()).min_by(f64::total_cmp)?;
         let sample = shortest * f64::from(self.runs);
-        Some(match self.job.operation.pauses_clock() {
+        Some(match self.pauses_clock {
             true => shortest.max(sample.min(MIN_TIMED_NS)),
             false => sample,
         })
     }
 }
 
-/// Returns the number of untimed runs of `operation` before a sample, if one run takes `ns`.
+/// Returns the number of untimed runs of `task` before a sample, if one run takes `ns`. There
+/// is at least one, and together they take up to `most_ns`. They fill caches, branch predictors and
+/// tables as in a program that does nothing else. A run longer than 10 ms does this by itself. It
+/// gets one untimed run if tables grow, else none.
 ///
-/// The untimed runs fill the caches, the branch predictors and the tables. There is at least one,
-/// and together they take up to `most_ns`. A run longer than 10 ms fills the caches by itself. It
-/// gets one untimed run if the tables grow, else none.
-///
-/// `large` means larger than the second-level cache. A large structure gets up to four untimed
-/// runs, even if they take longer than `most_ns`. The third-level cache keeps only data that was
-/// read several times.
-pub(crate) fn untimed_runs(operation: Operation, ns: f64, most_ns: f64, large: bool) -> u32 {
+/// If the structure is `large`, that is, larger than the second-level cache, there may be up to
+/// four runs even if they take longer than `most_ns`. The third-level cache keeps data only after
+/// it was read several times.
+pub(crate) fn untimed_runs(task: Task, ns: f64, most_ns: f64, large: bool) -> u32 {
     if ns > LONG_RUN_NS {
-        return u32::from(operation.grows_tables());
+        return u32::from(task.grows_tables());
     }
     let fit = |time_ns: f64| (time_ns / ns.max(0.1)).clamp(1.0, MAX_RUNS) as u32;
     let least = match large {
@@ -168,17 +190,23 @@ pub(crate) fn untimed_runs(operation: Operation, ns: f64, most_ns: f64, large: b
     fit(most_ns).max(least)
 }
 
-/// Progress of a study, for display.
+/// The progress of a measurement, for display.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress<'a> {
-    /// The finished part, from 0 to 1.
+    /// The finished part of the measurement, from 0 to 1.
     pub done: f64,
-    /// The name of the current stage.
+    /// The name of the current stage, such as `warming up`.
     pub stage: &'a str,
-    /// The operation that is measured now.
-    pub operation: Operation,
-    /// The backend that is measured now.
+    /// The name of the operation that is measured now.
+    pub task: &'a str,
+    /// The name of the backend that is measured now.
     pub backend: &'a str,
+}
+
+/// Returns an entry for each of `operations` on each of `subjects` subjects.
+pub(crate) fn entries_of(subjects: usize, operations: &[Operation]) -> Vec<Entry> {
+    let of_operation = |&operation| (0..subjects).map(move |s| Entry::new(s, operation));
+    operations.iter().flat_map(of_operation).collect()
 }
 
 /// The measurement of several subjects, with its clock and budget.
@@ -202,20 +230,17 @@ pub(crate) struct Measurement<'b, 's> {
 }
 
 impl Measurement<'_, '_> {
-    /// Measures `operations` on all subjects. If `stop` is set, returns the finished part.
-    pub(crate) fn measure(&mut self, operations: &[Operation]) -> Vec<Entry> {
+    /// Measures `entries`; those of the same task must be adjacent. Returns early, with the
+    /// finished part, if `stop` is set.
+    pub(crate) fn measure(&mut self, mut entries: Vec<Entry>) -> Vec<Entry> {
         let start = self.clock.now().wall_ns;
         let deadline = start + self.budget.as_nanos() as f64;
-        let mut entries = Vec::new();
-        for &operation in operations {
-            entries.extend((0..self.subjects.len()).map(|s| Entry::new(s, operation)));
-        }
-        // Reserve memory before the warm-up: its runs may be the only runs that fit the budget.
+        // Reserve for the warm-up: its runs may be the only ones that fit the budget.
         let largest = self.subjects.iter().map(|subject| subject.bytes()).max();
         self.memory.reserve_for(2 * largest.unwrap_or(0) as u64);
         self.warm_up(&mut entries, deadline);
         self.memory.reserve();
-        let allocates = operations.iter().any(|operation| operation.allocates());
+        let allocates = entries.iter().any(|entry| entry.job.task.allocates());
         let fresh_pages = pages::can_release_pages() && !self.memory.is_cold();
         let for_first_times = match allocates && fresh_pages {
             true => FIRST_TIMES_SHARE * self.budget.as_nanos() as f64,
@@ -335,9 +360,14 @@ impl Measurement<'_, '_> {
     fn sample(&mut self, detector: &mut DisturbanceDetector, entry: &mut Entry, round: u32) {
         let (stop, kept) = (self.stop, self.memory.keeps_pages());
         let runs = [entry.untimed, entry.runs];
+        // Each round continues a mix where the last round ended.
+        let job = Job {
+            first: u64::from(round) * runs.iter().map(|&n| u64::from(n)).sum::<u64>(),
+            ..entry.job
+        };
         let taken = detector.take_sample(
             self.clock,
-            || self.run(entry.subject, &entry.job, runs, false),
+            || self.run(entry.subject, &job, runs, false),
             |run| match run.refusal.is_some() || stop.load(Ordering::Relaxed) {
                 true => Verdict::Final,
                 false => Verdict::on_faults(run.time, kept),
@@ -395,14 +425,14 @@ impl Measurement<'_, '_> {
         (self.progress)(Progress {
             done,
             stage,
-            operation: entry.job.operation,
+            task: entry.name,
             backend: self.subjects[entry.subject].name(),
         });
     }
 }
 
 fn takes_part(entry: &Entry, round: u32) -> bool {
-    can_take_part(entry) && round.is_multiple_of(entry.every)
+    can_take_part(entry) && round.is_multiple_of(entry.every.max(entry.least_every))
 }
 
 fn can_take_part(entry: &Entry) -> bool {
@@ -412,7 +442,7 @@ fn can_take_part(entry: &Entry) -> bool {
 
 fn groups(entries: &[Entry]) -> Vec<Vec<usize>> {
     let numbers: Vec<usize> = (0..entries.len()).collect();
-    let same = |&a: &usize, &b: &usize| entries[a].job.operation == entries[b].job.operation;
+    let same = |&a: &usize, &b: &usize| entries[a].job.task == entries[b].job.task;
     numbers.chunk_by(same).map(<[usize]>::to_vec).collect()
 }
 

@@ -13,7 +13,8 @@ pub fn grouped(number: usize) -> String {
     text
 }
 
-/// Formats a number with three significant digits: `0.412`, `4.12`, `41.2`, `412`, `4,120`.
+/// Formats a number with three digits, or as a whole number if it is 100 or larger: `0.412`,
+/// `4.12`, `41.2`, `412`, `41,235`.
 pub fn figure(number: f64) -> String {
     match number {
         n if !n.is_finite() => "–".into(),
@@ -24,13 +25,13 @@ pub fn figure(number: f64) -> String {
     }
 }
 
-/// Formats a count with its noun: `1 edge`, `3 edges`.
+/// Formats a number with a noun in the singular or plural: `1 edge`, `3 edges`.
 pub fn counted(number: usize, singular: &str, plural: &str) -> String {
     let word = if number == 1 { singular } else { plural };
     format!("{} {word}", grouped(number))
 }
 
-/// Formats a number of bytes with a suitable decimal unit (1 kB = 1,000 bytes).
+/// Formats a number of bytes with a suitable decimal unit, such as `1.50 kB` (1 kB = 1,000 bytes).
 pub fn bytes(number: usize) -> String {
     match number as f64 {
         n if n < 1e3 => counted(number, "byte", "bytes"),
@@ -40,7 +41,7 @@ pub fn bytes(number: usize) -> String {
     }
 }
 
-/// Formats a time with a suitable unit.
+/// Formats a time in nanoseconds with a suitable unit, such as `2.34 ms`.
 pub fn duration(ns: f64) -> String {
     match ns {
         ns if ns < 1e3 => format!("{} ns", figure(ns)),
@@ -50,7 +51,7 @@ pub fn duration(ns: f64) -> String {
     }
 }
 
-/// Formats a ratio: `1.4 ×`, `2,100 ×`.
+/// Formats a ratio with a multiplication sign: `1.4 ×`, `2,100 ×`.
 pub fn times(ratio: f64) -> String {
     match ratio {
         r if r < 1.095 => format!("{r:.2} ×"),

@@ -1,20 +1,19 @@
-//! The order lab: measures one mesh in several orders on every structure.
+//! Measures one mesh with its elements in several orders, on every structure.
 //!
-//! An order changes only the places of elements in memory. Two columns of one structure therefore
-//! differ only in how well caches and prefetchers work. This effect can be larger than the effect
-//! of the structure. A study of one file cannot show the effect, because a file has one order. All
-//! orders use the same sampled elements, so that their checksums can be compared.
+//! The order of the elements changes only their addresses in memory. The times of one structure in
+//! two orders therefore differ only because of caches and prefetchers. The effect of the order can
+//! be larger than the effect of the structure. A study of one file cannot show the effect of the
+//! order, because a file has only one order. If an operation is run on only some of the elements,
+//! the same elements are used in all orders. Checksums of different orders can therefore be
+//! compared.
 
 mod effects;
 mod meshes;
 mod sentences;
 
 use std::io;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::sync::atomic::AtomicBool;
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use serde::{Deserialize, Serialize};
 use serde_with::{KeyValueMap, serde_as};
 use sixfold::PolygonMesh;
@@ -24,20 +23,22 @@ use sixfold_core::Counts;
 pub use effects::{Comparison, Factor, Larger, OrderEffect, StructureEffect};
 
 use crate::agreement::compare_checksums;
-use crate::control::{control, measured_twice, noise};
+use crate::budget::Budget;
+use crate::control::noise;
 use crate::environment::Environment;
 use crate::heap::Memory;
 use crate::inspect::StudyMesh;
-use crate::measure::{Entry, Measurement, Progress};
+use crate::measure::{Entry, Progress};
 use crate::report::{
     Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, SCHEMA, write_json,
 };
 use crate::study::{Settings, StudyError, is_skewed, prepare, refusals, results, scans};
+use crate::trial::{Columns, Measured, Trial};
 use effects::OrderSamples;
 use meshes::OrderedMeshes;
 use sixfold_workload::{Backend, MachineClock, Operation, TimedBackend};
 
-/// Operations that are measured by default.
+/// Names of the operations that [`orders`] measures if the settings name no operations.
 pub const DEFAULT_OPERATIONS: [&str; 6] = [
     "vertex_vertices",
     "vertex_faces",
@@ -47,23 +48,16 @@ pub const DEFAULT_OPERATIONS: [&str; 6] = [
     "ff_bfs",
 ];
 
-/// Minimum budget.
-const MIN_BUDGET: Duration = Duration::from_millis(100);
-
-/// The reason why orders cannot be compared.
+/// The reason why a mesh cannot be measured in several orders.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum OrdersError {
-    /// The study is not possible.
+    /// The settings are invalid, or no requested backend can hold the mesh.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// The budget is too short.
-    #[error("a budget of {} ms is too short to compare orders: use {} ms or more", .budget.as_millis(), .least.as_millis())]
-    BudgetTooSmall { budget: Duration, least: Duration },
 }
 
-/// The results of a comparison of orders.
+/// The results of one mesh with its elements in several orders.
 #[serde_as]
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct OrdersReport {
@@ -71,47 +65,48 @@ pub struct OrdersReport {
     pub schema: u32,
     /// Name and facts of the mesh in its original order.
     pub mesh: MeshReport,
-    /// The orders, as tables list them.
+    /// The measured orders.
     pub orders: Vec<Order>,
-    /// The requested backends, in the order of [`Backend::structures`], built from the original
-    /// order.
+    /// The requested backends with their memory, built from the mesh in its original order.
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
-    /// The rows, by operation, then structure, then order.
+    /// The times, sorted by operation, then by structure, then by order.
     pub results: Vec<OrderRow>,
     /// Requested operations that a backend cannot do.
     pub refusals: Vec<Refusal>,
-    /// The effects of order and structure, for each operation.
+    /// The effects of the order and of the structure, for each operation.
     pub comparisons: Vec<Comparison>,
-    /// One structure in the original order, measured twice.
+    /// The comparison of two measurements of one structure in the original order, which shows the
+    /// noise. `None` if no structure was measured twice.
     pub control: Option<Control>,
-    /// Sentences about the tables.
+    /// Sentences that describe the results.
     #[serde(rename = "words")]
     pub sentences: Vec<String>,
-    /// Whether the run was interrupted.
+    /// True if the measurement was stopped early.
     pub interrupted: bool,
-    /// The machine and the program.
+    /// The machine, the program and the settings.
     pub environment: Environment,
 }
 
-/// One operation on one structure in one order.
+/// The times of one operation on one structure in one order.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct OrderRow {
-    /// The order.
+    /// The order of the elements.
     pub order: Order,
-    /// The times. `standing` and `ratio_to_best` compare the orders of this structure.
+    /// The times. The fields `standing` and `ratio_to_best` compare this order with the other
+    /// orders on the same structure.
     #[serde(flatten)]
     pub row: ResultRow,
 }
 
 impl OrdersReport {
-    /// Iterates over the rows of `operation`.
+    /// Iterates over the results of `operation`.
     pub fn rows(&self, operation: Operation) -> impl Iterator<Item = &OrderRow> {
         let of_it = move |row: &&OrderRow| row.row.operation == operation;
         self.results.iter().filter(of_it)
     }
 
-    /// Counts the results that differ from those of other structures without a known reason.
+    /// Counts the results that differ from the results of other structures without a known reason.
     pub fn mismatches(&self) -> usize {
         let wrong = |row: &&OrderRow| row.row.agreement == Agreement::Mismatch;
         self.results.iter().filter(wrong).count()
@@ -136,28 +131,23 @@ pub(crate) fn chosen_operations(settings: &Settings) -> Vec<Operation> {
     Operation::ALL.into_iter().filter(requested).collect()
 }
 
-/// Measures the mesh in every order on every requested backend. If `settings` name no operations,
-/// [`DEFAULT_OPERATIONS`] are measured.
+/// Measures the mesh in every element order on every requested backend. If `settings` name no
+/// operations, [`DEFAULT_OPERATIONS`] are measured.
 ///
-/// Setting `stop` ends the run after the current sample. The report then contains the finished
-/// part.
+/// Setting `stop` to true ends the measurement after the current sample, with a report of the
+/// finished part.
 ///
 /// # Errors
 ///
-/// Returns an error if a backend is unknown, if the mesh has no faces, if no requested backend can
-/// hold the mesh, or if the budget is too short.
+/// Returns an error if the name of a backend is unknown or not unique, if the mesh has no faces, or
+/// if no requested backend can hold the mesh.
 pub fn orders(
     study_mesh: &StudyMesh,
     settings: &Settings,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<OrdersReport, OrdersError> {
-    if settings.budget < MIN_BUDGET {
-        return Err(OrdersError::BudgetTooSmall {
-            budget: settings.budget,
-            least: MIN_BUDGET,
-        });
-    }
+    let budget = Budget::start(settings.budget);
     let chosen = settings.chosen_backends()?;
     let operations = chosen_operations(settings);
     let polygons = &study_mesh.polygons;
@@ -194,47 +184,47 @@ pub fn orders(
         let refusals = backends.into_iter().map(reason).collect();
         return Err(StudyError::NoneHolds { refusals }.into());
     }
-    let first = measured_twice(&subjects);
-    let second = subjects.len();
-    let again = meshes.iter().next().and_then(|(_, mesh, draw)| {
-        let built = columns[first].backend.prepare(mesh, draw);
-        built.ok()
+    // The control is a structure in the given order, which comes first.
+    let mut measured = Columns::new(subjects, Vec::new(), |first| {
+        let (_, mesh, draw) = meshes.iter().next()?;
+        let (subject, _) = columns[first].backend.prepare(mesh, draw).ok()?;
+        Some(subject)
     });
-    subjects.extend(again.map(|(subject, _)| subject));
-
     let clock = MachineClock::start();
-    let mut measurement = Measurement {
-        control: (subjects.len() > second).then_some(second),
-        subjects: &mut subjects,
-        population: [counts.vertices, counts.edges, counts.faces],
+    let mut trial = Trial {
+        counts,
         skewed,
         clock: &clock,
         memory: &mut memory,
-        budget: settings.budget,
+        budget: budget.left(),
         named: !settings.operations.is_empty(),
-        random: ChaCha8Rng::seed_from_u64(settings.seed),
+        seed: settings.seed,
         stop,
         progress,
     };
-    let mut entries = measurement.measure(&operations);
-    let control = control(&entries, first, second, subjects[first].name());
-    entries.retain(|entry| entry.subject != second);
-    let interrupted = stop.load(Ordering::Relaxed);
+    let entries = measured.entries(&operations);
+    let Measured {
+        entries,
+        control,
+        interrupted,
+        ..
+    } = trial.run(&mut measured, entries);
+    let subjects = &mut measured.subjects;
     let mut compare =
-        |entries: &[Entry]| compare_checksums(entries, &mut subjects, polygons, &clock, stop);
+        |entries: &[Entry]| compare_checksums(entries, subjects, polygons, &clock, stop);
     let agreements = agreements(&entries, &columns, &mut compare);
 
-    let refusals = deduplicated(refusals(&entries, &subjects));
+    let refusals = deduplicated(refusals(&entries, subjects));
     let rows = rows(
         &entries,
         &agreements,
         &columns,
-        &subjects,
+        subjects,
         polygons,
         control.as_ref(),
     );
     let timed = |operation: Operation| {
-        let of_it = entries.iter().filter(|e| e.job.operation == operation);
+        let of_it = entries.iter().filter(|e| e.operation() == Some(operation));
         let timed = of_it.map(|entry| OrderSamples {
             backend: columns[entry.subject].backend.name(),
             order: columns[entry.subject].order,
@@ -266,9 +256,11 @@ struct Column {
     order: Order,
 }
 
-/// Returns whether the result depends on the order of the input.
-fn depends_on_order(operation: Operation) -> bool {
-    matches!(operation, Operation::FfBfs | Operation::EditPass(_))
+/// Returns whether the result depends on the order of the input: the operation starts at the first
+/// face, or edits the elements one after another.
+fn depends_on_order(entry: &Entry) -> bool {
+    let operation = entry.operation();
+    matches!(operation, Some(Operation::FfBfs | Operation::EditPass(_)))
 }
 
 /// Compares the checksums of all orders. If the result of an operation depends on the order,
@@ -288,11 +280,9 @@ fn agreements(
             agreements[e] = agreement;
         }
     };
-    compare_group(&|entry| !depends_on_order(entry.job.operation));
+    compare_group(&|entry| !depends_on_order(entry));
     for order in Order::ALL {
-        compare_group(&|entry| {
-            depends_on_order(entry.job.operation) && columns[entry.subject].order == order
-        });
+        compare_group(&|entry| depends_on_order(entry) && columns[entry.subject].order == order);
     }
     agreements
 }
@@ -315,7 +305,7 @@ fn rows(
     let mut rows = Vec::new();
     for group in with_times.chunk_by(|(a, _), (b, _)| {
         let backend = |entry: &Entry| columns[entry.subject].backend.name();
-        a.job.operation == b.job.operation && backend(a) == backend(b)
+        a.job.task == b.job.task && backend(a) == backend(b)
     }) {
         let backend_entries: Vec<Entry> = group.iter().map(|(entry, _)| (*entry).clone()).collect();
         let agreements = group.iter().map(|(_, agreement)| *agreement).collect();
@@ -343,11 +333,11 @@ fn deduplicated(refusals: Vec<Refusal>) -> Vec<Refusal> {
     kept
 }
 
-/// Estimates the peak memory of a comparison of orders, in bytes.
+/// Estimates the peak memory of [`orders`] with these settings, in bytes.
 ///
 /// # Errors
 ///
-/// Returns an error if a backend is unknown.
+/// Returns an error if the name of a backend is unknown or not unique.
 pub fn orders_bytes(study_mesh: &StudyMesh, settings: &Settings) -> Result<u64, StudyError> {
     let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
     let chosen = settings.chosen_backends()?;

@@ -1,18 +1,22 @@
-//! Picks the fastest backend for a mesh and a workload, with intervals and reasons.
+//! Picks the fastest backend for a mesh and a workload, and explains the result.
 //!
-//! Every backend that qualifies runs the mix of the workload in its access order. The backends run
-//! in interleaved rounds, as in a study. After the rounds, each part of the mix is timed alone to
-//! explain the result. If the mix does not change connectivity, relation tables are measured as one
-//! more backend. These tables contain only the relations that the mix queries.
+//! A backend qualifies if it can hold the mesh and meets the requirements of the settings. Every
+//! backend that qualifies runs the operations of the workload (the mix), in the access order of the
+//! workload. The backends take turns in rounds, as in a study. Some rounds also time each operation
+//! of the mix alone, to explain the result. If the mix does not change connectivity, relation
+//! tables are measured as an additional backend. These tables contain only the relations that the
+//! mix queries.
 
 mod backend;
 mod break_even;
+mod choice;
 mod measurement;
 mod needs;
-mod plan;
 mod pooled;
+mod prediction;
 mod reasons;
 mod report;
+mod tasks;
 #[cfg(test)]
 mod tests;
 
@@ -25,12 +29,16 @@ use sixfold_workload::{
     prepare_mix, tabulate,
 };
 
+pub use choice::{Choice, EQUAL_UP_TO, TurningPoint};
 pub use needs::{Need, UnknownNeed};
+pub use prediction::{Predicted, Prediction, predict};
 pub use report::{BreakEven, Excluded, MeshRanking, PartCost, PickReport, Ranked};
 
+use crate::budget::Budget;
 use crate::environment::Environment;
 use crate::heap::{CacheState, Memory};
 use crate::inspect::StudyMesh;
+use crate::refusal::reason;
 use crate::study::{Settings, StudyError, needed_bytes};
 use crate::timer::Timer;
 use backend::PickBackend;
@@ -39,21 +47,21 @@ use measurement::PickMeasurement;
 /// The input of [`pick`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct PickSettings {
-    /// The workload of the program.
+    /// The workload to run.
     pub workload: Workload,
     /// The names of the backends. If the list is empty, all backends are compared.
     pub backends: Vec<String>,
     /// Additional structures that are not part of Sixfold.
     pub extra: Vec<Backend>,
-    /// Capabilities that the structure must have.
+    /// Capabilities that a backend must have.
     pub needs: Vec<Need>,
-    /// The maximum size of the structure, in bytes.
+    /// The maximum size of a backend, in bytes; `None` for no limit.
     pub max_memory: Option<u64>,
-    /// Time limit of the measurement of all meshes together.
+    /// Time limit for all meshes together.
     pub budget: Duration,
-    /// Seed of the routes and of the measurement order.
+    /// Seed of the random numbers that choose the elements and the order of the measurements.
     pub seed: u64,
-    /// The policy for freed pages.
+    /// What happens to freed memory pages during the measurement.
     pub heap: Policy,
 }
 
@@ -73,7 +81,7 @@ impl PickSettings {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum PickError {
-    /// The mesh has no faces or a name is unknown.
+    /// The mesh has no faces, or the name of a backend is unknown or not unique.
     #[error(transparent)]
     Study(#[from] StudyError),
     /// The workload cannot be run on this mesh.
@@ -82,17 +90,6 @@ pub enum PickError {
         mesh: String,
         reason: EditPlaceError,
     },
-    /// The budget is too short for three rounds. `needed_ms` is the budget for all meshes, rounded
-    /// up.
-    #[error(
-        "{mesh}: a budget of {} ms is too small to measure anything, because three rounds take \
-         longer: use --budget {needed_ms}ms or more", .budget.as_millis()
-    )]
-    BudgetTooSmall {
-        mesh: String,
-        budget: Duration,
-        needed_ms: u64,
-    },
     /// The list of meshes is empty.
     #[error("the list of meshes is empty: give at least one mesh")]
     NoMesh,
@@ -100,14 +97,14 @@ pub enum PickError {
 
 /// Runs the workload of `settings` on each of `study_meshes`, and ranks the backends.
 ///
-/// If no backend qualifies, the ranking is empty and `excluded` has the reasons. Setting `stop`
-/// ends the measurement after the current sample. The report then contains the finished part.
-/// `progress` is called with the finished part, from 0 to 1, and the current step.
+/// If no backend qualifies, the ranking is empty and `excluded` contains the reasons. Setting
+/// `stop` to true ends the measurement after the current sample, with a report of the finished
+/// part. `progress` is called with the finished part, from 0 to 1, and the current step.
 ///
 /// # Errors
 ///
-/// Returns an error if a name is unknown, if a mesh has no faces, if the workload cannot be run on
-/// a mesh, or if the budget is too small.
+/// Returns an error if `study_meshes` is empty, if the name of a backend is unknown or not unique,
+/// if a mesh has no faces, or if the workload cannot be run on a mesh.
 pub fn pick(
     study_meshes: &[StudyMesh],
     settings: &PickSettings,
@@ -117,6 +114,7 @@ pub fn pick(
     if study_meshes.is_empty() {
         return Err(PickError::NoMesh);
     }
+    let budget = Budget::start(settings.budget);
     let environment = Environment::detect(settings.seed, settings.budget.as_secs_f64());
     let needed = study_meshes
         .iter()
@@ -124,7 +122,6 @@ pub fn pick(
     let mut memory = Memory::start(settings.heap, CacheState::Warm, needed.max().unwrap_or(0));
     let clock = MachineClock::start();
     let timer = Timer::measure(&clock);
-    let budget = settings.budget / study_meshes.len() as u32;
     let mut outcomes = Vec::new();
     for (i, study_mesh) in study_meshes.iter().enumerate() {
         if stop.load(Ordering::Relaxed) && i > 0 {
@@ -132,16 +129,15 @@ pub fn pick(
         }
         let part = |done: f64| (i as f64 + done) / study_meshes.len() as f64;
         let mut progress = |done: f64, what: &str| progress(part(done), what);
+        let rest = study_meshes.len() - i;
         let context = MeasureContext {
-            budget,
+            budget: Budget::start(budget.share(1.0, rest as f64)),
             clock: &clock,
             memory: &mut memory,
             stop,
             progress: &mut progress,
         };
-        let outcome = measure_mesh(study_mesh, settings, context);
-        outcomes
-            .push(outcome.map_err(|error| for_all_meshes(error, settings, study_meshes.len()))?);
+        outcomes.push(measure_mesh(study_mesh, settings, context)?);
     }
     let interrupted = stop.load(Ordering::Relaxed);
     Ok(pooled::pooled(
@@ -162,25 +158,11 @@ fn needed(study_mesh: &StudyMesh, settings: &PickSettings) -> u64 {
 }
 
 pub(crate) struct MeasureContext<'m> {
-    budget: Duration,
+    budget: Budget,
     clock: &'m MachineClock,
     memory: &'m mut Memory,
     stop: &'m AtomicBool,
     progress: &'m mut dyn FnMut(f64, &str),
-}
-
-/// Converts the budget in an error from one mesh to all meshes.
-fn for_all_meshes(error: PickError, settings: &PickSettings, meshes: usize) -> PickError {
-    match error {
-        PickError::BudgetTooSmall {
-            mesh, needed_ms, ..
-        } => PickError::BudgetTooSmall {
-            mesh,
-            budget: settings.budget,
-            needed_ms: needed_ms.saturating_mul(meshes as u64),
-        },
-        other => other,
-    }
 }
 
 /// Returns the backends that qualify, and the excluded backends with the reasons.
@@ -201,16 +183,16 @@ fn qualified(
             .iter()
             .find_map(|need| need.unmet_reason(&backend));
         let bytes = (backend.layout_bytes)(&counts) as u64;
-        let reason = match (lacks, settings.max_memory) {
+        let excluded_because = match (lacks, settings.max_memory) {
             (Some(lacks), _) => Some(lacks),
             (None, Some(most)) if bytes > most => Some(report::over_memory_limit(bytes, most)),
             _ => backend
                 .info
                 .check(polygons)
                 .err()
-                .map(|refusal| refusal.to_string()),
+                .map(|refusal| reason(&refusal, &backend.info.capabilities, polygons)),
         };
-        match reason {
+        match excluded_because {
             Some(reason) => excluded.push(Excluded::new(backend.name(), reason)),
             None => qualified.push(backend),
         }
@@ -247,66 +229,45 @@ fn measure_mesh(
     let mut backends = Vec::new();
     for (i, backend) in qualifying.iter().enumerate() {
         progress(
-            0.05 * i as f64 / qualifying.len() as f64,
+            0.1 * i as f64 / qualifying.len() as f64,
             &format!("building {}", backend.name()),
         );
         match set_up(backend) {
-            Ok(mixer) => backends.push(PickBackend::with_structure(mixer, backend)),
+            Ok(mixer) => backends.push(PickBackend::new(mixer, backend)),
             Err(MixRefusal::EditPlaceError(reason)) => return Err(impossible(reason)),
             Err(refusal) => excluded.push(Excluded::new(backend.name(), refusal.to_string())),
         }
     }
-    if let Some(most) = settings.max_memory {
-        let too_large = |b: &PickBackend<'_>| b.mixer.bytes() as u64 > most;
-        for backend in backends.iter().filter(|b| too_large(b)) {
-            let reason = report::over_memory_limit(backend.mixer.bytes() as u64, most);
-            excluded.push(Excluded::new(backend.mixer.name(), reason));
-        }
-        backends.retain(|backend| !too_large(backend));
-    }
-    let again = backends.iter().find(|b| !b.scans());
-    if let Some(structure) = again.and_then(|b| b.structure)
-        && let Ok(mixer) = set_up(&structure)
-    {
-        backends.push(PickBackend {
-            structure: Some(structure),
-            ..PickBackend::control(mixer)
-        });
-    }
+    backend::exclude_large(&mut backends, settings.max_memory, &mut excluded);
+    let again = backends
+        .iter()
+        .find(|b| !b.scans())
+        .and_then(|b| b.structure);
+    let again =
+        again.and_then(|structure| Some(PickBackend::new(set_up(&structure).ok()?, &structure)));
+    let has_control = again.is_some();
+    backends.extend(again);
     backend::keep_common_places(&mut backends, &schedule).map_err(impossible)?;
+    let control = backends.pop_if(|_| has_control);
     if settings.needs.contains(&Need::Edit) {
-        excluded.push(Excluded::new(
-            "relation-tables",
-            "they cannot be edited".into(),
-        ));
+        let reason = "they cannot be edited".into();
+        excluded.push(Excluded::new("relation-tables", reason));
     } else {
-        progress(0.05, "tabulating");
+        progress(0.1, "tabulating");
         let tabulate = |backend: &Backend| tabulate(backend, polygons, &schedule, &route);
-        let tables = backend::build_tables(&backends, clock, tabulate);
-        match tables {
-            Some(tables)
-                if settings
-                    .max_memory
-                    .is_some_and(|m| tables.mixer.bytes() as u64 > m) =>
-            {
-                let bytes = tables.mixer.bytes() as u64;
-                let reason = report::over_memory_limit(bytes, settings.max_memory.unwrap_or(0));
-                excluded.push(Excluded::new("relation-tables", reason));
-            }
-            Some(tables) => backends.push(tables),
-            None => {}
-        }
+        backends.extend(backend::build_tables(&backends, clock, tabulate));
+        backend::exclude_large(&mut backends, settings.max_memory, &mut excluded);
     }
     let measurement = PickMeasurement {
         study_mesh,
         settings,
         counts,
         schedule: &schedule,
-        budget,
+        budget: budget.left(),
         clock,
         memory,
         stop,
         progress,
     };
-    measurement.run(backends, excluded)
+    Ok(measurement.run(backends, control, excluded))
 }

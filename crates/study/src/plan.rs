@@ -3,7 +3,7 @@
 use crate::measure::{Entry, MAX_RUNS, Measurement, untimed_runs};
 use sixfold_workload::Time;
 use sixfold_workload::{ElementKind, Operation};
-use sixfold_workload::{ElementSample, Job, Run, exceeds_second_level};
+use sixfold_workload::{ElementSample, Job, Run, Task, exceeds_second_level};
 
 /// Planned number of rounds.
 const ROUNDS: u32 = 20;
@@ -11,8 +11,10 @@ const ROUNDS: u32 = 20;
 pub(crate) const SHORTEST_SAMPLE_NS: f64 = 200_000.0;
 /// Maximum time of a sample of several runs. Many short samples are better than a few long ones.
 const LONGEST_SAMPLE_NS: f64 = 2_000_000.0;
-/// Maximum cost of a sample that takes part in every third round, in slots. A slot is the time of
-/// one entry in one round, if all entries get equal time.
+/// The longest sample of a mix on the slowest backend.
+const LONGEST_MIX_NS: f64 = 20_000_000.0;
+/// An entry whose sample costs up to this many slots takes part in every third round. A slot is the
+/// time of one entry in one round, if all entries get equal time.
 const MEDIUM_COST_SLOTS: f64 = 6.0;
 const MEDIUM_COST_EVERY: u32 = 3;
 /// Interval of rounds for entries that cost more than [`MEDIUM_COST_SLOTS`].
@@ -29,17 +31,22 @@ const LONGEST_ONCE: f64 = 0.5;
 /// Maximum time of a single run of an unnamed operation that makes a mesh, as a part of the time
 /// left.
 const LONGEST_UNNAMED: f64 = 0.02;
+/// Why an operation that was not requested by name has no result.
+const BUDGET_ENDED: &str = "not run, because the budget ended: use a longer --budget";
 /// Number of faces of the first patch on which an operation is timed.
 const FIRST_PATCH: usize = 1024;
 
 impl Measurement<'_, '_> {
     /// Runs everything once and plans samples that fit the budget. Operations that do not scan come
     /// first, then operations that scan. At the end, operations without a run are run once if there
-    /// is time.
+    /// is time. When the budget ends, the remaining operations are refused, unless they were
+    /// requested by name.
     pub(crate) fn warm_up(&mut self, entries: &mut [Entry], deadline: f64) {
         let scans: Vec<[bool; 3]> = entries.iter().map(|entry| self.scans(entry)).collect();
         let count = entries.len() as f64;
         let mut done = 0.0;
+        let mut last_task = None;
+        let mut over = false;
         for scanning in [false, true] {
             let in_this_pass = |scans: &[bool; 3]| scans.contains(&true) == scanning;
             let others = scans.iter().filter(|s| in_this_pass(s)).count().max(1) as f64;
@@ -58,18 +65,35 @@ impl Measurement<'_, '_> {
                     (true, false) => 1.0 - SCANS_PART,
                 };
                 let left = (deadline - self.clock.now().wall_ns).max(0.0) * part;
+                // All backends of a task are run, or none, so that they can be compared.
+                if last_task.is_some_and(|task| task != entry.job.task) && !self.named {
+                    // The first pass leaves a part of the time to the second pass.
+                    let reserved = match scanning {
+                        true => 0.0,
+                        false => (1.0 - part) * self.budget.as_nanos() as f64,
+                    };
+                    over = self.clock.now().wall_ns + reserved >= deadline;
+                }
+                last_task = Some(entry.job.task);
+                if over {
+                    entry.refusal = Some(BUDGET_ENDED.into());
+                    continue;
+                }
                 let slot_ns = left / (f64::from(ROUNDS) * others);
                 let external = self.subjects[entry.subject].is_external();
-                if entry.job.operation.creates_mesh() && !external {
-                    self.plan_mesh_operation(entry, *scans, slot_ns, left);
-                } else if scanning {
-                    self.plan_scan(entry, *scans, slot_ns, left);
-                } else {
-                    self.plan_whole(entry, slot_ns);
+                match entry.operation() {
+                    Some(operation) if operation.creates_mesh() && !external => {
+                        self.plan_mesh_operation(entry, *scans, slot_ns, left);
+                    }
+                    Some(operation) if scanning => {
+                        self.plan_scan(entry, operation, *scans, slot_ns, left);
+                    }
+                    _ => self.plan_whole(entry, slot_ns),
                 }
             }
         }
         self.run_estimated(entries, deadline);
+        equalise_mixes(entries);
     }
 
     /// Runs once each operation that was only estimated, if the run fits into the time left. The
@@ -86,7 +110,7 @@ impl Measurement<'_, '_> {
             if self.stopped() {
                 return;
             }
-            let part = match (entry.job.operation.creates_mesh(), self.named) {
+            let part = match (entry.job.task.creates_mesh(), self.named) {
                 (false, _) => LONGEST_ONCE,
                 (true, false) => LONGEST_UNNAMED,
                 (true, true) => 1.0, // it was named in the settings
@@ -108,7 +132,9 @@ impl Measurement<'_, '_> {
         if self.subjects[entry.subject].is_external() {
             return [false; 3];
         }
-        let operation = entry.job.operation;
+        let Some(operation) = entry.operation() else {
+            return [entry.scans; 3];
+        };
         let scanned = operation.scans(&self.subjects[entry.subject].costs());
         let walked = operation.grows_with_valence();
         ElementKind::ALL.map(|kind| {
@@ -138,13 +164,13 @@ impl Measurement<'_, '_> {
             true => 1,
             false => (target / ns).ceil().clamp(1.0, MAX_RUNS) as u32,
         };
-        // An operation that makes a mesh has many branches, so it needs a longer warm-up.
-        let before = match entry.job.operation.creates_mesh() {
+        // An operation that makes or changes a mesh has many branches: it needs a longer warm-up.
+        let before = match entry.job.task.creates_mesh() {
             true => LONGEST_SAMPLE_NS,
             false => target,
         };
         let large = exceeds_second_level(self.subjects[entry.subject].bytes());
-        entry.untimed = untimed_runs(entry.job.operation, ns, before, large);
+        entry.untimed = untimed_runs(entry.job.task, ns, before, large);
         let cost = ns * f64::from(entry.runs + entry.untimed) + overhead_ns;
         self.plan_rounds(entry, cost, slot_ns);
     }
@@ -163,7 +189,7 @@ impl Measurement<'_, '_> {
         entry.cost_ns = cost_ns;
         // Operations that make a mesh are long. If they were not named, they take part in fewer
         // rounds.
-        let unnamed = entry.job.operation.creates_mesh() && !self.named;
+        let unnamed = entry.job.task.creates_mesh() && !self.named;
         let most = if unnamed { 1.0 } else { 4.0 };
         entry.every = match cost_ns / slot_ns {
             slots if slots <= most => 1,
@@ -172,11 +198,17 @@ impl Measurement<'_, '_> {
         };
     }
 
-    /// Times increasing numbers of elements until the cost of the whole operation is known. Then
-    /// plans a full run, a sample, or no run.
-    fn plan_scan(&mut self, entry: &mut Entry, scanned: [bool; 3], slot_ns: f64, left: f64) {
-        let operation = entry.job.operation;
-        // An operation that cannot be sampled is estimated from the relation that it queries.
+    /// Times more and more elements until the cost of the whole operation is known. Then plans
+    /// whether to run the operation in full, on a sample, or not at all.
+    fn plan_scan(
+        &mut self,
+        entry: &mut Entry,
+        operation: Operation,
+        scanned: [bool; 3],
+        slot_ns: f64,
+        left: f64,
+    ) {
+        // An operation that cannot be sampled is estimated by the relation that it queries.
         let probed = match operation.relations(ElementKind::Face) {
             &[relation] if !operation.can_be_sampled() => Operation::Relation(relation),
             _ => operation,
@@ -226,11 +258,12 @@ impl Measurement<'_, '_> {
         let all = self.max_elements(scanned);
         let mut size = 4;
         loop {
-            let sample = Some(ElementSample { scanned, size });
+            let job = Job {
+                sample: Some(ElementSample { scanned, size }),
+                ..operation.into()
+            };
             let start = self.clock.now().wall_ns;
-            let whole = self
-                .run(subject, &Job { operation, sample }, [0, 1], false)
-                .time;
+            let whole = self.run(subject, &job, [0, 1], false).time;
             let cost = self.clock.now().wall_ns - start;
             if cost > slot_ns.min(LONGEST_SAMPLE_NS) || size >= all || self.stopped() {
                 return Probe { whole, cost, size };
@@ -279,7 +312,7 @@ impl Measurement<'_, '_> {
 
     /// Runs the operation on a patch of `size` faces.
     fn run_patch(&mut self, entry: &Entry, size: usize) -> Run {
-        let untimed = u32::from(entry.job.operation.grows_tables());
+        let untimed = u32::from(entry.job.task.grows_tables());
         self.run(entry.subject, &patch_job(entry, size), [untimed, 1], false)
     }
 
@@ -290,7 +323,8 @@ impl Measurement<'_, '_> {
             .filter(|kind| scanned[kind.index()])
         {
             let only = ElementKind::ALL.map(|other| other == kind);
-            for &relation in entry.job.operation.relations(kind) {
+            let relations = entry.operation().map_or(&[][..], |o| o.relations(kind));
+            for &relation in relations {
                 let query = Operation::Relation(relation);
                 let probe = self.probe(entry.subject, query, only, slot_ns);
                 total = total.plus(probe.whole);
@@ -331,6 +365,30 @@ struct Probe {
     size: usize,
 }
 
+/// Gives all entries of a mix the same number of runs, so that they do the same work in each round:
+/// as many as the fastest backend needs for a sample, unless that takes too long on the slowest.
+fn equalise_mixes(entries: &mut [Entry]) {
+    for group in entries.chunk_by_mut(|a, b| a.job.task == b.job.task) {
+        if group[0].job.task != Task::Mix {
+            continue;
+        }
+        let run_ns = |entry: &Entry| entry.cost_ns / f64::from(entry.runs + entry.untimed);
+        let slowest = group.iter().map(run_ns).fold(1.0, f64::max);
+        let most = (LONGEST_MIX_NS / slowest).max(1.0) as u32;
+        let runs = group
+            .iter()
+            .map(|entry| entry.runs)
+            .max()
+            .unwrap_or(1)
+            .min(most);
+        for entry in group {
+            entry.cost_ns = run_ns(entry) * 2.0 * f64::from(runs);
+            (entry.untimed, entry.runs) = (runs, runs);
+        }
+    }
+}
+
+/// Returns the operation of `entry` on a patch of `size` faces.
 fn patch_job(entry: &Entry, size: usize) -> Job {
     let scanned = [false; 3];
     Job {

@@ -1,4 +1,5 @@
-//! Reads results from JSON. The JSON may come from another version or another program.
+//! Reads results from JSON. The JSON may come from another version of Sixfold or from another
+//! program.
 
 use std::io;
 
@@ -13,7 +14,7 @@ use crate::pick::PickReport;
 use crate::report::{Report, SCHEMA};
 use crate::why::Why;
 
-/// The reason why a file cannot be used as results.
+/// The reason why a file cannot be read as results.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
@@ -29,22 +30,22 @@ pub enum ReadError {
         column: usize,
         cause: String,
     },
-    /// The text is JSON, but not of Sixfold.
+    /// The text is JSON, but Sixfold did not write it.
     #[error("is JSON, but has no `schema`: choose a file that sixfold wrote")]
     Foreign,
-    /// The schema has another version.
+    /// The file has another version of the schema.
     #[error(
         "has schema {found}, expected {SCHEMA}: use the version of sixfold that wrote the file, \
          or measure again"
     )]
     OtherSchema { found: u64 },
-    /// The results come from another command.
+    /// Another command wrote the results.
     #[error("is {found}, expected {wanted}")]
     OtherKind {
         found: &'static str,
         wanted: &'static str,
     },
-    /// A field is missing or invalid.
+    /// A field of the JSON is missing or invalid.
     #[error("is not in the format that sixfold writes: {cause}")]
     Malformed { cause: String },
 }
@@ -88,8 +89,8 @@ impl Results {
     ///
     /// # Errors
     ///
-    /// Returns an error if the text is truncated, is not JSON, or comes from another program,
-    /// schema or command.
+    /// Returns an error if the text is truncated or is not JSON, if another program or command
+    /// wrote the text, or if the schema has another version.
     pub fn read_json(text: &str) -> Result<Self, ReadError> {
         check_schema(text)?;
         Ok(match kind(text)? {
@@ -110,12 +111,13 @@ impl Results {
 }
 
 impl Report {
-    /// Reads a report that [`write_json`](Self::write_json) wrote, or a [`Collection`] of one mesh.
+    /// Reads a report that [`write_json`](Self::write_json) wrote. Also accepts a [`Collection`]
+    /// with the study of only one mesh.
     ///
     /// # Errors
     ///
-    /// Returns an error if the text is truncated, is not JSON, or comes from another program,
-    /// schema or command.
+    /// Returns an error if the text is truncated or is not JSON, if another program or command
+    /// wrote the text, or if the schema has another version.
     pub fn read_json(text: &str) -> Result<Self, ReadError> {
         check_schema(text)?;
         let kind = kind(text)?;

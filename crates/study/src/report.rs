@@ -14,14 +14,15 @@ use crate::external::ExternalReport;
 use crate::timer::Timer;
 use sixfold_workload::Operation;
 
-/// The version of the format. A new version means that old readers would misread the file.
+/// The version of the JSON schema. The number increases when older versions of Sixfold could
+/// misread a new file.
 pub const SCHEMA: u32 = 1;
 
 /// The facts of a mesh, and the backends that can hold it.
 #[serde_as]
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Inspection {
-    /// The version of the format.
+    /// The version of the JSON schema.
     pub schema: u32,
     /// Name and topology of the mesh.
     pub mesh: MeshReport,
@@ -34,14 +35,14 @@ pub struct Inspection {
 #[serde_as]
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Report {
-    /// The version of the format.
+    /// The version of the JSON schema.
     pub schema: u32,
     /// Name and topology of the mesh.
     pub mesh: MeshReport,
     /// The backends, in the order of [`Backend::structures`](crate::Backend::structures).
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
-    /// The results, by operation, then in the order of
+    /// The results, sorted by operation, then in the order of
     /// [`Backend::structures`](crate::Backend::structures).
     pub results: Vec<ResultRow>,
     /// The operations that a backend cannot do, in the order of `results`.
@@ -49,52 +50,58 @@ pub struct Report {
     /// The noise: the difference between two measurements of one backend. `None` if no backend was
     /// measured twice.
     pub control: Option<Control>,
-    /// The main results, as sentences.
+    /// Sentences that describe the main results.
     #[serde(rename = "words")]
     pub sentences: Vec<String>,
     /// Sentences about possible faults of the measurement and their remedies.
     pub warnings: Vec<String>,
-    /// All samples.
+    /// The times of all samples.
     pub raw: Vec<RawSamples>,
-    /// Whether the study was stopped early. Rows may then be missing or have fewer samples.
+    /// True if the study was stopped early. Some results may then be missing or have fewer samples.
     pub interrupted: bool,
-    /// The cost of reading the clock; `None` if nothing was run.
+    /// The resolution and the cost of reading the clock; `None` if nothing was run.
     pub timer: Option<Timer>,
     /// The machine and the program version.
     pub environment: Environment,
 }
 
-/// All samples of one operation on one backend. The lists have equal length.
+/// All samples of one operation on one backend. The lists contain one value for each sample, except
+/// `first_ns`.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct RawSamples {
-    /// The backend.
+    /// The name of the backend, such as `half-edge`.
     pub backend: String,
-    /// The operation.
+    /// The measured operation, such as `vertex_normal`.
     pub operation: Operation,
-    /// Whether these samples belong to the control: the second measurement of a backend.
+    /// True if these samples belong to the control. The control is a second measurement of one
+    /// backend, which shows the noise.
     pub control: bool,
     /// For each sample, the number of its round.
     pub rounds: Vec<u32>,
-    /// For each sample, the processor time of one run, in nanoseconds. `None` if unknown.
+    /// For each sample, the processor time of one run, in nanoseconds. `None` if the processor time
+    /// is unknown.
     pub cpu_ns: Option<Vec<f64>>,
     /// For each sample, the wall time of one run, in nanoseconds.
     pub wall_ns: Vec<f64>,
-    /// For each sample, the number of page faults; `None` if they were not counted.
+    /// For each sample, the number of page faults; `None` if page faults were not counted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub faults: Option<Vec<u64>>,
     /// For each sample, the slowdown of the machine. A small fixed piece of work is timed before
-    /// and after the sample. The slowdown is the longer time divided by the undisturbed time. If a
-    /// quarter of the samples have a slowdown of at most 1.3, the slower samples do not count.
+    /// and after the sample. The slowdown is the longer of these two times divided by the time on
+    /// an undisturbed machine. If at least a quarter of the samples have a slowdown of at most 1.3,
+    /// the other samples do not count.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub slowdowns: Vec<f64>,
-    /// Times of one run on fresh pages and tables, in nanoseconds. These samples belong to no
-    /// round.
+    /// The times of first runs, in nanoseconds. A first run uses fresh memory pages and new tables.
+    /// These runs take place after the last round.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub first_ns: Vec<f64>,
 }
 
 impl RawSamples {
-    /// Returns the times of the samples that count: processor times if known, else wall times.
+    /// Returns the times of the samples without the disturbed samples, in nanoseconds. The times
+    /// are processor times if known, else wall times. If less than a quarter of the samples are
+    /// undisturbed, returns the times of all samples.
     pub fn counted_ns(&self) -> Vec<f64> {
         undisturbed(
             self.cpu_ns.as_ref().unwrap_or(&self.wall_ns),
@@ -103,39 +110,40 @@ impl RawSamples {
     }
 }
 
-/// A mesh as read from its file.
+/// The name and the facts of a mesh.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct MeshReport {
-    /// The name: a file or a description.
+    /// The name of the mesh: a file name or a description.
     pub name: String,
-    /// The topology.
+    /// The topological facts of the mesh.
     #[serde(flatten)]
     pub facts: Facts,
-    /// Changes made before the study, as phrases.
+    /// Changes that were made to the mesh before the study, as phrases.
     pub changes: Vec<String>,
 }
 
-/// A backend, whether it can hold the mesh, and its memory.
+/// The memory of a backend on one mesh, or the reason why the backend cannot hold the mesh.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct BackendReport {
     /// The name of the backend. This name is the key in the JSON map.
     #[serde(rename = "$key$")]
     pub name: String,
-    /// Whether the backend can hold the mesh.
+    /// True if the backend can hold the mesh.
     pub holds: bool,
-    /// Why the backend cannot hold the mesh.
+    /// Why the backend cannot hold the mesh; `None` if the backend can hold the mesh.
     pub reason: Option<String>,
     /// Actual size in bytes; `None` if the backend was not built.
     pub bytes: Option<usize>,
     /// Actual size per vertex of the mesh, in bytes.
     pub bytes_per_vertex: Option<f64>,
-    /// Theoretical size in bytes; `None` if the backend cannot hold the mesh.
+    /// Size by the layout formula of the backend, in bytes; `None` if the backend cannot hold the
+    /// mesh or has no formula.
     pub layout_bytes: Option<usize>,
-    /// Theoretical size per vertex of the mesh, in bytes.
+    /// Size by the layout formula per vertex of the mesh, in bytes.
     pub layout_bytes_per_vertex: Option<f64>,
     /// Actual size of each table, in bytes.
     pub tables: Vec<TableBytes>,
-    /// Number of vertices merged with another vertex of equal coordinates.
+    /// Number of vertices that the backend merged with another vertex of equal coordinates.
     pub merged_vertices: Option<usize>,
     /// The capabilities of a structure; `None` for an external program.
     pub capabilities: Option<Capabilities>,
@@ -146,56 +154,61 @@ pub struct BackendReport {
 /// The result of one operation on one backend. All times are of one whole run, in nanoseconds.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct ResultRow {
-    /// The backend.
+    /// The name of the backend, such as `half-edge`.
     pub backend: String,
-    /// The operation.
+    /// The measured operation, such as `vertex_normal`.
     pub operation: Operation,
-    /// The median of the samples; `None` if nothing was measured.
+    /// The median time of the samples; `None` if nothing was measured.
     pub median_ns: Option<f64>,
-    /// The smallest sample.
+    /// The smallest time of a sample.
     pub min_ns: Option<f64>,
-    /// The lower end of the 95 % interval of the median; `None` with fewer than three samples.
+    /// The lower end of the 95 % confidence interval of `median_ns`; `None` with fewer than three
+    /// samples.
     pub ci_low_ns: Option<f64>,
-    /// The upper end of the 95 % interval of the median.
+    /// The upper end of the 95 % confidence interval of `median_ns`.
     pub ci_high_ns: Option<f64>,
     /// The number of elements that a whole run visits.
     pub elements: Option<u64>,
     /// The kind of the elements: `vertex`, `edge`, `face`, `new face`, or `visit`.
     pub per: String,
-    /// The median time per element.
+    /// The median time per element, in nanoseconds.
     pub ns_per_element: Option<f64>,
-    /// The median of the wall times.
+    /// The median of the wall times (elapsed times).
     pub wall_median_ns: Option<f64>,
-    /// The smallest wall time.
+    /// The smallest wall time (elapsed time) of a sample.
     pub wall_min_ns: Option<f64>,
-    /// Whether only some of the elements were run. Times and elements are scaled to the whole mesh.
+    /// True if the operation was run on only some of the elements. The times and the number of
+    /// elements are scaled to the whole mesh.
     pub sampled: bool,
-    /// The number of sampled elements of each kind.
+    /// The number of elements of each kind on which the operation was run; `None` if the operation
+    /// was run on all elements.
     pub sample_size: Option<usize>,
     /// The estimated time of a whole run, if no run was measured.
     pub estimated_ns: Option<f64>,
     /// A checksum of all results of the operation, for comparison with other backends. `None` if
     /// nothing was measured or if the sum overflows.
     pub checksum: Option<f64>,
-    /// Whether the checksum is the same as for other backends.
+    /// The comparison of the checksum with the checksums of other backends.
     pub agreement: Agreement,
-    /// The comparison with the other backends; `None` if nothing was measured.
+    /// The comparison of the time with the times of the other backends. `None` if nothing was
+    /// measured or if the backend did other work than the other backends.
     pub standing: Option<Standing>,
-    /// The median ratio to the fastest backend, over the rounds. The fastest backend has ratio 1.
+    /// The time of this backend divided by the time of the fastest backend, as the median over the
+    /// rounds. The fastest backend has the ratio 1.
     pub ratio_to_best: Option<f64>,
-    /// The lower end of the 95 % interval of `ratio_to_best`.
+    /// The lower end of the 95 % confidence interval of `ratio_to_best`.
     pub ratio_ci_low: Option<f64>,
-    /// The upper end of the 95 % interval of `ratio_to_best`.
+    /// The upper end of the 95 % confidence interval of `ratio_to_best`.
     pub ratio_ci_high: Option<f64>,
-    /// The number of samples.
+    /// The number of samples (timed series of runs).
     pub samples: usize,
     /// The number of consecutive runs in one sample.
     pub runs_per_sample: u32,
-    /// Whether the only sample is the warm-up run, with cold caches.
+    /// True if the only sample is the warm-up run, which has cold caches.
     pub warm_up_only: bool,
-    /// Whether the time is an estimate because the user did not name the operation.
+    /// True if the time is only an estimate because the settings do not name the operation.
     pub by_name_only: bool,
-    /// The largest number of page faults in a sample; `None` if they were not counted.
+    /// The largest number of page faults in a sample; `None` if page faults were not counted.
     #[serde(default)]
     pub faults: Option<u64>,
     /// The number of samples taken again because of page faults or other programs.
@@ -204,22 +217,22 @@ pub struct ResultRow {
     /// The number of samples that do not count because other programs disturbed them.
     #[serde(default)]
     pub disturbed: usize,
-    /// The time of a first run, on fresh pages and with tables of exact size. A program that runs
-    /// the operation once needs this time. The value is `median_ns` multiplied by the median ratio
-    /// of a first run to the run after it. `None` if the operation does not allocate, or if there
-    /// was no time.
+    /// The time of a first run, which uses fresh memory pages and tables of exact size. Use this
+    /// time for a program that runs the operation only once. The value is `median_ns` multiplied by
+    /// the median ratio of a first run to the run after it. `None` if first runs were not measured,
+    /// for example because the operation does not allocate.
     #[serde(default)]
     pub first_ns: Option<f64>,
-    /// The number of samples of first runs.
+    /// The number of measured first runs.
     #[serde(default)]
     pub first_samples: usize,
-    /// The largest number of page faults in a first run.
+    /// The largest number of page faults in a first run; `None` if page faults were not counted.
     #[serde(default)]
     pub first_faults: Option<u64>,
 }
 
 impl ResultRow {
-    /// Returns a row without measurements.
+    /// Creates a result without measurements.
     pub fn new(backend: &str, operation: Operation) -> Self {
         Self {
             backend: backend.into(),
@@ -255,55 +268,58 @@ impl ResultRow {
         }
     }
 
-    /// Returns the time of the first run divided by the median, if both are known.
+    /// Returns `first_ns` divided by `median_ns`; `None` if a value is unknown.
     pub fn first_ratio(&self) -> Option<f64> {
         let (first, median) = self.first_ns.zip(self.median_ns)?;
         (median > 0.0).then(|| first / median)
     }
 }
 
-/// Ratio of the first time to the median above which tables show the first time.
+/// Tables show the time of a first run if [`ResultRow::first_ratio`] is above this value.
 pub const FIRST_TIME_SHOWN: f64 = 1.1;
 
-/// One backend measured twice (an A/A control). The difference between its two columns is noise of
-/// the machine and of the clock.
+/// Two measurements of the same backend (an A/A control). The difference between the two
+/// measurements is the noise of the machine and of the clock.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Control {
-    /// The backend.
+    /// The name of the backend, such as `half-edge`.
     pub backend: String,
-    /// The operations with samples in both columns.
+    /// The ratio of the two measurements for each operation.
     pub operations: Vec<ControlRow>,
-    /// The median difference over the operations: the slower time divided by the faster time.
+    /// The longer time divided by the shorter time, as the median over the operations.
     pub typical: f64,
-    /// The maximum difference over the operations: the slower time divided by the faster time.
+    /// The longer time divided by the shorter time, as the maximum over the operations.
     pub worst: f64,
 }
 
 /// Maximum acceptable ratio between the two columns of a control.
 const UNSTEADY: f64 = 1.05;
 
-/// The difference between the two columns in one operation.
+/// The difference between two measurements of the same backend in one operation.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct ControlRow {
-    /// The operation.
+    /// The measured operation, such as `vertex_normal`.
     pub operation: Operation,
-    /// The median ratio of the second column to the first, over the rounds.
+    /// The time of the second measurement divided by the time of the first measurement, as the
+    /// median over the rounds.
     pub ratio: f64,
-    /// The lower end of the 95 % interval of `ratio`; `None` with fewer than three rounds.
+    /// The lower end of the 95 % confidence interval of `ratio`; `None` with fewer than three
+    /// rounds.
     pub ci_low: Option<f64>,
-    /// The upper end of the 95 % interval of `ratio`.
+    /// The upper end of the 95 % confidence interval of `ratio`.
     pub ci_high: Option<f64>,
 }
 
 impl ControlRow {
-    /// Returns whether the two columns differ by more than 5 %, and not by chance.
+    /// Returns true if the two times differ by more than 5 % and the 95 % confidence interval of
+    /// `ratio` does not contain 1.
     pub fn is_unsteady(&self) -> bool {
         let interval = self.ci_low.zip(self.ci_high);
         let beyond_chance = interval.is_some_and(|(low, high)| low > 1.0 || high < 1.0);
         self.difference() > UNSTEADY && beyond_chance
     }
 
-    /// Returns the time of the slower column divided by the time of the faster column.
+    /// Returns the longer of the two times divided by the shorter time.
     pub fn difference(&self) -> f64 {
         self.ratio.max(self.ratio.recip())
     }
@@ -312,11 +328,11 @@ impl ControlRow {
 /// An operation that a backend cannot do on this mesh.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Refusal {
-    /// The backend.
+    /// The name of the backend, such as `half-edge`.
     pub backend: String,
-    /// The operation.
+    /// The operation that the backend cannot do, such as `loop_native`.
     pub operation: Operation,
-    /// The reason.
+    /// Why the backend cannot do the operation.
     pub reason: String,
 }
 
@@ -357,13 +373,16 @@ const COLUMNS: [&str; 30] = [
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Agreement {
-    /// All backends did the same work.
+    /// The checksum is the same as on another backend, so both backends did the same work.
     Same,
     /// The checksum differs because vertices with equal coordinates were merged.
     Merged,
-    /// The checksum differs without a known reason. This is a fault.
+    /// The backend refuses different edits than the other backends, so the checksum may differ. For
+    /// example, only some structures can hold the result of an edge collapse.
+    OtherEdits,
+    /// The checksum differs without a known reason, so one of the results is wrong.
     Mismatch,
-    /// No other backend has a result.
+    /// The checksum was not compared, for example because no other backend has a result.
     Unchecked,
 }
 
@@ -371,25 +390,25 @@ pub enum Agreement {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Standing {
-    /// The backend is faster than all other backends.
+    /// The backend is measurably faster than all other backends.
     Best,
     /// No backend is measurably faster, and at least one backend is equally fast.
     Tied,
-    /// Another backend is faster.
+    /// Another backend is measurably faster.
     Slower,
     /// No other backend was measured.
     Alone,
 }
 
 impl Report {
-    /// Returns the rows of `operation`.
+    /// Iterates over the results of `operation`.
     pub fn rows(&self, operation: Operation) -> impl Iterator<Item = &ResultRow> {
         self.results
             .iter()
             .filter(move |row| row.operation == operation)
     }
 
-    /// Returns the wrong results of Sixfold's backends: the checksum differs without a known
+    /// Iterates over the results of Sixfold's structures whose checksum differs without a known
     /// reason.
     pub fn mismatches(&self) -> impl Iterator<Item = &ResultRow> {
         let wrong = |row: &&ResultRow| row.agreement == Agreement::Mismatch;
@@ -399,7 +418,7 @@ impl Report {
             .filter(|row| !self.is_external(&row.backend))
     }
 
-    /// Returns the results of external programs that differ from the results of Sixfold.
+    /// Iterates over the results of external programs that differ from the results of Sixfold.
     pub fn external_mismatches(&self) -> impl Iterator<Item = &ResultRow> {
         let wrong = |row: &&ResultRow| row.agreement == Agreement::Mismatch;
         self.results

@@ -1,4 +1,4 @@
-//! Runs one backend alone, for programs that compare it with other libraries.
+//! Runs one backend alone, for programs that compare Sixfold with other libraries.
 
 use std::hint::black_box;
 
@@ -13,11 +13,11 @@ use sixfold_workload::Draw;
 use sixfold_workload::Operation;
 use sixfold_workload::pages::{self, Policy};
 use sixfold_workload::{Clock, Time};
-use sixfold_workload::{Job, Series, TimedBackend, exceeds_second_level};
+use sixfold_workload::{Series, Task, TimedBackend, exceeds_second_level};
 
-/// One backend that is ready to run, with the code of a study but without rounds.
+/// A built backend that can be timed alone, with the same code as in a study.
 ///
-/// If the allocator supports it, freed pages stay with the process.
+/// Freed memory pages stay with the process if the allocator supports this.
 pub struct BackendRunner<'a> {
     subject: Box<dyn TimedBackend + 'a>,
     /// The last operation, and the numbers of its untimed and timed runs per sample.
@@ -50,7 +50,7 @@ pub struct BackendRun {
     pub time: Time,
     /// A checksum of all results; NaN if the backend cannot do the operation on this mesh.
     pub checksum: f64,
-    /// The number of elements visited.
+    /// The number of elements that the run visits.
     pub elements: u64,
 }
 
@@ -84,12 +84,12 @@ impl<'a> BackendRunner<'a> {
     }
 
     /// Runs `operation` on the whole mesh and returns the time of one run. A short operation is
-    /// repeated until 200 µs have passed. If the structure is larger than the second-level cache,
-    /// it is repeated until 1 ms has passed. Untimed runs come first. The sample is taken again if
-    /// other programs disturb it.
+    /// repeated until 200 µs have passed, or until 1 ms has passed if the structure is larger than
+    /// the second-level cache. Before the timed runs, the operation is run without timing. If other
+    /// programs disturb the measurement, the measurement is repeated.
     ///
-    /// A structure larger than the second-level cache is first built again on other pages. Its
-    /// times differ by up to 20 % between pages.
+    /// A structure larger than the second-level cache is first built again in other memory pages,
+    /// because the choice of pages changes the times by up to 20 %.
     pub fn run(&mut self, operation: Operation, clock: &dyn Clock) -> BackendRun {
         if exceeds_second_level(self.subject.bytes()) {
             self.rebuild();
@@ -134,14 +134,18 @@ impl<'a> BackendRunner<'a> {
             let each = self.run_times(operation, runs, clock).time.ns();
             let ns = each * f64::from(runs);
             if ns >= shortest_ns || f64::from(runs) >= MAX_RUNS {
-                return [untimed_runs(operation, each, UNTIMED_NS, large), runs];
+                return [
+                    untimed_runs(Task::Operation(operation), each, UNTIMED_NS, large),
+                    runs,
+                ];
             }
             let wanted = f64::from(runs) * shortest_ns / ns.max(1.0);
             runs = (wanted * 1.1).ceil().min(f64::from(runs) * 16.0) as u32;
         }
     }
 
-    /// Runs `operation` once without timing, then `runs` times. Returns the time of one run.
+    /// Runs `operation` once without timing, then `runs` times with timing. Returns the mean time
+    /// of one timed run.
     pub fn run_times(&mut self, operation: Operation, runs: u32, clock: &dyn Clock) -> BackendRun {
         run_times(self.subject.as_mut(), operation, [1, runs], clock)
     }
@@ -153,12 +157,8 @@ fn run_times(
     [untimed, runs]: [u32; 2],
     clock: &dyn Clock,
 ) -> BackendRun {
-    let job = Job {
-        operation,
-        sample: None,
-    };
     let run = subject.run(
-        &job,
+        &operation.into(),
         &Series::with_runs(runs, clock)
             .with_untimed(untimed)
             .with_result(),

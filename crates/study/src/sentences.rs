@@ -102,8 +102,8 @@ fn noise(control: &Control) -> Option<String> {
         .max_by(|a, b| difference(a).total_cmp(&difference(b)))?;
     let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
     Some(format!(
-        "Noise: {} was measured twice. The two columns typically differ by {}, at most by {} \
-         ({}). For each operation, backends that differ by no more than these two columns are \
+        "Noise: {} was measured twice. The two times typically differ by {}, at most by {} \
+         ({}). For each operation, backends that differ by no more than these two times are \
          tied.",
         control.backend,
         percent(control.typical),
@@ -148,7 +148,7 @@ fn scans(
     let mut text =
         format!("{backend} scans all {faces} faces to answer {operation}: {each} per {per}");
     if let Some(ratio) = worst.ratio_to_best.filter(|&ratio| ratio > 2.0) {
-        text += &format!(", {} the time of the fastest", times(ratio));
+        text += &format!(", {} the time of the fastest backend", times(ratio));
     }
     Some(text + ".")
 }
@@ -175,7 +175,7 @@ fn merging(backend: &BackendReport, results: &[ResultRow]) -> Option<String> {
         .iter()
         .any(|r| r.backend == *name && r.agreement == Agreement::Merged);
     let suffix = if differs {
-        "; results marked m are those of the merged mesh"
+        "; results marked m are results of the merged mesh"
     } else {
         ""
     };

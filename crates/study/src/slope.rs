@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A power law: the time is proportional to the size raised to the exponent.
+/// A fitted power law: the time is proportional to the size of the mesh raised to `exponent`.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Slope {
-    /// The exponent.
+    /// The exponent of the power law.
     pub exponent: f64,
-    /// The standard error of the exponent; `None` with fewer than three points.
+    /// The standard error of the exponent; `None` with fewer than three sizes.
     pub standard_error: Option<f64>,
-    /// The number of fitted points.
+    /// The number of sizes to which the power law is fitted.
     pub sizes: usize,
 }
 

@@ -1,20 +1,19 @@
-//! A whole study: builds the structures, measures, compares, and makes the report.
+//! A whole study: builds the structures, measures them, compares the results, and makes the report.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use sixfold::{Distribution, Facts, PolygonMesh, QueryCost, Relation};
 use sixfold_core::Counts;
 
 use crate::agreement::compare_checksums;
-use crate::control::{measured_twice, noise};
+use crate::budget::Budget;
+use crate::control::noise;
 use crate::environment::Environment;
 use crate::external::{self, EXTERNAL_TIMEOUT, External, MeshFile};
 use crate::heap::{CacheState, Memory};
 use crate::inspect::{StudyMesh, per_vertex, unbuilt};
-use crate::measure::{Entry, Measurement, Progress};
+use crate::measure::{Entry, Progress};
 use crate::orders::prepared_bytes;
 use crate::ranking::rank;
 use crate::report::{
@@ -23,6 +22,7 @@ use crate::report::{
 use crate::sentences::sentences;
 use crate::statistics::Median;
 use crate::timer::Timer;
+use crate::trial::{Columns, Measured, Trial};
 use crate::warnings::warnings;
 use sixfold_workload::Backend;
 use sixfold_workload::Draw;
@@ -46,19 +46,19 @@ pub struct Settings {
     pub externals: Vec<External>,
     /// Time limit for one answer of an external program.
     pub external_timeout: Duration,
-    /// The operations. If the list is empty, all operations are measured. A subdivision that takes
-    /// a large part of the budget is then only estimated.
+    /// The operations. If the list is empty, all operations are measured, but the time of a
+    /// subdivision that takes a large part of the budget is only estimated.
     pub operations: Vec<Operation>,
-    /// Time limit for the measurement. Each operation is run at least once, even if the run exceeds
-    /// the limit. A long operation is run on a small sample of the elements.
+    /// Time limit for the study. If the limit is too short for an operation, the operation is run
+    /// on only some of the elements, its time is estimated, or the operation is left out.
     pub budget: Duration,
-    /// Seed of the sampled elements and of the measurement order. The size of a sample depends on
-    /// the clock.
+    /// Seed of the random numbers that choose elements and the order of the measurements. The
+    /// number of chosen elements depends on the speed of the machine, not on the seed.
     pub seed: u64,
-    /// The policy for freed pages. Keeping pages takes more memory. If there is too little memory,
-    /// the policy of the system is used.
+    /// What happens to freed memory pages. Keeping the pages needs more memory. If there is too
+    /// little memory, [`Policy::System`] is used.
     pub heap: Policy,
-    /// Whether the caches hold the mesh when a sample starts.
+    /// The state of the processor caches when a timed sample starts.
     pub caches: CacheState,
 }
 
@@ -98,8 +98,8 @@ pub enum StudyError {
          facts with `sixfold inspect`"
     )]
     NoFaces,
-    /// Two columns have the same name.
-    #[error("two columns are called `{name}`: give each program its own name")]
+    /// An external program has the name of a backend or of another external program.
+    #[error("two backends or programs are called `{name}`: give each program its own name")]
     RepeatedExternal { name: String },
     /// The mesh file for the external programs cannot be written.
     #[error("the mesh file for the external programs cannot be written: {cause}")]
@@ -146,7 +146,12 @@ impl Settings {
         Ok(all.into_iter().filter(requested).collect())
     }
 
-    fn check_externals(&self) -> Result<(), StudyError> {
+    /// Checks that no external program has the name of a backend or of another external program.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`StudyError::RepeatedExternal`] if a name is used twice.
+    pub fn check_externals(&self) -> Result<(), StudyError> {
         let ours = Backend::structures()
             .into_iter()
             .chain(self.extra.iter().copied());
@@ -170,19 +175,21 @@ impl Settings {
 
 /// Measures the operations on the backends that can hold the mesh.
 ///
-/// Setting `stop` ends the study after the current sample. The report then contains the finished
+/// Setting `stop` to true ends the study after the current sample, with a report of the finished
 /// part. `progress` is called with the current step.
 ///
 /// # Errors
 ///
-/// Returns an error if a backend is unknown, if the mesh has no faces, or if no selected backend
-/// can hold the mesh.
+/// Returns an error if the name of a backend is unknown or not unique, if the mesh has no faces, or
+/// if no selected structure can hold the mesh. Also returns an error if the mesh file for external
+/// programs cannot be written.
 pub fn study(
     study_mesh: &StudyMesh,
     settings: &Settings,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<Report, StudyError> {
+    let budget = Budget::start(settings.budget);
     let chosen = settings.chosen_backends()?;
     settings.check_externals()?;
     let operations = settings.chosen_operations();
@@ -232,43 +239,39 @@ pub fn study(
         });
     }
 
-    // The control: the same polygons in the same backend, built a second time.
-    let first = measured_twice(&subjects);
-    let is_first = |backend: &&Backend| backend.name() == subjects[first].name();
-    let again = chosen.iter().find(is_first);
-    let again = again.and_then(|backend| backend.prepare(polygons, draw.as_ref()).ok());
-    let second = subjects.len();
-    subjects.extend(again.map(|(subject, _)| subject));
-    let control = (subjects.len() > second).then_some(second);
-    subjects.extend(programs);
-
+    let names: Vec<String> = subjects.iter().map(|s| s.name().to_owned()).collect();
+    let mut columns = Columns::new(subjects, programs, |first| {
+        let backend = chosen.iter().find(|b| b.name() == names[first])?;
+        let (subject, _) = backend.prepare(polygons, draw.as_ref()).ok()?;
+        Some(subject)
+    });
     let clock = MachineClock::start();
     let timer = Timer::measure(&clock);
-    let mut measurement = Measurement {
-        control,
-        subjects: &mut subjects,
-        population: [counts.vertices, counts.edges, counts.faces],
+    let mut trial = Trial {
+        counts,
         skewed,
         clock: &clock,
         memory: &mut memory,
-        budget: settings.budget,
+        budget: budget.left(),
         named: !settings.operations.is_empty(),
-        random: ChaCha8Rng::seed_from_u64(settings.seed),
+        seed: settings.seed,
         stop,
         progress,
     };
-    let mut entries = measurement.measure(&operations);
+    let entries = columns.entries(&operations);
+    let Measured {
+        entries,
+        second,
+        control,
+        interrupted,
+    } = trial.run(&mut columns, entries);
+    let subjects = &mut columns.subjects;
     let timer = timer.with_entries(&entries);
-    let again = control;
-    let control = again.and_then(|second| {
-        crate::control::control(&entries, first, second, subjects[first].name())
-    });
-    let raw = raw(&entries, &subjects, again);
-    entries.retain(|entry| Some(entry.subject) != again);
-    let interrupted = stop.load(Ordering::Relaxed);
-    let agreements = compare_checksums(&entries, &mut subjects, polygons, &clock, stop);
-    let results = results(&entries, agreements, &subjects, polygons, control.as_ref());
-    let refusals = refusals(&entries, &subjects);
+    let mut raw = raw(&entries, subjects, false);
+    raw.extend(self::raw(&second, subjects, true));
+    let agreements = compare_checksums(&entries, subjects, polygons, &clock, stop);
+    let results = results(&entries, agreements, subjects, polygons, control.as_ref());
+    let refusals = refusals(&entries, subjects);
     let scanning = |backend: &str, relation: Relation| {
         let costs = chosen.iter().find(|b| b.name() == backend);
         costs.is_some_and(|b| b.info.costs[relation as usize] == QueryCost::Scan)
@@ -324,7 +327,7 @@ pub(crate) fn prepare<'a>(
     counts: &Counts,
 ) -> (BackendReport, Option<Box<dyn TimedBackend + 'a>>) {
     match backend.prepare(polygons, draw) {
-        Err(refusal) => (unbuilt(backend, counts, Err(refusal)), None),
+        Err(refusal) => (unbuilt(backend, polygons, counts, Err(refusal)), None),
         Ok((subject, memory)) => {
             let bytes = memory.total();
             let report = BackendReport {
@@ -332,7 +335,7 @@ pub(crate) fn prepare<'a>(
                 bytes_per_vertex: per_vertex(bytes, counts),
                 tables: memory.tables,
                 merged_vertices: Some(subject.merged_vertices()),
-                ..unbuilt(backend, counts, Ok(()))
+                ..unbuilt(backend, polygons, counts, Ok(()))
             };
             (report, Some(subject))
         }
@@ -348,13 +351,16 @@ pub(crate) fn results(
 ) -> Vec<ResultRow> {
     let mut rows = Vec::new();
     let mut agreements = agreements.into_iter();
-    for group in entries.chunk_by(|a, b| a.job.operation == b.job.operation) {
+    for group in entries.chunk_by(|a, b| a.job.task == b.job.task) {
+        let Some(operation) = group[0].operation() else {
+            continue;
+        };
         let times: Vec<Vec<(u32, Time)>> = group.iter().map(Entry::times).collect();
-        let noise = noise(control, group[0].job.operation);
+        let noise = noise(control, operation);
         let verdicts: Vec<Agreement> = agreements.by_ref().take(group.len()).collect();
         let mut ranked = times.clone();
         for (verdict, times) in verdicts.iter().zip(&mut ranked) {
-            if *verdict == Agreement::Mismatch {
+            if matches!(verdict, Agreement::Mismatch | Agreement::OtherEdits) {
                 times.clear();
             }
         }
@@ -376,7 +382,7 @@ pub(crate) fn results(
                 None => entry.outcome.or(counted),
             };
             let elements = elements.map(|outcome| outcome.elements);
-            let expected = entry.job.operation.estimated_elements(polygons) as u64;
+            let expected = operation.estimated_elements(polygons) as u64;
             let elements = elements.or(entry.estimate.map(|_| expected));
             let per_element = |ns: f64| match elements {
                 Some(n) if n > 0 => Some(ns / n as f64),
@@ -386,13 +392,13 @@ pub(crate) fn results(
             let ratio = rank.and_then(|p| p.ratio.interval);
             rows.push(ResultRow {
                 backend: subjects[entry.subject].name().into(),
-                operation: entry.job.operation,
+                operation,
                 median_ns: median.map(|m| m.value),
                 min_ns: median.map(|m| m.least),
                 ci_low_ns: interval.map(|[low, _]| low),
                 ci_high_ns: interval.map(|[_, high]| high),
                 elements,
-                per: entry.job.operation.unit().into(),
+                per: operation.unit().into(),
                 ns_per_element: median.and_then(|m| per_element(m.value)),
                 wall_median_ns: wall.map(|m| m.value),
                 wall_min_ns: wall.map(|m| m.least),
@@ -431,13 +437,14 @@ fn most_faults<'t>(samples: impl IntoIterator<Item = &'t Time>) -> Option<u64> {
 fn raw(
     entries: &[Entry],
     subjects: &[Box<dyn TimedBackend + '_>],
-    control: Option<usize>,
+    control: bool,
 ) -> Vec<RawSamples> {
     let sampled = entries.iter().filter(|entry| !entry.samples.is_empty());
-    let columns = sampled.map(|entry| RawSamples {
+    let sampled = sampled.filter_map(|entry| Some((entry.operation()?, entry)));
+    let columns = sampled.map(|(operation, entry)| RawSamples {
         backend: subjects[entry.subject].name().into(),
-        operation: entry.job.operation,
-        control: Some(entry.subject) == control,
+        operation,
+        control,
         rounds: entry.samples.iter().map(|(round, _)| *round).collect(),
         cpu_ns: entry.samples.iter().map(|(_, time)| time.cpu_ns).collect(),
         wall_ns: entry.samples.iter().map(|(_, time)| time.wall_ns).collect(),
@@ -457,7 +464,7 @@ pub(crate) fn refusals(entries: &[Entry], subjects: &[Box<dyn TimedBackend + '_>
         let reason = entry.refusal.clone()?;
         Some(Refusal {
             backend: subjects[entry.subject].name().into(),
-            operation: entry.job.operation,
+            operation: entry.operation()?,
             reason,
         })
     };

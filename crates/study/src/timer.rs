@@ -15,16 +15,18 @@ const TRIALS: usize = 1001;
 pub struct Timer {
     /// The smallest observed step of the clock, in nanoseconds.
     pub resolution_ns: f64,
-    /// The time for reading the clock, in nanoseconds. It is subtracted from every measured time.
+    /// The time for reading the clock, in nanoseconds. This time is subtracted from every measured
+    /// time.
     pub overhead_ns: f64,
-    /// The uncertainty of `overhead_ns`, in nanoseconds. It is computed from readings with no work
-    /// between them. It is the larger of two differences: `overhead_ns` minus the median reading,
-    /// and the 95 % quantile minus the median reading.
+    /// The uncertainty of `overhead_ns`, in nanoseconds. The time between two readings without work
+    /// is measured many times. The uncertainty is the larger of two differences: between
+    /// `overhead_ns` and the median of these times, and between the 95 % quantile and the median of
+    /// these times.
     #[serde(default, rename = "left_ns")]
     pub uncertainty_ns: f64,
     /// `uncertainty_ns` divided by `shortest_ns`; `None` if nothing was measured.
     pub largest_share: Option<f64>,
-    /// The shortest time between two readings, in nanoseconds.
+    /// The shortest measured sample, in nanoseconds; `None` if nothing was measured.
     #[serde(default)]
     pub shortest_ns: Option<f64>,
 }

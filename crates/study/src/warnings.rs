@@ -2,7 +2,7 @@
 
 use crate::environment::Environment;
 use crate::report::{Control, ResultRow};
-use crate::statistics::Median;
+use crate::statistics::{MIN_SAMPLES, Median};
 use crate::timer::Timer;
 use sixfold_workload::pages::Policy;
 
@@ -16,8 +16,6 @@ const WIDE: f64 = 0.1;
 const COARSE: f64 = 0.01;
 /// Maximum acceptable typical ratio between the two columns of a control.
 const NOISY: f64 = 1.05;
-/// Minimum number of samples for a 95 % interval.
-const FEW: usize = 6;
 
 /// Returns the warnings, the most serious first.
 pub(crate) fn warnings(
@@ -74,8 +72,8 @@ fn pages_not_kept(environment: &Environment) -> Option<String> {
         )),
         None if !heap.counts_faults => Some(
             "This platform does not count page faults, so samples with page faults cannot be \
-             found. If the two columns of the control differ in an operation that allocates \
-             memory, page faults may be the reason."
+             found. If the two times of the backend that is measured twice differ in an operation \
+             that allocates memory, page faults may be the reason."
                 .into(),
         ),
         None => None,
@@ -163,12 +161,12 @@ fn wall_time_only(environment: &Environment) -> Option<String> {
 fn few(results: &[ResultRow]) -> Option<String> {
     let measured = results.iter().filter(|row| row.median_ns.is_some());
     let all = measured.clone().count();
-    let few = measured.filter(|row| row.samples < FEW).count();
+    let few = measured.filter(|row| row.samples < MIN_SAMPLES).count();
     let once = results.iter().all(|row| row.warm_up_only); // `nothing_measured` warns of this
     (few > 0 && !once).then(|| {
         format!(
-            "{few} of {all} figures are from fewer than {FEW} samples, but a 95 % interval needs \
-             {FEW}. Use a longer --budget or fewer --operations."
+            "{few} of {all} figures are from fewer than {MIN_SAMPLES} samples, so their intervals are wide \
+             or missing. Use a longer --budget or fewer --operations."
         )
     })
 }
@@ -181,7 +179,7 @@ fn wide(results: &[ResultRow]) -> Option<String> {
     };
     let known: Vec<(f64, &ResultRow)> = results
         .iter()
-        .filter(|row| row.samples >= FEW)
+        .filter(|row| row.samples >= MIN_SAMPLES)
         .filter_map(|row| Some((half_width(row)?, row)))
         .collect();
     let wide = known.iter().filter(|(half_width, _)| *half_width > WIDE);

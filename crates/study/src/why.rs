@@ -1,8 +1,8 @@
-//! Explains the times of the relations on a structure by the memory that they read.
+//! Explains the times of queries by the memory that the queries read.
 //!
 //! The counts of reads ([`Reads`]) need no clock and have no noise. A study measures the times of
-//! the same relations. [`MemorySpeed`] is the time in which this machine moves bytes or waits for
-//! them. [`Bound::from_times`] compares these values.
+//! the same queries. [`MemorySpeed`] is the speed at which this machine reads memory.
+//! [`Bound::from_times`] compares the time of a query with the time that reading its memory takes.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,6 +16,7 @@ use sixfold_workload::{
 };
 use sixfold_workload::{BufferSpeed, Operation, REACH, Reads, SCAN_SAMPLE};
 
+use crate::budget::Budget;
 use crate::environment::Environment;
 use crate::inspect::{StudyMesh, unbuilt};
 use crate::measure::Progress;
@@ -31,59 +32,63 @@ pub struct WhySettings {
     pub extra: Vec<Backend>,
     /// The relations. If the list is empty, all nine relations are used.
     pub relations: Vec<Relation>,
-    /// The settings of the measurement. `None` means that reads are only counted.
+    /// The settings of the time measurement. If this field is `None`, reads are counted, but times
+    /// are not measured.
     pub timing: Option<Timing>,
 }
 
-/// The settings of the measurement.
+/// The settings of the time measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timing {
-    /// Time limit of the study.
+    /// Time limit for counting reads and measuring times.
     pub budget: Duration,
     /// The speed at which this machine reads memory.
     pub memory: MemorySpeed,
 }
 
-/// The reads of the structures of a mesh, compared with their times.
+/// The memory that queries read on each structure, compared with the times of the queries.
 #[serde_as]
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Why {
-    /// The version of the format.
+    /// The version of the JSON schema.
     pub schema: u32,
     /// Name and topology of the mesh.
     pub mesh: MeshReport,
     /// The backends, in the order of [`Backend::structures`].
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
-    /// The model of memory that the counts use.
+    /// The model of the processor cache with which reads are counted.
     pub model: Model,
-    /// The reading speed for buffers of growing size; `None` if nothing was measured.
+    /// The speed of reading buffers of growing size; `None` if no times were measured.
     pub memory: Option<Vec<BufferSpeed>>,
-    /// The rows, by relation, then in the order of [`Backend::structures`].
+    /// The results, sorted by relation, then in the order of [`Backend::structures`].
     pub rows: Vec<WhyRow>,
-    /// Whether the command was stopped early. Some rows or times may then be missing.
+    /// True if the measurement was stopped early. Some rows or times may then be missing.
     pub interrupted: bool,
-    /// The machine and the program version; `None` if nothing was measured.
+    /// The machine and the program version; `None` if no times were measured.
     pub environment: Option<Environment>,
 }
 
-/// The model of memory that the counts use.
+/// The model of the processor cache with which reads are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Model {
     /// Size of a cache line, in bytes.
     pub line_bytes: usize,
-    /// Number of lines in the modelled cache. A full cache drops the line that came in first.
+    /// Number of cache lines in the modelled cache. A full cache drops the line that was loaded
+    /// first.
     pub cache_lines: u64,
-    /// Maximum distance of a fetch from a cached line, in lines. A more distant fetch is a jump.
+    /// A jump is the loading of a cache line that is more than this number of cache lines away from
+    /// every cached line.
     pub reach: usize,
-    /// Number of elements in a sample.
+    /// Number of queried elements if only a sample of the elements is queried.
     pub sample: usize,
-    /// Maximum mean number of rows per query without sampling.
+    /// If a query reads more table rows than this number on average, only a sample of the elements
+    /// is queried.
     pub most_reads: u64,
 }
 
 impl Model {
-    /// The model that this version uses.
+    /// The model that this version of Sixfold uses.
     pub const CURRENT: Self = Self {
         line_bytes: LINE_BYTES,
         cache_lines: CACHE_LINES,
@@ -93,58 +98,60 @@ impl Model {
     };
 }
 
-/// One relation on one backend.
+/// The reads and the time of one relation on one backend.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct WhyRow {
-    /// The backend.
+    /// The name of the backend, such as `half-edge`.
     pub backend: String,
     /// The kind of the elements that are queried: `vertex`, `edge` or `face`.
     pub per: String,
-    /// The counts of reads.
+    /// The numbers of memory reads.
     #[serde(flatten)]
     pub reads: Reads,
-    /// The time; `None` if it was not measured.
+    /// The time of the queries; `None` if no time was measured.
     pub timed: Option<Timed>,
 }
 
-/// The time of a sweep over all elements, and the explanation of this time.
+/// The time of querying a relation at all elements (a sweep), and the explanation of this time.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Timed {
     /// The median time per element, in nanoseconds.
     pub ns_per_element: f64,
-    /// Whether only a sample of the elements was timed.
+    /// True if only a sample of the elements was timed.
     pub sampled: bool,
-    /// Whether the checksum is the same as for other backends.
+    /// The comparison of the checksum with the checksums of other backends.
     pub agreement: Agreement,
-    /// The reading speed for a buffer of the size of the sweep.
+    /// The speed of reading a buffer as large as the memory that all queries together read.
     pub speed: BufferSpeed,
-    /// The time for moving the bytes of one element, in nanoseconds.
+    /// The time for reading the bytes of one element in sequence, in nanoseconds.
     pub floor_ns: f64,
-    /// The time for the jumps of one element, one jump after the other, in nanoseconds.
+    /// The time for the jumps of one element, one jump after the other, in nanoseconds. A jump
+    /// loads a cache line that is not near any cached line.
     pub waits_ns: f64,
-    /// The limiting factor.
+    /// The factor that limits the speed of the queries.
     pub bound: Bound,
 }
 
-/// The limiting factor of the time of a sweep.
+/// The factor that limits the speed of a sweep (querying a relation at all elements).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
-    /// Moving the bytes.
+    /// Moving the bytes from memory.
     Bandwidth,
-    /// Waiting for lines that a prefetcher cannot predict.
+    /// Waiting for cache lines that a prefetcher cannot predict.
     Latency,
     /// Computation on data in the cache.
     Work,
 }
 
 impl Bound {
-    /// Returns the limiting factor of a sweep of `ns` nanoseconds. `floor_ns` is the time for
-    /// moving the bytes. `waits_ns` is the time for all jumps, one after the other.
+    /// Returns the factor that limits a query that takes `ns` nanoseconds. `floor_ns` is the time
+    /// for moving the bytes that the query reads. `waits_ns` is the time for all jumps to distant
+    /// cache lines, one jump after the other.
     ///
     /// - `Bandwidth` if moving the bytes takes at least half of the time.
-    /// - `Latency` if moving the bytes takes less, but the jumps take at least half of the time. A
-    ///   processor overlaps jumps, so the jumps may take less time than `waits_ns`.
+    /// - `Latency` if moving the bytes takes less than half of the time, but the jumps take at
+    ///   least half. A processor overlaps jumps, so the jumps may take less time than `waits_ns`.
     /// - `Work` in all other cases.
     pub fn from_times(ns: f64, floor_ns: f64, waits_ns: f64) -> Self {
         if 2.0 * floor_ns >= ns {
@@ -156,7 +163,7 @@ impl Bound {
         }
     }
 
-    /// Returns the name in files: `bandwidth`, `latency` or `work`.
+    /// Returns the name of the factor in files: `bandwidth`, `latency` or `work`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Bandwidth => "bandwidth",
@@ -167,7 +174,7 @@ impl Bound {
 }
 
 impl Why {
-    /// Returns the number of results that differ between backends without a known reason.
+    /// Counts the results that differ from the results of other backends without a known reason.
     pub fn mismatches(&self) -> usize {
         let timed = self.rows.iter().filter_map(|row| row.timed);
         timed
@@ -185,9 +192,10 @@ impl Why {
     }
 }
 
-/// Counts the reads of relations on the backends that can hold the mesh, and measures the times.
+/// Counts the memory reads of relations on the backends that can hold the mesh. If
+/// `settings.timing` is set, also measures the times of the relations.
 ///
-/// Setting `stop` ends the measurement early. The result then contains the finished part.
+/// Setting `stop` to true ends the measurement early, with a result of the finished part.
 /// `progress` is called with the current step.
 ///
 /// # Errors
@@ -199,6 +207,10 @@ pub fn why(
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<Why, StudyError> {
+    let budget = settings
+        .timing
+        .as_ref()
+        .map(|timing| Budget::start(timing.budget));
     let requested = |relation: &Relation| {
         settings.relations.is_empty() || settings.relations.contains(relation)
     };
@@ -216,10 +228,10 @@ pub fn why(
     // The sort is stable: the rows of one relation stay in the order of the backends.
     rows.sort_by_key(|row| row.reads.relation);
     let mut environment = None;
-    if let Some(Timing { budget, memory }) = &settings.timing
+    if let (Some(Timing { memory, .. }), Some(budget)) = (&settings.timing, budget)
         && !stop.load(Ordering::Relaxed)
     {
-        study_settings.budget = *budget;
+        study_settings.budget = budget.left();
         let report = study(study_mesh, &study_settings, stop, progress)?;
         for row in &mut rows {
             row.timed = timed(row, &report, memory);
@@ -260,7 +272,7 @@ fn count_all(
         };
         let polygons = &study_mesh.polygons;
         let verdict = backend.count_reads(polygons, relations, stop, &mut counting);
-        backends.push(unbuilt(backend, &counts, verdict));
+        backends.push(unbuilt(backend, polygons, &counts, verdict));
     }
     if backends.iter().all(|backend| !backend.holds) {
         let refusals = backends
@@ -286,7 +298,7 @@ impl ReadsObserver for RowCollector<'_> {
         (self.progress)(Progress {
             done: self.done,
             stage: "counting",
-            operation: Operation::Relation(relation),
+            task: relation.name(),
             backend: self.backend,
         });
         self.done += self.step;

@@ -92,15 +92,8 @@ fn orders_are_ranked_within_a_structure_and_compared_between_them() {
         assert_eq!(backend_rows, Order::ALL);
     }
     for pair in report.results.chunks(4) {
-        let least = pair
-            .iter()
-            .filter_map(|r| r.row.median_ns)
-            .fold(f64::MAX, f64::min);
-        let best = pair
-            .iter()
-            .find(|r| r.row.median_ns == Some(least))
-            .expect("one of four");
-        assert_eq!(best.row.ratio_to_best, Some(1.0), "{best:?}");
+        let ratios = pair.iter().filter_map(|r| r.row.ratio_to_best);
+        assert_eq!(ratios.reduce(f64::min), Some(1.0), "{pair:?}");
     }
     assert_eq!(report.comparisons.len(), 2);
     let [vertex_faces, face_vertices] = &report.comparisons[..] else {
@@ -127,12 +120,8 @@ fn orders_are_ranked_within_a_structure_and_compared_between_them() {
 }
 
 #[test]
-fn unsuitable_meshes_and_budgets_are_refused() {
+fn unsuitable_meshes_are_refused() {
     let refusal = |mesh, settings: &Settings| quick_orders(mesh, settings).expect_err("refused");
-    let short = refusal(shapes::cube(), &brief(99, &[]));
-    assert!(
-        matches!(short, OrdersError::BudgetTooSmall { .. }) && short.to_string().contains("100 ms")
-    );
     let points = PolygonMesh::new([sixfold::Point::ZERO], [[0; 0]; 0]).expect("a point");
     let empty = refusal(points, &brief(100, &[]));
     assert_eq!(empty, OrdersError::Study(StudyError::NoFaces));

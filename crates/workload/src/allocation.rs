@@ -10,35 +10,37 @@ use crate::clock::{Clock, Time};
 use crate::edit_pass::EditPass;
 use crate::operation::Operation;
 use crate::series::Series;
-use crate::timed_structure::Job;
 
-/// A counter of all bytes requested from the allocator. The program that installs the allocator
-/// implements it.
+/// A counter of all bytes that a program requests from its allocator. The program that installs the
+/// allocator implements this trait.
 pub trait AllocationCounter: Sync {
-    /// Returns the bytes requested since the program started. If a block grows, only the growth is
-    /// added. Freed blocks stay counted.
+    /// Returns the number of bytes that were requested since the program started. If a block grows,
+    /// only the growth is added. The bytes of freed blocks are not subtracted.
     fn allocated(&self) -> usize;
 }
 
-/// The bytes of one run of an operation.
+/// The bytes that one run of an operation allocates, and the bytes of its result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Allocated {
-    /// Bytes requested from the allocator during the timed part.
+    /// Bytes that the timed part of the operation requests from the allocator.
     pub bytes: usize,
-    /// Bytes of the result, computed by the formula of the layout.
+    /// Bytes of the result of the operation, computed by a formula from the numbers of elements.
     pub result_bytes: usize,
 }
 
-/// Why an operation was not counted.
+/// The reason why the bytes of an operation were not counted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NotCounted {
-    /// The structure or the scheme refuses the mesh, or the structure lacks the method.
+    /// The operation was refused. The field is the message of the structure or of the subdivision
+    /// scheme.
     Refused(String),
-    /// The structure scans all faces for each element, and the mesh is too large for scans.
+    /// The operation would take too long, because the structure scans all faces for each element
+    /// and the mesh is large.
     Scans,
 }
 
-/// The maximum number of faces of a mesh on which operations that scan are run.
+/// Maximum number of faces of a mesh on which operations that scan all faces for each element are
+/// run.
 pub const MAX_SCANNED_FACES: usize = 2_000;
 
 /// A clock that returns allocated bytes instead of time. Set-up is excluded.
@@ -51,21 +53,22 @@ impl Clock for ByteClock<'_> {
 }
 
 impl Backend {
-    /// Runs `operation` once and counts the bytes that it requests. `edges` is the number of edges
-    /// of `polygons`.
+    /// Runs `operation` once and counts the bytes that the timed part requests. `edges` is the
+    /// number of edges of `polygons`.
     ///
-    /// The result of an operation depends on its kind:
+    /// The result, whose bytes are also returned, depends on the operation:
     ///
     /// - `build`: the structure
     /// - subdivision: the structure of the refined mesh
     /// - edits: the mesh after the edits
     /// - `ff_bfs`: the depth of each face
     ///
-    /// For a native subdivision, the first run counts, because later runs reuse its tables.
+    /// A native subdivision is counted in its first run, because later runs reuse the tables of the
+    /// first run.
     ///
     /// # Errors
     ///
-    /// Returns the reason if the operation cannot be counted.
+    /// Returns an error with the reason if the operation cannot be counted.
     pub fn allocated(
         &self,
         operation: Operation,
@@ -95,11 +98,7 @@ impl Backend {
     ) -> Result<usize, String> {
         let prepared = self.prepare(polygons, None);
         let (mut backend, _) = prepared.map_err(|refusal| refusal.to_string())?;
-        let job = Job {
-            operation,
-            sample: None,
-        };
-        let run = backend.run(&job, &Series::once(&ByteClock(counter)));
+        let run = backend.run(&operation.into(), &Series::once(&ByteClock(counter)));
         match run.refusal {
             Some(refusal) => Err(refusal),
             None => Ok(run.time.wall_ns as usize),

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::sync::atomic::AtomicBool;
 
+use sixfold::subdivision::Method;
 use sixfold::{
     BuildError, Creases, MemoryFootprint, MeshEdit, PolygonMesh, Refine, Relation, Representation,
     StructureInfo, structures,
@@ -13,6 +14,7 @@ use crate::allocation::decimated_counts;
 use crate::draw::Draw;
 use crate::edit_pass::{EditPass, PreparedEditor, prepare_pass};
 use crate::heap::{Heap, MeasuredMemory, measure_memory};
+use crate::job::TimedBackend;
 use crate::mix::{
     MixBackend, MixInput, PreparedMix, Route, Schedule, prepare_edit_mix, prepare_query_mix,
     tabulate_structure,
@@ -20,7 +22,7 @@ use crate::mix::{
 use crate::reads::{ReadsObserver, count};
 use crate::single_edit::{SingleEdit, prepare_single};
 use crate::subdivision_job::{PreparedRefiner, SubdivisionJob, prepare_native, prepare_rebuilt};
-use crate::timed_structure::{TimedBackend, TimedStructure};
+use crate::timed_structure::TimedStructure;
 
 /// Makes a vector of [`Backend`] from the lines of [`structures!`].
 macro_rules! backends {
@@ -35,8 +37,8 @@ macro_rules! backends {
 
 /// A structure and the functions that build, run and measure it.
 ///
-/// [`Backend::structures`] returns the backends of Sixfold. [`Backend::new`] makes a backend from
-/// any other structure:
+/// [`Backend::structures`] returns a backend for each structure of Sixfold. [`Backend::new`] makes
+/// a backend from any other structure:
 ///
 /// ```
 /// use sixfold::{EditableHalfEdgeMesh, HalfEdgeMesh, shapes};
@@ -51,14 +53,14 @@ macro_rules! backends {
 /// ```
 #[derive(Clone, Copy)]
 pub struct Backend {
-    /// Properties that are known before the structure is built.
+    /// The properties that are known before a mesh is built.
     pub info: StructureInfo,
-    /// Computes the bytes of the layout for a mesh with the given counts.
+    /// Computes the bytes of the tables by a formula, from the numbers of elements.
     pub layout_bytes: fn(&Counts) -> usize,
     pub(crate) queries: QueryFunctions,
     pub(crate) edits: Option<EditFunctions>,
-    /// Sets up a subdivision that refines the tables of the structure.
-    pub(crate) prepare_native: Option<PrepareRefiner>,
+    /// Sets up a subdivision that refines the structure's own tables.
+    prepare_native: Option<PrepareRefiner>,
 }
 
 /// The functions that need only queries.
@@ -69,8 +71,8 @@ pub(crate) struct QueryFunctions {
     count: Count,
     pub(crate) prepare_mix: for<'a> fn(&MixInput<'a>) -> PreparedMix<'a>,
     pub(crate) tabulate: Tabulate,
-    /// Sets up a subdivision that rebuilds the structure for each level.
-    pub(crate) prepare_rebuilt: PrepareRefiner,
+    /// Sets up a subdivision that rebuilds the structure from each level.
+    prepare_rebuilt: PrepareRefiner,
 }
 
 /// The functions that need edits.
@@ -80,6 +82,34 @@ pub(crate) struct EditFunctions {
     pub(crate) prepare_pass: fn(EditPass, &PolygonMesh) -> PreparedEditor,
     pub(crate) prepare_single: fn(SingleEdit, &PolygonMesh) -> PreparedEditor,
     pub(crate) decimated_counts: fn(&PolygonMesh, f64) -> Option<Counts>,
+    /// Sets up a subdivision that rebuilds the editable type from each level.
+    prepare_rebuilt: PrepareRefiner,
+}
+
+/// The functions with which a study runs operations that make a mesh, for one type of a structure:
+/// the type that only answers queries, or the editable type.
+#[derive(Clone, Copy)]
+pub(crate) struct TypeFunctions {
+    prepare_rebuilt: PrepareRefiner,
+    prepare_native: Option<PrepareRefiner>,
+    /// Sets up a pass of edits; `None` if the structure cannot be edited.
+    pub(crate) prepare_pass: Option<fn(EditPass, &PolygonMesh) -> PreparedEditor>,
+}
+
+impl TypeFunctions {
+    /// Sets up a subdivision; `None` if the type does not support this way.
+    pub(crate) fn prepare_refiner(
+        &self,
+        job: SubdivisionJob,
+        polygons: &PolygonMesh,
+        creases: &Creases,
+    ) -> Option<PreparedRefiner> {
+        let prepare = match job.way.method() {
+            Method::Native => self.prepare_native?,
+            Method::Gather | Method::Scatter => self.prepare_rebuilt,
+        };
+        Some(prepare(job, polygons, creases))
+    }
 }
 
 /// Builds the structure and prepares it for measurement.
@@ -94,11 +124,11 @@ type Tabulate =
 
 type PrepareRefiner = fn(SubdivisionJob, &PolygonMesh, &Creases) -> PreparedRefiner;
 
-/// A structure that is ready to be measured, and its memory footprint.
+/// A structure that is ready to be measured, with the bytes of its tables.
 pub type Prepared<'a> = (Box<dyn TimedBackend + 'a>, MemoryFootprint);
 
 impl Backend {
-    /// Makes a backend for `M` without edits and native subdivision.
+    /// Makes a backend for the structure `M`, without edits and without native subdivision.
     pub fn new<M: Measured + 'static>() -> Self {
         Self {
             info: StructureInfo::new::<M>(),
@@ -107,7 +137,9 @@ impl Backend {
                 build: |backend, polygons, draw| {
                     let mesh = M::from_polygons(polygons)?;
                     let memory = mesh.memory();
-                    let timed = TimedStructure::new(backend, polygons, draw, mesh);
+                    let functions = backend.query_functions();
+                    let timed =
+                        TimedStructure::new(backend.name(), functions, polygons, draw, mesh);
                     Ok((Box::new(timed), memory))
                 },
                 measure_memory: measure_memory::<M>,
@@ -124,7 +156,7 @@ impl Backend {
         }
     }
 
-    /// Adds the edits of `M`, the editable type of the structure.
+    /// Adds edits to the backend. `M` is the editable type of the structure.
     #[must_use]
     pub fn with_edits<M: Representation + MeshEdit + 'static>(self) -> Self {
         let edits = EditFunctions {
@@ -132,6 +164,7 @@ impl Backend {
             prepare_pass: prepare_pass::<M>,
             prepare_single: prepare_single::<M>,
             decimated_counts: decimated_counts::<M>,
+            prepare_rebuilt: prepare_rebuilt::<M>,
         };
         Self {
             info: self.info.with_edits::<M>(),
@@ -140,7 +173,8 @@ impl Backend {
         }
     }
 
-    /// Adds the native subdivision of `M`, the type of the structure that can refine its tables.
+    /// Adds native subdivision to the backend. `M` is the type of the structure that can refine its
+    /// own tables.
     #[must_use]
     pub fn with_refinement<M: Refine + 'static>(self) -> Self {
         Self {
@@ -150,19 +184,40 @@ impl Backend {
         }
     }
 
-    /// Returns a backend for each structure of Sixfold, in the order of tables.
+    /// Returns one backend for each structure of Sixfold, in the order in which tables list them.
     pub fn structures() -> Vec<Self> {
         structures!([backends])
     }
 
-    /// Returns the backend of Sixfold called `name`; `None` if the name is unknown.
+    /// Returns the backend of the structure called `name`; `None` if the name is unknown.
     pub fn find(name: &str) -> Option<Self> {
         let mut all = Self::structures().into_iter();
         all.find(|backend| backend.name() == name)
     }
 
-    /// Builds the structure from `polygons` and prepares it for measurement. With `draw`, it can
-    /// also run samples of the drawn elements. Also returns the memory footprint.
+    /// Returns the functions of the type that only answers queries. Its edits run on the editable
+    /// type.
+    pub(crate) fn query_functions(&self) -> TypeFunctions {
+        TypeFunctions {
+            prepare_rebuilt: self.queries.prepare_rebuilt,
+            prepare_native: self.prepare_native,
+            prepare_pass: self.edits.map(|edits| edits.prepare_pass),
+        }
+    }
+
+    /// Returns the functions of the editable type; `None` if the structure cannot be edited. This
+    /// type cannot refine its own tables.
+    pub(crate) fn edit_functions(&self) -> Option<TypeFunctions> {
+        let edits = self.edits?;
+        Some(TypeFunctions {
+            prepare_rebuilt: edits.prepare_rebuilt,
+            prepare_native: None,
+            prepare_pass: Some(edits.prepare_pass),
+        })
+    }
+
+    /// Builds the structure from `polygons` and prepares it for measurement. With `draw` (the
+    /// elements in random order), operations can also run on a random sample of the elements.
     ///
     /// # Errors
     ///
@@ -175,7 +230,8 @@ impl Backend {
         (self.queries.build)(self, polygons, draw)
     }
 
-    /// Builds the structure from `polygons` and counts the allocated bytes with `heap`.
+    /// Builds the structure from `polygons` and measures the allocated bytes with the counters of
+    /// `heap`.
     ///
     /// # Errors
     ///
@@ -188,8 +244,8 @@ impl Backend {
         (self.queries.measure_memory)(polygons, heap)
     }
 
-    /// Builds the structure from `polygons` and counts the reads of `relations`, until `stop` is
-    /// true.
+    /// Builds the structure from `polygons`, and counts the table reads of each relation in
+    /// `relations`. Stops early if `stop` becomes true.
     ///
     /// # Errors
     ///

@@ -42,16 +42,16 @@ const FILES: [(&str, &str); 12] = [
     ),
 ];
 
-/// Returns the names of the built-in workloads and the texts of their files, in listing order.
+/// Returns the names of the built-in workloads, with the texts of their files.
 pub fn built_ins() -> impl Iterator<Item = (&'static str, &'static str)> {
     FILES.into_iter()
 }
 
-/// Returns the built-in workload called `name`.
+/// Returns the built-in workload called `name`; `None` if the name is unknown.
 ///
 /// # Panics
 ///
-/// Panics if the built-in file has an error. A test parses all built-in files.
+/// Panics if the file of the workload has an error. A test parses all built-in files.
 pub fn built_in(name: &str) -> Option<Workload> {
     let (name, text) = FILES.into_iter().find(|(known, _)| *known == name)?;
     let workload = Workload::parse(name, &format!("{name}.toml"), text);

@@ -10,21 +10,21 @@ use serde::{Deserialize, Serialize};
 /// The folder in which Linux describes the caches of the first processor.
 const CACHE_FOLDER: &str = "/sys/devices/system/cpu/cpu0/cache";
 
-/// One cache of one processor.
+/// A cache of a processor.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct Cache {
-    /// The level. Level 1 is the nearest to the processor.
+    /// The level of the cache. The cache of level 1 is the nearest to the processor.
     pub level: u8,
-    /// The content: `data`, `instruction`, or `unified` for both.
+    /// The content of the cache: `data`, `instruction`, or `unified` for data and instructions.
     pub kind: String,
-    /// The size in bytes.
+    /// The size of the cache in bytes.
     pub bytes: u64,
     /// The number of processors that share the cache, if known.
     pub shared_by: Option<usize>,
 }
 
 impl Cache {
-    /// Returns whether the cache holds data.
+    /// Returns true if the cache holds data.
     pub fn holds_data(&self) -> bool {
         self.kind != "instruction"
     }
@@ -40,7 +40,8 @@ impl Cache {
     }
 }
 
-/// Returns the caches of the first processor, the nearest first. Empty if unknown.
+/// Returns the caches of the first processor, starting with the nearest cache. The list is empty if
+/// the caches are unknown.
 pub fn caches() -> Vec<Cache> {
     let Ok(entries) = fs::read_dir(CACHE_FOLDER) else {
         return Vec::new();

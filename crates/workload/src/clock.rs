@@ -1,4 +1,4 @@
-//! Clocks: wall time and processor time of this thread.
+//! Clocks: wall time, and processor time of the current thread.
 
 use std::ops::Sub;
 use std::time::Instant;
@@ -8,17 +8,18 @@ use crate::pages;
 /// A point in time, or the difference between two points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Time {
-    /// Processor time of this thread, in nanoseconds; `None` if the platform does not report it.
+    /// Processor time of the current thread, in nanoseconds; `None` if the platform does not report
+    /// processor time.
     pub cpu_ns: Option<f64>,
     /// Wall time, in nanoseconds.
     pub wall_ns: f64,
-    /// Page faults of this thread; `None` if they were not counted.
+    /// Number of page faults of the current thread; `None` if page faults were not counted.
     pub faults: Option<u64>,
 }
 
 impl Time {
-    /// Returns processor time in nanoseconds if known, else wall time. Other programs disturb
-    /// processor time less.
+    /// Returns the processor time in nanoseconds. If the processor time is unknown, returns the
+    /// wall time. Other programs disturb processor time less than wall time.
     pub fn ns(self) -> f64 {
         self.cpu_ns.unwrap_or(self.wall_ns)
     }
@@ -31,7 +32,8 @@ impl Time {
         }
     }
 
-    /// Multiplies both times by `factor`. The number of page faults does not change.
+    /// Multiplies processor time and wall time by `factor`. The number of page faults does not
+    /// change.
     pub fn scaled(self, factor: f64) -> Self {
         Self {
             cpu_ns: self.cpu_ns.map(|ns| ns * factor),
@@ -40,8 +42,8 @@ impl Time {
         }
     }
 
-    /// Adds both times and the page faults. Missing page faults count as 0 if the other time has
-    /// page faults.
+    /// Adds processor times, wall times and page faults. If only one of the two numbers of page
+    /// faults is known, the result is the known number.
     pub fn plus(self, other: Self) -> Self {
         let known = self.faults.is_some() || other.faults.is_some();
         Self {
@@ -51,7 +53,7 @@ impl Time {
         }
     }
 
-    /// Returns a time of zero with the same clocks as `like`.
+    /// Returns a time of zero that has processor time if `like` has processor time.
     pub fn zero_like(like: Self) -> Self {
         Self {
             faults: None,
@@ -84,19 +86,21 @@ impl Sub for Time {
     }
 }
 
-/// A source of times. Tests can implement it with chosen times.
+/// A source of times. Tests can implement this trait with chosen times.
 ///
-/// The clock must be read on the thread that does the work.
+/// A program must read the clock on the thread that does the timed work.
 pub trait Clock: Sync {
     /// Returns the current time.
     fn now(&self) -> Time;
 
-    /// Returns the cost of reading the clock twice. [`timed`] subtracts this cost from every time.
+    /// Returns the time that two readings of the clock take. [`timed`] subtracts this time from
+    /// every result.
     fn overhead(&self) -> Time {
         Time::default()
     }
 
-    /// Returns the page faults of this thread so far; `None` if they are not counted.
+    /// Returns the number of page faults of the current thread since its start; `None` if page
+    /// faults are not counted.
     fn faults(&self) -> Option<u64> {
         None
     }
@@ -118,7 +122,8 @@ pub struct MachineClock {
 }
 
 impl MachineClock {
-    /// Starts a clock and measures the cost of reading it. This takes some milliseconds.
+    /// Starts a clock, and measures the time that reading the clock takes. This takes some
+    /// milliseconds.
     pub fn start() -> Self {
         let mut clock = Self {
             start: Instant::now(),
@@ -163,7 +168,7 @@ impl MachineClock {
         }
     }
 
-    /// Returns the name of the clock of a study: `thread-cpu` or `wall`.
+    /// Returns the name of the clock that studies use: `thread-cpu` (processor time) or `wall`.
     pub fn name() -> &'static str {
         match thread_cpu_ns() {
             Some(_) => "thread-cpu",

@@ -1,32 +1,33 @@
-//! A seeded random order of the elements. It is the same for every structure.
+//! A random order of the elements of a mesh. The order depends only on the mesh and on a seed.
 
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sixfold::{FaceId, PolygonMesh, VertexId};
 
-/// One side of a face, which identifies an edge.
+/// One side of a face. A side identifies the edge on which it lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Side {
     /// The face.
     pub face: FaceId,
-    /// The two ends of the edge, the lower end first.
+    /// The two ends of the edge. The end with the lower number is first.
     pub ends: [VertexId; 2],
 }
 
-/// All elements of a mesh in random order. Every prefix is a uniform sample.
+/// All elements of a mesh in random order. The first n elements of each kind are a uniform random
+/// sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw {
-    /// Every vertex.
+    /// All vertices of the mesh in random order.
     pub vertices: Vec<VertexId>,
-    /// Every edge once, as one of its sides.
+    /// All edges of the mesh in random order. Each edge is given by one of its sides.
     pub edges: Vec<Side>,
-    /// Every face.
+    /// All faces of the mesh in random order.
     pub faces: Vec<FaceId>,
 }
 
 impl Draw {
-    /// Shuffles the elements of `polygons` with `seed`; O(n log n) for n corners.
+    /// Shuffles the elements of `polygons` with the random seed `seed`. O(n log n) for n corners.
     pub fn new(polygons: &PolygonMesh, seed: u64) -> Self {
         let mut draw = Self {
             vertices: polygons.vertices().collect(),
@@ -40,7 +41,7 @@ impl Draw {
         draw
     }
 
-    /// Returns the number of elements of each kind.
+    /// Returns the numbers of vertices, edges and faces.
     pub fn population(&self) -> [usize; 3] {
         [self.vertices.len(), self.edges.len(), self.faces.len()]
     }

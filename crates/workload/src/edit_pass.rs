@@ -13,14 +13,17 @@ use crate::series::{ReusedCopies, Series};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum EditPass {
     /// Inserts a vertex into the centre of every face. Then collapses each new vertex into a
-    /// neighbour and compacts the tables. The mesh then has its original faces.
+    /// neighbour, and removes the deleted rows from the tables. At the end the mesh has its
+    /// original faces.
     SplitCollapse,
-    /// Flips every edge if the flip is legal, in the order in which the faces first list the edges.
-    /// Then does the same again.
+    /// Flips every edge whose flip is legal, in the order in which the faces first list the edges.
+    /// Then repeats these flips on the changed mesh.
     FlipAll,
-    /// Collapses edges by quadric error until half of the faces are left.
+    /// Repeatedly collapses the edge with the least quadric error, until half of the faces are
+    /// left.
     DecimateHalf,
-    /// Collapses edges by quadric error until a tenth of the faces is left.
+    /// Repeatedly collapses the edge with the least quadric error, until a tenth of the faces is
+    /// left.
     DecimateTenth,
 }
 
@@ -33,7 +36,7 @@ impl EditPass {
         Self::DecimateTenth,
     ];
 
-    /// Returns the name in options, such as `split_collapse`.
+    /// Returns the name that users write, such as `split_collapse`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::SplitCollapse => "split_collapse",
@@ -43,7 +46,7 @@ impl EditPass {
         }
     }
 
-    /// Sets up the pass on the structure of `backend`. Returns `None` if the structure has no
+    /// Prepares the pass for the structure of `backend`. Returns `None` if the structure has no
     /// edits.
     ///
     /// # Errors
@@ -54,7 +57,7 @@ impl EditPass {
     }
 }
 
-/// Edits that are ready to run, or the reason why they are not ready.
+/// Edits that are ready to run, or the reason why they cannot run.
 pub type PreparedEditor = Result<Box<dyn Editor>, String>;
 
 pub(crate) fn prepare_pass<M: Representation + MeshEdit + 'static>(
@@ -84,19 +87,20 @@ impl fmt::Display for EditPass {
     }
 }
 
-/// Edits that are ready to run repeatedly, each time on the initial mesh.
+/// Edits that can run repeatedly. Each run starts with the initial mesh.
 pub trait Editor {
-    /// Runs the edits as `series` describes. Returns the total time of the timed runs.
+    /// Runs the edits and returns the total time of the timed runs. `series` gives the number of
+    /// runs.
     fn time(&mut self, series: &Series<'_>) -> Time;
 
-    /// Returns the counts of one run.
+    /// Returns the counts of the last run.
     fn result(&self) -> Edits;
 }
 
-/// The counts of a run.
+/// The counts of one run of edits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Edits {
-    /// Number of visited elements: faces to split or decimate, or edges to flip.
+    /// Number of visited elements: edges if edges are flipped, else faces.
     pub elements: u64,
     /// Number of edits that were done.
     pub done: u64,

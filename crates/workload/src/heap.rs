@@ -2,24 +2,27 @@
 
 use sixfold::{BuildError, MemoryFootprint, PolygonMesh, Representation};
 
-/// The counters of an allocator. The program that installs the allocator implements it.
+/// The counters of a memory allocator. The program that installs the allocator implements this
+/// trait.
 pub trait Heap {
-    /// Returns the bytes that are allocated now, without the overhead of the allocator.
+    /// Returns the number of bytes that are allocated now, without the overhead of the allocator.
     fn live(&self) -> usize;
-    /// Restarts the peak at the bytes that are allocated now.
+    /// Starts a new measurement of the peak, from the number of bytes that are allocated now.
     fn restart_peak(&self);
-    /// Returns the peak of allocated bytes since the last restart, minus the bytes at the restart.
+    /// Returns the largest increase of the allocated bytes since the last call of
+    /// [`restart_peak`](Self::restart_peak).
     fn peak(&self) -> usize;
 }
 
-/// The memory of a structure.
+/// The memory of a structure, as measured and as computed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MeasuredMemory {
-    /// Bytes of the structure, as counted by the allocator.
+    /// Bytes of the structure, as the allocator counts them.
     pub counted: usize,
-    /// Peak memory while the structure is built, in bytes. It includes the structure.
+    /// Largest number of bytes that are allocated while the structure is built. The bytes of the
+    /// structure are included.
     pub peak: usize,
-    /// The tables, as the structure reports them.
+    /// Bytes of the tables, as the structure computes them.
     pub memory: MemoryFootprint,
     /// Number of input vertices that were merged with other vertices.
     pub merged_vertices: usize,

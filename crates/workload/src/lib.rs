@@ -1,8 +1,8 @@
-//! The work that is run on a structure and timed.
+//! Runs mesh operations on a structure (a mesh data structure) and measures their times.
 //!
-//! [`Backend::new`] makes any structure measurable as a [`TimedBackend`]. A `TimedBackend` runs a
-//! [`Job`] and returns the time and the result. This crate contains all code that is compiled
-//! separately for each structure. The crates above it are not generic over structures.
+//! [`Backend::new`] makes a [`Backend`] for any structure. [`Backend::prepare`] builds the
+//! structure and returns a [`TimedBackend`]. A `TimedBackend` runs a [`Job`] and returns the time
+//! and the result. This crate contains all code that is compiled separately for each structure.
 
 mod allocation;
 mod backend;
@@ -13,6 +13,7 @@ mod draw;
 mod edit_pass;
 mod edit_place;
 mod heap;
+mod job;
 mod memory_speed;
 mod mix;
 mod operation;
@@ -37,10 +38,10 @@ pub use clock::{Clock, MachineClock, Time, timed};
 pub use draw::{Draw, Side};
 pub use edit_pass::{EditPass, Editor, Edits, PreparedEditor};
 pub use heap::{Heap, MeasuredMemory};
+pub use job::{ElementSample, Job, Outcome, Run, Task, TimedBackend};
 pub use memory_speed::{BufferSpeed, MemorySpeed};
 pub use mix::{
-    EditPlaceError, MixBackend, MixRefusal, MixRun, PreparedMix, Route, Schedule, prepare_mix,
-    tabulate,
+    EditPlaceError, MixBackend, MixRefusal, PreparedMix, Route, Schedule, prepare_mix, tabulate,
 };
 pub use operation::{ElementKind, Operation, UnknownOperation};
 pub use read_probe::{CACHE_LINES, LINE_BYTES, REACH};
@@ -49,7 +50,6 @@ pub use series::{CacheFlusher, MIN_TIMED_NS, Series, Start, exceeds_second_level
 pub use single_edit::SingleEdit;
 pub use subdivision_job::{PreparedRefiner, Refiner, SubdivisionJob, Way};
 pub use sweeps::field_sum;
-pub use timed_structure::{ElementSample, Job, Outcome, Run, TimedBackend};
 pub use unknown::unknown;
 pub use workload::{Access, Action, Amount, ParseAmountError, Part, UnknownAction, Workload};
 pub use workload_file::WorkloadError;

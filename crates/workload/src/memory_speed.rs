@@ -2,13 +2,13 @@
 //! of dependent reads.
 //!
 //! Both values are measured in buffers of growing size. Small buffers give the speed of the caches,
-//! and the largest buffer gives the speed of the main memory. One thread reads, because one thread
-//! queries a mesh.
+//! and the largest buffer gives the speed of the main memory. The buffers are read by one thread,
+//! because one thread queries a mesh.
 //!
-//! The bandwidth test adds all words of the buffer. In the latency test, each line holds the index
-//! of the next line. The lines form one cycle in random order, so each read must wait for the
-//! previous read. Each value is the shortest of several timed series. Both values include address
-//! translation (TLB misses).
+//! The bandwidth test adds all words of the buffer. In the latency test, each cache line holds the
+//! index of the next cache line. The cache lines form one cycle in random order, so each read must
+//! wait for the previous read. Each test runs several times, and the shortest time counts. Both
+//! values include the time of address translation (TLB misses).
 
 use std::hint::black_box;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -54,17 +54,17 @@ pub struct BufferSpeed {
     pub latency_ns: f64,
 }
 
-/// The speed at which this machine reads buffers of growing size.
+/// The speeds at which this machine reads buffers of different sizes.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct MemorySpeed {
-    /// The speeds, by size of the buffer. Never empty.
+    /// The speed of each buffer, ordered by the size of the buffer. The list is never empty.
     #[serde(rename = "rungs")]
     speeds: Vec<BufferSpeed>,
 }
 
 impl MemorySpeed {
-    /// Measures the speed. This takes one or two seconds and 256 MiB. Returns `None` if `stop`
-    /// becomes true.
+    /// Measures the speed of memory, which takes one or two seconds and 256 MiB. Returns `None` if
+    /// `stop` becomes true during the measurement.
     pub fn measure(clock: &dyn Clock, stop: &AtomicBool) -> Option<Self> {
         Self::measure_sizes(&SIZES, clock, stop)
     }
@@ -85,7 +85,7 @@ impl MemorySpeed {
         Some(Self { speeds })
     }
 
-    /// Returns the measured speeds, the smallest buffer first.
+    /// Returns the speed of each buffer, starting with the smallest buffer.
     pub fn speeds(&self) -> &[BufferSpeed] {
         &self.speeds
     }
@@ -97,7 +97,7 @@ impl MemorySpeed {
         self.speeds[larger.saturating_sub(1)]
     }
 
-    /// Returns the speed of the largest buffer, which is the speed of the main memory.
+    /// Returns the speed of the main memory, which is the speed of the largest buffer.
     pub fn memory(&self) -> BufferSpeed {
         self.at(usize::MAX)
     }

@@ -31,7 +31,7 @@ impl ElementKind {
         self as usize
     }
 
-    /// Returns the kind of element that `relation` queries.
+    /// Returns the kind of the elements at which `relation` is queried.
     pub const fn queried_by(relation: Relation) -> Self {
         Self::ALL[relation as usize / 3]
     }
@@ -48,35 +48,37 @@ impl ElementKind {
 
 /// An operation that a study times.
 ///
-/// An operation visits the elements in the order of the structure. Every handle that a query yields
-/// goes into a sink, so that each structure must compute all handles.
+/// An operation visits the elements in the order in which the structure stores them. The operation
+/// uses every handle that a query yields, so the compiler cannot omit the computation of a handle.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, DeserializeFromStr, SerializeDisplay,
 )]
 pub enum Operation {
-    /// Builds the structure from flat arrays.
+    /// Builds the structure from a polygon mesh.
     Build,
-    /// Queries one relation of every element of one kind.
+    /// Queries one relation at every element of one kind.
     Relation(Relation),
     /// Queries the faces of every vertex and the vertices of every face.
     Circulate,
-    /// Stores for each face the mean of its vertices.
+    /// Stores for each face the mean of its vertex positions.
     FaceBarycenter,
-    /// Stores face normals. Then stores for each vertex the normalised sum of its face normals.
+    /// Stores the normal of each face, and then for each vertex the normalised sum of the normals
+    /// of its faces.
     VertexNormal,
-    /// Computes the mean of the neighbours of each vertex. Then moves all vertices to these means.
+    /// Computes for each vertex the mean position of its neighbours. Then moves all vertices to
+    /// these means.
     VvSmooth,
     /// Sums the lengths of all edges.
     EdgeLength,
     /// Counts the edges with one face.
     Boundary,
-    /// Traverses all faces breadth first and sums the depths.
+    /// Traverses all faces breadth first and adds the depths of the faces.
     FfBfs,
-    /// Queries all three relations of every vertex, edge and face.
+    /// Queries all nine relations: three at every vertex, three at every edge, three at every face.
     AllQueries,
-    /// Runs one step of Catmull–Clark by one method.
+    /// Runs one step of Catmull–Clark subdivision by one method.
     CatmullClark(Method),
-    /// Runs one step of Loop by one method.
+    /// Runs one step of Loop subdivision by one method.
     Loop(Method),
     /// Runs a pass of edits on a copy of the mesh.
     EditPass(EditPass),
@@ -91,7 +93,7 @@ const EDGE_RELATIONS: &[Relation] = &[Relation::EdgeVertices, Relation::EdgeFace
 const FACE_RELATIONS: &[Relation] = &[Relation::FaceVertices, Relation::FaceEdges];
 
 impl Operation {
-    /// All operations, in the order of tables.
+    /// All operations, in the order in which tables list them.
     pub const ALL: [Self; 28] = [
         Self::Build,
         Self::Relation(Relation::VertexVertices),
@@ -123,7 +125,7 @@ impl Operation {
         Self::EditPass(EditPass::DecimateTenth),
     ];
 
-    /// Returns the name in options, such as `vv_smooth`.
+    /// Returns the name that users write, such as `vv_smooth`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Build => "build",
@@ -146,7 +148,7 @@ impl Operation {
         }
     }
 
-    /// Returns the subdivision that the operation runs; `None` for other operations.
+    /// Returns the subdivision job; `None` if the operation is not a subdivision.
     pub fn subdivision_job(self) -> Option<SubdivisionJob> {
         let (scheme, method) = match self {
             Self::CatmullClark(method) => (Scheme::CatmullClark, method),
@@ -161,18 +163,18 @@ impl Operation {
         Some(SubdivisionJob::new(scheme, way, 1))
     }
 
-    /// Returns whether the operation is a subdivision.
+    /// Returns true if the operation is a subdivision.
     pub const fn subdivides(self) -> bool {
         matches!(self, Self::CatmullClark(_) | Self::Loop(_))
     }
 
-    /// Returns whether the operation makes another mesh, by subdivision or by edits.
+    /// Returns true if the operation makes another mesh, by subdivision or by edits.
     pub const fn creates_mesh(self) -> bool {
         self.subdivides() || matches!(self, Self::EditPass(_))
     }
 
-    /// Returns whether a run grows tables that the next run reuses. The first run then takes
-    /// longer.
+    /// Returns true if a run enlarges tables that the next run reuses. The first run then takes
+    /// longer than the following runs.
     pub const fn grows_tables(self) -> bool {
         matches!(
             self,
@@ -182,19 +184,19 @@ impl Operation {
         )
     }
 
-    /// Returns whether the clock stops between runs, while changes are undone or results are
-    /// dropped.
+    /// Returns true if the clock stops between runs. While the clock is stopped, changes are undone
+    /// or results are freed.
     pub const fn pauses_clock(self) -> bool {
         matches!(self, Self::Build | Self::VvSmooth | Self::EditPass(_))
     }
 
-    /// Returns whether the timed part of the operation allocates memory.
+    /// Returns true if the timed part of the operation allocates memory.
     pub const fn allocates(self) -> bool {
         matches!(self, Self::Build | Self::FfBfs) || self.creates_mesh()
     }
 
-    /// Estimates the number of elements that the operation visits on `polygons`. The estimate is
-    /// used if no run has counted the elements.
+    /// Estimates the number of elements that the operation visits on `polygons`. Callers need the
+    /// estimate if no run has counted the elements.
     pub fn estimated_elements(self, polygons: &PolygonMesh) -> usize {
         match self {
             Self::CatmullClark(_) => polygons.corner_count(),
@@ -203,7 +205,17 @@ impl Operation {
         }
     }
 
-    /// Returns the unit of the element count: `vertex`, `edge`, `face`, `visit` or `new face`.
+    /// Returns the subdivision scheme; `None` if the operation is not a subdivision.
+    pub const fn scheme(self) -> Option<Scheme> {
+        match self {
+            Self::CatmullClark(_) => Some(Scheme::CatmullClark),
+            Self::Loop(_) => Some(Scheme::Loop),
+            _ => None,
+        }
+    }
+
+    /// Returns the unit in which the operation counts elements: `vertex`, `edge`, `face`, `visit`
+    /// or `new face`.
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Relation(relation) => ElementKind::queried_by(relation).name(),
@@ -217,7 +229,7 @@ impl Operation {
         }
     }
 
-    /// Returns the kinds of elements that the operation visits, in the order of its steps.
+    /// Returns the kinds of elements that the operation visits, in the order of the visits.
     pub const fn kinds(self) -> &'static [ElementKind] {
         const V: &[ElementKind] = &[ElementKind::Vertex];
         const E: &[ElementKind] = &[ElementKind::Edge];
@@ -273,7 +285,8 @@ impl Operation {
         }
     }
 
-    /// Returns for each kind whether a structure with `costs` scans all faces for each element.
+    /// Returns one value for each kind of element. The value is true if a structure with the query
+    /// costs `costs` scans all faces for each element of this kind.
     pub fn scans(self, costs: &[QueryCost; 9]) -> [bool; 3] {
         ElementKind::ALL.map(|kind| {
             let relations = self.relations(kind);
@@ -283,22 +296,24 @@ impl Operation {
         })
     }
 
-    /// Returns for each kind whether the cost can grow with the square of valences or degrees.
+    /// Returns one value for each kind of element. The value is true if the time of a query can
+    /// grow with the square of a valence or of a face degree.
     ///
-    /// This is true for all relations except `edge_vertices` and `face_vertices`. The other
-    /// relations may visit a vertex of valence n once for each of its n edges. They may also search
-    /// a face of n sides n times.
+    /// The value is true if the operation queries a relation other than `edge_vertices` and
+    /// `face_vertices`. Such a relation may visit a vertex of valence n once for each of its n
+    /// edges, or may search a face with n sides n times.
     pub fn grows_with_valence(self) -> [bool; 3] {
         let corners = [Relation::EdgeVertices, Relation::FaceVertices];
         ElementKind::ALL.map(|kind| self.relations(kind).iter().any(|r| !corners.contains(r)))
     }
 
-    /// Returns whether the operation can run on a sample of elements.
+    /// Returns true if the operation can visit only a sample of the elements. Building, `ff_bfs`,
+    /// subdivisions and edit passes need whole meshes.
     pub const fn can_be_sampled(self) -> bool {
         !matches!(self, Self::Build | Self::FfBfs) && !self.creates_mesh()
     }
 
-    /// Returns whether the checksum is a count. Counts must be exactly equal.
+    /// Returns true if the checksum is a count. The counts of all structures must be exactly equal.
     pub const fn has_exact_checksum(self) -> bool {
         !matches!(
             self,

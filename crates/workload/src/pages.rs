@@ -1,15 +1,17 @@
 //! Controls what the allocator does with freed pages during a measurement.
 //!
-//! An allocator returns large freed blocks to the kernel or keeps them. The choice depends on what
-//! ran before. A returned page causes a page fault when it is used again. Page faults can take
-//! longer than the measured operation, so the policy is a setting of the measurement.
-//! [`Policy::Kept`] keeps freed pages in the process, so that samples have no page faults after a
-//! warm-up. [`release_pages`] returns the pages, to measure a first run.
+//! An allocator returns large freed blocks to the kernel or keeps them. The choice depends on the
+//! previous work of the program. If a returned page is used again, the processor raises a page
+//! fault. Page faults can take longer than the measured operation. Therefore each measurement sets
+//! a [`Policy`] for freed pages. [`Policy::Kept`] keeps freed pages in the process, so that timed
+//! runs after a warm-up have no page faults. [`release_pages`] returns the freed pages to the
+//! kernel, to measure a first run.
 //!
-//! `Kept` is implemented for the GNU C library with `mallopt`. No block is mapped separately, the
-//! heap is never trimmed, and all threads share one heap. The policy must be set before the program
-//! starts its first thread, because glibc reads the number of heaps once. A thread with its own
-//! heap also keeps pages, but [`release_pages`] returns only some of them.
+//! [`Policy::Kept`] is implemented for the GNU C library with `mallopt`. The allocator then maps no
+//! block separately, never shrinks the heap, and uses one heap for all threads. A program must set
+//! the policy before it starts its first thread, because the C library reads the number of heaps
+//! only once. A thread with its own heap also keeps pages, but [`release_pages`] then returns only
+//! some of them.
 //!
 //! On other platforms, and with other allocators, the active policy is [`Policy::System`].
 //! [`set_policy`] returns the active policy.
@@ -25,14 +27,15 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
-/// What happens to freed pages.
+/// A rule for the memory pages of freed blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Policy {
-    /// Freed pages stay in the process. Later allocations reuse them without page faults.
+    /// Freed pages stay in the process. Later allocations use the freed pages again, without page
+    /// faults.
     #[default]
     Kept,
-    /// The allocator keeps or returns freed pages by its own rules.
+    /// The allocator decides by its own rules which freed pages it keeps.
     System,
 }
 
@@ -40,7 +43,7 @@ impl Policy {
     /// Both policies.
     pub const ALL: [Self; 2] = [Self::Kept, Self::System];
 
-    /// Returns the name in options: `kept` or `system`.
+    /// Returns the name that users write: `kept` or `system`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Kept => "kept",
@@ -73,26 +76,27 @@ impl FromStr for Policy {
     }
 }
 
-/// The heap of a measurement.
+/// The state of the heap during a measurement.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct HeapReport {
-    /// The active policy.
+    /// The active policy. It can differ from the requested policy.
     pub policy: Policy,
-    /// Why the active policy is not the requested policy.
+    /// The reason why the requested policy is not active; `None` if the requested policy is active.
     #[serde(default)]
     pub reason: Option<String>,
-    /// The allocator with its version, such as `glibc 2.36`.
+    /// The name and version of the allocator, such as `glibc 2.36`.
     pub allocator: String,
-    /// Size of a page in bytes, if known.
+    /// Size of a memory page in bytes, if known.
     pub page_bytes: Option<u64>,
     /// The mode of transparent huge pages, if known: `always`, `madvise` or `never`.
     pub transparent_huge_pages: Option<String>,
-    /// Whether page faults are counted.
+    /// True if page faults are counted.
     pub counts_faults: bool,
 }
 
-/// Applies the policy `requested` to the whole program and returns the active policy. `Kept`
-/// becomes active only if the allocator supports it and a probe confirms it.
+/// Applies the policy `requested` to the whole program and returns the active policy.
+/// [`Policy::Kept`] becomes active only if the allocator supports the policy and a test block
+/// confirms that pages are kept.
 pub fn set_policy(requested: Policy) -> HeapReport {
     let reason = match requested {
         Policy::System => {
@@ -169,16 +173,19 @@ const MIN_PAGE_BYTES: usize = 4096;
 /// Size of the first blocks that are allocated to find freed blocks, in bytes.
 const MAX_BLOCK_BYTES: usize = 1 << 20;
 
-/// Touches `bytes` in one block and the pages of all freed blocks. Later allocations then find
-/// their pages present. This is useful only if pages are kept.
+/// Touches the pages of all freed blocks, and the pages of one new block of `bytes` bytes. Later
+/// allocations can then use these pages without page faults. The function is useful only if freed
+/// pages are kept.
 ///
-/// O(`bytes` + bytes of freed blocks), plus one walk over the list of freed blocks per MiB.
+/// The time is O(`bytes` + bytes of freed blocks), plus one walk over the list of freed blocks per
+/// MiB.
 pub fn reserve(bytes: usize) {
     touch_free_pages(bytes, |_| {});
 }
 
-/// Touches the same pages as [`reserve`], in random order. The kernel then chooses the pages of
-/// large tables in random order. The cache sets of the tables do not depend on earlier work.
+/// Touches the same pages as [`reserve`], but in random order. The kernel then assigns physical
+/// pages to large tables in random order. The physical pages determine the cache sets that a table
+/// uses, so the cache sets do not depend on earlier work.
 pub fn reserve_in_random_order(bytes: usize) {
     /// Number of calls. It is the seed, so that each call has a different order.
     static CALLS: AtomicU64 = AtomicU64::new(0);
@@ -225,24 +232,24 @@ fn untouched_block(bytes: usize) -> Option<Vec<u8>> {
     Some(block)
 }
 
-/// Returns the pages of all freed blocks to the kernel, if the allocator supports it.
+/// Returns the pages of all freed blocks to the kernel, if the allocator supports this.
 pub fn release_pages() {
     platform::release_pages();
 }
 
-/// Returns whether the allocator supports [`release_pages`].
+/// Returns true if the allocator supports [`release_pages`].
 pub fn can_release_pages() -> bool {
     platform::is_glibc_allocator()
 }
 
-/// Returns the resident memory of this process in bytes, if known.
+/// Returns the bytes of this process that are in main memory, if known.
 pub fn resident_bytes() -> Option<u64> {
     let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
     let pages: u64 = pages.split_ascii_whitespace().nth(1)?.parse().ok()?;
     Some(pages * page_bytes()?)
 }
 
-/// Returns the bytes by which the address space may still grow, if there is a limit.
+/// Returns the number of bytes by which the address space can still grow, if there is a limit.
 #[cfg(unix)]
 pub fn address_space_left() -> Option<u64> {
     use nix::sys::resource::{RLIM_INFINITY, Resource, getrlimit};
@@ -253,13 +260,14 @@ pub fn address_space_left() -> Option<u64> {
     (limit != RLIM_INFINITY).then(|| limit.saturating_sub(used))
 }
 
-/// Returns the bytes by which the address space may still grow, if there is a limit.
+/// Returns the number of bytes by which the address space can still grow, if there is a limit.
 #[cfg(not(unix))]
 pub fn address_space_left() -> Option<u64> {
     None
 }
 
-/// Returns the page faults of this thread without disk reads; `None` if they are not counted.
+/// Returns the number of page faults of the current thread that needed no disk read; `None` if page
+/// faults are not counted.
 #[cfg(any(target_os = "linux", target_os = "android"))]
 pub fn faults() -> Option<u64> {
     use nix::sys::resource::{UsageWho, getrusage};
@@ -267,13 +275,14 @@ pub fn faults() -> Option<u64> {
     u64::try_from(usage.minor_page_faults()).ok()
 }
 
-/// Returns the page faults of this thread without disk reads; `None` if they are not counted.
+/// Returns the number of page faults of the current thread that needed no disk read; `None` if page
+/// faults are not counted.
 #[cfg(not(any(target_os = "linux", target_os = "android")))]
 pub fn faults() -> Option<u64> {
     None
 }
 
-/// Returns whether page faults are counted. Some sandboxes do not count them.
+/// Returns true if page faults are counted. Some sandboxes do not count page faults.
 pub fn counts_faults() -> bool {
     use std::sync::OnceLock;
     static COUNTS: OnceLock<bool> = OnceLock::new();

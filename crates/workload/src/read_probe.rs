@@ -1,8 +1,9 @@
 //! Counts the rows, bytes and cache lines that queries read.
 //!
 //! The counts come from a model of memory, so they are exact and the same on every machine. Each
-//! table starts at a multiple of 64 bytes. Its rows follow one another. A cache line is 64 bytes of
-//! one table. A row that crosses a line boundary touches two lines.
+//! table starts at a multiple of 64 bytes, and its rows follow each other without gaps. A cache
+//! line is 64 bytes of one table. A row that crosses the end of a cache line touches two cache
+//! lines.
 //!
 //! ```text
 //! lines of 64   0                  1                  2                  3
@@ -11,10 +12,11 @@
 //!               rows 2 and 5 touch two lines each: bytes 48 to 71, and 120 to 143
 //! ```
 //!
-//! The probe also simulates a small cache of [`CACHE_LINES`] lines. A full cache drops the line
-//! that came in first. A touched line that is not in the cache is *fetched*. The fetch is a *jump*
-//! if no line within [`REACH`] lines before or after it is in the cache. Streaming access fetches
-//! lines but rarely jumps. The prefetchers of a processor predict streaming access, but not jumps.
+//! The model also simulates a small cache of [`CACHE_LINES`] lines. If the cache is full, the
+//! oldest line is removed. A touched line that is not in the cache is *fetched*. A fetch is a
+//! *jump* if the cache contains no line within [`REACH`] lines before or after the fetched line.
+//! Sequential access fetches lines but rarely jumps. The prefetchers of a processor can predict
+//! sequential access, but not jumps.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -23,12 +25,13 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use sixfold::{MemoryFootprint, TableBytes};
 use sixfold_core::Probe;
 
-/// Bytes of a cache line.
+/// Bytes of one cache line.
 pub const LINE_BYTES: usize = 64;
-/// Number of lines in the simulated cache: 256 KiB. Most processors have at least this much cache
-/// per core.
+/// Number of lines in the simulated cache. All lines together have 256 KiB, and most processors
+/// have at least this much cache per core.
 pub const CACHE_LINES: u64 = 4096;
-/// Maximum distance of a fetch from a cached line, in lines. A more distant fetch is a jump.
+/// Maximum distance from a fetched line to the nearest cached line, in lines. If the distance is
+/// larger, the fetch is a jump.
 pub const REACH: usize = 4;
 
 /// A number that clones of a probe share. Only one thread may count, or counts may be lost.

@@ -1,4 +1,4 @@
-//! Counts the table reads that relations need. The counts have no noise.
+//! Counts the table reads that relations need. The counts are exact and equal in every run.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -8,72 +8,76 @@ use sixfold_core::Measured;
 
 use crate::read_probe::{CountingProbe, LINE_BYTES, ReadCounts, Step};
 
-/// Number of sampled elements if a structure scans. The elements are evenly spaced.
+/// Number of elements that are queried if only a sample is queried. The elements are evenly spaced.
 pub const SCAN_SAMPLE: usize = 16;
-/// Maximum mean number of rows per query without sampling. If a relation reads more rows, only
-/// [`SCAN_SAMPLE`] elements are queried.
+/// Maximum mean number of table rows that a query may read if all elements are queried. If a
+/// relation reads more rows, only [`SCAN_SAMPLE`] elements are queried.
 pub const MAX_READS: u64 = 256;
 
-/// The reads of one relation. All elements are queried in the order of the structure, or a sample
-/// of them.
+/// The table reads of one relation. The relation is queried at all elements in the order of the
+/// structure, or at evenly spaced elements.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Reads {
-    /// The relation.
+    /// The queried relation.
     pub relation: Relation,
-    /// Number of elements of the queried kind.
+    /// Number of elements at which the relation can be queried.
     pub elements: u64,
-    /// Number of elements that were queried.
+    /// Number of elements at which the relation was queried.
     #[serde(rename = "asked")]
     pub queried: u64,
-    /// Whether only a sample was queried. Values per query are then means over the sample.
+    /// True if only some evenly spaced elements were queried. Values per query are then means over
+    /// these elements.
     pub sampled: bool,
-    /// Number of results per query.
+    /// Mean number of results per query.
     pub answers: f64,
-    /// Number of row reads per query.
+    /// Mean number of table rows that a query reads. A row that is read twice counts twice.
     pub reads: f64,
-    /// Bytes read per query. A byte counts once per query.
+    /// Mean number of bytes that a query reads. A byte counts once per query.
     pub bytes: f64,
-    /// Cache lines touched per query. A line counts once per query.
+    /// Mean number of cache lines that a query touches. A cache line counts once per query.
     pub lines: f64,
-    /// Row reads for listing, per element.
+    /// Number of table rows that are read to list the elements, divided by the number of elements.
     pub listing_reads: f64,
-    /// Lines that a small cache has to fetch, per element. Listing is included.
+    /// Cache lines that a small simulated cache has to fetch, per element. The lines that are read
+    /// to list the elements are included.
     pub fetched: f64,
-    /// Fetched lines that are not near a cached line, per element.
+    /// Fetched cache lines that are not near a cached line, per element.
     pub jumps: f64,
-    /// Number of distinct lines that the whole sweep touches. Listing is included. A sampled sweep
-    /// visits only the sample.
+    /// Number of distinct cache lines that are touched while the elements are listed and queried.
+    /// If only some elements are queried, lines that only other queries would touch are missing.
     pub sweep_lines: u64,
-    /// Bytes to move per element. All distinct lines of the sweep are moved once. In a sampled
-    /// sweep, each query moves its lines again.
+    /// Bytes that must be moved from memory, per element. If all elements are queried, each cache
+    /// line is moved once. If only some elements are queried, each query moves all cache lines that
+    /// it touches.
     pub moved_bytes: f64,
-    /// The row reads per query, by table.
+    /// The table rows that a query reads, by table.
     pub tables: Vec<TableReads>,
 }
 
 impl Reads {
-    /// Returns the bytes of all lines that a sweep touches.
+    /// Returns the bytes of all distinct cache lines that are touched while the elements are
+    /// queried.
     pub fn sweep_bytes(&self) -> usize {
         usize::try_from(self.sweep_lines).map_or(usize::MAX, |lines| lines * LINE_BYTES)
     }
 }
 
-/// The reads of one table.
+/// The reads of one table by one relation.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct TableReads {
     /// The name of the table.
     pub table: String,
-    /// Bytes per row.
+    /// Bytes of one row of the table.
     pub row_bytes: usize,
-    /// Number of row reads per query.
+    /// Mean number of rows of the table that a query reads.
     pub reads: f64,
 }
 
-/// Receives the counts of relations.
+/// Receives the counts of table reads while relations are counted.
 pub trait ReadsObserver {
-    /// Called before `relation` is queried.
+    /// Called before the reads of `relation` are counted.
     fn relation_started(&mut self, relation: Relation);
-    /// Called with the counts of a relation.
+    /// Called with the counts of a relation after the relation was queried.
     fn relation_counted(&mut self, reads: Reads);
 }
 

@@ -1,4 +1,4 @@
-//! The timed runs of a job for one sample, and the preparation before them.
+//! Repeated runs of a job that give one sample (one measured time), and their preparation.
 
 use std::hint::black_box;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
@@ -7,27 +7,28 @@ use crate::caches::{caches, last_level_bytes, level_bytes};
 use crate::clock::{Clock, Time, timed};
 use crate::pages;
 
-/// Target for the minimum time of timed work, in nanoseconds. Short runs are timed together up to
-/// about this time, if their copies fit the cache.
+/// The minimum time between two readings of the clock, in nanoseconds. Runs that are shorter are
+/// timed together, as long as their copies of the mesh fit into the cache.
 pub const MIN_TIMED_NS: f64 = 60_000.0;
 /// Assumed size of the second-level cache in bytes, if unknown.
 const USUAL_SECOND_LEVEL: usize = 512 << 10;
 /// Assumed size of the last-level cache in bytes, if unknown.
 const USUAL_LAST_LEVEL: u64 = 32 << 20;
 
-/// The state of caches and heap at the start of timed work.
+/// The state of the caches and of the heap when a timed run starts.
 #[derive(Clone, Copy, Default)]
 pub enum Start<'c> {
-    /// The state after the previous runs: warm caches, and pages that stay in the process.
+    /// The state that the previous runs left: warm caches, and freed pages that stay in the
+    /// process.
     #[default]
     Warm,
-    /// The caches hold other data.
+    /// Cold caches, which hold data other than the mesh.
     Cold(&'c CacheFlusher),
-    /// Freed pages were returned to the kernel.
+    /// A heap whose freed pages were returned to the kernel.
     FreshPages,
 }
 
-/// A buffer that is written to fill the caches with other data.
+/// A buffer that replaces the content of the caches when it is written.
 pub struct CacheFlusher {
     words: Mutex<Vec<u64>>,
     level: Option<u8>,
@@ -45,12 +46,13 @@ impl CacheFlusher {
         }
     }
 
-    /// Returns the number of bytes written before each sample.
+    /// Returns the size of the buffer in bytes. The whole buffer is written before each sample.
     pub fn bytes(&self) -> usize {
         size_of_val(&**self.words())
     }
 
-    /// Returns the last cache level whose content is replaced; `None` if unknown.
+    /// Returns the number of the last cache level whose content is replaced; `None` if the caches
+    /// are unknown.
     pub fn level(&self) -> Option<u8> {
         self.level
     }
@@ -75,17 +77,17 @@ impl Default for CacheFlusher {
     }
 }
 
-/// The runs of a job for one sample.
+/// A series of runs of a job, which give one sample (one measured time).
 #[derive(Clone, Copy)]
 pub struct Series<'c> {
-    /// Number of untimed runs before the timed runs. They bring caches, tables and pages into the
-    /// state of the timed runs.
+    /// The number of untimed runs before the timed runs. The untimed runs warm the caches, enlarge
+    /// the tables and load the memory pages that the timed runs use.
     pub untimed: u32,
-    /// Number of timed runs; at least 1.
+    /// The number of timed runs; at least 1.
     pub runs: u32,
-    /// The state of caches and heap before the timed runs.
+    /// The state of the caches and of the heap before the timed runs.
     pub start: Start<'c>,
-    /// Whether the result is computed.
+    /// True if the backend must also compute the result of the job.
     pub check: bool,
     /// The clock that times the runs.
     pub clock: &'c dyn Clock,
@@ -111,7 +113,7 @@ impl<'c> Series<'c> {
         }
     }
 
-    /// Returns the series with `check` set.
+    /// Returns the series with `check` set, so that the backend also computes the result.
     pub fn with_result(self) -> Self {
         Self {
             check: true,
@@ -124,7 +126,7 @@ impl<'c> Series<'c> {
         Self { untimed, ..self }
     }
 
-    /// Brings caches and heap into the state of [`Start`].
+    /// Sets the caches and the heap to the state that the field `start` requires.
     pub fn begin(&self) {
         match self.start {
             Start::Warm => {}
@@ -284,7 +286,7 @@ fn copy_count(ns: f64, bytes: usize) -> usize {
     ((MIN_TIMED_NS / ns).ceil() as usize).min(fit)
 }
 
-/// Returns whether `bytes` is larger than the second-level cache.
+/// Returns true if `bytes` is larger than the second-level cache.
 pub fn exceeds_second_level(bytes: usize) -> bool {
     bytes > second_level_bytes()
 }

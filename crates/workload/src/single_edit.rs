@@ -1,4 +1,4 @@
-//! One edit, measured alone at many places.
+//! One kind of edit, measured at many places of a mesh.
 
 use sixfold::{Edit, MeshEdit, PolygonMesh, Representation};
 
@@ -8,31 +8,32 @@ use crate::edit_pass::{Editor, Edits, PreparedEditor};
 use crate::edit_place::{EditPlace, apply_edit, independent_faces, prepare_place};
 use crate::series::{ReusedCopies, Series};
 
-/// An edit to be done at several places of a closed triangle mesh.
+/// An edit that is done at several places of a closed triangle mesh.
 ///
-/// The places are spread over the mesh. An edit at one place does not affect the other places, so
-/// handles stay valid.
+/// The places are faces that are spread over the mesh. An edit at one place does not affect the
+/// other places, so the handles at the other places stay valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SingleEdit {
-    /// The edit.
+    /// The kind of edit.
     pub edit: Edit,
-    /// The maximum number of places.
+    /// The maximum number of places at which the edit is done.
     pub places: usize,
 }
 
 impl SingleEdit {
-    /// Sets up the edit on the structure of `backend`. Returns `None` if the structure does not
+    /// Prepares the edit for the structure of `backend`. Returns `None` if the structure does not
     /// support the edit.
     ///
     /// # Errors
     ///
-    /// Returns the reason if the structure cannot hold `polygons` or if a place cannot be prepared.
+    /// Returns the reason if the structure cannot hold `polygons`, if a face is not a triangle, or
+    /// if the edit cannot be prepared at a place.
     pub fn prepare(self, backend: &Backend, polygons: &PolygonMesh) -> Option<PreparedEditor> {
         backend.info.edits[self.edit as usize]?;
         Some((backend.edits?.prepare_single)(self, polygons))
     }
 
-    /// Returns whether the edit is one pass over the whole mesh.
+    /// Returns true if the edit is a pass over the whole mesh.
     pub const fn is_pass(self) -> bool {
         matches!(self.edit, Edit::Compact | Edit::RemoveIsolatedVertices)
     }

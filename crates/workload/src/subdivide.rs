@@ -8,10 +8,10 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use sixfold::subdivision::SubdivisionError;
 use sixfold::{Creases, Point, PolygonMesh, VertexId};
 
-use crate::backend::Backend;
+use crate::backend::TypeFunctions;
+use crate::job::{Outcome, Run};
 use crate::series::Series;
 use crate::subdivision_job::SubdivisionJob;
-use crate::timed_structure::{Outcome, Run};
 
 /// Returns the pool of the one thread that runs all subdivisions. The processor time of this thread
 /// is the time of all the work. All structures share the heap of this thread.
@@ -29,27 +29,27 @@ fn one_thread_pool() -> Result<&'static ThreadPool, String> {
 /// Set-up is not timed. In native subdivisions, the untimed runs make the tables that later runs
 /// reuse. The other methods build their structures within the timing.
 pub(crate) fn subdivide(
-    backend: &Backend,
+    functions: &TypeFunctions,
     job: SubdivisionJob,
     polygons: &PolygonMesh,
     series: &Series<'_>,
 ) -> Run {
     // Clock, caches and page faults then belong to the thread of the pool.
     let on_thread =
-        |pool: &ThreadPool| pool.install(|| set_up_and_run(backend, job, polygons, series));
+        |pool: &ThreadPool| pool.install(|| set_up_and_run(functions, job, polygons, series));
     one_thread_pool()
         .and_then(on_thread)
         .unwrap_or_else(|refusal| Run::refused(refusal, series))
 }
 
 fn set_up_and_run(
-    backend: &Backend,
+    functions: &TypeFunctions,
     job: SubdivisionJob,
     polygons: &PolygonMesh,
     series: &Series<'_>,
 ) -> Result<Run, String> {
     check_degrees(job, polygons).map_err(|error| error.to_string())?;
-    let refiner = job.prepare(backend, polygons, &Creases::default());
+    let refiner = functions.prepare_refiner(job, polygons, &Creases::default());
     let refiner = refiner.ok_or("it has no native method: it cannot split its own tables")?;
     let mut refiner = refiner.map_err(|error| error.to_string())?;
     let mut done = Ok(());
@@ -64,6 +64,7 @@ fn set_up_and_run(
         Outcome {
             checksum,
             elements: faces as u64,
+            refused: 0,
         }
     });
     Ok(Run::done(time, outcome))

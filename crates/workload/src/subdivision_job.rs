@@ -1,4 +1,4 @@
-//! Subdivision as a workload: a scheme, a way to run it, and a number of levels.
+//! A subdivision that can be timed: a scheme, a way to run the scheme, and a number of levels.
 
 use std::fmt;
 
@@ -10,16 +10,18 @@ use sixfold::{Creases, Point, PolygonMesh, Refine, Representation};
 
 use crate::backend::Backend;
 
-/// How a subdivision computes and stores the levels.
+/// A way to compute and store the levels of a subdivision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Way {
-    /// Queries the mesh for each new point, and rebuilds the structure for each level.
+    /// Queries the mesh for the points around each new point, and rebuilds the structure for each
+    /// level.
     Gather,
-    /// Makes one pass over the faces, and rebuilds the structure for each level.
+    /// Adds the contributions of each face to the new points in one pass over the faces, and
+    /// rebuilds the structure for each level.
     Scatter,
-    /// Refines the tables of the structure into newly allocated meshes.
+    /// Splits the tables of the structure, and stores each level in a newly allocated mesh.
     NativeFresh,
-    /// Refines the tables of the structure into the meshes of the previous run.
+    /// Splits the tables of the structure, and stores each level in the mesh of the previous run.
     Native,
 }
 
@@ -27,7 +29,7 @@ impl Way {
     /// All four ways.
     pub const ALL: [Self; 4] = [Self::Gather, Self::Scatter, Self::NativeFresh, Self::Native];
 
-    /// Returns the name in options: `gather`, `scatter`, `native_fresh` or `native`.
+    /// Returns the name that users write: `gather`, `scatter`, `native_fresh` or `native`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Gather => "gather",
@@ -64,9 +66,9 @@ impl Serialize for Way {
 pub struct SubdivisionJob {
     /// The scheme with its options.
     pub subdivision: Subdivision,
-    /// The way to run it.
+    /// How the levels are computed and stored.
     pub way: Way,
-    /// The number of levels. At least 1.
+    /// The number of levels; at least 1.
     pub levels: u32,
 }
 
@@ -79,13 +81,13 @@ pub trait Refiner: Send {
     /// Returns an error if the scheme or the structure refuses a level.
     fn run(&mut self) -> Result<(), SubdivisionError>;
 
-    /// Returns the number of faces of the last level and a checksum of the positions: Σ |x| + 2|y|
-    /// + 3|z|.
+    /// Returns the number of faces of the last level, and a checksum of its vertex positions. The
+    /// checksum is the sum of |x| + 2|y| + 3|z| over all positions (x, y, z).
     fn result(&self) -> (usize, f64);
 }
 
 impl SubdivisionJob {
-    /// Makes a subdivision by `scheme` with default options.
+    /// Makes a subdivision by `scheme` with the default options of the scheme.
     pub fn new(scheme: Scheme, way: Way, levels: u32) -> Self {
         Self {
             subdivision: Subdivision::new(scheme),
@@ -94,8 +96,8 @@ impl SubdivisionJob {
         }
     }
 
-    /// Sets up the subdivision on the structure of `backend`. Returns `None` if the structure does
-    /// not support the way.
+    /// Prepares the subdivision for the structure of `backend`. Returns `None` if the structure
+    /// does not support the field `way`.
     ///
     /// # Errors
     ///
@@ -107,11 +109,8 @@ impl SubdivisionJob {
         polygons: &PolygonMesh,
         creases: &Creases,
     ) -> Option<PreparedRefiner> {
-        let prepare = match self.way.method() {
-            Method::Native => backend.prepare_native?,
-            _ => backend.queries.prepare_rebuilt,
-        };
-        Some(prepare(self, polygons, creases))
+        let functions = backend.query_functions();
+        functions.prepare_refiner(self, polygons, creases)
     }
 
     fn control_mesh<M: Representation>(
@@ -125,7 +124,7 @@ impl SubdivisionJob {
     }
 }
 
-/// A subdivision that is ready to run, or the reason why it is not ready.
+/// A subdivision that is ready to run, or the reason why the subdivision cannot run.
 pub type PreparedRefiner = Result<Box<dyn Refiner>, SubdivisionError>;
 
 /// Sets up `job` on `M`. The structure is rebuilt for each level.

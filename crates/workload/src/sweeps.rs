@@ -82,7 +82,7 @@ impl SweepResult {
     }
 }
 
-/// Returns a checksum of vectors: Σ |x| + 2|y| + 3|z|.
+/// Returns a checksum of vectors: the sum of |x| + 2|y| + 3|z| over all vectors (x, y, z).
 pub fn field_sum(points: impl Iterator<Item = Point>) -> f64 {
     let weighted_sum =
         |p: Point| f64::from(p.x).abs() + 2.0 * f64::from(p.y).abs() + 3.0 * f64::from(p.z).abs();

@@ -4,103 +4,25 @@ use std::hint::black_box;
 
 use sixfold::{MeshQuery, PolygonMesh, QueryCost, Relation, Representation};
 
-use crate::backend::Backend;
+use crate::backend::TypeFunctions;
 use crate::clock::Time;
 use crate::draw::{Draw, Side};
-use crate::edit_pass::EditPass;
+use crate::edit_pass::{EditPass, PreparedEditor};
+use crate::job::{ElementSample, Job, Outcome, Run, Task, TimedBackend};
 use crate::operation::{ElementKind, Operation};
 use crate::series::{ReusedCopies, Series, Start, exceeds_second_level, time_making};
 use crate::subdivide::{patch, subdivide};
 use crate::subdivision_job::SubdivisionJob;
 use crate::sweeps::{All, Elements, Outputs, SweepResult, field_sum, sweep_kind};
 
-/// A job to run: an operation on all elements, or on a sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Job {
-    /// The operation.
-    pub operation: Operation,
-    /// The elements to run; `None` for all elements.
-    pub sample: Option<ElementSample>,
-}
-
-/// A sample of the elements. For kinds whose queries scan, it contains the first elements of the
-/// draw. For a subdivision, it contains the first faces, as a separate mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ElementSample {
-    /// For each kind, whether it is sampled. Kinds that are not sampled are visited in full.
-    pub scanned: [bool; 3],
-    /// The maximum number of elements of each sampled kind.
-    pub size: usize,
-}
-
-/// The time and the result of a run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Run {
-    /// The time of one run of the whole operation. The time of a sample is scaled up.
-    pub time: Time,
-    /// The result; `None` if it was not requested.
-    pub outcome: Option<Outcome>,
-    /// Why this structure cannot run the operation on this mesh. `time` is then meaningless.
-    pub refusal: Option<String>,
-}
-
-impl Run {
-    /// Makes the result of a run that was not refused.
-    pub fn done(time: Time, outcome: Option<Outcome>) -> Self {
-        Self {
-            time,
-            outcome,
-            refusal: None,
-        }
-    }
-
-    pub(crate) fn refused(reason: String, series: &Series<'_>) -> Self {
-        Self {
-            time: Time::zero_like(series.clock.now()),
-            outcome: None,
-            refusal: Some(reason),
-        }
-    }
-}
-
-/// The result of an operation.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outcome {
-    /// A checksum of all results. It does not depend on the order of neighbours.
-    pub checksum: f64,
-    /// The number of elements that the whole operation visits.
-    pub elements: u64,
-}
-
-/// A backend that is ready to be timed: a structure or an external program.
-pub trait TimedBackend {
-    /// Returns the name of the backend.
-    fn name(&self) -> &str;
-    /// Returns whether the backend is an external program. External programs run only whole
-    /// operations, and are never the reference for checksums.
-    fn is_external(&self) -> bool {
-        false
-    }
-    /// Returns for each relation how much of the mesh a query visits.
-    fn costs(&self) -> [QueryCost; 9];
-    /// Returns the number of input vertices that were merged with other vertices.
-    fn merged_vertices(&self) -> usize;
-    /// Returns the size of the tables in bytes.
-    fn bytes(&self) -> usize;
-    /// Builds the backend again from the same polygons at other addresses, if there is something to
-    /// build. Addresses and pages of the tables affect some times.
-    fn rebuild(&mut self) {}
-    /// Runs `job` as `series` describes. A job with a sample is run once. Returns the time of one
-    /// run.
-    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run;
-}
-
-/// A structure with its outputs and the handles of the drawn elements.
+/// A structure built from `polygons`, with storage for outputs and with handles of the drawn
+/// elements.
 pub(crate) struct TimedStructure<'a, M: Representation> {
-    backend: Backend,
+    name: &'static str,
+    functions: TypeFunctions,
     polygons: &'a PolygonMesh,
     draw: Option<&'a Draw>,
-    mesh: M,
+    pub(crate) mesh: M,
     outputs: Outputs<M>,
     drawn: DrawnHandles<M>,
     merged_vertices: usize,
@@ -108,13 +30,15 @@ pub(crate) struct TimedStructure<'a, M: Representation> {
 
 impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
     pub(crate) fn new(
-        backend: &Backend,
+        name: &'static str,
+        functions: TypeFunctions,
         polygons: &'a PolygonMesh,
         draw: Option<&'a Draw>,
         mesh: M,
     ) -> Self {
         Self {
-            backend: *backend,
+            name,
+            functions,
             polygons,
             draw,
             outputs: Outputs::for_mesh(&mesh),
@@ -130,6 +54,7 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         let outcome = built.flatten().map(|mesh| Outcome {
             checksum: (mesh.vertex_count() + mesh.face_count()) as f64,
             elements: mesh.face_count() as u64,
+            refused: 0,
         });
         Run::done(time, outcome)
     }
@@ -178,6 +103,7 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
             Outcome {
                 checksum,
                 elements: result.elements,
+                refused: 0,
             }
         });
         Run::done(time, outcome)
@@ -270,11 +196,11 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         series: &Series<'_>,
     ) -> Run {
         let Some(ElementSample { size, .. }) = sample else {
-            return subdivide(&self.backend, subdivision, self.polygons, series);
+            return subdivide(&self.functions, subdivision, self.polygons, series);
         };
         let patch = patch(self.polygons, size);
         let scale = self.polygons.face_count() as f64 / patch.face_count() as f64;
-        let run = subdivide(&self.backend, subdivision, &patch, series);
+        let run = subdivide(&self.functions, subdivision, &patch, series);
         Run {
             time: run.time.scaled(scale),
             ..run
@@ -317,13 +243,14 @@ impl<'a, M: Representation + 'static> TimedStructure<'a, M> {
         Outcome {
             checksum,
             elements: visited.round() as u64,
+            refused: 0,
         }
     }
 }
 
 impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
     fn name(&self) -> &str {
-        self.backend.name()
+        self.name
     }
 
     fn costs(&self) -> [QueryCost; 9] {
@@ -346,10 +273,12 @@ impl<M: Representation + 'static> TimedBackend for TimedStructure<'_, M> {
     }
 
     fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
-        let subdivision = job.operation.subdivision_job();
-        let run = match (job.operation, job.sample, subdivision) {
+        let Task::Operation(operation) = job.task else {
+            return Run::refused("the backend has no prepared workload".into(), series);
+        };
+        let run = match (operation, job.sample, operation.subdivision_job()) {
             (Operation::EditPass(pass), sample, _) => {
-                run_edit_pass(&self.backend, pass, self.polygons, sample, series)
+                run_edit_pass(&self.functions, pass, self.polygons, sample, series)
             }
             (_, sample, Some(subdivision)) => self.subdivide(subdivision, sample, series),
             (Operation::Build, ..) => self.build(series),
@@ -379,7 +308,7 @@ fn fill_caches<M: Representation>(mesh: &M, series: &Series<'_>) {
     }
 }
 
-/// Reads the outputs of `mesh`, if [`fill_caches`] reads the mesh.
+/// Reads the output arrays of the operations, if [`fill_caches`] reads the tables of `mesh`.
 fn fill_caches_with_outputs<M: Representation>(
     mesh: &M,
     outputs: &Outputs<M>,
@@ -423,7 +352,7 @@ fn read_tables<M: MeshQuery>(mesh: &M, scans: bool) {
 
 /// Runs a pass of edits over the mesh or over a patch.
 fn run_edit_pass(
-    backend: &Backend,
+    functions: &TypeFunctions,
     pass: EditPass,
     polygons: &PolygonMesh,
     sample: Option<ElementSample>,
@@ -431,9 +360,8 @@ fn run_edit_pass(
 ) -> Run {
     let piece = sample.map(|sample| patch(polygons, sample.size));
     let input = piece.as_ref().unwrap_or(polygons);
-    let editor = pass.prepare(backend, input);
-    let editor = editor.unwrap_or_else(|| Err("it cannot be edited".into()));
-    let mut editor = match editor {
+    let editor: Option<PreparedEditor> = functions.prepare_pass.map(|new| new(pass, input));
+    let mut editor = match editor.unwrap_or_else(|| Err("it cannot be edited".into())) {
         Ok(editor) => editor,
         Err(refusal) => return Run::refused(refusal, series),
     };
@@ -443,6 +371,7 @@ fn run_edit_pass(
         Outcome {
             checksum: edits.checksum,
             elements: edits.elements,
+            refused: edits.refused,
         }
     });
     let scale = polygons.face_count() as f64 / input.face_count().max(1) as f64;

@@ -1,4 +1,4 @@
-//! A workload: the operations of a program on a mesh, their weights and their access order.
+//! A workload: the operations of a program on a mesh, their weights, and the order of the elements.
 
 use std::fmt;
 use std::str::FromStr;
@@ -12,30 +12,30 @@ use sixfold_core::Counts;
 use crate::operation::{ElementKind, Operation};
 use crate::unknown::unknown;
 
-/// The operations that a program does on a mesh.
+/// The operations that a program performs on a mesh.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Workload {
-    /// The name in options, such as `smoothing`.
+    /// The name that users write, such as `smoothing`.
     pub name: String,
     /// One sentence that describes the program.
     pub summary: String,
-    /// The order in which elements are visited.
+    /// The order in which the workload visits the elements.
     pub access: Access,
-    /// The number of operations in one use of a mesh.
+    /// The number of operations that the program performs on one mesh.
     pub operations: Amount,
-    /// The number of rebuilds of the structure in one use of a mesh. The first build does not
-    /// count.
+    /// The number of times that the program rebuilds the structure while it uses one mesh. The
+    /// first build does not count.
     pub rebuilds: u64,
-    /// The operations with their weights. At least one weight is more than 0.
+    /// The operations with their weights. At least one weight is greater than 0.
     pub mix: Vec<Part>,
 }
 
-/// One operation of a mix.
+/// One operation of a mix, with its weight.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Part {
     /// The operation.
     pub action: Action,
-    /// The frequency of the operation, relative to the other weights.
+    /// How often the operation runs, relative to the other operations of the mix.
     pub weight: Amount,
 }
 
@@ -44,13 +44,13 @@ pub struct Part {
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, DeserializeFromStr, SerializeDisplay,
 )]
 pub enum Action {
-    /// Queries one relation of one element.
+    /// Queries one relation of one element, such as the faces at a vertex.
     Relation(Relation),
     /// Reads the position of a vertex.
     Position,
     /// Reads the positions of the neighbours of one vertex.
     NeighbourPositions,
-    /// Reads the positions of the corners of a face.
+    /// Reads the positions of the vertices of a face.
     CornerPositions,
     /// Reads the positions of the two ends of an edge.
     EndPositions,
@@ -60,35 +60,35 @@ pub enum Action {
     Edit(Edit),
     /// Runs a pass over the whole mesh.
     Pass(Operation),
-    /// Runs one subdivision step by the fastest method of the structure. The scheme is Loop for
-    /// triangle meshes and Catmull–Clark for other meshes.
+    /// Runs one subdivision step by the fastest method that the structure supports. The scheme is
+    /// Loop for triangle meshes and Catmull–Clark for other meshes.
     Subdivide,
 }
 
-/// The order in which elements are visited.
+/// The order in which a workload visits the elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Access {
-    /// In the order of the structure, repeatedly.
+    /// The order in which the structure stores the elements, repeated if necessary.
     Sequential,
-    /// In random order. Each element is visited once, then again in the same order.
+    /// A random order of all elements. The same order is repeated if necessary.
     Random,
-    /// Patch by patch. A patch contains the faces around a random face, and their vertices and
-    /// edges.
+    /// Patch by patch. A patch contains the faces around a random face, and the vertices and edges
+    /// of these faces.
     Patches,
 }
 
-/// A fixed number, or a number per element of one kind.
+/// A fixed number, or a number for each vertex, edge or face of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Amount {
     /// A fixed number.
     Number(f64),
-    /// A number for each element of this kind.
+    /// A number for each element of one kind, such as 2 for each face.
     Per(f64, ElementKind),
 }
 
 impl Amount {
-    /// Returns the amount on a mesh with `counts`.
+    /// Returns the amount for a mesh with the given numbers of vertices, edges and faces.
     pub fn value_on(self, counts: &Counts) -> f64 {
         match self {
             Self::Number(number) => number,
@@ -98,7 +98,7 @@ impl Amount {
         }
     }
 
-    /// Returns the number without the count.
+    /// Returns the written number. For “2 per face”, the number is 2.
     pub const fn number(self) -> f64 {
         match self {
             Self::Number(number) | Self::Per(number, _) => number,
@@ -147,7 +147,7 @@ impl<'de> Deserialize<'de> for Amount {
      such as `2 per face`"
 )]
 pub struct ParseAmountError {
-    /// The text.
+    /// The text that is not an amount.
     pub text: String,
 }
 
@@ -168,10 +168,10 @@ impl FromStr for Amount {
 }
 
 impl Access {
-    /// All three orders.
+    /// All three access orders.
     pub const ALL: [Self; 3] = [Self::Sequential, Self::Random, Self::Patches];
 
-    /// Returns the name in options: `sequential`, `random` or `patches`.
+    /// Returns the name that users write: `sequential`, `random` or `patches`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Sequential => "sequential",
@@ -202,7 +202,7 @@ const EDITS: [Edit; 10] = [
 ];
 
 impl Action {
-    /// Returns all actions in listing order.
+    /// Returns all actions, in the order in which lists show them.
     pub fn all() -> Vec<Self> {
         let relations = Relation::ALL.into_iter().map(Self::Relation);
         let positions = [
@@ -222,7 +222,7 @@ impl Action {
             .collect()
     }
 
-    /// Returns the name in options, such as `vertex_faces`.
+    /// Returns the name that users write, such as `vertex_faces`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Relation(relation) => relation.name(),
@@ -237,7 +237,7 @@ impl Action {
         }
     }
 
-    /// Returns the kind of element that the action works on. Returns `None` for passes and edits.
+    /// Returns the kind of element that the action visits. Returns `None` for passes and edits.
     pub const fn kind(self) -> Option<ElementKind> {
         match self {
             Self::Relation(relation) => Some(ElementKind::queried_by(relation)),
@@ -266,12 +266,12 @@ impl Action {
         }
     }
 
-    /// Returns whether the action visits the whole mesh.
+    /// Returns true if the action visits the whole mesh.
     pub const fn is_pass(self) -> bool {
         matches!(self, Self::Pass(_) | Self::Subdivide)
     }
 
-    /// Returns whether the action changes the connectivity of the mesh or of a copy.
+    /// Returns true if the action changes the connectivity of the mesh or of a copy of the mesh.
     pub const fn changes_connectivity(self) -> bool {
         match self {
             Self::Edit(_) | Self::Subdivide => true,
@@ -280,7 +280,7 @@ impl Action {
         }
     }
 
-    /// Returns whether the action needs an editable mesh.
+    /// Returns true if the action needs an editable mesh.
     pub const fn needs_editable_mesh(self) -> bool {
         matches!(
             self,
@@ -314,13 +314,13 @@ impl fmt::Display for Action {
 }
 
 impl Workload {
-    /// Returns the number of operations in one use of a mesh with `counts`. At least 1.
+    /// Returns the number of operations on one mesh with the given element counts; at least 1.
     pub fn operations_on(&self, counts: &Counts) -> f64 {
         self.operations.value_on(counts).max(1.0)
     }
 
-    /// Returns the share of each part in all operations, on a mesh with `counts`. The shares add up
-    /// to 1. If all weights are 0 on this mesh, all shares are equal.
+    /// Returns for each part its share of all operations, for a mesh with the given element counts.
+    /// The shares add up to 1. If all weights are 0 for this mesh, all shares are equal.
     pub fn shares(&self, counts: &Counts) -> Vec<f64> {
         let weights: Vec<f64> = self.mix.iter().map(|p| p.weight.value_on(counts)).collect();
         let sum: f64 = weights.iter().sum();
@@ -330,12 +330,12 @@ impl Workload {
         }
     }
 
-    /// Returns the number of rebuilds per operation.
+    /// Returns the number of rebuilds divided by the number of operations.
     pub fn rebuilds_per_operation(&self, counts: &Counts) -> f64 {
         self.rebuilds as f64 / self.operations_on(counts)
     }
 
-    /// Returns whether the workload does not change the connectivity.
+    /// Returns true if no operation of the workload changes the connectivity of the mesh.
     pub fn is_read_only(&self) -> bool {
         !self
             .mix

@@ -9,7 +9,7 @@ use toml::Spanned;
 use crate::unknown::unknown;
 use crate::workload::{Access, Action, Amount, Part, Workload};
 
-/// An error in a workload file, with its line.
+/// An error in a workload file, with the number of the line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}: {message}")]
 #[non_exhaustive]
@@ -18,7 +18,7 @@ pub struct WorkloadError {
     pub file: String,
     /// The line number, from 1.
     pub line: usize,
-    /// The error and the allowed values.
+    /// The description of the error, with the allowed values.
     pub message: String,
 }
 
@@ -28,9 +28,9 @@ pub struct WorkloadError {
 struct WorkloadFile {
     summary: Option<String>,
     access: Option<Spanned<String>>,
-    operations: Spanned<NumberOrText>,
+    operations: Option<Spanned<NumberOrText>>,
     rebuilds: Option<Spanned<i64>>,
-    mix: Spanned<Mix>,
+    mix: Option<Spanned<Mix>>,
 }
 
 #[derive(serde::Deserialize)]
@@ -71,7 +71,7 @@ impl<'de> Deserialize<'de> for Mix {
 }
 
 impl Workload {
-    /// Parses `text` into a workload called `name`. `file` is the file name in errors.
+    /// Parses the file content `text` as the workload `name`. Errors contain the file name `file`.
     ///
     /// ```
     /// let text = "operations = '20 per vertex'\n[mix]\nvertex_faces = 1\nneighbour_positions = 0.5";
@@ -97,6 +97,15 @@ impl Workload {
             )
         })?;
 
+        // The mix comes first: a wrong name in it says more than another key that is missing.
+        let mix = match &parsed.mix {
+            Some(mix) => parse_mix(mix, &at)?,
+            None => {
+                let message =
+                    "missing table `[mix]`: list operations with weights, as in `vertex_faces = 1`";
+                return Err(at(0..0, message.into()));
+            }
+        };
         let access = match &parsed.access {
             None => Access::Sequential,
             Some(word) => Access::ALL
@@ -108,15 +117,19 @@ impl Workload {
                     at(parsed.access.as_ref().map_or(0..0, Spanned::span), message)
                 })?,
         };
-        let positive = |amount: Amount| amount.number() > 0.0 && amount.number() <= MAX_AMOUNT;
-        let operations = amount(parsed.operations.get_ref());
-        let operations = operations.and_then(|amount| match positive(amount) {
-            true => Ok(amount),
-            false => Err(format!(
-                "operations must be more than 0 and at most {MAX_AMOUNT:e}, not {amount}"
-            )),
-        });
-        let operations = operations.map_err(|message| at(parsed.operations.span(), message))?;
+        let Some(operations) = &parsed.operations else {
+            let message = "missing key `operations`: give the number of operations of the program, as in `operations = \"20 per face\"`";
+            return Err(at(0..0, message.into()));
+        };
+        let span = operations.span();
+        let operations =
+            amount(operations.get_ref()).and_then(|amount| match is_positive(amount) {
+                true => Ok(amount),
+                false => Err(format!(
+                    "operations must be more than 0 and at most {MAX_AMOUNT:e}, not {amount}"
+                )),
+            });
+        let operations = operations.map_err(|message| at(span, message))?;
         let rebuilds = match &parsed.rebuilds {
             None => 0,
             Some(number) => u64::try_from(*number.get_ref()).map_err(|_| {
@@ -124,25 +137,6 @@ impl Workload {
                 at(number.span(), message)
             })?,
         };
-
-        let mut mix: Vec<Part> = Vec::new();
-        for (key, value) in &parsed.mix.get_ref().0 {
-            let action: Result<Action, _> = key.get_ref().parse();
-            let action = action.map_err(|error| at(key.span(), error.to_string()))?;
-            let weight = amount(value.get_ref()).and_then(|weight| {
-                let fine = weight.number() == 0.0 || positive(weight);
-                let wrong = || format!("a weight must be from 0 to {MAX_AMOUNT:e}, not {weight}");
-                fine.then_some(weight).ok_or_else(wrong)
-            });
-            let weight = weight.map_err(|message| at(value.span(), message))?;
-            mix.push(Part { action, weight });
-        }
-        mix.retain(|part| part.weight.number() > 0.0);
-        if mix.is_empty() {
-            let message = "the mix has no operation with a weight above 0: add one, such as \
-                           `vertex_faces = 1`";
-            return Err(at(parsed.mix.span(), message.into()));
-        }
         Ok(Self {
             name: name.into(),
             summary: parsed.summary.unwrap_or_default(),
@@ -156,6 +150,38 @@ impl Workload {
 
 /// Maximum amount. It is small enough for exact `f64` arithmetic.
 const MAX_AMOUNT: f64 = 1e15;
+
+/// Parses the parts with a weight, in file order.
+fn parse_mix(
+    mix: &Spanned<Mix>,
+    at: &dyn Fn(Range<usize>, String) -> WorkloadError,
+) -> Result<Vec<Part>, WorkloadError> {
+    let mut parts = Vec::new();
+    for (key, value) in &mix.get_ref().0 {
+        let action: Result<Action, _> = key.get_ref().parse();
+        let action = action.map_err(|error| at(key.span(), error.to_string()))?;
+        let weight = amount(value.get_ref()).and_then(|weight| {
+            let fine = weight.number() == 0.0 || is_positive(weight);
+            let wrong = || format!("a weight must be from 0 to {MAX_AMOUNT:e}, not {weight}");
+            fine.then_some(weight).ok_or_else(wrong)
+        });
+        let weight = weight.map_err(|message| at(value.span(), message))?;
+        if weight.number() > 0.0 {
+            parts.push(Part { action, weight });
+        }
+    }
+    if parts.is_empty() {
+        let message = "the mix has no operation with a weight above 0: add one, such as \
+                       `vertex_faces = 1`";
+        return Err(at(mix.span(), message.into()));
+    }
+    Ok(parts)
+}
+
+/// Returns whether an amount is more than 0 and at most the maximum.
+fn is_positive(amount: Amount) -> bool {
+    amount.number() > 0.0 && amount.number() <= MAX_AMOUNT
+}
 
 fn amount(loose: &NumberOrText) -> Result<Amount, String> {
     match loose {
@@ -279,7 +305,13 @@ mod tests {
                 "unknown field `speed`, expected one of",
             ),
             ("operations = 5\nmix = 3", 2, "a table of operations"),
-            ("operations = 5", 1, "missing field `mix`"),
+            ("operations = 5", 1, "missing table `[mix]`"),
+            ("[mix]\nposition = 1", 1, "missing key `operations`"),
+            (
+                "\n[mix]\nvertex_face = 1",
+                3,
+                "choose from vertex_vertices, ",
+            ),
             ("operations = \n[mix]\nposition = 1", 1, ""),
         ];
         for (text, line, expected) in cases {

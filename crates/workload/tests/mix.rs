@@ -2,8 +2,8 @@
 
 use sixfold::{PolygonMesh, shapes};
 use sixfold_workload::{
-    Access, Action, Backend, Draw, MachineClock, MixBackend, MixRefusal, MixRun, Operation, Route,
-    Schedule, Series, Workload, built_in, built_ins, prepare_mix, tabulate,
+    Access, Action, Backend, Draw, Job, MachineClock, MixBackend, MixRefusal, Operation, Outcome,
+    Route, Schedule, Series, Task, Workload, built_in, built_ins, prepare_mix, tabulate,
 };
 
 struct Fixture {
@@ -66,8 +66,22 @@ fn parsed(text: &str) -> Workload {
     Workload::parse("test", "test.toml", text).expect("a valid file")
 }
 
-fn counts(run: MixRun) -> [u64; 3] {
-    [run.operations, run.yielded, run.refused]
+/// Runs a task from run `first` on and returns its result.
+fn result(
+    backend: &mut Box<dyn MixBackend + '_>,
+    task: Task,
+    first: u64,
+    runs: u32,
+) -> (String, Outcome) {
+    let clock = MachineClock::start();
+    let series = Series::with_runs(runs, &clock).with_result();
+    let job = Job {
+        first,
+        ..Job::new(task)
+    };
+    let run = backend.run(&job, &series);
+    assert_eq!(run.refusal, None);
+    (backend.name().to_owned(), run.outcome.expect("checked"))
 }
 
 const QUERIES: &str = "operations = 5\naccess = 'random'\n[mix]\nvertex_vertices = 3\n\
@@ -77,7 +91,6 @@ const QUERIES: &str = "operations = 5\naccess = 'random'\n[mix]\nvertex_vertices
 
 #[test]
 fn all_structures_yield_the_same_along_a_route() {
-    let clock = MachineClock::start();
     for access in [Access::Random, Access::Patches] {
         let workload = Workload {
             access,
@@ -92,13 +105,13 @@ fn all_structures_yield_the_same_along_a_route() {
             let mut backends = fixture.backends();
             assert!(backends.len() >= 6, "{}", backends.len());
             for turn in [0, 1, 17] {
-                let runs: Vec<_> = backends
-                    .iter_mut()
-                    .map(|backend| (backend.name(), counts(backend.run(turn, 2, 1, &clock))))
-                    .collect();
-                let [operations, yielded, _] = runs[0].1;
-                assert!(operations.abs_diff(512) <= 16 && yielded > 512, "{runs:?}");
-                let same = |(_, run): &(&str, [u64; 3])| *run == runs[0].1;
+                let run = |backend| result(backend, Task::Mix, turn, 2);
+                let runs: Vec<_> = backends.iter_mut().map(run).collect();
+                let Outcome {
+                    checksum, elements, ..
+                } = runs[0].1;
+                assert!(elements == 256 && checksum > 512.0, "{runs:?}");
+                let same = |(_, outcome): &(String, Outcome)| *outcome == runs[0].1;
                 assert!(runs.iter().all(same), "{access} {runs:?}");
             }
         }
@@ -107,7 +120,6 @@ fn all_structures_yield_the_same_along_a_route() {
 
 #[test]
 fn all_structures_yield_the_same_on_all_elements_in_their_own_order() {
-    let clock = MachineClock::start();
     let workload = Workload {
         access: Access::Sequential,
         ..parsed(QUERIES)
@@ -115,25 +127,18 @@ fn all_structures_yield_the_same_on_all_elements_in_their_own_order() {
     let fixture = Fixture::new(&workload, shapes::mixed_grid(9, 7).expect("small"));
     let mut backends = fixture.backends();
     for part in fixture.schedule.elements() {
-        let runs: Vec<_> = backends
-            .iter_mut()
-            .map(|backend| {
-                let cycle = backend.cycle_length(part);
-                (
-                    backend.name(),
-                    counts(backend.run_part(part, 5, cycle, &clock)),
-                )
-            })
-            .collect();
+        let run = |backend| result(backend, Task::Part(part), 5, 3);
+        let structures = backends.iter_mut().filter(|b| !b.scans()[part]);
+        let runs: Vec<_> = structures.map(run).collect();
+        assert!(runs.len() >= 3, "{runs:?}");
         let action = fixture.schedule.parts[part].action;
-        let same = |(_, run): &(&str, [u64; 3])| *run == runs[0].1;
+        let same = |(_, outcome): &(String, Outcome)| *outcome == runs[0].1;
         assert!(runs.iter().all(same), "{action} {runs:?}");
     }
 }
 
 #[test]
 fn edits_are_accepted_repeatedly_at_the_places_that_all_accept() {
-    let clock = MachineClock::start();
     let workload = parsed(
         "operations = 5\naccess = 'patches'\n[mix]\nbisect_edge = 1\ncollapse_edge = 1\n\
          flip_edge = 2\npoke_face = 1\nremove_face = 1\nsplit_vertex = 1\nset_position = 5\n\
@@ -147,43 +152,44 @@ fn edits_are_accepted_repeatedly_at_the_places_that_all_accept() {
     for turn in [0, 1, 7, 7] {
         let runs: Vec<_> = backends
             .iter_mut()
-            .map(|backend| (backend.name(), counts(backend.run(turn, 4, 2, &clock))))
+            .map(|backend| result(backend, Task::Mix, turn, 2))
             .collect();
-        let same = |(_, run): &(&str, [u64; 3])| *run == runs[0].1;
+        let same = |(_, outcome): &(String, Outcome)| *outcome == runs[0].1;
         assert!(runs.iter().all(same), "{runs:?}");
-        assert_eq!(runs[0].1[2], 0, "refused");
+        assert!(runs[0].1.elements >= 64 && runs[0].1.checksum > 64.0);
     }
-    for part in fixture.schedule.edits() {
-        let cycle = backends[0].cycle_length(part);
-        assert!(cycle >= 1);
-        for backend in &mut backends {
-            let run = backend.run_part(part, 0, cycle, &clock);
-            assert_eq!(counts(run), [cycle, cycle, 0], "{}", backend.name());
+    // One edit on each copy; then more edits than there are places.
+    for (edits, accepted) in [(1, 1..2), (1000, 1..1000)] {
+        for part in fixture.schedule.edits() {
+            let task = Task::Part(part);
+            let runs: Vec<_> = backends
+                .iter_mut()
+                .map(|backend| result(backend, task, 0, edits))
+                .collect();
+            let same = |(_, outcome): &(String, Outcome)| *outcome == runs[0].1;
+            assert!(runs.iter().all(same), "{runs:?}");
+            assert!(accepted.contains(&(runs[0].1.checksum as u32)), "{runs:?}");
         }
     }
 }
 
 #[test]
 fn passes_over_tables_give_the_results_of_structures() {
-    let clock = MachineClock::start();
     let workload = parsed(
         "operations = 5\n[mix]\ncirculate = 1\nface_barycenter = 1\nvertex_normal = 1\n\
          vv_smooth = 1\nedge_length = 1\nboundary = 1\nff_bfs = 1\nall_queries = 1",
     );
     let fixture = Fixture::new(&workload, shapes::mixed_grid(9, 7).expect("small"));
     let mut backends = fixture.backends();
-    let names: Vec<&str> = backends.iter().map(|backend| backend.name()).collect();
-    assert_eq!(names.last(), Some(&"relation-tables"));
+    let names: Vec<String> = backends.iter().map(|b| b.name().to_owned()).collect();
+    assert_eq!(names.last().map(String::as_str), Some("relation-tables"));
     for part in fixture.schedule.passes() {
         let Action::Pass(operation) = fixture.schedule.parts[part].action else {
             panic!("only passes");
         };
         let outcomes: Vec<_> = backends
             .iter_mut()
-            .map(|backend| {
-                backend.run_pass(operation, None, &Series::with_runs(2, &clock).with_result())
-            })
-            .map(|run| run.outcome.expect("checked"))
+            .map(|backend| result(backend, Task::Operation(operation), 0, 2).1)
             .collect();
         for (outcome, name) in outcomes.iter().zip(&names) {
             let difference = (outcome.checksum - outcomes[0].checksum).abs();
@@ -218,7 +224,6 @@ fn workloads_that_change_connectivity_have_no_tables() {
 
 #[test]
 fn every_built_in_runs() {
-    let clock = MachineClock::start();
     for (name, _) in built_ins() {
         let workload = built_in(name).expect("it is built in");
         let torus = shapes::triangle_torus(30, 20).expect("small");
@@ -229,16 +234,16 @@ fn every_built_in_runs() {
             .iter_mut()
             .find(|backend| backend.name() == "half-edge");
         let half_edge = half_edge.expect("it holds tori");
-        let run = half_edge.run(0, 1, 1, &clock);
-        let on_elements = fixture.schedule.on_elements > 0.0;
-        assert_eq!(run.operations > 0, on_elements, "{name}");
+        if fixture.schedule.on_elements > 0.0 {
+            let (_, outcome) = result(half_edge, Task::Mix, 0, 1);
+            assert!(outcome.checksum > 0.0, "{name}");
+        }
         for part in fixture.schedule.passes() {
             let operation = match fixture.schedule.parts[part].action {
                 Action::Pass(operation) => operation,
                 _ => Operation::Loop(sixfold::subdivision::Method::Native),
             };
-            let run = half_edge.run_pass(operation, None, &Series::once(&clock).with_result());
-            assert!(run.outcome.is_some(), "{name}: {:?}", run.refusal);
+            result(half_edge, Task::Operation(operation), 0, 1);
         }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use kuva::plot::{ColorMap, Heatmap};
 use kuva::render::plots::Plot;
 use sixfold_study::numbers::times;
-use sixfold_study::{Collection, Operation, Report};
+use sixfold_study::{Operation, Pool, Report};
 
 use crate::colours::GRID_COLOUR;
 use crate::figure::{Figure, Table, base_layout, ratio_ticks, render_svg};
@@ -24,21 +24,21 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
     figure(&title, &columns, &ratio, id_prefix, command)
 }
 
-pub(super) fn pooled(collection: &Collection, command: &str) -> Option<Figure> {
+pub(super) fn pooled(pool: &Pool, command: &str) -> Option<Figure> {
     let mut columns: Vec<&str> = Vec::new();
-    for row in &collection.pooled {
+    for row in pool.all() {
         if !columns.contains(&row.backend.as_str()) {
             columns.push(&row.backend);
         }
     }
     let ratio = |operation: Operation, column: &str| {
-        let mut rows = collection.pooled.iter();
+        let mut rows = pool.all().iter();
         let row = rows.find(|row| row.operation == operation && row.backend == column);
         row.map(|row| row.ratio_to_best)
     };
     let title = format!(
         "Every operation on every structure: geometric mean over {} meshes",
-        collection.studies.len()
+        pool.groups.first().map_or(0, |all| all.meshes.len())
     );
     figure(&title, &columns, &ratio, "", command)
 }

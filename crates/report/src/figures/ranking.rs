@@ -2,10 +2,8 @@
 
 use kuva::plot::BarPlot;
 use kuva::render::plots::Plot;
-use sixfold_study::numbers::duration;
-use sixfold_study::{
-    Collection, FIRST_TIME_SHOWN, Operation, PickReport, Report, ResultRow, Standing,
-};
+use sixfold_study::numbers::{counted, duration};
+use sixfold_study::{FIRST_TIME_SHOWN, Operation, PickReport, Pool, Report, ResultRow, Standing};
 
 use super::{Row, per_unit};
 use crate::colours::{INTERVAL_COLOUR, column_colour};
@@ -44,12 +42,9 @@ fn first_time(row: &ResultRow) -> Option<f64> {
     (ratio.max(ratio.recip()) > FIRST_TIME_SHOWN).then_some(each)
 }
 
-pub(super) fn pooled(collection: &Collection, command: &str) -> Vec<Figure> {
+pub(super) fn pooled(pool: &Pool, command: &str) -> Vec<Figure> {
     let figures = Operation::ALL.into_iter().filter_map(|operation| {
-        let rows = collection
-            .pooled
-            .iter()
-            .filter(|row| row.operation == operation);
+        let rows = pool.all().iter().filter(|row| row.operation == operation);
         let rows = rows.map(|row| Row {
             backend: &row.backend,
             ratio: row.ratio_to_best,
@@ -57,8 +52,11 @@ pub(super) fn pooled(collection: &Collection, command: &str) -> Vec<Figure> {
             ns: row.ns_per_element,
             first_ns: None,
             note: format!(
-                "measured on {} meshes: single fastest on {}, tied for the fastest on {}",
-                row.meshes, row.best, row.tied
+                "mean over {}: single fastest on {}, tied for the fastest on {}, estimated on {}",
+                counted(row.meshes, "mesh", "meshes"),
+                row.best,
+                row.tied,
+                row.estimated
             ),
         });
         operation_figure(operation, rows.collect(), operation.unit(), command)

@@ -19,43 +19,42 @@ pub(crate) const ORDERS_EXAMPLES: &str = "Examples:
 Orders: given (as in the file), shuffled (vertices and faces in random order), morton (along a
 space-filling curve), breadth-first (as a walk from face to face visits the elements).
 
-Each round measures every pair of a backend and an order, as in `study`. The report first compares
-the four orders of each backend. It then compares the backends, each in its best order. One backend
-in the order `given` is measured twice in each round: the difference between its two times is the
-noise.
+Each round measures every backend in every order. The report first compares the four orders of each
+backend. Then the report compares the backends, each in its best order. In each round, one backend
+is measured twice in the order `given`. The difference between these two times is the noise.
 
 Exit codes: 0 success; 1 results differ between backends or orders (a fault in Sixfold); 2 wrong
 usage or unusable input; 3 none of the selected backends can hold the mesh, or too little memory;
 4 interrupted, finished results are kept.";
 
-/// Measure how the order of a mesh in memory affects each backend.
+/// Measure how the order of vertices and faces in memory affects the times.
 ///
-/// Measures the mesh in four orders. Shows which order is best, how large its effect is, and
-/// whether the effect is larger than that of the backend.
+/// Measures the mesh in four orders. Shows which order is best. Also shows whether the choice of
+/// the order changes the times more than the choice of the backend.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Orders {
     /// The mesh (- for standard input); without it, a built-in mesh of 20,000 triangles
     #[arg(value_name = "MESH.obj")]
     pub(crate) mesh: Option<PathBuf>,
-    /// Only these backends, by name
+    /// Use only these data structures (backends), by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
-    /// These operations, by name, instead of the default selection
+    /// Run these operations instead of the default operations
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = operation)]
     pub(crate) operations: Vec<Operation>,
-    /// Time to measure: 20s, 500ms, 2m
+    /// Total time to measure, such as 20s, 500ms or 2m
     #[arg(long, value_name = "TIME", default_value = "25s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Duration,
-    /// Seed of the order `shuffled` and of the sampled elements
+    /// Seed of the order `shuffled` and of random samples
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) memory: MemoryState,
-    /// Cut every polygon into a fan of triangles first
+    /// First cut every polygon into a fan of triangles
     #[arg(long)]
     pub(crate) triangulate: bool,
-    /// Write everything as JSON (- for standard output)
+    /// Write all results as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
 }
@@ -73,18 +72,18 @@ study, divided by its median in the first study. A figure counts as slower if th
 A figure counts as faster if the same conditions hold for the inverse of the ratio. With fewer than
 three samples there is no interval; the ratio must then be above 2.
 
-The default of --noise is for shared virtual machines, because their speed changes between studies.
-A dedicated machine allows a lower value. To find this value, compare two studies of the same
+The default of --noise is chosen for shared virtual machines, whose speed changes between studies. A
+dedicated machine allows a lower value. To find a suitable value, compare two studies of the same
 program.
 
 Exit codes: 0 success; 1 a figure is slower and --fail-if-slower is given; 2 wrong usage, or a file
 that is incomplete, is not a study, or has another schema version.";
 
-/// Show the differences between two studies that exceed the noise.
+/// Compare two studies, and show the differences that exceed the noise.
 ///
 /// Compares studies of one mesh on two machines, with two compilers or of two commits. Shows which
-/// figures are faster or slower, which backend is now the fastest, and how machines and programs
-/// differ.
+/// figures are faster or slower, which backend is the fastest in the second study, and how machines
+/// and programs differ.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment, after_help = COMPARE_EXAMPLES)]
 pub(crate) struct Compare {
@@ -94,19 +93,19 @@ pub(crate) struct Compare {
     /// The second study, as JSON
     #[arg(value_name = "AFTER.json")]
     pub(crate) after: PathBuf,
-    /// Divide each ratio by the median ratio of all figures first
+    /// First divide each ratio by the median of all ratios
     #[arg(long)]
     pub(crate) relative: bool,
     /// Ignore ratios below this threshold
     #[arg(long, value_name = "RATIO", default_value_t = sixfold_study::DRIFT, value_parser = noise)]
     pub(crate) noise: f64,
-    /// Show all figures, not only those that changed
+    /// Show all figures, including unchanged figures
     #[arg(long)]
     pub(crate) all: bool,
     /// End with exit code 1 if a figure is slower
     #[arg(long)]
     pub(crate) fail_if_slower: bool,
-    /// Write everything as JSON (- for standard output)
+    /// Write all results as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
 }
@@ -118,23 +117,22 @@ pub(crate) const GROWTH_EXAMPLES: &str = "Examples:
   sixfold growth --shape blobs --order shuffled --to 4000000 --budget 5m
   sixfold growth --shape grid --from 500 --to 50000 --steps 5 --json growth.json
 
-At each size, every round measures all backends, as in `study`. The total time is proportional to a
-power of the number of faces. The table shows this power with its standard error. The power is the
-slope of a straight line through the logarithms of the number of faces and of the total time. If the
-power is 1, the time per element does not depend on the size. If the power is 2, each element takes
-a scan of all faces. Two more lines show the power only for the sizes that fit into the last cache,
-and only for the larger sizes. Operations that scan all faces are measured on a sample of the
-elements.
+At each size, every round measures all backends. The time of a run is nearly proportional to F^p,
+where F is the number of faces. The table shows the power p with its standard error. The power p is
+the slope of a straight line through the logarithms of F and of the time. If p is 1, the time per
+element does not depend on the size. If p is 2, each element takes a scan of all faces. Two more
+lines show p for the sizes that fit into the last cache, and p for the larger sizes. Operations that
+scan all faces are measured on a sample of the elements.
 
 Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold); 2 wrong usage;
 3 none of the selected backends can hold the shape, or too little memory; 4 interrupted, finished
 sizes are kept.";
 
-/// Measure how the cost of each backend grows with the size of the mesh.
+/// Measure how the times grow with the size of the mesh.
 ///
-/// Measures one shape in sizes that grow by a constant factor. Shows nanoseconds per element, the
-/// power of the number of faces to which the time is proportional, and the sizes at which the
-/// structures outgrow each cache of this machine.
+/// Measures one shape in sizes that grow by a constant factor. Shows the nanoseconds per element,
+/// and how the time grows with the number of faces. Also shows the sizes at which the structures
+/// outgrow each cache of this machine.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Growth {
@@ -150,24 +148,24 @@ pub(crate) struct Growth {
     /// Number of sizes
     #[arg(long, value_name = "N", default_value_t = GrowthSettings::default().steps, value_parser = count, allow_hyphen_values = true)]
     pub(crate) steps: usize,
-    /// Only these backends, by name
+    /// Use only these data structures (backends), by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
-    /// These operations, by name, instead of the default selection
+    /// Run these operations instead of the default operations
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = operation)]
     pub(crate) operations: Vec<Operation>,
     /// Order: given, shuffled, morton, breadth-first
     #[arg(long, value_name = "ORDER", default_value = "given")]
     pub(crate) order: Order,
-    /// Time to measure all sizes: 60s, 500ms, 2m
+    /// Total time to measure, such as 60s, 500ms or 2m
     #[arg(long, value_name = "TIME", default_value = "60s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Duration,
-    /// Seed of the order `shuffled` and of the sampled elements
+    /// Seed of the order `shuffled` and of random samples
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) memory: MemoryState,
-    /// Write everything as JSON (- for standard output)
+    /// Write all results as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
 }

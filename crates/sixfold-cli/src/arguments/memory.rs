@@ -15,9 +15,9 @@ The same bytes are counted in three ways. The three counts must agree to the byt
   formula   computed from the numbers of elements of the mesh and the layout of the tables
   tables    the size of the tables, including spare capacity
   counted   the allocated bytes after building, minus the allocated bytes before building
-The peak is the maximum of the allocated bytes during building. It does not include the polygons
-from which the structure is built. All figures leave out the overhead of the allocator for each
-block, and the few dozen bytes of the structure that are not on the heap.
+The peak is the maximum of the allocated bytes during building. The peak does not include the
+polygons from which the structure is built. All figures leave out the overhead of the allocator for
+each block, and the few dozen bytes of the structure that are not on the heap.
 
 A word is 4 bytes: an index or a coordinate. The literature counts words per vertex of a large
 closed triangle mesh, with 2 faces and 3 edges per vertex: polygon-soup 18, indexed-face-set 9,
@@ -27,22 +27,22 @@ face-vertex has 17 words: each list of faces also stores its length, so that the
 Exit codes: 0 success; 1 the three counts differ (a fault in Sixfold); 2 wrong usage or unusable
 input; 3 none of the selected backends can hold the mesh; 4 interrupted.";
 
-/// Show the memory of each backend, counted in three ways that must agree.
+/// Count the memory of each data structure in three ways that must agree.
 ///
-/// Builds one backend after the other and measures no times.
+/// Builds one data structure after the other. This command measures no times.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Memory {
     /// The mesh (- for standard input); without it, a built-in mesh of 20,000 triangles
     #[arg(value_name = "MESH")]
     pub(crate) mesh: Option<PathBuf>,
-    /// Only these backends, by name
+    /// Use only these data structures (backends), by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
-    /// Cut every polygon into a fan of triangles first
+    /// First cut every polygon into a fan of triangles
     #[arg(long)]
     pub(crate) triangulate: bool,
-    /// Write everything as JSON (- for standard output)
+    /// Write all results as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
 }

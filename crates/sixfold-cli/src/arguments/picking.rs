@@ -14,31 +14,32 @@ const PICK_EXAMPLES: &str = "Examples:
   sixfold pick --workload mine.toml --needs edit,non-manifold scans/*.obj --json -
   sixfold workloads --show smoothing > mine.toml
 
-Each round runs the whole mix of the workload on every backend that qualifies, in the access order
-of the workload. Times of single operations are not added up. If the mix contains only queries, flat
-tables of the relations in the mix are one more candidate. The ranking does not include the time to
-build. The column `pays after` compares each backend with an indexed face set that exists already:
-it shows the number of operations after which building the backend has paid off. The results of
-several meshes are combined by geometric means.
+The mix of a workload is the list of its operations with their weights. Each round runs the whole
+mix on every backend that has the required abilities. All operations of the mix run in one loop,
+because operations affect each other's times through the caches. If the mix contains only queries,
+flat tables of the queried relations are measured as another backend. The ranking does not include
+the time to build a backend. The column `pays after` shows after how many operations building the
+backend saves time, compared with an indexed face set that is already built. The ratios of several
+meshes are combined by geometric means.
 
 Needs: edit, non-manifold, polygons, mixed-orientation, isolated-vertices, coincident-vertices,
 refine.
 
 Exit codes: 0 success; 1 no backend qualifies, or results differ between backends (a fault in
-Sixfold); 2 wrong usage, unusable input, or a budget too small to measure anything; 4 interrupted,
-finished results are kept.";
+Sixfold); 2 wrong usage or unusable input; 4 interrupted, finished results are kept.";
 
 const WORKLOADS_EXAMPLES: &str = "Examples:
   sixfold workloads
   sixfold workloads --show smoothing > mine.toml     a file to edit
-  sixfold workloads --operations                     what a mix may contain
+  sixfold workloads --operations                     operations that a workload may contain
 
 Exit codes: 0 success; 2 wrong usage.";
 
-/// Find the backend that fits a mesh and a workload.
+/// Find the data structure that fits a mesh and a workload.
 ///
-/// Runs the workload on each backend and ranks them. Shows the reasons, the confidence intervals,
-/// the memory of each, and after how many operations building it pays off.
+/// Runs the workload on each backend and ranks the backends. Shows reasons and confidence
+/// intervals. Shows for each backend the memory, and after how many operations building the backend
+/// pays off.
 #[derive(Debug, Args)]
 #[command(after_help = PICK_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Pick {
@@ -48,28 +49,28 @@ pub(crate) struct Pick {
     /// A built-in workload, or your own file
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "smoothing")]
     pub(crate) workload: String,
-    /// Memory limit of the structure: 2GiB, 500MB, 1000000
+    /// Memory limit for the structure, such as 2GiB or 500MB
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     pub(crate) max_memory: Option<u64>,
-    /// Required abilities, from the list below
+    /// Abilities that the structure must have, from the list below
     #[arg(long, value_name = "NEED,…", value_delimiter = ',', value_parser = need)]
     pub(crate) needs: Vec<Need>,
-    /// Only these backends, by name
+    /// Use only these data structures (backends), by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
-    /// Total time to measure: 20s, 500ms, 2m
+    /// Total time to measure, such as 20s, 500ms or 2m
     #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Duration,
-    /// Seed of the random orders
+    /// Seed of all random orders
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
-    /// Freed pages: kept (by the process) or system
+    /// Freed memory: kept (by the process) or system
     #[arg(long, value_name = "POLICY", default_value = "kept")]
     pub(crate) heap: Policy,
-    /// Cut every polygon into a fan of triangles first
+    /// First cut every polygon into a fan of triangles
     #[arg(long)]
     pub(crate) triangulate: bool,
-    /// Write the answer as JSON (- for standard output)
+    /// Write the result as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
 }
@@ -78,10 +79,10 @@ pub(crate) struct Pick {
 #[derive(Debug, Args)]
 #[command(after_help = WORKLOADS_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Workloads {
-    /// Print the file of a built-in workload, to edit it
+    /// Print the file of a built-in workload
     #[arg(long, value_name = "NAME", conflicts_with_all = ["operations", "json"])]
     pub(crate) show: Option<String>,
-    /// List what a mix may contain
+    /// List the operations that a workload may contain
     #[arg(long, conflicts_with = "json")]
     pub(crate) operations: bool,
     /// Write the workloads as JSON (- for standard output)

@@ -27,8 +27,9 @@ written.";
 
 /// Make a mesh coarser: collapse the edges with the least error first.
 ///
-/// If the mesh is a manifold, the result is the same on every backend that can hold it, up to the
-/// order of vertices and faces; on polygon-soup only if no two vertices move to the same position.
+/// If the mesh is a manifold, all backends that can hold the mesh give the same result, up to the
+/// order of vertices and faces. The result of polygon-soup differs if two vertices move to the same
+/// position.
 #[derive(Debug, Args)]
 #[command(after_help = DECIMATE_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Decimate {
@@ -96,10 +97,11 @@ Exit codes: 0 success, even if --max-faces stopped the splitting; 2 wrong usage 
 3 the mesh has faces that are not triangles, the backend cannot hold the mesh, or the edge length
 needs too many faces; 4 interrupted, nothing written.";
 
-/// Remesh with edges of one length and nearly equilateral triangles.
+/// Replace the triangles of a mesh by nearly equilateral triangles of one size.
 ///
-/// If the mesh is a manifold, the result is the same on every backend that can hold it, up to the
-/// order of vertices and faces; on polygon-soup only if no two vertices move to the same position.
+/// If the mesh is a manifold, all backends that can hold the mesh give the same result, up to the
+/// order of vertices and faces. The result of polygon-soup differs if two vertices move to the same
+/// position.
 #[derive(Debug, Args)]
 #[command(after_help = REMESH_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Remesh {
@@ -129,7 +131,7 @@ const EDITS_EXAMPLES: &str = "Examples:
 
 Exit codes: 0 success; 2 wrong usage.";
 
-/// List the edits of each backend, and how much of the mesh they visit.
+/// List the edits of each data structure, and how much of the mesh each edit visits.
 #[derive(Debug, Args)]
 #[command(after_help = EDITS_EXAMPLES)]
 pub(crate) struct Edits {

@@ -86,7 +86,7 @@ Exit codes: 0 success; 2 wrong usage or unusable input; 3 the mesh cannot be ori
 
 /// Cut polygons into triangles.
 ///
-/// Adds no vertex. Triangles keep the orientation of their polygons.
+/// The mesh keeps its vertices. Triangles have the orientation of their polygons.
 #[derive(Debug, Args)]
 #[command(after_help = TRIANGULATE_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Triangulate {
@@ -99,7 +99,7 @@ pub(crate) struct Triangulate {
     /// ears (for any simple polygon) or fan (for convex polygons)
     #[arg(long, value_name = "NAME", default_value = "ears", value_parser = triangulation)]
     pub(crate) method: Triangulation,
-    /// Flip faces so that all agree: majority (like most faces) or outward
+    /// Flip faces to one orientation: majority (of the faces) or outward
     #[arg(long, value_name = "RULE", value_parser = facing)]
     pub(crate) orient: Option<Facing>,
 }

@@ -16,15 +16,15 @@ const EXAMPLES: &str = "Examples:
 Schemes: catmull-clark, loop, sqrt3, butterfly, doo-sabin, midpoint, bilinear.
 
 A crease file has lines `edge a b sharpness` and `corner v sharpness`. Vertices are numbered from 0.
-A sharpness is a number that is not negative, or inf. The sign # begins a comment. A sharpness below
-10 decreases by one per level. A sharpness of 10 or more never decreases. Creases in the OBJ file
+A sharpness is inf or a number that is at least 0. The sign # begins a comment. A sharpness below 10
+decreases by one per level. A sharpness of 10 or more never decreases. Creases in the OBJ file
 (`t crease`, `t corner`) are also used. `sixfold schemes` lists the methods of each backend.
 
 --select refines only some faces, and requires --scheme midpoint:
   faces:FILE              the faces that a file lists (numbers from 0)
   box:X0,Y0,Z0,X1,Y1,Z1   the faces that touch a box
   angle:DEGREES           the faces at an edge that bends by more than an angle
-Faces beside the refined faces are halved, so that there are no gaps.
+Faces next to the refined faces are cut in half, so that the mesh has no gaps.
 
 Exit codes: 0 success; 2 wrong usage or unusable input; 3 the scheme or the backend does not support
 the mesh or an option, or the result is too large; 4 interrupted, nothing written.";
@@ -35,19 +35,19 @@ const SCHEMES_EXAMPLES: &str = "Examples:
 
 Exit codes: 0 success; 2 wrong usage.";
 
-/// List the subdivision schemes, and which backends support them.
+/// List the subdivision schemes, and the data structures that support each scheme.
 #[derive(Debug, Args)]
 #[command(after_help = SCHEMES_EXAMPLES)]
 pub(crate) struct Schemes {
-    /// Write both tables as JSON (- for standard output)
+    /// Write the schemes and the supported methods as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
 }
 
 /// Refine a mesh with a subdivision scheme.
 ///
-/// First prints the size of the result and the memory that it takes; refuses if less memory is
-/// free.
+/// First prints the size of the result and the memory that the result takes. Refuses to refine the
+/// mesh if less memory is free.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Subdivide {
@@ -171,8 +171,8 @@ fn loop_weights(text: &str) -> Result<LoopWeights, String> {
     parse_name(&LoopWeights::ALL, LoopWeights::name, text)
 }
 
-/// Parses a number of levels. The limit is above the number of times that a 32-bit coordinate can
-/// be halved.
+/// Parses a number of levels. The limit is larger than the number of times that a 32-bit coordinate
+/// can be halved.
 fn levels(text: &str) -> Result<u32, String> {
     const MAX_LEVELS: u32 = 1000;
     match text.trim().parse() {

@@ -14,15 +14,15 @@ const WHY_EXAMPLES: &str = "Examples:
   sixfold why bunny.obj --relations vertex_faces           counts, times, and a sentence for each
   sixfold why bunny.obj --backends half-edge,face-vertex --budget 1m --json why.json
 
-Counts are exact and the same on every machine. Every row that a query reads is counted. The counts
-assume that each table begins at the start of a cache line of 64 bytes. If a query scans all faces,
-or reads more than 256 rows on average, only 16 evenly spaced elements are queried. The sign ~ marks
-such rows of the table.
+Counts are exact and the same on every machine. Every table row that a query reads is counted. The
+counts assume that each table begins at the start of a cache line of 64 bytes. If a query scans all
+faces, or reads more than 256 rows on average, only 16 evenly spaced elements are queried. In the
+output, the sign ~ marks counts from only 16 elements.
 
 Times are measured as in `sixfold study`. A sweep queries all elements once, in order. The speed of
 memory is measured first, in buffers of growing size. The time of a sweep is compared with the speed
 of the largest buffer that is not larger than the memory that the sweep touches. With --relations,
-the command also describes each row in a sentence.
+the command also describes each result in a sentence.
 
 Relations: vertex_vertices, vertex_edges, vertex_faces, edge_vertices, edge_edges, edge_faces,
            face_vertices, face_edges, face_faces
@@ -31,32 +31,33 @@ Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold); 2
 unusable input; 3 none of the selected backends can hold the mesh; 4 interrupted, finished results
 are kept.";
 
-/// Explain the time of queries by the memory that they read.
+/// Explain the time of queries by the memory that the queries read.
 ///
-/// Shows for each relation and backend the rows, cache lines and bytes that a query reads, the
-/// bytes that a sweep over all elements moves, the measured time, and what bounds it.
+/// Shows for each relation and backend how many rows, cache lines and bytes a query reads, and how
+/// many bytes a pass over all elements moves. Also shows the measured time, and what limits the
+/// speed.
 #[derive(Debug, Args)]
 #[command(after_help = WHY_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Why {
     /// The mesh (- for standard input); without it, a built-in mesh of 20,000 triangles
     #[arg(value_name = "MESH")]
     pub(crate) mesh: Option<PathBuf>,
-    /// Only these backends, by name
+    /// Use only these data structures (backends), by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
-    /// Only these relations, by name
+    /// Query only these relations, by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = relation)]
     pub(crate) relations: Vec<Relation>,
-    /// Cut every polygon into a fan of triangles first
+    /// First cut every polygon into a fan of triangles
     #[arg(long)]
     pub(crate) triangulate: bool,
-    /// Only count what is read; measure no times
+    /// Count the reads only, and measure no times
     #[arg(long)]
     pub(crate) counts_only: bool,
-    /// Time to measure: 20s, 500ms, 2m
+    /// Total time to measure, such as 20s, 500ms or 2m
     #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration, allow_hyphen_values = true, conflicts_with = "counts_only")]
     pub(crate) budget: Duration,
-    /// Write everything as JSON (- for standard output)
+    /// Write all results as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
 }

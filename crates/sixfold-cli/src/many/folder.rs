@@ -151,6 +151,20 @@ impl Folder {
         Ok(Self { path: path.into() })
     }
 
+    /// Removes the records of failures, and the folder if it is empty then. Leaves everything that
+    /// this program did not write.
+    pub(super) fn remove_failures(&self) {
+        for (file, text) in self.study_files().unwrap_or_default() {
+            let record = serde_json::from_str::<StudyRecord>(&text);
+            if record.is_ok_and(|record| record.study.is_none()) {
+                fs::remove_file(file).ok();
+            }
+        }
+        // Only folders that are empty now are removed.
+        fs::remove_dir(self.studies()).ok();
+        fs::remove_dir(&self.path).ok();
+    }
+
     fn studies(&self) -> PathBuf {
         self.path.join("studies")
     }

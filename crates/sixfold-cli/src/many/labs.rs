@@ -8,6 +8,7 @@ use sixfold_study::{GrowthSettings, Labs, Operation, Results, Settings, StudyMes
 
 use super::folder::Folder;
 use crate::failure::Failure;
+use crate::progress::Bar;
 use crate::text::{TextOutput, hanging_indent, print_stderr, sanitize};
 use crate::{growth, orders, why};
 
@@ -75,7 +76,7 @@ pub(super) struct LabRunner<'a> {
     pub(super) study_mesh: &'a StudyMesh,
     pub(super) settings: &'a Settings,
     pub(super) folder: &'a Folder,
-    /// Whether an earlier run finished the study. The folder then has results of the same mesh and
+    /// True if an earlier run finished the study. The folder then has results of the same mesh and
     /// settings.
     pub(super) resumed: bool,
     pub(super) stop: &'a AtomicBool,
@@ -85,7 +86,7 @@ impl LabRunner<'_> {
     /// Measures the labs that are not in the folder. A lab that fails is reported and left out.
     pub(super) fn run(&self, selected: &[Lab]) -> Result<Labs, Failure> {
         let mut labs = Labs::default();
-        for &lab in selected {
+        for (i, &lab) in selected.iter().enumerate() {
             let saved = match self.resumed {
                 true => self.folder.load_lab(lab.name()),
                 false => None,
@@ -95,7 +96,7 @@ impl LabRunner<'_> {
             }
             let results = match saved {
                 Some(saved) => Ok(Some(saved)),
-                None => self.measure(lab),
+                None => self.measure(lab, &format!("{} of {}: ", i + 2, selected.len() + 1)),
             };
             match results {
                 Ok(Some(results)) => {
@@ -118,7 +119,8 @@ impl LabRunner<'_> {
         Ok(labs)
     }
 
-    fn measure(&self, lab: Lab) -> Result<Option<Results>, Failure> {
+    /// Measures a lab. `position` is shown before the progress.
+    fn measure(&self, lab: Lab, position: &str) -> Result<Option<Results>, Failure> {
         let Settings {
             backends,
             operations,
@@ -139,12 +141,17 @@ impl LabRunner<'_> {
         };
         Ok(match lab {
             Lab::Orders => {
-                let orders = orders::measure(self.study_mesh, &settings(), self.stop)?;
+                let orders = orders::measure(
+                    self.study_mesh,
+                    &settings(),
+                    self.stop,
+                    &Bar::after(position),
+                )?;
                 Some(Results::Orders(orders.into()))
             }
             Lab::Growth => {
                 let settings = GrowthSettings::from_study(settings());
-                let growth = growth::measure(&settings, self.stop)?;
+                let growth = growth::measure(&settings, self.stop, &Bar::after(position))?;
                 Some(Results::Growth(growth.into()))
             }
             Lab::Why => {
@@ -160,7 +167,13 @@ impl LabRunner<'_> {
                 if settings.relations.is_empty() && !operations.is_empty() {
                     return Ok(None);
                 }
-                let why = why::measure(self.study_mesh, settings, Some(*budget), self.stop)?;
+                let why = why::measure(
+                    self.study_mesh,
+                    settings,
+                    Some(*budget),
+                    self.stop,
+                    &Bar::after(position),
+                )?;
                 Some(Results::Why(why.into()))
             }
         })

@@ -7,10 +7,8 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use sixfold::io::Format;
-use sixfold_study::numbers::counted;
 
 use crate::failure::Failure;
-use crate::text::print_stderr;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Mesh {
@@ -18,9 +16,14 @@ pub(crate) struct Mesh {
     pub(crate) name: String,
     /// The file; `None` for the built-in mesh.
     pub(crate) path: Option<PathBuf>,
+    /// Why there is no mesh at this place: a folder that cannot be listed, or has no mesh.
+    pub(crate) problem: Option<String>,
 }
 
-/// The part of a study that one of n jobs does: every n-th mesh.
+/// Endings of mesh files that folders can contain and that are not read.
+const OTHER_FORMATS: [&str; 7] = ["3ds", "3mf", "blend", "dae", "fbx", "usd", "x3d"];
+
+/// A shard: every n-th mesh, starting with the i-th mesh. One of n jobs studies the shard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Shard {
     index: usize,
@@ -51,50 +54,99 @@ impl FromStr for Shard {
     }
 }
 
-/// Returns the meshes in `places`, without duplicates and sorted by name. Searches folders and
-/// their subfolders for mesh files, and prints a note about other files. If `places` is empty,
-/// returns the built-in mesh.
-pub(crate) fn find_meshes(places: &[PathBuf]) -> Result<Vec<Mesh>, Failure> {
+/// Returns the meshes in `places`: files, and all meshes in folders and their subfolders, sorted
+/// by name. Each file occurs once. Without any place, returns the built-in mesh. Calls `note` with a
+/// message on mesh files of other formats.
+///
+/// # Errors
+///
+/// Returns an error if no place has a mesh.
+pub(crate) fn find_meshes(
+    places: &[PathBuf],
+    note: &mut dyn FnMut(&str),
+) -> Result<Vec<Mesh>, Failure> {
     let mut meshes: Vec<Mesh> = Vec::new();
     if places.is_empty() {
-        let name = crate::load::built_in().name;
-        meshes.push(Mesh { name, path: None });
+        meshes.push(Mesh {
+            name: crate::load::built_in().name,
+            path: None,
+            problem: None,
+        });
     }
     let mut seen = BTreeSet::new();
     for place in places {
-        let mut files = Vec::new();
-        if place.is_dir() {
-            let mut skipped = BTreeMap::new();
-            let listed = list_mesh_files(place, &mut files, &mut skipped);
-            listed.map_err(|(folder, cause)| {
-                Failure::usage(format!(
-                    "{}: cannot be listed ({cause}): check the permissions of this directory",
-                    folder.display()
-                ))
-            })?;
-            print_skipped(place, &skipped);
-            if files.is_empty() {
-                return Err(Failure::usage(format!(
-                    "{}: no mesh file in this directory or its subdirectories ({}): name \
-                     another directory",
-                    place.display(),
-                    Format::EXTENSIONS
-                        .map(|ending| format!(".{ending}"))
-                        .join(", ")
-                )));
+        let files = match place.is_dir() {
+            true => files_in_folder(place, note),
+            false => Ok(vec![place.clone()]),
+        };
+        match files {
+            Ok(files) => {
+                for path in files {
+                    if seen.insert(fs::canonicalize(&path).unwrap_or_else(|_| path.clone())) {
+                        meshes.push(Mesh {
+                            name: name_of(&path),
+                            path: Some(path),
+                            problem: None,
+                        });
+                    }
+                }
             }
-        } else {
-            files.push(place.clone());
-        }
-        for path in files {
-            if seen.insert(fs::canonicalize(&path).unwrap_or_else(|_| path.clone())) {
-                let name = name_of(&path);
-                let path = Some(path);
-                meshes.push(Mesh { name, path });
-            }
+            Err(problem) => meshes.push(Mesh {
+                name: name_of(place),
+                path: None,
+                problem: Some(problem),
+            }),
         }
     }
-    Ok(meshes)
+    match &meshes[..] {
+        [first, others @ ..] if others.iter().all(|mesh| mesh.problem.is_some()) => {
+            match &first.problem {
+                Some(problem) => Err(Failure::usage(format!("{}: {problem}", first.name))),
+                None => Ok(meshes),
+            }
+        }
+        _ => Ok(meshes),
+    }
+}
+
+/// Returns the mesh files in a folder and its subfolders, at least one, or why there is none.
+fn files_in_folder(folder: &Path, note: &mut dyn FnMut(&str)) -> Result<Vec<PathBuf>, String> {
+    let mut found = Found::default();
+    list_files(folder, &mut found).map_err(|(at, cause)| match at == folder {
+        true => format!("cannot be listed: {cause}"),
+        false => format!("{} cannot be listed: {cause}", at.display()),
+    })?;
+    let others: Vec<String> = found
+        .others
+        .iter()
+        .map(|(ending, count)| format!("{count} .{ending}"))
+        .collect();
+    let others = others.join(", ");
+    if found.files.is_empty() {
+        let but = match others.is_empty() {
+            true => String::new(),
+            false => format!(", but {others}: convert them to OBJ or PLY"),
+        };
+        return Err(format!(
+            "no mesh file in this directory or its subdirectories{but}"
+        ));
+    }
+    if !others.is_empty() {
+        note(&format!(
+            "note: {}: files of other formats are left out ({others}): convert them to OBJ or PLY",
+            folder.display()
+        ));
+    }
+    Ok(found.files)
+}
+
+/// The files of a folder.
+#[derive(Default)]
+struct Found {
+    /// The mesh files.
+    files: Vec<PathBuf>,
+    /// Number of mesh files of other formats, by ending.
+    others: BTreeMap<String, usize>,
 }
 
 /// Returns a path as text. Bytes that are not UTF-8 are escaped, so that different paths have
@@ -104,31 +156,10 @@ fn name_of(path: &Path) -> String {
         .map_or_else(|| format!("{path:?}"), ToOwned::to_owned)
 }
 
-/// Prints how many files of a folder were skipped, by the endings of their names.
-fn print_skipped(folder: &Path, skipped: &BTreeMap<String, usize>) {
-    let count: usize = skipped.values().sum();
-    if count > 0 {
-        let endings: Vec<String> = skipped
-            .iter()
-            .map(|(ending, count)| format!("{count} {ending}"))
-            .collect();
-        print_stderr(&format!(
-            "note: {}: skipped {}, whose names do not end in a mesh format: {}",
-            folder.display(),
-            counted(count, "file", "files"),
-            endings.join(", ")
-        ));
-    }
-}
-
-/// Lists all mesh files in `folder` and its subfolders, sorted by name, and counts other files by
-/// the endings of their names. Ignores hidden files, which other programs leave behind. Does not
-/// follow links to folders, because they may form a cycle.
-fn list_mesh_files(
-    folder: &Path,
-    files: &mut Vec<PathBuf>,
-    skipped: &mut BTreeMap<String, usize>,
-) -> Result<(), (PathBuf, io::Error)> {
+/// Lists all mesh files in `folder` and its subfolders, sorted by name, and counts those of other
+/// formats. Skips hidden files, which other programs leave behind. Does not follow links to folders,
+/// because they may form a cycle.
+fn list_files(folder: &Path, found: &mut Found) -> Result<(), (PathBuf, io::Error)> {
     let failed = |cause| (folder.to_owned(), cause);
     let entries = fs::read_dir(folder).map_err(failed)?;
     let mut paths = Vec::new();
@@ -147,16 +178,15 @@ fn list_mesh_files(
     paths.sort();
     for (path, is_folder) in paths {
         if is_folder {
-            list_mesh_files(&path, files, skipped)?;
-        } else if Format::from_path(&path).is_some() {
-            files.push(path);
-        } else {
-            let ending = path
-                .extension()
-                .map(|ending| format!(".{}", ending.to_string_lossy()));
-            *skipped
-                .entry(ending.unwrap_or_else(|| "without an ending".into()))
-                .or_insert(0) += 1;
+            list_files(&path, found)?;
+            continue;
+        }
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        let ending = ending.unwrap_or_default().to_ascii_lowercase();
+        if Format::from_path(&path).is_some() {
+            found.files.push(path);
+        } else if OTHER_FORMATS.contains(&&*ending) {
+            *found.others.entry(ending).or_default() += 1;
         }
     }
     Ok(())

@@ -2,6 +2,7 @@ use sixfold::{Facts, PolygonMesh, structure_infos};
 use sixfold_study::{Control, Environment, MeshReport, SCHEMA};
 
 use super::*;
+use crate::text::WIDTH;
 
 fn backend(name: &str, bytes: usize) -> BackendReport {
     BackendReport {
@@ -134,4 +135,22 @@ fn best_is_bold_on_a_terminal_and_marked_everywhere() {
     assert!(!plain.contains('\u{1b}') && bold.contains('\u{1b}'));
     assert!(plain.contains('*') && bold.contains('*'));
     assert!(plain.lines().all(|line| line.chars().count() <= WIDTH));
+}
+
+#[test]
+fn each_reason_for_a_missing_figure_is_said_once() {
+    let notes = left_out_notes(&report()).join("\n");
+    assert_eq!(
+        notes.matches("it cannot split its own tables").count(),
+        1,
+        "{notes}"
+    );
+    assert!(
+        notes.contains("catmull_clark_native, loop_native on "),
+        "{notes}"
+    );
+    assert!(
+        notes.contains("was not run: one run would take about 1.40 s"),
+        "{notes}"
+    );
 }

@@ -81,9 +81,9 @@ impl Limits {
 
 fn reason_text(reason: NoLimit) -> &'static str {
     match reason {
-        NoLimit::SemiSharp => "the sharpness there is not yet 0: increase --levels",
-        NoLimit::NotAllQuads => "a face there is not a quad: increase --levels by 1",
-        NoLimit::Dart => "a crease ends there, and the rules have no limit for this case",
-        _ => "the rules have no limit there",
+        NoLimit::SemiSharp => "the sharpness at the vertex is not yet 0: increase --levels",
+        NoLimit::NotAllQuads => "a face at the vertex is not a quad: increase --levels by 1",
+        NoLimit::Dart => "a crease ends at the vertex, and the rules have no limit for this case",
+        _ => "the rules have no limit at the vertex",
     }
 }

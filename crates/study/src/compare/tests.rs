@@ -94,12 +94,9 @@ fn a_known_change_is_found_and_nothing_else() {
         "{row:?}"
     );
     assert_eq!(changes.overall, Some(1.0));
-    assert_eq!(
-        (&changes.environment[..], &changes.meshes),
-        (&[][..], &None)
-    );
+    assert_eq!(changes.environment, []);
     assert!(
-        changes.sentences[0].contains("1 are faster in the second study, 1 are slower"),
+        changes.sentences[0].contains("1 is faster in the second study, 1 is slower"),
         "{:?}",
         changes.sentences
     );
@@ -217,4 +214,21 @@ fn without_samples_only_ratios_above_two_count() {
     let found: Vec<_> = changes.changed().map(|row| row.backend.as_str()).collect();
     assert_eq!(found, ["half-edge"; 3]);
     assert!(changes.rows.iter().all(|row| row.ci_low.is_none()));
+}
+
+#[test]
+fn studies_of_other_meshes_are_refused() {
+    let before = report(|_, _| 1.0);
+    let mut after = before.clone();
+    after.mesh.name = "cube".into();
+    // The name alone makes no difference: the file may have moved.
+    compare(&before, &after, CompareSettings::default()).expect("one mesh");
+    after.mesh.facts.faces = 12;
+    let error = compare(&before, &after, CompareSettings::default()).expect_err("two meshes");
+    assert!(
+        error
+            .to_string()
+            .contains("the first is of ball (12 vertices, 20 faces), the second of cube"),
+        "{error}"
+    );
 }

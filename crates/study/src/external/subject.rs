@@ -83,8 +83,11 @@ impl TimedBackend for ExternalSubject<'_> {
         if job.sample.is_some() {
             return refused("an external program cannot time a sample of the elements".into());
         }
+        let Some(operation) = job.task.operation() else {
+            return refused("it cannot run workloads".into());
+        };
         let request = |times: u32| Request {
-            run: job.operation.name(),
+            run: operation.name(),
             times,
         };
         if series.untimed > 0
@@ -96,7 +99,11 @@ impl TimedBackend for ExternalSubject<'_> {
         match self.ask(&request(series.runs), clock) {
             Ok((response, Some(time))) => {
                 let found = response.checksum.zip(response.elements);
-                let outcome = found.map(|(checksum, elements)| Outcome { checksum, elements });
+                let outcome = found.map(|(checksum, elements)| Outcome {
+                    checksum,
+                    elements,
+                    refused: 0,
+                });
                 Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
             }
             Ok((response, None)) => refused(sanitize(&response.refused.unwrap_or_default())),

@@ -1,21 +1,21 @@
-//! Divides a budget among the sizes of the growth lab.
+//! Divides a time budget among the sizes of one shape.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use crate::budget::Budget;
 
 /// The part of the budget for each size. It is proportional to the square root of the number of
 /// faces, because small sizes need more runs.
 pub(super) struct SizeBudgets {
     weights: Vec<f64>,
-    start: Instant,
-    budget: Duration,
+    budget: Budget,
 }
 
 impl SizeBudgets {
     pub(super) fn new(sizes: &[usize], budget: Duration) -> Self {
         Self {
             weights: sizes.iter().map(|&faces| (faces as f64).sqrt()).collect(),
-            start: Instant::now(),
-            budget,
+            budget: Budget::start(budget),
         }
     }
 
@@ -26,13 +26,13 @@ impl SizeBudgets {
     }
 
     pub(super) fn left(&self) -> Duration {
-        self.budget.saturating_sub(self.start.elapsed())
+        self.budget.left()
     }
 
     /// Returns the time for one size, as a part of the time left.
     pub(super) fn budget(&self, step: usize) -> Duration {
         let rest: f64 = self.weights[step..].iter().sum();
-        self.left().mul_f64((self.weights[step] / rest).min(1.0))
+        self.budget.share(self.weights[step], rest)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Fits of lines to the times, and the sizes at which layouts outgrow caches.
+//! Lines fitted to the times, and the sizes at which structures become larger than caches.
 
 use serde::{Deserialize, Serialize};
 use sixfold_core::Counts;
@@ -9,35 +9,38 @@ use crate::slope::Slope;
 use sixfold_workload::Cache;
 use sixfold_workload::{Backend, Operation};
 
-/// The growth of the time of one operation on one backend with the number of faces.
+/// How the time of one operation on one backend grows with the number of faces.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Fit {
-    /// The backend.
+    /// The name of the backend, such as `half-edge`.
     pub backend: String,
-    /// The operation.
+    /// The measured operation, such as `vertex_normal`.
     pub operation: Operation,
-    /// Whether the structure scans all faces for each element.
+    /// True if the operation scans all faces of the mesh for each element on this backend.
     pub scans: bool,
-    /// Line through all sizes; `None` if there is only one size.
+    /// The line fitted to the times at all sizes; `None` with fewer than two sizes.
     pub all: Option<Slope>,
-    /// Line through the sizes at which the structure fits into the last cache.
+    /// The line fitted to the times at the sizes for which the structure fits into the last-level
+    /// cache. `None` with fewer than two sizes of this kind, or if the caches are unknown.
     pub in_cache: Option<Slope>,
-    /// Line through the sizes at which the structure does not fit into the last cache.
+    /// The line fitted to the times at the sizes for which the structure is larger than the
+    /// last-level cache. `None` with fewer than two sizes of this kind, or if the caches are
+    /// unknown.
     pub beyond: Option<Slope>,
-    /// Number of sizes with an estimated time.
+    /// Number of sizes at which the time is an estimate, not a measurement.
     pub estimated: usize,
 }
 
-/// The size at which a structure outgrows a cache.
+/// The number of faces at which a structure becomes larger than a cache.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub struct CacheLimit {
-    /// The backend.
+    /// The name of the backend, such as `half-edge`.
     pub backend: String,
     /// Level of the cache.
     pub level: u8,
-    /// Bytes of the cache.
+    /// Size of the cache, in bytes.
     pub cache_bytes: u64,
-    /// Minimum number of faces at which the layout is larger than the cache.
+    /// The smallest number of faces at which the structure is larger than the cache.
     pub faces: usize,
 }
 

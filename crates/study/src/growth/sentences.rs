@@ -1,4 +1,4 @@
-//! Sentences about the results of the growth lab.
+//! Sentences about the results of one shape in several sizes.
 
 use super::{CacheLimit, Fit, SizeReport};
 use crate::numbers::{grouped, times};
@@ -84,7 +84,7 @@ fn exponents(fits: &[Fit], caches: &[Cache]) -> Vec<String> {
     if last_level_bytes(caches).is_some() && !fits.iter().any(reliable) {
         sentences.push(
             "Fewer than three sizes are larger than the last cache, but a reliable line needs at \
-             least three: use a larger --to or more --steps."
+             least three sizes: use a larger --to or more --steps."
                 .into(),
         );
     }
@@ -191,7 +191,7 @@ fn noise(sizes: &[SizeReport]) -> Option<String> {
     let most = controls.iter().map(|c| c.typical).fold(1.0, f64::max);
     Some(format!(
         "Noise: {name} was measured twice at every size. At the noisiest size, the typical ratio \
-         of the two columns is {}.",
+         of the two times is {}.",
         times(most)
     ))
 }
@@ -210,7 +210,7 @@ fn uncertain_figures(sizes: &[SizeReport], fits: &[Fit]) -> Vec<String> {
     let estimated: usize = fits.iter().map(|fit| fit.estimated).sum();
     if estimated > 0 {
         sentences.push(format!(
-            "{} of the fitted times are estimates, because measured runs would exceed the budget.",
+            "{} of the fitted times are estimates, because real runs would exceed the budget.",
             grouped(estimated)
         ));
     }

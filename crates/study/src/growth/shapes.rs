@@ -1,4 +1,4 @@
-//! Shapes of any size: the parameters for an approximate number of faces.
+//! Shapes that can be built with approximately any number of faces.
 
 use sixfold::PolygonMesh;
 use sixfold::shapes::{ShapeError, generator};
@@ -6,15 +6,15 @@ use sixfold::shapes::{ShapeError, generator};
 /// A shape that can be made with approximately any number of faces.
 #[derive(Clone, Copy, Debug)]
 pub struct ScalableShape {
-    /// Name, the same as in `generate`.
+    /// Name of the shape, as in the command `sixfold generate`.
     pub name: &'static str,
-    /// Description in one line.
+    /// Description of the shape in one line.
     pub summary: &'static str,
     parameters_for: fn(f64) -> Vec<(&'static str, f64)>,
 }
 
 impl ScalableShape {
-    /// Returns the shape called `name`.
+    /// Returns the shape called `name`; `None` if the name is unknown.
     pub fn from_name(name: &str) -> Option<&'static Self> {
         SCALABLE_SHAPES.iter().find(|shape| shape.name == name)
     }
@@ -32,15 +32,16 @@ impl ScalableShape {
     ///
     /// # Panics
     ///
-    /// Panics if `name` is not the name of a generator. A test checks this for all of
-    /// [`SCALABLE_SHAPES`].
+    /// Panics if the field `name` is not the name of a shape generator. The names in
+    /// [`SCALABLE_SHAPES`] are all valid.
     pub fn make(&self, faces: usize) -> Result<PolygonMesh, ShapeError> {
         let generator = generator(self.name).expect("a generator");
         generator.build(&self.parameters(faces))
     }
 }
 
-/// All shapes for sweeps; the first is the default.
+/// All shapes that can be built with approximately any number of faces. The first shape is the
+/// default.
 pub const SCALABLE_SHAPES: &[ScalableShape] = &[
     ScalableShape {
         name: "geodesic",

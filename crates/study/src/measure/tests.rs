@@ -132,7 +132,9 @@ fn run(
         stop: &stop,
         progress: &mut |_| (),
     };
-    let entries = measurement.measure(&[VV, Operation::Circulate, Operation::FfBfs]);
+    let operations = [VV, Operation::Circulate, Operation::FfBfs];
+    let entries = entries_of(measurement.subjects.len(), &operations);
+    let entries = measurement.measure(entries);
     (entries, Duration::from_nanos(machine.ns() as u64))
 }
 
@@ -201,16 +203,34 @@ fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget()
 
 #[test]
 fn untimed_runs_last_as_long_as_a_sample_may_and_are_at_least_one() {
-    assert_eq!(untimed_runs(VV, 1_000.0, 2e6, false), 2_000);
-    assert_eq!(untimed_runs(VV, 5e6, 2e6, false), 1);
-    assert_eq!(untimed_runs(VV, 11e6, 2e6, false), 0);
-    assert_eq!(untimed_runs(VV, 10e6, 2e6, false), 1);
+    assert_eq!(
+        untimed_runs(Task::Operation(VV), 1_000.0, 2e6, false),
+        2_000
+    );
+    assert_eq!(untimed_runs(Task::Operation(VV), 5e6, 2e6, false), 1);
+    assert_eq!(untimed_runs(Task::Operation(VV), 11e6, 2e6, false), 0);
+    assert_eq!(untimed_runs(Task::Operation(VV), 10e6, 2e6, false), 1);
     let grows: Operation = "flip_all".parse().expect("an operation");
-    assert_eq!(untimed_runs(grows, 11e6, 2e6, false), 1);
-    assert_eq!(untimed_runs(VV, 0.0, 1e12, false), 10_000_000);
-    assert_eq!(untimed_runs(VV, 1e6, 2e6, true), 4, "large");
-    assert_eq!(untimed_runs(VV, 8e6, 2e6, true), 2, "at most 20 ms");
-    assert_eq!(untimed_runs(VV, 1e5, 2e6, true), 20, "as a small one");
+    assert_eq!(untimed_runs(Task::Operation(grows), 11e6, 2e6, false), 1);
+    assert_eq!(
+        untimed_runs(Task::Operation(VV), 0.0, 1e12, false),
+        10_000_000
+    );
+    assert_eq!(
+        untimed_runs(Task::Operation(VV), 1e6, 2e6, true),
+        4,
+        "large"
+    );
+    assert_eq!(
+        untimed_runs(Task::Operation(VV), 8e6, 2e6, true),
+        2,
+        "at most 20 ms"
+    );
+    assert_eq!(
+        untimed_runs(Task::Operation(VV), 1e5, 2e6, true),
+        20,
+        "as a small one"
+    );
 }
 
 #[test]
@@ -288,6 +308,39 @@ fn scans_are_sampled_or_estimated_to_fit_the_budget() {
 }
 
 #[test]
+fn long_runs_of_other_backends_leave_time_for_scans() {
+    let machine = SimulatedMachine::default();
+    let subject = |ns_per_element: f64, cost: QueryCost| {
+        Box::new(Synthetic {
+            machine: machine.clone(),
+            ns_per_element,
+            elements: 10_000,
+            costs: [cost; 9],
+            most_run: Rc::default(),
+            placement: Placement::default(),
+        }) as Box<dyn TimedBackend>
+    };
+    // The three first runs of the local backend take almost half of the budget.
+    let mut subjects = [
+        subject(60_000.0, QueryCost::Local),
+        subject(1_000.0, QueryCost::Scan),
+    ];
+    let (entries, _) = run(
+        &machine,
+        &mut subjects,
+        Duration::from_secs(4),
+        false,
+        false,
+    );
+    assert!(entries.iter().all(|entry| entry.refusal.is_none()));
+    assert!(
+        entries
+            .iter()
+            .all(|entry| !entry.times().is_empty() || entry.estimate.is_some())
+    );
+}
+
+#[test]
 fn a_skewed_mesh_is_sampled_on_every_structure() {
     let costs = [200_000.0; 3];
     let budget = Duration::from_secs(2);
@@ -301,9 +354,20 @@ fn a_skewed_mesh_is_sampled_on_every_structure() {
     let (entries, _) = measure_all(&[7.0], false, budget, false, true);
     assert!(entries.iter().all(|e| e.job.sample.is_none()));
     assert!(entries.iter().all(|e| e.samples.len() >= 5));
-    // On a mesh that is not skewed, no operation is sampled, so the run exceeds the budget.
-    let (_, elapsed) = measure_all(&costs, false, budget, false, false);
-    assert!(elapsed > budget * 5, "{elapsed:?}");
+    // On a mesh that is not skewed, no operation is sampled. Three runs of the first operation
+    // exceed the budget, so the other operations are left out.
+    let (entries, elapsed) = measure_all(&costs, false, budget, false, false);
+    assert!(
+        elapsed > budget * 5 / 2 && elapsed < budget * 4,
+        "{elapsed:?}"
+    );
+    assert!(entries[..3].iter().all(|e| e.times().len() == 1));
+    let left_out = |e: &Entry| {
+        e.refusal
+            .as_ref()
+            .is_some_and(|r| r.contains("budget ended"))
+    };
+    assert!(entries[3..].iter().all(left_out));
 }
 
 #[test]
@@ -326,7 +390,8 @@ fn a_stopped_study_has_no_times_and_a_tiny_budget_has_the_warm_up() {
     let entries = measured(&[7.0, 9.0], false, Duration::from_secs(1), true);
     assert!(entries.iter().all(|e| e.times().is_empty()));
     let entries = measured(&[7.0, 9.0], false, Duration::from_nanos(1), false);
-    assert!(entries.iter().all(|e| e.times().len() == 1));
+    assert!(entries[..2].iter().all(|e| e.times().len() == 1));
+    assert!(entries[2..].iter().all(|e| e.refusal.is_some()));
 }
 
 #[test]
@@ -356,7 +421,11 @@ fn a_long_subdivision_is_only_estimated_unless_requested_by_name() {
             stop: &stop,
             progress: &mut |_| (),
         };
-        let entries = measurement.measure(&[Operation::CatmullClark(Method::Gather)]);
+        let entries = entries_of(
+            measurement.subjects.len(),
+            &[Operation::CatmullClark(Method::Gather)],
+        );
+        let entries = measurement.measure(entries);
         (entries[0].clone(), most_run.get())
     };
     // A run takes 1 ms, so it takes part in rounds.

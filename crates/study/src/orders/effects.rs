@@ -1,4 +1,4 @@
-//! Effects of order and structure on times, as ratios with intervals.
+//! Effects of the element order and of the structure on times, as ratios with confidence intervals.
 
 use serde::{Deserialize, Serialize};
 use sixfold::shapes::Order;
@@ -25,14 +25,15 @@ impl OrderSamples {
     }
 }
 
-/// The ratio of two times, with its interval.
+/// The time of one measurement divided by the time of another measurement, with a 95 % confidence
+/// interval.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Factor {
-    /// The median over the rounds.
+    /// The median of the ratio over the rounds of the measurement.
     pub ratio: f64,
-    /// Lower end of the 95 % interval; `None` with fewer than three rounds.
+    /// Lower end of the 95 % confidence interval of `ratio`; `None` with fewer than three rounds.
     pub ci_low: Option<f64>,
-    /// Upper end of the 95 % interval.
+    /// Upper end of the 95 % confidence interval of `ratio`.
     pub ci_high: Option<f64>,
 }
 
@@ -60,65 +61,69 @@ impl Factor {
     }
 }
 
-/// The effect of the order on one structure.
+/// The effect of the element order on the time of one operation on one structure.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct OrderEffect {
-    /// The structure.
+    /// The name of the structure.
     pub backend: String,
-    /// Whether the structure scans all faces for each element.
+    /// True if the operation scans all faces of the mesh for each element on this structure.
     pub scans: bool,
-    /// The order with the smallest median.
+    /// The order with the smallest median time.
     pub best: Order,
-    /// The order with the largest median.
+    /// The order with the largest median time.
     pub worst: Order,
-    /// Time of the worst order divided by the time of the best order.
+    /// Time in the order `worst` divided by the time in the order `best`.
     pub worst_to_best: Factor,
-    /// Time of the original order divided by the time of the best order.
+    /// Time in the original order of the mesh divided by the time in the order `best`. `None` if
+    /// the original order was not measured.
     pub given_to_best: Option<Factor>,
-    /// Whether `worst_to_best` is larger than the noise.
+    /// True if `worst_to_best` is larger than the noise and the interval of `worst_to_best` lies
+    /// above 1.
     pub matters: bool,
 }
 
-/// The effect of the structure. The structures that do not scan are compared, each in its best
-/// order.
+/// The effect of the structure on the time of one operation. Each structure takes part in the order
+/// in which it is fastest. Structures that scan all faces for each element are left out.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct StructureEffect {
-    /// The structure with the smallest median.
+    /// The name of the structure with the smallest median time.
     pub fastest: String,
-    /// The best order of the fastest structure.
+    /// The order with the smallest median time on the fastest structure.
     pub fastest_order: Order,
-    /// The structure with the largest median.
+    /// The name of the structure with the largest median time.
     pub slowest: String,
-    /// The best order of the slowest structure.
+    /// The order with the smallest median time on the slowest structure.
     pub slowest_order: Order,
-    /// Time of the slowest structure divided by the time of the fastest.
+    /// Time of the slowest structure divided by the time of the fastest structure.
     pub slowest_to_fastest: Factor,
-    /// Whether `slowest_to_fastest` is larger than the noise.
+    /// True if `slowest_to_fastest` is larger than the noise and the interval of
+    /// `slowest_to_fastest` lies above 1.
     pub matters: bool,
 }
 
-/// The larger of the two effects.
+/// Whether the element order or the structure has the larger effect on a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Larger {
-    /// On every structure that does not scan, the order has the larger effect.
+    /// The order has the larger effect on every structure that does not scan all faces.
     Order,
-    /// On every structure that does not scan, the structure has the larger effect.
+    /// The structure has the larger effect on every structure that does not scan all faces.
     Structure,
-    /// The answer differs between structures, or the intervals overlap.
+    /// The answer differs between structures, or the confidence intervals overlap.
     Depends,
 }
 
-/// The effects of order and structure on one operation.
+/// The effects of the element order and of the structure on the time of one operation.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Comparison {
-    /// The operation.
+    /// The measured operation, such as `vertex_normal`.
     pub operation: Operation,
-    /// Maximum ratio that is noise.
+    /// Ratios of times up to this value count as noise.
     pub noise: f64,
-    /// Effect of the order on each structure with samples in at least two orders.
+    /// Effect of the order on each structure that was measured in at least two orders.
     pub orders: Vec<OrderEffect>,
-    /// Effect of the structure; `None` if fewer than two structures remain without scans.
+    /// Effect of the structure; `None` if fewer than two structures do the operation without
+    /// scanning all faces.
     pub structures: Option<StructureEffect>,
     /// The larger effect; `None` if an effect is unknown.
     pub larger: Option<Larger>,

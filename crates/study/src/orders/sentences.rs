@@ -1,4 +1,4 @@
-//! Sentences about the results of the order lab.
+//! Sentences about the results of one mesh in several orders.
 
 use sixfold::shapes::Order;
 
@@ -20,9 +20,9 @@ pub(super) fn sentences(
     sentences.extend(control.map(|control| {
         let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
         format!(
-            "Noise: {} in the given order was measured twice. The two columns typically differ by \
+            "Noise: {} in the given order was measured twice. The two times typically differ by \
              {}, at most by {}. For each operation, results that differ by no more than these two \
-             columns are tied.",
+             times are tied.",
             control.backend,
             percent(control.typical),
             percent(control.worst),
@@ -92,13 +92,15 @@ fn given_order(comparisons: &[Comparison]) -> Option<String> {
     let all = given.len();
     if within_noise == all {
         return Some(
-            "In all pairs, the given order is as fast as the best order, within the noise.".into(),
+            "In all pairs of a structure and an operation, the given order is as fast as the best \
+             order, within the noise."
+                .into(),
         );
     }
     Some(format!(
-        "In {within_noise} of {all} pairs, the given order is as fast as the best order, within \
-         the noise. In the worst case ({} on {}), the given order takes {} the time of the best \
-         order ({}).",
+        "In {within_noise} of {all} pairs of a structure and an operation, the given order is as \
+         fast as the best order, within the noise. In the worst case ({} on {}), the given order \
+         takes {} the time of the best order ({}).",
         comparison.operation,
         effect.backend,
         times(*most),
@@ -180,9 +182,9 @@ fn verdict(comparisons: &[Comparison]) -> Option<String> {
     let (order, structure) = (count(Larger::Order), count(Larger::Structure));
     (known.len() > 1).then(|| {
         format!(
-            "Overall, {} operations were compared. The effect of the order is larger in {order}, \
-             and the effect of the structure in {structure}. In {}, the larger effect depends on \
-             the structure, or is uncertain.",
+            "Overall, {} operations were compared. The effect of the order is larger in {order} \
+             operations, and the effect of the structure is larger in {structure}. In {} \
+             operations, the larger effect depends on the structure, or is uncertain.",
             known.len(),
             count(Larger::Depends)
         )

@@ -1,86 +1,87 @@
 //! A measured backend of a pick, with its samples.
 
+use crate::pick::choice::position;
 use sixfold::Edit;
 use sixfold_workload::{
-    Action, Backend, Clock, EditPlaceError, MixBackend, Schedule, Series, Time,
+    Action, Backend, Clock, EditPlaceError, Job, MixBackend, Operation, Schedule, Series,
+    TimedBackend,
 };
 
-/// A structure or relation tables, with samples.
+use crate::pick::report::Excluded;
+
+/// A structure or relation tables, ready for the mix.
 pub(crate) struct PickBackend<'a> {
     pub(crate) mixer: Box<dyn MixBackend + 'a>,
     /// The structure; `None` for relation tables.
     pub(crate) structure: Option<Backend>,
     /// The structure from which relation tables were made; `None` for a structure.
     pub(crate) made_from: Option<&'static str>,
-    /// Whether this is the control: a backend that is measured a second time.
-    pub(crate) control: bool,
-    /// For each part, the plan for timing a pass.
-    pub(crate) passes: Vec<PassPlan>,
-    /// For each part, the number of operations in one sample of that part alone.
-    pub(crate) part_operations: Vec<u64>,
-    /// For each round, the time of one operation of the mix, with rebuilding.
-    pub(crate) samples: Vec<(u32, Time)>,
-    /// For each sample, the larger of the slowdowns before and after the sample.
-    pub(crate) slowdowns: Vec<f64>,
-    pub(crate) builds: Vec<Time>,
-    /// The building time on fresh pages divided by the time directly afterwards on kept pages.
-    pub(crate) first_builds: Vec<f64>,
-    /// For each part, the times of one operation, timed alone, in nanoseconds.
-    pub(crate) parts: Vec<Vec<f64>>,
-    /// For each part, the number of results on all elements, or the checksum of a pass. `None` if
-    /// not all elements were queried.
-    pub(crate) results: Vec<Option<f64>>,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct PassPlan {
-    /// The operation of the pass on this backend; `None` if the part is not a pass.
-    pub(crate) operation: Option<sixfold_workload::Operation>,
-    /// Number of consecutive runs in one sample.
-    pub(crate) runs: u32,
-    /// The sampled elements of a pass that scans.
-    pub(crate) sample: Option<sixfold_workload::ElementSample>,
-    /// The estimated time of a pass whose run would exceed the budget.
-    pub(crate) estimate: Option<Time>,
+/// The properties of a backend that the evaluation needs. Its index is that of the measured
+/// subject.
+pub(crate) struct Candidate {
+    pub(crate) name: String,
+    pub(crate) structure: Option<Backend>,
+    pub(crate) made_from: Option<&'static str>,
+    /// The paths of the types that a program needs to use the backend.
+    pub(crate) type_paths: Vec<&'static str>,
+    /// By part of the mix: whether one operation scans all faces.
+    pub(crate) scans: Vec<bool>,
+    pub(crate) bytes: usize,
+}
+
+impl Candidate {
+    /// Returns whether some part scans all faces. If so, the parts are timed one by one: the part
+    /// that scans dominates the others, and the state of the caches hardly matters.
+    pub(crate) fn scans(&self) -> bool {
+        self.scans.contains(&true)
+    }
 }
 
 impl<'a> PickBackend<'a> {
-    pub(crate) fn new(mixer: Box<dyn MixBackend + 'a>) -> Self {
-        let parts = mixer.scans().len();
+    pub(crate) fn new(mixer: Box<dyn MixBackend + 'a>, structure: &Backend) -> Self {
         Self {
             mixer,
-            structure: None,
-            made_from: None,
-            control: false,
-            passes: vec![PassPlan::default(); parts],
-            part_operations: vec![0; parts],
-            samples: Vec::new(),
-            slowdowns: Vec::new(),
-            builds: Vec::new(),
-            first_builds: Vec::new(),
-            parts: vec![Vec::new(); parts],
-            results: vec![None; parts],
-        }
-    }
-
-    pub(crate) fn with_structure(mixer: Box<dyn MixBackend + 'a>, structure: &Backend) -> Self {
-        Self {
             structure: Some(*structure),
-            ..Self::new(mixer)
+            made_from: None,
         }
     }
 
-    pub(crate) fn control(mixer: Box<dyn MixBackend + 'a>) -> Self {
-        Self {
-            control: true,
-            ..Self::new(mixer)
-        }
-    }
-
-    /// Returns whether some part scans all faces. The parts are then timed one by one.
+    /// Returns whether some part of the mix scans all faces.
     pub(crate) fn scans(&self) -> bool {
         self.mixer.scans().contains(&true)
     }
+
+    /// Splits the properties from the backend to measure.
+    pub(crate) fn split(self) -> (Candidate, Box<dyn TimedBackend + 'a>) {
+        let candidate = Candidate {
+            name: self.mixer.name().to_owned(),
+            structure: self.structure,
+            made_from: self.made_from,
+            type_paths: self.mixer.type_paths(),
+            scans: self.mixer.scans(),
+            bytes: self.mixer.bytes(),
+        };
+        (candidate, self.mixer)
+    }
+}
+
+/// Removes the backends that are larger than `most` bytes, and records them in `excluded`.
+pub(crate) fn exclude_large(
+    backends: &mut Vec<PickBackend<'_>>,
+    most: Option<u64>,
+    excluded: &mut Vec<Excluded>,
+) {
+    let Some(most) = most else { return };
+    backends.retain(|backend| {
+        let bytes = backend.mixer.bytes() as u64;
+        if bytes > most {
+            let reason = super::report::over_memory_limit(bytes, most);
+            excluded.push(Excluded::new(backend.mixer.name(), reason));
+        }
+        bytes <= most
+    });
 }
 
 /// Tries the edits at their places on all backends. Keeps only the places that all backends accept,
@@ -122,32 +123,48 @@ pub(crate) fn keep_common_places(
     Ok(())
 }
 
-/// Returns tables of the relations that the workload queries. The tables come from the structure
-/// that builds them fastest. Returns `None` if the workload has no such relations.
+/// How much longer than the fastest structure the chosen structure may take to make tables.
+const TABLES_EQUAL_UP_TO: f64 = 2.0;
+/// Maximum number of times that each structure makes tables again before one structure is chosen.
+const TABLE_ROUNDS: usize = 5;
+/// Maximum time of these rounds, in nanoseconds.
+const TABLE_ROUNDS_NS: f64 = 200e6;
+
+/// Returns tables of the relations that the workload queries. Returns `None` if the workload has no
+/// such relations.
+///
+/// The tables come from the structure with the fewest bytes among the structures that make them
+/// fast: in at most twice the least time. So the choice does not depend on noise.
 pub(crate) fn build_tables<'a>(
     backends: &[PickBackend<'a>],
     clock: &dyn Clock,
     tabulate: impl Fn(&Backend) -> Option<Box<dyn MixBackend + 'a>>,
 ) -> Option<PickBackend<'a>> {
-    let usable = backends.iter().filter(|b| !b.control && !b.scans());
-    let mut best: Option<(f64, PickBackend<'a>)> = None;
-    for backend in usable {
-        let Some(structure) = backend.structure else {
-            continue;
-        };
-        let Some(tables) = tabulate(&structure) else {
-            continue;
-        };
-        let ns = tables.build(&Series::once(clock)).ns();
-        if best.as_ref().is_none_or(|(least, _)| ns < *least) {
-            best = Some((
-                ns,
-                PickBackend {
-                    made_from: Some(structure.name()),
-                    ..PickBackend::new(tables)
-                },
-            ));
+    let start = clock.now();
+    let structures = backends.iter().filter(|b| !b.scans());
+    let mut made: Vec<_> = structures
+        .filter_map(|backend| {
+            let start = clock.now();
+            let tables = tabulate(&backend.structure?)?;
+            Some((backend, tables, (clock.now() - start).ns()))
+        })
+        .collect();
+    for _ in 0..TABLE_ROUNDS {
+        if (clock.now() - start).ns() > TABLE_ROUNDS_NS {
+            break;
+        }
+        for (_, tables, least) in &mut made {
+            let build = Job::from(Operation::Build);
+            *least = least.min(tables.run(&build, &Series::once(clock)).time.ns());
         }
     }
-    best.map(|(_, backend)| backend)
+    let least = made.iter().map(|(.., ns)| *ns).min_by(f64::total_cmp)?;
+    made.retain(|(.., ns)| *ns <= TABLES_EQUAL_UP_TO * least);
+    let size = |backend: &PickBackend<'_>| (backend.mixer.bytes(), position(backend.mixer.name()));
+    let (backend, mixer, _) = made.into_iter().min_by_key(|(backend, ..)| size(backend))?;
+    Some(PickBackend {
+        mixer,
+        structure: None,
+        made_from: Some(backend.structure?.name()),
+    })
 }

@@ -1,10 +1,35 @@
 //! The number of operations after which building a structure has paid off.
 
-use crate::pick::backend::PickBackend;
+use sixfold_workload::{Task, Time};
+
+use crate::measure::Entry;
+use crate::pick::backend::Candidate;
 use crate::pick::report::{BreakEven, Ranked};
 use crate::statistics::Median;
 
-/// The structure that a program has from the start.
+/// A candidate with its measured tasks.
+pub(crate) struct MeasuredMix<'m> {
+    pub(crate) candidate: &'m Candidate,
+    pub(crate) entries: Vec<&'m Entry>,
+    /// By round: the time of one operation of the mix, rebuilding included.
+    pub(crate) samples: Vec<(u32, Time)>,
+}
+
+impl MeasuredMix<'_> {
+    /// Returns the entry of `task`; `None` if the candidate does not run it.
+    pub(crate) fn entry(&self, task: Task) -> Option<&Entry> {
+        let mut entries = self.entries.iter().copied();
+        entries.find(|entry| entry.job.task == task)
+    }
+
+    /// Returns the largest number of page faults in a sample; `None` if they were not counted.
+    pub(crate) fn most_faults(&self) -> Option<u64> {
+        let samples = self.entries.iter().flat_map(|entry| &entry.samples);
+        samples.filter_map(|(_, time)| time.faults).max()
+    }
+}
+
+/// The structure that a program has from the start: positions and index lists.
 const BASE: &str = "indexed-face-set";
 
 /// Returns the break-even of each backend, compared with an existing indexed face set. The
@@ -12,20 +37,23 @@ const BASE: &str = "indexed-face-set";
 /// time. Time differences are formed within rounds. The interval of n follows from the interval of
 /// the median difference. `operations` is the number of operations in one use.
 pub(crate) fn break_even(
-    backends: &[&PickBackend<'_>],
+    measured: &[MeasuredMix<'_>],
     ranking: &[Ranked],
     operations: f64,
 ) -> Vec<BreakEven> {
-    let Some(base) = backends.iter().find(|b| b.mixer.name() == BASE) else {
+    let find = |name: &str| measured.iter().find(|m| m.candidate.name == name);
+    let Some(base) = find(BASE) else {
         return Vec::new();
     };
     let row = |ranked: &Ranked| {
-        let backend = backends.iter().find(|b| b.mixer.name() == ranked.backend)?;
-        let saved = backend.samples.iter().filter_map(|(round, time)| {
-            let base = base.samples.iter().find(|(r, _)| r == round)?;
-            Some(base.1.ns() - time.ns())
-        });
-        let saved = Median::from_samples(saved)?;
+        let pairs = find(&ranked.backend)?
+            .samples
+            .iter()
+            .filter_map(|(round, time)| {
+                let base = base.samples.iter().find(|(r, _)| r == round)?;
+                Some([base.1.ns(), time.ns()])
+            });
+        let saved = Median::from_differences(&pairs.collect::<Vec<_>>())?;
         let build = if ranked.backend == BASE {
             0.0
         } else {

@@ -11,24 +11,25 @@ use sixfold_workload::{Backend, unknown};
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, DeserializeFromStr, SerializeDisplay,
 )]
 pub enum Need {
-    /// Changes connectivity: split, collapse, flip.
+    /// The structure can be edited: its edges can be split, collapsed and flipped.
     Edit,
-    /// Holds edges with three or more faces, and vertices with more than one fan.
+    /// The structure can hold edges with three or more faces, and vertices whose faces form several
+    /// fans.
     NonManifold,
-    /// Holds faces of any degree.
+    /// The structure can hold faces with any number of corners.
     Polygons,
-    /// Holds two faces that run along an edge in the same direction.
+    /// The structure can hold two faces that run along an edge in the same direction.
     MixedOrientation,
-    /// Holds vertices without a face.
+    /// The structure can hold vertices without a face.
     IsolatedVertices,
-    /// Keeps vertices with equal coordinates separate.
+    /// The structure keeps vertices with equal coordinates separate.
     CoincidentVertices,
-    /// Subdivides by splitting its own tables.
+    /// The structure can subdivide by splitting the elements in its own tables.
     Refine,
 }
 
 impl Need {
-    /// All needs, in listing order.
+    /// All capabilities that a program can require.
     pub const ALL: [Self; 7] = [
         Self::Edit,
         Self::NonManifold,
@@ -39,7 +40,7 @@ impl Need {
         Self::Refine,
     ];
 
-    /// Returns the name in options, such as `non-manifold`.
+    /// Returns the name of the capability in command-line options, such as `non-manifold`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Edit => "edit",
@@ -89,7 +90,7 @@ impl fmt::Display for Need {
     }
 }
 
-/// The error for an unknown name of a need.
+/// The error for an unknown name of a capability.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", unknown("need", .name, &Need::ALL.map(Need::name)))]
 pub struct UnknownNeed {

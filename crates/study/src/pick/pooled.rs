@@ -4,11 +4,13 @@ use std::collections::BTreeMap;
 
 use crate::environment::Environment;
 use crate::pick::PickSettings;
+use crate::pick::choice::choose;
 use crate::pick::measurement::Outcome;
 use crate::pick::reasons;
 use crate::pick::report::{BreakEven, Excluded, MeshRanking, PickReport, Ranked};
 use crate::ranking::NO_DIFFERENCE;
 use crate::report::SCHEMA;
+use crate::statistics::MIN_SAMPLES;
 use crate::timer::Timer;
 
 /// Combines the results of the meshes. A backend must qualify on every mesh to be ranked. Backends
@@ -64,6 +66,8 @@ pub(crate) fn pooled(
         operations,
         needs: settings.needs.clone(),
         max_memory: settings.max_memory,
+        choice: choose(&ranking),
+        preliminary: ranking.iter().any(|ranked| ranked.samples < MIN_SAMPLES),
         ranking,
         excluded,
         break_even,

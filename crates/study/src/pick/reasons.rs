@@ -1,19 +1,29 @@
 //! The result of a pick and its reasons, as sentences.
 
-use crate::numbers::{duration, grouped, times};
+use crate::numbers::{counted, duration, grouped, times};
+use crate::pick::choice::{Choice, list};
 use crate::pick::report::{PartCost, PickReport, Ranked};
+use crate::statistics::MIN_SAMPLES;
 
 /// Returns sentences about the fastest backend, the reasons, the break-even and the packages.
 pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
     let Some(best) = report.ranking.first() else {
         return vec!["No backend qualifies.".into()];
     };
+    let chosen = report.choice.as_ref();
+    let used = chosen.and_then(|c| report.ranking.iter().find(|r| r.backend == c.backend));
     let mut sentences = vec![fastest(report, best)];
+    sentences.extend(chosen.and_then(|choice| choice.rule(&report.ranking)));
+    sentences.extend(
+        chosen
+            .map(Choice::what_would_change)
+            .filter(|_| report.ranking.len() > 1),
+    );
     sentences.extend(dominant_part(report, best));
     sentences.extend(largest_loss(report, best));
     sentences.extend(tables(report, best));
     sentences.extend(one_use_with_building(report, best));
-    sentences.push(packages_to_add(best));
+    sentences.push(packages_to_add(used.unwrap_or(best)));
     sentences
 }
 
@@ -27,10 +37,11 @@ pub(crate) fn warnings(report: &PickReport) -> Vec<String> {
         ));
     }
     let fewest = report.ranking.iter().map(|ranked| ranked.samples).min();
-    if let Some(fewest) = fewest.filter(|&fewest| fewest < 6) {
+    if let Some(fewest) = fewest.filter(|_| report.preliminary) {
         warnings.push(format!(
-            "Some figures are from only {fewest} rounds, but a 95 % interval needs 6: use a \
-             longer --budget."
+            "Some times are from only {}, but a narrow interval needs {MIN_SAMPLES} samples: use a \
+             longer --budget.",
+            counted(fewest, "sample", "samples")
         ));
     }
     for backend in &report.mismatches {
@@ -73,15 +84,18 @@ fn fastest(report: &PickReport, best: &Ranked) -> String {
             times(next.ratio_to_best)
         )
     });
+    let answer = match report.preliminary {
+        true => "Preliminary answer from too few samples: for",
+        false => "For",
+    };
     match &tied[..] {
         [] => format!(
-            "For {workload}, {} is fastest: {each} per operation{next}.",
+            "{answer} {workload}, {} is fastest: {each} per operation{next}.",
             name(best)
         ),
         tied => format!(
-            "For {workload}, {} and {} are tied: {each} per operation{next}.",
-            tied.join(", "),
-            name(best)
+            "{answer} {workload}, {} are tied: {each} per operation{next}.",
+            list(std::iter::once(&name(best)).chain(tied))
         ),
     }
 }
@@ -153,8 +167,8 @@ fn tables(report: &PickReport, best: &Ranked) -> Option<String> {
         .iter()
         .find(|ranked| ranked.made_from.is_some())?;
     Some(format!(
-        "Relation tables take {1} the time of the fastest. The tables contain only the queried \
-         relations, and are made once from {0}.",
+        "Relation tables take {1} the time of the fastest backend. The tables contain only the \
+         queried relations, and are made once from {0}.",
         tables.made_from.as_deref().unwrap_or_default(),
         times(tables.ratio_to_best)
     ))
@@ -190,8 +204,8 @@ fn one_use_with_building(report: &PickReport, best: &Ranked) -> Option<String> {
         ),
         false => format!(
             "If the time to build is included, {} is fastest for one use of the mesh ({count} \
-             {used}): {cost} in total, compared with {} on {}. An indexed face set exists \
-             already, so its time to build is 0.",
+             {used}): {cost} in total, compared with {} on {}. The input is already an \
+             indexed face set, so the time to build this structure counts as 0.",
             name(least),
             duration(total(best)),
             name(best)

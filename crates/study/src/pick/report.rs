@@ -8,43 +8,52 @@ use sixfold_workload::{Action, Workload};
 
 use crate::environment::Environment;
 use crate::numbers::grouped;
+use crate::pick::choice::Choice;
 use crate::pick::needs::Need;
 use crate::report::write_json;
 use crate::timer::Timer;
 
-/// The ranking of the backends.
+/// The result of a pick: the backends, ranked by their times for a workload.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct PickReport {
-    /// The version of the format.
+    /// The version of the JSON schema.
     pub schema: u32,
     /// The names of the meshes.
     pub meshes: Vec<String>,
     /// The workload that was run.
     pub workload: Workload,
-    /// The number of operations in one use of the mesh, as the mean over the meshes.
+    /// The number of operations that the program makes on one mesh (one use of the mesh), as a mean
+    /// over the meshes.
     pub operations: f64,
-    /// The capabilities that were required.
+    /// The capabilities that a backend must have.
     pub needs: Vec<Need>,
-    /// The maximum size of the structure, in bytes.
+    /// The maximum size of a backend, in bytes; `None` for no limit.
     pub max_memory: Option<u64>,
-    /// The backends that qualify, the fastest first.
+    /// The backends that meet all requirements, the fastest backend first.
     pub ranking: Vec<Ranked>,
-    /// The backends that do not qualify.
+    /// The backend to use; `None` if no backend meets all requirements.
+    pub choice: Option<Choice>,
+    /// True if some times have too few samples for a 95 % confidence interval, because the time
+    /// budget was too small.
+    pub preliminary: bool,
+    /// The backends that do not meet all requirements, each with the reason.
     #[serde(serialize_with = "by_name", deserialize_with = "from_names")]
     pub excluded: Vec<Excluded>,
-    /// The number of operations after which building each backend pays off. The comparison is with
-    /// an existing indexed face set. The list is empty if the indexed face set was not measured.
+    /// The number of operations after which building each backend pays off. The backend is compared
+    /// with an existing indexed face set. The list is empty if the indexed face set was not
+    /// measured.
     pub break_even: Vec<BreakEven>,
-    /// The noise: the ratio of the two times of a backend that was measured twice. At least 1.
+    /// The noise: one backend is measured twice, and the longer time is divided by the shorter
+    /// time. `None` if no backend was measured twice.
     pub noise: Option<f64>,
-    /// Backends with wrong results. This is a fault in Sixfold.
+    /// The names of the backends with wrong results. A wrong result is a fault in Sixfold.
     pub mismatches: Vec<String>,
-    /// Sentences about the fastest backend and the reasons.
+    /// Sentences that name the fastest backend and explain the result.
     #[serde(rename = "words")]
     pub sentences: Vec<String>,
     /// Sentences about possible faults of the measurement and their remedies.
     pub warnings: Vec<String>,
-    /// Whether the measurement was stopped early. There are then fewer samples.
+    /// True if the measurement was stopped early. Backends may then have fewer samples.
     pub interrupted: bool,
     /// The cost of reading the clock.
     pub timer: Timer,
@@ -57,7 +66,7 @@ pub struct PickReport {
 /// The ranking on one of several meshes.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct MeshRanking {
-    /// The mesh.
+    /// The name of the mesh.
     pub mesh: String,
     /// The ranking on this mesh, as in [`PickReport::ranking`].
     pub ranking: Vec<Ranked>,
@@ -67,73 +76,77 @@ pub struct MeshRanking {
     pub noise: Option<f64>,
 }
 
-/// One backend in the ranking.
+/// The times and the memory of one backend in the ranking.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Ranked {
-    /// The name of the backend. `relation-tables` are flat tables of the relations that the
-    /// workload queries.
+    /// The name of the backend. The backend `relation-tables` consists of flat tables of the
+    /// relations that the workload queries.
     pub backend: String,
     /// The structure from which relation tables were made; `None` for a structure.
     #[serde(rename = "over")]
     pub made_from: Option<String>,
-    /// The median time of one operation of the mix, in nanoseconds. It includes rebuilding.
+    /// The median time of one operation of the workload, in nanoseconds. If the workload rebuilds
+    /// the structure, this time includes a part of the rebuilding.
     pub ns_per_operation: f64,
-    /// The lower end of the 95 % interval of `ns_per_operation`; `None` with fewer than three
-    /// rounds.
+    /// The lower end of the 95 % confidence interval of `ns_per_operation`; `None` with fewer than
+    /// three rounds.
     pub ns_ci_low: Option<f64>,
-    /// The upper end of the 95 % interval of `ns_per_operation`.
+    /// The upper end of the 95 % confidence interval of `ns_per_operation`.
     pub ns_ci_high: Option<f64>,
-    /// The median ratio to the fastest backend, over the rounds. The fastest backend has ratio 1.
+    /// The time of this backend divided by the time of the fastest backend, as the median over the
+    /// rounds. The fastest backend has the ratio 1.
     pub ratio_to_best: f64,
-    /// The lower end of the 95 % interval of `ratio_to_best`.
+    /// The lower end of the 95 % confidence interval of `ratio_to_best`.
     pub ci_low: Option<f64>,
-    /// The upper end of the 95 % interval of `ratio_to_best`.
+    /// The upper end of the 95 % confidence interval of `ratio_to_best`.
     pub ci_high: Option<f64>,
-    /// Whether the backend is not measurably slower than the fastest backend.
+    /// True if the backend is not measurably slower than the fastest backend.
     pub tied_with_best: bool,
-    /// The time to build the backend from polygons on reused pages, in nanoseconds. For relation
-    /// tables, it includes making the tables.
+    /// The time to build the backend from polygons in memory pages that were used before, in
+    /// nanoseconds. For relation tables, this time includes the computation of the tables.
     pub build_ns: f64,
-    /// The time to build the backend on fresh pages, in nanoseconds. A program that builds the
-    /// backend once needs this time. `None` if there was no time to measure it.
+    /// The time to build the backend in fresh memory pages, in nanoseconds. Use this time for a
+    /// program that builds the backend only once. `None` if this time was not measured.
     #[serde(default)]
     pub first_build_ns: Option<f64>,
     /// The size of the tables, in bytes.
     pub bytes: usize,
     /// The size of the tables per vertex of the mesh, in bytes.
     pub bytes_per_vertex: f64,
-    /// Whether only some elements were queried, because a query scans all faces.
+    /// True if only some of the elements were queried, because a query scans all faces.
     pub sampled: bool,
-    /// Whether the time of a part is an estimate, because a full run would exceed the budget.
+    /// True if the time of some operation of the workload is an estimate, because a full run would
+    /// exceed the time budget.
     pub estimated: bool,
-    /// The cost of each part of the mix, timed alone.
+    /// The cost of each operation of the workload, timed alone.
     pub parts: Vec<PartCost>,
     /// The number of rounds with a sample of this backend.
     pub samples: usize,
-    /// The largest number of page faults in a sample; `None` if they were not counted.
+    /// The largest number of page faults in a sample; `None` if page faults were not counted.
     #[serde(default)]
     pub faults: Option<u64>,
-    /// The packages to add as dependencies.
+    /// The names of the packages that a program needs as dependencies to use this backend.
     pub crates: Vec<String>,
-    /// The paths of the types to use.
+    /// The Rust paths of the types that a program needs to use this backend.
     #[serde(default)]
     pub types: Vec<String>,
 }
 
-/// The cost of one part of the mix on one backend.
+/// The cost of one operation of the workload on one backend.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct PartCost {
-    /// The operation.
+    /// The operation of the workload.
     pub operation: Action,
-    /// The share of this operation in all operations, from 0 to 1.
+    /// The share of this operation in all operations of the workload, from 0 to 1.
     pub share: f64,
-    /// The time of one operation, timed alone in the access order of the workload, in nanoseconds.
-    /// `None` if it was not measured.
+    /// The time of this operation, timed alone in the access order of the workload, in nanoseconds.
+    /// `None` if the operation was not timed alone.
     pub ns: Option<f64>,
 }
 
 impl Ranked {
-    /// Returns the time to build on fresh pages if it was measured, else [`Self::build_ns`].
+    /// Returns the time to build in fresh memory pages. If this time was not measured, returns
+    /// [`Self::build_ns`].
     pub fn first_build_ns(&self) -> f64 {
         self.first_build_ns.unwrap_or(self.build_ns)
     }
@@ -146,32 +159,35 @@ impl PartCost {
     }
 }
 
-/// The number of operations after which building a backend pays off.
+/// The number of operations after which building a backend pays off, compared with an existing
+/// indexed face set.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct BreakEven {
-    /// The backend.
+    /// The name of the backend, such as `half-edge`.
     pub backend: String,
     /// The time to build the backend, in nanoseconds.
     pub build_ns: f64,
-    /// The time saved per operation, compared with the indexed face set, in nanoseconds. Negative
-    /// if the backend is slower.
+    /// The time saved per operation, compared with the indexed face set, in nanoseconds. The value
+    /// is negative if the backend is slower than the indexed face set.
     pub saves_ns_per_operation: f64,
-    /// The number of operations after which building pays off; `None` if never.
+    /// The number of operations after which building pays off; `None` if building never pays off.
     pub operations: Option<f64>,
-    /// The lower end of the 95 % interval of `operations`.
+    /// The lower end of the 95 % confidence interval of `operations`.
     pub ci_low: Option<f64>,
-    /// The upper end of the 95 % interval of `operations`; `None` if building may never pay off.
+    /// The upper end of the 95 % confidence interval of `operations`; `None` if building may never
+    /// pay off.
     pub ci_high: Option<f64>,
-    /// The number of uses of the mesh after which building pays off.
+    /// The number of uses of the mesh after which building pays off: `operations` divided by the
+    /// number of operations in one use.
     pub uses: Option<f64>,
 }
 
-/// A backend that does not qualify.
+/// A backend that does not meet the requirements of a pick.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Excluded {
-    /// The backend.
+    /// The name of the backend, such as `half-edge`.
     pub backend: String,
-    /// The reason.
+    /// Why the backend does not meet the requirements.
     pub reason: String,
 }
 

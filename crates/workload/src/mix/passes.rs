@@ -4,10 +4,10 @@ use std::hint::black_box;
 
 use sixfold::MeshQuery;
 
+use crate::job::{Outcome, Run};
 use crate::operation::{ElementKind, Operation};
 use crate::series::Series;
 use crate::sweeps::{All, Outputs, SweepResult, field_sum, sweep_kind};
-use crate::timed_structure::{Outcome, Run};
 
 /// Runs `operation` over all of `mesh` as `series` describes. Returns the time of one run.
 pub(crate) fn pass_over<M: MeshQuery>(
@@ -42,7 +42,11 @@ pub(crate) fn pass_over<M: MeshQuery>(
             Some(ElementKind::Face) => mesh.face_count() as u64,
             None => result.count,
         };
-        Outcome { checksum, elements }
+        Outcome {
+            checksum,
+            elements,
+            refused: 0,
+        }
     });
     Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
 }

@@ -11,7 +11,7 @@ const VERTICES_PER_PLACE: usize = 60;
 /// Maximum number of places.
 const MAX_PLACES: usize = 512;
 
-/// Why a mix with edits cannot run on a mesh.
+/// The reason why a mix with edits cannot run on a mesh.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message explains each field")]
@@ -23,16 +23,16 @@ pub enum EditPlaceError {
         face: FaceId,
         degree: usize,
     },
-    /// The mesh is too small for the places and for elements to query.
+    /// The mesh is too small: it has too few vertices for the edits and the queries of the mix.
     #[error(
-        "the mesh is too small: it has no room for {edits} kinds of edits beside the elements to \
-         query; use a larger mesh"
+        "the mesh is too small for {edits} kinds of edits and for queries away from the edits: \
+         use a larger mesh"
     )]
     TooSmall { edits: usize },
-    /// Every place of the edit is refused by at least one backend.
+    /// At least one backend refuses the edit at each place that was chosen for the edit.
     #[error(
-        "no place of the mesh allows {edit} on all backends: remove {edit} from the workload, or \
-         use another mesh"
+        "at least one backend refuses {edit} at every tried face: remove {edit} from the \
+         workload, or use another mesh"
     )]
     NowhereAccepted { edit: Edit },
 }

@@ -1,4 +1,5 @@
-//! The order in which a mix visits the elements. It is the same for every structure.
+//! The order in which a mix visits the elements. In sequential access, each structure uses its own
+//! order. Random access and patches have the same order for all structures.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -11,7 +12,7 @@ use crate::workload::Access;
 /// Maximum number of faces of a patch.
 const PATCH_FACES: usize = 128;
 
-/// The elements of a mesh in the order of their visits.
+/// The elements of a mesh, in the order in which a mix visits them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Route {
     /// Whether each structure uses its own order. The lists are then empty.
@@ -22,7 +23,8 @@ pub struct Route {
 }
 
 impl Route {
-    /// Builds the route through `polygons` with the random seed `seed`; O(corners) expected.
+    /// Builds the order in which a mix visits the elements of `polygons`. `seed` is the random
+    /// seed. O(corners) expected.
     pub fn new(access: Access, polygons: &PolygonMesh, seed: u64) -> Self {
         let empty = Self {
             structure_order: true,

@@ -1,4 +1,4 @@
-//! The schedule of a mix: the operations of each part in each turn.
+//! The schedule of a mix: the operations that each part (a kind of operation) runs in each turn.
 
 use std::ops::Range;
 
@@ -11,23 +11,24 @@ const TURN_OPERATIONS: f64 = 256.0;
 /// Number of element operations in a turn if there are edits. Each edit needs its own place.
 const EDIT_TURN_OPERATIONS: f64 = 64.0;
 
-/// The schedule of a mix on a mesh.
+/// The schedule of a mix on a mesh: the kinds of operations, and how often each kind runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {
-    /// The parts of the mix.
+    /// The parts of the mix. A part is one kind of operation with its weight.
     pub parts: Vec<Part>,
-    /// For each part, its share of all operations, from 0 to 1.
+    /// The share of each part in all operations, from 0 to 1.
     pub shares: Vec<f64>,
-    /// The share of the operations on elements. The rest are passes.
+    /// The share of the operations on single elements, from 0 to 1. All other operations are passes
+    /// over the whole mesh.
     pub on_elements: f64,
-    /// The number of operations on elements in a turn.
+    /// The number of operations on single elements in one turn.
     pub turn_operations: f64,
-    /// Whether the mix has edits or sets positions, so that it needs an editable mesh.
+    /// True if the mix edits the mesh or sets positions. The mix then needs an editable mesh.
     pub editable: bool,
 }
 
 impl Schedule {
-    /// Builds the schedule of `workload` on a mesh with `counts`.
+    /// Builds the schedule of `workload` for a mesh with the given numbers of elements.
     pub fn new(workload: &Workload, counts: &Counts) -> Self {
         let shares = workload.shares(counts);
         let on_elements = shares.iter().zip(&workload.mix);
@@ -44,8 +45,8 @@ impl Schedule {
         }
     }
 
-    /// Returns the operations of `part` in turn `turn`. Operations are numbered from the first
-    /// turn.
+    /// Returns the numbers of the operations that `part` runs in turn `turn`. Operation 0 is the
+    /// first operation of the part in turn 0.
     pub fn turn_range(&self, part: usize, turn: u64) -> Range<u64> {
         if self.parts[part].action.is_pass() {
             return 0..0;
@@ -56,7 +57,7 @@ impl Schedule {
         done(turn)..done(turn + 1)
     }
 
-    /// Returns the number of operations of `part` in the first `turns` turns.
+    /// Returns the number of operations that `part` runs in the first `turns` turns.
     pub fn operations_within(&self, part: usize, turns: u64) -> u64 {
         match turns {
             0 => 0,
@@ -64,17 +65,17 @@ impl Schedule {
         }
     }
 
-    /// Returns the parts that are edits.
+    /// Returns the indices of the parts that are edits.
     pub fn edits(&self) -> impl Iterator<Item = usize> + Clone {
         (0..self.parts.len()).filter(|&part| is_edit(self.parts[part].action))
     }
 
-    /// Returns the parts that are passes.
+    /// Returns the indices of the parts that are passes over the whole mesh.
     pub fn passes(&self) -> impl Iterator<Item = usize> {
         (0..self.parts.len()).filter(|&part| self.parts[part].action.is_pass())
     }
 
-    /// Returns the parts that work on elements.
+    /// Returns the indices of the parts that query or move single elements.
     pub fn elements(&self) -> impl Iterator<Item = usize> {
         (0..self.parts.len()).filter(|&part| !self.parts[part].action.is_pass())
     }

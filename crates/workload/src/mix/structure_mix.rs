@@ -8,23 +8,24 @@ use sixfold::{
     BuildError, Edit, FaceId, MeshEdit, Point, PolygonMesh, QueryCost, Relation, Representation,
 };
 
-use crate::backend::Backend;
-use crate::clock::{Clock, Time, timed};
+use crate::backend::{Backend, TypeFunctions};
 use crate::draw::Draw;
 use crate::edit_place::{EditPlace, apply_edit, prepare_place};
-use crate::mix::passes::pass_over;
+use crate::job::{Job, Outcome, Run, Task, TimedBackend};
+use crate::mix::MixBackend;
 use crate::mix::places::{EditPlaceError, EditPlaces};
 use crate::mix::route::Route;
 use crate::mix::route_handles::RouteHandles;
+use crate::mix::runs::{Counts, run_turns, time_part, time_turns};
 use crate::mix::schedule::Schedule;
-use crate::mix::{MixBackend, MixRun};
-use crate::operation::Operation;
-use crate::series::{ReusedCopies, Series, time_making};
-use crate::sweeps::Outputs;
-use crate::timed_structure::{ElementSample, Job, Run, TimedBackend};
+use crate::series::{ReusedCopies, Series};
+use crate::timed_structure::TimedStructure;
 use crate::workload::{Action, Part};
 
-/// A structure that is ready for a mix, or the reason why it is not ready.
+/// The largest number of turns on one copy of a mesh that is edited.
+const MAX_TURNS_PER_COPY: u64 = 16;
+
+/// A structure that is ready to run a mix, or the reason why the structure cannot run the mix.
 pub type PreparedMix<'a> = Result<Box<dyn MixBackend + 'a>, MixRefusal>;
 
 /// The reason why a structure cannot run a mix.
@@ -37,10 +38,10 @@ pub enum MixRefusal {
     /// The structure does not support any edit.
     #[error("it cannot be edited")]
     NotEditable,
-    /// The structure does not support the edit.
-    #[error("it does not support {0}")]
+    /// The structure does not support one edit of the mix.
+    #[error("the structure does not support {0}")]
     UnsupportedEdit(Edit),
-    /// The mix cannot be run on this mesh with any structure.
+    /// The mesh is not suited for the edits of the mix.
     #[error(transparent)]
     EditPlaceError(#[from] EditPlaceError),
 }
@@ -53,12 +54,13 @@ pub(crate) struct MixInput<'a> {
     pub(crate) route: &'a Route,
 }
 
-/// Builds the structure of `backend` from `polygons` and prepares it for `schedule` along `route`.
+/// Builds the structure of `backend` from `polygons` and prepares it to run the mix of `schedule`.
+/// The mix visits the elements in the order of `route`.
 ///
 /// # Errors
 ///
-/// Returns the reason if the structure cannot hold `polygons`, if it does not support the edits, or
-/// if there is no place for an edit.
+/// Returns the reason if the structure cannot hold `polygons`, if the structure does not support an
+/// edit of the mix, or if the mesh has no room for an edit.
 pub fn prepare_mix<'a>(
     backend: &Backend,
     polygons: &'a PolygonMesh,
@@ -90,14 +92,17 @@ pub fn prepare_mix<'a>(
 pub(crate) fn prepare_query_mix<'a, M: Representation + 'static>(
     input: &MixInput<'a>,
 ) -> PreparedMix<'a> {
-    let mix: StructureMix<'a, M, ReadOnly> = StructureMix::new(input)?;
+    let functions = input.backend.query_functions();
+    let mix: StructureMix<'a, M, ReadOnly> = StructureMix::new(input, functions)?;
     Ok(Box::new(mix))
 }
 
 pub(crate) fn prepare_edit_mix<'a, M: Representation + MeshEdit + 'static>(
     input: &MixInput<'a>,
 ) -> PreparedMix<'a> {
-    let mix: StructureMix<'a, M, ReadWrite> = StructureMix::new(input)?;
+    let functions = input.backend.edit_functions();
+    let functions = functions.ok_or(MixRefusal::NotEditable)?;
+    let mix: StructureMix<'a, M, ReadWrite> = StructureMix::new(input, functions)?;
     Ok(Box::new(mix))
 }
 
@@ -145,7 +150,8 @@ impl<M: Representation + MeshEdit> WriteAccess<M> for ReadWrite {
     }
 }
 
-struct Task<'a, M: Representation, W> {
+/// The work of a mix: the schedule, the handles of the route, and the places of the edits.
+struct Work<'a, M: Representation, W> {
     schedule: &'a Schedule,
     handles: RouteHandles<M>,
     faces: EditPlaces,
@@ -154,7 +160,7 @@ struct Task<'a, M: Representation, W> {
     write_access: PhantomData<W>,
 }
 
-impl<M: Representation, W: WriteAccess<M>> Task<'_, M, W> {
+impl<M: Representation, W: WriteAccess<M>> Work<'_, M, W> {
     /// Returns the edit of `part` with its places; `None` if `part` is not an edit.
     fn edit(&self, part: usize) -> Option<(Edit, &[EditPlace<M>])> {
         let nth = self.schedule.edits().position(|other| other == part)?;
@@ -164,10 +170,11 @@ impl<M: Representation, W: WriteAccess<M>> Task<'_, M, W> {
         }
     }
 
-    /// Runs the operations `range` of one part on `mesh`. For edits, `range` is a range of places.
-    /// Returns the numbers of operations, results and refused edits.
+    /// Runs the operations `range` of one part on `mesh`. If the part is an edit, `range` contains
+    /// the indices of the faces at which the edit is done. Returns the numbers of operations,
+    /// results and refused edits.
     #[inline]
-    fn run_range(&self, mesh: &mut M, part: usize, range: Range<u64>) -> [u64; 3] {
+    fn run_range(&self, mesh: &mut M, part: usize, range: Range<u64>) -> Counts {
         let operations = range.end - range.start;
         match self.schedule.parts[part].action {
             Action::SetPosition => {
@@ -199,60 +206,79 @@ impl<M: Representation, W: WriteAccess<M>> Task<'_, M, W> {
     /// Runs the element operations of some turns. Returns the same counts as
     /// [`run_range`](Self::run_range). Edits start at their first place.
     #[inline]
-    fn run_turns(&self, mesh: &mut M, turns: Range<u64>) -> [u64; 3] {
-        let mut sums = [0; 3];
-        for turn in turns.clone() {
-            for part in 0..self.schedule.parts.len() {
-                let is_edit = matches!(self.schedule.parts[part].action, Action::Edit(_));
-                let turn = if is_edit { turn - turns.start } else { turn };
-                let range = self.schedule.turn_range(part, turn);
-                if range.is_empty() {
-                    continue;
-                }
-                let counts = self.run_range(mesh, part, range);
-                sums = std::array::from_fn(|i| sums[i] + counts[i]);
-            }
+    fn run_turns_on_copy(&self, mesh: &mut M, turns: Range<u64>) -> Counts {
+        let schedule = self.schedule;
+        let range_of = |part: usize, turn: u64| {
+            let is_edit = matches!(schedule.parts[part].action, Action::Edit(_));
+            schedule.turn_range(part, if is_edit { turn - turns.start } else { turn })
+        };
+        run_turns(
+            schedule.parts.len(),
+            turns.clone(),
+            range_of,
+            |part, range| self.run_range(mesh, part, range),
+        )
+    }
+
+    /// Returns the number of turns for which the places of the edits suffice: at most 16, and at
+    /// least 1.
+    fn turns_per_copy(&self) -> u64 {
+        let fits = |turns: &u64| {
+            self.schedule.edits().all(|part| {
+                let places = self.edit(part).map_or(0, |(_, places)| places.len());
+                self.schedule.operations_within(part, *turns) <= places as u64
+            })
+        };
+        let fitting = (1..=MAX_TURNS_PER_COPY).take_while(fits).last();
+        fitting.unwrap_or(1)
+    }
+
+    /// Returns the number of operations of `part` that visit each of its elements once.
+    fn cycle_length(&self, part: usize) -> u64 {
+        let kind = self.schedule.parts[part].action.kind();
+        kind.map_or(1, |kind| self.handles.len(kind) as u64)
+    }
+
+    /// Returns whether one operation of `part` visits all faces of the mesh.
+    fn scans(&self, part: &Part) -> bool {
+        let scans = |relation: &Relation| M::cost(*relation) == QueryCost::Scan;
+        match part.action {
+            Action::Edit(edit) => W::scans(edit),
+            Action::SetPosition => W::scans(Edit::SetPosition),
+            action => action.relations().iter().any(scans),
         }
-        sums
     }
 }
 
 struct StructureMix<'a, M: Representation, W> {
-    backend: Backend,
-    mesh: M,
+    /// The structure as a study measures it.
+    timed: TimedStructure<'a, M>,
     polygons: &'a PolygonMesh,
-    draw: &'a Draw,
-    outputs: Outputs<M>,
-    task: Task<'a, M, W>,
-    /// The mesh prepared for the edits; `None` if there are no edits.
+    work: Work<'a, M, W>,
+    /// The mesh prepared for its edits; `None` if there are no edits.
     prepared: Option<M>,
-    /// Copies of `prepared`, each with the counts of its last run.
-    copies: ReusedCopies<(M, [u64; 3])>,
-    /// The structure for passes that make a mesh or visit a sample. It is built on first use.
-    timed_backend: Option<Box<dyn TimedBackend + 'a>>,
+    /// Copies of `prepared`, each with the counts of the last run on it.
+    copies: ReusedCopies<(M, Counts)>,
 }
 
 impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> {
-    fn new(input: &MixInput<'a>) -> Result<Self, MixRefusal> {
+    fn new(input: &MixInput<'a>, functions: TypeFunctions) -> Result<Self, MixRefusal> {
         let mesh = M::from_polygons(input.polygons)?;
         let faces = EditPlaces::new(input.schedule, input.polygons)?;
-        let task = Task {
+        let work = Work {
             schedule: input.schedule,
             handles: RouteHandles::from_route(input.route, &mesh, input.polygons, &faces.occupied),
             faces,
             places: Vec::new(),
             write_access: PhantomData,
         };
+        let name = input.backend.name();
         let mut mix = Self {
-            backend: input.backend,
-            outputs: Outputs::for_mesh(&mesh),
-            mesh,
+            timed: TimedStructure::new(name, functions, input.polygons, Some(input.draw), mesh),
             polygons: input.polygons,
-            draw: input.draw,
-            task,
+            work,
             prepared: None,
             copies: ReusedCopies::default(),
-            timed_backend: None,
         };
         mix.prepare_places();
         Ok(mix)
@@ -261,11 +287,11 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
     /// Finds the places and prepares a copy of the mesh for the edits. Returns for each edit and
     /// place whether the preparation succeeded.
     fn prepare_places(&mut self) -> Vec<Vec<bool>> {
-        if self.task.faces.by_edit.is_empty() {
+        if self.work.faces.by_edit.is_empty() {
             return Vec::new();
         }
-        let mut mesh = self.mesh.clone();
-        let schedule = self.task.schedule;
+        let mut mesh = self.timed.mesh.clone();
+        let schedule = self.work.schedule;
         let edits = schedule
             .edits()
             .filter_map(|part| match schedule.parts[part].action {
@@ -274,7 +300,7 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
             });
         let places = edits
             .clone()
-            .zip(&self.task.faces.by_edit)
+            .zip(&self.work.faces.by_edit)
             .map(|(edit, faces)| {
                 let place = |&f: &FaceId| EditPlace::new(&mesh, self.polygons, edit, f);
                 faces.iter().map(place).collect()
@@ -287,121 +313,152 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
                 .collect()
         });
         let is_prepared = is_prepared.collect();
-        self.task.places = places;
+        self.work.places = places;
         self.prepared = Some(mesh);
+        self.copies = ReusedCopies::default();
         is_prepared
     }
 
-    /// Runs `work` once on the mesh. If there are edits, runs `work` `runs` times on copies. The
-    /// copies are reset outside the timing.
-    fn run_timed(
+    /// Runs turns of the mix; with edits, one run is as many turns as fit on a restored copy.
+    fn run_mix(&mut self, first: u64, series: &Series<'_>) -> Run {
+        let Self { timed, work, .. } = self;
+        if self.prepared.is_none() {
+            let mesh = black_box(&mut timed.mesh);
+            return time_turns(work.schedule, first, series, |part, range| {
+                work.run_range(mesh, part, range)
+            });
+        }
+        let turns = work.turns_per_copy();
+        let per_run = work.schedule.turn_operations * turns as f64;
+        // The untimed runs are at other elements than the timed ones, as in a program.
+        let run = |work: &Work<'a, M, W>, copy: &mut M, step: u64| {
+            let start = (first + step) * turns;
+            work.run_turns_on_copy(copy, start..start + turns)
+        };
+        if series.untimed > 0 {
+            let before = Series {
+                runs: series.untimed,
+                untimed: 0,
+                start: crate::series::Start::Warm,
+                check: false,
+                ..*series
+            };
+            self.run_on_copies(&before, |work, copy| run(work, copy, 0));
+        }
+        let step = u64::from(series.untimed);
+        let (time, counts) =
+            self.run_on_copies(&series.with_untimed(0), |work, copy| run(work, copy, step));
+        let [operations, yielded, _] = counts;
+        let each = time.scaled(per_run / operations.max(1) as f64 / f64::from(series.runs));
+        let outcome = series.check.then_some(Outcome {
+            checksum: yielded as f64,
+            elements: per_run as u64,
+            refused: 0,
+        });
+        Run::done(each, outcome)
+    }
+
+    /// Runs one part alone. Edits are done at the first places of restored copies; their result is
+    /// the number of accepted edits on a copy.
+    fn run_part(&mut self, part: usize, first: u64, series: &Series<'_>) -> Run {
+        let Some((_, places)) = self.work.edit(part) else {
+            let work = &self.work;
+            let mesh = black_box(&mut self.timed.mesh);
+            let scans = work.scans(&work.schedule.parts[part]);
+            let all = (!scans).then(|| work.cycle_length(part));
+            return time_part(first, series, all, |range| {
+                work.run_range(mesh, part, range)
+            });
+        };
+        let each = places.len().clamp(1, series.runs as usize) as u64;
+        let copies = Series {
+            runs: u64::from(series.runs).div_ceil(each) as u32,
+            untimed: series.untimed.min(1),
+            ..*series
+        };
+        let (time, counts) =
+            self.run_on_copies(&copies, |work, copy| work.run_range(copy, part, 0..each));
+        let operations = counts[0].max(1) as f64 * f64::from(copies.runs);
+        let outcome = series.check.then_some(Outcome {
+            checksum: counts[1] as f64,
+            elements: 1,
+            refused: 0,
+        });
+        Run::done(time.scaled(1.0 / operations), outcome)
+    }
+
+    /// Runs `run` on restored copies of the mesh that is prepared for its edits, as `series`
+    /// describes. Returns the total time and the counts of one run.
+    fn run_on_copies(
         &mut self,
-        runs: usize,
-        clock: &dyn Clock,
-        work: impl Fn(&Task<'a, M, W>, &mut M) -> [u64; 3],
-    ) -> MixRun {
+        series: &Series<'_>,
+        run: impl Fn(&Work<'a, M, W>, &mut M) -> Counts,
+    ) -> (crate::clock::Time, Counts) {
         let Self {
-            mesh,
-            task,
+            work,
             prepared,
             copies,
+            timed,
             ..
         } = self;
-        let runs = if prepared.is_some() { runs.max(1) } else { 1 };
-        let mut counts = [0; 3];
-        let time = match prepared {
-            None => timed(clock, || counts = work(task, black_box(mesh))),
-            Some(prepared) => {
-                let series = Series::with_runs(runs as u32, clock);
-                let time = copies.time(
-                    &series,
-                    prepared.memory().total(),
-                    || (prepared.clone(), counts),
-                    |(copy, _)| copy.clone_from(prepared),
-                    |(copy, counts)| *counts = work(task, copy),
-                );
-                counts = copies.used_copy().map_or(counts, |(_, counts)| *counts);
-                time
-            }
-        };
-        let [operations, yielded, refused] = counts.map(|count| count * runs as u64);
-        MixRun {
-            time,
-            operations,
-            yielded,
-            refused,
+        let prepared = prepared.as_ref().unwrap_or(&timed.mesh);
+        let time = copies.time(
+            series,
+            prepared.memory().total(),
+            || (prepared.clone(), [0; 3]),
+            |(copy, _)| copy.clone_from(prepared),
+            |(copy, counts)| *counts = run(work, copy),
+        );
+        // All runs of a series have the same counts.
+        let counts = copies.used_copy().map_or([0; 3], |(_, counts)| *counts);
+        (time, counts)
+    }
+}
+
+impl<M: Representation + 'static, W: WriteAccess<M>> TimedBackend for StructureMix<'_, M, W> {
+    fn name(&self) -> &str {
+        self.timed.name()
+    }
+
+    fn costs(&self) -> [QueryCost; 9] {
+        self.timed.costs()
+    }
+
+    fn merged_vertices(&self) -> usize {
+        self.timed.merged_vertices()
+    }
+
+    fn bytes(&self) -> usize {
+        self.timed.bytes()
+    }
+
+    /// Builds the structure again. Its handles stay the same, because they depend only on the
+    /// polygons.
+    fn rebuild(&mut self) {
+        self.timed.rebuild();
+        if let Some(prepared) = &mut self.prepared {
+            *prepared = prepared.clone();
+            self.copies = ReusedCopies::default();
+        }
+    }
+
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+        match job.task {
+            Task::Operation(_) => self.timed.run(job, series),
+            Task::Mix => self.run_mix(job.first, series),
+            Task::Part(part) => self.run_part(part, job.first, series),
         }
     }
 }
 
 impl<M: Representation + 'static, W: WriteAccess<M>> MixBackend for StructureMix<'_, M, W> {
-    fn name(&self) -> &'static str {
-        self.backend.name()
-    }
-
     fn type_paths(&self) -> Vec<&'static str> {
         vec![M::type_path()]
     }
 
-    fn bytes(&self) -> usize {
-        self.mesh.memory().total()
-    }
-
-    fn merged_vertices(&self) -> usize {
-        let input = self.polygons.vertex_count();
-        input.saturating_sub(self.mesh.vertex_count())
-    }
-
     fn scans(&self) -> Vec<bool> {
-        let scans = |relation: &Relation| M::cost(*relation) == QueryCost::Scan;
-        let of_part = |part: &Part| match part.action {
-            Action::Edit(edit) => W::scans(edit),
-            Action::SetPosition => W::scans(Edit::SetPosition),
-            action => action.relations().iter().any(scans),
-        };
-        self.task.schedule.parts.iter().map(of_part).collect()
-    }
-
-    fn run(&mut self, turn: u64, turns: u64, copies: usize, clock: &dyn Clock) -> MixRun {
-        self.run_timed(copies, clock, |task, mesh| {
-            task.run_turns(mesh, turn..turn + turns)
-        })
-    }
-
-    fn run_part(&mut self, part: usize, first: u64, operations: u64, clock: &dyn Clock) -> MixRun {
-        let is_edit = self.task.edit(part).is_some();
-        let first = if is_edit { 0 } else { first };
-        self.run_timed(1, clock, |task, mesh| {
-            task.run_range(mesh, part, first..first + operations)
-        })
-    }
-
-    fn cycle_length(&self, part: usize) -> u64 {
-        let places = |(_, places): (Edit, &[EditPlace<M>])| places.len() as u64;
-        let elements = |kind| self.task.handles.len(kind) as u64;
-        let action = self.task.schedule.parts[part].action;
-        let of_elements = || action.kind().map_or(1, elements);
-        self.task.edit(part).map_or_else(of_elements, places)
-    }
-
-    fn run_pass(
-        &mut self,
-        operation: Operation,
-        sample: Option<ElementSample>,
-        series: &Series<'_>,
-    ) -> Run {
-        if sample.is_none() && !operation.creates_mesh() && operation != Operation::VvSmooth {
-            return pass_over(&self.mesh, &mut self.outputs, operation, series);
-        }
-        let timed_backend = match self.timed_backend.take() {
-            Some(known) => known,
-            None => match self.backend.prepare(self.polygons, Some(self.draw)) {
-                Ok((built, _)) => built,
-                Err(refusal) => return Run::refused(refusal.to_string(), series),
-            },
-        };
-        let timed_backend = self.timed_backend.insert(timed_backend);
-        timed_backend.run(&Job { operation, sample }, series)
+        let parts = self.work.schedule.parts.iter();
+        parts.map(|part| self.work.scans(part)).collect()
     }
 
     fn accepted_places(&mut self) -> Vec<Vec<bool>> {
@@ -409,8 +466,8 @@ impl<M: Representation + 'static, W: WriteAccess<M>> MixBackend for StructureMix
         let Some(mut mesh) = self.prepared.clone() else {
             return accepted;
         };
-        for (part, accepted) in self.task.schedule.edits().zip(&mut accepted) {
-            let Some((edit, places)) = self.task.edit(part) else {
+        for (part, accepted) in self.work.schedule.edits().zip(&mut accepted) {
+            let Some((edit, places)) = self.work.edit(part) else {
                 continue;
             };
             for (place, accepted) in places.iter().zip(accepted) {
@@ -421,13 +478,7 @@ impl<M: Representation + 'static, W: WriteAccess<M>> MixBackend for StructureMix
     }
 
     fn keep_places(&mut self, accepted: &[Vec<bool>]) {
-        self.task.faces = self.task.faces.filter_accepted(accepted);
+        self.work.faces = self.work.faces.filter_accepted(accepted);
         self.prepare_places();
-    }
-
-    fn build(&self, series: &Series<'_>) -> Time {
-        let build = || M::from_polygons(black_box(self.polygons)).ok();
-        let (time, _) = time_making(series, self.bytes(), build);
-        time.scaled(1.0 / f64::from(series.runs))
     }
 }

@@ -1,22 +1,26 @@
 //! Runs a mix on flat tables of the queried relations.
 
 use std::hint::black_box;
+use std::ops::Range;
 
-use sixfold::{EdgeId, FaceId, MeshQuery, Point, PolygonMesh, Relation, Representation, VertexId};
+use sixfold::{
+    EdgeId, FaceId, MeshQuery, Point, PolygonMesh, QueryCost, Relation, Representation, VertexId,
+};
 use sixfold_core::RowId;
 use sixfold_relation_table::{Numbering, RelationTable, TabulationError};
 
 use crate::backend::Backend;
-use crate::clock::{Clock, Time, timed};
+use crate::clock::Time;
+use crate::job::{Job, Outcome, Run, Task, TimedBackend};
+use crate::mix::MixBackend;
 use crate::mix::passes::pass_over;
 use crate::mix::route::Route;
 use crate::mix::route_handles::RouteHandles;
+use crate::mix::runs::{Counts, time_part, time_turns};
 use crate::mix::schedule::Schedule;
-use crate::mix::{MixBackend, MixRun};
 use crate::operation::Operation;
 use crate::series::{Series, time_making};
 use crate::sweeps::Outputs;
-use crate::timed_structure::{ElementSample, Run};
 use crate::workload::Action;
 
 struct Tables {
@@ -150,8 +154,8 @@ impl MeshQuery for Tables {
 }
 
 /// Builds the structure of `backend` from `polygons`, then tables of the relations that `schedule`
-/// queries. Returns `None` if the structure cannot hold `polygons` or if the schedule changes
-/// connectivity.
+/// queries. Returns `None` if the structure cannot hold `polygons` or if an operation of the
+/// schedule changes the connectivity of the mesh.
 pub fn tabulate<'a>(
     backend: &Backend,
     polygons: &'a PolygonMesh,
@@ -239,91 +243,18 @@ struct TableMix<'a> {
 }
 
 impl TableMix<'_> {
-    fn run_range(&mut self, part: usize, range: std::ops::Range<u64>) -> u64 {
-        match self.schedule.parts[part].action {
-            Action::SetPosition => {
-                let count = range.end - range.start;
-                for run in self.handles.vertices(range) {
-                    for v in run {
-                        let at = &mut self.tables.positions[v.index()];
-                        *at = black_box(*at);
-                    }
-                }
-                count
-            }
-            action => self
-                .handles
-                .run_action(black_box(&self.tables), action, range),
-        }
-    }
-}
-
-impl MixBackend for TableMix<'_> {
-    fn name(&self) -> &'static str {
-        "relation-tables"
-    }
-
-    fn type_paths(&self) -> Vec<&'static str> {
-        vec![self.structure_type, "sixfold_relation_table::RelationTable"]
-    }
-
-    fn bytes(&self) -> usize {
-        self.tables.bytes()
-    }
-
-    fn merged_vertices(&self) -> usize {
-        self.merged
-    }
-
-    fn scans(&self) -> Vec<bool> {
-        vec![false; self.schedule.parts.len()]
-    }
-
-    fn run(&mut self, turn: u64, turns: u64, _: usize, clock: &dyn Clock) -> MixRun {
-        let (mut operations, mut yielded) = (0, 0);
-        let time = timed(clock, || {
-            for turn in turn..turn + turns {
-                for part in 0..self.schedule.parts.len() {
-                    let range = self.schedule.turn_range(part, turn);
-                    operations += range.end - range.start;
-                    if !range.is_empty() {
-                        yielded += self.run_range(part, range);
-                    }
-                }
-            }
-        });
-        MixRun {
-            time,
-            operations,
-            yielded,
+    fn build(&self, series: &Series<'_>) -> Run {
+        let bytes = self.tables.bytes();
+        let time = (self.build)(self.polygons, &relations(self.schedule), bytes, series);
+        let outcome = series.check.then(|| Outcome {
+            checksum: (self.tables.vertex_count() + self.tables.faces) as f64,
+            elements: self.tables.faces as u64,
             refused: 0,
-        }
-    }
-
-    fn run_part(&mut self, part: usize, first: u64, operations: u64, clock: &dyn Clock) -> MixRun {
-        let mut yielded = 0;
-        let time = timed(clock, || {
-            yielded = self.run_range(part, first..first + operations)
         });
-        MixRun {
-            time,
-            operations,
-            yielded,
-            refused: 0,
-        }
+        Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
     }
 
-    fn cycle_length(&self, part: usize) -> u64 {
-        let kind = self.schedule.parts[part].action.kind();
-        kind.map_or(1, |kind| self.handles.len(kind) as u64)
-    }
-
-    fn run_pass(
-        &mut self,
-        operation: Operation,
-        _: Option<ElementSample>,
-        series: &Series<'_>,
-    ) -> Run {
+    fn run_pass(&mut self, operation: Operation, series: &Series<'_>) -> Run {
         let run = pass_over(&self.tables, &mut self.outputs, operation, series);
         if operation != Operation::VvSmooth {
             return run;
@@ -337,16 +268,89 @@ impl MixBackend for TableMix<'_> {
         let time = run.time.plus(swap.scaled(1.0 / f64::from(series.runs)));
         Run { time, ..run }
     }
+}
+
+/// Runs the operations `range` of one part. Returns the numbers of operations, of results, and of
+/// refused edits: tables have no edits.
+fn run_range(
+    tables: &mut Tables,
+    handles: &RouteHandles<Tables>,
+    action: Action,
+    range: Range<u64>,
+) -> Counts {
+    let operations = range.end - range.start;
+    match action {
+        Action::SetPosition => {
+            for run in handles.vertices(range) {
+                for v in run {
+                    let at = &mut tables.positions[v.index()];
+                    *at = black_box(*at);
+                }
+            }
+            [operations, operations, 0]
+        }
+        action => [
+            operations,
+            handles.run_action(black_box(tables), action, range),
+            0,
+        ],
+    }
+}
+
+impl TimedBackend for TableMix<'_> {
+    fn name(&self) -> &str {
+        "relation-tables"
+    }
+
+    fn costs(&self) -> [QueryCost; 9] {
+        [QueryCost::Local; 9]
+    }
+
+    fn merged_vertices(&self) -> usize {
+        self.merged
+    }
+
+    fn bytes(&self) -> usize {
+        self.tables.bytes()
+    }
+
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+        let Self {
+            tables,
+            handles,
+            schedule,
+            ..
+        } = self;
+        let parts = &schedule.parts;
+        match job.task {
+            Task::Operation(Operation::Build) => self.build(series),
+            Task::Operation(operation) => self.run_pass(operation, series),
+            Task::Mix => time_turns(schedule, job.first, series, |part, range| {
+                run_range(tables, handles, parts[part].action, range)
+            }),
+            Task::Part(part) => {
+                let action = parts[part].action;
+                let all = action.kind().map_or(1, |kind| handles.len(kind) as u64);
+                time_part(job.first, series, Some(all), |range| {
+                    run_range(tables, handles, action, range)
+                })
+            }
+        }
+    }
+}
+
+impl MixBackend for TableMix<'_> {
+    fn type_paths(&self) -> Vec<&'static str> {
+        vec![self.structure_type, "sixfold_relation_table::RelationTable"]
+    }
+
+    fn scans(&self) -> Vec<bool> {
+        vec![false; self.schedule.parts.len()]
+    }
 
     fn accepted_places(&mut self) -> Vec<Vec<bool>> {
         Vec::new()
     }
 
     fn keep_places(&mut self, _: &[Vec<bool>]) {}
-
-    fn build(&self, series: &Series<'_>) -> Time {
-        let bytes = self.tables.bytes();
-        let time = (self.build)(self.polygons, &relations(self.schedule), bytes, series);
-        time.scaled(1.0 / f64::from(series.runs))
-    }
 }

@@ -1,0 +1,124 @@
+//! The list of commands in groups, completions for shells, and manual pages.
+
+use std::fs;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use clap::{Command as Definition, CommandFactory};
+
+use crate::arguments::{Arguments, Completions, Manual, with_file_options};
+use crate::failure::Failure;
+use crate::output::cannot_write;
+use crate::text::ignore_closed_pipe;
+use crate::{generate, growth, orders, study};
+
+/// The commands of each group, in the order of the list.
+const GROUPS: [(&str, &[&str]); 5] = [
+    (
+        "Choose a structure",
+        &["pick", "workloads", "study", "inspect"],
+    ),
+    (
+        "Explain the costs",
+        &["why", "memory", "orders", "growth", "edits", "schemes"],
+    ),
+    ("Saved results", &["report", "compare", "merge"]),
+    (
+        "Meshes",
+        &[
+            "generate",
+            "distance",
+            "subdivide",
+            "smooth",
+            "dual",
+            "triangulate",
+            "decimate",
+            "remesh",
+            "repair",
+            "render",
+        ],
+    ),
+    ("Help", &["help", "completions", "manual"]),
+];
+
+/// Returns the definition of all arguments, with the help texts that list names.
+pub(crate) fn definition() -> Definition {
+    let definition = Arguments::command()
+        .mut_subcommand("study", |study| study.after_help(study::help()))
+        .mut_subcommand("orders", |orders| orders.after_help(orders::help()))
+        .mut_subcommand("growth", |growth| growth.after_help(growth::help()))
+        .mut_subcommand("generate", |generate| generate.after_help(generate::help()))
+        .mut_subcommands(with_file_options);
+    let template = format!(
+        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{}\n\nOptions:\n{{options}}\
+         {{after-help}}",
+        grouped_commands(&definition)
+    );
+    definition.help_template(template)
+}
+
+/// Returns the commands with their summaries, one group after the other.
+fn grouped_commands(definition: &Definition) -> String {
+    let names = || GROUPS.iter().flat_map(|(_, names)| names.iter());
+    let width = names().map(|name| name.len()).max().unwrap_or(0);
+    let line = |name: &&str| {
+        let about = match definition.find_subcommand(name) {
+            Some(command) => command.get_about().map(ToString::to_string),
+            None => Some("Print this text, or the help of a command".into()),
+        };
+        format!("  {name:<width$}  {}", about.unwrap_or_default())
+    };
+    let groups = GROUPS.map(|(title, names)| {
+        let lines: Vec<String> = names.iter().map(line).collect();
+        format!("{title}:\n{}", lines.join("\n"))
+    });
+    groups.join("\n\n")
+}
+
+/// Prints the completions for a shell.
+pub(crate) fn completions(arguments: &Completions) -> Result<ExitCode, Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut definition(), "sixfold", &mut script);
+    let mut stdout = io::stdout().lock();
+    ignore_closed_pipe(stdout.write_all(&script).and_then(|()| stdout.flush()))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Prints the manual page of `sixfold`, or writes the pages of all commands to a folder.
+pub(crate) fn manual(arguments: &Manual) -> Result<ExitCode, Failure> {
+    if let Some(folder) = &arguments.to {
+        let written = fs::create_dir_all(folder);
+        written
+            .and_then(|()| clap_mangen::generate_to(definition(), folder))
+            .map_err(|cause| cannot_write(&folder.display().to_string(), &cause))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let printed = clap_mangen::Man::new(definition()).render(&mut io::stdout().lock());
+    ignore_closed_pipe(printed)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn each_command_is_in_exactly_one_group() {
+        let definition = definition();
+        let defined = definition
+            .get_subcommands()
+            .map(|c| c.get_name().to_owned());
+        let mut defined: BTreeSet<String> = defined.collect();
+        defined.insert("help".into());
+        let listed: Vec<&str> = GROUPS
+            .iter()
+            .flat_map(|(_, names)| *names)
+            .copied()
+            .collect();
+        let unique: BTreeSet<String> = listed.iter().map(|&name| name.to_owned()).collect();
+        assert_eq!(listed.len(), unique.len());
+        assert_eq!(unique, defined);
+    }
+}

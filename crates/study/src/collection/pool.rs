@@ -1,0 +1,513 @@
+//! Results over all meshes of a collection.
+//!
+//! The means of two backends can be compared only if both means are over the same meshes. Every
+//! mean is therefore over the meshes that all compared backends can hold. The means include
+//! estimated times. Without estimated times, backends that are too slow to measure would look fast.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use sixfold::subdivision::Scheme;
+use sixfold_workload::Operation;
+
+use crate::numbers::{counted, grouped, times};
+use crate::pick::EQUAL_UP_TO;
+use crate::report::{Agreement, Report, ResultRow, Standing};
+use crate::statistics::geometric_mean;
+
+/// The results over all meshes of a collection.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+pub struct Pool {
+    /// The number of studied meshes that each backend can hold.
+    pub holding: Vec<Holding>,
+    /// The names of the compared backends. Each compared backend can hold all meshes of the first
+    /// group.
+    pub compared: Vec<String>,
+    /// The results of groups of meshes. The first group contains the meshes that all compared
+    /// backends can hold. The other groups are subsets of the first group, such as all closed
+    /// meshes.
+    pub groups: Vec<Group>,
+    /// Sentences that describe the results.
+    #[serde(rename = "words")]
+    pub sentences: Vec<String>,
+    /// The warnings of the studies. Warnings that differ only in their numbers are merged into one
+    /// warning with the number of meshes.
+    pub warnings: Vec<String>,
+}
+
+/// The number of meshes that a backend can hold.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct Holding {
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+    /// The number of studied meshes that the backend can hold.
+    pub meshes: usize,
+}
+
+/// The results of a group of meshes.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Group {
+    /// What the meshes have in common, such as `1,000 to 9,999 faces`.
+    pub name: String,
+    /// The names of the meshes.
+    pub meshes: Vec<String>,
+    /// The results for each purpose (such as queries) and each backend. The backends of a purpose
+    /// are sorted, the fastest backend first.
+    pub overall: Vec<Overall>,
+    /// The results for each operation and each backend.
+    pub pooled: Vec<Pooled>,
+}
+
+/// A kind of work to which several operations belong, such as editing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Purpose {
+    /// Building the structure from an indexed face set.
+    Build,
+    /// Queries, and passes over the mesh that only query it.
+    Query,
+    /// Changes of the connectivity.
+    Edit,
+    /// Subdivision, with the fastest method of each backend.
+    Subdivide,
+}
+
+/// The mean time of one backend over all operations of one purpose, such as editing.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Overall {
+    /// The purpose of the operations.
+    pub purpose: Purpose,
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+    /// The number of meshes in the mean.
+    pub meshes: usize,
+    /// Geometric mean over meshes and operations of the time divided by the time of the fastest
+    /// backend. Each range of mesh sizes (such as 100 to 999 faces or 1,000 to 9,999 faces) has the
+    /// same weight in the mean.
+    pub ratio_to_best: f64,
+    /// Lower end of the 95 % confidence interval of `ratio_to_best`; `None` with fewer than three
+    /// meshes.
+    pub ci_low: Option<f64>,
+    /// Upper end of the 95 % confidence interval of `ratio_to_best`.
+    pub ci_high: Option<f64>,
+}
+
+/// The results of one operation on one backend, over several meshes.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Pooled {
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+    /// The measured operation, such as `vertex_normal`.
+    pub operation: Operation,
+    /// Number of meshes in the means. This number is the same for all backends of an operation.
+    pub meshes: usize,
+    /// Number of meshes on which this backend alone is the fastest.
+    pub best: usize,
+    /// Number of meshes on which this backend is tied with the fastest.
+    pub tied: usize,
+    /// Number of meshes on which the time is an estimate, because a real run would exceed the time
+    /// budget.
+    pub estimated: usize,
+    /// Geometric mean over the meshes of the time divided by the time of the fastest backend.
+    pub ratio_to_best: f64,
+    /// Lower end of the 95 % confidence interval of `ratio_to_best`; `None` with fewer than three
+    /// meshes.
+    pub ci_low: Option<f64>,
+    /// Upper end of the 95 % confidence interval of `ratio_to_best`.
+    pub ci_high: Option<f64>,
+    /// Geometric mean over the meshes of the time per element, in nanoseconds.
+    pub ns_per_element: Option<f64>,
+}
+
+impl Pool {
+    /// Computes the results over several studies. Each study is of another mesh.
+    pub fn new(studies: &[Report]) -> Self {
+        let holding = holding(studies);
+        let compared: Vec<&str> = holding
+            .iter()
+            .filter(|holding| holding.meshes > 0)
+            .map(|holding| holding.backend.as_str())
+            .collect();
+        let holds = |study: &Report, name: &str| {
+            let mut backends = study.backends.iter().filter(|b| b.name == name);
+            backends.any(|backend| backend.holds)
+        };
+        let (compared, common) = common(&compared, studies.len(), |mesh, name| {
+            holds(&studies[mesh], name)
+        });
+        let common: Vec<&Report> = common.into_iter().map(|mesh| &studies[mesh]).collect();
+        let groups: Vec<Group> = groups(&common)
+            .into_iter()
+            .map(|(name, studies)| Group {
+                name,
+                meshes: studies.iter().map(|s| s.mesh.name.clone()).collect(),
+                overall: overall(&studies, &compared),
+                pooled: pooled(&studies, &compared),
+            })
+            .collect();
+        let compared = compared.into_iter().map(ToOwned::to_owned).collect();
+        let mut pool = Self {
+            holding,
+            compared,
+            groups,
+            sentences: Vec::new(),
+            warnings: warnings(studies),
+        };
+        pool.sentences = pool.describe(studies.len());
+        pool
+    }
+
+    /// Returns the results of the first group: all meshes that all compared backends can hold.
+    pub fn all(&self) -> &[Pooled] {
+        self.groups.first().map_or(&[], |group| &group.pooled)
+    }
+
+    fn describe(&self, studied: usize) -> Vec<String> {
+        let Some((all, parts)) = self.groups.split_first() else {
+            return Vec::new();
+        };
+        let mut sentences = vec![self.describe_meshes(all.meshes.len(), studied)];
+        for rows in all.overall.chunk_by(|a, b| a.purpose == b.purpose) {
+            sentences.extend(leader(rows, &all.name));
+            for part in parts {
+                let own: Vec<Overall> = part
+                    .overall
+                    .iter()
+                    .filter(|row| row.purpose == rows[0].purpose)
+                    .cloned()
+                    .collect();
+                // Only where the answer is another one.
+                let differs = own.first().zip(rows.first());
+                if differs.is_some_and(|(own, all)| own.backend != all.backend) {
+                    sentences.extend(leader(&own, &part.name));
+                }
+            }
+        }
+        sentences
+    }
+
+    fn describe_meshes(&self, pooled: usize, studied: usize) -> String {
+        let fewer: Vec<String> = self
+            .holding
+            .iter()
+            .filter(|holding| holding.meshes < studied)
+            .map(|holding| format!("{} can hold {}", holding.backend, holding.meshes))
+            .collect();
+        match fewer.is_empty() {
+            true => format!(
+                "All backends can hold all {}.",
+                counted(studied, "mesh", "meshes")
+            ),
+            false => format!(
+                "The means are over the {} that all compared backends can hold. Of {studied} \
+                 studied, {}; the other backends can hold all meshes.",
+                counted(pooled, "mesh", "meshes"),
+                fewer.join(", ")
+            ),
+        }
+    }
+}
+
+/// Returns the number of meshes that each backend can hold, in the order of the studies.
+fn holding(studies: &[Report]) -> Vec<Holding> {
+    let mut holding: Vec<Holding> = Vec::new();
+    for backend in studies.iter().flat_map(|study| &study.backends) {
+        let known = holding.iter().position(|h| h.backend == backend.name);
+        let at = known.unwrap_or_else(|| {
+            holding.push(Holding {
+                backend: backend.name.clone(),
+                meshes: 0,
+            });
+            holding.len() - 1
+        });
+        holding[at].meshes += usize::from(backend.holds);
+    }
+    holding
+}
+
+/// Returns the backends to compare and the meshes on which all of them have a value. As long as
+/// there is no such mesh, the backend with the fewest values is left out.
+fn common<'b>(
+    backends: &[&'b str],
+    meshes: usize,
+    has: impl Fn(usize, &str) -> bool,
+) -> (Vec<&'b str>, Vec<usize>) {
+    let mut compared = backends.to_vec();
+    loop {
+        let all = |&mesh: &usize| compared.iter().all(|backend| has(mesh, backend));
+        let shared: Vec<usize> = (0..meshes).filter(all).collect();
+        let count = |backend: &str| (0..meshes).filter(|&mesh| has(mesh, backend)).count();
+        let fewest = (0..compared.len()).min_by_key(|&b| count(compared[b]));
+        match fewest {
+            Some(fewest) if shared.is_empty() => compared.remove(fewest),
+            _ => return (compared, shared),
+        };
+    }
+}
+
+/// Returns the groups of meshes with their names: all, by the number of faces, and by kind. A
+/// division into one group is left out.
+fn groups<'s>(studies: &[&'s Report]) -> Vec<(String, Vec<&'s Report>)> {
+    if studies.is_empty() {
+        return Vec::new();
+    }
+    let mut groups = vec![("all meshes".to_owned(), studies.to_vec())];
+    let mut add = |by: &dyn Fn(&Report) -> (u32, String)| {
+        let mut parts: BTreeMap<(u32, String), Vec<&Report>> = BTreeMap::new();
+        for study in studies {
+            parts.entry(by(study)).or_default().push(study);
+        }
+        if parts.len() > 1 {
+            groups.extend(parts.into_iter().map(|((_, name), part)| (name, part)));
+        }
+    };
+    add(&|study| {
+        let from = 10_usize.pow(decade(study));
+        let name = format!("{} to {} faces", grouped(from), grouped(10 * from - 1));
+        (decade(study), name)
+    });
+    add(&|study| {
+        let most = study.mesh.facts.face_degree.as_ref().map_or(0, |d| d.max);
+        match most <= 3 {
+            true => (0, "triangle meshes".into()),
+            false => (1, "meshes with polygons".into()),
+        }
+    });
+    add(&|study| match study.mesh.facts.closed {
+        true => (0, "closed meshes".into()),
+        false => (1, "meshes with boundary".into()),
+    });
+    groups
+}
+
+/// Returns the power of ten of the number of faces.
+fn decade(study: &Report) -> u32 {
+    study.mesh.facts.faces.checked_ilog10().unwrap_or(0)
+}
+
+/// Returns the time of a row: measured, or estimated. Returns `None` for other work.
+fn time(row: &ResultRow) -> Option<f64> {
+    let time = row.median_ns.or(row.estimated_ns)?;
+    let same_work = !matches!(row.agreement, Agreement::Mismatch | Agreement::OtherEdits);
+    (time > 0.0 && same_work).then_some(time)
+}
+
+fn row<'s>(study: &'s Report, operation: Operation, backend: &str) -> Option<&'s ResultRow> {
+    study.rows(operation).find(|row| row.backend == backend)
+}
+
+/// Pools each operation over the meshes on which all its backends have a time.
+fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
+    let mut pooled = Vec::new();
+    for operation in Operation::ALL {
+        let value = |mesh: usize, backend: &str| {
+            let row = row(studies[mesh], operation, backend)?;
+            Some((row, time(row)?))
+        };
+        let has = |mesh: usize, backend: &str| value(mesh, backend).is_some();
+        let some = |backend: &&&str| (0..studies.len()).any(|mesh| has(mesh, backend));
+        let backends: Vec<&str> = backends.iter().filter(some).copied().collect();
+        let (compared, meshes) = common(&backends, studies.len(), has);
+        for backend in &compared {
+            let ratios: Vec<f64> = meshes
+                .iter()
+                .filter_map(|&mesh| {
+                    let all = compared.iter().filter_map(|other| value(mesh, other));
+                    let least = all.map(|(_, time)| time).min_by(f64::total_cmp)?;
+                    let (row, time) = value(mesh, backend)?;
+                    Some(row.ratio_to_best.unwrap_or(time / least))
+                })
+                .collect();
+            let rows = || meshes.iter().filter_map(|&mesh| value(mesh, backend));
+            let each = rows().filter_map(|(row, time)| Some(time / row.elements? as f64));
+            let each: Vec<f64> = each.collect();
+            let standing = |wanted: &[Standing]| {
+                let standings = rows().filter_map(|(row, _)| row.standing);
+                standings
+                    .filter(|standing| wanted.contains(standing))
+                    .count()
+            };
+            let Some((ratio_to_best, interval)) = geometric_mean(&ratios) else {
+                continue;
+            };
+            pooled.push(Pooled {
+                backend: (*backend).to_owned(),
+                operation,
+                meshes: meshes.len(),
+                best: standing(&[Standing::Best, Standing::Alone]),
+                tied: standing(&[Standing::Tied]),
+                estimated: rows().filter(|(row, _)| row.median_ns.is_none()).count(),
+                ratio_to_best,
+                ci_low: interval.map(|[low, _]| low),
+                ci_high: interval.map(|[_, high]| high),
+                ns_per_element: geometric_mean(&each).map(|(mean, _)| mean),
+            });
+        }
+    }
+    pooled
+}
+
+/// The operations that do the same work: all methods of a subdivision scheme, or one operation.
+fn tasks(purpose: Purpose) -> Vec<Vec<Operation>> {
+    let of_scheme = |scheme: Scheme| {
+        let same = |o: &Operation| o.scheme() == Some(scheme);
+        Operation::ALL.into_iter().filter(same).collect::<Vec<_>>()
+    };
+    let schemes = Scheme::ALL.into_iter().map(of_scheme);
+    let single = Operation::ALL.into_iter().filter(|o| o.scheme().is_none());
+    let tasks = single.map(|operation| vec![operation]).chain(schemes);
+    let tasks = tasks.filter(|task| task.first().is_some_and(|o| Purpose::of(*o) == purpose));
+    tasks.collect()
+}
+
+impl Purpose {
+    /// All purposes.
+    pub const ALL: [Self; 4] = [Self::Build, Self::Query, Self::Edit, Self::Subdivide];
+
+    /// Returns the purpose that an operation serves.
+    pub const fn of(operation: Operation) -> Self {
+        match operation {
+            Operation::Build => Self::Build,
+            Operation::EditPass(_) => Self::Edit,
+            Operation::CatmullClark(_) | Operation::Loop(_) => Self::Subdivide,
+            _ => Self::Query,
+        }
+    }
+
+    /// Returns the name of the purpose in sentences, such as `queries`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Build => "Building",
+            Self::Query => "Queries",
+            Self::Edit => "Edits",
+            Self::Subdivide => "Subdivision",
+        }
+    }
+}
+
+/// Pools all tasks of each purpose.
+fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
+    let mut overall = Vec::new();
+    for purpose in Purpose::ALL {
+        let tasks = tasks(purpose);
+        // A case is a task on a mesh.
+        let cases: Vec<(usize, &[Operation])> = (0..studies.len())
+            .flat_map(|mesh| tasks.iter().map(move |task| (mesh, task.as_slice())))
+            .collect();
+        let value = |case: usize, backend: &str| {
+            let (mesh, task) = cases[case];
+            let rows = task.iter().filter_map(|&o| row(studies[mesh], o, backend));
+            rows.filter_map(time).min_by(f64::total_cmp)
+        };
+        let has = |case: usize, backend: &str| value(case, backend).is_some();
+        let some = |backend: &&&str| (0..cases.len()).any(|case| has(case, backend));
+        let backends: Vec<&str> = backends.iter().filter(some).copied().collect();
+        let (compared, shared) = common(&backends, cases.len(), has);
+        let ratio = |case: usize, backend: &str| {
+            let all = compared.iter().filter_map(|other| value(case, other));
+            Some(value(case, backend)? / all.min_by(f64::total_cmp)?)
+        };
+        let mut rows: Vec<Overall> = compared
+            .iter()
+            .filter_map(|backend| {
+                // Mean over the tasks of each mesh, with the size of the mesh.
+                let by_mesh: Vec<(u32, f64)> = (0..studies.len())
+                    .filter_map(|mesh| {
+                        let own = shared.iter().filter(|&&case| cases[case].0 == mesh);
+                        let ratios: Vec<f64> =
+                            own.filter_map(|&case| ratio(case, backend)).collect();
+                        Some((decade(studies[mesh]), geometric_mean(&ratios)?.0))
+                    })
+                    .collect();
+                mean_over_sizes(&by_mesh).map(|(mean, interval)| Overall {
+                    purpose,
+                    backend: (*backend).to_owned(),
+                    meshes: by_mesh.len(),
+                    ratio_to_best: mean,
+                    ci_low: interval.map(|[low, _]| low),
+                    ci_high: interval.map(|[_, high]| high),
+                })
+            })
+            .collect();
+        rows.sort_by(|a, b| a.ratio_to_best.total_cmp(&b.ratio_to_best));
+        overall.extend(rows);
+    }
+    overall
+}
+
+/// Returns the geometric mean in which each power of ten has equal weight, and the interval of the
+/// mean over all values, moved to this mean.
+fn mean_over_sizes(values: &[(u32, f64)]) -> Option<(f64, Option<[f64; 2]>)> {
+    let mut by_size: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
+    for &(size, value) in values {
+        by_size.entry(size).or_default().push(value);
+    }
+    let means: Vec<f64> = by_size
+        .values()
+        .filter_map(|values| Some(geometric_mean(values)?.0))
+        .collect();
+    let (mean, _) = geometric_mean(&means)?;
+    let all: Vec<f64> = values.iter().map(|(_, value)| *value).collect();
+    let (centre, interval) = geometric_mean(&all)?;
+    Some((
+        mean,
+        interval.map(|ends| ends.map(|end| end * mean / centre)),
+    ))
+}
+
+/// Describes the fastest backends of one purpose.
+fn leader(rows: &[Overall], group: &str) -> Option<String> {
+    let (first, others) = rows.split_first()?;
+    let equal = others
+        .iter()
+        .filter(|row| row.ratio_to_best <= EQUAL_UP_TO * first.ratio_to_best);
+    let names: Vec<&str> = equal.map(|row| row.backend.as_str()).collect();
+    let next = others.get(names.len())?;
+    let lead = match names.is_empty() {
+        true => format!("{} is fastest on average", first.backend),
+        false => format!(
+            "{} and {} are fastest on average, within 5 % of each other",
+            first.backend,
+            names.join(" and ")
+        ),
+    };
+    Some(format!(
+        "{}, {group} ({}): {lead}: {} the time of the fastest backend of each mesh and \
+         operation. Next is {} with {}.",
+        first.purpose.name(),
+        counted(first.meshes, "mesh", "meshes"),
+        times(first.ratio_to_best),
+        next.backend,
+        times(next.ratio_to_best)
+    ))
+}
+
+/// Returns the warnings of the studies. Warnings that differ only in numbers are merged.
+fn warnings(studies: &[Report]) -> Vec<String> {
+    let mut merged: Vec<(String, &str, Vec<&str>)> = Vec::new();
+    for study in studies {
+        for warning in &study.warnings {
+            let pattern: String = warning.chars().filter(|c| !c.is_ascii_digit()).collect();
+            let mesh = study.mesh.name.as_str();
+            match merged.iter_mut().find(|(known, ..)| *known == pattern) {
+                Some((.., meshes)) => meshes.push(mesh),
+                None => merged.push((pattern, warning, vec![mesh])),
+            }
+        }
+    }
+    let text = |(_, warning, meshes): (String, &str, Vec<&str>)| match &meshes[..] {
+        [mesh] => format!("{mesh}: {warning}"),
+        [first, others @ ..] => format!(
+            "{first}: {warning} {} similar warnings.",
+            match others.len() {
+                1 => "Another mesh has".to_owned(),
+                n => format!("{n} other meshes have"),
+            }
+        ),
+        [] => warning.to_owned(),
+    };
+    merged.into_iter().map(text).collect()
+}
+
+#[cfg(test)]
+mod tests;

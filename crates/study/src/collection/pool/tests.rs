@@ -1,0 +1,250 @@
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use sixfold::{PolygonMesh, shapes};
+
+use super::*;
+use crate::{Settings, StudyMesh, study};
+
+const BOUNDARY: Operation = Operation::Boundary;
+
+/// A study of `mesh` in which each backend takes the given time for `boundary`. A negative time is
+/// an estimate.
+fn study_of(name: &str, mesh: PolygonMesh, times: &[(&str, f64)]) -> Report {
+    let settings = Settings {
+        operations: vec![BOUNDARY],
+        budget: Duration::from_millis(20),
+        ..Settings::default()
+    };
+    let study_mesh = StudyMesh::new(name, mesh);
+    let report = study(&study_mesh, &settings, &AtomicBool::new(false), &mut |_| ());
+    let mut report = report.expect("a study");
+    let measured = times.iter().map(|(_, ns)| *ns).filter(|ns| *ns > 0.0);
+    let least = measured.min_by(f64::total_cmp).expect("a measured time");
+    report.warnings.clear();
+    report
+        .backends
+        .retain(|b| times.iter().any(|(name, _)| b.name == *name));
+    report.results = times
+        .iter()
+        .map(|&(backend, ns)| ResultRow {
+            elements: Some(30),
+            median_ns: (ns > 0.0).then_some(ns),
+            estimated_ns: (ns < 0.0).then_some(-ns),
+            ratio_to_best: (ns > 0.0).then_some(ns / least),
+            standing: (ns > 0.0).then_some(match ns == least {
+                true => Standing::Best,
+                false => Standing::Slower,
+            }),
+            ..ResultRow::new(backend, BOUNDARY)
+        })
+        .collect();
+    report
+}
+
+fn ball(name: &str, times: &[(&str, f64)]) -> Report {
+    study_of(name, shapes::icosahedron(), times)
+}
+
+fn ratios(rows: &[Pooled]) -> Vec<(&str, usize, usize, f64)> {
+    let row = |row: &'_ Pooled| (row.meshes, row.estimated, row.ratio_to_best);
+    rows.iter()
+        .map(|pooled| {
+            let (meshes, estimated, ratio) = row(pooled);
+            (
+                pooled.backend.as_str(),
+                meshes,
+                estimated,
+                (100.0 * ratio).round() / 100.0,
+            )
+        })
+        .collect()
+}
+
+#[test]
+fn ratios_are_geometric_means_over_meshes() {
+    let studies = [2.0, 4.0, 8.0].map(|ratio| {
+        ball(
+            "ball",
+            &[("half-edge", 1000.0 * ratio), ("corner-table", 1000.0)],
+        )
+    });
+    let pool = Pool::new(&studies);
+    let found = ratios(pool.all());
+    assert_eq!(
+        found,
+        [("half-edge", 3, 0, 4.0), ("corner-table", 3, 0, 1.0)]
+    );
+    let half_edge = &pool.all()[0];
+    let (low, high) = half_edge.ci_low.zip(half_edge.ci_high).expect("three");
+    assert!(
+        (2.0..4.0).contains(&low) && high > 4.0 && high <= 8.0,
+        "{half_edge:?}"
+    );
+    assert_eq!((pool.all()[1].best, half_edge.best), (3, 0));
+    let each = half_edge.ns_per_element.expect("measured");
+    assert!((each - 4000.0 / 30.0).abs() < 1e-6, "{each}");
+}
+
+#[test]
+fn estimates_take_part_in_the_means() {
+    let studies = [
+        ball("a", &[("polygon-soup", 10_000.0), ("half-edge", 1000.0)]),
+        ball(
+            "b",
+            &[("polygon-soup", -1_000_000.0), ("half-edge", 1000.0)],
+        ),
+    ];
+    let pool = Pool::new(&studies);
+    let found = ratios(pool.all());
+    // The geometric mean of 10 and 1000.
+    assert_eq!(
+        found,
+        [("polygon-soup", 2, 1, 100.0), ("half-edge", 2, 0, 1.0)]
+    );
+    assert_eq!(pool.all()[0].ci_low, None);
+}
+
+#[test]
+fn means_are_over_the_meshes_that_all_compared_backends_hold() {
+    let all = [("face-vertex", 2000.0), ("half-edge", 1000.0)];
+    let mut refusing = ball("c", &[("face-vertex", 1000.0), ("half-edge", 9000.0)]);
+    refusing.backends[1].holds = false;
+    refusing.results.pop();
+    refusing.results[0].ratio_to_best = Some(1.0);
+    let studies = [ball("a", &all), ball("b", &all), refusing];
+    let pool = Pool::new(&studies);
+    assert_eq!(
+        ratios(pool.all()),
+        [("face-vertex", 2, 0, 2.0), ("half-edge", 2, 0, 1.0)]
+    );
+    assert_eq!(pool.groups[0].meshes, ["a", "b"]);
+    let holding: Vec<usize> = pool.holding.iter().map(|holding| holding.meshes).collect();
+    assert_eq!(holding, [3, 2]);
+    let first = &pool.sentences[0];
+    assert!(
+        first.contains("Of 3 studied, half-edge can hold 2"),
+        "{first}"
+    );
+}
+
+#[test]
+fn a_backend_without_common_meshes_is_not_compared() {
+    let (one, other) = ([("face-vertex", 1000.0), ("half-edge", 1000.0)], 0);
+    let mut studies = [ball("a", &one), ball("b", &one), ball("c", &one)];
+    studies[0].backends[1].holds = false;
+    studies[1].backends[1].holds = false;
+    studies[2].backends[other].holds = false;
+    let pool = Pool::new(&studies);
+    assert_eq!(pool.compared, ["face-vertex"]);
+    assert_eq!(pool.groups[0].meshes, ["a", "b"]);
+    assert_eq!(Pool::new(&[]), Pool::default());
+}
+
+#[test]
+fn meshes_are_grouped_by_size_and_kind_with_equal_weight() {
+    let large = |name: &str| {
+        let mesh = shapes::triangle_torus(20, 20).expect("small");
+        study_of(
+            name,
+            mesh,
+            &[("face-vertex", 4000.0), ("half-edge", 1000.0)],
+        )
+    };
+    let small = |name: &str| ball(name, &[("face-vertex", 1000.0), ("half-edge", 1000.0)]);
+    let grid = study_of(
+        "grid",
+        shapes::grid(3, 4).expect("small"),
+        &[("face-vertex", 1000.0), ("half-edge", 3000.0)],
+    );
+    let studies = [large("a"), small("b"), small("c"), small("d"), grid];
+    let pool = Pool::new(&studies);
+    let names: Vec<&str> = pool
+        .groups
+        .iter()
+        .map(|group| group.name.as_str())
+        .collect();
+    assert_eq!(
+        names,
+        [
+            "all meshes",
+            "10 to 99 faces",
+            "100 to 999 faces",
+            "triangle meshes",
+            "meshes with polygons",
+            "closed meshes",
+            "meshes with boundary",
+        ]
+    );
+    assert_eq!(pool.groups[1].meshes, ["b", "c", "d", "grid"]);
+    let face_vertex = |group: usize| {
+        let mut rows = pool.groups[group].overall.iter();
+        let row = rows
+            .find(|row| row.backend == "face-vertex")
+            .expect("compared");
+        assert_eq!(row.purpose, Purpose::Query);
+        row.ratio_to_best
+    };
+    // 1 on three small meshes and the grid, 4 on the large mesh: both sizes have equal weight.
+    assert!((face_vertex(0) - 2.0).abs() < 1e-9, "{}", face_vertex(0));
+    assert!((face_vertex(2) - 4.0).abs() < 1e-9, "{}", face_vertex(2));
+    assert!((face_vertex(4) - 1.0).abs() < 1e-9, "{}", face_vertex(4));
+    let sentences = pool.sentences.join("\n");
+    assert!(
+        sentences.contains("Queries, all meshes (5 meshes): half-edge is fastest"),
+        "{sentences}"
+    );
+    assert!(
+        sentences.contains("Queries, meshes with polygons (1 mesh): face-vertex is fastest"),
+        "{sentences}"
+    );
+    assert!(
+        !sentences.contains("triangle meshes"),
+        "the same answer: {sentences}"
+    );
+}
+
+#[test]
+fn subdivision_is_compared_with_the_fastest_method_of_each_backend() {
+    let mut study = ball("a", &[("face-vertex", 1000.0), ("half-edge", 1000.0)]);
+    let row = |backend: &str, method, ns| ResultRow {
+        median_ns: Some(ns),
+        ..ResultRow::new(backend, Operation::Loop(method))
+    };
+    use sixfold::subdivision::Method;
+    study.results = vec![
+        row("face-vertex", Method::Gather, 900.0),
+        row("face-vertex", Method::Scatter, 600.0),
+        row("half-edge", Method::Gather, 800.0),
+        row("half-edge", Method::Native, 300.0),
+    ];
+    let pool = Pool::new(&[study]);
+    let found: Vec<(&str, Purpose, f64)> = pool.groups[0]
+        .overall
+        .iter()
+        .map(|row| (row.backend.as_str(), row.purpose, row.ratio_to_best))
+        .collect();
+    let subdivide = Purpose::Subdivide;
+    assert_eq!(
+        found,
+        [
+            ("half-edge", subdivide, 1.0),
+            ("face-vertex", subdivide, 2.0)
+        ]
+    );
+}
+
+#[test]
+fn warnings_that_differ_in_numbers_are_merged() {
+    let mut studies = ["a", "b", "c"].map(|name| ball(name, &[("half-edge", 1.0)]));
+    studies[0].warnings = vec!["Load 2.5 on 2 cores.".into()];
+    studies[1].warnings = vec!["Load 13.1 on 2 cores.".into(), "Other.".into()];
+    studies[2].warnings = vec!["Load 3.1 on 2 cores.".into()];
+    assert_eq!(
+        Pool::new(&studies).warnings,
+        [
+            "a: Load 2.5 on 2 cores. 2 other meshes have similar warnings.",
+            "b: Other."
+        ]
+    );
+}

@@ -1,0 +1,247 @@
+//! The choice of one backend from a ranking.
+
+use serde::{Deserialize, Serialize};
+
+use crate::numbers::times;
+use crate::pick::report::{PartCost, Ranked};
+
+/// Two backends count as equally fast if the ratio of their times is at most this value. Another
+/// program, compiler or machine can change the ratio by 5 %.
+pub const EQUAL_UP_TO: f64 = 1.05;
+
+/// Largest factor for which [`Choice::turning_point`] is looked for.
+const LARGEST_FACTOR: f64 = 100.0;
+
+/// The order of backends of equal speed and equal size. Other backends come after these.
+const ORDER: [&str; 6] = [
+    "polygon-soup",
+    "indexed-face-set",
+    "face-vertex",
+    "corner-table",
+    "half-edge",
+    "winged-edge",
+];
+
+/// The backend to use.
+///
+/// Backends are equally fast if their times are not measurably different, or if the times differ by
+/// at most 5 %. Among the backends that are as fast as the fastest backend, the choice is the
+/// backend with the fewest bytes. If the bytes are equal, the choice is the first backend in this
+/// order: polygon-soup, indexed-face-set, face-vertex, corner-table, half-edge, winged-edge,
+/// others.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Choice {
+    /// The name of the chosen backend.
+    pub backend: String,
+    /// The names of the other backends that are as fast as the fastest backend.
+    pub equally_fast: Vec<String>,
+    /// The smallest change of the workload after which a slower backend would be as fast as the
+    /// chosen backend. `None` if a factor of 100 for one operation is not enough.
+    pub turning_point: Option<TurningPoint>,
+}
+
+/// A change of a workload after which another backend would be as fast as the chosen backend. The
+/// change is computed from the times of the operations, each timed alone.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct TurningPoint {
+    /// The operation whose weight in the workload grows.
+    pub operation: String,
+    /// The factor by which the weight of the operation grows.
+    pub factor: f64,
+    /// The name of the backend that would then be as fast as the chosen backend.
+    pub backend: String,
+}
+
+/// Chooses a backend from a ranking, the fastest first; `None` if the ranking is empty.
+pub(crate) fn choose(ranking: &[Ranked]) -> Option<Choice> {
+    let equal = |r: &&Ranked| r.tied_with_best || r.ratio_to_best <= EQUAL_UP_TO;
+    let chosen = ranking.iter().filter(equal).min_by_key(|r| size_order(r))?;
+    let others = ranking.iter().filter(equal);
+    let others = others.filter(|r| r.backend != chosen.backend);
+    let slower = ranking.iter().filter(|r| !equal(r));
+    let turning_points = slower.filter_map(|r| turning_point(chosen, r));
+    Some(Choice {
+        backend: chosen.backend.clone(),
+        equally_fast: others.map(|r| r.backend.clone()).collect(),
+        turning_point: turning_points.min_by(|a, b| a.factor.total_cmp(&b.factor)),
+    })
+}
+
+/// Returns the key of the rule for backends of equal speed.
+fn size_order(ranked: &Ranked) -> (usize, usize) {
+    (ranked.bytes, position(&ranked.backend))
+}
+
+/// Returns the position of a backend in the order for backends of equal speed and size.
+pub(crate) fn position(name: &str) -> usize {
+    let position = ORDER.iter().position(|&known| known == name);
+    position.unwrap_or(ORDER.len())
+}
+
+/// Returns the smallest factor by which the weight of one part must grow until `other` is as fast
+/// as `chosen`.
+fn turning_point(chosen: &Ranked, other: &Ranked) -> Option<TurningPoint> {
+    let behind = other.ns_per_operation - chosen.ns_per_operation;
+    let pairs = chosen.parts.iter().zip(&other.parts);
+    let points = pairs.filter_map(|(own, theirs): (&PartCost, &PartCost)| {
+        own.ns?;
+        theirs.ns?;
+        let gain = own.weighted_ns() - theirs.weighted_ns();
+        let factor = 1.0 + behind / gain;
+        (gain > 0.0 && factor <= LARGEST_FACTOR).then(|| TurningPoint {
+            operation: own.operation.to_string(),
+            factor,
+            backend: other.backend.clone(),
+        })
+    });
+    points.min_by(|a, b| a.factor.total_cmp(&b.factor))
+}
+
+impl Choice {
+    /// Returns the rule that decided between equally fast backends, as a sentence; `None` if no
+    /// other backend is as fast.
+    pub(crate) fn rule(&self, ranking: &[Ranked]) -> Option<String> {
+        let bytes = |name: &str| {
+            let row = ranking.iter().find(|row| row.backend == name)?;
+            Some((row.bytes, row.bytes_per_vertex))
+        };
+        if self.equally_fast.is_empty() {
+            return None;
+        }
+        let (own, per_vertex) = bytes(&self.backend)?;
+        let same_size = self
+            .equally_fast
+            .iter()
+            .any(|name| bytes(name).is_some_and(|(b, _)| b == own));
+        let reason = match same_size {
+            true => "is the simplest of the backends with the fewest bytes",
+            false => "has the fewest bytes",
+        };
+        Some(format!(
+            "Choose {}: {} are equally fast (within 5 %, or not measurably different), and {} \
+             {reason} ({per_vertex:.1} per vertex).",
+            self.backend,
+            list(std::iter::once(&self.backend).chain(&self.equally_fast)),
+            self.backend,
+        ))
+    }
+
+    /// Returns what would change the choice, as a sentence.
+    pub(crate) fn what_would_change(&self) -> String {
+        match &self.turning_point {
+            Some(point) => format!(
+                "{} would be as fast as {} if the share of {} in the mix were {} the present \
+                 share.",
+                point.backend,
+                self.backend,
+                point.operation,
+                times(point.factor)
+            ),
+            None => format!(
+                "No slower backend would be as fast as {}, even if the share of one operation in \
+                 the mix were 100 × the present share.",
+                self.backend
+            ),
+        }
+    }
+}
+
+/// Joins names: `a`, `a and b`, `a, b and c`.
+pub(crate) fn list<'n>(names: impl IntoIterator<Item = &'n String>) -> String {
+    let names: Vec<&str> = names.into_iter().map(String::as_str).collect();
+    match &names[..] {
+        [] => String::new(),
+        [name] => (*name).to_owned(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold_workload::Operation;
+
+    use super::*;
+
+    fn ranked(backend: &str, ratio: f64, tied: bool, bytes: usize, parts: [f64; 2]) -> Ranked {
+        let part = |operation, ns| PartCost {
+            operation: sixfold_workload::Action::Pass(operation),
+            share: 0.5,
+            ns: Some(ns),
+        };
+        Ranked {
+            backend: backend.into(),
+            made_from: None,
+            ns_per_operation: 0.5 * (parts[0] + parts[1]),
+            ns_ci_low: None,
+            ns_ci_high: None,
+            ratio_to_best: ratio,
+            ci_low: None,
+            ci_high: None,
+            tied_with_best: tied,
+            build_ns: 1.0,
+            first_build_ns: None,
+            bytes,
+            bytes_per_vertex: bytes as f64,
+            sampled: false,
+            estimated: false,
+            parts: vec![
+                part(Operation::Boundary, parts[0]),
+                part(Operation::EdgeLength, parts[1]),
+            ],
+            samples: 10,
+            faults: None,
+            crates: Vec::new(),
+            types: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn equally_fast_backends_are_chosen_by_size_and_then_by_order() {
+        let ranking = [
+            ranked("half-edge", 1.0, true, 96, [10.0, 10.0]),
+            ranked("winged-edge", 1.04, false, 80, [10.0, 10.8]),
+            ranked("corner-table", 1.2, true, 80, [12.0, 12.0]),
+            ranked("face-vertex", 1.06, false, 60, [10.0, 11.2]),
+        ];
+        let choice = choose(&ranking).expect("not empty");
+        assert_eq!(choice.backend, "corner-table");
+        assert_eq!(choice.equally_fast, ["half-edge", "winged-edge"]);
+        let rule = choice.rule(&ranking).expect("two others");
+        assert!(rule.contains("simplest of the backends"), "{rule}");
+        assert_eq!(choose(&[]), None);
+        let alone = choose(&ranking[..1]).expect("one");
+        assert_eq!(alone.rule(&ranking[..1]), None);
+    }
+
+    #[test]
+    fn the_turning_point_makes_both_times_equal() {
+        let ranking = [
+            ranked("half-edge", 1.0, true, 96, [10.0, 10.0]),
+            ranked("corner-table", 1.4, false, 64, [6.0, 22.0]),
+        ];
+        let choice = choose(&ranking).expect("not empty");
+        let point = choice
+            .turning_point
+            .clone()
+            .expect("it is faster in one part");
+        assert_eq!(
+            (point.operation.as_str(), point.backend.as_str()),
+            ("boundary", "corner-table")
+        );
+        // 10 k + 10 = 6 k + 22 at k = 3.
+        assert!((point.factor - 3.0).abs() < 1e-9, "{point:?}");
+        assert!(
+            choice
+                .what_would_change()
+                .contains("if the share of boundary in the mix were 3.0 ×"),
+            "{}",
+            choice.what_would_change()
+        );
+        let never = [
+            ranked("half-edge", 1.0, true, 96, [10.0, 10.0]),
+            ranked("corner-table", 1.4, false, 64, [9.99, 1000.0]),
+        ];
+        let choice = choose(&never).expect("not empty");
+        assert_eq!(choice.turning_point, None);
+    }
+}

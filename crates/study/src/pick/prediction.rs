@@ -1,0 +1,232 @@
+//! Predicts which backends are fast for a workload, without measuring time.
+
+use std::sync::atomic::AtomicBool;
+
+use sixfold::{QueryCost, Relation};
+use sixfold_core::Counts;
+use sixfold_workload::{Action, Backend, ElementKind, Schedule, Workload};
+
+use crate::inspect::StudyMesh;
+use crate::pick::report::Excluded;
+use crate::pick::{PickError, PickSettings, qualified};
+use crate::why::{WhySettings, why};
+
+/// Maximum number of faces for which reads are counted. Counting takes less than a second up to
+/// this size.
+const MOST_FACES: usize = 100_000;
+
+/// The predicted costs of the backends for a workload on one mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prediction {
+    /// The backends that meet all requirements, sorted by the number of cache lines that the
+    /// queries of the workload read. Backends that scan all faces for some operation come last.
+    pub candidates: Vec<Predicted>,
+    /// The backends that do not meet the requirements, each with the reason.
+    pub excluded: Vec<Excluded>,
+}
+
+/// The predicted cost of one backend.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Predicted {
+    /// The name of the backend.
+    pub backend: String,
+    /// The operations of the workload that scan all faces of the mesh for each element on this
+    /// backend.
+    pub scans: Vec<Action>,
+    /// The mean number of cache lines that the queries of one operation of the workload read.
+    /// `None` if the workload has no queries, if some operation scans all faces, or if the mesh has
+    /// more than 100,000 faces.
+    pub lines: Option<f64>,
+}
+
+/// Predicts which backends are fast for a workload, without measuring time.
+///
+/// The prediction uses two properties of each backend: which queries scan all faces, and how many
+/// cache lines the queries read on this mesh. Edits and subdivision are not predicted.
+///
+/// # Errors
+///
+/// Returns an error if the name of a backend is unknown or not unique, or if the mesh has no faces.
+pub fn predict(
+    study_mesh: &StudyMesh,
+    settings: &PickSettings,
+    stop: &AtomicBool,
+) -> Result<Prediction, PickError> {
+    let (qualifying, excluded) = qualified(study_mesh, settings)?;
+    let polygons = &study_mesh.polygons;
+    let counts = polygons.counts(study_mesh.facts.edges);
+    let workload = &settings.workload;
+    let local: Vec<Backend> = qualifying
+        .iter()
+        .filter(|backend| scanning_actions(workload, &backend.info.costs).is_empty())
+        .copied()
+        .collect();
+    let lines = match polygons.face_count() <= MOST_FACES {
+        true => lines_by_backend(study_mesh, &local, workload, &counts, stop),
+        false => Vec::new(),
+    };
+    let mut candidates: Vec<Predicted> = qualifying
+        .iter()
+        .map(|backend| {
+            let counted = lines.iter().find(|(name, _)| name == backend.name());
+            Predicted {
+                backend: backend.name().to_owned(),
+                scans: scanning_actions(workload, &backend.info.costs),
+                lines: counted.map(|(_, lines)| *lines),
+            }
+        })
+        .collect();
+    candidates.sort_by(|a, b| {
+        let lines = |p: &Predicted| p.lines.unwrap_or(f64::INFINITY);
+        let scans = a.scans.len().cmp(&b.scans.len());
+        scans.then(lines(a).total_cmp(&lines(b)))
+    });
+    Ok(Prediction {
+        candidates,
+        excluded,
+    })
+}
+
+/// Returns the actions of a workload that scan all faces for each element.
+fn scanning_actions(workload: &Workload, costs: &[QueryCost; 9]) -> Vec<Action> {
+    let scans = |action: &Action| {
+        let mut relations = action.relations().into_iter();
+        relations.any(|relation| costs[relation as usize] == QueryCost::Scan)
+    };
+    let actions = workload.mix.iter().map(|part| part.action);
+    actions.filter(scans).collect()
+}
+
+/// Returns for each backend the number of cache lines that one operation of the mix reads. Empty if
+/// the mix has no queries.
+fn lines_by_backend(
+    study_mesh: &StudyMesh,
+    backends: &[Backend],
+    workload: &Workload,
+    counts: &Counts,
+    stop: &AtomicBool,
+) -> Vec<(String, f64)> {
+    let relations = workload.relations();
+    let known = Backend::structures();
+    let known = |backend: &&Backend| known.iter().any(|k| k.name() == backend.name());
+    let (ours, extra): (Vec<&Backend>, Vec<&Backend>) = backends.iter().partition(known);
+    if relations.is_empty() || backends.is_empty() {
+        return Vec::new();
+    }
+    let settings = WhySettings {
+        backends: ours
+            .iter()
+            .map(|backend| backend.name().to_owned())
+            .collect(),
+        extra: extra.into_iter().copied().collect(),
+        relations,
+        timing: None,
+    };
+    let Ok(counted) = why(study_mesh, &settings, stop, &mut |_| ()) else {
+        return Vec::new();
+    };
+    let weights = query_weights(workload, counts);
+    let of_backend = |backend: &Backend| {
+        let rows = counted.rows.iter().filter(|r| r.backend == backend.name());
+        let weighted = rows.map(|row| weights[row.reads.relation as usize] * row.reads.lines);
+        (backend.name().to_owned(), weighted.sum())
+    };
+    backends.iter().map(of_backend).collect()
+}
+
+/// Returns for each relation the number of queries in one operation of the mix, as a mean.
+fn query_weights(workload: &Workload, counts: &Counts) -> [f64; 9] {
+    let schedule = Schedule::new(workload, counts);
+    let mut weights = [0.0; 9];
+    for (part, share) in schedule.parts.iter().zip(&schedule.shares) {
+        for relation in part.action.relations() {
+            let elements = match part.action {
+                Action::Pass(_) => elements(relation, counts),
+                _ => 1.0,
+            };
+            weights[relation as usize] += share * elements;
+        }
+    }
+    weights
+}
+
+/// Returns the number of elements at which a relation is queried in a pass over the mesh.
+fn elements(relation: Relation, counts: &Counts) -> f64 {
+    let elements = match ElementKind::queried_by(relation) {
+        ElementKind::Vertex => counts.vertices,
+        ElementKind::Edge => counts.edges,
+        ElementKind::Face => counts.faces,
+    };
+    elements as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use sixfold::shapes;
+    use sixfold_workload::pages::Policy;
+    use sixfold_workload::{Operation, built_in};
+
+    use super::*;
+
+    fn settings(workload: &str) -> PickSettings {
+        PickSettings {
+            workload: built_in(workload).expect("a built-in workload"),
+            backends: Vec::new(),
+            extra: Vec::new(),
+            needs: Vec::new(),
+            max_memory: None,
+            budget: Duration::from_secs(1),
+            seed: 1,
+            heap: Policy::Kept,
+        }
+    }
+
+    fn predicted(workload: &str) -> Prediction {
+        let mesh = StudyMesh::new("torus", shapes::triangle_torus(20, 20).expect("small"));
+        predict(&mesh, &settings(workload), &AtomicBool::new(false)).expect("it has faces")
+    }
+
+    #[test]
+    fn backends_that_scan_come_last_with_the_scanning_operations() {
+        let prediction = predicted("smoothing");
+        let scans: Vec<bool> = prediction
+            .candidates
+            .iter()
+            .map(|p| !p.scans.is_empty())
+            .collect();
+        assert_eq!(scans, [false, false, false, false, true, true]);
+        assert_eq!(prediction.excluded, []);
+        let last = &prediction.candidates[5];
+        assert!(
+            last.scans.contains(&Action::Pass(Operation::VvSmooth)),
+            "{last:?}"
+        );
+        assert_eq!(last.lines, None);
+        let lines: Vec<f64> = prediction.candidates[..4]
+            .iter()
+            .map(|p| p.lines.expect("a small mesh"))
+            .collect();
+        assert!(lines.is_sorted(), "{lines:?}");
+        // A pass over 400 vertices reads at least a line for each vertex.
+        assert!(lines[0] > 400.0, "{lines:?}");
+    }
+
+    #[test]
+    fn the_weights_are_the_queries_of_one_operation() {
+        let mesh = shapes::triangle_torus(20, 20).expect("small");
+        let counts = mesh.counts(1200);
+        let mut workload = built_in("smoothing").expect("built in");
+        workload
+            .mix
+            .retain(|part| part.action == Action::Pass(Operation::VvSmooth));
+        let mut expected = [0.0; 9];
+        expected[Relation::VertexVertices as usize] = 400.0;
+        assert_eq!(query_weights(&workload, &counts), expected);
+        workload.mix[0].action = Action::Relation(Relation::EdgeFaces);
+        let mut expected = [0.0; 9];
+        expected[Relation::EdgeFaces as usize] = 1.0;
+        assert_eq!(query_weights(&workload, &counts), expected);
+    }
+}

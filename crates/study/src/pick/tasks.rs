@@ -1,0 +1,189 @@
+//! The tasks that each backend runs for a workload, and the time of the whole mix, computed from
+//! the times of these tasks.
+
+use sixfold::PolygonMesh;
+use sixfold::subdivision::{Method, Scheme};
+use sixfold_core::Counts;
+use sixfold_workload::{Action, Operation, Schedule, Task, Time, Workload};
+
+use crate::measure::Entry;
+use crate::pick::backend::Candidate;
+
+/// Parts that a mix contains are also timed alone, to explain the result: in every n-th round.
+const PARTS_EVERY: u32 = 3;
+
+/// The schedule of a workload on a mesh, with what is needed to weigh its parts.
+pub(crate) struct Tasks<'t> {
+    pub(crate) schedule: &'t Schedule,
+    /// The part of a building that belongs to one operation.
+    pub(crate) rebuilds: f64,
+    /// The scheme of `subdivide` on this mesh.
+    scheme: Scheme,
+}
+
+impl<'t> Tasks<'t> {
+    pub(crate) fn new(
+        workload: &Workload,
+        schedule: &'t Schedule,
+        polygons: &PolygonMesh,
+        counts: &Counts,
+    ) -> Self {
+        Self {
+            schedule,
+            rebuilds: workload.rebuilds_per_operation(counts),
+            scheme: match polygons.first_polygon() {
+                None => Scheme::Loop,
+                Some(_) => Scheme::CatmullClark,
+            },
+        }
+    }
+
+    /// Returns the entries to measure: for each task, one for each candidate that has it.
+    pub(crate) fn entries(&self, candidates: &[Candidate]) -> Vec<Entry> {
+        let mut entries = Vec::new();
+        let columns = || candidates.iter().enumerate();
+        if self.schedule.on_elements > 0.0 {
+            let mixing = columns().filter(|(_, candidate)| !candidate.scans());
+            entries.extend(mixing.map(|(column, _)| Entry {
+                pauses_clock: self.schedule.edits().next().is_some(),
+                ..Entry::of_task(column, Task::Mix, "the mix")
+            }));
+        }
+        for part in 0..self.schedule.parts.len() {
+            entries.extend(columns().map(|(i, candidate)| self.part_entry(i, candidate, part)));
+        }
+        let rebuilding = u32::from(self.rebuilds == 0.0) * PARTS_EVERY;
+        let builds = || {
+            entries
+                .iter()
+                .any(|e| e.operation() == Some(Operation::Build))
+        };
+        if !builds() {
+            entries.extend(columns().map(|(column, _)| Entry {
+                least_every: rebuilding.max(1),
+                ..Entry::new(column, Operation::Build)
+            }));
+        }
+        entries
+    }
+
+    fn part_entry(&self, column: usize, candidate: &Candidate, part: usize) -> Entry {
+        let action = self.schedule.parts[part].action;
+        match self.task(candidate, part) {
+            Task::Operation(operation) => Entry::new(column, operation),
+            task => Entry {
+                scans: candidate.scans[part],
+                pauses_clock: matches!(action, Action::Edit(_)),
+                least_every: match candidate.scans() {
+                    true => 1,
+                    false => PARTS_EVERY,
+                },
+                ..Entry::of_task(column, task, action.name())
+            },
+        }
+    }
+
+    /// Returns what a candidate runs for a part: subdivision by its best method.
+    pub(crate) fn task(&self, candidate: &Candidate, part: usize) -> Task {
+        match self.schedule.parts[part].action {
+            Action::Pass(operation) => Task::Operation(operation),
+            Action::Subdivide => {
+                let method = candidate.method(self.scheme, self.schedule.editable);
+                Task::Operation(match self.scheme {
+                    Scheme::Loop => Operation::Loop(method),
+                    _ => Operation::CatmullClark(method),
+                })
+            }
+            _ => Task::Part(part),
+        }
+    }
+
+    /// Returns the time of one operation of the mix on a candidate, rebuilding included, by round;
+    /// the reason if the candidate refuses a task. `entries` are those of the candidate.
+    pub(crate) fn mix_times(
+        &self,
+        candidate: &Candidate,
+        entries: &[&Entry],
+    ) -> Result<Vec<(u32, Time)>, String> {
+        let find = |task: Task| entries.iter().find(|entry| entry.job.task == task);
+        let mut terms = Vec::new();
+        let mut add = |task: Task, weight: f64| {
+            let Some(entry) = find(task).filter(|_| weight > 0.0) else {
+                return Ok(());
+            };
+            match (&entry.refusal, entry.estimate) {
+                (Some(refusal), _) => return Err(refusal.clone()),
+                (None, Some(estimate)) => terms.push((weight, vec![(0, estimate)])),
+                (None, None) => terms.push((weight, entry.times())),
+            }
+            Ok(())
+        };
+        let mixes = find(Task::Mix).is_some();
+        if let Some(operations) = find(Task::Mix).and_then(|entry| entry.outcome) {
+            let each = self.schedule.on_elements / operations.elements.max(1) as f64;
+            add(Task::Mix, each)?;
+        }
+        for (part, &share) in self.schedule.shares.iter().enumerate() {
+            let task = self.task(candidate, part);
+            if !mixes || task.operation().is_some() {
+                add(task, share)?;
+            }
+        }
+        add(Task::Operation(Operation::Build), self.rebuilds)?;
+        Ok(sum_by_round(&terms))
+    }
+}
+
+/// Returns the weighted sum of several series of samples, in the rounds of the longest one. A
+/// series without a sample in a round takes part with its last sample before that round, or with
+/// its first. Empty if a series is empty.
+fn sum_by_round(terms: &[(f64, Vec<(u32, Time)>)]) -> Vec<(u32, Time)> {
+    let longest = terms.iter().max_by_key(|(_, samples)| samples.len());
+    let rounds = longest.iter().flat_map(|(_, samples)| samples);
+    let sum = |round: u32| {
+        terms
+            .iter()
+            .try_fold(None, |sum: Option<Time>, (weight, samples)| {
+                let before = samples.iter().rev().find(|(r, _)| *r <= round);
+                let (_, time) = before.or(samples.first())?;
+                let weighted = time.scaled(*weight);
+                Some(Some(sum.map_or(weighted, |sum| sum.plus(weighted))))
+            })
+    };
+    rounds
+        .filter_map(|(round, _)| Some((*round, sum(*round)??)))
+        .collect()
+}
+
+impl Candidate {
+    /// Returns the method of subdivision that this candidate uses. An editable mesh cannot refine
+    /// its own tables; relation tables do not subdivide.
+    fn method(&self, scheme: Scheme, editable: bool) -> Method {
+        let methods = self.structure.map(|s| s.info.support(scheme).methods);
+        let possible = |method: &&Method| !editable || **method != Method::Native;
+        let methods = methods.unwrap_or_default();
+        let best = methods.iter().rev().find(possible);
+        best.copied().unwrap_or(Method::Scatter)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn samples(times: &[(u32, f64)]) -> Vec<(u32, Time)> {
+        let time = |&(round, ns): &(u32, f64)| (round, Time::from_wall_ns(ns));
+        times.iter().map(time).collect()
+    }
+
+    #[test]
+    fn a_term_without_a_sample_in_a_round_keeps_its_last_one() {
+        let every_round = samples(&[(0, 1.0), (1, 2.0), (2, 3.0), (3, 4.0)]);
+        let rare = samples(&[(1, 100.0), (3, 200.0)]);
+        let sums = sum_by_round(&[(10.0, every_round.clone()), (0.5, rare)]);
+        let expected = [(0, 60.0), (1, 70.0), (2, 80.0), (3, 140.0)];
+        assert_eq!(sums, samples(&expected));
+        assert_eq!(sum_by_round(&[(1.0, every_round), (1.0, Vec::new())]), []);
+        assert_eq!(sum_by_round(&[]), []);
+    }
+}

@@ -1,0 +1,163 @@
+//! The jobs that a backend runs and times, and their results.
+
+use sixfold::QueryCost;
+
+use crate::clock::Time;
+use crate::operation::Operation;
+use crate::series::Series;
+
+/// The work that one run of a job does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Task {
+    /// Runs an operation on the whole mesh.
+    Operation(Operation),
+    /// Runs one turn of a mix (a fixed number of operations in proportion to their weights). If the
+    /// mix has edits, one run does several turns on a restored copy of the mesh.
+    Mix,
+    /// Runs one operation of one part of the mix. The number is the index of the part.
+    Part(usize),
+}
+
+impl Task {
+    /// Returns the operation; `None` for a mix or a part of a mix.
+    pub const fn operation(self) -> Option<Operation> {
+        match self {
+            Self::Operation(operation) => Some(operation),
+            Self::Mix | Self::Part(_) => None,
+        }
+    }
+
+    /// Returns true if a run makes another mesh, as [`Operation::creates_mesh`] does.
+    pub fn creates_mesh(self) -> bool {
+        self.operation().is_some_and(Operation::creates_mesh)
+    }
+
+    /// Returns true if a run enlarges tables that the next run reuses, as
+    /// [`Operation::grows_tables`] does.
+    pub fn grows_tables(self) -> bool {
+        self.operation().is_some_and(Operation::grows_tables)
+    }
+
+    /// Returns true if the timed part of a run allocates memory, as [`Operation::allocates`] does.
+    pub fn allocates(self) -> bool {
+        self.operation().is_some_and(Operation::allocates)
+    }
+}
+
+/// A job to run: a task on all elements, or on a sample of the elements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Job {
+    /// The work of one run.
+    pub task: Task,
+    /// The sample on which the task runs; `None` to run the task on all elements. Only operations
+    /// can run on samples.
+    pub sample: Option<ElementSample>,
+    /// The number of the first run, counted from 0. The count includes untimed runs. Each run of a
+    /// mix visits the elements that follow the elements of the previous run. For an operation, all
+    /// runs are equal and the number has no effect.
+    pub first: u64,
+}
+
+impl Job {
+    /// Makes a job that runs `task` on all elements.
+    pub fn new(task: Task) -> Self {
+        Self {
+            task,
+            sample: None,
+            first: 0,
+        }
+    }
+}
+
+impl From<Operation> for Job {
+    fn from(operation: Operation) -> Self {
+        Self::new(Task::Operation(operation))
+    }
+}
+
+/// A sample of the elements. If the queries at elements of one kind scan the mesh, only the first
+/// elements of a random order are visited. Subdivisions and edit passes run on a separate mesh of
+/// about `size` faces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ElementSample {
+    /// One value for each kind of element. The value is true if only a sample is visited. All
+    /// elements of the other kinds are visited.
+    pub scanned: [bool; 3],
+    /// The number of elements in the sample of each kind. If the mesh has fewer elements, all
+    /// elements are visited.
+    pub size: usize,
+}
+
+/// The time and the result of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// The time of one run of the whole task. If only a sample was run, the time is an estimate for
+    /// all elements.
+    pub time: Time,
+    /// The result of the task; `None` if the result was not requested.
+    pub outcome: Option<Outcome>,
+    /// The reason why this structure cannot run the task on this mesh; `None` if the task was run.
+    /// If there is a reason, the field `time` has no meaning.
+    pub refusal: Option<String>,
+}
+
+impl Run {
+    /// Makes the record of a run that the backend did.
+    pub fn done(time: Time, outcome: Option<Outcome>) -> Self {
+        Self {
+            time,
+            outcome,
+            refusal: None,
+        }
+    }
+
+    /// Makes the record of a run that the backend refused.
+    pub fn refused(reason: String, series: &Series<'_>) -> Self {
+        Self {
+            time: Time::zero_like(series.clock.now()),
+            outcome: None,
+            refusal: Some(reason),
+        }
+    }
+}
+
+/// The result of a task.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outcome {
+    /// A number computed from all results. The order in which queries list neighbours does not
+    /// change the number. For a part of a mix, the checksum is the number of elements that the
+    /// queries yield along the whole route.
+    pub checksum: f64,
+    /// The number of elements that one run visits. For a mix, this is the number of operations. If
+    /// an operation ran on a sample, the number is scaled to all elements, except for subdivisions
+    /// and edit passes.
+    pub elements: u64,
+    /// The number of edits that the backend refuses in one run of an edit pass; 0 for other tasks.
+    pub refused: u64,
+}
+
+/// A backend that is ready to be timed: a structure built from a mesh, relation tables, or an
+/// external program. Tests can also implement this trait.
+pub trait TimedBackend {
+    /// Returns the name that users write.
+    fn name(&self) -> &str;
+    /// Returns true if the backend is an external program. An external program runs only operations
+    /// on whole meshes. The results of other backends are not compared with the results of an
+    /// external program.
+    fn is_external(&self) -> bool {
+        false
+    }
+    /// Returns for each relation which part of the mesh a query visits.
+    fn costs(&self) -> [QueryCost; 9];
+    /// Returns the number of input vertices that were merged with other vertices.
+    fn merged_vertices(&self) -> usize;
+    /// Returns the bytes of the tables of the backend.
+    fn bytes(&self) -> usize;
+    /// Builds the backend again from the same polygons at other memory addresses. The times of some
+    /// operations depend slightly on the addresses and pages of the tables. The default
+    /// implementation does nothing, for backends that are not built from polygons.
+    fn rebuild(&mut self) {}
+    /// Runs `job` and returns the time of one run. `series` gives the number of runs and the state
+    /// of the caches at the start. A job with a sample may run only once.
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run;
+}

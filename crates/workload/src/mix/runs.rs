@@ -1,0 +1,82 @@
+//! Runs of a mix, and of one part alone, on any mesh; without edits.
+
+use std::ops::Range;
+
+use crate::job::{Outcome, Run};
+use crate::mix::schedule::Schedule;
+use crate::series::Series;
+
+/// The numbers of operations, of results, and of refused edits.
+pub(crate) type Counts = [u64; 3];
+
+/// Runs the operations on elements of some turns. `range_of` returns the operations of a part in a
+/// turn, and `run_range` runs them.
+#[inline]
+pub(crate) fn run_turns(
+    parts: usize,
+    turns: Range<u64>,
+    range_of: impl Fn(usize, u64) -> Range<u64>,
+    mut run_range: impl FnMut(usize, Range<u64>) -> Counts,
+) -> Counts {
+    let mut sums = [0; 3];
+    for turn in turns {
+        for part in 0..parts {
+            let range = range_of(part, turn);
+            if !range.is_empty() {
+                let counts = run_range(part, range);
+                sums = std::array::from_fn(|i| sums[i] + counts[i]);
+            }
+        }
+    }
+    sums
+}
+
+/// Times turns of a mix from turn `first`, as `series` describes; one run is one turn.
+#[inline]
+pub(crate) fn time_turns(
+    schedule: &Schedule,
+    first: u64,
+    series: &Series<'_>,
+    mut run_range: impl FnMut(usize, Range<u64>) -> Counts,
+) -> Run {
+    let parts = schedule.parts.len();
+    let range_of = |part, turn| schedule.turn_range(part, turn);
+    let timed = first + u64::from(series.untimed);
+    run_turns(parts, first..timed, range_of, &mut run_range);
+    let mut counts = [0; 3];
+    let turns = timed..timed + u64::from(series.runs);
+    let time = series.timed(|| counts = run_turns(parts, turns, range_of, &mut run_range));
+    let [operations, yielded, _] = counts;
+    // Turns have equal numbers of operations except for rounding.
+    let each = time.scaled(schedule.turn_operations / operations.max(1) as f64);
+    let outcome = series.check.then_some(Outcome {
+        checksum: yielded as f64,
+        elements: schedule.turn_operations as u64,
+        refused: 0,
+    });
+    Run::done(each, outcome)
+}
+
+/// Times operations of one part alone from operation `first`, as `series` describes; one run is one
+/// operation. The result is that of all operations `all`; `None` if they would take too long.
+#[inline]
+pub(crate) fn time_part(
+    first: u64,
+    series: &Series<'_>,
+    all: Option<u64>,
+    mut run_range: impl FnMut(Range<u64>) -> Counts,
+) -> Run {
+    let timed = first + u64::from(series.untimed);
+    if series.untimed > 0 {
+        run_range(first..timed);
+    }
+    let time = series.timed(|| {
+        run_range(timed..timed + u64::from(series.runs));
+    });
+    let outcome = all.filter(|_| series.check).map(|all| Outcome {
+        checksum: run_range(0..all)[1] as f64,
+        elements: 1,
+        refused: 0,
+    });
+    Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
+}
