@@ -1,4 +1,5 @@
-//! Checks the boundary edges and loops of a mesh by a search in its lists of corners.
+//! Checks the boundary edges and loops of a mesh by a search in the lists of the corners of its
+//! faces.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 

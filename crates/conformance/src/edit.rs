@@ -1,5 +1,5 @@
-//! Tests of edits. A structure and a model execute the same random scripts of edits, and the
-//! results are compared.
+//! Tests of edits. The tests apply the same random sequence of edits (a *script*) to a structure
+//! and to a model, and compare the results.
 //!
 //! The model is independent of any structure: faces are lists of numbers, and every rule of
 //! [`MeshEdit`](sixfold_core::MeshEdit) is implemented by brute force. A step of a script selects

@@ -21,7 +21,7 @@ pub struct GalleryMesh {
 }
 
 /// Returns all meshes: solids, surfaces of every kind, corner cases of the queries, faulty meshes,
-/// and the meshes of the lectures.
+/// and example meshes from lectures on mesh data structures.
 pub fn gallery() -> Vec<GalleryMesh> {
     let parts = [
         solids(),

@@ -9,8 +9,8 @@ use crate::element::Element;
 /// The expected answer of each query, computed by brute force from lists of corners.
 ///
 /// The code is slow and simple on purpose. The oracle copies the relation FV from the input, and
-/// computes FE from FV. For the other seven relations, it collects the sides and corners of the
-/// faces in ordered sets. The oracle uses no structure and no incidence code of `sixfold-core`.
+/// computes FE from FV. For the other seven relations, the oracle collects the edges and corners of
+/// the faces in ordered sets. The oracle uses no structure and no incidence code of `sixfold-core`.
 #[derive(Clone, Debug)]
 pub struct Oracle {
     vertices: usize,

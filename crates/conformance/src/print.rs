@@ -1,4 +1,4 @@
-//! Meshes in a short form, from which they can be rebuilt.
+//! Formats a mesh as one line, from which the connectivity of the mesh can be rebuilt.
 
 use std::fmt::Write;
 

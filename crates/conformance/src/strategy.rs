@@ -55,8 +55,8 @@ pub fn faulty_mesh() -> impl Strategy<Value = Faulty> {
     })
 }
 
-/// Generates random faces over a few vertices. The meshes are rarely manifold. In some meshes,
-/// several vertices have the same position.
+/// Generates meshes with random faces on a few vertices. The meshes are rarely manifold. In some
+/// meshes, several vertices have the same position.
 pub fn any_mesh() -> impl Strategy<Value = PolygonMesh> {
     let size = (3..9_u32, 0..10_usize, any::<[bool; 2]>());
     let faces = size.prop_flat_map(|(vertices, faces, shared)| {

@@ -15,7 +15,8 @@ use crate::strategy::{any_mesh, faulty_mesh, manifold_mesh};
 ///
 /// A law is a requirement that every structure must satisfy. A law about a mesh runs on all
 /// hand-made meshes of the gallery and on random meshes. A failing random mesh is shrunk and
-/// printed on one line. `PROPTEST_CASES` sets the number of random meshes per law.
+/// printed on one line. The environment variable `PROPTEST_CASES` sets the number of random meshes
+/// per law.
 #[macro_export]
 macro_rules! suite {
     ($mesh:ty) => {

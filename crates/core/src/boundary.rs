@@ -1,4 +1,4 @@
-//! The boundary of a mesh: its edges, and the loops that they form.
+//! The boundary loops of a mesh: chains of boundary edges.
 
 use crate::query::{EdgeMap, MeshQuery};
 
@@ -16,7 +16,8 @@ pub struct BoundaryLoop<V, E> {
 }
 
 impl<V, E> BoundaryLoop<V, E> {
-    /// Returns whether the chain is closed: its last edge leads back to the first vertex.
+    /// Returns true if the chain is closed: the last edge joins the last vertex and the first
+    /// vertex.
     pub fn is_closed(&self) -> bool {
         self.vertices.len() == self.edges.len()
     }

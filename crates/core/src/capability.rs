@@ -1,5 +1,4 @@
-//! Capabilities of a structure as data, and the one check that finds why a structure refuses a
-//! mesh.
+//! Capabilities: the kinds of meshes that a structure can hold, and the check of a mesh.
 
 use rustc_hash::FxHashMap;
 
@@ -11,10 +10,10 @@ use crate::pairing::{MAX_CORNERS, MAX_EDGES};
 use crate::polygon_mesh::PolygonMesh;
 
 /// The kinds of meshes that a structure can hold. Every structure can hold oriented triangle
-/// manifolds, with or without a boundary. Each field states whether the structure can also hold
-/// meshes with one more property.
+/// manifolds, with or without a boundary. A field is true if the structure can also hold meshes
+/// with the property that the field names.
 ///
-/// A constructor returns the error that [`check`](Self::check) finds.
+/// A constructor that refuses a mesh returns the error of [`check`](Self::check).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Capabilities {
@@ -22,7 +21,7 @@ pub struct Capabilities {
     pub polygons: bool,
     /// True if edges can have three or more faces.
     pub non_manifold_edges: bool,
-    /// True if the faces at a vertex can form more than one fan.
+    /// True if the faces at a vertex can form several fans (chains of faces that share edges).
     pub non_manifold_vertices: bool,
     /// True if two faces can run along an edge in the same direction.
     pub inconsistent_orientation: bool,
@@ -45,7 +44,7 @@ impl Capabilities {
         coincident_vertices: true,
     };
 
-    /// The capabilities of a structure that can hold oriented polygon manifolds, and also isolated
+    /// The capabilities of a structure that can hold oriented polygon manifolds and isolated
     /// vertices.
     pub const ORIENTED_MANIFOLDS: Self = Self {
         non_manifold_edges: false,
@@ -113,15 +112,15 @@ impl Capabilities {
             && self.coincident_vertices
     }
 
-    /// Returns the error of a constructor that has found a fault in `polygons`.
+    /// Returns the error that a constructor must return after it has found a fault in `polygons`.
     ///
-    /// Constructors call this method, so that they always return the same error as
-    /// [`check`](Self::check).
+    /// Constructors call this method, so that constructors and [`check`](Self::check) always return
+    /// the same error.
     ///
     /// # Panics
     ///
-    /// Panics if [`check`](Self::check) finds no fault, which is a bug in the constructor or in the
-    /// check.
+    /// Panics if [`check`](Self::check) finds no fault. The cause of such a panic is a bug in the
+    /// constructor or in `check`.
     pub fn build_error(&self, polygons: &PolygonMesh) -> BuildError {
         match self.check(polygons) {
             Err(fault) => fault,

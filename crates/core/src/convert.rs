@@ -10,11 +10,11 @@ impl<M: Representation> From<&M> for PolygonMesh {
     }
 }
 
-/// Implements `TryFrom<PolygonMesh>`, `TryFrom<&PolygonMesh>` and `Default` for a structure whose
-/// parameters are `E: Editing` and a probe with a default.
+/// Implements `TryFrom<PolygonMesh>`, `TryFrom<&PolygonMesh>` and `Default` for a structure with
+/// two type parameters: `E: Editing`, and a probe that has a default.
 ///
 /// A blanket implementation in this crate is not possible: it would overlap with the implementation
-/// in the standard library for types with `From`.
+/// in the standard library for types that implement `Into`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! polygon_conversions {

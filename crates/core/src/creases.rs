@@ -88,14 +88,14 @@ impl Creases {
         Self { edges, corners }
     }
 
-    /// Returns these creases combined with `later`. An entry of `later` replaces the entry of the
-    /// same edge or vertex.
+    /// Returns `self` combined with `later`. An entry of `later` replaces the entry of the same
+    /// edge or vertex.
     pub fn updated_with(&self, later: &Self) -> Self {
         let edges = [&self.edges[..], &later.edges].concat();
         Self::from_entries(edges, [&self.corners[..], &later.corners].concat())
     }
 
-    /// Returns whether no edge and no vertex is sharp.
+    /// Returns true if no edge and no vertex is sharp.
     pub fn is_empty(&self) -> bool {
         self.edges.is_empty() && self.corners.is_empty()
     }

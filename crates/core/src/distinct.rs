@@ -1,4 +1,4 @@
-//! Iterators over distinct items, without hashing if there are only a few.
+//! Iterators over distinct items, without hashing if there are few items.
 
 use std::hash::Hash;
 
@@ -79,14 +79,14 @@ where
 /// Minimum number of steps for which a hash set is used instead of repeating the walk.
 const SET_STEPS: usize = 32;
 
-/// The distinct items of a walk that can be repeated, each at its first occurrence; empty slots are
-/// skipped.
+/// The distinct items of a walk that can be repeated, each at its first occurrence. Empty slots in
+/// the walk are skipped.
 ///
 /// Structures use this iterator to find the faces across the sides of a face. The iterator stores
-/// the last three items, which is enough for triangles and quads. For larger faces, it repeats the
-/// walk to find earlier items; from 32 steps on, it uses a hash set. For triangles and quads, this
-/// iterator is faster than [`Distinct`], because it needs no array in memory. The expected time is
-/// O(1) per step.
+/// the last three items, which is enough for triangles and quads. For larger faces, the iterator
+/// repeats the walk to find earlier items. From 32 steps on, the iterator uses a hash set. For
+/// triangles and quads, this iterator is faster than [`Distinct`], because it needs no array in
+/// memory. The expected time is O(1) per step.
 ///
 /// ```
 /// use sixfold_core::{DistinctWalk, FaceId, Slot};

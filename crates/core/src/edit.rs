@@ -46,14 +46,14 @@ macro_rules! edits {
 ///   structure can hold the resulting mesh ([`Capabilities`](crate::Capabilities)). For example,
 ///   structures that can hold non-manifold meshes accept edits that make a mesh non-manifold.
 /// - **Handles.** Elements that an edit does not touch keep their handles. In some structures, the
-///   handle of an element is a pair of ends, coordinates, or the corner opposite an edge. An edit
-///   may change such a handle; the element is then called renamed. The edit reports every created,
-///   removed or renamed element to the [`EditLog`].
+///   handle of an element is a pair of ends, coordinates, or the corner opposite an edge. If an
+///   edit changes the handle of an element, the element is called renamed. The edit reports every
+///   created, removed or renamed element to the [`EditLog`].
 /// - **Holes.** Counts, iterations, relations and conversions do not contain removed elements. The
 ///   row of a removed element becomes a hole, and a query with the handle of this row panics. No
 ///   row is reused until [`compact`](Self::compact) removes the holes. If the handle of a removed
-///   element is a pair or coordinates, the relations of this handle are empty, and a later edit may
-///   create an element with the same handle.
+///   element is a pair of ends or coordinates, the relations of this handle are empty, and a later
+///   edit may create an element with the same handle.
 /// - **In place.** An edit does not convert or rebuild the mesh. [`EDITS`](Self::EDITS) states how
 ///   much of the mesh an edit reads.
 ///
@@ -61,9 +61,9 @@ macro_rules! edits {
 ///
 /// Every edit has a short form, such as [`flip_edge`](Self::flip_edge), and a logged form, such as
 /// [`flip_edge_logged`](Self::flip_edge_logged). The logged form reports all created, removed and
-/// renamed elements to a log. The short form reports nothing. [`EditLog`] describes when to use
-/// which form. A [`MeshWithData`](crate::MeshWithData) updates its data by vertex, edge or face
-/// after every edit, in both forms.
+/// renamed elements to a log. The short form reports nothing. [`EditLog`] describes when to use the
+/// short form and when to use the logged form. In both forms, an edit of a
+/// [`MeshWithData`](crate::MeshWithData) also updates the data of the mesh.
 ///
 /// ```
 /// # use sixfold_core::{MeshEdit, Point, Refusal};
@@ -78,8 +78,8 @@ pub trait MeshEdit: MeshQuery + Sized {
     /// does not support the edit.
     const EDITS: [Option<QueryCost>; Edit::ALL.len()];
 
-    /// The type of the same structure with the type parameter [`Compact`](crate::Compact). A mesh
-    /// of this type has no deleted rows, so its queries need no check for deleted rows.
+    /// The type of this structure with the type parameter [`Compact`](crate::Compact). A mesh of
+    /// this type has no deleted rows, so its queries need no check for deleted rows.
     type Compact: MeshQuery<Vertex = Self::Vertex, Edge = Self::Edge, Face = Self::Face>;
 
     /// Removes the rows of deleted elements (holes), and converts to a mesh that cannot have holes.
@@ -114,15 +114,16 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// # Errors
         ///
-        /// Refuses fewer than three corners, a repeated corner, and a polygon if the structure
-        /// holds only triangles. If the structure holds only manifolds, also refuses these cases:
-        /// another face already has a side of the new face in the same direction; an edge already
-        /// has two faces; the faces at a corner would form more than one fan.
+        /// Refuses fewer than three corners, a repeated corner, and a face that is not a triangle
+        /// if the structure holds only triangles. If the structure holds only manifolds, refuses
+        /// the face in these cases: another face already has a side of the new face in the same
+        /// direction; an edge already has two faces; the faces at a corner would form more than one
+        /// fan.
         fn add_face, add_face_logged(corners: &[Self::Vertex]) -> Result<Self::Face, Refusal<Self>>;
 
-        /// Removes `f`, and the edges that no other face has. The vertices of `f` stay, even if
-        /// they become isolated. Exception: if vertices are identified by coordinates, vertices
-        /// without a face are removed.
+        /// Removes `f`, and the edges whose only face is `f`. The vertices of `f` stay, even if
+        /// they become isolated. If vertices are identified by coordinates, vertices without a face
+        /// are removed.
         ///
         /// # Errors
         ///
@@ -163,7 +164,7 @@ pub trait MeshEdit: MeshQuery + Sized {
         ) -> Result<Self::Vertex, Refusal<Self>>;
 
         /// Inserts a vertex at `at` into `e`, and cuts each triangle of `e` in two at this vertex.
-        /// This is the edge split of remeshing and of longest-edge bisection (Rivara 1984).
+        /// Remeshing and longest-edge bisection (Rivara 1984) use this edit.
         ///
         /// ```text
         ///      c            c
@@ -212,14 +213,14 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// # Errors
         ///
-        /// Refuses an edge that does not have exactly two faces. Also refuses faces that run along
-        /// `e` in the same direction, or that share a vertex other than the ends of `e`.
+        /// Refuses an edge that does not have exactly two faces. Refuses faces that run along `e`
+        /// in the same direction, or that share a vertex other than the ends of `e`.
         /// [`EditError::Unsupported`] if the structure holds only triangles.
         fn dissolve_edge, dissolve_edge_logged(e: Self::Edge) -> Result<Self::Face, Refusal<Self>>;
 
         /// Replaces `e` by the other diagonal of the quad that its two triangles form; returns the
-        /// handle of the flipped edge. Both triangles keep their handles. Each triangle also keeps
-        /// one old end of `e`: the vertex where the side of the triangle along `e` starts.
+        /// handle of the flipped edge. Both triangles keep their handles. Each triangle keeps one
+        /// old end of `e`: the vertex where the side of the triangle along `e` starts.
         ///
         /// ```text
         ///      c            c
@@ -239,8 +240,8 @@ pub trait MeshEdit: MeshQuery + Sized {
 
         /// Merges the two ends of `e` into the vertex `keep`, and moves `keep` to the position
         /// `to`. Returns the handle of `keep` after the edit. Triangles along `e` are removed, and
-        /// other faces along `e` lose a corner. The other two edges of a removed triangle become
-        /// one edge: the edge at `keep` stays, and the other edge is removed.
+        /// other faces along `e` lose a corner. A removed triangle has two edges besides `e`: the
+        /// edge at `keep` stays, and the edge at the removed end is removed.
         ///
         /// ```text
         ///      c            c
@@ -257,8 +258,8 @@ pub trait MeshEdit: MeshQuery + Sized {
         /// last face. [`EditError::Occupied`] if vertices are identified by coordinates and another
         /// vertex is at `to`.
         ///
-        /// If the structure holds only manifolds, also refuses violations of the link condition
-        /// (Dey et al. 1999):
+        /// If the structure holds only manifolds, refuses violations of the link condition (Dey et
+        /// al. 1999):
         ///
         /// - [`EditError::CommonNeighbour`]: a vertex is adjacent to both ends of `e`, but is not
         ///   the third corner of a triangle along `e`.
@@ -274,9 +275,9 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// The new vertex gets the faces that follow counter-clockwise around `v` from the edge
         /// `v`–`right` to the edge `v`–`left`. If `left` is `None`, only the triangle on the right
-        /// of the new edge is added, and the new vertex gets the faces up to the boundary. If
-        /// `right` is `None`, the new vertex gets the faces from the boundary to the edge
-        /// `v`–`left`.
+        /// of the new edge is added, and the new vertex gets the faces from the edge `v`–`right` to
+        /// the boundary. If `right` is `None`, the new vertex gets the faces from the boundary to
+        /// the edge `v`–`left`.
         ///
         /// ```text
         ///     left             left

@@ -1,4 +1,4 @@
-//! Checks of edits that several structures share.
+//! Checks that several structures make before an edit.
 
 use std::fmt::Debug;
 

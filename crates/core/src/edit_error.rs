@@ -67,7 +67,7 @@ pub enum EditError<V: Debug, E: Debug, F: Debug> {
          structure that holds non-manifold edges"
     )]
     FullEdge { edge: E },
-    /// A vertex whose faces would form more than one fan.
+    /// A vertex whose faces would form more than one fan (chain of faces that share edges).
     #[error(
         "the faces at vertex {vertex:?} would form more than one fan: duplicate the vertex, or choose a structure that holds non-manifold vertices"
     )]
@@ -86,7 +86,7 @@ pub enum EditError<V: Debug, E: Debug, F: Debug> {
          first"
     )]
     SameDirection { edge: E },
-    /// Two triangles along an edge with the same third corner.
+    /// Two triangles along an edge that have the same third corner.
     #[error(
         "both triangles of edge {edge:?} have the same third corner {vertex:?}: choose another edge"
     )]
@@ -137,13 +137,13 @@ pub enum EditError<V: Debug, E: Debug, F: Debug> {
     /// A vertex that is not adjacent to the vertex to be split.
     #[error("vertex {side:?} is not adjacent to vertex {vertex:?}: choose an adjacent vertex")]
     NotANeighbour { vertex: V, side: V },
-    /// Neighbours that are equal or both missing, for the split of a vertex.
+    /// The two neighbours given for the split of a vertex are equal, or both are missing.
     #[error(
         "splitting vertex {vertex:?} requires two different neighbours; on a boundary, one \
          neighbour is enough"
     )]
     BadNeighbours { vertex: V },
-    /// Only one neighbour, for a vertex that is not on a boundary.
+    /// Only one neighbour is given for the split of a vertex that is not on a boundary.
     #[error("vertex {vertex:?} is not on a boundary: give both neighbours")]
     NotOnBoundary { vertex: V },
     /// More elements of one kind than 32-bit handles can number.

@@ -53,9 +53,9 @@ impl Edit {
         Self::Compact,
     ];
 
-    /// The costs of the edits in a structure that stores adjacency. Moving or adding a vertex costs
-    /// O(1). Removing isolated vertices and compacting count as scans, because they read whole
-    /// tables. All other edits read only the faces around the element.
+    /// The costs of the edits in a structure that stores adjacency. By default, an edit reads the
+    /// faces around the element. `set_position` and `add_vertex` read O(1) rows.
+    /// `remove_isolated_vertices` and `compact` read whole tables.
     pub const LOCAL_COSTS: [Option<QueryCost>; Self::ALL.len()] = {
         let mut costs = [Some(QueryCost::Local); Self::ALL.len()];
         costs[Self::SetPosition as usize] = Some(QueryCost::Constant);
@@ -65,9 +65,10 @@ impl Edit {
         costs
     };
 
-    /// The costs of the edits in a structure that scans all faces, if the log ignores reports.
-    /// Adding a face costs O(1). Removing, poking or splitting a face reads only this face. All
-    /// other edits count as scans. A structure can replace single costs.
+    /// The costs of the edits in a structure that scans all faces, if the log ignores reports. By
+    /// default, the cost of an edit is a scan of all faces. `add_face` reads O(1) rows.
+    /// `remove_face`, `poke_face` and `split_face` read one face. A structure can declare a
+    /// different cost for an edit.
     pub const SCAN_COSTS: [Option<QueryCost>; Self::ALL.len()] = {
         let mut costs = [Some(QueryCost::Scan); Self::ALL.len()];
         costs[Self::AddFace as usize] = Some(QueryCost::Constant);

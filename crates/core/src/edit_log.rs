@@ -41,16 +41,16 @@ impl<M: MeshQuery> EditLog<M> for OldToNew<M> {
 /// # Which log to use
 ///
 /// - To keep data by vertex, edge or face correct, put the data into a
-///   [`MeshWithData`](crate::MeshWithData). Every edit then updates the data, even in algorithms
-///   that have no parameter for a log.
+///   [`MeshWithData`](crate::MeshWithData). Every edit of a `MeshWithData` updates the data, even
+///   in algorithms that have no parameter for a log.
 /// - To list the changes of an edit, for instance to undo the edit or to redraw a part of the mesh,
 ///   pass an [`EditRecord`].
 /// - To react to one kind of change, such as the removal of faces, implement this trait.
 /// - If you do not need the changes, use the short form of the edit, such as `flip_edge`. The short
 ///   form passes the log `()`, for which the structures compute no reports.
 pub trait EditLog<M: MeshQuery> {
-    /// True if the log uses the reports. If this is false, structures can skip the computation of
-    /// reports.
+    /// True if the log uses the reports. If `USES_REPORTS` is false, structures can skip the
+    /// computation of reports.
     const USES_REPORTS: bool = true;
 
     /// Reports that `v` was created.
@@ -176,20 +176,20 @@ impl<H: Handle> Changes<H> {
         self.created.is_empty() && self.removed.is_empty() && self.renamed.is_empty()
     }
 
-    /// Updates `map` after one edit; O(changes). The values of removed elements are dropped, except
-    /// that a [`RowMap`](crate::RowMap) leaves them in their rows. Renamed elements keep their
+    /// Updates `map` after one edit; O(changes). The values of removed elements are dropped; a
+    /// [`RowMap`](crate::RowMap) leaves such values in the unused rows. Renamed elements keep their
     /// values under the new handles. New elements get the value `initial`.
     ///
-    /// These changes must come from a single edit. To apply several edits, keep one record for each
-    /// edit and apply the records in order.
+    /// `self` must hold the changes of a single edit. To apply several edits, keep one record for
+    /// each edit and apply the records in order.
     pub fn apply_to<T: Clone>(&self, map: &mut H::Map<T>, initial: &T) {
         self.apply_with(map, |_, _| initial.clone());
     }
 
     /// Does the same as [`apply_to`](Self::apply_to), but calls `initial` to compute the value of
     /// each new element. The arguments of `initial` are the map and the handle of the new element.
-    /// During the call, the map holds the values of all old elements under their current handles.
-    /// Other new elements may not have a value yet.
+    /// During the call of `initial`, the map holds the values of all old elements under their
+    /// current handles. Some new elements may not have a value yet.
     pub fn apply_with<T: Clone>(
         &self,
         map: &mut H::Map<T>,

@@ -11,7 +11,8 @@ use crate::probe::Probe;
 use crate::row_id::{RowId, row};
 
 /// The type parameter that states whether elements of a mesh can be deleted: [`Editable`] if they
-/// can, [`Compact`] if they cannot. The trait is sealed, so there are no other implementations.
+/// can, [`Compact`] if they cannot. The trait is sealed, so only [`Editable`] and [`Compact`]
+/// implement the trait.
 ///
 /// Queries of an editable mesh check whether each visited element was deleted; queries of a compact
 /// mesh need no such check. In measurements, the check for deleted elements added some 10 % to the
@@ -26,17 +27,17 @@ pub trait Editing: sealed::Sealed + Clone + Copy + Debug + Send + Sync + 'static
     /// The type that stores the faces of a mesh after an edit has changed the degree of a face.
     type Scattered<P: Probe>: AsRef<ScatteredFaces<P>> + Clone + Debug + Send + Sync;
 
-    /// Converts the division of corners into faces from a compact mesh.
+    /// Converts the corner ranges of the faces of a compact mesh to the form for this parameter.
     fn spans<P: Probe>(spans: FaceSpans<P>) -> FaceSpans<P, Self>;
 
     /// Returns an empty set of holes. In an editable mesh, `name` is the name of the table that
     /// stores the set.
     fn no_holes<P: Probe>(name: &'static str, probe: P) -> Self::Holes<P>;
 
-    /// Returns the same set of holes in a table that reports every access to `probe`.
+    /// Returns the same set of holes in a table that reports its reads and writes to `probe`.
     fn probed_holes<P: Probe, Q: Probe>(holes: Self::Holes<P>, probe: Q) -> Self::Holes<Q>;
 
-    /// Returns the same faces in tables that report every access to `probe`.
+    /// Returns the same faces in tables that report their reads and writes to `probe`.
     fn probed_faces<P: Probe, Q: Probe>(faces: Self::Scattered<P>, probe: Q) -> Self::Scattered<Q>;
 }
 
@@ -45,8 +46,8 @@ pub trait Editing: sealed::Sealed + Clone + Copy + Debug + Send + Sync + 'static
 #[derive(Clone, Copy, Debug)]
 pub struct Compact;
 
-/// The parameter of meshes whose elements can be deleted. A row can be a hole, and the corners of a
-/// face can be anywhere in the table of corners.
+/// The parameter of meshes whose elements can be deleted. A row of a table can be a hole (the row
+/// of a deleted element), and the corners of a face can be anywhere in the table of corners.
 #[derive(Clone, Copy, Debug)]
 pub struct Editable;
 
@@ -190,8 +191,7 @@ impl<P: Probe> HoleSet<P> for NoHoles {
     }
 }
 
-/// The scattered faces of a [`Compact`] mesh. A compact mesh has no scattered faces, so this type
-/// has no values.
+/// The type of [`Compact`] meshes in place of `ScatteredFaces`. This type has no values.
 #[derive(Clone, Copy, Debug)]
 pub enum NoScatteredFaces {}
 

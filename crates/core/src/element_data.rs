@@ -35,7 +35,7 @@ pub type FaceData<M, T> = ElementData<M, Faces, T>;
 /// | vertex | `split_edge`, `bisect_edge` | the ends of the edge |
 /// | vertex | `poke_face` | the corners of the face |
 /// | vertex | `split_vertex` | the vertex that was split |
-/// | edge | `split_edge`, `bisect_edge` | for a half of the edge: the other half, which has the value of the edge |
+/// | edge | `split_edge`, `bisect_edge` | for the new half of the edge: the other half |
 /// | face | `bisect_edge`, `poke_face`, `split_face` | the face that was cut |
 /// | any | any other edit | none |
 ///
@@ -58,8 +58,8 @@ pub type FaceData<M, T> = ElementData<M, Faces, T>;
 /// }
 /// ```
 ///
-/// Data with a fixed value costs O(changes) for each edit. Data with a rule costs more, because
-/// each edit that splits an element also queries the mesh for the parents.
+/// Data with a fixed value costs O(changes) for each edit. Data with a rule costs more than data
+/// with a fixed value, because each edit that splits an element queries the mesh for the parents.
 pub struct ElementData<M: MeshQuery, K: ElementKind<M>, T: Clone> {
     values: Map<M, K, T>,
     initial: Initial<M, K, T>,
@@ -204,17 +204,17 @@ pub trait ElementKind<M: MeshQuery> {
     /// Returns the changes of elements of this kind.
     fn changes(record: &EditRecord<M>) -> &Changes<Self::Handle>;
 
-    /// Returns the parents of a new element.
+    /// Returns the parents of the new `element`: the old elements from which `element` was made.
     fn parents(edit: &AcceptedEdit<'_, M>, element: Self::Handle) -> ShortVec<Self::Handle>;
 }
 
-/// The kind of [`VertexData`].
+/// Vertices, as the kind of elements of [`VertexData`].
 #[derive(Clone, Copy, Debug)]
 pub enum Vertices {}
-/// The kind of [`EdgeData`].
+/// Edges, as the kind of elements of [`EdgeData`].
 #[derive(Clone, Copy, Debug)]
 pub enum Edges {}
-/// The kind of [`FaceData`].
+/// Faces, as the kind of elements of [`FaceData`].
 #[derive(Clone, Copy, Debug)]
 pub enum Faces {}
 

@@ -35,9 +35,9 @@ pub enum PolygonError {
 
 /// The reason why a structure cannot hold a polygon mesh.
 ///
-/// Only the first fault is reported. The checks have a fixed order: polygons, number of elements,
-/// edges with three faces, orientation, vertices with several fans, isolated vertices, coincident
-/// corners. Each check reports the faulty element with the lowest number.
+/// Only the first fault is reported. The checks have a fixed order: faces that are not triangles,
+/// number of elements, edges with three faces, orientation, vertices with several fans, isolated
+/// vertices, coincident corners. Each check reports the faulty element with the lowest number.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
@@ -67,7 +67,7 @@ pub enum BuildError {
         first: FaceId,
         second: FaceId,
     },
-    /// The faces at a vertex form more than one fan.
+    /// The faces at a vertex form more than one fan (chain of faces that share edges).
     #[error(
         "faces {first} and {second} meet at vertex {vertex}, but are not connected by edges at \
          this vertex: duplicate the vertex"
@@ -101,7 +101,7 @@ pub enum MoveError {
          by their coordinates: keep the corners apart, or choose another structure"
     )]
     CoincidentCorners { face: FaceId },
-    /// A map with positions for a different number of vertices.
+    /// The number of positions in the map differs from the number of vertices.
     #[error("{given} positions for {vertices} vertices: the map belongs to another mesh")]
     OtherMesh { given: usize, vertices: usize },
 }
@@ -157,7 +157,7 @@ pub enum CreaseError {
     /// Two vertices that are not adjacent corners of a face.
     #[error("{0} and {1} are not the ends of an edge: name two vertices that follow each other in a face", .ends[0], .ends[1])]
     NotAnEdge { entry: usize, ends: [VertexId; 2] },
-    /// A sharpness below 0 or NaN.
+    /// A sharpness that is negative or NaN.
     #[error("sharpness {sharpness} is not a number from 0 to inf: write it like 2, 0.5 or inf")]
     BadSharpness { entry: usize, sharpness: f32 },
 }
@@ -181,7 +181,7 @@ pub struct InvariantError {
 }
 
 impl InvariantError {
-    /// Builds the error for `invariant`, with `detail`.
+    /// Builds the error from the number of the invariant and a description of the fault.
     pub fn new(invariant: &'static str, detail: impl Into<String>) -> Self {
         Self {
             invariant,

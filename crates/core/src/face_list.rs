@@ -10,8 +10,8 @@ use crate::table::Table;
 /// Faces as lists of vertices. The lists are not checked: a face may have any number of corners and
 /// name any vertex.
 ///
-/// If all faces have the same degree, no table of offsets is stored. The first face of another
-/// degree adds the table.
+/// If all faces have the same degree, no table of offsets is stored. The first face of a different
+/// degree adds the table of offsets.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FaceList {
     corners: Vec<VertexId>,
@@ -30,7 +30,8 @@ impl FaceList {
         }
     }
 
-    /// Builds a list from the flat corners of faces that all have `degree` corners.
+    /// Builds a list of faces that all have `degree` corners. `corners` holds the corners of all
+    /// faces, face by face.
     ///
     /// # Errors
     ///
@@ -129,7 +130,7 @@ impl FaceList {
         (0..faces).map(|f| (FaceId::new(f), self.face(FaceId::new(f))))
     }
 
-    /// Returns the division of the corners into faces, in the form that structures store.
+    /// Returns the range of corners of each face, in the form that structures store.
     pub fn spans(&self) -> FaceSpans {
         match self.uniform_degree() {
             Some(degree) => FaceSpans::Uniform {

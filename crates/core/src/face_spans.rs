@@ -1,4 +1,4 @@
-//! The division of a table of corners into faces, as structures store and edit it.
+//! The range of corners of each face in a flat table, for structures that store and edit faces.
 
 mod edit;
 #[cfg(test)]
@@ -30,8 +30,8 @@ pub enum FaceSpans<P: Probe = Untraced, E: Editing = Compact> {
     },
     /// Face `f` has the corners `offsets[f]..offsets[f + 1]`.
     Mixed(Table<u32, P>),
-    /// Each face has its own range of corners, because an edit has changed the degree of a face.
-    /// Between the ranges, there may be blank corners that no face has.
+    /// Each face has its own range of corners. An edit that changes the degree of a face converts
+    /// the spans to this variant. Between the ranges, there may be blank corners that no face has.
     Scattered(E::Scattered<P>),
 }
 
@@ -73,7 +73,7 @@ impl<P: Probe> AsRef<Self> for ScatteredFaces<P> {
 }
 
 impl<P: Probe> ScatteredFaces<P> {
-    /// Returns the same faces in tables that report every access to `probe`.
+    /// Returns the same faces in tables that report their reads and writes to `probe`.
     pub fn probed<Q: Probe>(self, probe: Q) -> ScatteredFaces<Q> {
         ScatteredFaces {
             spans: self.spans.probed(probe.clone()),
@@ -204,7 +204,8 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
         FaceId::new(row(face))
     }
 
-    /// Returns the face of a corner, and the corners before, at and after it in that face.
+    /// Returns the face of `corner`, and three corners of the face in order: the corner before
+    /// `corner`, `corner` itself, and the corner after `corner`.
     ///
     /// # Panics
     ///
@@ -247,7 +248,7 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
         Ok(())
     }
 
-    /// Returns the same division into faces, in tables that report every access to `probe`.
+    /// Returns the same ranges of corners, in tables that report their reads and writes to `probe`.
     pub fn probed<Q: Probe>(self, probe: Q) -> FaceSpans<Q, E> {
         match self {
             Self::Uniform { degree, faces } => FaceSpans::Uniform { degree, faces },
@@ -281,7 +282,7 @@ impl<P: Probe> From<FaceSpans<P>> for FaceSpans<P, Editable> {
 }
 
 impl<P: Probe> FaceSpans<P, Editable> {
-    /// Converts to the division of a compact mesh; `None` for [`Scattered`](Self::Scattered).
+    /// Converts to the form for a compact mesh. Returns `None` for [`Scattered`](Self::Scattered).
     pub fn into_compact(self) -> Option<FaceSpans<P>> {
         match self {
             Self::Uniform { degree, faces } => Some(FaceSpans::Uniform { degree, faces }),

@@ -10,60 +10,65 @@ use crate::incidence::{Incidence, corners_at_ends};
 use crate::partition::Partition;
 use crate::polygon_mesh::{PolygonMesh, repeated};
 
-/// Topological properties of a list of faces, computed without any of the structures.
+/// Topological properties of a list of faces, computed without a mesh data structure.
 ///
-/// A face that names a vertex twice is degenerate. Such a face counts only in `degenerate_faces`,
-/// `faces` and `face_degree`; its vertices do not count as isolated. A face with fewer than three
-/// corners counts only in `degenerate_faces`. All other faces, and the vertices of these faces, are
-/// called *used*. A field is `None` if its value is not defined for the mesh.
+/// A face is degenerate if the face names a vertex twice or has fewer than three corners. The
+/// fields `faces`, `face_degree` and `isolated_vertices` treat a degenerate face with three or more
+/// corners like every other face. The field `degenerate_faces` counts the degenerate faces. All
+/// fields except `faces`, `face_degree`, `isolated_vertices` and `degenerate_faces` ignore
+/// degenerate faces. A field is `None` if its value is not defined for the mesh.
 ///
 /// `genus` is computed from the Euler–Poincaré formula v − e + f = 2(c − g) − h, for v vertices, e
-/// edges, f faces, c components, h boundary loops and genus g. Before the vertices are counted for
-/// this formula, a vertex with several fans is cut into one vertex per fan.
+/// edges, f faces, c components, h boundary loops and genus g. In this formula, a vertex whose
+/// faces form several fans (chains of faces that share edges) counts once per fan.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Facts {
     /// The number of vertices, including isolated vertices.
     pub vertices: usize,
-    /// The number of edges: unordered pairs of vertices that are adjacent in a used face.
+    /// The number of edges: unordered pairs of vertices that are adjacent in a face that is not
+    /// degenerate.
     pub edges: usize,
     /// The number of faces with three or more corners, including degenerate faces.
     pub faces: usize,
-    /// The number of used vertices, minus the number of edges, plus the number of used faces.
+    /// V − E + F, for V vertices with an edge, E edges, and F faces that are not degenerate.
     pub euler_characteristic: i64,
     /// The number of connected components; faces that share an edge are in the same component.
     pub components: usize,
     /// The number of edges with exactly one face.
     pub boundary_edges: usize,
-    /// The number of closed boundary curves, after vertices with several fans are cut into one
-    /// vertex per fan. `None` if there is a non-manifold edge.
+    /// The number of closed boundary curves. At each vertex, a curve continues along the same fan
+    /// (chain of faces that share edges). `None` if an edge has three or more faces.
     /// [`MeshQuery::boundary_loops`](crate::MeshQuery::boundary_loops) lists the curves.
     pub boundary_loops: Option<usize>,
     /// The number of edges with three or more faces.
     pub non_manifold_edges: usize,
-    /// The number of used vertices that have more than one fan or are an end of a non-manifold
-    /// edge.
+    /// The number of vertices that are an end of an edge with three or more faces, or whose faces
+    /// form several fans (chains of faces that share edges).
     pub non_manifold_vertices: usize,
     /// The number of edges with two faces that run along the edge in the same direction.
     pub inconsistent_edges: usize,
     /// True if, at every edge with two faces, the faces run along the edge in opposite directions.
-    /// `None` if there are no used faces.
+    /// `None` if all faces are degenerate, or if there are no faces.
     pub consistently_oriented: Option<bool>,
     /// True if the faces can be flipped so that, at every edge with two faces, the faces run along
-    /// the edge in opposite directions. `None` if there are no used faces.
+    /// the edge in opposite directions. `None` if all faces are degenerate, or if there are no
+    /// faces.
     pub orientable: Option<bool>,
-    /// True if there are used faces and no boundary edges.
+    /// True if at least one face is not degenerate, and every edge has two or more faces.
     pub closed: bool,
-    /// The sum of the genera of all components. `None` if there are no used faces, or if a
-    /// component is not orientable or has a non-manifold edge.
+    /// The sum of the genera of all components. `None` if there are no faces, if all faces are
+    /// degenerate, or if a component is not orientable or has an edge with three or more faces.
     pub genus: Option<i64>,
     /// The number of vertices that are in no face with three or more corners.
     pub isolated_vertices: usize,
-    /// The number of used faces that have the same set of vertices as an earlier used face.
+    /// The number of faces that have the same set of vertices as an earlier face. Degenerate faces
+    /// are not compared.
     pub duplicate_faces: usize,
     /// The number of faces that name a vertex twice or have fewer than three corners.
     pub degenerate_faces: usize,
-    /// The distribution of the valence (number of edges at a vertex) over all used vertices.
+    /// The distribution of the valence (number of edges at a vertex) over all vertices with an
+    /// edge.
     pub valence: Option<Distribution>,
     /// The distribution of the degree (number of corners) over all faces with three or more
     /// corners.
@@ -112,7 +117,7 @@ impl Distribution {
 }
 
 impl Facts {
-    /// Returns the facts of a polygon mesh; O(corners) expected.
+    /// Returns the topological properties of a polygon mesh; O(corners) expected.
     pub fn from_polygons(polygons: &PolygonMesh) -> Self {
         let (vertices, faces) = (polygons.vertex_count(), polygons.faces());
         let mut named = vec![false; vertices];
@@ -122,8 +127,8 @@ impl Facts {
         EdgePass::new(vertices, faces, &vec![true; faces.len()]).facts(&named)
     }
 
-    /// Returns the facts of a list of faces; O(corners) expected. The faces may be degenerate, for
-    /// example if they were read from a file.
+    /// Returns the topological properties of a list of faces; O(corners) expected. The faces may be
+    /// degenerate, for example if they were read from a file.
     ///
     /// # Errors
     ///

@@ -10,14 +10,14 @@ use crate::short_vec::ShortVec;
 /// [`VertexData`](crate::VertexData), [`EdgeData`](crate::EdgeData) and
 /// [`FaceData`](crate::FaceData) implement this trait. Tuples, vectors and mutable references of
 /// types with this trait also implement this trait. The type `()` stands for no data and costs
-/// nothing. Implement this trait for data of another form, such as a set of selected faces.
+/// nothing. Implement this trait for your own types of data, such as a set of selected faces.
 pub trait FollowEdits<M: MeshQuery> {
-    /// True if the data uses the changes. If this is false, edits can skip the computation of the
-    /// changes.
+    /// True if the data uses the changes that an edit reports. If `USES_CHANGES` is false, edits
+    /// can skip the computation of the changes.
     const USES_CHANGES: bool = true;
 
-    /// Returns whether [`follow`](Self::follow) needs the parents of new elements. If the result is
-    /// false, the parents are not recorded.
+    /// Returns true if [`follow`](Self::follow) needs the parents of new elements (the old elements
+    /// from which the new elements are made). If the result is false, edits do not record parents.
     fn uses_parents(&self) -> bool {
         false
     }
@@ -26,8 +26,7 @@ pub trait FollowEdits<M: MeshQuery> {
     fn follow(&mut self, edit: &AcceptedEdit<'_, M>);
 }
 
-/// An edit that was accepted and done: the mesh, the changes of handles, and the parents of new
-/// elements.
+/// A completed edit: the mesh, the changes of handles, and the parents of new elements.
 pub struct AcceptedEdit<'a, M: MeshQuery> {
     /// The mesh after the edit.
     pub mesh: &'a M,
@@ -41,7 +40,7 @@ impl<M: MeshQuery> AcceptedEdit<'_, M> {
     /// corners of the poked face, or the vertex that was split. The list is empty if the vertex was
     /// not made by a split.
     ///
-    /// The list is also empty if [`uses_parents`](FollowEdits::uses_parents) returns false.
+    /// The list is empty if [`uses_parents`](FollowEdits::uses_parents) returns false.
     pub fn vertex_parents(&self) -> ShortVec<M::Vertex> {
         let parents: &[M::Vertex] = match &self.source {
             Source::Nothing => &[],
@@ -54,7 +53,8 @@ impl<M: MeshQuery> AcceptedEdit<'_, M> {
     }
 
     /// If the new edge `e` is one half of a split edge, returns the current handle of the other
-    /// half. If `e` is another edge, returns `None`. Costs as much as `vertex_edges`.
+    /// half, which replaces the split edge. Returns `None` if `e` is not one half of a split edge.
+    /// Costs as much as `vertex_edges`.
     pub fn edge_parent(&self, e: M::Edge) -> Option<M::Edge> {
         let Source::Edge { ends, .. } = &self.source else {
             return None;

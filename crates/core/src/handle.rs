@@ -12,8 +12,7 @@ use crate::row_id::RowId;
 
 /// A value that names an element of a structure: a row, a pair of vertices, or coordinates.
 ///
-/// The type of the handle also determines the type of maps from handles to values
-/// ([`Handle::Map`]).
+/// The type of the handle determines the type of maps from handles to values ([`Handle::Map`]).
 pub trait Handle: Copy + Eq + Ord + Hash + Debug + Send + Sync + 'static {
     /// A map from handles to values: a vector if handles are rows, otherwise a hash map.
     type Map<T: Clone>: HandleMap<Self, T>;
@@ -42,8 +41,9 @@ pub trait HandleMap<H: Copy, T: Clone>: Index<H, Output = T> + IndexMut<H> + Clo
 
     /// Moves the value of `old` to `new`; O(1) amortised.
     ///
-    /// This method renames a single element. If an edit exchanges the handles of several elements,
-    /// [`Changes::apply_to`](crate::Changes::apply_to) renames all of them at once.
+    /// This method changes the handle of a single element. If an edit exchanges the handles of
+    /// several elements, [`Changes::apply_to`](crate::Changes::apply_to) changes all of these
+    /// handles at once.
     fn rename(&mut self, old: H, new: H) {
         let value = self[old].clone();
         self.remove(old);

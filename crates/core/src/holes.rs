@@ -40,7 +40,7 @@ impl Holes {
 }
 
 impl<P: Probe> Holes<P> {
-    /// Returns the same set of holes in a table that reports every access to `probe`.
+    /// Returns the same set of holes in a table that reports its reads and writes to `probe`.
     pub fn probed<Q: Probe>(self, probe: Q) -> Holes<Q> {
         Holes {
             words: self.words.probed(probe),
@@ -83,7 +83,7 @@ impl<P: Probe> Holes<P> {
         self.count - before
     }
 
-    /// Makes the set empty and frees its memory. This is the last step of compaction.
+    /// Makes the set empty and frees its memory. Compaction calls this method last.
     pub fn clear(&mut self) {
         self.words.clear();
         self.count = 0;

@@ -26,7 +26,8 @@ pub struct EdgeSides<'a> {
     pub sides: &'a [Side],
 }
 
-/// An edge, the number of its faces, and whether these faces run along it in different directions.
+/// An edge, the number of its faces, and whether the faces run along the edge in different
+/// directions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EdgeUse {
     /// The two ends, the lower first.
@@ -53,7 +54,7 @@ impl EdgeUse {
         self.faces == 1
     }
 
-    /// Returns whether the edge has one face, or two faces that run along it in opposite
+    /// Returns whether the edge has one face, or two faces that run along the edge in opposite
     /// directions.
     pub fn is_manifold(&self) -> bool {
         self.opposed

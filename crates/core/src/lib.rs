@@ -11,7 +11,7 @@
 //!   contract.
 //! - [`OrientedWalk`]: steps along the sides of a face and around a vertex.
 //! - [`Representation`]: the trait of all structures: construction, conversion and memory.
-//! - [`LocalQueries`]: a trait bound for algorithms: structures whose queries never read all faces.
+//! - [`LocalQueries`]: the trait of structures whose queries never read all faces.
 //! - [`Handle`] and [`HandleMap`]: handles of vertices, edges and faces, and maps from handles to
 //!   values.
 //! - [`Numbers`]: vertices, edges or faces with numbers from 0 without gaps.

@@ -5,9 +5,10 @@ use crate::representation::{QueryCost, Representation};
 /// A structure whose queries never scan: none of its [`COSTS`](Representation::COSTS) is
 /// [`QueryCost::Scan`].
 ///
-/// An algorithm that queries each of n elements takes O(n) time on such a structure, and O(n²) on a
-/// structure that scans. With this bound, the compiler refuses structures that scan. At run time,
-/// [`Representation::is_local`] and [`Representation::cost`] return the same information.
+/// An algorithm that queries each of n elements takes O(n) time on a structure with local queries,
+/// and O(n²) time on a structure that scans. With the bound `LocalQueries`, the compiler refuses
+/// structures that scan. At run time, [`Representation::is_local`] and [`Representation::cost`]
+/// show whether queries scan.
 ///
 /// ```
 /// use sixfold_core::LocalQueries;
@@ -41,7 +42,7 @@ impl CostsAreLocal {
     ///
     /// # Panics
     ///
-    /// Panics if one of the costs is a scan. If the call is in a constant, the build fails instead.
+    /// Panics if one of the costs is a scan. In a constant, the panic is a build error.
     pub const fn check<M: Representation>() -> Self {
         assert!(
             QueryCost::are_local(&M::COSTS),
@@ -54,7 +55,7 @@ impl CostsAreLocal {
 /// Implements [`LocalQueries`] for structures: `local_queries!(HalfEdgeMesh, EditableHalfEdgeMesh);`
 ///
 /// The build fails if the costs of a structure contain [`QueryCost::Scan`], because the check is
-/// evaluated at compile time. This example does not compile for the same reason:
+/// evaluated at compile time. This example does not compile, because the costs contain a scan:
 ///
 /// ```compile_fail,E0080
 /// use sixfold_core::QueryCost;

@@ -24,8 +24,8 @@ pub struct NewRows {
 }
 
 impl NewRows {
-    /// Computes the new rows of all rows below `end` that are not holes; O(end), or O(1) if there
-    /// are no holes.
+    /// Computes the new row of each element whose row is below `end`; O(end), or O(1) if there are
+    /// no holes.
     pub fn from_holes<P: Probe>(holes: &impl HoleSet<P>, end: usize) -> Self {
         let rows = if holes.is_empty() {
             Vec::new()

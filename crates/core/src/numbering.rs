@@ -11,13 +11,13 @@ const NO_NUMBER: u32 = u32::MAX;
 
 /// Elements of one kind, numbered from 0 without gaps.
 ///
-/// Matrices and index buffers need numbers from 0 without gaps. The handle of an element may
-/// instead be coordinates, a pair of vertices, or a row of a table that also has rows of deleted
-/// elements. [`MeshQuery::vertex_numbers`], [`edge_numbers`] and [`face_numbers`] number all
-/// elements in the order in which the mesh lists them. [`Numbers::new`] numbers a selection of
-/// elements, for example only the free vertices of a system with a fixed boundary.
+/// Matrices and index buffers need numbers from 0 without gaps. A handle may be coordinates, a pair
+/// of vertices, or a row of a table with gaps (rows of deleted elements).
+/// [`MeshQuery::vertex_numbers`], [`edge_numbers`] and [`face_numbers`] number all elements in the
+/// order in which the mesh lists them. [`Numbers::new`] numbers a selection of elements, for
+/// example only the free vertices of a system with a fixed boundary.
 ///
-/// The numbers describe the mesh at the time when they were built; later edits do not change them.
+/// Edits of the mesh do not change the numbers, so the numbers are valid until the next edit.
 ///
 /// [`MeshQuery::vertex_numbers`]: crate::MeshQuery::vertex_numbers
 /// [`edge_numbers`]: crate::MeshQuery::edge_numbers
@@ -72,12 +72,12 @@ impl<H: Handle> Numbers<H> {
         Self { handles, numbers }
     }
 
-    /// Returns the number of elements that have a number; O(1).
+    /// Returns how many elements are numbered; O(1).
     pub fn len(&self) -> usize {
         self.handles.len()
     }
 
-    /// Returns true if no element has a number; O(1).
+    /// Returns true if no element is numbered; O(1).
     pub fn is_empty(&self) -> bool {
         self.handles.is_empty()
     }

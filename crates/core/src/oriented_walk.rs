@@ -3,7 +3,7 @@
 use crate::handle::Handle;
 use crate::query::MeshQuery;
 
-/// A map that holds a value for each side of the mesh type `M`.
+/// A map that holds a value for each side (edge of one face) of the mesh type `M`.
 pub type SideMap<M, T> = <<M as OrientedWalk>::Side as Handle>::Map<T>;
 
 /// Steps from one side of a face to another side. A side is an edge of one particular face; its
@@ -32,9 +32,9 @@ pub type SideMap<M, T> = <<M as OrientedWalk>::Side as Handle>::Map<T>;
 ///   starts at corner `i` and runs along edge `i`. The order of `edge_sides` and of
 ///   `outgoing_sides` is not guaranteed.
 /// - **Twin.** Two sides are twins if they are the only sides of their edge and run in opposite
-///   directions. So the twin of the twin is the side itself. A side has no twin in three cases: its
-///   edge is on a boundary, the edge has three or more faces, or the two faces of the edge run
-///   along it in the same direction.
+///   directions. So the twin of the twin of a side is the side itself. A side has no twin in three
+///   cases: its edge is on a boundary, the edge has three or more faces, or the two faces of the
+///   edge run along it in the same direction.
 /// - **No cache.** As in [`MeshQuery`], each result is computed from the stored tables alone.
 /// - **Handles.** The handle of a side is valid until the next edit; an [`EditLog`](crate::EditLog)
 ///   does not report changes of sides. If the handle of a side is out of range or the face of the

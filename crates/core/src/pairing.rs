@@ -171,7 +171,7 @@ impl SideRows for [(u32, u32)] {
 /// `pair(second, first)`. A boundary edge has only a first side.
 ///
 /// `highs` is temporary memory with one row per corner; it can be an unused table of the caller.
-/// Returns a vector with 4 bytes per corner, whose memory the caller can reuse, and the number of
+/// Returns a vector whose memory (4 bytes per corner) the caller can reuse, and the number of
 /// edges. Returns `None` in the same cases as [`TwinPairs::new`].
 ///
 /// # Panics

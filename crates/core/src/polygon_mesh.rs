@@ -20,9 +20,9 @@ use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
 ///   two corners are the same vertex.
 /// - I2  There are at most [`MAX_ROWS`] vertices, faces and corners.
 ///
-/// Nothing else is guaranteed: edges with three faces, inconsistently oriented faces, and isolated
-/// or coincident vertices are allowed. The capabilities of a structure state which polygon meshes
-/// the structure can hold.
+/// A polygon mesh can have edges with three faces, inconsistently oriented faces, and isolated or
+/// coincident vertices. The capabilities of a structure state which polygon meshes the structure
+/// can hold.
 ///
 /// # Examples
 ///
@@ -47,8 +47,8 @@ impl PolygonMesh {
     /// vertex numbers, counted from 0.
     ///
     /// A position is a [`Point`] or three numbers (`[f32; 3]` or a tuple). With the feature `mint`,
-    /// a position can be a point or vector of the crate `mint`. `into()` converts a [`Point`] back
-    /// to one of these types.
+    /// a position can be a point or vector of the crate `mint`. `into()` converts a [`Point`] to
+    /// three numbers or to a type of `mint`.
     ///
     /// ```
     /// # use sixfold_core::PolygonMesh;

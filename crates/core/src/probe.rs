@@ -24,7 +24,7 @@ impl Probe for Untraced {
     fn write(&self, _: &'static str, _: usize, _: usize) {}
 }
 
-/// Whether an [`Access`] reads or writes.
+/// The kind of an [`Access`]: a read or a write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AccessKind {
     /// The row is read.
@@ -53,7 +53,7 @@ pub struct Traced {
 }
 
 impl Traced {
-    /// Returns the accesses since the last call, in order, and empties the log.
+    /// Returns the accesses since the last call of `take`, in order, and empties the log.
     pub fn take(&self) -> Vec<Access> {
         std::mem::take(&mut *self.log.lock().unwrap_or_else(PoisonError::into_inner))
     }

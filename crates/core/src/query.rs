@@ -28,15 +28,16 @@ pub type FaceMap<M, T> = <<M as MeshQuery>::Face as Handle>::Map<T>;
 /// - **Elements.** An edge is an unordered pair of vertices that follow each other in some face; no
 ///   two edges have the same ends. A face has at least three corners, at different vertices.
 /// - **Once.** A relation yields each element once, and never the element that is queried. For
-///   example, if two faces share several edges, `face_faces` of each of the two faces yields the
-///   other face once. The relations of an isolated vertex are empty.
+///   example, if faces `f` and `g` share several edges, `face_faces(f)` yields `g` once. The
+///   relations of an isolated vertex are empty.
 /// - **Symmetry.** VF and FV are inverse: `vertex_faces(v)` contains `f` exactly if
 ///   `face_vertices(f)` contains `v`. VE and EV are inverse, too, and so are EF and FE. VV, EE and
 ///   FF are symmetric: if element `a` is in the result for element `b`, then `b` is in the result
 ///   for `a`.
 /// - **Order.** `face_vertices` and `face_edges` run counter-clockwise around the face, in the
 ///   order of the input, from an arbitrary start. Edge `i` of a face joins corners `i` and `i + 1`.
-///   All relations except these two are sets: the order of their elements is not guaranteed.
+///   All relations except `face_vertices` and `face_edges` are sets: the order of their elements is
+///   not guaranteed.
 /// - **Iteration.** The iterator of a relation yields the same items by `next` and by `fold`, even
 ///   if `next` takes the first items and `fold` takes the remaining items.
 /// - **No cache.** Each result is computed from the stored tables alone; nothing is stored between
@@ -47,10 +48,10 @@ pub type FaceMap<M, T> = <<M as MeshQuery>::Face as Handle>::Map<T>;
 ///
 /// # Panics
 ///
-/// A query panics if the mesh has no element with the given handle. Exception: if the handle is the
-/// coordinates of a vertex or the pair of ends of an edge, the relations of a missing element are
-/// empty. The methods `contains_vertex`, `contains_edge` and `contains_face` return false for a
-/// missing element.
+/// A query panics if the mesh has no element with the given handle. If the handle is the
+/// coordinates of a vertex or the pair of ends of an edge, a query of a missing element does not
+/// panic, and the relations of the element are empty. The methods `contains_vertex`,
+/// `contains_edge` and `contains_face` return false for a missing element.
 pub trait MeshQuery {
     /// The handle of a vertex: a row number, or the coordinates of the vertex.
     type Vertex: Handle;
@@ -60,7 +61,7 @@ pub trait MeshQuery {
     type Face: Handle;
 
     /// The meshes that this type can hold; the default is all meshes. An algorithm can omit checks
-    /// for cases that the type excludes, such as non-manifold edges.
+    /// for cases that the mesh type excludes, such as non-manifold edges.
     const CAPABILITIES: Capabilities = Capabilities::ALL;
 
     /// Yields every vertex once.
@@ -103,17 +104,17 @@ pub trait MeshQuery {
     /// FF: yields the faces that share an edge with `f`.
     fn face_faces(&self, f: Self::Face) -> impl Iterator<Item = Self::Face>;
 
-    /// Returns the edge between `a` and `b`, or `None` if there is no such edge. Costs as much as
-    /// `vertex_edges(a)`, plus `edge_vertices` for each of these edges.
+    /// Returns the edge between `a` and `b`, or `None` if no edge joins `a` and `b`. Costs as much
+    /// as `vertex_edges(a)`, plus `edge_vertices` for each edge at `a`.
     fn edge_between(&self, a: Self::Vertex, b: Self::Vertex) -> Option<Self::Edge> {
         self.vertex_edges(a)
             .find(|&e| self.edge_vertices(e).contains(&b) && a != b)
     }
 
-    /// Returns a face that has corners at `a` and at `b`, or `None` if there is no such face. If
+    /// Returns a face that has corners at `a` and at `b`, or `None` if no face has both corners. If
     /// several faces have both corners, returns any of these faces. The two corners need not be
-    /// adjacent in the face. Costs as much as `vertex_faces(a)`, plus `face_vertices` for each of
-    /// these faces.
+    /// adjacent in the face. Costs as much as `vertex_faces(a)`, plus `face_vertices` for each face
+    /// at `a`.
     fn common_face(&self, a: Self::Vertex, b: Self::Vertex) -> Option<Self::Face> {
         self.vertex_faces(a)
             .find(|&f| self.face_vertices(f).any(|v| v == b))
@@ -147,7 +148,7 @@ pub trait MeshQuery {
     }
 
     /// Returns whether `v` is an end of a boundary edge; costs as much as `vertex_edges(v)`, plus
-    /// `edge_faces` for each of these edges.
+    /// `edge_faces` for each edge at `v`.
     fn is_boundary_vertex(&self, v: Self::Vertex) -> bool {
         self.vertex_edges(v).any(|e| self.is_boundary_edge(e))
     }
@@ -164,8 +165,8 @@ pub trait MeshQuery {
     /// Returns whether `e` is the handle of an edge of this mesh. The result is false if an edit
     /// has deleted the edge or changed its handle.
     ///
-    /// Use this method to check an edge handle that was stored before an edit. The result is also
-    /// true if a later edit created another edge with this handle.
+    /// Use this method to check an edge handle that was stored before an edit. If a later edit
+    /// created a new edge with the same handle, the result is true.
     ///
     /// O(1) if edge handles are rows or corners; costs as much as `vertex_edges` if they are pairs
     /// of ends.
@@ -216,8 +217,8 @@ pub trait MeshQuery {
     /// Returns the number of faces of each edge; the value 255 stands for 255 or more faces.
     ///
     /// This method queries `face_edges` once for each face, which takes O(corners) time in total.
-    /// On a structure that scans all faces for each `edge_faces` query, one such query for each
-    /// edge would take O(edges · corners) time.
+    /// On a structure that scans all faces for each `edge_faces` query, the `edge_faces` queries of
+    /// all edges would take O(edges · corners) time.
     fn edge_face_counts(&self) -> EdgeMap<Self, u8> {
         boundary::edge_face_counts(self)
     }
@@ -242,14 +243,15 @@ pub trait MeshQuery {
     /// ```
     ///
     /// - Every boundary edge is in exactly one loop, and occurs in this loop once.
-    /// - At a vertex, a loop continues to the other boundary edge of the same fan of faces. If two
-    ///   holes meet at a vertex, one loop runs around both holes and visits the vertex twice.
-    /// - A chain ends at a vertex if its fan of faces there reaches an edge with three or more
-    ///   faces. A chain without such an end is [closed](BoundaryLoop::is_closed).
+    /// - At a vertex, a loop arrives at one boundary edge of a fan of faces, and continues at the
+    ///   other boundary edge of the fan. If two holes meet at a vertex, one loop runs around both
+    ///   holes and visits the vertex twice.
+    /// - A chain ends at a vertex if the fan of faces at the vertex reaches an edge with three or
+    ///   more faces. A chain without ends is [closed](BoundaryLoop::is_closed).
     /// - Each edge of a loop runs in the direction opposite to its face. Boundary edges are ordered
     ///   by the index of their start vertex in the sequence [`vertices`](Self::vertices), then by
     ///   the index of their end vertex. If the faces of a loop disagree in orientation, the loop
-    ///   has the direction of the edge that comes first in this order.
+    ///   has the direction of the edge that comes first in the order of boundary edges.
     /// - A closed loop starts with the edge that comes first in the order of boundary edges. The
     ///   loops are sorted by their first edges. Structures that list the vertices in the same order
     ///   therefore return the same loops.

@@ -40,9 +40,9 @@ pub enum Split {
     /// Splits every triangle into four, with edge points (Loop 1987).
     Triangles,
     /// Splits every triangle into three at a face point, then flips every old inner edge (Kobbelt
-    /// 2000). If `trisect` is true, every boundary edge is cut into three edges; if it is false,
-    /// boundary edges are unchanged. The new vertices on boundary edges come last, in the order of
-    /// `edges()`: two for each boundary edge, in the direction of its face.
+    /// 2000). If `trisect` is true, every boundary edge is cut into three edges; if `trisect` is
+    /// false, boundary edges are unchanged. The new vertices on boundary edges come last, in the
+    /// order of `edges()`: two for each boundary edge, in the direction of its face.
     Sqrt3 {
         /// True if boundary edges are cut into three edges.
         trisect: bool,
@@ -128,9 +128,10 @@ impl fmt::Display for Split {
 ///
 /// # Contract
 ///
-/// - The child is the mesh that [`Split`] defines, with the same faces, orientation and order of
-///   vertices. It satisfies every invariant of the structure. Each structure defines the order of
-///   its faces and edges; [`parent`](Self::parent) returns the parent of a face.
+/// - The child has the faces, the orientation and the order of vertices that [`Split`] defines. The
+///   child satisfies every invariant of the structure. Each structure defines the order of the
+///   faces and edges of the child; [`parent`](Self::parent) returns the old face from which a face
+///   of the child was made.
 /// - The tables of the child are overwritten in place if they are large enough. Repeated refinement
 ///   into the same mesh therefore allocates nothing.
 /// - With the feature `rayon`, refinement runs on the threads of the current rayon pool; without
@@ -176,8 +177,8 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
     /// handles are not rows.
     fn edge_number(&self, numbers: &Self::EdgeNumbers, e: Self::Edge) -> usize;
 
-    /// Overwrites `child` with the refined mesh. The positions of `child` are then arbitrary, so
-    /// the caller must write all of them.
+    /// Overwrites `child` with the refined mesh. Afterwards, the positions of `child` are
+    /// arbitrary, so the caller must write all positions.
     ///
     /// `numbers` must be the result of [`number_edges`](Self::number_edges) for this mesh.
     ///
@@ -202,8 +203,8 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
     /// must be the result of [`number_edges`](Self::number_edges) for this mesh.
     ///
     /// In the √3 split, a triangle of the refined mesh can lie across an inner edge of this mesh.
-    /// The parent of such a triangle is the face whose side along this edge starts at the old
-    /// vertex of the triangle.
+    /// The parent of a triangle across an inner edge is the face whose side along the edge starts
+    /// at the old vertex of the triangle.
     fn parent(&self, numbers: &Self::EdgeNumbers, split: Split, child: FaceId) -> FaceId;
 
     /// Returns the positions of all vertices, in order, for writing.
@@ -248,8 +249,9 @@ pub fn check_split<M: Refine>(
     Ok(refined)
 }
 
-/// The number of rows that a thread takes at a time. The number is small enough to divide the work
-/// evenly between threads, and large enough that the overhead of threads hardly matters.
+/// The number of rows in a chunk, which one thread processes at a time. The number is small enough
+/// to divide the work evenly between threads, and large enough that the overhead of threads hardly
+/// matters.
 pub const CHUNK_ROWS: usize = 4096;
 
 /// Returns the first row of each chunk of [`CHUNK_ROWS`] rows, followed by the number of rows.

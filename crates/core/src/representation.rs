@@ -103,11 +103,10 @@ impl QueryCost {
 ///
 /// # Contract
 ///
-/// - `from_polygons` and [`CAPABILITIES`](MeshQuery::CAPABILITIES)`.check` both succeed, or both
-///   return the same error. The only exception is a mesh with too many elements for the handles of
-///   the structure.
-/// - `faces()` and `vertices()` keep the order of the input. Exception: if vertices are identified
-///   by coordinates, `vertices()` has the order in which the faces first name the vertices.
+/// - Unless a mesh has too many elements for the handles of the structure, `from_polygons` and
+///   [`CAPABILITIES`](MeshQuery::CAPABILITIES)`.check` both succeed, or both return the same error.
+/// - `faces()` and `vertices()` keep the order of the input. If vertices are identified by
+///   coordinates, `vertices()` has the order in which the faces first name the vertices.
 /// - `to_polygons(from_polygons(m))` equals `m`, except that a face may start at another corner. If
 ///   vertices are identified by coordinates, vertices with equal coordinates become one vertex, and
 ///   the vertices of the result are in the order of `vertices()`.

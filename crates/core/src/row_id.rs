@@ -116,8 +116,8 @@ row_id! {
 
 /// An optional handle, like `Option<H>`, but stored in only four bytes.
 ///
-/// A slot stores the row of the handle; the value `u32::MAX` means empty. With a slot that holds
-/// row + 1 as an `Option<NonZeroU32>`, a one-ring sweep took 8 to 15 % more time.
+/// A slot stores the row of the handle; the value `u32::MAX` means empty. A one-ring sweep took 8
+/// to 15 % more time if slots stored row + 1 as an `Option<NonZeroU32>` instead of the row.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Slot<H> {
     row: u32,

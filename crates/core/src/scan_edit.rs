@@ -4,8 +4,8 @@
 //! An edit that adds a vertex receives the new handle as an argument. Each edit first checks all
 //! conditions and then changes the faces. The structure itself updates its table of vertices.
 //!
-//! If the log ignores reports, an edit of one face reads only this face. If the log uses reports, a
-//! scan also finds the other faces with the same sides and corners.
+//! If the log ignores reports, an edit of one face reads only this face. If the log uses reports,
+//! the edit also scans all corners, to find other faces with the same sides and corners.
 
 mod collapse;
 mod edges;

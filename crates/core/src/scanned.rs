@@ -24,8 +24,8 @@ pub trait ScannedVertex: Handle {
     /// A handle that no vertex has. Corners of deleted faces store this handle. No scan searches
     /// for this handle.
     const BLANK: Self;
-    /// True if vertices are identified by coordinates. Then every vertex has a face, and no two
-    /// vertices have the same position.
+    /// True if vertices are identified by coordinates. If `IS_POSITION` is true, every vertex has a
+    /// face, and no two vertices have the same position.
     const IS_POSITION: bool;
 
     /// Returns the vertex of a corner.
@@ -170,8 +170,8 @@ impl<V: Handle> Hit<V> {
 /// corners of all faces are in one table, face after face.
 ///
 /// Queries and edits scan all corners to find the faces at a vertex or along an edge. When a face
-/// is deleted or moved to other rows, its old rows get a value that no vertex has. These rows are
-/// called blank, and scans do not find them.
+/// is deleted or moved to other rows, its old rows get a value that no vertex has. A row with a
+/// value that no vertex has is called blank, and scans do not find blank rows.
 #[derive(Debug)]
 pub struct ScannedFaces<V: ScannedVertex, P: Probe = Untraced, E: Editing = Compact> {
     /// The corners, face by face.
@@ -222,7 +222,7 @@ impl<V: ScannedVertex, P: Probe> From<ScannedFaces<V, P>> for ScannedFaces<V, P,
 }
 
 impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
-    /// Returns the same faces in tables that report every access to `probe`.
+    /// Returns the same faces in tables that report their reads and writes to `probe`.
     pub fn probed<Q: Probe>(self, probe: Q) -> ScannedFaces<V, Q, E> {
         ScannedFaces {
             corners: self.corners.probed(probe.clone()),

@@ -35,7 +35,7 @@ impl<T> Table<T> {
 }
 
 impl<T, P: Probe> Table<T, P> {
-    /// Returns a table that has the same rows and reports every access to `probe`.
+    /// Returns a table that has the same rows and reports its reads and writes to `probe`.
     pub fn probed<Q: Probe>(self, probe: Q) -> Table<T, Q> {
         let Self {
             rows,

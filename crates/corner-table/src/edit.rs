@@ -19,9 +19,9 @@
 //!            D
 //! ```
 //!
-//! The handle of an edge is the lower of the two corners that face the edge. So the handle may
-//! change when an edit changes these corners. New triangles have the highest rows and change no
-//! handle.
+//! The handle of an edge is the lower of the two corners that face the edge. So an edit that
+//! changes one of the corners may change the handle of the edge. New triangles have the highest
+//! rows and change no handle.
 
 mod collapse;
 mod compact;

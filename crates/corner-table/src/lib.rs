@@ -2,7 +2,7 @@
 //!
 //! Use a corner table for large triangle meshes whose neighbours are queried. A corner table is the
 //! smallest structure that answers every query about an element without a search of the whole mesh.
-//! The `vertex` table is also an index list for a renderer. If a mesh has a polygon with more than
+//! A renderer can use the `vertex` table as an index list. If a mesh has a polygon with more than
 //! three sides or an edge with three faces, building returns an error. [`generic::CornerTable`]
 //! documents the tables and their numbered invariants. The structure follows Rossignac, Safonova &
 //! Szymczak, *3D compression made simple* (2001).
@@ -38,7 +38,7 @@
 //! |---|---|---|
 //! | `set_position` | O(1) | one row of `positions` |
 //! | `add_vertex` | O(1) | a new row of `positions` and of `corner` |
-//! | `add_face` | O(valence) to find its place around each vertex | a new triangle; `opposite` across its sides, `corner` of its vertices |
+//! | `add_face` | O(valence) to find the position of the face around each vertex | a new triangle; `opposite` across its sides, `corner` of its vertices |
 //! | `remove_face` | O(1) | the rows of the triangle; `opposite` across its sides, `corner` of its vertices |
 //! | `remove_vertex` | O(valence) | as for `remove_face`, for all triangles of the vertex |
 //! | `remove_isolated_vertices` | O(vertices) | one bit per removed vertex |
@@ -51,25 +51,26 @@
 //! | `compact` | O(corners + vertices) | every row |
 //!
 //! A corner faces the edge of its triangle that the corner does not touch. The handle of an edge is
-//! the lower of the two corners that face the edge. If an edit changes this corner, the edit
-//! reports the new handle to the [`EditLog`](sixfold_core::EditLog).
+//! the lower of the two corners that face the edge. If an edit changes the handle of an edge, the
+//! edit reports the new handle to the [`EditLog`](sixfold_core::EditLog).
 //!
 //! Corner `c` belongs to triangle `c / 3`. `next` and `prev` are computed, not stored. A map of
-//! values for edges has one row per corner. In a closed mesh, half of these rows are unused.
+//! values for edges has one row per corner; in a closed mesh, half of the rows are unused.
 //!
 //! # What limits the speed of the sweeps
 //!
 //! In a walk around a vertex, each step waits for the row that the previous step read. A step
 //! consists of a load and the computation of `prev`: a multiplication for `c % 3`, a comparison and
 //! a selection. A step takes about ten cycles if the tables are in the first-level cache. If the
-//! vertices are visited in order, the time of these steps limits the queries VV, VE, VF and EE.
-//! Smoothing took 18 ns per vertex of a mesh with 2,562 vertices, and 27 ns per vertex of a mesh
-//! with 40,962 vertices (icospheres, one core of a shared AMD EPYC). If the vertices are visited in
-//! random order, each step waits for the cache or the memory. In random order, a vertex takes 58 ns
-//! in a mesh of 82,000 triangles. In a mesh of 1.3 million triangles, a vertex takes 390 ns in
-//! random order, which is the time of one memory access per neighbour. The queries FV, FE and FF
-//! read three consecutive rows, so the caller's work with the rows takes most of the time. The
-//! query EF and the list of edges take 1.5 ns per edge, also mostly for the caller's work.
+//! vertices are visited in order, the time of the steps limits the speed of the queries VV, VE, VF
+//! and EE. Smoothing took 18 ns per vertex of a mesh with 2,562 vertices, and 27 ns per vertex of a
+//! mesh with 40,962 vertices (icospheres, one core of a shared AMD EPYC). If the vertices are
+//! visited in random order, each step waits for the cache or the memory. Smoothing in random order
+//! takes 58 ns per vertex in a mesh of 82,000 triangles. In a mesh of 1.3 million triangles,
+//! smoothing in random order takes 390 ns per vertex, which is the time of one memory access per
+//! neighbour. The queries FV, FE and FF read three consecutive rows, so the caller's work with the
+//! rows takes most of the time. The query EF and the list of edges take 1.5 ns per edge, mostly for
+//! the caller's work.
 //!
 //! # Examples
 //!
@@ -107,8 +108,7 @@ pub use refine::EdgeNumbers;
 
 /// The mesh type with its type parameters, for generic code.
 ///
-/// Most programs use the types [`CornerTable`](crate::CornerTable) and
-/// [`EditableCornerTable`](crate::EditableCornerTable) instead.
+/// Most programs use only the types [`CornerTable`] and [`EditableCornerTable`].
 pub mod generic {
     pub use crate::mesh::CornerTable;
 }

@@ -14,7 +14,8 @@ row_id! {
 row_id! {
     /// The handle of one edge, printed as `e7`: the lower of the two corners that face the edge.
     ///
-    /// A map of values for edges has one row per corner. A closed mesh uses half of these rows.
+    /// A map of values for edges has one row per corner; in a closed mesh, half of the rows are
+    /// unused.
     pub struct EdgeCorner, "e"
 }
 
@@ -77,7 +78,7 @@ impl EdgeCorner {
 /// - I4  `corner(v)` is a corner at `v`, or `None` if `v` is isolated.
 /// - I5  If `v` is on a boundary, `corner(v)` is the first corner counter-clockwise, so `unswing`
 ///   of this corner is `None`.
-/// - I6  Repeated `swing` from `corner(v)` visits all corners at `v`. So every vertex is manifold.
+/// - I6  Repeated `swing` from `corner(v)` visits all corners at `v`, so every vertex is manifold.
 /// - I7  No two edges have the same ends.
 /// - I8  The corners of a deleted triangle have the vertex row `u32::MAX`, and each of these
 ///   corners is its own opposite. No corner of another triangle is its own opposite. A deleted
@@ -190,7 +191,7 @@ impl<P: Probe, E: Editing> CornerTable<E, P> {
 /// its argument does not exist.
 impl<P: Probe, E: Editing> CornerTable<E, P> {
     /// Returns a corner at `v`, or `None` if `v` is isolated; O(1). If `v` is on a boundary,
-    /// returns the first corner at `v` counter-clockwise.
+    /// returns the corner at which the counter-clockwise walk around `v` starts.
     #[inline]
     pub fn corner_at(&self, v: VertexId) -> Option<CornerId> {
         let corner = self.corner.read(v.index()).get();

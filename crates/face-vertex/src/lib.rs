@@ -4,10 +4,10 @@
 //! Use a face-vertex mesh also if the input is unrestricted, because the structure holds every
 //! polygon mesh. Edges are not stored; the handle of an edge is the [pair](sixfold_core::Pair) of
 //! its ends. A query has two letters, for vertex (V), edge (E) or face (F): VF lists the faces of a
-//! vertex. The queries FV, FE, EV and VF take O(1) per item. The other five queries search the
-//! faces around the element. All edits of [`MeshEdit`](sixfold_core::MeshEdit) are supported. An
-//! edit is refused only if the edit breaks its own rule. [`generic::FaceVertexMesh`] documents the
-//! tables and their four invariants.
+//! vertex. The queries FV, FE, EV and VF take O(1) per item. The queries VV, VE, EE, EF and FF
+//! search the faces around the element. All edits of [`MeshEdit`](sixfold_core::MeshEdit) are
+//! supported. An edit is refused only if the edit itself is not possible, for example the flip of a
+//! boundary edge. [`generic::FaceVertexMesh`] documents the tables and their four invariants.
 
 mod circulate;
 mod construct;
@@ -26,8 +26,7 @@ pub use walk::{CornerMap, FaceSide};
 
 /// The mesh type with its type parameters, for generic code.
 ///
-/// Most programs use the types [`FaceVertexMesh`](crate::FaceVertexMesh) and
-/// [`EditableFaceVertexMesh`](crate::EditableFaceVertexMesh) instead.
+/// Most programs use only the types [`FaceVertexMesh`] and [`EditableFaceVertexMesh`].
 pub mod generic {
     pub use crate::mesh::FaceVertexMesh;
 }

@@ -17,8 +17,7 @@ use sixfold_core::{
 ///    a ────── d     pool       f0 f1 │ f0 f1 │ f0 │ f1 │ …  the faces around a, b, c, d …
 /// ```
 ///
-/// The fan of a vertex is the list of its faces. The fans are stored in one table, the pool. A
-/// place is an entry of the pool.
+/// The fan of a vertex is the list of its faces. All fans are stored in one table, the pool.
 ///
 /// - I1  Face `f` has the corners `spans.range(f)`. The ranges of faces are disjoint. Until an edit
 ///   changes the degree of a face, the ranges are consecutive and cover the whole table. A face has
@@ -26,9 +25,9 @@ use sixfold_core::{
 /// - I2  The fans of two vertices do not overlap in the pool.
 /// - I3  The fan of `v` contains exactly the faces with a corner at `v`, each once.
 /// - I4  Deleted and unused entries are blank. A corner that belongs to no face or to a deleted
-///   face contains vertex `u32::MAX`. A place outside all fans contains face `u32::MAX`. The fan of
-///   a deleted vertex is [`Fan::DELETED`]. `vertex_holes` and `face_holes` contain exactly the
-///   deleted vertices and faces.
+///   face contains vertex `u32::MAX`. An entry of the pool outside all fans contains face
+///   `u32::MAX`. The fan of a deleted vertex is [`Fan::DELETED`]. `vertex_holes` and `face_holes`
+///   contain exactly the deleted vertices and faces.
 ///
 /// A large closed triangle mesh uses 17 words of 4 bytes per vertex: 3 for positions, 6 for
 /// corners, 2 for fans and 6 for the pool. If the faces have different degrees, the mesh uses one
@@ -39,8 +38,9 @@ use sixfold_core::{
 ///
 /// # Complexity
 ///
-/// In this table, `length` is the number of faces in a fan, and `d` is the degree of these faces. A
-/// query has two letters, for vertex (V), edge (E) or face (F): VE lists the edges of a vertex.
+/// In the table of queries, `length` is the number of faces in a fan, and `d` is the degree of
+/// these faces. A query has two letters, for vertex (V), edge (E) or face (F): VE lists the edges
+/// of a vertex.
 ///
 /// | query | reads | time |
 /// |---|---|---|
@@ -55,47 +55,50 @@ use sixfold_core::{
 /// | `edges`, `edge_count` | all corners | O(corners + vertices), without hashing |
 ///
 /// A pass over all vertices with VF, or over all faces with FV, reads the tables from start to end.
-/// If the tables fit in the cache, the loop over the six items (VF) or three items (FV) takes most
-/// of the time. In larger meshes, the number of bytes limits the speed. VF reads 32 bytes per
-/// vertex (8 of fans, 24 of pool), and FV reads 12 bytes per triangle. The other queries jump from
-/// the pool to the corners of the faces, then compare the vertices at these corners. In a mesh with
-/// a good order, the comparisons limit the speed of VV. In a mesh with a random order, the latency
-/// of the jumps limits the speed of VV.
+/// If the tables fit in the cache, most of the time of a pass is the loop over the results of each
+/// query: six faces around a vertex (VF), or three vertices of a face (FV). If the tables do not
+/// fit in the cache, the number of bytes that are read limits the speed. VF reads 32 bytes per
+/// vertex (8 of fans, 24 of pool), and FV reads 12 bytes per triangle. The queries VV, VE, EE, EF
+/// and FF jump from the pool to the corners of the faces, then compare the vertices at these
+/// corners. If neighbours are close in memory, the comparisons limit the speed of VV. In a mesh in
+/// random order, the latency of the jumps limits the speed of VV.
 ///
-/// Splitting every face ([`Refine`](sixfold_core::Refine)) takes O(corners · d + vertices) time.
-/// Numbering the edges also takes O(corners · d + vertices) time.
+/// [`Refine`](sixfold_core::Refine) takes O(corners · d + vertices) time to split every face, and
+/// the same time to number the edges; d is the degree of a face.
 ///
 /// Edits ([`MeshEdit`](sixfold_core::MeshEdit)) write corners and change fans. A fan that shrinks
-/// stays in place and leaves blank places behind its last face. A fan that grows uses a blank place
-/// behind its last face. If there is no blank place, the fan moves to the end of the pool and gets
-/// twice as many places as before, or eight places if that is more. So a fan that grows face by
-/// face moves O(log length) times. [`compact`](sixfold_core::MeshEdit::compact) removes the blank
-/// places. `remove_isolated_vertices` and `compact` read the whole mesh. In the table of edits, `n`
-/// is the length of a fan, and `d` is the degree of a face at the edited element.
+/// does not move, and leaves blank entries of the pool behind its last face. A fan that grows uses
+/// a blank entry behind its last face. If there is no blank entry, the fan moves to the end of the
+/// pool and gets room for twice as many faces as before, and for at least eight faces. So a fan
+/// that grows face by face moves O(log length) times. [`compact`](sixfold_core::MeshEdit::compact)
+/// removes the blank entries. `remove_isolated_vertices` and `compact` read the whole mesh. In the
+/// table of edits, `n` is the length of a fan, and `d` is the degree of a face at the edited
+/// element.
 ///
 /// | edit | time | writes |
 /// |---|---|---|
 /// | `set_position` | O(1) | the position |
 /// | `add_vertex` | O(1) | a position, an empty fan |
-/// | `add_face` | O(d) | d new corners, one place in each of d fans |
-/// | `remove_face` | O(d · n) | blanks in the d corners of the face, and in one place of each of d fans |
+/// | `add_face` | O(d) | d new corners, one entry in each of d fans |
+/// | `remove_face` | O(d · n) | blanks in the d corners of the face, and in one entry of each of d fans |
 /// | `remove_vertex` | O(n · d · n) | as `remove_face`, for each face of the vertex |
 /// | `split_edge` | O(n · d) | the corners of the faces at the edge, at the end of the table; a new fan |
 /// | `bisect_edge` | O(n) | one corner in each face at the edge, three in each new face; four fans if the edge has two faces |
 /// | `poke_face` | O(d · n) | the corners of the face, three in each new face; d fans, and a new fan |
 /// | `split_face` | O(d · n) | the corners of both parts, the fans of the new part |
 /// | `dissolve_edge` | O(n · d) | the corners of both faces, the fans of the removed face |
-/// | `flip_edge` | O(n) | one corner of each face, one place in each of four fans |
+/// | `flip_edge` | O(n) | one corner of each face, one entry in each of four fans |
 /// | `collapse_edge` | O(n · d) | one corner in each face of the removed end, the fans of both ends and of the third corners |
 /// | `split_vertex` | O(n · d + n log n) | one corner in each face that the new vertex gets, four fans |
 /// | `remove_isolated_vertices` | O(vertices) | the fans of the removed vertices |
 /// | `compact` | O(corners + vertices) | all tables |
 ///
-/// Some edits change the degree of a face, or add a face of another degree to a mesh whose faces
-/// all have one degree. `split_edge`, `split_face` and `dissolve_edge` always change degrees.
-/// `add_face`, `poke_face` and `collapse_edge` change degrees only if a face is not a triangle. The
-/// first edit that changes degrees after a `compact` takes O(corners) time: it builds a table with
-/// the range of each face and a table with the face of each corner ([`FaceSpans::Scattered`]).
+/// Some edits change the degree of a face, or add a face of a different degree to a mesh whose
+/// faces all have the same degree. `split_edge`, `split_face` and `dissolve_edge` always change
+/// degrees. `add_face`, `poke_face` and `collapse_edge` change degrees only if a face is not a
+/// triangle. The first edit that changes degrees after a `compact` takes O(corners) time: it builds
+/// a table with the range of each face and a table with the face of each corner
+/// ([`FaceSpans::Scattered`]).
 ///
 /// # Examples
 ///
@@ -145,7 +148,7 @@ pub(crate) const BLANK_CORNER: VertexId = VertexId::new(u32::MAX);
 /// The face in a blank place of the pool.
 pub(crate) const BLANK_PLACE: FaceId = FaceId::new(u32::MAX);
 
-/// The range of one vertex in the pool. This range contains the faces around the vertex.
+/// The range of the pool that contains the faces around one vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Fan {
     /// The row of the first face in the pool.

@@ -14,7 +14,8 @@
 //! The [number](EdgeNumbers) of an edge gives the vertex in its middle. The pool stores the fans of
 //! the child in the order of its vertices, without gaps:
 //!
-//! - For each face of its old fan, the fan of an old vertex has the part at the vertex.
+//! - The fan of an old vertex has one part (child face) of each old face at the vertex: the part at
+//!   the vertex.
 //! - The fan of a face point has the parts of the face, in order.
 //! - The fan of an edge point has the parts at both ends of each side along the edge. For
 //!   triangles, the fan also has the middle part.

@@ -21,7 +21,7 @@
 //!
 //! | refinement ([`Refine`](sixfold_core::Refine)) | cost | reads |
 //! |---|---|---|
-//! | quads, triangles, √3: all faces split | O(half-edges) | for each half-edge, the face from its next to its prev |
+//! | quads, triangles, √3: all faces split | O(half-edges) | for each half-edge, the other half-edges of its face |
 //!
 //! | edit ([`MeshEdit`](sixfold_core::MeshEdit)) | cost | rows that change |
 //! |---|---|---|
@@ -33,7 +33,7 @@
 //! | `split_edge` | O(degree) of one face | the edge, a new edge, the half-edge before the edge |
 //! | `bisect_edge` | O(1) | both triangles, two or three new edges |
 //! | `poke_face` | O(degree) | the sides of the face, one new edge per side |
-//! | `split_face` | O(degree + valence) | the sides of one part, a new edge, the half-edge before it |
+//! | `split_face` | O(degree + valence) | the sides of one part, a new edge, the half-edge before the new edge |
 //! | `dissolve_edge` | O(degree) of both faces | the sides of one face, the half-edges before the edge |
 //! | `flip_edge` | O(smaller valence) of the third corners | the six half-edges of two triangles |
 //! | `collapse_edge` | O(valence) of both ends | the half-edges that leave the removed end, and the half-edges around its triangles |
@@ -48,19 +48,19 @@
 //! The handles of vertices, edges and faces are row numbers. A loop over all handles reads no
 //! table, except the bits that mark deleted elements. `prev` is not stored: finding the half-edge
 //! before a given half-edge costs O(degree) along a face and O(valence) along a boundary. A stored
-//! `prev` makes the record wider. In a test, a stored `prev` slowed every sweep (one-rings by 6 to
-//! 20 %) and made no function of this crate faster.
+//! `prev` would make the record of a half-edge larger. In a test, a stored `prev` slowed every
+//! sweep (one-rings by 6 to 20 %) and made no function of this crate faster.
 //!
 //! # What limits the speed of the sweeps
 //!
 //! A step around a vertex takes about nine instructions and one load, and the next step waits for
 //! the load. On 82,000 triangles whose neighbours are close in memory (a good order), a one-ring
-//! sweep takes 12 ns per vertex, or 2 ns per step. In a good order, the records are in the nearer
-//! caches, so the number of instructions limits the speed. On the same triangles in random order,
-//! the sweep takes 26 ns per vertex. In random order, the sweep touches about ten cache lines per
-//! vertex that are not in the nearer caches. An FF query reads two records per side. In a
-//! breadth-first search, an FF query takes about 110 instructions, and the number of instructions
-//! limits the speed.
+//! sweep takes 12 ns per vertex, or 2 ns per step. If neighbours are close in memory, the records
+//! are in the nearer caches, so the number of instructions limits the speed. On 82,000 triangles in
+//! random order, a one-ring sweep takes 26 ns per vertex. In random order, the sweep touches about
+//! ten cache lines per vertex that are not in the nearer caches. An FF query reads two records per
+//! side. In a breadth-first search, an FF query takes about 110 instructions, and the number of
+//! instructions limits the speed.
 //!
 //! # Examples
 //!
@@ -94,7 +94,7 @@ pub use mesh::{Half, HalfEdgeId};
 
 /// The mesh type with its type parameters, for generic code.
 ///
-/// Programs use the two type aliases in the crate root instead.
+/// Most programs use only the types [`HalfEdgeMesh`] and [`EditableHalfEdgeMesh`].
 pub mod generic {
     pub use crate::mesh::HalfEdgeMesh;
 }

@@ -13,7 +13,7 @@ row_id! {
 }
 
 impl HalfEdgeId {
-    /// Returns the half-edge of the same edge that runs in the opposite direction.
+    /// Returns the twin of this half-edge: the other half-edge of the same edge.
     #[inline]
     pub const fn twin(self) -> Self {
         Self::new(self.index() as u32 ^ 1)
@@ -82,8 +82,8 @@ pub(crate) const NO_HALF: HalfEdgeId = HalfEdgeId::new(u32::MAX);
 ///   boundary, `leaving(v)` has no face.
 /// - I6  The steps `h → next(twin(h))` visit all half-edges with origin `v` in one cycle: every
 ///   vertex is manifold.
-/// - I7  `first(f)` is a half-edge with face `f`. The cycle of this half-edge has at least three
-///   vertices, each once.
+/// - I7  `first(f)` is a half-edge with face `f`. The cycle of `first(f)` has at least three
+///   vertices, and no vertex occurs twice.
 /// - I8  No two edges have the same ends.
 /// - I9  The bits in the tables of holes are set exactly for deleted vertices, edges and faces.
 ///   `leaving` of a deleted vertex is empty. Both half-edges of a deleted edge, and `first` of a
@@ -96,8 +96,8 @@ pub(crate) const NO_HALF: HalfEdgeId = HalfEdgeId::new(u32::MAX);
 /// # Memory
 ///
 /// The tables use 16 bytes per vertex, 24 bytes per edge and 4 bytes per face. A large closed
-/// triangle mesh uses 96 bytes, or 24 words, per vertex. After the first deletion, the tables also
-/// use one bit per row up to the last hole.
+/// triangle mesh uses 96 bytes per vertex (24 words of 4 bytes). After the first deletion, the
+/// tables also use one bit per row up to the last hole (row of a deleted element).
 #[derive(Debug)]
 pub struct HalfEdgeMesh<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,
@@ -176,8 +176,7 @@ impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
         }
     }
 
-    /// Returns the half-edge of the same edge that runs in the opposite direction; O(1), reads no
-    /// table.
+    /// Returns the twin of `h`: the other half-edge of the same edge; O(1), reads no table.
     #[inline]
     pub fn twin(&self, h: HalfEdgeId) -> HalfEdgeId {
         h.twin()

@@ -22,7 +22,7 @@ use crate::mesh::{Half, HalfEdgeId};
 /// A half-edge with a face stands for the corner where the half-edge starts. `#h` is the number of
 /// the corner of `h`; corners are numbered in the order of the half-edges. On a closed mesh, `#h`
 /// equals `h`. On an open mesh, [`Ranks`] computes `#h`, because boundary half-edges have no
-/// corner. A boundary half-edge of the parent is split into half-edges of the child, too.
+/// corner. A boundary half-edge of the parent is split into half-edges of the child.
 ///
 /// # Complexity
 ///

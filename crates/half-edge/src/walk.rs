@@ -8,8 +8,8 @@ use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
 
 /// A side is a half-edge with a face on its left.
 ///
-/// A step with `prev_side` or `ccw_side` takes O(degree), because `prev` is not stored. Every other
-/// step takes O(1).
+/// A step with `prev_side` or `ccw_side` takes O(degree), because `prev` is not stored. All steps
+/// except `prev_side` and `ccw_side` take O(1).
 ///
 /// No method returns a half-edge on a boundary loop, because such a half-edge is not a side. At a
 /// boundary edge, `twin_side` returns `None`, but [`twin`](HalfEdgeMesh::twin) returns the

@@ -4,8 +4,8 @@
 //! in order, or to keep a mesh in memory without queries. The indexed face set is the smallest
 //! structure with shared vertices, and holds every polygon mesh. A query has two letters, for
 //! vertex (V), edge (E) or face (F): FV lists the vertices of a face. The queries FV, FE and EV
-//! take O(1) per item. Every query of a neighbourhood scans all corners, because no table stores
-//! neighbours. [`generic::IndexedFaceSet`] documents the tables and their three invariants.
+//! take O(1) per item. The queries VV, VE, VF, EE, EF and FF scan all corners, because no table
+//! stores neighbours. [`generic::IndexedFaceSet`] documents the tables and their three invariants.
 //!
 //! Edges are not stored; the handle of an edge is the [pair](sixfold_core::Pair) of its ends.
 //!
@@ -15,20 +15,19 @@
 //! the given vertex, without a branch. If the table of corners fits in the cache, a scan takes 0.08
 //! ns per corner (82,000 triangles, 50 GB/s), and the comparisons limit its speed. In larger
 //! meshes, a scan takes 0.16 ns per corner (1.3 million triangles, 0.6 ms per query), and the
-//! memory bandwidth limits its speed. A scan of a polygon soup reads three times as many bytes and
-//! compares three times as many words.
+//! memory bandwidth limits its speed. Compared with an indexed face set, a scan of a polygon soup
+//! reads three times as many bytes and compares three times as many words.
 //!
 //! The method `edges` sorts the sides by vertex. The writes of this sort go to scattered addresses
 //! and limit the speed of `edges`: 3.4 ns per corner in cache, 13 ns per corner in larger meshes.
 //!
 //! # Editing
 //!
-//! All edits are supported. Edits of one face need no scan. Moving a vertex and adding a vertex
-//! need no scan either. Every other edit begins with a scan, and an edge flip needs two scans. Use
-//! the structure to edit a few elements, or to add and remove faces, which takes O(1) per corner.
-//! For many edits of edges, use a structure that stores neighbours.
-//! [`ScannedFaces`](sixfold_core::ScannedFaces) implements the scan and the face edits of the
-//! indexed face set and of the polygon soup.
+//! All edits are supported. All edits except `set_position`, `add_vertex` and edits of one face
+//! begin with a scan of all corners. An edge flip needs two scans. Use the structure to edit a few
+//! elements, or to add and remove faces, which takes O(1) per corner. For many edits of edges, use
+//! a structure that stores neighbours. [`ScannedFaces`](sixfold_core::ScannedFaces) implements the
+//! scan and the face edits of the indexed face set and of the polygon soup.
 //!
 //! # Examples
 //!
@@ -54,8 +53,7 @@ mod validate;
 
 /// The mesh type with its type parameters, for generic code.
 ///
-/// Most programs use the types [`IndexedFaceSet`](crate::IndexedFaceSet) and
-/// [`EditableIndexedFaceSet`](crate::EditableIndexedFaceSet) instead.
+/// Most programs use only the types [`IndexedFaceSet`] and [`EditableIndexedFaceSet`].
 pub mod generic {
     pub use crate::mesh::IndexedFaceSet;
 }

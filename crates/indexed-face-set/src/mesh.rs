@@ -29,9 +29,10 @@ use sixfold_core::{
 ///
 /// A large closed triangle mesh uses 9 words of 4 bytes per vertex: 3 for positions and 6 for
 /// corners. If the faces have different degrees, the mesh uses one more word per face. After an
-/// edit that changes the degree of a face, the mesh instead uses two more words per face and one
-/// more word per corner. After a deletion, the mesh uses one more bit per row.
-/// [`compact`](sixfold_core::MeshEdit::compact) frees the additional memory of edits and deletions.
+/// edit that changes the degree of a face, the mesh uses two more words per face and one more word
+/// per corner than a mesh whose faces have the same degree. After a deletion, the mesh uses one
+/// more bit per row. [`compact`](sixfold_core::MeshEdit::compact) frees the additional memory of
+/// edits and deletions.
 ///
 /// # Complexity
 ///
@@ -44,9 +45,9 @@ use sixfold_core::{
 /// | `vertices`, `faces` | the deleted rows, if there are any | O(1) per item |
 /// | `edges`, `edge_count` | all corners | O(corners + vertices), without hashing |
 ///
-/// Finding the face of a corner costs O(1), or O(log faces) if the faces have different degrees. A
-/// scan does this for each corner at the given vertex. After an edit that changes a degree, a table
-/// stores the face of each corner, and the cost is O(1) again.
+/// A scan finds the face of each corner at the given vertex, in O(1) time, or in O(log faces) time
+/// if the faces have different degrees. After an edit that changes a degree, a table stores the
+/// face of each corner, so a scan finds the face in O(1) time.
 ///
 /// # Edits
 ///
@@ -67,8 +68,8 @@ use sixfold_core::{
 ///
 /// If a log records the edits, `add_face`, `remove_face`, `remove_vertex` and `split_face` need one
 /// more scan, to find the edges that other faces have. The structure holds every polygon mesh. So
-/// an edit is refused only if the edit breaks its own rule, if a handle is not valid, or if the
-/// tables are full.
+/// an edit is refused only if the edit itself is not possible (for example the flip of a boundary
+/// edge), if a handle is not valid, or if the tables are full.
 #[derive(Debug)]
 pub struct IndexedFaceSet<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,

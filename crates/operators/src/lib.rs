@@ -9,12 +9,11 @@
 //! | [`triangulated`] | polygons | polygons | at most degree² per face | Meisters 1975 |
 //! | [`oriented`] | polygons | polygons | corners · log corners | |
 //!
-//! An operator on a structure queries each face or each edge at most once, and stores its sums in
-//! maps with the element as key. So no structure scans the mesh for each vertex, and reading the
-//! mesh takes O(corners) time for every structure. New positions are returned as a [`VertexMap`]
-//! for [`set_positions`]. Two operators, [`triangulated`] and [`oriented`], repair polygons that
-//! most structures reject. These two operators work on a [`PolygonMesh`], before a structure is
-//! built.
+//! An operator queries each face or each edge at most once, and stores sums in maps by vertex, edge
+//! or face. So no structure scans the mesh for each vertex, and reading the mesh takes O(corners)
+//! time for every structure. New positions are returned as a [`VertexMap`] for [`set_positions`].
+//! Two operators, [`triangulated`] and [`oriented`], repair polygons that most structures reject.
+//! These two operators work on a [`PolygonMesh`], before a structure is built.
 //!
 //! Sums are computed in double precision, so a product of three coordinates neither overflows nor
 //! underflows. Two structures may add in different orders, so the results of two structures may

@@ -1,4 +1,4 @@
-//! Orientation repair: reverses faces until adjacent faces agree.
+//! Orientation repair: reverses faces until all adjacent faces have the same orientation.
 
 use glam::DVec3;
 use sixfold_core::{FaceId, FaceList, Incidence, Partition, PolygonMesh, Slot, VertexId, row};
@@ -12,8 +12,8 @@ pub enum Facing {
     /// orientation.
     #[default]
     Majority,
-    /// Outward if the component is closed and encloses a volume. For other components, the rule
-    /// [`Majority`](Self::Majority) applies.
+    /// The faces of a closed component that encloses a volume face outward. For other components,
+    /// the rule [`Majority`](Self::Majority) applies.
     Outward,
 }
 
@@ -62,7 +62,7 @@ pub struct NotOrientable {
     pub ends: [VertexId; 2],
 }
 
-/// Reverses faces until the faces of every edge with exactly two faces run along the edge in
+/// Reverses faces until, at every edge with exactly two faces, the two faces run along the edge in
 /// opposite directions.
 ///
 /// ```text

@@ -9,8 +9,8 @@ use crate::laplacian::{Laplacian, WeightedSum};
 /// The weight of each neighbour of a vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Weights {
-    /// Equal weights for all neighbours (Field 1988). These weights also even out the shapes of
-    /// faces.
+    /// Equal weights for all neighbours (Field 1988). Uniform weights also make the shapes of the
+    /// faces more even.
     #[default]
     Uniform,
     /// Weights from the two angles opposite to the edge (Pinkall & Polthier 1993). These weights
@@ -38,12 +38,12 @@ pub struct Smoothing {
     pub weights: Weights,
     /// The treatment of vertices on boundary edges.
     pub boundary: Boundary,
-    /// The step λ, from 0 to 1. A vertex moves by this fraction of the way to the mean of its
-    /// neighbours.
+    /// The step λ, from 0 to 1. A vertex moves to the mean of its neighbours by the fraction λ of
+    /// the distance.
     pub step: f64,
-    /// The step back μ, with μ < −λ. After each step, a vertex moves by the fraction −μ in the
-    /// opposite direction, which keeps the volume of the mesh (Taubin 1995). Taubin's values are λ
-    /// = 0.33 and μ = −0.34.
+    /// The step back μ, with μ < −λ. After each step, a vertex moves away from the mean of its
+    /// neighbours, by the fraction −μ of the distance. The step back keeps the volume of the mesh
+    /// nearly constant (Taubin 1995). Taubin's values are λ = 0.33 and μ = −0.34.
     pub step_back: Option<f64>,
     /// The number of iterations.
     pub iterations: usize,

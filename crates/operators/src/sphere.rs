@@ -4,7 +4,8 @@ use sixfold_core::{MeshQuery, Point, VertexId, VertexMap, row};
 
 use crate::error::SphereError;
 
-/// Returns all positions, moved along rays from `centre` to the sphere with `radius`; O(vertices).
+/// Returns the positions of all vertices, moved along rays from `centre` to the sphere around
+/// `centre` with the radius `radius`. Takes O(vertices) time.
 ///
 /// ```text
 ///         ╭───●───╮          p' = c + r (p − c) / |p − c|
@@ -22,9 +23,10 @@ use crate::error::SphereError;
 ///
 /// # Examples
 ///
-/// This example divides an icosahedron with frequency 6: every edge into 6 parts, every triangle
-/// into 36 triangles. The points are then projected to the sphere, as for a geodesic dome. A map
-/// finds the points that two faces share: its key is the corners of the triangle and their weights.
+/// This example divides every edge of an icosahedron into 6 parts, and every triangle into 36
+/// triangles. The points are then projected to the sphere, as for a geodesic dome. The map `names`
+/// finds the points that two faces share. The key of a point is a list of corners of the
+/// icosahedron with their weights.
 ///
 /// ```
 /// use std::collections::BTreeMap;

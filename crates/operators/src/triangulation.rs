@@ -27,7 +27,7 @@ pub enum Triangulation {
 /// ```
 ///
 /// The result has the same vertices. Triangles have the orientation of their polygon. A face with
-/// three corners is unchanged. [`EarClipping`](Triangulation::EarClipping) also has these
+/// three corners is unchanged. [`EarClipping`](Triangulation::EarClipping) has these additional
 /// properties:
 ///
 /// - The triangles of a simple planar polygon do not overlap and are not flat, even if some corners
@@ -38,8 +38,9 @@ pub enum Triangulation {
 /// - An ear is a triangle at a convex corner whose third side (the diagonal) runs inside the
 ///   polygon. The ear with the best shape is cut first.
 /// - Ear clipping avoids diagonals that are already edges of the mesh, because such an edge would
-///   get three or more faces. If every ear of a polygon has such a diagonal, one of these ears is
-///   cut. Structures for manifolds then reject the mesh and name the edge.
+///   get three or more faces. If the diagonal of every ear of a polygon is already an edge, one of
+///   the ears is cut anyway. Structures for manifolds then reject the mesh with an error that names
+///   the edge.
 ///
 /// # Errors
 ///

@@ -3,17 +3,18 @@
 //! STL files have the form of a polygon soup, and a renderer can use this form unchanged. Use a
 //! polygon soup to transfer all faces at once. A query has two letters, for vertex (V), edge (E) or
 //! face (F): FV lists the vertices of a face. The queries FV, FE and EV take O(1) per item. The
-//! other six queries scan all corners, because no table stores neighbours. [`generic::PolygonSoup`]
-//! documents the table and its four invariants.
+//! queries VV, VE, VF, EE, EF and FF scan all corners, because no table stores neighbours.
+//! [`generic::PolygonSoup`] documents the table and its four invariants.
 //!
 //! A vertex *is* its coordinates in a polygon soup ([`SoupVertex`]). So corners with the same
 //! coordinates are one vertex, and moving a vertex changes its handle. [`SoupVertex`] explains how
 //! to merge points that are nearly equal. A polygon soup cannot hold a face with two corners at one
 //! point, or a vertex without faces.
 //!
-//! Adding and removing faces takes O(1) per corner. Nearly every other edit begins with a scan of
-//! all corners. For many edits, use another structure. [`ScannedFaces`](sixfold_core::ScannedFaces)
-//! implements the scan and the edits of the polygon soup and of the indexed face set.
+//! Adding and removing faces takes O(1) per corner. Nearly every edit of vertices and edges begins
+//! with a scan of all corners. For many edits, use a structure that stores neighbours.
+//! [`ScannedFaces`](sixfold_core::ScannedFaces) implements the scan and the edits of the polygon
+//! soup and of the indexed face set.
 
 mod construct;
 mod edit;
@@ -26,8 +27,7 @@ pub use vertex::SoupVertex;
 
 /// The mesh type with its type parameters, for generic code.
 ///
-/// Most programs use the types [`PolygonSoup`](crate::PolygonSoup) and
-/// [`EditablePolygonSoup`](crate::EditablePolygonSoup) instead.
+/// Most programs use only the types [`PolygonSoup`] and [`EditablePolygonSoup`].
 pub mod generic {
     pub use crate::mesh::PolygonSoup;
 }

@@ -29,9 +29,10 @@ use crate::vertex::SoupVertex;
 ///
 /// A large closed triangle mesh uses 18 words of 4 bytes per vertex: two faces of three points. If
 /// the faces have different degrees, the mesh uses one more word per face. After an edit that
-/// changes the degree of a face, the mesh instead uses two more words per face and one more word
-/// per corner. After a deletion, the mesh uses one more bit per face.
-/// [`compact`](sixfold_core::MeshEdit::compact) frees the additional memory of edits and deletions.
+/// changes the degree of a face, the mesh uses two more words per face and one more word per corner
+/// than a mesh whose faces have the same degree. After a deletion, the mesh uses one more bit per
+/// face. [`compact`](sixfold_core::MeshEdit::compact) frees the additional memory of edits and
+/// deletions.
 ///
 /// # Complexity
 ///
@@ -44,10 +45,10 @@ use crate::vertex::SoupVertex;
 /// | `vertices`, `edges` | all corners | O(corners) expected, with a hash set |
 /// | `vertex_count`, `edge_count` | all corners | O(corners) expected, with a hash set |
 ///
-/// Finding the face of a corner costs O(1), or O(log faces) if the faces have different degrees. A
-/// scan does this for each corner at the given vertex. A scan reads 12 bytes per corner, once and
-/// in order. If the table of corners fits in the cache, the three comparisons per corner limit the
-/// speed. In larger meshes, the memory bandwidth limits the speed.
+/// A scan finds the face of each corner at the given vertex, in O(1) time, or in O(log faces) time
+/// if the faces have different degrees. A scan reads 12 bytes per corner, once and in order. If the
+/// table of corners fits in the cache, the three comparisons per corner limit the speed. In larger
+/// meshes, the memory bandwidth limits the speed.
 ///
 /// # Edits
 ///
@@ -67,10 +68,11 @@ use crate::vertex::SoupVertex;
 /// | `remove_isolated_vertices` | nothing | nothing: no vertex is isolated |
 /// | `compact` | everything | everything |
 ///
-/// The scan for an edge also checks that the position of a new vertex is free. If a log records the
-/// edits, `add_face`, `remove_face`, `remove_vertex` and `split_face` need one more scan, to find
-/// the vertices and edges that other faces have. An edit is refused if the edit breaks its own
-/// rule, if two vertices would coincide, or if the tables are full.
+/// If an edit of an edge adds a vertex, the scan also checks that no vertex has the new position.
+/// If a log records the edits, `add_face`, `remove_face`, `remove_vertex` and `split_face` need one
+/// more scan, to find the vertices and edges that other faces have. An edit is refused if the edit
+/// itself is not possible (for example the flip of a boundary edge), if two vertices would
+/// coincide, or if the tables are full.
 ///
 /// [`set_positions`]: sixfold_core::Representation::set_positions
 ///

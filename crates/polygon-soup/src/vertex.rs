@@ -15,13 +15,13 @@ use sixfold_core::{Handle, HashHandleMap, Point, ScannedVertex};
 /// # Points that are nearly equal
 ///
 /// Vertices that differ only by rounding errors are different vertices. Handles are keys of maps,
-/// so handles need [`Eq`] and [`Hash`]. A comparison with a tolerance is not transitive, so such a
-/// comparison cannot be [`Eq`]. For example, with a tolerance of 1, the points 0 and 0.8 are equal
-/// and the points 0.8 and 1.6 are equal, but the points 0 and 1.6 are not equal.
+/// so handles need [`Eq`] and [`Hash`]. A comparison with a tolerance is not transitive, so [`Eq`]
+/// cannot allow a tolerance. For example, with a tolerance of 1, the points 0 and 0.8 are equal and
+/// the points 0.8 and 1.6 are equal, but the points 0 and 1.6 are not equal.
 ///
 /// Merge points that are nearly equal before you build the soup. For example, round the positions
-/// to a grid: points with the same rounded position are then one vertex. Two close points on
-/// different sides of a boundary between grid cells stay different.
+/// to a grid: points with the same rounded position are one vertex. Two close points on different
+/// sides of a boundary between grid cells stay different.
 ///
 /// ```
 /// use sixfold_polygon_soup::prelude::*;
@@ -44,7 +44,7 @@ use sixfold_core::{Handle, HashHandleMap, Point, ScannedVertex};
 pub struct SoupVertex([u32; 3]);
 
 impl SoupVertex {
-    /// Returns the vertex at `point`. No face needs a corner at `point`.
+    /// Returns the vertex at `point`, even if no face has a corner at `point`.
     #[inline]
     pub fn at(point: Point) -> Self {
         // −0 + 0 is 0.

@@ -9,8 +9,8 @@ use crate::table::{RelationTable, TabulationError};
 /// The elements of a mesh, numbered in the order in which the structure lists them.
 ///
 /// If handles are rows and no element was removed, the number of an element is its row. Vertices,
-/// edges and faces are numbered separately. A kind of element is numbered when one of its numbers
-/// is first needed.
+/// edges and faces are numbered separately. Each kind of element (vertex, edge or face) is numbered
+/// when a number of this kind is first needed.
 pub struct Numbering<'m, M: MeshQuery> {
     mesh: &'m M,
     vertices: OnceCell<Numbers<M::Vertex>>,
@@ -93,39 +93,39 @@ impl<'m, M: MeshQuery> Numbering<'m, M> {
     }
 
     tabulate! {
-        /// Builds the VV table: the vertices adjacent to every vertex.
+        /// Builds the VV table: for each vertex, the adjacent vertices.
         vertex_vertices, VertexVertices, vertices, VertexId => vertex, VertexId
     }
     tabulate! {
-        /// Builds the VE table: the edges at every vertex.
+        /// Builds the VE table: for each vertex, the edges at the vertex.
         vertex_edges, VertexEdges, vertices, VertexId => edge, EdgeId
     }
     tabulate! {
-        /// Builds the VF table: the faces at every vertex.
+        /// Builds the VF table: for each vertex, the faces at the vertex.
         vertex_faces, VertexFaces, vertices, VertexId => face, FaceId
     }
     tabulate! {
-        /// Builds the EV table: the two ends of every edge.
+        /// Builds the EV table: for each edge, the two ends.
         edge_vertices, EdgeVertices, edges, EdgeId => vertex, VertexId
     }
     tabulate! {
-        /// Builds the EE table: for every edge, the edges that share an end with it.
+        /// Builds the EE table: for each edge, the edges that share an end with the edge.
         edge_edges, EdgeEdges, edges, EdgeId => edge, EdgeId
     }
     tabulate! {
-        /// Builds the EF table: the faces on every edge.
+        /// Builds the EF table: for each edge, the faces along the edge.
         edge_faces, EdgeFaces, edges, EdgeId => face, FaceId
     }
     tabulate! {
-        /// Builds the FV table: the corners of every face.
+        /// Builds the FV table: for each face, the vertices at the corners.
         face_vertices, FaceVertices, faces, FaceId => vertex, VertexId
     }
     tabulate! {
-        /// Builds the FE table: the edges of every face.
+        /// Builds the FE table: for each face, the edges.
         face_edges, FaceEdges, faces, FaceId => edge, EdgeId
     }
     tabulate! {
-        /// Builds the FF table: the faces adjacent to every face.
+        /// Builds the FF table: for each face, the adjacent faces.
         face_faces, FaceFaces, faces, FaceId => face, FaceId
     }
 }

@@ -96,18 +96,18 @@ pub struct Decimated {
 /// Collapses the edges with the lowest error, until the mesh has the target number of faces or no
 /// legal collapse is left.
 ///
-/// The error of a vertex is a sum over its faces in the input and the faces of all vertices that
-/// were merged into it. Each face contributes the squared distance to its plane, multiplied by the
-/// area of the face. The merged vertex is placed where the sum of the errors of both ends is least.
-/// If there are many such points, the merged vertex is placed at the best of three points: the two
-/// ends and their midpoint. Boundary edges add planes perpendicular to the surface, which preserve
-/// the shape of the boundary. A collapse is refused if it would turn a face over or break the link
-/// condition. A refused collapse is tried again after one of its ends has changed.
+/// The error of a vertex is a sum over faces of the input: the faces of the vertex, and the faces
+/// of all vertices that were merged into the vertex. Each face contributes the squared distance to
+/// its plane, multiplied by the area of the face. The merged vertex is placed where the sum of the
+/// errors of both ends is least. If the sum is least at many points, the merged vertex is placed at
+/// the best of three points: the two ends and their midpoint. Boundary edges add planes
+/// perpendicular to the surface, which preserve the shape of the boundary. A collapse is refused if
+/// it would turn a face over or break the link condition. A refused collapse is tried again after
+/// an end of the edge has changed.
 ///
 /// Errors are rounded into buckets, so that the errors in one bucket differ by at most an eighth. A
-/// round collapses all edges of the bucket with the lowest errors, sorted by vertex numbers. If an
-/// end of an edge has changed, the queue entry of the edge is outdated. Outdated entries are
-/// dropped when the entries are taken out of the queue.
+/// round collapses all edges of the bucket with the lowest errors, in the order of their vertex
+/// numbers.
 ///
 /// # Errors
 ///
@@ -126,8 +126,8 @@ pub fn decimate<M: MeshEdit>(
     decimate_watched(mesh, decimation, &mut |_| ControlFlow::Continue(()))
 }
 
-/// Decimates like [`decimate`], and calls `watch` with the number of faces after every 1024
-/// collapses. The function `watch` can end the decimation.
+/// Decimates like [`decimate`], and calls `watch` with the current number of faces after every 1024
+/// collapses. If `watch` returns `ControlFlow::Break`, the decimation ends.
 ///
 /// # Errors
 ///

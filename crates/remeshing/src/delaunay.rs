@@ -21,7 +21,7 @@ const TOLERANCE: f64 = 1e-7;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Flipped {
-    /// The number of flipped edges.
+    /// The number of flips.
     pub flips: usize,
     /// The number of refused flips. A flip is refused if the flip is illegal or would fold the
     /// surface.
@@ -42,9 +42,9 @@ pub struct Flipped {
 ///       d
 /// ```
 ///
-/// In a plane, the result is the Delaunay triangulation (Lawson 1977). On a surface, a flip changes
-/// the shape. A flip is refused if a new triangle would face away from the two old triangles. The
-/// number of flips is at most 16 times the number of edges.
+/// In a plane, the result is the Delaunay triangulation (Lawson 1977). On a curved surface, a flip
+/// changes the shape. A flip is refused if a new triangle would face away from the two old
+/// triangles. The number of flips is at most 16 times the number of edges.
 ///
 /// # Errors
 ///

@@ -57,7 +57,7 @@ pub struct Remeshed {
     pub splits: usize,
     /// The number of collapsed edges.
     pub collapses: usize,
-    /// The number of flipped edges.
+    /// The number of flips.
     pub flips: usize,
     /// The number of finished iterations.
     pub iterations: usize,
@@ -105,7 +105,7 @@ pub fn remesh<M: MeshEdit>(mesh: &mut M, remeshing: &Remeshing) -> Result<Remesh
 }
 
 /// Remeshes like [`remesh`], and calls `watch` before each iteration with the number of finished
-/// iterations. The function `watch` can end the remeshing.
+/// iterations. If `watch` returns `ControlFlow::Break`, the remeshing ends.
 ///
 /// # Errors
 ///

@@ -2,7 +2,7 @@
 //!
 //! | operator | does | cost | source |
 //! |---|---|---|---|
-//! | [`decimate`] | collapses edges, the lowest error first, down to a number of faces | O(edges log edges) | Garland & Heckbert 1997 |
+//! | [`decimate`] | collapses edges, lowest error first, down to the target number of faces | O(edges log edges) | Garland & Heckbert 1997 |
 //! | [`remesh`] | makes all edges about as long as requested, all valences about six | O(edges log edges) per iteration | Botsch & Kobbelt 2004 |
 //! | [`flip_to_delaunay`] | flips edges whose two opposite angles add up to more than π | O(edges log edges + flips) | Lawson 1977 |
 //!
@@ -11,14 +11,15 @@
 //! All decisions depend on vertex numbers. The vertices are numbered in the order in which the
 //! faces list them, and sums are computed in the order of the numbers. Therefore **every structure
 //! makes the same mesh, to the bit**, from the same manifold. Only the order of the faces in the
-//! result depends on the structure. If a second operator runs on these results, the order of the
-//! faces can change its result. To avoid this difference, first build all structures again from one
+//! result depends on the structure. The result of a second operator can depend on the order of the
+//! faces. To get the same result on all structures again, first build all structures from one
 //! [`PolygonMesh`].
 //!
 //! [`PolygonMesh`]: sixfold_core::PolygonMesh
 //!
-//! An operator accepts only meshes of triangles. Boundaries keep their shape. Removed elements
-//! leave unused rows in the tables; [`MeshEdit::compact`] removes these rows.
+//! An operator accepts only meshes of triangles. The operators approximately preserve the shape of
+//! boundaries. Removed elements leave unused rows in the tables; [`MeshEdit::compact`] removes
+//! these rows.
 //!
 //! ```
 //! use sixfold_half_edge::EditableHalfEdgeMesh;

@@ -1,4 +1,4 @@
-//! Rules for edits, in addition to the rules of the structures.
+//! Conditions for edits that the operators check in addition to the rules of the structures.
 
 use glam::DVec3;
 use sixfold_core::MeshEdit;

@@ -1,8 +1,8 @@
 //! A software renderer for meshes with their edges and creases, in parallel projection.
 //!
 //! [`draw`] makes a [`Picture`] of pixels, and [`Picture::write_png`] writes the picture as PNG.
-//! [`draw_svg`] makes a picture of lines and polygons as SVG. If there are several
-//! [`RenderMesh`]es, they are drawn in a row at one scale, each in its own panel.
+//! [`draw_svg`] makes a picture of lines and polygons as SVG. Several [`RenderMesh`]es are drawn in
+//! a row, all at the same scale.
 //!
 //! ```text
 //!               ┌ layout: vertex positions     ┐

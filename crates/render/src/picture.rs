@@ -52,10 +52,12 @@ impl Picture {
     }
 }
 
-/// Draws the meshes in a row. Time: O(c log c + s), for c corners of faces and s covered samples.
+/// Draws the meshes in a row. Takes O(c log c + s) time, where c is the number of corners of all
+/// faces, and s is the number of samples that faces cover.
 ///
-/// A sample is a point of the depth buffer; a pixel has at most sixteen samples. The function needs
-/// 14 bytes per sample, for one panel at a time.
+/// A *sample* is a point of the depth buffer; a pixel has at most sixteen samples. The meshes are
+/// drawn one after the other. During the drawing of a mesh, the function needs 14 bytes for each
+/// sample of the part of the picture that shows this mesh.
 ///
 /// # Errors
 ///

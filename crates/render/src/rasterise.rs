@@ -1,4 +1,4 @@
-//! Rasterisation of polygons into samples.
+//! Rasterisation: converts polygons into samples (points of the depth buffer).
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! The depth buffer: the nearest surface at each sample.
+//! The depth buffer, which stores the nearest surface at each sample (a point within a pixel).
 
 use glam::DVec3;
 use sixfold_core::{FaceId, RowId, Slot};

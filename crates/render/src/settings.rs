@@ -11,7 +11,7 @@ pub const MAX_SIDE: u32 = 8192;
 /// Maximum number of pixels of a picture.
 pub const MAX_PIXELS: u32 = 1 << 23;
 
-/// Minimum width and height of the panel of one mesh, in pixels.
+/// Minimum width and height, in pixels, of the part of a picture that shows one mesh.
 pub const MIN_PANEL: u32 = 16;
 
 /// A mesh to draw, with its creases.
@@ -163,7 +163,7 @@ pub struct Settings {
     pub view: View,
     /// The normals that the lighting uses.
     pub shading: Shading,
-    /// True to draw also the edges that are not sharp. Sharp edges are always drawn.
+    /// True to draw all visible edges. If false, only the visible sharp edges are drawn.
     pub edges: bool,
     /// True to draw all edges, including hidden edges, and no faces.
     pub wireframe: bool,

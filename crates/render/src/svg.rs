@@ -20,8 +20,8 @@ pub const MAX_SVG_FACES: usize = 50_000;
 /// [`draw`](crate::draw).
 ///
 /// Visible faces are polygons, each in one colour, painted from back to front. The visible parts of
-/// edges are lines. [`draw`](crate::draw) uses the same test of whether a part is visible. If two
-/// faces intersect, one of them wrongly appears in front of the other.
+/// edges are lines. [`draw`](crate::draw) uses the same visibility test. If two faces intersect,
+/// one of them wrongly appears in front of the other.
 ///
 /// # Errors
 ///

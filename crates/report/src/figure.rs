@@ -11,7 +11,7 @@ use sixfold_study::numbers::times;
 
 use crate::colours::{BACKGROUND, GRID_COLOUR, TEXT_COLOUR, dark_rules};
 
-/// A figure with its numbers.
+/// A figure, and a table of the numbers that the figure shows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Figure {
     /// Name of the figure in links and file names, such as `heat-map`.

@@ -1,9 +1,10 @@
 //! Reports on studies: one self-contained HTML page, or Markdown with figures.
 //!
-//! A *lab* is an additional measurement besides the study: the orders of elements, growth, the
-//! reads of queries, or a workload. [`ReportPage::new`] draws the figures of a [`Collection`] of
-//! studies and labs. Each figure has a table of numbers and the command that reproduces the figure.
-//! Browsers show the name and the value of a mark when the pointer is over the mark.
+//! A *lab* is an additional measurement besides the study: the effect of the element order, the
+//! growth of times with the mesh size, the memory reads of queries, or a workload.
+//! [`ReportPage::new`] draws the figures of a [`Collection`] of studies and labs. Each figure has a
+//! table of numbers and the command that reproduces the figure. Browsers show the name and the
+//! value of a data point when the pointer is over the data point.
 //!
 //! [`ReportPage::html`] returns one file that needs no network. The page supports light and dark
 //! mode, printing and small screens. [`ReportPage::markdown`] returns Markdown for a repository,
@@ -21,7 +22,7 @@ use sixfold_study::Collection;
 pub use figure::{Figure, Table};
 pub use panels::{Panel, panels};
 
-/// A report on studies and labs.
+/// A report on studies and additional measurements.
 #[derive(Clone, Debug)]
 pub struct ReportPage {
     /// Title.
@@ -30,16 +31,17 @@ pub struct ReportPage {
     pub command: String,
     /// Descriptions of the machines, one line each.
     pub machines: Vec<String>,
-    /// Sentences about the figures.
+    /// Sentences that state the main results.
     pub sentences: Vec<String>,
     /// Possible faults of the measurement, with remedies.
     pub warnings: Vec<String>,
-    /// Figures for all meshes together, or for the mesh if there is only one.
+    /// Figures about all meshes together. If there is only one mesh, the figures are about this
+    /// mesh.
     pub figures: Vec<Figure>,
     /// Sections for additional measurements: orders of elements, growth, reads of queries,
     /// workloads.
     pub labs: Vec<Section>,
-    /// Sections for the meshes; empty if there is only one mesh.
+    /// One section for each mesh; empty if there is only one mesh.
     pub meshes: Vec<Section>,
     /// Meshes that could not be studied: the name of each mesh, and the reason.
     pub failures: Vec<(String, String)>,
@@ -54,7 +56,7 @@ pub struct Section {
     pub title: String,
     /// A description of the mesh or of the measurement, in one line.
     pub facts: String,
-    /// Sentences about the figures.
+    /// Sentences that state the main results.
     pub sentences: Vec<String>,
     /// The figures of the section.
     pub figures: Vec<Figure>,
@@ -62,7 +64,7 @@ pub struct Section {
 
 impl ReportPage {
     /// Draws the figures of `collection`. If the command that made a result is unknown, the figure
-    /// shows `command`.
+    /// of this result shows `command`.
     pub fn new(collection: &Collection, command: &str) -> Self {
         figures::page(collection, command)
     }

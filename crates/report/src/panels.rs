@@ -23,7 +23,8 @@ pub struct Panel {
     pub lines: Vec<(&'static str, Vec<(f64, f64)>)>,
 }
 
-/// Draws `panels` as one SVG with a common legend. Each row has `columns` panels.
+/// Draws `panels` as one SVG with a common legend. The SVG has `columns` panels side by side in
+/// each row.
 pub fn panels(title: &str, columns: usize, panels: &[Panel]) -> String {
     let rows = panels.len().div_ceil(columns);
     let (mut plots, mut layouts) = (Vec::new(), Vec::new());

@@ -48,15 +48,17 @@ pub enum ShapeError {
     /// The solid is unbounded: its field is not positive far away from the origin.
     #[error("the solid is unbounded: raise the level of the blobs, or inflate by less")]
     Unbounded,
-    /// The solid is empty, or too thin for the lattice.
+    /// The solid is empty, or so thin that it contains no point of the lattice of cubes from which
+    /// the surface is built.
     #[error("the solid contains no lattice point: make it thicker, or choose more faces")]
     Empty,
-    /// The lattice is too large for memory, or too fine for `f32`.
+    /// The lattice of cubes from which the surface is built is too large for memory, or too fine
+    /// for `f32`.
     #[error(
         "a lattice of spacing {spacing:e} is too fine for this solid: choose fewer faces, or move the solid to the origin"
     )]
     TooFine { spacing: f64 },
-    /// No lattice gives the requested number of faces.
+    /// No lattice of cubes gives a surface with about the requested number of faces.
     #[error("no lattice gives {faces} faces: choose about {nearest}")]
     UnreachableFaceCount { faces: usize, nearest: usize },
 }

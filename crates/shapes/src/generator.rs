@@ -13,7 +13,7 @@ use crate::{b_spline_patch, bezier_patch};
 /// A shape that can be selected by name.
 #[derive(Clone, Copy, Debug)]
 pub struct Generator {
-    /// Name for users. Example: `triangle-torus`.
+    /// The name of the shape on the command line, for example `triangle-torus`.
     pub name: &'static str,
     /// Description in one line.
     pub summary: &'static str,
@@ -25,7 +25,7 @@ pub struct Generator {
 /// A numeric parameter of a generator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameter {
-    /// Name for users.
+    /// The name of the parameter on the command line.
     pub name: &'static str,
     /// Description in a few words.
     pub meaning: &'static str,
@@ -78,8 +78,8 @@ impl Parameter {
 }
 
 impl Generator {
-    /// Builds the shape. `values` has the names and values of parameters; all other parameters have
-    /// their defaults.
+    /// Builds the shape. Each item of `values` is the name of a parameter and its value. All other
+    /// parameters have their default values.
     ///
     /// # Errors
     ///

@@ -5,9 +5,11 @@ use sixfold_core::PolygonMesh;
 use crate::builder::MeshBuilder;
 use crate::error::{MAX_SIDE, ShapeError, check_corners, check_count};
 
-/// Builds a bar of unit cubes with `g` holes through it: a closed surface of quads with genus `g`.
+/// Builds the surface of a bar of unit cubes with `g` holes through the bar. The surface is closed,
+/// consists of quads, and has genus `g`.
 ///
-/// V = 16(g + 1), E = 36g + 28, F = 18g + 14; V − E + F = 2 − 2g.
+/// The mesh has 16(g + 1) vertices, 36g + 28 edges and 18g + 14 faces. The Euler characteristic is
+/// 2 − 2g.
 ///
 /// ```text
 ///   ┌──┬──┬──┬──┬──┐

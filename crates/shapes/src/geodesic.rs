@@ -11,9 +11,9 @@ pub(crate) const MAX_FREQUENCY: usize = 5_982;
 
 /// Builds an icosahedron with each edge cut into `frequency` parts, projected to the unit sphere.
 ///
-/// With f = `frequency`: V = 10f² + 2, E = 30f², F = 20f². Twelve vertices have valence 5, and all
-/// other vertices have valence 6. In Buckminster Fuller's classification, the mesh is a geodesic
-/// sphere of class I.
+/// With f = `frequency`, the mesh has 10f² + 2 vertices, 30f² edges and 20f² faces. Twelve vertices
+/// have valence 5, and all other vertices have valence 6. In Buckminster Fuller's classification,
+/// the mesh is a geodesic sphere of class I.
 ///
 /// ```text
 ///          c

@@ -74,8 +74,9 @@ impl Field {
         Ok(Self::simple(Node::Sphere { centre, radius }))
     }
 
-    /// Builds a torus: a tube of radius `tube` around a circle of radius `ring` about `axis`. The
-    /// field is the signed distance from the surface.
+    /// Builds a torus around `centre`: a tube of radius `tube` around a circle of radius `ring`.
+    /// The plane of the circle is perpendicular to `axis`. The field is the signed distance from
+    /// the surface.
     ///
     /// # Errors
     ///

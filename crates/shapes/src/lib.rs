@@ -28,7 +28,7 @@
 //! from above. No two vertices have the same position, except possibly in patches. A shape is the
 //! same on every machine, because the code calls no trigonometric function of the platform. If a
 //! parameter is outside its documented range, the function of the shape returns a [`ShapeError`]
-//! before it allocates memory. [`Order`] changes the order of the elements of any mesh.
+//! without allocating memory. [`Order`] changes the order of the elements of any mesh.
 //! [`GENERATORS`] lists all shapes by name.
 //!
 //! ```

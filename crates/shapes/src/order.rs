@@ -34,7 +34,7 @@ impl Order {
         Self::BreadthFirst,
     ];
 
-    /// Returns the name for users. Example: `breadth-first`.
+    /// Returns the name of the order on the command line, for example `breadth-first`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Given => "given",
@@ -69,9 +69,9 @@ impl Order {
 pub struct Reordered {
     /// The reordered mesh.
     pub mesh: PolygonMesh,
-    /// New handle of each vertex, indexed by the old row.
+    /// The new handle of each vertex. Index i is for the vertex with the old number i.
     pub vertices: Vec<VertexId>,
-    /// New handle of each face, indexed by the old row.
+    /// The new handle of each face. Index i is for the face with the old number i.
     pub faces: Vec<FaceId>,
 }
 
@@ -103,7 +103,8 @@ impl FromStr for Order {
 /// Returns the mesh with its vertices and faces in random order. Each face starts at a random
 /// corner. Time: O(corners).
 ///
-/// The same seed gives the same order on every machine (ChaCha8, shuffle of Fisher and Yates).
+/// The same seed gives the same order on every machine (random generator ChaCha8, shuffle of Fisher
+/// and Yates).
 pub fn shuffled(mesh: &PolygonMesh, seed: u64) -> PolygonMesh {
     shuffle(mesh, seed).mesh
 }

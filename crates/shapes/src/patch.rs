@@ -65,8 +65,8 @@ impl ControlNet {
         Self::over_square(columns, rows, |_, _, x, y| x * x - y * y)
     }
 
-    /// Builds waves, for x and y from −1 to 1. Every second control point of a row is above or
-    /// below the plane z = 0.
+    /// Builds waves, for x and y from −1 to 1. Along each row, the heights of the control points
+    /// alternate between 0 and ±0.5.
     ///
     /// # Errors
     ///
@@ -114,9 +114,9 @@ impl ControlNet {
 /// Builds the Bézier patch of a net as `m` × `n` quads. The patch passes through the four corners
 /// of the net.
 ///
-/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn. In each direction, the degree is one less
-/// than the number of control points. For some nets, vertices of the patch coincide. Time:
-/// O(degree²) per vertex (de Casteljau).
+/// The mesh has (m + 1)(n + 1) vertices, m(n + 1) + n(m + 1) edges and mn faces. In each direction,
+/// the degree is one less than the number of control points. For some nets, vertices of the patch
+/// coincide. Time: O(degree²) per vertex (de Casteljau).
 ///
 /// # Errors
 ///
@@ -133,9 +133,9 @@ pub fn bezier_patch(net: &ControlNet, m: usize, n: usize) -> Result<PolygonMesh,
 /// Builds the uniform B-spline patch of a net as `m` × `n` quads. The `degree` is the same in both
 /// directions.
 ///
-/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn. The patch has (columns − degree) × (rows −
-/// degree) pieces. Most patches pass through no control point. For some nets, vertices of the patch
-/// coincide. Time: O(degree²) per vertex (de Boor).
+/// The mesh has (m + 1)(n + 1) vertices, m(n + 1) + n(m + 1) edges and mn faces. The patch has
+/// (columns − degree) × (rows − degree) pieces. Most patches pass through no control point. For
+/// some nets, vertices of the patch coincide. Time: O(degree²) per vertex (de Boor).
 ///
 /// # Errors
 ///

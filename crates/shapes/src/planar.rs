@@ -7,7 +7,7 @@ use crate::error::{MAX_SIDE, ShapeError, check_corners, check_count};
 
 /// Builds `m` × `n` unit squares: the regular tiling {4, 4}.
 ///
-/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn.
+/// The mesh has (m + 1)(n + 1) vertices, m(n + 1) + n(m + 1) edges and mn faces.
 ///
 /// # Errors
 ///
@@ -29,7 +29,7 @@ pub(crate) fn quad_grid(
 
 /// Builds `m` × `n` unit squares, each cut in two by the diagonal from lower left to upper right.
 ///
-/// V = (m + 1)(n + 1), E = 3mn + m + n, F = 2mn.
+/// The mesh has (m + 1)(n + 1) vertices, 3mn + m + n edges and 2mn faces.
 ///
 /// # Errors
 ///
@@ -48,8 +48,8 @@ pub fn triangle_grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
 /// Builds `m` × `n` unit squares. Every second square, as on a chess board, is cut into two
 /// triangles.
 ///
-/// The number of cut squares is c = ⌊mn/2⌋.
-/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1) + c, F = mn + c.
+/// The number of cut squares is c = ⌊mn/2⌋. The mesh has (m + 1)(n + 1) vertices,
+/// m(n + 1) + n(m + 1) + c edges and mn + c faces.
 ///
 /// # Errors
 ///
@@ -71,7 +71,7 @@ pub fn mixed_grid(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
 
 /// Builds `m` × `n` pairs of equilateral triangles of side 1: the regular tiling {3, 6}.
 ///
-/// V = (m + 1)(n + 1), E = 3mn + m + n, F = 2mn.
+/// The mesh has (m + 1)(n + 1) vertices, 3mn + m + n edges and 2mn faces.
 ///
 /// ```text
 ///      ╱╲╱╲╱╲╱      every second row of vertices is shifted half a step to the right
@@ -98,7 +98,8 @@ pub fn triangle_tiling(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
 /// Builds a frame: `m` × `n` unit squares without the a × b squares in the middle. Here a = ⌊m/3⌋
 /// and b = ⌊n/3⌋.
 ///
-/// V = (m + 1)(n + 1) − (a − 1)(b − 1), E = m(n + 1) + n(m + 1) − a(b − 1) − b(a − 1), F = mn − ab.
+/// The mesh has (m + 1)(n + 1) − (a − 1)(b − 1) vertices, m(n + 1) + n(m + 1) − a(b − 1) − b(a − 1)
+/// edges and mn − ab faces.
 ///
 /// # Errors
 ///
@@ -118,8 +119,8 @@ pub fn grid_with_hole(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
 
 /// Builds `m` × `n` unit squares with `holes` missing squares. No two missing squares touch.
 ///
-/// V = (m + 1)(n + 1), E = m(n + 1) + n(m + 1), F = mn − holes. The mesh has 1 + holes boundary
-/// loops.
+/// The mesh has (m + 1)(n + 1) vertices, m(n + 1) + n(m + 1) edges, mn − `holes` faces and 1 +
+/// `holes` boundary loops.
 ///
 /// ```text
 ///   ┌──┬──┬──┬──┬──┐
@@ -151,7 +152,7 @@ pub fn grid_with_holes(m: usize, n: usize, holes: usize) -> Result<PolygonMesh, 
 /// Builds `m` × `n` regular hexagons of side 1: the regular tiling {6, 3}. Every second row is
 /// shifted half a step to the right.
 ///
-/// V = 2(m + 1)(n + 1) − 2, E = 3mn + 2m + 2n − 1, F = mn.
+/// The mesh has 2(m + 1)(n + 1) − 2 vertices, 3mn + 2m + 2n − 1 edges and mn faces.
 ///
 /// ```text
 ///     │   │   │       m = 2, n = 2

@@ -10,7 +10,7 @@ use crate::error::{MAX_SEGMENTS, ShapeError, check_corners, check_count};
 
 /// Builds a prism: two `n`-gons joined by `n` quads. A prism with `n` = 4 is a cube.
 ///
-/// V = 2n, E = 3n, F = n + 2.
+/// The mesh has 2n vertices, 3n edges and n + 2 faces.
 ///
 /// # Errors
 ///
@@ -32,7 +32,7 @@ pub fn prism(n: usize) -> Result<PolygonMesh, ShapeError> {
 /// Builds an antiprism: two `n`-gons, one of them rotated by half a step, joined by `2n` triangles.
 /// An antiprism with `n` = 3 is an octahedron.
 ///
-/// V = 2n, E = 4n, F = 2n + 2.
+/// The mesh has 2n vertices, 4n edges and 2n + 2 faces.
 ///
 /// # Errors
 ///
@@ -52,10 +52,10 @@ pub fn antiprism(n: usize) -> Result<PolygonMesh, ShapeError> {
     Ok(builder.build())
 }
 
-/// Builds a sphere of `m` meridians and `n` bands. The faces are triangles at the poles and quads
-/// elsewhere.
+/// Builds a sphere of `m` meridians and `n` bands of faces between the poles. The faces are
+/// triangles at the poles and quads elsewhere.
 ///
-/// V = m(n − 1) + 2, E = m(2n − 1), F = mn.
+/// The mesh has m(n − 1) + 2 vertices, m(2n − 1) edges and mn faces.
 ///
 /// # Errors
 ///

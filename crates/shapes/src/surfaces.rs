@@ -12,7 +12,7 @@ const TUBE: f64 = 0.4;
 
 /// Builds a torus of `m` × `n` quads: `m` quads around the axis, and `n` quads around the tube.
 ///
-/// V = mn, E = 2mn, F = mn; χ = 0.
+/// The mesh has mn vertices, 2mn edges and mn faces. The Euler characteristic is 0.
 ///
 /// # Errors
 ///
@@ -25,7 +25,7 @@ pub fn torus(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
 
 /// Builds a torus of `m` × `n` quads, each cut into two triangles. Every vertex has valence 6.
 ///
-/// V = mn, E = 3mn, F = 2mn; χ = 0.
+/// The mesh has mn vertices, 3mn edges and 2mn faces. The Euler characteristic is 0.
 ///
 /// # Errors
 ///
@@ -70,7 +70,7 @@ fn build_torus(
 
 /// Builds a Möbius strip of `n` quads: a one-sided surface with one boundary loop.
 ///
-/// V = 2n, E = 3n, F = n; χ = 0.
+/// The mesh has 2n vertices, 3n edges and n faces. The Euler characteristic is 0.
 ///
 /// ```text
 ///   b0 ── b1 ── b2 ··· ── bn = a0      the last rung is the first one, turned over

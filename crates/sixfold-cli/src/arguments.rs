@@ -59,14 +59,14 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study bunny.obj --report bunny            a page with figures
   sixfold study scans --report results              all meshes in a folder; --resume continues
 
-How it measures: Each round runs every operation once on every backend, in random order. The clock
+Measurement: Each round runs every operation once on every backend, in random order. The clock
 measures the processor time of the thread. The table shows the median over the rounds. In each
-round, one backend is measured twice. The difference between its two times is the noise, and smaller
-differences count as ties.
+round, one backend is measured twice. The difference between the two times of this backend is the
+noise. Differences between backends that are smaller than the noise count as ties.
 
 Seed: The seed determines the random order of the runs. A slow operation may run on a random sample
-of the elements. The seed also determines the elements of the sample. The size of the sample depends
-on measured times, so two studies with the same seed can have samples of different sizes.
+of the elements, which the seed also determines. The size of the sample depends on measured times,
+so two studies with the same seed can have samples of different sizes.
 
 Interruption: Ctrl-C stops after the current timed run and keeps the finished results. A second
 Ctrl-C stops at once, with exit code 130.
@@ -144,7 +144,7 @@ pub(crate) enum Command {
     Report(Draw),
     /// Compare two studies, and show the differences that exceed the noise
     Compare(Compare),
-    /// Show facts about a mesh, and which data structures can hold the mesh
+    /// Show facts about meshes, and which data structures can hold them
     Inspect(Inspect),
     /// Measure the distance between the surfaces of two meshes
     Distance(Distance),
@@ -290,7 +290,7 @@ pub(crate) struct Merge {
 /// Draw saved results on one page.
 ///
 /// Reads results of `study`, `orders`, `growth`, `why` and `pick`. At most one of the results may
-/// be a study. This command measures nothing.
+/// be a study. This command makes no new measurements.
 #[derive(Debug, Args)]
 #[command(after_help = REPORT_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Draw {

@@ -173,12 +173,12 @@
 //!
 //! # Features
 //!
-//! - `rayon` (default): native subdivision steps use all threads; so do builds of spatial indices and
-//!   batches of their queries.
+//! - `rayon` (default): subdivision steps in a structure's own tables use all threads; so do builds of
+//!   spatial indices and batches of their queries.
 //! - `serde`: [`Facts`], [`Capabilities`], [`MemoryFootprint`], diagnoses, reports of repairs,
 //!   subdivision schemes and mesh orders can be serialised.
 //! - `mint`: [`PolygonMesh::new`] takes points and vectors of the crate `mint`, and a [`Point`]
-//!   converts to them.
+//!   converts to such points and vectors.
 
 // The exports are a list instead of `*`, because `sixfold_core` also has items that only authors
 // of structures and measurements need.

@@ -6,13 +6,13 @@ use sixfold_core::{
 
 /// Calls a macro with the list of all structures: `structures!([callback] arguments…)`.
 ///
-/// This macro is the only list of structures. For a seventh structure, add one line. Each line
-/// starts with the type for queries. Two other types may follow: `edit` is the type that can be
-/// edited, and `refine` is the type that splits its own tables. All types of a line have the same
-/// name ([`Representation::NAME`](sixfold_core::Representation::NAME)).
+/// This macro is the only list of structures. To add a structure, add one line to the list. Each
+/// line of the list starts with the type for queries. Two more types may follow: `edit` is the type
+/// that can be edited, and `refine` is the type that splits its own tables. All types of a line
+/// have the same name ([`Representation::NAME`](sixfold_core::Representation::NAME)).
 ///
 /// The callback gets the arguments, followed by all lines of the list. If you need only one type of
-/// each line, use [`for_each_representation!`](crate::for_each_representation),
+/// each structure, use [`for_each_representation!`](crate::for_each_representation),
 /// [`for_each_editable!`](crate::for_each_editable) or
 /// [`for_each_refinable!`](crate::for_each_refinable) instead.
 #[macro_export]
@@ -89,29 +89,29 @@ macro_rules! for_each_refinable {
 ///
 /// The structure is selected once per call. The code of the function uses static dispatch.
 pub trait Visitor {
-    /// The result of a visit.
+    /// The type that `visit` returns.
     type Output;
 
-    /// Visits the structure `M`.
+    /// Calls the function for the structure `M`.
     fn visit<M: Representation + 'static>(&mut self) -> Self::Output;
 }
 
 /// A generic function that is called with an editable structure selected at run time.
 pub trait EditVisitor {
-    /// The result of a visit.
+    /// The type that `visit` returns.
     type Output;
 
-    /// Visits the structure `M`.
+    /// Calls the function for the structure `M`.
     fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output;
 }
 
 /// A generic function that is called with a refinable structure selected at run time. A refinable
 /// structure can split all faces within its own tables.
 pub trait RefineVisitor {
-    /// The result of a visit.
+    /// The type that `visit` returns.
     type Output;
 
-    /// Visits the structure `M`.
+    /// Calls the function for the structure `M`.
     fn visit<M: Refine + 'static>(&mut self) -> Self::Output;
 }
 
@@ -186,7 +186,7 @@ macro_rules! infos {
     };
 }
 
-/// Returns the properties of all structures, in the order in which tables show them.
+/// Returns the properties of all structures, in the order of the list of structures.
 pub fn structure_infos() -> Vec<StructureInfo> {
     structures!([infos])
 }

@@ -1,11 +1,11 @@
-//! Runs Sixfold for a comparison with other libraries. The comparison programs of the other
-//! libraries have the same arguments and the same output format.
+//! Times operations of Sixfold for a comparison with other libraries. The comparison programs of
+//! the other libraries have the same arguments and the same output format as this program.
 //!
 //! `peer --mesh FILE.obj [--op NAME …] [--reps N] [--budget SECONDS] [--backend NAME] [--way NAME]
-//! [--threads N]` prints one JSON object per line. Every operation is warmed up and then measured
-//! alone, as often as `--reps` says, with the same code as in a study. A short operation is
-//! repeated until 200 µs have passed. An operation that changes the mesh works on a copy. The copy
-//! is restored while the clock is stopped. Freed memory pages stay with the process.
+//! [--threads N]` prints one JSON object per line. Every operation first runs without timing. Then
+//! `--reps` gives the number of measurements, which use the same code as a study. A short operation
+//! is repeated until 200 µs have passed. An operation that changes the mesh works on a copy of the
+//! mesh. The copy is restored while the clock is stopped. Freed memory pages stay with the process.
 //!
 //! The name of a subdivision contains the scheme and the number of steps: `catmull_clark_2`,
 //! `loop_1`, `sqrt3_1`. The values of `--way` (the method of subdivision) are `gather`, `scatter`,

@@ -1,7 +1,8 @@
 //! Repeats one study many times and reports how much the results vary. For each operation, the
 //! report counts the studies in which each backend is the fastest or tied with the fastest. The
-//! report also counts the 95 % confidence intervals that contain the median of all studies, and the
-//! large differences that are found, and estimates the drift of the machine between studies.
+//! report counts the 95 % confidence intervals that contain the median of all studies. The report
+//! counts how often a study finds a difference of more than 10 %. The report also estimates how
+//! much the speed of the machine drifts between studies.
 //!
 //! ```sh
 //! cargo run --release -p sixfold-study --example repeatability_report -- \

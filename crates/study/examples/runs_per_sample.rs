@@ -1,4 +1,5 @@
-//! Checks whether the time of an operation depends on the number of runs in a sample.
+//! Checks whether the time of an operation depends on the number of runs in a sample (runs that are
+//! timed together).
 //!
 //! ```sh
 //! cargo run --release -p sixfold-study --example runs_per_sample -- 21
@@ -7,9 +8,9 @@
 //! Argument: the number of rounds. Each round runs the operations that build or change a mesh, and
 //! a workload with edits, in samples of 1 run and of 50 runs. The rounds are divided into five
 //! passes. Each pass builds the structures again, because addresses and machine speed can stay the
-//! same for seconds. For each operation, the program prints the median over the rounds of the time
-//! in samples of 1 run divided by the time in samples of 50 runs. The exit code is 1 if a median
-//! differs from 1 by more than 5 %.
+//! same for seconds. For each operation, the program prints a ratio: the time per run in samples of
+//! 1 run, divided by the time per run in samples of 50 runs, as the median over the rounds. The
+//! exit code is 1 if the ratio of an operation differs from 1 by more than 5 %.
 
 use std::collections::BTreeMap;
 use std::process::ExitCode;

@@ -1,9 +1,9 @@
-//! The memory audit: counts the bytes of each backend in three ways.
+//! The memory audit: counts the bytes of each structure in three ways.
 //!
-//! The three numbers of bytes are found independently and must be equal. The layout formula uses
-//! only the numbers of elements of the mesh. The sum over the tables uses the capacity of each
-//! table. The allocator counts the bytes that it hands out. A difference is a fault in Sixfold: a
-//! wrong formula, spare capacity, or memory that no table reports.
+//! The three counts are made independently and must be equal. The layout formula uses only the
+//! numbers of elements of the mesh. The sum over the tables uses the capacity of each table. The
+//! allocator counts the bytes that it hands out. If the counts differ, Sixfold has a fault: a wrong
+//! formula, spare capacity, or memory that no table reports.
 
 use std::io;
 
@@ -25,7 +25,7 @@ const WORD: f64 = 4.0;
 /// Maximum number of counts per backend. Counting ends earlier if two counts in a row are equal.
 const MAX_COUNTS: usize = 8;
 
-/// The memory of each backend, counted in three ways.
+/// The memory of each backend, counted by a formula, by the tables and by the allocator.
 #[serde_as]
 #[derive(Clone, Debug, Serialize)]
 pub struct Audit {
@@ -38,7 +38,7 @@ pub struct Audit {
     pub backends: Vec<BackendAudit>,
 }
 
-/// The memory of one backend.
+/// The memory of one backend, counted by a formula, by the tables and by the allocator.
 #[derive(Clone, Debug, Serialize)]
 pub struct BackendAudit {
     /// The bytes by the layout formula, the bytes of the tables, and whether the backend can hold

@@ -1,4 +1,4 @@
-//! A time limit that starts with the work, not with the first sample.
+//! A time limit for a whole measurement, including the preparation.
 
 use std::time::{Duration, Instant};
 
@@ -18,14 +18,14 @@ impl Budget {
         }
     }
 
-    /// Returns the remaining time; zero after the end of the limit.
+    /// Returns the remaining time; zero if the time limit has passed.
     pub fn left(&self) -> Duration {
         self.total.saturating_sub(self.start.elapsed())
     }
 
-    /// Returns the part of the remaining time for one of several steps: `weight / rest` of the
-    /// remaining time. `weight` is the weight of the step. `rest` is the sum of the weights of all
-    /// unfinished steps, including this step.
+    /// Returns the time for one of several steps: `weight / rest` of the remaining time. `weight`
+    /// is the weight of the step. `rest` is the sum of the weights of all unfinished steps,
+    /// including this step.
     pub fn share(&self, weight: f64, rest: f64) -> Duration {
         let share = weight / rest;
         match share.is_finite() {

@@ -54,11 +54,11 @@ pub struct SharedSettings {
     pub budget_s: f64,
     /// Seed of the random numbers of each study.
     pub seed: u64,
-    /// What happens to freed memory pages. A file without this field is of an older version, which
-    /// used [`Policy::System`].
+    /// What happens to freed memory pages. Results files of older versions of Sixfold, which used
+    /// [`Policy::System`], do not contain this field.
     #[serde(default = "system_heap")]
     pub heap: Policy,
-    /// State of the processor caches before each timed sample.
+    /// State of the processor caches when a timed series of runs begins.
     #[serde(default)]
     pub caches: CacheState,
     /// True if faces with more than three corners were cut into triangles before the study.
@@ -78,8 +78,8 @@ pub struct Failed {
     pub mesh: String,
     /// Why the mesh could not be studied.
     pub reason: String,
-    /// The kind of the reason. For a file of an older version without this field, the value is
-    /// `NotMeasured`.
+    /// The kind of the reason. Results files of older versions of Sixfold do not contain this
+    /// field, which is then read as `NotMeasured`.
     #[serde(default)]
     pub kind: FailureKind,
 }
@@ -88,7 +88,7 @@ pub struct Failed {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FailureKind {
-    /// The mesh could not be loaded, or measuring it failed.
+    /// The mesh could not be loaded or measured.
     #[default]
     NotMeasured,
     /// The mesh is valid, but none of the selected backends can hold it.
@@ -109,10 +109,10 @@ pub struct SecondStudy;
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum MergeError {
-    /// The lists of meshes differ.
+    /// The two collections have different lists of meshes.
     #[error("the lists of meshes differ: {which}; merge only parts of one study")]
     OtherMeshes { which: String },
-    /// The settings differ.
+    /// The two collections have different settings.
     #[error(
         "the settings differ: {what} is {theirs}, expected {ours}; measure again with the same \
          settings"
@@ -197,7 +197,8 @@ impl Collection {
     ///
     /// # Errors
     ///
-    /// Returns an error if the lists of meshes or the settings differ.
+    /// Returns an error if the two collections have different lists of meshes or different
+    /// settings.
     pub fn merge(&mut self, other: Self) -> Result<(), MergeError> {
         if other.meshes != self.meshes {
             let unknown = |mesh: &&String| !self.meshes.contains(mesh);
@@ -265,7 +266,7 @@ impl Collection {
         self.missing = missing.cloned().collect();
     }
 
-    /// Computes the means and the other results over all meshes.
+    /// Computes the results over all meshes, such as mean times.
     pub fn pool(&self) -> Pool {
         Pool::new(&self.studies)
     }
@@ -289,8 +290,8 @@ impl Collection {
         write_json(&WithPool { collection, pool }, writer)
     }
 
-    /// Writes a header line and one CSV line per timed sample. The columns are `mesh`, `backend`,
-    /// `operation`, `control`, `round`, `cpu_ns` and `wall_ns`.
+    /// Writes a header line and one CSV line per sample (timed series of runs). The columns are
+    /// `mesh`, `backend`, `operation`, `control`, `round`, `cpu_ns` and `wall_ns`.
     ///
     /// # Errors
     ///

@@ -1,9 +1,10 @@
 //! Comparison of two studies of one mesh: what changed between machines, compilers or commits.
 //!
-//! Two studies have no rounds in common. The ratio of two times is therefore the ratio of their
-//! medians. The confidence interval of the ratio is computed by resampling both studies
-//! (bootstrap). The speed of a machine may also drift between two studies, and the samples of a
-//! study do not show this drift. [`DRIFT`] is the default limit for the drift.
+//! Two studies have no rounds in common. The time in one study is therefore compared with the time
+//! in the other study by the ratio of the medians. The confidence interval of the ratio is computed
+//! by resampling both studies (bootstrap). The speed of a machine may also drift between two
+//! studies, and the samples of a study do not show this drift. [`DRIFT`] is the default limit for
+//! the drift.
 
 use std::io;
 
@@ -48,9 +49,9 @@ pub struct Changes {
     /// Differences of machines, programs and settings.
     pub environment: Vec<SettingChange>,
     /// The time in the second study divided by the time in the first study, as the median over all
-    /// rows. `None` if there are no rows.
+    /// entries of `rows`. `None` if `rows` is empty.
     pub overall: Option<f64>,
-    /// True if each ratio was divided by `overall` before the ratio was judged.
+    /// True if each ratio was divided by `overall` before the ratio was compared with the noise.
     pub relative: bool,
     /// Ratios of times up to this value are ignored.
     pub drift: f64,
@@ -62,9 +63,9 @@ pub struct Changes {
     pub bytes: Vec<(String, usize, usize)>,
     /// Operations whose fastest backend changed.
     pub winners: Vec<NewWinner>,
-    /// Measurements that only the first study has, as `operation on backend`.
+    /// Measurements that only the first study contains, as texts such as `build on half-edge`.
     pub only_before: Vec<String>,
-    /// Measurements that only the second study has, as `operation on backend`.
+    /// Measurements that only the second study contains, as texts such as `build on half-edge`.
     pub only_after: Vec<String>,
     /// Sentences that describe the differences.
     #[serde(rename = "words")]
@@ -136,7 +137,7 @@ pub struct NewWinner {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum CompareError {
-    /// The heap policies or the cache states differ.
+    /// The two studies have different heap policies or different cache states.
     #[error(
         "the first study was measured with {option} {before}, the second with {option} {after}, \
          so their times cannot be compared: measure both with the same {option}"
@@ -371,14 +372,14 @@ fn is_or_are(count: usize) -> &'static str {
 }
 
 impl Changes {
-    /// Iterates over the rows in which the second study is faster or slower, or has another
-    /// checksum.
+    /// Iterates over the entries of `rows` in which the second study is faster or slower, or has
+    /// another checksum than the first study.
     pub fn changed(&self) -> impl Iterator<Item = &Change> {
         let changed = |row: &&Change| row.verdict != Verdict::Same || row.other_checksum;
         self.rows.iter().filter(changed)
     }
 
-    /// Counts the rows that have this `verdict`.
+    /// Counts the entries of `rows` with the given verdict.
     pub fn count(&self, verdict: Verdict) -> usize {
         self.rows
             .iter()

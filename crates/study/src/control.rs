@@ -1,4 +1,4 @@
-//! The control: one backend measured as two columns, to find the noise.
+//! The control: one backend that is measured twice, to find the noise.
 
 use crate::measure::Entry;
 use crate::ranking::{NO_DIFFERENCE, ratio};

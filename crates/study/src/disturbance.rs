@@ -1,12 +1,12 @@
 //! Detects whether other programs slow the machine down.
 //!
-//! On a shared machine, another program may run on the same core. A sample then takes up to twice
-//! as long. Such phases last from milliseconds to seconds.
+//! On a shared machine, another program may run on the same core. A sample (timed series of runs)
+//! then takes up to twice as long. Such phases last from milliseconds to seconds.
 //!
 //! To detect such a phase, a small fixed piece of work is timed before and after each sample. If
 //! the fixed work takes too long, the sample is *disturbed*. A disturbed sample is taken again,
-//! within limits. It does not count if there are enough undisturbed samples. The fixed work does
-//! not depend on the backend, so the method prefers no backend.
+//! within limits. A disturbed sample does not count if there are enough undisturbed samples. The
+//! fixed work does not depend on the backend, so the method prefers no backend.
 
 use std::hint::black_box;
 

@@ -10,8 +10,8 @@
 //!    │ ─── end of input ───────────────────────▶ │   it ends
 //! ```
 //!
-//! The program reads one JSON object per line and answers with one line. The program measures the
-//! time of its own runs, so the times do not include the communication with Sixfold.
+//! The program reads one JSON object per line, and answers each object with one line. The program
+//! measures the time of its own runs, so the times do not include the communication with Sixfold.
 //! `benches/external/README.md` describes the protocol.
 
 mod program;

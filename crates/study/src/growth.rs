@@ -1,14 +1,14 @@
 //! Measures how the time of an operation grows with the size of the mesh.
 //!
-//! One shape is built with several numbers of faces. The ratio of two successive numbers is
-//! constant. At each size, all structures are measured in rounds, as in a study. A straight line is
-//! fitted to the logarithms of the number of faces and of the time. The slope of the line is the
+//! One shape is built with several numbers of faces. The ratio of two successive numbers of faces
+//! is constant. At each size, all structures are measured in rounds, as in a study. A straight line
+//! is fitted to the logarithms of the number of faces and of the time. The slope of the line is the
 //! exponent of the growth. The exponent is 1 if the time per element is constant. The exponent is 2
 //! if each element needs a scan of all faces.
 //!
 //! The time per element also depends on the processor caches. A second line is therefore fitted to
 //! the sizes at which the structure fits into the last-level cache. A third line is fitted to the
-//! larger sizes.
+//! sizes at which the structure is larger than the last-level cache.
 
 mod budgets;
 mod fits;
@@ -57,7 +57,7 @@ pub struct GrowthReport {
     /// The backends that cannot hold the shape.
     #[serde(rename = "unheld")]
     pub refused_by: Vec<BackendRefusal>,
-    /// The finished sizes, smallest first.
+    /// The results at each measured size, beginning with the smallest size.
     pub sizes: Vec<SizeReport>,
     /// Approximate numbers of faces of the sizes that were left out because there was too little
     /// time.
@@ -66,8 +66,8 @@ pub struct GrowthReport {
     pub fits: Vec<Fit>,
     /// The processor caches of this machine; empty if unknown.
     pub caches: Vec<Cache>,
-    /// The number of faces at which each structure becomes larger than each cache. Sorted by cache,
-    /// then by backend.
+    /// The number of faces at which each structure becomes larger than each cache. The list is
+    /// sorted by cache, then by backend.
     #[serde(rename = "cache_ends")]
     pub cache_limits: Vec<CacheLimit>,
     /// Sentences that describe the results.
@@ -88,7 +88,7 @@ pub struct BackendRefusal {
     pub reason: String,
 }
 
-/// The results at one size.
+/// The results at one size of the shape.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct SizeReport {
     /// Number of vertices.
@@ -122,7 +122,7 @@ pub struct BackendBytes {
 }
 
 impl GrowthReport {
-    /// Counts the results that differ from the results of other backends without a known reason.
+    /// Counts the results that differ, for no known reason, from the results of other backends.
     pub fn mismatches(&self) -> usize {
         let rows = self.sizes.iter().flat_map(|size| &size.results);
         rows.filter(|row| row.agreement == Agreement::Mismatch)
@@ -140,7 +140,7 @@ impl GrowthReport {
 }
 
 /// Measures a shape in several sizes, within the time budget of `settings`. A size is left out if
-/// its structures cannot be built in the remaining time.
+/// the structures of this size cannot be built in the remaining time.
 ///
 /// Setting `stop` to true ends the measurement early, with a report of the finished sizes.
 ///

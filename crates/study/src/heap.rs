@@ -15,19 +15,19 @@ const KEPT_FACTOR: u64 = 2;
 /// Divisor of the resident memory that gives the number of bytes to touch in advance.
 const RESERVE_PART: u64 = 4;
 
-/// The state of the processor caches when a timed sample begins.
+/// The state of the processor caches when a sample (a timed series of runs) begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CacheState {
     /// The caches keep the data of the previous runs.
     #[default]
     Warm,
-    /// The caches hold other data than the mesh. Each sample is a single run.
+    /// The caches hold other data than the mesh. With cold caches, only one run is timed at once.
     Cold,
 }
 
 impl CacheState {
-    /// Both states.
+    /// Both states of the caches.
     pub const ALL: [Self; 2] = [Self::Warm, Self::Cold];
 
     /// Returns the name of the state in command-line options: `warm` or `cold`.
@@ -44,7 +44,7 @@ impl CacheState {
 pub struct CachesReport {
     /// The state of the caches when a sample begins.
     pub state: CacheState,
-    /// Number of bytes that are written before each sample to replace the content of the caches. 0
+    /// Number of bytes that are written before each sample to replace the content of the caches; 0
     /// if the caches are warm.
     pub written_bytes: usize,
     /// Highest cache level whose content is replaced. `None` if the caches are warm or the level is

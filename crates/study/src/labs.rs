@@ -1,4 +1,4 @@
-//! Results of measuring commands that a report shows beside studies.
+//! The results of measuring commands other than `sixfold study`, for the page of a report.
 
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +25,7 @@ pub struct Labs {
 }
 
 impl Labs {
-    /// Counts the results that differ from the results of other backends without a known reason.
+    /// Counts the results that differ, for no known reason, from the results of other backends.
     pub fn mismatches(&self) -> usize {
         let orders = self.orders.iter().map(OrdersReport::mismatches);
         let growth = self.growth.iter().map(GrowthReport::mismatches);
@@ -43,7 +43,7 @@ impl Labs {
         orders.chain(growth).chain(why).chain(picks).any(|cut| cut)
     }
 
-    /// Iterates over the environments of all results.
+    /// Iterates over the environments (machine, program and settings) of all results.
     pub fn environments(&self) -> impl Iterator<Item = &Environment> {
         let orders = self.orders.iter().map(|orders| &orders.environment);
         let growth = self.growth.iter().map(|growth| &growth.environment);

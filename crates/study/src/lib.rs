@@ -9,13 +9,13 @@
 //!
 //! [`inspect`] describes a mesh and the backends that can hold it. [`pick`] ranks the backends for
 //! a workload. [`compare`] compares two studies. A [`Collection`] holds the studies of many meshes
-//! and computes means over the meshes. [`audit`] counts the bytes of each backend in three ways and
-//! reports differences. [`why`] counts the bytes that queries read, and compares the times of the
-//! queries with the speed of memory.
+//! and computes means over the meshes. [`audit`] counts the bytes of each backend in three ways,
+//! and reports differences between the three counts. [`why`] counts the bytes that queries read,
+//! and compares the times of the queries with the speed of memory.
 //!
 //! The file `reports/SCHEMA.md` explains the values in the results. This crate has no command line
-//! and prints nothing. Long functions report their progress to a closure, and stop early when a
-//! flag is set.
+//! and prints nothing. The measuring functions report the progress to a closure, and stop early
+//! when a flag is set.
 
 mod agreement;
 mod audit;

@@ -13,8 +13,8 @@ pub fn grouped(number: usize) -> String {
     text
 }
 
-/// Formats a number with three digits, or as a whole number if it is 100 or larger: `0.412`,
-/// `4.12`, `41.2`, `412`, `41,235`.
+/// Formats a number with three digits, or as a whole number if the number is 100 or larger:
+/// `0.412`, `4.12`, `41.2`, `412`, `41,235`.
 pub fn figure(number: f64) -> String {
     match number {
         n if !n.is_finite() => "–".into(),

@@ -1,11 +1,11 @@
 //! Measures one mesh with its elements in several orders, on every structure.
 //!
-//! The order of the elements changes only their addresses in memory. The times of one structure in
-//! two orders therefore differ only because of caches and prefetchers. The effect of the order can
-//! be larger than the effect of the structure. A study of one file cannot show the effect of the
-//! order, because a file has only one order. If an operation is run on only some of the elements,
-//! the same elements are used in all orders. Checksums of different orders can therefore be
-//! compared.
+//! The order of the elements changes only the addresses of the elements in memory. The times of one
+//! structure in two orders therefore differ only because of caches and prefetchers. The effect of
+//! the order can be larger than the effect of the structure. A study of one file cannot show the
+//! effect of the order, because a file has only one order. If an operation is run on only some of
+//! the elements, the same elements are used in all orders. Checksums of different orders can
+//! therefore be compared.
 
 mod effects;
 mod meshes;
@@ -70,7 +70,7 @@ pub struct OrdersReport {
     /// The requested backends with their memory, built from the mesh in its original order.
     #[serde_as(as = "KeyValueMap<_>")]
     pub backends: Vec<BackendReport>,
-    /// The times, sorted by operation, then by structure, then by order.
+    /// The measured times, sorted by operation, then by structure, then by order.
     pub results: Vec<OrderRow>,
     /// Requested operations that a backend cannot do.
     pub refusals: Vec<Refusal>,
@@ -93,8 +93,8 @@ pub struct OrdersReport {
 pub struct OrderRow {
     /// The order of the elements.
     pub order: Order,
-    /// The times. The fields `standing` and `ratio_to_best` compare this order with the other
-    /// orders on the same structure.
+    /// The times of the operation. The fields `standing` and `ratio_to_best` compare this order
+    /// with the other orders on the same structure.
     #[serde(flatten)]
     pub row: ResultRow,
 }
@@ -106,7 +106,7 @@ impl OrdersReport {
         self.results.iter().filter(of_it)
     }
 
-    /// Counts the results that differ from the results of other structures without a known reason.
+    /// Counts the results that differ, for no known reason, from the results of other structures.
     pub fn mismatches(&self) -> usize {
         let wrong = |row: &&OrderRow| row.row.agreement == Agreement::Mismatch;
         self.results.iter().filter(wrong).count()

@@ -44,7 +44,7 @@ use crate::timer::Timer;
 use backend::PickBackend;
 use measurement::PickMeasurement;
 
-/// The input of [`pick`].
+/// The settings of [`pick`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct PickSettings {
     /// The workload to run.

@@ -39,7 +39,7 @@ pub enum ReadError {
          or measure again"
     )]
     OtherSchema { found: u64 },
-    /// Another command wrote the results.
+    /// The results are from another command than expected.
     #[error("is {found}, expected {wanted}")]
     OtherKind {
         found: &'static str,
@@ -111,8 +111,8 @@ impl Results {
 }
 
 impl Report {
-    /// Reads a report that [`write_json`](Self::write_json) wrote. Also accepts a [`Collection`]
-    /// with the study of only one mesh.
+    /// Reads a report that [`write_json`](Self::write_json) wrote. A [`Collection`] with the study
+    /// of only one mesh is also accepted.
     ///
     /// # Errors
     ///

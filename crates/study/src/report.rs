@@ -65,8 +65,8 @@ pub struct Report {
     pub environment: Environment,
 }
 
-/// All samples of one operation on one backend. The lists contain one value for each sample, except
-/// `first_ns`.
+/// All samples (timed series of runs) of one operation on one backend. All lists except `first_ns`
+/// contain one value for each sample.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct RawSamples {
     /// The name of the backend, such as `half-edge`.
@@ -76,7 +76,7 @@ pub struct RawSamples {
     /// True if these samples belong to the control. The control is a second measurement of one
     /// backend, which shows the noise.
     pub control: bool,
-    /// For each sample, the number of its round.
+    /// For each sample, the number of the round.
     pub rounds: Vec<u32>,
     /// For each sample, the processor time of one run, in nanoseconds. `None` if the processor time
     /// is unknown.
@@ -87,21 +87,21 @@ pub struct RawSamples {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub faults: Option<Vec<u64>>,
     /// For each sample, the slowdown of the machine. A small fixed piece of work is timed before
-    /// and after the sample. The slowdown is the longer of these two times divided by the time on
-    /// an undisturbed machine. If at least a quarter of the samples have a slowdown of at most 1.3,
-    /// the other samples do not count.
+    /// and after the sample. The slowdown is the longer time of the fixed work, divided by the time
+    /// of the fixed work on an undisturbed machine. If at least a quarter of the samples have a
+    /// slowdown of at most 1.3, the other samples do not count.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub slowdowns: Vec<f64>,
     /// The times of first runs, in nanoseconds. A first run uses fresh memory pages and new tables.
-    /// These runs take place after the last round.
+    /// First runs take place after the last round.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub first_ns: Vec<f64>,
 }
 
 impl RawSamples {
-    /// Returns the times of the samples without the disturbed samples, in nanoseconds. The times
-    /// are processor times if known, else wall times. If less than a quarter of the samples are
-    /// undisturbed, returns the times of all samples.
+    /// Returns the times of all undisturbed samples, in nanoseconds. The times are processor times
+    /// if known, else wall times. If less than a quarter of the samples are undisturbed, returns
+    /// the times of all samples.
     pub fn counted_ns(&self) -> Vec<f64> {
         undisturbed(
             self.cpu_ns.as_ref().unwrap_or(&self.wall_ns),
@@ -151,7 +151,8 @@ pub struct BackendReport {
     pub external: Option<ExternalReport>,
 }
 
-/// The result of one operation on one backend. All times are of one whole run, in nanoseconds.
+/// The result of one operation on one backend. All times are times of one run on the whole mesh, in
+/// nanoseconds.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct ResultRow {
     /// The name of the backend, such as `half-edge`.
@@ -169,7 +170,7 @@ pub struct ResultRow {
     pub ci_high_ns: Option<f64>,
     /// The number of elements that a whole run visits.
     pub elements: Option<u64>,
-    /// The kind of the elements: `vertex`, `edge`, `face`, `new face`, or `visit`.
+    /// The kind of the visited elements: `vertex`, `edge`, `face`, `new face`, or `visit`.
     pub per: String,
     /// The median time per element, in nanoseconds.
     pub ns_per_element: Option<f64>,
@@ -211,7 +212,7 @@ pub struct ResultRow {
     /// The largest number of page faults in a sample; `None` if page faults were not counted.
     #[serde(default)]
     pub faults: Option<u64>,
-    /// The number of samples taken again because of page faults or other programs.
+    /// The number of samples that were measured again because of page faults or other programs.
     #[serde(default)]
     pub retaken: u32,
     /// The number of samples that do not count because other programs disturbed them.
@@ -219,8 +220,8 @@ pub struct ResultRow {
     pub disturbed: usize,
     /// The time of a first run, which uses fresh memory pages and tables of exact size. Use this
     /// time for a program that runs the operation only once. The value is `median_ns` multiplied by
-    /// the median ratio of a first run to the run after it. `None` if first runs were not measured,
-    /// for example because the operation does not allocate.
+    /// the median ratio of a first run to the following run. `None` if first runs were not
+    /// measured, for example because the operation does not allocate.
     #[serde(default)]
     pub first_ns: Option<f64>,
     /// The number of measured first runs.
@@ -311,15 +312,15 @@ pub struct ControlRow {
 }
 
 impl ControlRow {
-    /// Returns true if the two times differ by more than 5 % and the 95 % confidence interval of
-    /// `ratio` does not contain 1.
+    /// Returns true if the times of the two measurements differ by more than 5 % and the 95 %
+    /// confidence interval of `ratio` does not contain 1.
     pub fn is_unsteady(&self) -> bool {
         let interval = self.ci_low.zip(self.ci_high);
         let beyond_chance = interval.is_some_and(|(low, high)| low > 1.0 || high < 1.0);
         self.difference() > UNSTEADY && beyond_chance
     }
 
-    /// Returns the longer of the two times divided by the shorter time.
+    /// Returns the longer time of the two measurements divided by the shorter time.
     pub fn difference(&self) -> f64 {
         self.ratio.max(self.ratio.recip())
     }
@@ -380,7 +381,7 @@ pub enum Agreement {
     /// The backend refuses different edits than the other backends, so the checksum may differ. For
     /// example, only some structures can hold the result of an edge collapse.
     OtherEdits,
-    /// The checksum differs without a known reason, so one of the results is wrong.
+    /// The checksum differs for no known reason, so at least one result is wrong.
     Mismatch,
     /// The checksum was not compared, for example because no other backend has a result.
     Unchecked,
@@ -408,8 +409,8 @@ impl Report {
             .filter(move |row| row.operation == operation)
     }
 
-    /// Iterates over the results of Sixfold's structures whose checksum differs without a known
-    /// reason.
+    /// Iterates over the wrong results of Sixfold's structures: the checksum differs, for no known
+    /// reason, from the checksums of other structures.
     pub fn mismatches(&self) -> impl Iterator<Item = &ResultRow> {
         let wrong = |row: &&ResultRow| row.agreement == Agreement::Mismatch;
         self.results

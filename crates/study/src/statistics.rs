@@ -4,18 +4,18 @@
 //!
 //! Samples of one study are not independent: the machine has phases in which everything, or only
 //! work of one kind, takes a few percent longer. A phase lasts from seconds to minutes. A bootstrap
-//! of the samples ignores this. Its 95 % intervals contained the median of ten equal studies in
-//! only 76 % of the cases. The interval here has two parts.
+//! of the samples ignores these phases. The 95 % intervals of a bootstrap contained the median of
+//! ten equal studies in only 76 % of the cases. The interval here has two parts.
 //!
-//! 1. **What the study sees.** The samples, in the order of time, are divided into
-//!    [`BATCHES`] consecutive batches. The medians of the batches vary as the phases do. Their
-//!    standard deviation and Student's distribution give the first half-width: nonoverlapping batch
+//! 1. **What the study sees.** The samples, in the order of time, are divided into [`BATCHES`]
+//!    consecutive batches. The medians of the batches vary with the phases. The standard deviation
+//!    of the medians and Student's distribution give the first half-width: nonoverlapping batch
 //!    means (Schmeiser 1982), here with medians. Few long batches are better than many short ones
 //!    if the samples are correlated.
-//! 2. **What no study sees.** A phase that is longer than the study shifts all its samples. Only
-//!    repeated studies show this variance (Kalibera and Jones 2013, Georges et al. 2007).
-//!    [`UNSEEN_DRIFT`] is its standard deviation, measured with the `repeatability_report` example.
-//!    It gives the second half-width.
+//! 2. **What no study sees.** A phase that is longer than the study shifts all samples of the
+//!    study. Only repeated studies show this variance (Kalibera and Jones 2013, Georges et al.
+//!    2007). [`UNSEEN_DRIFT`] is the standard deviation between studies, measured with the
+//!    `repeatability_report` example. [`UNSEEN_DRIFT`] gives the second half-width.
 //!
 //! The two parts are independent, so the half-width is the root of the sum of their squares. Both
 //! parts are relative: the computation uses the logarithms of the times.
@@ -36,12 +36,12 @@ const FEWEST_SAMPLES: usize = 3;
 const STUDENT: [f64; BATCHES - FEWEST_SAMPLES + 1] = [4.302_653, 3.182_446, 2.776_445, 2.570_582];
 /// The 97.5 % quantile of the normal distribution.
 const NORMAL: f64 = 1.959_964;
-/// Standard deviation of the drift from study to study that the samples of one study do not show, as
-/// a part of the time. Every interval includes it.
+/// Standard deviation of the drift from study to study that the samples of one study do not show,
+/// relative to the time. Every confidence interval includes this drift.
 ///
-/// Measured in ten studies of 45 s on a virtual machine: with 1 %, the intervals of times and of
-/// ratios contained the median of all studies in 91 % and 92 % of the cases. The
-/// `repeatability_report` example estimates it for another machine.
+/// Measured in ten studies of 45 s on a virtual machine: with a drift of 1 %, the intervals of
+/// times contained the median of all studies in 91 % of the cases, and the intervals of ratios in
+/// 92 %. The `repeatability_report` example estimates the drift of another machine.
 pub const UNSEEN_DRIFT: f64 = 0.01;
 /// Samples farther from the median count as if they were at this distance. The unit is the standard
 /// deviation of a normal distribution with the same median deviation.

@@ -58,7 +58,7 @@ pub struct Settings {
     /// What happens to freed memory pages. Keeping the pages needs more memory. If there is too
     /// little memory, [`Policy::System`] is used.
     pub heap: Policy,
-    /// The state of the processor caches when a timed sample starts.
+    /// The state of the processor caches when a timed series of runs starts.
     pub caches: CacheState,
 }
 
@@ -83,7 +83,7 @@ impl Default for Settings {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum StudyError {
-    /// No backend has this name.
+    /// No backend has the requested name.
     #[error("{}", unknown("backend", .name, .known))]
     UnknownBackend {
         name: String,

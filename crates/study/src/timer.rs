@@ -20,13 +20,13 @@ pub struct Timer {
     pub overhead_ns: f64,
     /// The uncertainty of `overhead_ns`, in nanoseconds. The time between two readings without work
     /// is measured many times. The uncertainty is the larger of two differences: between
-    /// `overhead_ns` and the median of these times, and between the 95 % quantile and the median of
-    /// these times.
+    /// `overhead_ns` and the median of the measured times, and between the 95 % quantile and the
+    /// median of the measured times.
     #[serde(default, rename = "left_ns")]
     pub uncertainty_ns: f64,
     /// `uncertainty_ns` divided by `shortest_ns`; `None` if nothing was measured.
     pub largest_share: Option<f64>,
-    /// The shortest measured sample, in nanoseconds; `None` if nothing was measured.
+    /// The shortest measured time of a sample, in nanoseconds; `None` if nothing was measured.
     #[serde(default)]
     pub shortest_ns: Option<f64>,
 }

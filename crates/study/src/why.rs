@@ -2,7 +2,8 @@
 //!
 //! The counts of reads ([`Reads`]) need no clock and have no noise. A study measures the times of
 //! the same queries. [`MemorySpeed`] is the speed at which this machine reads memory.
-//! [`Bound::from_times`] compares the time of a query with the time that reading its memory takes.
+//! [`Bound::from_times`] compares the time of a query with the time for reading the same amount of
+//! memory.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -105,7 +106,7 @@ pub struct WhyRow {
     pub backend: String,
     /// The kind of the elements that are queried: `vertex`, `edge` or `face`.
     pub per: String,
-    /// The numbers of memory reads.
+    /// The numbers of table reads.
     #[serde(flatten)]
     pub reads: Reads,
     /// The time of the queries; `None` if no time was measured.
@@ -123,10 +124,10 @@ pub struct Timed {
     pub agreement: Agreement,
     /// The speed of reading a buffer as large as the memory that all queries together read.
     pub speed: BufferSpeed,
-    /// The time for reading the bytes of one element in sequence, in nanoseconds.
+    /// The computed time for a sequential read of the bytes that one element needs, in nanoseconds.
     pub floor_ns: f64,
-    /// The time for the jumps of one element, one jump after the other, in nanoseconds. A jump
-    /// loads a cache line that is not near any cached line.
+    /// The computed time for the jumps of one element if the jumps do not overlap, in nanoseconds.
+    /// A jump loads a cache line that is not near any cached line.
     pub waits_ns: f64,
     /// The factor that limits the speed of the queries.
     pub bound: Bound,
@@ -136,22 +137,22 @@ pub struct Timed {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
-    /// Moving the bytes from memory.
+    /// The transfer of bytes from memory limits the speed.
     Bandwidth,
-    /// Waiting for cache lines that a prefetcher cannot predict.
+    /// The wait for cache lines that a prefetcher cannot predict limits the speed.
     Latency,
-    /// Computation on data in the cache.
+    /// Computation on data in the cache limits the speed.
     Work,
 }
 
 impl Bound {
     /// Returns the factor that limits a query that takes `ns` nanoseconds. `floor_ns` is the time
-    /// for moving the bytes that the query reads. `waits_ns` is the time for all jumps to distant
-    /// cache lines, one jump after the other.
+    /// for the transfer of the bytes that the query reads. `waits_ns` is the time for all jumps to
+    /// distant cache lines if the jumps do not overlap.
     ///
-    /// - `Bandwidth` if moving the bytes takes at least half of the time.
-    /// - `Latency` if moving the bytes takes less than half of the time, but the jumps take at
-    ///   least half. A processor overlaps jumps, so the jumps may take less time than `waits_ns`.
+    /// - `Bandwidth` if `floor_ns` is at least half of `ns`.
+    /// - `Latency` if `floor_ns` is less than half of `ns`, and `waits_ns` is at least half of
+    ///   `ns`. A processor overlaps jumps, so the jumps may take less time than `waits_ns`.
     /// - `Work` in all other cases.
     pub fn from_times(ns: f64, floor_ns: f64, waits_ns: f64) -> Self {
         if 2.0 * floor_ns >= ns {
@@ -174,7 +175,7 @@ impl Bound {
 }
 
 impl Why {
-    /// Counts the results that differ from the results of other backends without a known reason.
+    /// Counts the results that differ, for no known reason, from the results of other backends.
     pub fn mismatches(&self) -> usize {
         let timed = self.rows.iter().filter_map(|row| row.timed);
         timed

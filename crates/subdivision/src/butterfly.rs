@@ -1,8 +1,10 @@
-//! Modified butterfly: splits every triangle into four; interpolating, C¹.
+//! Modified butterfly: splits every triangle into four. The scheme is interpolating (old vertices
+//! do not move), and the limit surface is C¹.
 //!
-//! The scheme is that of Zorin, Schröder & Sweldens (1996). The stencil between regular vertices is
-//! that of Dyn, Levin & Gregory (1990) with w = 0. Old vertices keep their positions. A vertex is
-//! regular if it has six triangles, or three triangles on a boundary.
+//! The scheme is that of Zorin, Schröder & Sweldens (1996). For an edge between two regular
+//! vertices, the stencil is that of Dyn, Levin & Gregory (1990) with the parameter w = 0. Old
+//! vertices keep their positions. A vertex is regular if it has six triangles, or three triangles
+//! on a boundary.
 //!
 //! ```text
 //!   both ends regular                    one end extraordinary, valence K: around this end v
@@ -18,12 +20,12 @@
 //!
 //! At boundaries:
 //!
-//! - The point of a boundary edge depends only on boundary vertices. Their weights along the
-//!   boundary are (−1/16, 9/16, 9/16, −1/16) (Dyn, Gregory & Levin 1987). Two meshes with the same
-//!   boundary therefore still fit together.
-//! - If a corner of the regular stencil lies beyond a boundary edge, a ghost replaces the corner.
-//!   The ghost is the reflection of the third vertex of the triangle at this edge (Zorin, Schröder
-//!   & Sweldens 1996):
+//! - The point of a boundary edge depends only on four consecutive boundary vertices. The weights
+//!   of the four vertices are (−1/16, 9/16, 9/16, −1/16) (Dyn, Gregory & Levin 1987). If two meshes
+//!   have the same boundary, their refined meshes also have the same boundary.
+//! - If a corner of the regular stencil lies beyond a boundary edge, a *ghost point* replaces the
+//!   corner. The ghost point is a + b − c, where a and b are the ends of the boundary edge and c is
+//!   the third vertex of the triangle at the boundary edge (Zorin, Schröder & Sweldens 1996):
 //!
 //! ```text
 //!        a ───── b      a boundary edge, c inside:  ghost = a + b − c
@@ -32,10 +34,10 @@
 //!            c
 //! ```
 //!
-//! - An extraordinary boundary vertex has k ≠ 3 triangles. Its masks are those of Zorin & Schröder
+//! - An extraordinary boundary vertex (with k ≠ 3 triangles) has the masks of Zorin & Schröder
 //!   (2000); see [`boundary_weights`].
-//! - The paper has no mask for an inner vertex of valence 2. The points of the edges of this vertex
-//!   are midpoints.
+//! - Zorin, Schröder & Sweldens (1996) give no mask for an inner vertex of valence 2. The new
+//!   points on the two edges of such a vertex are the midpoints of the edges.
 
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};

@@ -1,8 +1,9 @@
-//! Catmull–Clark: splits every face into quads; approximating, C² except at extraordinary vertices.
+//! Catmull–Clark: splits every face into quads. The scheme is approximating, and the limit surface
+//! is C² except at extraordinary vertices.
 //!
-//! Catmull & Clark (1978). The input may have polygons of any degree. After one step, all faces are
-//! quads, and each old face of degree n is a vertex of valence n. Creases follow DeRose, Kass &
-//! Truong (1998).
+//! The scheme is that of Catmull & Clark (1978). The input may have polygons of any degree. After
+//! one step, all faces are quads. The face point of a face of degree n is a vertex of valence n.
+//! Creases follow DeRose, Kass & Truong (1998).
 //!
 //! ```text
 //!     face point            edge point              vertex point, valence n

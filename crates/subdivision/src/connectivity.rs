@@ -1,4 +1,5 @@
-//! A mesh as tables of numbers: the corners, and the sides of each edge.
+//! A mesh as tables of numbers: the corners of the faces, and the sides of each edge (a side is an
+//! edge as one face runs along it).
 //!
 //! These tables are for schemes that make new faces across old edges.
 //!

@@ -1,4 +1,4 @@
-//! Sharpness of the control mesh, and control faces that are not part of the result.
+//! Creases of the control mesh, and the faces of the control mesh that the boundary rule removes.
 
 use sixfold_core::{
     Creases, EdgeUse, Pair, PolygonMesh, Representation, SHARPNESS_INFINITE, VertexId,
@@ -9,16 +9,17 @@ use crate::options::Boundary;
 use crate::subdivision::Subdivision;
 
 impl Subdivision {
-    /// Returns the sharpness of edges and vertices before the first step of `mesh`, which was built
-    /// from `polygons`. The result contains `creases`, numbered as in `mesh.to_polygons()`. These
-    /// elements also get infinite sharpness:
+    /// Returns the creases of the control mesh `mesh`, which was built from `polygons`. The result
+    /// contains `creases`, with the vertex numbers of `mesh.to_polygons()`. In addition, the
+    /// following elements get infinite sharpness:
     ///
     /// - Vertices with exactly one face, if the boundary rule is [`Boundary::EdgeAndCorner`].
-    /// - Edges with three or more faces, and edges with two faces that run along the edge in the
-    ///   same direction. Boundary edges are not in this list, because every step finds them.
-    /// - Vertices of several fans, and ends of the edges of the previous item. Exception: a vertex
-    ///   with two of these edges, no boundary edge, and more faces than edges. This vertex moves
-    ///   along the curve of the two edges, as on a crease.
+    /// - Irregular edges: edges with three or more faces, and edges with two faces that run along
+    ///   the edge in the same direction. This list does not include boundary edges, because every
+    ///   step finds boundary edges itself.
+    /// - Vertices whose faces form several fans, and ends of irregular edges. Exception: a vertex
+    ///   with exactly two irregular edges, no boundary edge, and more faces than edges moves like a
+    ///   vertex on a crease along the two irregular edges.
     ///
     /// Takes O(corners) expected time.
     ///
@@ -85,11 +86,11 @@ impl Subdivision {
         Creases::from_entries(edges, corners)
     }
 
-    /// Returns for each face of the control mesh whether the boundary rule leaves out the face.
-    /// With [`Boundary::None`], a face is left out if one of its vertices has a boundary edge that
-    /// is not infinitely sharp in `creases`. Returns `None` if the boundary rule is not
-    /// [`Boundary::None`], or if the scheme has no rules for creases. Takes O(corners) expected
-    /// time.
+    /// Returns one value for each face of the control mesh: true if the boundary rule removes the
+    /// face from the result. [`Boundary::None`] removes a face if one of its vertices has a
+    /// boundary edge that is not infinitely sharp in `creases`. Returns `None` if the boundary rule
+    /// is not [`Boundary::None`], or if the scheme has no rules for creases. Takes O(corners)
+    /// expected time.
     pub fn left_out(&self, polygons: &PolygonMesh, creases: &Creases) -> Option<Vec<bool>> {
         if self.boundary != Boundary::None || !self.scheme.kind().creases {
             return None;
@@ -140,8 +141,8 @@ impl VertexCounts {
 }
 
 /// Converts the creases of `polygons` to the numbers of `mesh.to_polygons()`. A structure that
-/// identifies a vertex by its coordinates can have other numbers than `polygons`. If two edges or
-/// two vertices have become one, the higher sharpness is used.
+/// identifies a vertex by its coordinates can number the vertices differently from `polygons`. If
+/// the structure merges two edges or two vertices, the higher sharpness is used.
 pub fn renumbered<M: Representation>(
     mesh: &M,
     polygons: &PolygonMesh,

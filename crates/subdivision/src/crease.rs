@@ -1,9 +1,9 @@
-//! Sharpness: its effect on the points of a step, and the sharpness at the next level.
+//! Creases: the new points at sharp edges and vertices, and the sharpness at the next level.
 //!
-//! The rules are the rules of DeRose, Kass & Truong (1998), with fractional sharpness. A step first
-//! places all points as if no edge and no vertex were sharp. The code of this file then places the
-//! points at sharp edges and vertices again. All schemes with creases and all methods use these
-//! rules.
+//! The rules are those of DeRose, Kass & Truong (1998), with fractional sharpness. A step first
+//! places all points as if no edge and no vertex were sharp. The code of this file then computes
+//! the points at sharp edges and vertices again. Every scheme with creases uses these rules, with
+//! every method.
 //!
 //! ```text
 //!   sharp edges at a vertex       kind         new position
@@ -13,9 +13,9 @@
 //!   more, or a sharp vertex       corner       unchanged
 //! ```
 //!
-//! Sharpness decreases by one per level. If the kind of a vertex changes at the next level, its new
-//! position is w · (position of the current kind) + (1 − w) · (position of the next kind). Here w
-//! is the mean of the sharpnesses that become zero.
+//! Sharpness decreases by one per level. If the kind of a vertex changes at the next level, the new
+//! position of the vertex is w · (position of the current kind) + (1 − w) · (position of the next
+//! kind), where w is the mean of the sharpness values that become zero.
 
 use sixfold_core::{Creases, Pair, Point, SHARPNESS_INFINITE, VertexId};
 

@@ -1,4 +1,4 @@
-//! Curves: refines a polygon towards a cubic B-spline, or cuts its corners.
+//! Subdivision of curves: refines a polygon towards a cubic or a quadratic B-spline.
 //!
 //! ```text
 //!   add edge midpoints, add struts                  cut corners (Chaikin 1974)
@@ -20,19 +20,19 @@ use sixfold_core::{MAX_ROWS, Point};
 use crate::error::CurveError;
 use crate::mask::midpoint;
 
-/// The treatment of the two ends of a polygon, or of the rows or columns of a grid.
+/// The rule for the two ends of a polygon. In a grid of points, each row and each column is a
+/// polygon.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Ends {
     /// The polygon is closed: the last point is joined to the first point.
     Closed,
-    /// The ends keep their positions, like a boundary with fixed corners. The curve is computed as
-    /// if the polygon had one more point beyond each end. For the cubic B-spline, the additional
-    /// point is the neighbour of the end, reflected at the end. For Chaikin's curve, the additional
-    /// point equals the end.
+    /// The two end points keep their positions. The curve is computed as if the polygon had one
+    /// more point beyond each end. For the cubic B-spline, the additional point is the neighbour of
+    /// the end, reflected at the end. For Chaikin's curve, the additional point equals the end.
     #[default]
     Kept,
-    /// The ends are removed because an end has only one neighbour. The limit is the B-spline of the
-    /// given points.
+    /// The two end points are removed, because an end point has only one neighbour. The limit is
+    /// the B-spline of the given points.
     Dropped,
 }
 
@@ -93,7 +93,8 @@ pub fn chaikin(points: &[Point], ends: Ends, levels: u32) -> Result<Vec<Point>, 
 }
 
 /// Returns the point of the uniform cubic B-spline of `points` at the parameter `t`. The curve is
-/// the limit of [`cubic_b_spline`]. Control point i has the parameter i. Takes O(1) time.
+/// the limit of [`cubic_b_spline`]. Control point i, counted from 0, has the parameter i. Takes
+/// O(1) time.
 ///
 /// Returns `None` if there are too few points, or if `t` is outside the domain. The domain for n
 /// points is:

@@ -1,7 +1,8 @@
-//! Doo–Sabin: corners become vertices; faces, inner edges and inner vertices become faces. C¹.
+//! Doo–Sabin: every corner of a face becomes a vertex, and every face, inner edge and inner vertex
+//! becomes a face. The limit surface is C¹.
 //!
-//! Doo & Sabin (1978). The input may have polygons of any degree. After one step, all inner
-//! vertices have valence 4, except next to a vertex of valence 2.
+//! The scheme is that of Doo & Sabin (1978). The input may have polygons of any degree. After one
+//! step, all inner vertices have valence 4, except next to a vertex of valence 2.
 //!
 //! ```text
 //!   ┌───────────┬──            each corner i of a face of degree n moves into the face:
@@ -14,15 +15,15 @@
 //! ```
 //!
 //! Boundary edges and boundary vertices do not become faces, so a mesh with a boundary shrinks. An
-//! inner vertex of valence 2 does not become a face; the faces of its two edges meet at this place.
-//! Isolated vertices are removed.
+//! inner vertex of valence 2 does not become a face; instead, the two quads that replace its edges
+//! share an edge. Isolated vertices are removed.
 //!
 //! # Sizes
 //!
-//! The mesh has V vertices. I of the vertices are isolated, and T are inner vertices with two
-//! faces. The mesh has E edges, of which B are boundary edges. The mesh has F faces with C corners
-//! in total, of which R are at boundary vertices. After a step, the sizes are V', E', F', C', B'
-//! and R':
+//! The mesh has V vertices, of which I are isolated, and T are inner vertices with two faces. The
+//! mesh has E edges, of which B are boundary edges. The mesh has F faces with C corners in total. R
+//! of the C corners are at boundary vertices. After a step, the sizes are V', E', F', C', B' and
+//! R':
 //!
 //! ```text
 //!   V' = C      E' = C + 2(E − B) − T      F' = F + (E − B) + (V − I − B − T)

@@ -54,7 +54,7 @@ pub enum SubdivisionError {
     /// There are more elements than 32-bit handles can number.
     #[error(transparent)]
     Polygons(#[from] PolygonError),
-    /// The structure cannot hold the mesh of a level.
+    /// The structure cannot hold the mesh of this level (level 0 is the input mesh).
     #[error("{structure} cannot hold level {level}: {refusal}")]
     Build {
         structure: &'static str,
@@ -108,13 +108,13 @@ pub enum LocalError {
     /// An angle is outside 0 to 180 degrees.
     #[error("{degrees} is not an angle between two faces: give degrees from 0 to 180")]
     BadAngle { degrees: f32 },
-    /// An edge is so short that no coordinate lies between its ends.
+    /// An edge is so short that its midpoint, rounded to `f32`, is one of its ends.
     #[error("edge {0}–{1} is too short to be halved with 32-bit coordinates: refine fewer levels", .ends[0], .ends[1])]
     TooShort { ends: [VertexId; 2] },
     /// There are more elements than 32-bit handles can number.
     #[error(transparent)]
     Polygons(#[from] PolygonError),
-    /// The structure cannot hold the mesh of a level.
+    /// The structure cannot hold the mesh of this level (level 0 is the input mesh).
     #[error("{structure} cannot hold level {level}: {refusal}")]
     Build {
         structure: &'static str,

@@ -5,7 +5,8 @@ use sixfold_core::{Counts, PolygonMesh, Split};
 use crate::scheme::Scheme;
 use crate::subdivision::Subdivision;
 
-/// The size of a mesh, with the numbers that determine the size at the next level.
+/// The numbers of elements of a mesh, and the counts from which the numbers of elements after a
+/// step are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Extent {
     /// The numbers of vertices, edges, faces and corners.
@@ -101,13 +102,14 @@ impl Extent {
 }
 
 impl Subdivision {
-    /// Returns the size of a mesh after step `level`, where the first step has level 0. Takes O(1)
-    /// time.
+    /// Returns the size of a mesh after step `level`; `extent` is the size before the step. The
+    /// first step has level 0. Takes O(1) time.
     ///
-    /// The sizes are exact for manifolds. The sizes include the faces that the boundary rule leaves
-    /// out later. For Catmull–Clark, Loop, bilinear and midpoint, the numbers of vertices, edges
-    /// and faces are also exact if an edge has three or more faces. A size above `usize::MAX` is
-    /// reported as `usize::MAX`. The result of a Doo–Sabin step is reported with mixed degrees.
+    /// The sizes are exact for manifolds. The sizes include faces that the boundary rule removes
+    /// from the result. For Catmull–Clark, Loop, bilinear and midpoint, the numbers of vertices,
+    /// edges and faces are also exact if an edge has three or more faces. A size above `usize::MAX`
+    /// is reported as `usize::MAX`. After a Doo–Sabin step, the faces are reported as faces of
+    /// different degrees.
     pub fn refined_extent(&self, extent: &Extent, level: u32) -> Extent {
         match self.split(level) {
             Some(split) => extent.face_split(split),

@@ -1,4 +1,4 @@
-//! Gather: queries the neighbourhood of every new point.
+//! The method gather: computes every new point from queries of its neighbourhood.
 //!
 //! ```text
 //!   face point    FV                 Each query is made when its point is computed. A structure

@@ -1,4 +1,4 @@
-//! Several steps, from polygons to polygons.
+//! Runs several subdivision steps. The input and the result are polygon meshes.
 
 use sixfold_core::{Creases, FaceId, FaceList, PolygonMesh, Refine, Representation, VertexId};
 
@@ -9,8 +9,8 @@ use crate::step::Step;
 use crate::subdivision::Subdivision;
 
 /// Runs `levels` steps of a scheme. A structure of type `M` is built for each step. After each
-/// step, calls `watch` with the level and the number of faces of the level. With 0 levels, returns
-/// the mesh without a change.
+/// step, calls `watch` with the level and the number of faces of the refined mesh. If `levels` is
+/// 0, returns the input mesh.
 ///
 /// # Errors
 ///
@@ -58,9 +58,10 @@ pub fn subdivide<M: Representation>(
     Ok(without_faces(step, left_out))
 }
 
-/// Runs `levels` steps in the tables of a structure of type `M`, which is built once. With the
-/// feature `rayon`, steps use the threads of the current rayon pool. The result equals the result
-/// of [`subdivide`], but faces and edge points have the order of the structure.
+/// Builds a structure of type `M` once, and runs `levels` steps that split the tables of the
+/// structure. With the feature `rayon`, steps use the threads of the current rayon pool. The result
+/// equals the result of [`subdivide`], but faces and edge points are in the order of the tables of
+/// the structure.
 ///
 /// # Errors
 ///

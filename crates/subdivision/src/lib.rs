@@ -1,18 +1,21 @@
-//! Subdivision schemes. The code of each scheme runs on any mesh structure, by up to three methods.
+//! Subdivision schemes. The code of each scheme runs on any mesh structure, by up to three methods
+//! (gather, scatter, native).
 //!
 //! - [`Scheme`]: the list of schemes. [`Kind`]: the properties of a scheme.
 //! - [`Subdivision`]: a scheme with its options. [`gather`](Subdivision::gather),
 //!   [`scatter`](Subdivision::scatter) and [`refine_into`](Subdivision::refine_into) run one step.
-//! - [`subdivide`], [`subdivide_native`]: several steps from polygons to polygons.
+//! - [`subdivide`] and [`subdivide_native`] run several steps. The input and the result are polygon
+//!   meshes.
 //! - [`Extent`]: the size of the result, computed in advance.
 //! - [`limit`](Subdivision::limit): the limit positions and normals of the vertices, as
 //!   [`LimitPoint`]s.
 //! - [`cubic_b_spline`], [`chaikin`]: subdivision of curves. [`ControlGrid`]: subdivision of
 //!   tensor-product patches.
-//! - [`refine_locally`]: splits the triangles of a [`Selection`] and keeps the mesh conforming.
+//! - [`refine_locally`]: splits the triangles of a [`Selection`] and keeps the mesh conforming,
+//!   which means that no vertex lies inside an edge.
 //!
 //! Each scheme has its weights in its own file. The file `crease.rs` computes the points at sharp
-//! edges and vertices, for all schemes with creases and all methods.
+//! edges and vertices for every scheme with creases.
 
 mod bilinear;
 mod butterfly;

@@ -1,9 +1,9 @@
 //! Limit positions and normals of the vertices of Catmull–Clark and Loop, after infinitely many
 //! levels.
 //!
-//! A step multiplies the neighbourhood of a vertex by a matrix. The matrix has the same left
-//! eigenvectors at every level. The left eigenvector of the eigenvalue 1 gives the limit position.
-//! The left eigenvectors of the next two eigenvalues give tangents.
+//! A subdivision step multiplies the positions around a vertex by a matrix. The matrix has the same
+//! left eigenvectors at every level. The left eigenvector of the eigenvalue 1 gives the limit
+//! position. The left eigenvectors of the next two eigenvalues give tangents.
 //!
 //! ```text
 //!   smooth, Catmull–Clark       smooth, Loop          crease            corner
@@ -28,17 +28,18 @@ use crate::step::CreaseVertices;
 use crate::subdivision::Subdivision;
 use crate::tangent::{Fan, Surface, far_corner, normal, rounding};
 
-/// The limit of a vertex after infinitely many levels.
+/// The limit position and the limit normal of a vertex after infinitely many levels, or the reason
+/// why the crate cannot compute them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitPoint {
-    /// The limit exists, and the neighbourhood of the vertex gives its position.
+    /// The crate can compute the limit position of the vertex.
     Defined {
         /// The position on the limit surface.
         position: Point,
         /// The normal of the limit surface.
         normal: LimitNormal,
     },
-    /// No mask gives the limit of the vertex at this level.
+    /// The crate has no limit mask for the vertex at this level.
     Undefined(NoLimit),
 }
 
@@ -48,17 +49,17 @@ pub enum LimitPoint {
 pub enum LimitNormal {
     /// The vertex has one normal.
     One(Point),
-    /// A crease passes through the vertex, and each side of the crease has its own normal. The two
-    /// edges of the crease lead to two neighbours. The first normal belongs to the faces that
-    /// follow counter-clockwise after the neighbour with the lower number.
+    /// A crease passes through the vertex, and each side of the crease has its own normal. The
+    /// first normal is for the faces that follow counter-clockwise after one crease edge: the
+    /// crease edge to the neighbour with the lower number.
     TwoSides([Point; 2]),
-    /// No mask gives a normal for the vertex. The possible reasons are:
+    /// The crate cannot compute a normal for the vertex. The possible reasons are:
     ///
     /// - The vertex is a corner with several faces.
     /// - An adjacent face is not a quad (Catmull–Clark only).
     /// - The vertex is an inner vertex of valence 2.
-    /// - The faces are not one oriented fan.
-    /// - The neighbourhood has no area.
+    /// - The faces at the vertex are not one oriented fan.
+    /// - The faces at the vertex have no area.
     Undefined,
 }
 
@@ -66,8 +67,8 @@ pub enum LimitNormal {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum NoLimit {
-    /// The vertex or one of its edges has a sharpness above 0 that is not infinite. The limit is
-    /// defined at a later level.
+    /// The vertex or one of its edges has a finite sharpness above 0. The limit is defined at a
+    /// later level.
     SemiSharp,
     /// A face at the vertex is not a quad, and the Catmull–Clark mask needs quads. The limit is
     /// defined after the next step.
@@ -108,10 +109,10 @@ impl Subdivision {
     /// and Loop.
     ///
     /// `creases` are the creases of `mesh.to_polygons()`, from
-    /// [`control_creases`](Self::control_creases) or from the step that made the mesh. At a face
-    /// that is not a quad, Catmull–Clark has limits only on creases and at corners. After one step,
-    /// all faces are quads. Each vertex takes O(valence log valence) time, plus the costs of the
-    /// queries EF, VV, VF and FV.
+    /// [`control_creases`](Self::control_creases) or from the step that made the mesh. At a vertex
+    /// of a face that is not a quad, Catmull–Clark has limits only on creases and at corners. After
+    /// one step, all faces are quads. Each vertex takes O(valence log valence) time, plus the costs
+    /// of the queries EF, VV, VF and FV.
     ///
     /// # Errors
     ///

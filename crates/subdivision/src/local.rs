@@ -1,10 +1,10 @@
 //! Local refinement: splits the chosen triangles and the other triangles that must be split to keep
-//! the mesh conforming. In a conforming mesh, no corner lies inside a side.
+//! the mesh conforming. In a conforming mesh, no vertex lies inside an edge.
 //!
-//! Red-green refinement after Bank, Sherman & Weiser (1983). A chosen face becomes *red*, which
-//! means that the face is split in four. A face with two or three split sides also becomes red,
-//! until no more faces change. A face with one split side becomes *green*, which means that the
-//! face is split in two halves.
+//! The algorithm is the red–green refinement of Bank, Sherman & Weiser (1983). A chosen face
+//! becomes *red*, which means that the face is split in four. A face with two or three split sides
+//! also becomes red, until no more faces change. A face with one split side becomes *green*, which
+//! means that the face is split in two halves.
 //!
 //! ```text
 //!    red             green            green that must be split again: its parent becomes red
@@ -16,9 +16,9 @@
 //!  a───m───b        a───m───b               a─x─m───b                 a─x─m───b   (a, m, q) is green
 //! ```
 //!
-//! Every face therefore has the shape of a face of the first mesh, or the shape of half of such a
-//! face. So the angles do not become smaller with each level. New vertices are midpoints of edges;
-//! old vertices do not move.
+//! Every face therefore has the shape of a face of the input mesh, or the shape of half of a face
+//! of the input mesh. So the angles do not become smaller with each level. New vertices are
+//! midpoints of edges; old vertices do not move.
 
 use sixfold_core::{
     EdgeMap, FaceId, FaceList, MAX_ROWS, MeshQuery, Numbers, Point, PolygonError, PolygonMesh,
@@ -83,8 +83,8 @@ pub fn refine_locally<M: Representation>(
     Ok(local)
 }
 
-/// A triangle mesh after local refinement. [`origins`](Self::origins) returns for each face the
-/// face of the first mesh that contains it.
+/// A triangle mesh after local refinement. For each refined face, [`origins`](Self::origins)
+/// returns the face of the unrefined mesh that contains the refined face.
 ///
 /// # Invariants
 ///
@@ -115,7 +115,7 @@ enum Half {
 }
 
 impl LocalMesh {
-    /// Builds a mesh that has not been refined.
+    /// Returns `polygons` as a mesh that has not been refined yet.
     ///
     /// # Errors
     ///
@@ -134,19 +134,19 @@ impl LocalMesh {
         Ok(Self { polygons, kinds })
     }
 
-    /// Returns the polygons of the refined mesh. The vertices of the previous mesh come first, then
-    /// the midpoints. The parts of a face are consecutive.
+    /// Returns the polygons of the refined mesh. The vertices of the mesh before the last step come
+    /// first, then the midpoints. The faces that were made from one face are consecutive.
     pub fn polygons(&self) -> &PolygonMesh {
         &self.polygons
     }
 
-    /// Returns for each face the face of the first mesh that contains this face.
+    /// Returns, for each face, the face of the unrefined mesh that contains the face.
     pub fn origins(&self) -> impl ExactSizeIterator<Item = FaceId> {
         self.kinds.iter().map(|kind| kind.origin)
     }
 
-    /// Returns whether `f` is green, which means that `f` is half of a split face. A later step
-    /// does not split a half. Instead, the two halves are joined again, and the whole face is split
+    /// Returns true if `f` is green, which means that `f` is half of a split face. A later step
+    /// does not split `f`. Instead, the later step joins the two halves and splits the whole face
     /// in four.
     ///
     /// # Panics
@@ -165,8 +165,8 @@ impl LocalMesh {
 
     /// Runs one step: splits the faces `chosen`, and other faces to keep the mesh conforming.
     /// `mesh` is any structure that was built from [`polygons`](Self::polygons). `chosen` contains
-    /// face numbers in the order of the mesh. If an edge has more than two faces, the rules apply
-    /// to all faces of the edge.
+    /// face numbers: face i is item i of `mesh.faces()`, counted from 0. If an edge has more than
+    /// two faces, the rules apply to all faces of the edge.
     ///
     /// # Errors
     ///

@@ -1,8 +1,9 @@
-//! Loop: splits every triangle into four; approximating, C² except at extraordinary vertices.
+//! Loop: splits every triangle into four. The scheme is approximating, and the limit surface is C²
+//! except at extraordinary vertices.
 //!
-//! Loop (1987), with the weights of Loop or of Warren (1995). Warren's weights are 3/16 for valence
-//! 3 and 3/(8n) for any other valence n. The file is not called `loop.rs` because `loop` is a
-//! keyword.
+//! The scheme is that of Loop (1987), with the weights of Loop or of Warren (1995). Warren's
+//! weights are 3/16 for valence 3 and 3/(8n) for any other valence n. The file is not called
+//! `loop.rs` because `loop` is a keyword.
 //!
 //! ```text
 //!     edge point                  vertex point, valence n

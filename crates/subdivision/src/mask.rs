@@ -1,4 +1,4 @@
-//! The rules of a scheme for new points at which nothing is sharp.
+//! The weights of a scheme for points that are not at sharp edges or vertices.
 
 use sixfold_core::{Point, Split};
 

@@ -1,8 +1,9 @@
-//! Native: the structure splits its own tables, and the new points are computed with queries.
+//! The method native: the structure splits its own tables, and the new points are computed with
+//! queries.
 //!
 //! The structure is not built again: [`Refine`] defines the row of each new element. Points are
-//! computed independently of each other, with the queries and rules of a gather. So the points are
-//! the same on any number of threads.
+//! computed independently of each other, with the same queries and rules as in the method gather.
+//! So the points are the same on any number of threads.
 
 use sixfold_core::{
     CHUNK_ROWS, Creases, FaceId, Point, Refine, RowId, Split, for_each_chunk, map_chunks,

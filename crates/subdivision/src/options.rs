@@ -9,15 +9,14 @@
 )]
 #[non_exhaustive]
 pub enum Boundary {
-    /// Boundary edges are infinitely sharp, and so are vertices with exactly one face.
+    /// Boundary edges and vertices with exactly one face are infinitely sharp.
     #[default]
     EdgeAndCorner,
     /// Boundary edges are infinitely sharp. The boundary becomes a B-spline curve, which rounds the
     /// corners of the mesh.
     EdgeOnly,
-    /// Faces at a boundary vertex are left out of the result, unless all boundary edges of the
-    /// vertex have infinite sharpness in the input. A face that is left out still influences the
-    /// adjacent faces.
+    /// A face is removed from the result if one of its vertices has a boundary edge without
+    /// infinite sharpness in the input. A removed face still influences the adjacent faces.
     None,
 }
 
@@ -54,7 +53,7 @@ pub enum Creasing {
 }
 
 impl Creasing {
-    /// Both rules.
+    /// Both rules for the sharpness of the two halves of an edge.
     pub const ALL: [Self; 2] = [Self::Uniform, Self::Chaikin];
 
     /// Returns the name of the rule on the command line and in files.

@@ -25,8 +25,9 @@ use crate::error::CurveError;
 /// With [`Ends::Dropped`] in both directions, m × n control points define (m − 3) × (n − 3) bicubic
 /// pieces, and each step shrinks the grid towards these pieces. With [`Ends::Kept`] in both
 /// directions, the four corners do not move, and the boundary consists of B-spline curves between
-/// the corners. Catmull–Clark with the boundary rule `edge-and-corner` has the same boundary.
-/// [`Ends::Closed`] makes tubes and tori.
+/// the corners. Catmull–Clark with the boundary rule `edge-and-corner` has the same boundary. With
+/// [`Ends::Closed`] in one direction, the patch is a tube; with [`Ends::Closed`] in both
+/// directions, the patch is a torus.
 ///
 /// # Invariants
 ///
@@ -55,8 +56,8 @@ pub struct ControlGrid {
 }
 
 impl ControlGrid {
-    /// Builds a grid from `points`, row after row, with `columns` points in a row. `ends` contains
-    /// the treatment of the ends of the rows, then of the ends of the columns.
+    /// Builds a grid from `points`, row after row, with `columns` points in a row. `ends[0]` is the
+    /// rule for the ends of the rows, and `ends[1]` is the rule for the ends of the columns.
     ///
     /// # Errors
     ///
@@ -94,12 +95,13 @@ impl ControlGrid {
         self.points.len() / self.columns
     }
 
-    /// Returns the treatment of the ends of the rows, then of the ends of the columns.
+    /// Returns two rules: the rule for the ends of the rows, then the rule for the ends of the
+    /// columns.
     pub fn ends(&self) -> [Ends; 2] {
         self.ends
     }
 
-    /// Returns the points, row after row.
+    /// Returns the control points, row after row.
     pub fn points(&self) -> &[Point] {
         &self.points
     }
@@ -156,12 +158,12 @@ impl ControlGrid {
         }
     }
 
-    /// Returns the point of the patch at the parameters (`u`, `v`). This point lies on the limit of
-    /// [`refined`](Self::refined). The control point in column i of row j has the parameters (i,
-    /// j). Takes O(rows) time.
+    /// Returns the point of the patch at the parameters (`u`, `v`). The patch is the limit of
+    /// [`refined`](Self::refined) for many levels. The control point in column i of row j has the
+    /// parameters (i, j). Takes O(rows) time.
     ///
-    /// Returns `None` if a parameter is outside its domain. The domain of a direction with n points
-    /// is:
+    /// Returns `None` if a parameter is outside its domain. The domain of a parameter along n
+    /// control points is:
     ///
     /// - ends kept: from 0 to n − 1
     /// - ends dropped: from 1 to n − 2
@@ -174,7 +176,8 @@ impl ControlGrid {
         cubic_b_spline_at(&column?, of_columns, v)
     }
 
-    /// Returns the lowest and the highest parameter along the rows, then along the columns.
+    /// Returns two ranges, each from the lowest to the highest parameter: the range of `u` (along
+    /// the rows), then the range of `v` (along the columns).
     pub fn domain(&self) -> [(f64, f64); 2] {
         let sizes = [self.columns, self.rows()];
         std::array::from_fn(|direction| cubic_domain(sizes[direction], self.ends[direction]))

@@ -1,12 +1,14 @@
-//! Scatter: one pass over the faces adds the value of each face to its corners and sides.
+//! The method scatter: one pass over the faces adds a value of each face to sums at its vertices
+//! and edges.
 //!
 //! ```text
 //!   each face     adds its value to every corner and every side   FV, FE
 //!   each edge     adds its ends to each other                     when it is first found
 //! ```
 //!
-//! Only FV and FE are queried, and every structure answers them without a search. The time is
-//! near-linear on all structures. Hash maps find edges and vertices whose handles are not rows.
+//! The method queries only FV and FE, which every structure answers without a search. The time is
+//! nearly linear in the number of corners on all structures. If a handle is not a row number, a
+//! hash map finds the sum of the handle.
 
 use sixfold_core::{Creases, HandleMap, MeshQuery, Point, VertexMap};
 

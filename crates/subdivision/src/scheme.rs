@@ -32,9 +32,9 @@ pub enum Scheme {
     serde(rename_all = "kebab-case")
 )]
 pub enum Primitive {
-    /// New vertices divide the faces.
+    /// A step splits every face.
     FaceSplit,
-    /// Every vertex and every edge becomes a face.
+    /// A step makes a face from every vertex and every edge.
     VertexSplit,
 }
 
@@ -42,7 +42,7 @@ pub enum Primitive {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Kind {
-    /// Whether a step splits faces or vertices.
+    /// The kind of elements that a step splits: faces or vertices.
     pub primitive: Primitive,
     /// The faces of the input: `triangles` or `polygons`.
     pub takes: &'static str,
@@ -52,7 +52,8 @@ pub struct Kind {
     pub interpolating: bool,
     /// The smoothness of the limit surface at regular vertices and at extraordinary vertices.
     pub continuity: &'static str,
-    /// The factor by which one step multiplies the number of faces, after several steps.
+    /// The factor by which a step multiplies the number of faces. For the first steps, the factor
+    /// can be different.
     pub growth: &'static str,
     /// The behaviour of the scheme at boundaries.
     pub boundary: &'static str,

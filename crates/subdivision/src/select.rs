@@ -11,19 +11,19 @@ pub enum Selection {
     /// The faces with these numbers. At later levels, the parts of these faces are selected.
     Faces(Vec<FaceId>),
     /// The faces that share at least one point with a box. The surface of the box belongs to the
-    /// box. A box that lies inside a face selects the face. The bounds may be infinite. The box
-    /// selects faces again at every level.
+    /// box. A box that lies inside a face selects the face. The bounds may be infinite. At each
+    /// level, the faces of this level are selected.
     Box {
         /// The minimum coordinates of the box.
         min: Point,
         /// The maximum coordinates of the box.
         max: Point,
     },
-    /// The faces at folds. At a fold, the angle between the normals of two adjacent faces is
-    /// greater than this angle. The angle is in degrees, from 0 to 180. Faces at an edge with three
-    /// or more faces are also selected. Two adjacent faces are not a fold if one of them has no
-    /// area. The angle selects faces again at every level. New points lie on the old faces, so the
-    /// faces at the same folds are selected again.
+    /// The faces at folds. A fold is a pair of adjacent faces whose normals form an angle greater
+    /// than the value of `Angle`. The angle is in degrees, from 0 to 180. Faces at an edge with
+    /// three or more faces are also selected. Two adjacent faces are not a fold if one of them has
+    /// no area. At each level, the faces of this level at the same folds are selected, because new
+    /// points lie on the old faces.
     Angle(f32),
 }
 

@@ -1,8 +1,9 @@
-//! √3: splits every triangle into three; approximating, C² except at extraordinary vertices.
+//! √3: splits every triangle into three. The scheme is approximating, and the limit surface is C²
+//! except at extraordinary vertices.
 //!
-//! Kobbelt (2000). A step adds a face point in each triangle, then flips every old inner edge. So a
-//! step triples the number of faces. Two steps cut each old edge in three and each triangle in
-//! nine.
+//! The scheme is that of Kobbelt (2000). A step adds a face point in each triangle, then flips
+//! every old inner edge. So a step triples the number of faces. Two steps cut each old edge in
+//! three and each triangle in nine.
 //!
 //! ```text
 //!    c ─────── d        c ─────── d        face point     the mean of the corners

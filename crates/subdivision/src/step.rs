@@ -4,15 +4,16 @@ use sixfold_core::{Creases, FaceList, MeshQuery, Point, PolygonMesh, Split, Vert
 
 use crate::SubdivisionError;
 
-/// A refined mesh with its remaining creases.
+/// The result of one step: the refined mesh, and the creases of the refined mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// The refined mesh. The parts of one face are consecutive.
+    /// The refined mesh. The new faces that are made from one old face are consecutive.
     ///
     /// After a face split, the vertices are the old vertices, then the face points, then the edge
-    /// points. Each of these groups has the order of the old structure. After a vertex split, the
-    /// vertices are the corners of the old faces. The faces come first from old faces, then from
-    /// old edges, then from old vertices.
+    /// points. Each of the three groups is in the order of the old structure. After a vertex split
+    /// (Doo–Sabin), each vertex comes from one corner of an old face. The faces are sorted by their
+    /// origin: first the faces from old faces, then the faces from old edges, then the faces from
+    /// old vertices.
     pub polygons: PolygonMesh,
     /// The creases of [`polygons`](Self::polygons).
     pub creases: Creases,

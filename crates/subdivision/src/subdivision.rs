@@ -30,7 +30,7 @@ macro_rules! by_mask {
 pub struct Subdivision {
     /// The scheme.
     pub scheme: Scheme,
-    /// The treatment of the boundary. Only Catmull–Clark and Loop use this option.
+    /// The boundary rule. Only Catmull–Clark and Loop use this option.
     pub boundary: Boundary,
     /// The rule for the sharpness of the two halves of an edge. Only Catmull–Clark and Loop use
     /// this option.
@@ -95,10 +95,10 @@ impl Subdivision {
         })
     }
 
-    /// Runs one step in the tables of the structure, stores the result in `child`, and returns the
-    /// creases of `child`. The tables of `child` are reused if the tables are large enough. The
-    /// step runs on the threads of the current rayon pool. The result has the same bytes for any
-    /// number of threads.
+    /// Runs one step with the method native: splits the tables of the structure, and stores the
+    /// result in `child`. Returns the creases of `child`. The tables of `child` are reused if the
+    /// tables are large enough. The step runs on the threads of the current rayon pool. The result
+    /// has the same bytes for any number of threads.
     ///
     /// The step overwrites `numbers`, so `numbers` may come from another mesh.
     ///

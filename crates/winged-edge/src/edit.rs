@@ -1,8 +1,8 @@
 //! Edits in place: the implementation of [`MeshEdit`], after Baumgart (1975).
 //!
-//! Both wings of both sides are stored, so an edit links and unlinks an edge without a search. Two
-//! steps of an edit can cost O(valence): the check before the edit, and replacing a vertex by
-//! another vertex in all edges at the vertex.
+//! Each edge stores the next and the previous edge along both sides, so an edit links and unlinks
+//! an edge without a search. Two steps of an edit can cost O(valence): the check before the edit,
+//! and replacing a vertex by another vertex in all edges at the vertex.
 //!
 //! Every edit does all checks before the first write. In these modules, a run `a→b` is the edge
 //! between `a` and `b`, along the side where the edge runs from `a` to `b`.

@@ -26,7 +26,7 @@
 //! | edit ([`MeshEdit`](sixfold_core::MeshEdit)) | cost | rows that change |
 //! |---|---|---|
 //! | `set_position`, `add_vertex` | O(1) | one vertex |
-//! | `add_face` | O(degree), plus the valence of each corner where a new edge starts | its sides, and at each corner the boundary edges |
+//! | `add_face` | O(degree), plus the valence of each corner where a new edge starts | the sides of the face, and at each corner the boundary edges |
 //! | `remove_face` | O(degree) | the sides of the face, and at each corner the boundary edges |
 //! | `remove_vertex` | O(corners of its faces) | its faces and edges, the outline of these faces, the boundary edges at the outline |
 //! | `split_edge` | O(1) | the edge, a new edge, the two wings at the end of the edge |
@@ -36,12 +36,12 @@
 //! | `dissolve_edge` | O(degree) of both faces | the edge, its four wings, the sides of the smaller face |
 //! | `flip_edge` | O(smaller valence) of the third corners | the edge and its four wings |
 //! | `collapse_edge` | O(valence) of both ends; O(1) if the removed end has three triangles | the edges at the removed end, the sides of its triangles |
-//! | `split_vertex` | O(valence) | the edges that get the new vertex, the edges to the sides, up to three new edges |
+//! | `split_vertex` | O(valence) | the edges that get the new vertex, the edges to `left` and `right`, up to three new edges |
 //! | `remove_isolated_vertices`, `compact` | O(rows) | all |
 //!
-//! Both wings of both sides are stored, so an edit links and unlinks an edge without a search. Only
-//! two steps of an edit can need a walk: the check before the edit, and replacing a vertex by
-//! another vertex in all edges at the vertex.
+//! Each edge stores the next and the previous edge along both sides, so an edit links and unlinks
+//! an edge without a search. Only two steps of an edit can need a walk: the check before the edit,
+//! and replacing a vertex by another vertex in all edges at the vertex.
 //!
 //! # The side test
 //!
@@ -50,7 +50,8 @@
 //! tests whether the edge starts at this vertex. A walk along a face tests whether the face is on
 //! the left of the edge. The side test is one comparison with the record that the step has just
 //! read. On a mesh in random order, a branch on the result of the test would be mispredicted every
-//! second time. Therefore the code has no branch: the result selects between two loaded values.
+//! second time. Therefore the code has no branch: the result of the test selects between two loaded
+//! values.
 //!
 //! The half-edge mesh of Sixfold needs no side test. A mesh is in a good order if neighbours are
 //! close in memory. The table shows the time of the winged-edge mesh divided by the time of the
@@ -69,12 +70,13 @@
 //!
 //! # What limits the speed of the sweeps
 //!
-//! If the mesh is in the cache, latency limits VV, VE, VF, FV, FE and FF. Each step waits for the
-//! record of the previous step, for the comparison and for the selection. A step takes about 8
-//! cycles, compared with 6 cycles in the half-edge mesh. If the mesh is not in the cache, each step
-//! waits for one cache line. Memory bandwidth limits EV and EF: both queries read the records in
-//! order, and use 8 of the 32 bytes of each record. Building has two expensive parts: the counting
-//! sort that pairs the sides, which takes half of the time, and writing one record per side.
+//! If the mesh is in the cache, latency limits the speed of VV, VE, VF, FV, FE and FF. Each step
+//! waits for the record of the previous step, for the comparison and for the selection. A step
+//! takes about 8 cycles, compared with 6 cycles in the half-edge mesh. If the mesh is not in the
+//! cache, each step waits for one cache line. Memory bandwidth limits the speed of EV and EF: both
+//! queries read the records in order, and use 8 of the 32 bytes of each record. Building has two
+//! expensive parts: the counting sort that pairs the sides, which takes half of the time, and
+//! writing one record per side.
 //!
 //! # Examples
 //!
@@ -109,7 +111,7 @@ pub use walk::EdgeSide;
 
 /// The mesh type with its type parameters, for generic code.
 ///
-/// Programs use the two type aliases in the crate root instead.
+/// Most programs use only the types [`WingedEdgeMesh`] and [`EditableWingedEdgeMesh`].
 pub mod generic {
     pub use crate::mesh::WingedEdgeMesh;
 }

@@ -24,7 +24,7 @@ use crate::edge::{Edge, NO_EDGE, Run};
 ///     left_prev(e)         right_next(e)
 /// ```
 ///
-/// A boundary edge also has wings on its side without a face. The wings on the side without a face
+/// A boundary edge has wings on its side without a face, too. The wings on the side without a face
 /// follow the boundary loop, so every walk returns to its start.
 ///
 /// # Invariants
@@ -40,7 +40,7 @@ use crate::edge::{Edge, NO_EDGE, Run};
 /// - I4  `prev` is the inverse of `next`: for every run, the previous run of the next run is the
 ///   run itself.
 /// - I5  `spoke(v)` is an edge with the end `v`, or empty if `v` is isolated. If `v` is on a
-///   boundary, the run of `spoke(v)` from `v` has no face on the right.
+///   boundary, `spoke(v)` has no face on the right, in the direction away from `v`.
 /// - I6  The steps around `v` visit all edges at `v` in one cycle: every vertex is manifold.
 /// - I7  `side(f)` is an edge with face `f`. The cycle of runs along `f` has at least three
 ///   vertices, each once.
@@ -53,8 +53,8 @@ use crate::edge::{Edge, NO_EDGE, Run};
 /// # Memory
 ///
 /// The tables use 16 bytes per vertex, 32 bytes per edge and 4 bytes per face. A large closed
-/// triangle mesh uses 120 bytes, or 30 words, per vertex. After the first deletion, the tables also
-/// use one bit per row up to the last hole.
+/// triangle mesh uses 120 bytes per vertex (30 words of 4 bytes). After the first deletion, the
+/// tables also use one bit per row up to the last hole (row of a deleted element).
 #[derive(Debug)]
 pub struct WingedEdgeMesh<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,

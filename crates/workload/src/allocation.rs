@@ -14,12 +14,13 @@ use crate::series::Series;
 /// A counter of all bytes that a program requests from its allocator. The program that installs the
 /// allocator implements this trait.
 pub trait AllocationCounter: Sync {
-    /// Returns the number of bytes that were requested since the program started. If a block grows,
-    /// only the growth is added. The bytes of freed blocks are not subtracted.
+    /// Returns the number of bytes that were requested since the program started. If a block is
+    /// enlarged, only the additional bytes are counted. The bytes of freed blocks are not
+    /// subtracted.
     fn allocated(&self) -> usize;
 }
 
-/// The bytes that one run of an operation allocates, and the bytes of its result.
+/// The bytes that one run of an operation allocates, and the bytes of the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Allocated {
     /// Bytes that the timed part of the operation requests from the allocator.
@@ -31,16 +32,16 @@ pub struct Allocated {
 /// The reason why the bytes of an operation were not counted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NotCounted {
-    /// The operation was refused. The field is the message of the structure or of the subdivision
-    /// scheme.
+    /// The structure or the subdivision scheme refuses the operation. The field is the error
+    /// message.
     Refused(String),
     /// The operation would take too long, because the structure scans all faces for each element
     /// and the mesh is large.
     Scans,
 }
 
-/// Maximum number of faces of a mesh on which operations that scan all faces for each element are
-/// run.
+/// Size limit for meshes, in faces. Operations that scan all faces for each element are not run on
+/// larger meshes than this limit.
 pub const MAX_SCANNED_FACES: usize = 2_000;
 
 /// A clock that returns allocated bytes instead of time. Set-up is excluded.
@@ -53,18 +54,18 @@ impl Clock for ByteClock<'_> {
 }
 
 impl Backend {
-    /// Runs `operation` once and counts the bytes that the timed part requests. `edges` is the
-    /// number of edges of `polygons`.
+    /// Runs `operation` once and counts the bytes that the timed part of the operation requests
+    /// from the allocator. `edges` is the number of edges of `polygons`.
     ///
-    /// The result, whose bytes are also returned, depends on the operation:
+    /// The bytes of the result are also returned. The result of each operation is:
     ///
     /// - `build`: the structure
     /// - subdivision: the structure of the refined mesh
     /// - edits: the mesh after the edits
     /// - `ff_bfs`: the depth of each face
     ///
-    /// A native subdivision is counted in its first run, because later runs reuse the tables of the
-    /// first run.
+    /// For a native subdivision, the first run is counted, because later runs reuse the tables of
+    /// the first run.
     ///
     /// # Errors
     ///

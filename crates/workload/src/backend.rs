@@ -1,4 +1,4 @@
-//! A structure with the functions that studies need to measure it.
+//! A mesh data structure with functions that build, run and measure the structure.
 
 use std::fmt;
 use std::sync::atomic::AtomicBool;
@@ -35,7 +35,7 @@ macro_rules! backends {
     };
 }
 
-/// A structure and the functions that build, run and measure it.
+/// A mesh data structure with functions that build, run and measure the structure.
 ///
 /// [`Backend::structures`] returns a backend for each structure of Sixfold. [`Backend::new`] makes
 /// a backend from any other structure:
@@ -53,9 +53,10 @@ macro_rules! backends {
 /// ```
 #[derive(Clone, Copy)]
 pub struct Backend {
-    /// The properties that are known before a mesh is built.
+    /// The properties of the structure that do not depend on a mesh.
     pub info: StructureInfo,
-    /// Computes the bytes of the tables by a formula, from the numbers of elements.
+    /// Computes the bytes of the structure's tables by a formula, from the element counts of a
+    /// mesh.
     pub layout_bytes: fn(&Counts) -> usize,
     pub(crate) queries: QueryFunctions,
     pub(crate) edits: Option<EditFunctions>,
@@ -184,7 +185,7 @@ impl Backend {
         }
     }
 
-    /// Returns one backend for each structure of Sixfold, in the order in which tables list them.
+    /// Returns one backend for each structure of Sixfold, in the fixed order that all reports use.
     pub fn structures() -> Vec<Self> {
         structures!([backends])
     }

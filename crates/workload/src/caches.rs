@@ -1,6 +1,7 @@
 //! The caches of the processor.
 //!
-//! Linux describes the caches in files under `/sys`. On other platforms the list is empty.
+//! Linux describes the caches in files under `/sys`. On other platforms, [`caches`] returns an
+//! empty list.
 
 use std::fs;
 use std::path::Path;
@@ -40,8 +41,8 @@ impl Cache {
     }
 }
 
-/// Returns the caches of the first processor, starting with the nearest cache. The list is empty if
-/// the caches are unknown.
+/// Returns the caches of the first processor, sorted by level, then by kind. Returns an empty list
+/// if the caches are unknown.
 pub fn caches() -> Vec<Cache> {
     let Ok(entries) = fs::read_dir(CACHE_FOLDER) else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! Clocks: wall time, and processor time of the current thread.
+//! Clocks that measure wall time and the processor time of the current thread.
 
 use std::ops::Sub;
 use std::time::Instant;
@@ -53,7 +53,8 @@ impl Time {
         }
     }
 
-    /// Returns a time of zero that has processor time if `like` has processor time.
+    /// Returns a time of zero. The result contains a processor time if `like` contains a processor
+    /// time.
     pub fn zero_like(like: Self) -> Self {
         Self {
             faults: None,
@@ -86,7 +87,7 @@ impl Sub for Time {
     }
 }
 
-/// A source of times. Tests can implement this trait with chosen times.
+/// A clock. Tests can implement this trait with chosen times.
 ///
 /// A program must read the clock on the thread that does the timed work.
 pub trait Clock: Sync {
@@ -113,7 +114,7 @@ const WORDS: usize = 8192;
 /// Maximum overhead, relative to readings in a loop without work.
 const MAX_OVERHEAD_RATIO: f64 = 3.0;
 
-/// The clocks of this machine, and its counter of page faults.
+/// The clocks and the page-fault counter of this machine.
 #[derive(Clone, Debug)]
 pub struct MachineClock {
     start: Instant,
@@ -122,7 +123,7 @@ pub struct MachineClock {
 }
 
 impl MachineClock {
-    /// Starts a clock, and measures the time that reading the clock takes. This takes some
+    /// Starts a clock, and measures the time for reading the clock. The call takes some
     /// milliseconds.
     pub fn start() -> Self {
         let mut clock = Self {
@@ -168,7 +169,8 @@ impl MachineClock {
         }
     }
 
-    /// Returns the name of the clock that studies use: `thread-cpu` (processor time) or `wall`.
+    /// Returns the name of the clock that studies use: `thread-cpu` (processor time) or `wall`
+    /// (wall time).
     pub fn name() -> &'static str {
         match thread_cpu_ns() {
             Some(_) => "thread-cpu",

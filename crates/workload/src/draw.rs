@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use sixfold::{FaceId, PolygonMesh, VertexId};
 
-/// One side of a face. A side identifies the edge on which it lies.
+/// An edge of a face, given by the face and by the two ends of the edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Side {
     /// The face.
@@ -14,20 +14,21 @@ pub struct Side {
     pub ends: [VertexId; 2],
 }
 
-/// All elements of a mesh in random order. The first n elements of each kind are a uniform random
-/// sample.
+/// All elements of a mesh in random order. For each kind of element, the first n elements are a
+/// uniform random sample of all elements of this kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw {
     /// All vertices of the mesh in random order.
     pub vertices: Vec<VertexId>,
-    /// All edges of the mesh in random order. Each edge is given by one of its sides.
+    /// All edges of the mesh in random order. Each edge is given together with one of its faces.
     pub edges: Vec<Side>,
     /// All faces of the mesh in random order.
     pub faces: Vec<FaceId>,
 }
 
 impl Draw {
-    /// Shuffles the elements of `polygons` with the random seed `seed`. O(n log n) for n corners.
+    /// Shuffles the elements of `polygons` with the random seed `seed`. Takes O(n log n) time for a
+    /// mesh with n corners.
     pub fn new(polygons: &PolygonMesh, seed: u64) -> Self {
         let mut draw = Self {
             vertices: polygons.vertices().collect(),

@@ -9,15 +9,15 @@ use crate::backend::Backend;
 use crate::clock::Time;
 use crate::series::{ReusedCopies, Series};
 
-/// A pass of edits that changes a triangle mesh.
+/// A series of edits over a whole triangle mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum EditPass {
-    /// Inserts a vertex into the centre of every face. Then collapses each new vertex into a
-    /// neighbour, and removes the deleted rows from the tables. At the end the mesh has its
-    /// original faces.
+    /// Inserts a vertex into the centre of every face, then collapses each new vertex into a
+    /// neighbour. Removes the deleted elements from the tables. The resulting mesh has the original
+    /// faces.
     SplitCollapse,
-    /// Flips every edge whose flip is legal, in the order in which the faces first list the edges.
-    /// Then repeats these flips on the changed mesh.
+    /// Flips every edge whose flip is legal, then flips the same edges again on the changed mesh.
+    /// The edges are flipped in the order of their first occurrence in the faces.
     FlipAll,
     /// Repeatedly collapses the edge with the least quadric error, until half of the faces are
     /// left.
@@ -28,7 +28,7 @@ pub enum EditPass {
 }
 
 impl EditPass {
-    /// All four passes.
+    /// All four passes of edits.
     pub const ALL: [Self; 4] = [
         Self::SplitCollapse,
         Self::FlipAll,
@@ -36,7 +36,7 @@ impl EditPass {
         Self::DecimateTenth,
     ];
 
-    /// Returns the name that users write, such as `split_collapse`.
+    /// Returns the name that users write for the pass, such as `split_collapse`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::SplitCollapse => "split_collapse",
@@ -100,11 +100,11 @@ pub trait Editor {
 /// The counts of one run of edits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Edits {
-    /// Number of visited elements: edges if edges are flipped, else faces.
+    /// Number of visited elements: edges for flips of edges, faces for all other edits.
     pub elements: u64,
     /// Number of edits that were done.
     pub done: u64,
-    /// Number of edits that were refused.
+    /// Number of edits that the structure refused.
     pub refused: u64,
     /// Sum of all edge lengths after the edits.
     pub checksum: f64,

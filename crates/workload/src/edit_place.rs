@@ -1,4 +1,5 @@
-//! Places of a triangle mesh at which edits do not affect each other.
+//! Chooses faces of a triangle mesh that are far apart, so that edits at these faces do not affect
+//! each other.
 
 use sixfold::{
     Edit, FaceId, FaceVertexMesh, MeshEdit, MeshQuery, Point, PolygonMesh, Refusal, Representation,

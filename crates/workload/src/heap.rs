@@ -1,4 +1,4 @@
-//! The number of allocated bytes.
+//! Counters of the bytes that a program has allocated.
 
 use sixfold::{BuildError, MemoryFootprint, PolygonMesh, Representation};
 
@@ -7,14 +7,15 @@ use sixfold::{BuildError, MemoryFootprint, PolygonMesh, Representation};
 pub trait Heap {
     /// Returns the number of bytes that are allocated now, without the overhead of the allocator.
     fn live(&self) -> usize;
-    /// Starts a new measurement of the peak, from the number of bytes that are allocated now.
+    /// Restarts the measurement of the peak of the allocated bytes. The new peak is measured from
+    /// the number of bytes that are allocated now.
     fn restart_peak(&self);
     /// Returns the largest increase of the allocated bytes since the last call of
     /// [`restart_peak`](Self::restart_peak).
     fn peak(&self) -> usize;
 }
 
-/// The memory of a structure, as measured and as computed.
+/// The memory of a structure: as counted by the allocator, and as computed by the structure.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MeasuredMemory {
     /// Bytes of the structure, as the allocator counts them.

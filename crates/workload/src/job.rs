@@ -1,4 +1,4 @@
-//! The jobs that a backend runs and times, and their results.
+//! Jobs that a backend (such as a mesh data structure) runs and times, and the results of jobs.
 
 use sixfold::QueryCost;
 
@@ -11,10 +11,12 @@ use crate::series::Series;
 pub enum Task {
     /// Runs an operation on the whole mesh.
     Operation(Operation),
-    /// Runs one turn of a mix (a fixed number of operations in proportion to their weights). If the
-    /// mix has edits, one run does several turns on a restored copy of the mesh.
+    /// Runs one turn of a mix. A turn is a fixed number of operations, divided among the kinds of
+    /// operations by weight. If the mix has edits, one run does several turns on a restored copy of
+    /// the mesh.
     Mix,
-    /// Runs one operation of one part of the mix. The number is the index of the part.
+    /// Runs one operation of one part of the mix. A part is a kind of operation. The field is the
+    /// index of the part in the mix.
     Part(usize),
 }
 
@@ -27,34 +29,33 @@ impl Task {
         }
     }
 
-    /// Returns true if a run makes another mesh, as [`Operation::creates_mesh`] does.
+    /// Returns true if a run makes another mesh, by subdivision or by edits.
     pub fn creates_mesh(self) -> bool {
         self.operation().is_some_and(Operation::creates_mesh)
     }
 
-    /// Returns true if a run enlarges tables that the next run reuses, as
-    /// [`Operation::grows_tables`] does.
+    /// Returns true if a run enlarges tables that the next run reuses.
     pub fn grows_tables(self) -> bool {
         self.operation().is_some_and(Operation::grows_tables)
     }
 
-    /// Returns true if the timed part of a run allocates memory, as [`Operation::allocates`] does.
+    /// Returns true if the timed part of a run allocates memory.
     pub fn allocates(self) -> bool {
         self.operation().is_some_and(Operation::allocates)
     }
 }
 
-/// A job to run: a task on all elements, or on a sample of the elements.
+/// A job to run: a task on all elements of a mesh, or on a sample of the elements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Job {
     /// The work of one run.
     pub task: Task,
-    /// The sample on which the task runs; `None` to run the task on all elements. Only operations
-    /// can run on samples.
+    /// The sample of the elements on which the task runs; `None` to run the task on all elements.
+    /// Only [`Task::Operation`] can run on a sample.
     pub sample: Option<ElementSample>,
     /// The number of the first run, counted from 0. The count includes untimed runs. Each run of a
     /// mix visits the elements that follow the elements of the previous run. For an operation, all
-    /// runs are equal and the number has no effect.
+    /// runs are equal, so this field has no effect.
     pub first: u64,
 }
 
@@ -76,12 +77,12 @@ impl From<Operation> for Job {
 }
 
 /// A sample of the elements. If the queries at elements of one kind scan the mesh, only the first
-/// elements of a random order are visited. Subdivisions and edit passes run on a separate mesh of
-/// about `size` faces.
+/// elements of this kind in a random order are visited. Subdivisions and edit passes run on a
+/// separate mesh of about `size` faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ElementSample {
-    /// One value for each kind of element. The value is true if only a sample is visited. All
-    /// elements of the other kinds are visited.
+    /// One value for each kind of element (vertex, edge, face). The value is true if only a sample
+    /// of this kind is visited, and false if all elements of this kind are visited.
     pub scanned: [bool; 3],
     /// The number of elements in the sample of each kind. If the mesh has fewer elements, all
     /// elements are visited.
@@ -91,8 +92,8 @@ pub struct ElementSample {
 /// The time and the result of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// The time of one run of the whole task. If only a sample was run, the time is an estimate for
-    /// all elements.
+    /// The time of one run of the whole task. If the task ran on a sample of the elements, the time
+    /// is an estimate for all elements.
     pub time: Time,
     /// The result of the task; `None` if the result was not requested.
     pub outcome: Option<Outcome>,
@@ -102,7 +103,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// Makes the record of a run that the backend did.
+    /// Makes the record of a run that the backend completed.
     pub fn done(time: Time, outcome: Option<Outcome>) -> Self {
         Self {
             time,
@@ -125,12 +126,12 @@ impl Run {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
     /// A number computed from all results. The order in which queries list neighbours does not
-    /// change the number. For a part of a mix, the checksum is the number of elements that the
-    /// queries yield along the whole route.
+    /// change the number. For a mix or a part of a mix, the checksum is the number of elements that
+    /// the queries yield.
     pub checksum: f64,
-    /// The number of elements that one run visits. For a mix, this is the number of operations. If
-    /// an operation ran on a sample, the number is scaled to all elements, except for subdivisions
-    /// and edit passes.
+    /// The number of elements that one run visits. For a mix, the field is the number of operations
+    /// in one run. If an operation ran on a sample, the number is scaled to all elements, except
+    /// for subdivisions and edit passes.
     pub elements: u64,
     /// The number of edits that the backend refuses in one run of an edit pass; 0 for other tasks.
     pub refused: u64,
@@ -139,7 +140,7 @@ pub struct Outcome {
 /// A backend that is ready to be timed: a structure built from a mesh, relation tables, or an
 /// external program. Tests can also implement this trait.
 pub trait TimedBackend {
-    /// Returns the name that users write.
+    /// Returns the name that users write for the backend.
     fn name(&self) -> &str;
     /// Returns true if the backend is an external program. An external program runs only operations
     /// on whole meshes. The results of other backends are not compared with the results of an
@@ -147,7 +148,8 @@ pub trait TimedBackend {
     fn is_external(&self) -> bool {
         false
     }
-    /// Returns for each relation which part of the mesh a query visits.
+    /// Returns for each of the nine relations which part of the mesh a query of the relation
+    /// visits.
     fn costs(&self) -> [QueryCost; 9];
     /// Returns the number of input vertices that were merged with other vertices.
     fn merged_vertices(&self) -> usize;
@@ -158,6 +160,7 @@ pub trait TimedBackend {
     /// implementation does nothing, for backends that are not built from polygons.
     fn rebuild(&mut self) {}
     /// Runs `job` and returns the time of one run. `series` gives the number of runs and the state
-    /// of the caches at the start. A job with a sample may run only once.
+    /// of the caches at the start. If the job runs on a sample of the elements, `series` may
+    /// contain only one run.
     fn run(&mut self, job: &Job, series: &Series<'_>) -> Run;
 }

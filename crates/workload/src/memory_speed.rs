@@ -1,14 +1,14 @@
 //! Measures how fast this machine reads memory: the bandwidth of sequential reads, and the latency
 //! of dependent reads.
 //!
-//! Both values are measured in buffers of growing size. Small buffers give the speed of the caches,
-//! and the largest buffer gives the speed of the main memory. The buffers are read by one thread,
-//! because one thread queries a mesh.
+//! The bandwidth and the latency are measured in buffers of growing size. Small buffers give the
+//! speed of the caches, and the largest buffer gives the speed of the main memory. The buffers are
+//! read by one thread, because one thread queries a mesh.
 //!
 //! The bandwidth test adds all words of the buffer. In the latency test, each cache line holds the
 //! index of the next cache line. The cache lines form one cycle in random order, so each read must
-//! wait for the previous read. Each test runs several times, and the shortest time counts. Both
-//! values include the time of address translation (TLB misses).
+//! wait for the previous read. Each test runs several times, and the shortest time counts. The
+//! bandwidth and the latency include the time of address translation (TLB misses).
 
 use std::hint::black_box;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -63,8 +63,8 @@ pub struct MemorySpeed {
 }
 
 impl MemorySpeed {
-    /// Measures the speed of memory, which takes one or two seconds and 256 MiB. Returns `None` if
-    /// `stop` becomes true during the measurement.
+    /// Measures the speed of memory. The measurement takes one or two seconds and 256 MiB of
+    /// memory. Returns `None` if `stop` becomes true during the measurement.
     pub fn measure(clock: &dyn Clock, stop: &AtomicBool) -> Option<Self> {
         Self::measure_sizes(&SIZES, clock, stop)
     }

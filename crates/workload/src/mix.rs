@@ -27,20 +27,21 @@ pub(crate) use table_mix::tabulate_structure;
 
 /// A backend on which a mix can be run: a structure, or relation tables. A `MixBackend` also runs
 /// the tasks [`Mix`](crate::Task::Mix) and [`Part`](crate::Task::Part) of its schedule. All tasks
-/// run on one mesh of one type.
+/// of a `MixBackend` run on the same mesh.
 pub trait MixBackend: TimedBackend {
     /// Returns the paths of the Rust types that a program must import to use this backend.
     fn type_paths(&self) -> Vec<&'static str>;
 
-    /// Returns one value for each part of the mix. The value is true if one operation of the part
-    /// visits all faces of the mesh.
+    /// Returns one value for each part of the mix. A part is a kind of operation. The value is true
+    /// if one operation of this kind visits all faces of the mesh.
     fn scans(&self) -> Vec<bool>;
 
-    /// Tries each edit of the schedule at each of its places (the faces chosen for the edit).
-    /// Returns a list for each edit. An entry is true if the backend accepts the edit at the place.
+    /// Tries each edit of the mix at each face that was chosen for the edit. Returns a list for
+    /// each edit, with one value for each chosen face. The value is true if the backend accepts the
+    /// edit at this face.
     fn accepted_places(&mut self) -> Vec<Vec<bool>>;
 
-    /// Discards the places of edits whose entry in `accepted` is false. `accepted` has one list for
-    /// each edit, like the result of [`accepted_places`](Self::accepted_places).
+    /// Discards the chosen faces whose value in `accepted` is false. `accepted` has the same form
+    /// as the result of [`accepted_places`](Self::accepted_places).
     fn keep_places(&mut self, accepted: &[Vec<bool>]);
 }

@@ -1,4 +1,4 @@
-//! The operations of a study: their names, the relations that they query, and what they count.
+//! The operations that a study times, with names, queried relations and visited elements.
 
 use std::fmt;
 use std::str::FromStr;
@@ -23,10 +23,10 @@ pub enum ElementKind {
 }
 
 impl ElementKind {
-    /// All three kinds, in the order of [`ElementKind::index`].
+    /// All three kinds of elements, in the order of [`ElementKind::index`].
     pub const ALL: [Self; 3] = [Self::Vertex, Self::Edge, Self::Face];
 
-    /// Returns the index in [`ElementKind::ALL`].
+    /// Returns the index of the kind in [`ElementKind::ALL`].
     pub const fn index(self) -> usize {
         self as usize
     }
@@ -36,7 +36,7 @@ impl ElementKind {
         Self::ALL[relation as usize / 3]
     }
 
-    /// Returns the singular name: `vertex`, `edge` or `face`.
+    /// Returns the name of the kind in the singular: `vertex`, `edge` or `face`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Vertex => "vertex",
@@ -65,8 +65,8 @@ pub enum Operation {
     /// Stores the normal of each face, and then for each vertex the normalised sum of the normals
     /// of its faces.
     VertexNormal,
-    /// Computes for each vertex the mean position of its neighbours. Then moves all vertices to
-    /// these means.
+    /// Moves each vertex to the mean position of its neighbours, after the means of all vertices
+    /// are computed.
     VvSmooth,
     /// Sums the lengths of all edges.
     EdgeLength,
@@ -76,9 +76,9 @@ pub enum Operation {
     FfBfs,
     /// Queries all nine relations: three at every vertex, three at every edge, three at every face.
     AllQueries,
-    /// Runs one step of Catmull–Clark subdivision by one method.
+    /// Runs one step of Catmull–Clark subdivision by the given method.
     CatmullClark(Method),
-    /// Runs one step of Loop subdivision by one method.
+    /// Runs one step of Loop subdivision by the given method.
     Loop(Method),
     /// Runs a pass of edits on a copy of the mesh.
     EditPass(EditPass),
@@ -125,7 +125,7 @@ impl Operation {
         Self::EditPass(EditPass::DecimateTenth),
     ];
 
-    /// Returns the name that users write, such as `vv_smooth`.
+    /// Returns the name that users write for the operation, such as `vv_smooth`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Build => "build",
@@ -300,20 +300,22 @@ impl Operation {
     /// grow with the square of a valence or of a face degree.
     ///
     /// The value is true if the operation queries a relation other than `edge_vertices` and
-    /// `face_vertices`. Such a relation may visit a vertex of valence n once for each of its n
-    /// edges, or may search a face with n sides n times.
+    /// `face_vertices`. Queries of all relations except `edge_vertices` and `face_vertices` may
+    /// visit a vertex of valence n once for each of its n edges, or may search a face with n sides
+    /// n times.
     pub fn grows_with_valence(self) -> [bool; 3] {
         let corners = [Relation::EdgeVertices, Relation::FaceVertices];
         ElementKind::ALL.map(|kind| self.relations(kind).iter().any(|r| !corners.contains(r)))
     }
 
-    /// Returns true if the operation can visit only a sample of the elements. Building, `ff_bfs`,
-    /// subdivisions and edit passes need whole meshes.
+    /// Returns true if the operation can run on a sample of the elements instead of all elements.
+    /// Building, `ff_bfs`, subdivisions and edit passes need whole meshes.
     pub const fn can_be_sampled(self) -> bool {
         !matches!(self, Self::Build | Self::FfBfs) && !self.creates_mesh()
     }
 
-    /// Returns true if the checksum is a count. The counts of all structures must be exactly equal.
+    /// Returns true if the checksum of the operation is a count. The counts of all structures must
+    /// be exactly equal.
     pub const fn has_exact_checksum(self) -> bool {
         !matches!(
             self,

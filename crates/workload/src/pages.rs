@@ -7,11 +7,11 @@
 //! runs after a warm-up have no page faults. [`release_pages`] returns the freed pages to the
 //! kernel, to measure a first run.
 //!
-//! [`Policy::Kept`] is implemented for the GNU C library with `mallopt`. The allocator then maps no
-//! block separately, never shrinks the heap, and uses one heap for all threads. A program must set
-//! the policy before it starts its first thread, because the C library reads the number of heaps
-//! only once. A thread with its own heap also keeps pages, but [`release_pages`] then returns only
-//! some of them.
+//! [`Policy::Kept`] is implemented for the GNU C library with `mallopt`. With this policy, the
+//! allocator maps no block separately, never shrinks the heap, and uses one heap for all threads. A
+//! program must set the policy before it starts its first thread, because the C library reads the
+//! number of heaps only once. If a thread has its own heap, pages of this heap stay in the process,
+//! and [`release_pages`] returns only some of these pages.
 //!
 //! On other platforms, and with other allocators, the active policy is [`Policy::System`].
 //! [`set_policy`] returns the active policy.
@@ -40,7 +40,7 @@ pub enum Policy {
 }
 
 impl Policy {
-    /// Both policies.
+    /// Both policies for freed pages.
     pub const ALL: [Self; 2] = [Self::Kept, Self::System];
 
     /// Returns the name that users write: `kept` or `system`.
@@ -249,7 +249,8 @@ pub fn resident_bytes() -> Option<u64> {
     Some(pages * page_bytes()?)
 }
 
-/// Returns the number of bytes by which the address space can still grow, if there is a limit.
+/// Returns the number of bytes by which the address space can still grow; `None` if there is no
+/// known limit.
 #[cfg(unix)]
 pub fn address_space_left() -> Option<u64> {
     use nix::sys::resource::{RLIM_INFINITY, Resource, getrlimit};
@@ -260,7 +261,8 @@ pub fn address_space_left() -> Option<u64> {
     (limit != RLIM_INFINITY).then(|| limit.saturating_sub(used))
 }
 
-/// Returns the number of bytes by which the address space can still grow, if there is a limit.
+/// Returns the number of bytes by which the address space can still grow; `None` if there is no
+/// known limit.
 #[cfg(not(unix))]
 pub fn address_space_left() -> Option<u64> {
     None

@@ -12,11 +12,11 @@
 //!               rows 2 and 5 touch two lines each: bytes 48 to 71, and 120 to 143
 //! ```
 //!
-//! The model also simulates a small cache of [`CACHE_LINES`] lines. If the cache is full, the
-//! oldest line is removed. A touched line that is not in the cache is *fetched*. A fetch is a
-//! *jump* if the cache contains no line within [`REACH`] lines before or after the fetched line.
-//! Sequential access fetches lines but rarely jumps. The prefetchers of a processor can predict
-//! sequential access, but not jumps.
+//! The model also simulates a small cache of [`CACHE_LINES`] lines. If the simulated cache is full,
+//! the line that was fetched first is removed. A touched line that is not in the cache is
+//! *fetched*. A fetch is a *jump* if the cache contains no line within [`REACH`] lines before or
+//! after the fetched line. Sequential access fetches lines but rarely jumps. The prefetchers of a
+//! processor can predict sequential access, but not jumps.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -27,11 +27,11 @@ use sixfold_core::Probe;
 
 /// Bytes of one cache line.
 pub const LINE_BYTES: usize = 64;
-/// Number of lines in the simulated cache. All lines together have 256 KiB, and most processors
-/// have at least this much cache per core.
+/// Number of lines in the simulated cache. The simulated cache has 256 KiB. Most processors have at
+/// least 256 KiB of cache per core.
 pub const CACHE_LINES: u64 = 4096;
-/// Maximum distance from a fetched line to the nearest cached line, in lines. If the distance is
-/// larger, the fetch is a jump.
+/// The fetch of a cache line is a jump if the fetched line is more than this number of lines away
+/// from every line in the simulated cache.
 pub const REACH: usize = 4;
 
 /// A number that clones of a probe share. Only one thread may count, or counts may be lost.

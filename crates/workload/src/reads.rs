@@ -8,14 +8,14 @@ use sixfold_core::Measured;
 
 use crate::read_probe::{CountingProbe, LINE_BYTES, ReadCounts, Step};
 
-/// Number of elements that are queried if only a sample is queried. The elements are evenly spaced.
+/// Number of elements in a sample. The elements of a sample are evenly spaced.
 pub const SCAN_SAMPLE: usize = 16;
-/// Maximum mean number of table rows that a query may read if all elements are queried. If a
-/// relation reads more rows, only [`SCAN_SAMPLE`] elements are queried.
+/// Maximum number of table rows that a query may read, as a mean over all elements. If the queries
+/// of a relation read more rows, only [`SCAN_SAMPLE`] elements are queried.
 pub const MAX_READS: u64 = 256;
 
 /// The table reads of one relation. The relation is queried at all elements in the order of the
-/// structure, or at evenly spaced elements.
+/// structure, or at a sample of evenly spaced elements.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Reads {
     /// The queried relation.
@@ -25,32 +25,35 @@ pub struct Reads {
     /// Number of elements at which the relation was queried.
     #[serde(rename = "asked")]
     pub queried: u64,
-    /// True if only some evenly spaced elements were queried. Values per query are then means over
-    /// these elements.
+    /// True if only a sample of evenly spaced elements was queried. If true, values per query are
+    /// means over the sample.
     pub sampled: bool,
     /// Mean number of results per query.
     pub answers: f64,
-    /// Mean number of table rows that a query reads. A row that is read twice counts twice.
+    /// Mean number of table rows that a query reads. A row that a query reads twice counts twice.
     pub reads: f64,
-    /// Mean number of bytes that a query reads. A byte counts once per query.
+    /// Mean number of bytes that a query reads. A byte that a query reads twice counts once.
     pub bytes: f64,
-    /// Mean number of cache lines that a query touches. A cache line counts once per query.
+    /// Mean number of cache lines that a query touches. A cache line that a query touches twice
+    /// counts once.
     pub lines: f64,
     /// Number of table rows that are read to list the elements, divided by the number of elements.
     pub listing_reads: f64,
-    /// Cache lines that a small simulated cache has to fetch, per element. The lines that are read
-    /// to list the elements are included.
+    /// Mean number of cache lines per element that a small simulated cache fetches from memory. The
+    /// lines that are read to list the elements are included.
     pub fetched: f64,
-    /// Fetched cache lines that are not near a cached line, per element.
+    /// Mean number of jumps per element. A jump is the fetch of a cache line that is not near any
+    /// line in the simulated cache.
     pub jumps: f64,
     /// Number of distinct cache lines that are touched while the elements are listed and queried.
-    /// If only some elements are queried, lines that only other queries would touch are missing.
+    /// If only a sample of the elements is queried, the number does not include lines that only
+    /// queries of other elements would touch.
     pub sweep_lines: u64,
-    /// Bytes that must be moved from memory, per element. If all elements are queried, each cache
-    /// line is moved once. If only some elements are queried, each query moves all cache lines that
-    /// it touches.
+    /// Estimate of the bytes per element that must be moved from memory. If all elements are
+    /// queried, each touched cache line counts once for the whole mesh. If only a sample is
+    /// queried, each cache line counts once for each query that touches the line.
     pub moved_bytes: f64,
-    /// The table rows that a query reads, by table.
+    /// The number of rows that a query reads from each table.
     pub tables: Vec<TableReads>,
 }
 
@@ -62,7 +65,7 @@ impl Reads {
     }
 }
 
-/// The reads of one table by one relation.
+/// The reads of one table by the queries of one relation.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct TableReads {
     /// The name of the table.
@@ -73,11 +76,11 @@ pub struct TableReads {
     pub reads: f64,
 }
 
-/// Receives the counts of table reads while relations are counted.
+/// A receiver for the counts of table reads, one relation after the other.
 pub trait ReadsObserver {
     /// Called before the reads of `relation` are counted.
     fn relation_started(&mut self, relation: Relation);
-    /// Called with the counts of a relation after the relation was queried.
+    /// Called with the counts of table reads of a relation after the relation was queried.
     fn relation_counted(&mut self, reads: Reads);
 }
 

@@ -1,4 +1,5 @@
-//! Repeated runs of a job that give one sample (one measured time), and their preparation.
+//! Repeated runs of a job that give one sample (one measured time), and the preparation of the
+//! runs.
 
 use std::hint::black_box;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
@@ -7,8 +8,8 @@ use crate::caches::{caches, last_level_bytes, level_bytes};
 use crate::clock::{Clock, Time, timed};
 use crate::pages;
 
-/// The minimum time between two readings of the clock, in nanoseconds. Runs that are shorter are
-/// timed together, as long as their copies of the mesh fit into the cache.
+/// The minimum time between two readings of the clock, in nanoseconds. Shorter runs are timed
+/// together, as long as all copies of the mesh that these runs change fit into the cache.
 pub const MIN_TIMED_NS: f64 = 60_000.0;
 /// Assumed size of the second-level cache in bytes, if unknown.
 const USUAL_SECOND_LEVEL: usize = 512 << 10;
@@ -46,13 +47,13 @@ impl CacheFlusher {
         }
     }
 
-    /// Returns the size of the buffer in bytes. The whole buffer is written before each sample.
+    /// Returns the size of the buffer in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&**self.words())
     }
 
-    /// Returns the number of the last cache level whose content is replaced; `None` if the caches
-    /// are unknown.
+    /// Returns the highest cache level whose content the buffer replaces; `None` if the caches are
+    /// unknown.
     pub fn level(&self) -> Option<u8> {
         self.level
     }
@@ -77,7 +78,7 @@ impl Default for CacheFlusher {
     }
 }
 
-/// A series of runs of a job, which give one sample (one measured time).
+/// A series of runs of a job. The series gives one sample (one measured time).
 #[derive(Clone, Copy)]
 pub struct Series<'c> {
     /// The number of untimed runs before the timed runs. The untimed runs warm the caches, enlarge

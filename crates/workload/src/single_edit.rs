@@ -1,4 +1,4 @@
-//! One kind of edit, measured at many places of a mesh.
+//! One kind of edit, measured at many faces of a mesh.
 
 use sixfold::{Edit, MeshEdit, PolygonMesh, Representation};
 
@@ -8,15 +8,15 @@ use crate::edit_pass::{Editor, Edits, PreparedEditor};
 use crate::edit_place::{EditPlace, apply_edit, independent_faces, prepare_place};
 use crate::series::{ReusedCopies, Series};
 
-/// An edit that is done at several places of a closed triangle mesh.
+/// An edit that is done at several faces of a closed triangle mesh.
 ///
-/// The places are faces that are spread over the mesh. An edit at one place does not affect the
-/// other places, so the handles at the other places stay valid.
+/// The chosen faces are spread over the mesh. An edit at one chosen face does not affect the other
+/// chosen faces, so handles at the other chosen faces stay valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SingleEdit {
     /// The kind of edit.
     pub edit: Edit,
-    /// The maximum number of places at which the edit is done.
+    /// The maximum number of faces at which the edit is done.
     pub places: usize,
 }
 
@@ -27,7 +27,7 @@ impl SingleEdit {
     /// # Errors
     ///
     /// Returns the reason if the structure cannot hold `polygons`, if a face is not a triangle, or
-    /// if the edit cannot be prepared at a place.
+    /// if the edit cannot be prepared at a chosen face.
     pub fn prepare(self, backend: &Backend, polygons: &PolygonMesh) -> Option<PreparedEditor> {
         backend.info.edits[self.edit as usize]?;
         Some((backend.edits?.prepare_single)(self, polygons))

@@ -1,4 +1,4 @@
-//! Runs one subdivision of a study on one thread.
+//! Runs a subdivision operation on one thread.
 
 use std::collections::BTreeSet;
 use std::hint::black_box;

@@ -26,10 +26,11 @@ pub enum Way {
 }
 
 impl Way {
-    /// All four ways.
+    /// All four ways to compute a subdivision.
     pub const ALL: [Self; 4] = [Self::Gather, Self::Scatter, Self::NativeFresh, Self::Native];
 
-    /// Returns the name that users write: `gather`, `scatter`, `native_fresh` or `native`.
+    /// Returns the name that users write for this way: `gather`, `scatter`, `native_fresh` or
+    /// `native`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Gather => "gather",
@@ -81,8 +82,8 @@ pub trait Refiner: Send {
     /// Returns an error if the scheme or the structure refuses a level.
     fn run(&mut self) -> Result<(), SubdivisionError>;
 
-    /// Returns the number of faces of the last level, and a checksum of its vertex positions. The
-    /// checksum is the sum of |x| + 2|y| + 3|z| over all positions (x, y, z).
+    /// Returns the number of faces of the last level, and a checksum of the vertex positions of
+    /// this level. The checksum is the sum of |x| + 2|y| + 3|z| over all positions (x, y, z).
     fn result(&self) -> (usize, f64);
 }
 
@@ -97,7 +98,7 @@ impl SubdivisionJob {
     }
 
     /// Prepares the subdivision for the structure of `backend`. Returns `None` if the structure
-    /// does not support the field `way`.
+    /// does not support this way to subdivide.
     ///
     /// # Errors
     ///

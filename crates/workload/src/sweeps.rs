@@ -5,12 +5,12 @@
 //! on icosphere6, in order and shuffled).
 //!
 //! The loops over all elements must be fast without inlining, because inlining differs between
-//! programs. A closure that changes captured variables and is not inlined keeps them in memory. It
-//! also loads the addresses of all tables again for each element. Therefore the loops pass sums by
-//! value with `fold`, or store results with `for`.
+//! programs. A closure that changes captured variables and is not inlined keeps these variables in
+//! memory, and loads the addresses of all tables again for each element. Therefore the loops pass
+//! sums by value with `fold`, or store results with `for`.
 //!
-//! Operations store their results in [`Outputs`]. Outputs are allocated once per structure, without
-//! timing. The queue and the depths of `ff_bfs` are allocated within the timing.
+//! Operations store their results in [`Outputs`]. Outputs are allocated once per structure, while
+//! the clock is stopped. The queue and the depths of `ff_bfs` are allocated while the clock runs.
 
 use std::hash::Hasher;
 use std::hint::black_box;

@@ -5,8 +5,8 @@ use strsim::jaro_winkler;
 /// Minimum Jaro–Winkler similarity of a suggested name to the unknown name.
 const MIN_SIMILARITY: f64 = 0.8;
 
-/// Returns a message such as: no operation is called `boundry` (did you mean `boundary`?): choose
-/// from …
+/// Returns a message such as “no operation is called `boundry` (did you mean `boundary`?): choose
+/// from …”.
 pub fn unknown(kind: &str, name: &str, known: &[&str]) -> String {
     let alike = |other: &&&str| jaro_winkler(name, other);
     let nearest = known.iter().max_by(|a, b| alike(a).total_cmp(&alike(b)));

@@ -15,7 +15,7 @@ use crate::unknown::unknown;
 /// The operations that a program performs on a mesh.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Workload {
-    /// The name that users write, such as `smoothing`.
+    /// The name that users write for the workload, such as `smoothing`.
     pub name: String,
     /// One sentence that describes the program.
     pub summary: String,
@@ -56,7 +56,7 @@ pub enum Action {
     EndPositions,
     /// Writes the position of a vertex.
     SetPosition,
-    /// Does one edit.
+    /// Does one edit of the given kind.
     Edit(Edit),
     /// Runs a pass over the whole mesh.
     Pass(Operation),
@@ -98,7 +98,7 @@ impl Amount {
         }
     }
 
-    /// Returns the written number. For “2 per face”, the number is 2.
+    /// Returns the number in the amount, such as 2 for “2 per face”.
     pub const fn number(self) -> f64 {
         match self {
             Self::Number(number) | Self::Per(number, _) => number,
@@ -171,7 +171,7 @@ impl Access {
     /// All three access orders.
     pub const ALL: [Self; 3] = [Self::Sequential, Self::Random, Self::Patches];
 
-    /// Returns the name that users write: `sequential`, `random` or `patches`.
+    /// Returns the name that users write for the order: `sequential`, `random` or `patches`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Sequential => "sequential",
@@ -222,7 +222,7 @@ impl Action {
             .collect()
     }
 
-    /// Returns the name that users write, such as `vertex_faces`.
+    /// Returns the name that users write for the action, such as `vertex_faces`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Relation(relation) => relation.name(),
@@ -319,8 +319,9 @@ impl Workload {
         self.operations.value_on(counts).max(1.0)
     }
 
-    /// Returns for each part its share of all operations, for a mesh with the given element counts.
-    /// The shares add up to 1. If all weights are 0 for this mesh, all shares are equal.
+    /// Returns one share for each operation of the mix: the share of this operation in all
+    /// operations, on a mesh with the given element counts. The shares add up to 1. If all weights
+    /// are 0 for this mesh, all shares are equal.
     pub fn shares(&self, counts: &Counts) -> Vec<f64> {
         let weights: Vec<f64> = self.mix.iter().map(|p| p.weight.value_on(counts)).collect();
         let sum: f64 = weights.iter().sum();

@@ -1,4 +1,4 @@
-//! Executes an action on a structure.
+//! Applies an edit that is given by numbers of the model to a structure.
 
 use std::collections::BTreeMap;
 

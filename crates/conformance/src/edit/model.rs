@@ -58,12 +58,12 @@ impl Model {
         faces.filter_map(|(f, face)| Some((f, face.as_deref()?)))
     }
 
-    /// Returns the corners of `f`, if it exists.
+    /// Returns the corners of face `f`, or `None` if the face does not exist.
     pub fn face(&self, f: usize) -> Option<&[usize]> {
         self.faces.get(f)?.as_deref()
     }
 
-    /// Returns the position of `v`, if it exists.
+    /// Returns the position of vertex `v`, or `None` if the vertex does not exist.
     pub fn position(&self, v: usize) -> Option<Point> {
         *self.positions.get(v)?
     }
@@ -83,7 +83,7 @@ impl Model {
         edges
     }
 
-    /// Returns the vertices that an edge joins to `v`.
+    /// Returns the vertices that are joined to `v` by an edge.
     pub fn neighbours(&self, v: usize) -> BTreeSet<usize> {
         let faces = self.faces().filter(|(_, face)| face.contains(&v));
         let sides = faces.flat_map(|(_, face)| sides(face).collect::<Vec<_>>());

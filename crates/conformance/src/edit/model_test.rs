@@ -75,13 +75,13 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
         self.model.after(action, &self.rules).is_some()
     }
 
-    /// Applies `action` to the mesh and to the model, and returns whether the action was accepted.
+    /// Applies `action` to the mesh and to the model, and returns true if the action was accepted.
     ///
     /// # Panics
     ///
     /// Panics if only one of the mesh and the model accepts the action. Panics if, after the
     /// action, the faces, the positions, the handles or the recorded changes differ from the model.
-    /// Also panics if an invariant of the mesh is broken.
+    /// Panics if the action broke an invariant of the mesh.
     pub fn apply(&mut self, action: &Action) -> bool {
         let name = M::NAME;
         let expected = self.model.after(action, &self.rules);
@@ -176,8 +176,8 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
             && sorted_positions(&first) == sorted_positions(&second)
     }
 
-    /// Checks all queries of the mesh, which may have deleted rows. Also checks that handles of
-    /// removed elements are invalid.
+    /// Checks the answers of all queries of the mesh. Also checks that handles of removed elements
+    /// are invalid.
     ///
     /// # Panics
     ///

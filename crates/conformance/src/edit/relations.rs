@@ -1,4 +1,5 @@
-//! Compares the nine relations of an edited mesh with its faces.
+//! Compares the nine relations of an edited mesh with relations that are computed from the corners
+//! of its faces.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;

@@ -1,4 +1,5 @@
-//! Random scripts of edits. Each step selects its elements from the current mesh.
+//! Random sequences of edits (*scripts*). Each step of a script selects its elements from the
+//! current mesh.
 
 use proptest::prelude::*;
 use proptest::{collection, sample};
@@ -10,7 +11,8 @@ use super::model::Model;
 /// Maximum number of faces of a mesh to which scripts add faces.
 const MANY_FACES: usize = 48;
 
-/// One step of a script: the kind of edit, and numbers that select the elements to edit.
+/// One step of a random edit sequence: the kind of edit, and numbers that select the elements to
+/// edit.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
     /// Kind of the edit.
@@ -19,7 +21,7 @@ pub struct Step {
     pub picks: [u16; 4],
 }
 
-/// Generates a script of up to `max_steps` steps. The kinds of edits are from `edits`. Removals,
+/// Generates a random sequence of up to `max_steps` edits, whose kinds are from `edits`. Removals,
 /// `Compact`, `AddVertex` and `SetPosition` are less frequent than other edits.
 pub fn script(edits: &[Edit], max_steps: usize) -> impl Strategy<Value = Vec<Step>> + use<> {
     let weight = |edit: &Edit| match edit {
@@ -40,7 +42,7 @@ pub fn script(edits: &[Edit], max_steps: usize) -> impl Strategy<Value = Vec<Ste
 
 impl Step {
     /// Returns the action that this step executes on `model`, or `None` if `model` has no element
-    /// for the action. `number` determines the position of a new vertex.
+    /// to which the edit can be applied. `number` determines the position of a new vertex.
     pub fn action(&self, model: &Model, number: usize) -> Option<Action> {
         let at = self.new_position(model, number)?;
         let vertex = || pick(&model.vertices().collect::<Vec<_>>(), self.pick(0));

@@ -1,4 +1,5 @@
-//! The meshes of the lectures, including their faults.
+//! Example meshes from lectures on mesh data structures, including the faults of the printed
+//! meshes.
 
 use sixfold_core::{Point, PolygonMesh};
 

@@ -13,11 +13,11 @@ use crate::edit::{Action, ModelTest, Step};
 /// Maximum number of tried steps for each accepted step of an edit.
 const MAX_STEPS_PER_ACCEPTED: usize = 12;
 
-/// Random scripts have the same effect on the structure and on the model. After every step, the
-/// mesh equals the model, the handles agree with the reported changes, and the invariants hold. A
-/// refused edit does not change the mesh. All relations are checked after every 16 steps.
+/// Random sequences of edits have the same effect on the structure and on the model. After every
+/// edit, the mesh equals the model, the handles agree with the reported changes, and the invariants
+/// hold. A refused edit does not change the mesh. All relations are checked after every 16 edits.
 ///
-/// `PROPTEST_CASES` sets the number of scripts.
+/// The environment variable `PROPTEST_CASES` sets the number of random edit sequences.
 pub fn edits<M: Representation + MeshEdit + Debug>() {
     let counts_by_edit = Cell::new([[0_usize; 2]; Edit::ALL.len()]);
     on_random_scripts::<M>("differs from the model", |start, steps, executed| {
@@ -93,14 +93,14 @@ fn check_acceptance<M: MeshEdit + Representation>(counts_by_edit: &[[usize; 2]; 
     }
 }
 
-/// The declared costs `EDITS` agree with the measured accesses to rows.
+/// The declared costs `EDITS` agree with the measured accesses to table rows.
 ///
 /// - Constant and Local: the number of accesses does not depend on the size of the mesh.
 /// - Scan: the number of accesses grows with the mesh. Declaring a scan for a cheaper edit is
 ///   wrong.
 ///
 /// The meshes are two tori of valence six. The large torus has sixteen times as many faces as the
-/// small torus. Only accesses to rows are counted, not the cost of growing a table.
+/// small torus. Only accesses to table rows are counted, not the cost of growing a table.
 pub fn edit_costs<M>()
 where
     M: Measured + MeshEdit,

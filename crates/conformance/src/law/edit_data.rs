@@ -1,4 +1,4 @@
-//! The law of data that follows edits.
+//! The law that data of elements is updated after each edit.
 
 use std::collections::BTreeMap;
 use std::fmt::Debug;
@@ -45,11 +45,12 @@ type Subject<M, D> = MeshWithData<M, (D, Numbers<M, Vec<u32>>)>;
 
 type Numbers<M, T> = (VertexData<M, T>, EdgeData<M, T>, FaceData<M, T>);
 
-/// Data in a [`MeshWithData`] follows random scripts of edits. After every step, the data equals
-/// data that was updated by brute force from the reported changes. The rules for new elements
-/// receive the correct parents. After a script, `into_compact` and `from_compact` keep the data.
+/// Data in a [`MeshWithData`] is updated correctly during random sequences of edits. After every
+/// edit, the data equals data that was updated by brute force from the reported changes. The rules
+/// for new elements receive the correct parents. At the end of each sequence, `into_compact` and
+/// `from_compact` keep the data.
 ///
-/// `PROPTEST_CASES` sets the number of scripts.
+/// The environment variable `PROPTEST_CASES` sets the number of random edit sequences.
 pub fn data_follows_edits<M: Representation + MeshEdit + Debug>() {
     numbers_follow_edits::<M, Numbers<M, u32>>();
 }

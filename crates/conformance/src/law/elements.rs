@@ -12,8 +12,10 @@ use crate::element::Element;
 use crate::subject::{Subject, stored_mesh};
 use crate::weld::position_key;
 
-/// `vertices`, `edges` and `faces` yield each element once, and the counts agree. Vertices and
-/// faces have the required order.
+/// `vertices`, `edges` and `faces` yield each element once, and `vertex_count`, `edge_count` and
+/// `face_count` agree with them. Faces are in the order of the input. Vertices are in the order of
+/// the input, or in the order in which the faces list them if the structure merges vertices with
+/// equal coordinates.
 pub fn elements<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -54,8 +56,8 @@ pub fn elements<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// `vertex_handle` and `face_handle` return a different handle for each element. The mesh uses the
-/// same handles.
+/// `vertex_handle` and `face_handle` return a different handle for each element. The iterators of
+/// the mesh yield the same handles.
 pub fn names<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;

@@ -84,7 +84,7 @@ pub fn refine<M: Refine>(polygons: &PolygonMesh) {
     }
 }
 
-/// A large mesh has the same refined mesh on one thread and on three threads.
+/// The result of refining a large mesh is the same on one thread and on three threads.
 pub fn refine_in_parallel<M: Refine>() {
     let pool = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();

@@ -1,4 +1,4 @@
-//! Random scripts of edits for laws.
+//! Runs laws on random sequences of edits (*scripts*).
 
 use std::cell::RefCell;
 use std::fmt::{Debug, Write};

@@ -1,4 +1,4 @@
-//! Laws about steps from side to side.
+//! Laws about steps from side to side. A side is an edge as one face runs along it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
@@ -32,10 +32,10 @@ pub fn oriented_walk<M: Representation + OrientedWalk>(polygons: &PolygonMesh) {
     expected.check_missing(missing.expect("the larger mesh has sides"));
 }
 
-/// Steps from side to side agree with the corners of the faces during random scripts of edits.
+/// Steps from side to side agree with the corners of the faces during random sequences of edits.
 /// After a face is removed, its sides do not exist.
 ///
-/// `PROPTEST_CASES` sets the number of scripts.
+/// The environment variable `PROPTEST_CASES` sets the number of random edit sequences.
 pub fn oriented_walk_after_edits<M: Representation + MeshEdit + OrientedWalk + Debug>() {
     on_random_scripts::<M>("walks wrongly after edits", run_script::<M>);
 }

@@ -10,8 +10,8 @@ use crate::table::Table;
 /// In these methods, `corners` is the table of corners that is divided into faces. The caller must
 /// check beforehand that the numbers of faces and corners stay within their limits.
 impl<P: Probe> FaceSpans<P, Editable> {
-    /// Adds a face at the end of the table; O(degree) amortised. The first face of another degree
-    /// adds a table with the range of each face, which takes O(corners) time once.
+    /// Adds a face at the end of the table; O(degree) amortised. The first face of a different
+    /// degree adds a table with the range of each face, which takes O(corners) time once.
     pub fn push<T: Copy>(&mut self, corners: &mut Table<T, P>, face: &[T]) -> FaceId {
         let id = FaceId::new(row(self.len()));
         if let Self::Uniform { degree, faces } = self {

@@ -81,8 +81,7 @@ impl<V: ScannedVertex> Star<V> {
 
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     /// Merges the two ends of `e` into `keep`, whose handle becomes `to`. The edit takes one scan
-    /// of all corners, and another scan for each third corner of a removed triangle that may have
-    /// no other face.
+    /// of all corners, and one more scan for each vertex that may lose its last face.
     ///
     /// # Errors
     ///

@@ -41,8 +41,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     }
 
     /// Removes `f`; O(degree). If the log uses reports, a scan of all corners finds the sides that
-    /// other faces have. If vertices are identified by coordinates, vertices without a face are
-    /// removed.
+    /// `f` shares with other faces. If vertices are identified by coordinates, vertices without a
+    /// face are removed.
     ///
     /// # Errors
     ///
@@ -58,7 +58,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     }
 
     /// Removes all faces at `v`; one scan of all corners. If the log uses reports, a second scan
-    /// finds the sides that other faces have.
+    /// finds the sides that the removed faces share with other faces.
     ///
     /// # Errors
     ///

@@ -11,8 +11,8 @@ use crate::scanned::{ScannedFaces, ScannedVertex};
 
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     /// Splits `v`; one scan of all corners. The new vertex `n` gets the faces that follow
-    /// counter-clockwise around `v` from `right` to `left`. If `right` is `None`, these faces start
-    /// at the boundary. If `left` is `None`, they end at the boundary.
+    /// counter-clockwise around `v` from `right` to `left`. If `right` is `None`, the faces of `n`
+    /// start at the boundary. If `left` is `None`, the faces of `n` end at the boundary.
     ///
     /// ```text
     ///              left

@@ -6,10 +6,10 @@
 //!                                                              start, length      room
 //! ```
 //!
-//! Places outside all fans are blank, so the place behind a fan shows whether the fan can grow. A
-//! fan that moves gets room for twice its faces, at least eight (Cormen et al., Introduction to
-//! Algorithms, 17.4). So adding a face costs O(1) amortised time and places, after each fan of the
-//! input has moved once.
+//! Pool entries outside all fans are blank, so the entry behind a fan shows whether the fan can
+//! grow. A fan that moves gets room for twice its faces, at least eight (Cormen et al.,
+//! Introduction to Algorithms, 17.4). So a new face costs O(1) amortised time and entries, after
+//! each fan of the input has moved once.
 
 use std::ops::Range;
 

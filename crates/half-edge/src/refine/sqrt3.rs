@@ -26,11 +26,11 @@
 //! | s(h), p ^ 1 without a face | 2(E + #h) | r(p) | a | #p |
 //! | r(h), t without a face | s(h) + 1 | h | f | #h |
 //!
-//! Boundary half-edges do not change, unless boundary edges are cut into three edges. If they are
-//! cut, the `j`-th boundary edge gets the points q and q', and eight rows from y = 2(E + C) + 8j
-//! on. Two more triangles lie beside #h (q' b f): C + 2j (a q f) and C + 2j + 1 (q q' f). The
-//! boundary half-edge keeps its row and runs from `b` to q'. Half-edge y + 1 runs from q' to q, and
-//! y + 3 from q to `a`.
+//! Boundary half-edges do not change, unless boundary edges are cut into three edges. If boundary
+//! edges are cut, the `j`-th boundary edge gets the points q and q', and eight rows from y = 2(E +
+//! C) + 8j on. Two more triangles lie beside #h (q' b f): C + 2j (a q f) and C + 2j + 1 (q q' f).
+//! The boundary half-edge keeps its row and runs from `b` to q'. Half-edge y + 1 runs from q' to q,
+//! and y + 3 from q to `a`.
 
 use sixfold_core::{FaceId, MeshQuery, Slot};
 

@@ -1,4 +1,5 @@
-//! The amount of work after which building a structure pays off.
+//! A figure that shows after how many operations a structure has saved more time than building it
+//! took.
 
 use kuva::plot::LinePlot;
 use kuva::render::plots::Plot;

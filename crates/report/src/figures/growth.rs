@@ -1,5 +1,5 @@
-//! Growth of times with the size of the mesh. On logarithmic axes, the slope of a line is the
-//! exponent of growth.
+//! Figures of the growth of times with the size of the mesh. On logarithmic axes, the slope of a
+//! line is the exponent of growth.
 
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::plots::Plot;

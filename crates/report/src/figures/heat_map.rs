@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use kuva::plot::{ColorMap, Heatmap};
 use kuva::render::plots::Plot;
-use sixfold_study::numbers::times;
+use sixfold_study::numbers::{counted, times};
 use sixfold_study::{Operation, Pool, Report};
 
 use crate::colours::GRID_COLOUR;
@@ -37,8 +37,12 @@ pub(super) fn pooled(pool: &Pool, command: &str) -> Option<Figure> {
         row.map(|row| row.ratio_to_best)
     };
     let title = format!(
-        "Every operation on every structure: geometric mean over {} meshes",
-        pool.groups.first().map_or(0, |all| all.meshes.len())
+        "Every operation on every structure: geometric mean over {}",
+        counted(
+            pool.groups.first().map_or(0, |all| all.meshes.len()),
+            "mesh",
+            "meshes"
+        )
     );
     figure(&title, &columns, &ratio, "", command)
 }

@@ -1,4 +1,5 @@
-//! Bytes of each structure as stacked bars, with one part per table.
+//! A figure with one stacked bar for each structure. The parts of a bar are the bytes of the tables
+//! of the structure.
 
 use kuva::plot::BarPlot;
 use kuva::render::plots::Plot;

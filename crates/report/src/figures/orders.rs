@@ -1,4 +1,5 @@
-//! Effect of the order of a mesh in memory on each structure.
+//! A figure of the effect that the order of the elements in memory has on the times of each
+//! structure.
 
 use kuva::plot::BarPlot;
 use kuva::render::plots::Plot;

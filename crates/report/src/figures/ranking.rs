@@ -1,4 +1,5 @@
-//! Ranked bars: the time of each backend relative to the fastest, for each operation.
+//! Ranked bars: for each operation, the time of each structure or external program relative to the
+//! fastest.
 
 use kuva::plot::BarPlot;
 use kuva::render::plots::Plot;

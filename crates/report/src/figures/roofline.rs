@@ -1,5 +1,6 @@
-//! A figure with the time of each query over the bytes that the query moves. Lines show the speed
-//! of memory. A query on such a line can become faster only if the query moves fewer bytes.
+//! A figure that plots the time of each query against the bytes that the query moves from memory.
+//! Lines show the speed of memory. If the mark of a query is on a line, the query can become faster
+//! only by moving fewer bytes.
 
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::plots::Plot;

@@ -21,7 +21,8 @@ space-filling curve), breadth-first (as a walk from face to face visits the elem
 
 Each round measures every backend in every order. The report first compares the four orders of each
 backend. Then the report compares the backends, each in its best order. In each round, one backend
-is measured twice in the order `given`. The difference between these two times is the noise.
+is measured twice in the order `given`. The noise is the difference between the two measurements of
+this backend.
 
 Exit codes: 0 success; 1 results differ between backends or orders (a fault in Sixfold); 2 wrong
 usage or unusable input; 3 none of the selected backends can hold the mesh, or too little memory;
@@ -29,13 +30,13 @@ usage or unusable input; 3 none of the selected backends can hold the mesh, or t
 
 /// Measure how the order of vertices and faces in memory affects the times.
 ///
-/// Measures the mesh in four orders. Shows which order is best. Also shows whether the choice of
-/// the order changes the times more than the choice of the backend.
+/// Measures the mesh in four orders. Shows which order is best. Shows whether the choice of the
+/// order changes the times more than the choice of the backend.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Orders {
     /// The mesh (- for standard input); without it, a built-in mesh of 20,000 triangles
-    #[arg(value_name = "MESH.obj")]
+    #[arg(value_name = "MESH")]
     pub(crate) mesh: Option<PathBuf>,
     /// Use only these data structures (backends), by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
@@ -64,13 +65,14 @@ const COMPARE_EXAMPLES: &str = "Examples:
   sixfold compare before.json after.json --fail-if-slower      for CI: exit code 1
   sixfold compare laptop.json server.json --relative
 
-Both files are written by `sixfold study --json`. The ratio of a figure is its median in the second
-study, divided by its median in the first study. A figure counts as slower if three conditions hold:
+Both files are written by `sixfold study --json`. A figure is the time of one operation on one
+backend. The ratio of a figure is the median time in the second study, divided by the median time in
+the first study. A figure counts as slower if three conditions hold:
   - The 95 % interval of the ratio lies above 1.
   - The ratio is above --noise.
   - The ratio is above the noise of this operation in both studies.
-A figure counts as faster if the same conditions hold for the inverse of the ratio. With fewer than
-three samples there is no interval; the ratio must then be above 2.
+A figure counts as faster if the same conditions hold for the inverse of the ratio. If a study has
+fewer than three samples of a figure, the first condition is that the ratio is above 2.
 
 The default of --noise is chosen for shared virtual machines, whose speed changes between studies. A
 dedicated machine allows a lower value. To find a suitable value, compare two studies of the same
@@ -121,8 +123,9 @@ At each size, every round measures all backends. The time of a run is nearly pro
 where F is the number of faces. The table shows the power p with its standard error. The power p is
 the slope of a straight line through the logarithms of F and of the time. If p is 1, the time per
 element does not depend on the size. If p is 2, each element takes a scan of all faces. Two more
-lines show p for the sizes that fit into the last cache, and p for the larger sizes. Operations that
-scan all faces are measured on a sample of the elements.
+lines of the table show p for two ranges of sizes: the sizes at which the structure fits into the
+last cache, and the larger sizes. Operations that scan all faces are measured on a sample of the
+elements.
 
 Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold); 2 wrong usage;
 3 none of the selected backends can hold the shape, or too little memory; 4 interrupted, finished
@@ -131,8 +134,8 @@ sizes are kept.";
 /// Measure how the times grow with the size of the mesh.
 ///
 /// Measures one shape in sizes that grow by a constant factor. Shows the nanoseconds per element,
-/// and how the time grows with the number of faces. Also shows the sizes at which the structures
-/// outgrow each cache of this machine.
+/// and how the time grows with the number of faces. Shows the sizes at which the structures become
+/// larger than each cache of this machine.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Growth {

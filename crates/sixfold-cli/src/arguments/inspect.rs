@@ -14,9 +14,9 @@ the structures that refuse the mesh for it, and the command that repairs it.
 
 Exit codes: 0 success; 2 wrong usage or unusable input; 4 interrupted.";
 
-/// Show facts about a mesh, and which backends can hold it.
+/// Show facts about meshes, and which data structures can hold them.
 ///
-/// Measures nothing. Counts the faces that repeat a vertex or have fewer than three corners.
+/// Measures no times. Counts the faces that repeat a vertex or have fewer than three corners.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Inspect {

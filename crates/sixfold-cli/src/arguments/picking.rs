@@ -16,11 +16,11 @@ const PICK_EXAMPLES: &str = "Examples:
 
 The mix of a workload is the list of its operations with their weights. Each round runs the whole
 mix on every backend that has the required abilities. All operations of the mix run in one loop,
-because operations affect each other's times through the caches. If the mix contains only queries,
-flat tables of the queried relations are measured as another backend. The ranking does not include
-the time to build a backend. The column `pays after` shows after how many operations building the
-backend saves time, compared with an indexed face set that is already built. The ratios of several
-meshes are combined by geometric means.
+because operations affect each other's times through the caches. If the mix does not change the
+connectivity of the mesh, flat tables of the queried relations are measured as another backend. The
+ranking does not include the time to build a backend. The column `pays after` shows the number of
+operations after which the building time is saved, compared with an indexed face set that is already
+built. The ratios of several meshes are combined by geometric means.
 
 Needs: edit, non-manifold, polygons, mixed-orientation, isolated-vertices, coincident-vertices,
 refine.
@@ -38,8 +38,8 @@ Exit codes: 0 success; 2 wrong usage.";
 /// Find the data structure that fits a mesh and a workload.
 ///
 /// Runs the workload on each backend and ranks the backends. Shows reasons and confidence
-/// intervals. Shows for each backend the memory, and after how many operations building the backend
-/// pays off.
+/// intervals. Shows for each backend the memory, and the number of operations after which the
+/// building time is saved.
 #[derive(Debug, Args)]
 #[command(after_help = PICK_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Pick {

@@ -12,11 +12,11 @@ const EXAMPLES: &str = "Examples:
   sixfold render part.obj -o part.svg --wireframe --view=-20,10
   sixfold render scan.stl -o faults.png --faults --edges --labels
 
-Several meshes are drawn in a row, all at one scale. Sharp edges and corners are red. They come from
-the tags `t crease` and `t corner` of the OBJ file, and from the crease file. Give --creases at most
-once per mesh, in the order of the meshes. The front of a face is blue; the back is sand-coloured.
-Seen from the front, the corners of a face run counter-clockwise. A PNG is shaded per sample; an SVG
-has one colour per face.
+Several meshes are drawn in a row, all at one scale. Sharp edges and corners are red. The tags
+`t crease` and `t corner` of the OBJ file, and the crease file, list the sharp edges and corners.
+Give --creases at most once per mesh, in the order of the meshes. The front of a face is blue; the
+back is sand-coloured. Seen from the front, the corners of a face run counter-clockwise. An SVG has
+one colour per face.
 
 With --faults, boundary edges are orange, non-manifold edges and vertices are magenta, and faces
 that are turned against their neighbours or into their solid are yellow. `sixfold inspect` lists all

@@ -46,8 +46,8 @@ pub(crate) struct Schemes {
 
 /// Refine a mesh with a subdivision scheme.
 ///
-/// First prints the size of the result and the memory that the result takes. Refuses to refine the
-/// mesh if less memory is free.
+/// First prints the size of the result and the memory that the result takes. Stops before the
+/// refinement if there is too little free memory.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Subdivide {

@@ -15,9 +15,9 @@ const WHY_EXAMPLES: &str = "Examples:
   sixfold why bunny.obj --backends half-edge,face-vertex --budget 1m --json why.json
 
 Counts are exact and the same on every machine. Every table row that a query reads is counted. The
-counts assume that each table begins at the start of a cache line of 64 bytes. If a query scans all
-faces, or reads more than 256 rows on average, only 16 evenly spaced elements are queried. In the
-output, the sign ~ marks counts from only 16 elements.
+counts assume that each table begins at the start of a cache line of 64 bytes. If the queries of a
+relation scan all faces, or read more than 256 table rows per query on average, only 16 evenly
+spaced elements are queried. In the output, the sign ~ marks counts from only 16 elements.
 
 Times are measured as in `sixfold study`. A sweep queries all elements once, in order. The speed of
 memory is measured first, in buffers of growing size. The time of a sweep is compared with the speed
@@ -33,9 +33,9 @@ are kept.";
 
 /// Explain the time of queries by the memory that the queries read.
 ///
-/// Shows for each relation and backend how many rows, cache lines and bytes a query reads, and how
-/// many bytes a pass over all elements moves. Also shows the measured time, and what limits the
-/// speed.
+/// Shows for each relation and backend how many table rows, cache lines and bytes a query reads.
+/// Shows how many bytes a pass over all elements moves from memory. Shows the measured time of each
+/// relation, and the factor that limits the speed.
 #[derive(Debug, Args)]
 #[command(after_help = WHY_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Why {

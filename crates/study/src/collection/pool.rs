@@ -21,7 +21,7 @@ pub struct Pool {
     /// The number of studied meshes that each backend can hold.
     pub holding: Vec<Holding>,
     /// The names of the compared backends. Each compared backend can hold all meshes of the first
-    /// group.
+    /// entry of `groups`.
     pub compared: Vec<String>,
     /// The results of groups of meshes. The first group contains the meshes that all compared
     /// backends can hold. The other groups are subsets of the first group, such as all closed
@@ -52,7 +52,7 @@ pub struct Group {
     /// The names of the meshes.
     pub meshes: Vec<String>,
     /// The results for each purpose (such as queries) and each backend. The backends of a purpose
-    /// are sorted, the fastest backend first.
+    /// are sorted from the fastest to the slowest.
     pub overall: Vec<Overall>,
     /// The results for each operation and each backend.
     pub pooled: Vec<Pooled>,
@@ -64,9 +64,9 @@ pub struct Group {
 pub enum Purpose {
     /// Building the structure from an indexed face set.
     Build,
-    /// Queries, and passes over the mesh that only query it.
+    /// Queries, and read-only passes over the mesh.
     Query,
-    /// Changes of the connectivity.
+    /// Edits that change the connectivity of the mesh.
     Edit,
     /// Subdivision, with the fastest method of each backend.
     Subdivide,
@@ -81,9 +81,9 @@ pub struct Overall {
     pub backend: String,
     /// The number of meshes in the mean.
     pub meshes: usize,
-    /// Geometric mean over meshes and operations of the time divided by the time of the fastest
-    /// backend. Each range of mesh sizes (such as 100 to 999 faces or 1,000 to 9,999 faces) has the
-    /// same weight in the mean.
+    /// The time of this backend divided by the time of the fastest backend, as the geometric mean
+    /// over meshes and operations. Each range of mesh sizes (such as 100 to 999 faces or 1,000 to
+    /// 9,999 faces) has the same weight in the mean.
     pub ratio_to_best: f64,
     /// Lower end of the 95 % confidence interval of `ratio_to_best`; `None` with fewer than three
     /// meshes.
@@ -108,19 +108,20 @@ pub struct Pooled {
     /// Number of meshes on which the time is an estimate, because a real run would exceed the time
     /// budget.
     pub estimated: usize,
-    /// Geometric mean over the meshes of the time divided by the time of the fastest backend.
+    /// The time of this backend divided by the time of the fastest backend, as the geometric mean
+    /// over the meshes.
     pub ratio_to_best: f64,
     /// Lower end of the 95 % confidence interval of `ratio_to_best`; `None` with fewer than three
     /// meshes.
     pub ci_low: Option<f64>,
     /// Upper end of the 95 % confidence interval of `ratio_to_best`.
     pub ci_high: Option<f64>,
-    /// Geometric mean over the meshes of the time per element, in nanoseconds.
+    /// The time per element in nanoseconds, as the geometric mean over the meshes.
     pub ns_per_element: Option<f64>,
 }
 
 impl Pool {
-    /// Computes the results over several studies. Each study is of another mesh.
+    /// Computes the results over several studies. Each study must be of a different mesh.
     pub fn new(studies: &[Report]) -> Self {
         let holding = holding(studies);
         let compared: Vec<&str> = holding
@@ -157,7 +158,7 @@ impl Pool {
         pool
     }
 
-    /// Returns the results of the first group: all meshes that all compared backends can hold.
+    /// Returns the results over the meshes that all compared backends can hold.
     pub fn all(&self) -> &[Pooled] {
         self.groups.first().map_or(&[], |group| &group.pooled)
     }
@@ -361,7 +362,7 @@ fn tasks(purpose: Purpose) -> Vec<Vec<Operation>> {
 }
 
 impl Purpose {
-    /// All purposes.
+    /// All kinds of work.
     pub const ALL: [Self; 4] = [Self::Build, Self::Query, Self::Edit, Self::Subdivide];
 
     /// Returns the purpose that an operation serves.

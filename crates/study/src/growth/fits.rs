@@ -21,11 +21,11 @@ pub struct Fit {
     /// The line fitted to the times at all sizes; `None` with fewer than two sizes.
     pub all: Option<Slope>,
     /// The line fitted to the times at the sizes for which the structure fits into the last-level
-    /// cache. `None` with fewer than two sizes of this kind, or if the caches are unknown.
+    /// cache. `None` if the structure fits at fewer than two sizes, or if the caches are unknown.
     pub in_cache: Option<Slope>,
     /// The line fitted to the times at the sizes for which the structure is larger than the
-    /// last-level cache. `None` with fewer than two sizes of this kind, or if the caches are
-    /// unknown.
+    /// last-level cache. `None` if the structure is larger than the cache at fewer than two sizes,
+    /// or if the caches are unknown.
     pub beyond: Option<Slope>,
     /// Number of sizes at which the time is an estimate, not a measurement.
     pub estimated: usize,

@@ -74,7 +74,8 @@ pub enum GrowthError {
          smaller first"
     )]
     SizesReversed { from: usize, to: usize },
-    /// A number of faces is too small to time, or too large for the handles of elements.
+    /// A requested number of faces is too small to be timed, or too large for the handles of
+    /// elements.
     #[error("a size of {faces} faces is out of range: choose from {MIN_FACES} to {MAX_FACES}")]
     SizeOutOfRange { faces: usize },
     /// The number of sizes is below two or too large.
@@ -95,7 +96,7 @@ pub(super) struct Plan {
 
 impl GrowthSettings {
     /// Creates settings with the given `study` and with the default shape and sizes. If the time
-    /// budget of `study` is short, the number of sizes is smaller.
+    /// budget of `study` is short, fewer sizes are measured.
     pub fn from_study(study: Settings) -> Self {
         let usual = Self::default();
         let time_for = study.budget.as_millis() / MIN_SIZE_BUDGET.as_millis();

@@ -77,13 +77,14 @@ pub struct OrderEffect {
     /// Time in the original order of the mesh divided by the time in the order `best`. `None` if
     /// the original order was not measured.
     pub given_to_best: Option<Factor>,
-    /// True if `worst_to_best` is larger than the noise and the interval of `worst_to_best` lies
-    /// above 1.
+    /// True if `worst_to_best` is larger than the noise, and the confidence interval of
+    /// `worst_to_best` lies above 1.
     pub matters: bool,
 }
 
-/// The effect of the structure on the time of one operation. Each structure takes part in the order
-/// in which it is fastest. Structures that scan all faces for each element are left out.
+/// The effect of the structure on the time of one operation. For each structure, the time in the
+/// fastest order of this structure counts. Structures that scan all faces for each element are left
+/// out.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct StructureEffect {
     /// The name of the structure with the smallest median time.
@@ -96,7 +97,7 @@ pub struct StructureEffect {
     pub slowest_order: Order,
     /// Time of the slowest structure divided by the time of the fastest structure.
     pub slowest_to_fastest: Factor,
-    /// True if `slowest_to_fastest` is larger than the noise and the interval of
+    /// True if `slowest_to_fastest` is larger than the noise, and the confidence interval of
     /// `slowest_to_fastest` lies above 1.
     pub matters: bool,
 }
@@ -105,11 +106,14 @@ pub struct StructureEffect {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Larger {
-    /// The order has the larger effect on every structure that does not scan all faces.
+    /// The order of the elements has a larger effect than the choice of the structure, for every
+    /// structure that does not scan all faces.
     Order,
-    /// The structure has the larger effect on every structure that does not scan all faces.
+    /// The choice of the structure has a larger effect than the order of the elements, for every
+    /// structure that does not scan all faces.
     Structure,
-    /// The answer differs between structures, or the confidence intervals overlap.
+    /// The order has the larger effect only for some structures, or the confidence intervals
+    /// overlap.
     Depends,
 }
 

@@ -22,7 +22,7 @@ const ORDER: [&str; 6] = [
     "winged-edge",
 ];
 
-/// The backend to use.
+/// The backend that is recommended for the workload.
 ///
 /// Backends are equally fast if their times are not measurably different, or if the times differ by
 /// at most 5 %. Among the backends that are as fast as the fastest backend, the choice is the
@@ -35,20 +35,20 @@ pub struct Choice {
     pub backend: String,
     /// The names of the other backends that are as fast as the fastest backend.
     pub equally_fast: Vec<String>,
-    /// The smallest change of the workload after which a slower backend would be as fast as the
-    /// chosen backend. `None` if a factor of 100 for one operation is not enough.
+    /// The smallest change of one weight in the workload after which a slower backend would be as
+    /// fast as the chosen backend. `None` if the weight must change by a factor of more than 100.
     pub turning_point: Option<TurningPoint>,
 }
 
-/// A change of a workload after which another backend would be as fast as the chosen backend. The
-/// change is computed from the times of the operations, each timed alone.
+/// A change of one weight in the workload after which another backend would be as fast as the
+/// chosen backend. The change is computed from times of the single operations.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct TurningPoint {
     /// The operation whose weight in the workload grows.
     pub operation: String,
     /// The factor by which the weight of the operation grows.
     pub factor: f64,
-    /// The name of the backend that would then be as fast as the chosen backend.
+    /// The name of the backend that would be as fast as the chosen backend after the change.
     pub backend: String,
 }
 

@@ -14,11 +14,12 @@ pub enum Need {
     /// The structure can be edited: its edges can be split, collapsed and flipped.
     Edit,
     /// The structure can hold edges with three or more faces, and vertices whose faces form several
-    /// fans.
+    /// fans (groups of faces that are connected by edges).
     NonManifold,
     /// The structure can hold faces with any number of corners.
     Polygons,
-    /// The structure can hold two faces that run along an edge in the same direction.
+    /// The structure can hold adjacent faces with different orientations, which run along the
+    /// common edge in the same direction.
     MixedOrientation,
     /// The structure can hold vertices without a face.
     IsolatedVertices,

@@ -22,8 +22,7 @@ pub struct PickReport {
     pub meshes: Vec<String>,
     /// The workload that was run.
     pub workload: Workload,
-    /// The number of operations that the program makes on one mesh (one use of the mesh), as a mean
-    /// over the meshes.
+    /// The number of operations that the program performs on one mesh, as a mean over the meshes.
     pub operations: f64,
     /// The capabilities that a backend must have.
     pub needs: Vec<Need>,
@@ -39,9 +38,9 @@ pub struct PickReport {
     /// The backends that do not meet all requirements, each with the reason.
     #[serde(serialize_with = "by_name", deserialize_with = "from_names")]
     pub excluded: Vec<Excluded>,
-    /// The number of operations after which building each backend pays off. The backend is compared
-    /// with an existing indexed face set. The list is empty if the indexed face set was not
-    /// measured.
+    /// For each backend, the number of operations after which the building time is saved. The
+    /// comparison is with an indexed face set that is already built. The list is empty if the
+    /// indexed face set was not measured.
     pub break_even: Vec<BreakEven>,
     /// The noise: one backend is measured twice, and the longer time is divided by the shorter
     /// time. `None` if no backend was measured twice.
@@ -70,7 +69,7 @@ pub struct MeshRanking {
     pub mesh: String,
     /// The ranking on this mesh, as in [`PickReport::ranking`].
     pub ranking: Vec<Ranked>,
-    /// The break-even on this mesh, as in [`PickReport::break_even`].
+    /// The break-even of each backend on this mesh, as in [`PickReport::break_even`].
     pub break_even: Vec<BreakEven>,
     /// The noise on this mesh, as in [`PickReport::noise`].
     pub noise: Option<f64>,
@@ -82,11 +81,12 @@ pub struct Ranked {
     /// The name of the backend. The backend `relation-tables` consists of flat tables of the
     /// relations that the workload queries.
     pub backend: String,
-    /// The structure from which relation tables were made; `None` for a structure.
+    /// The structure from which the relation tables were made; `None` if the backend is a
+    /// structure.
     #[serde(rename = "over")]
     pub made_from: Option<String>,
     /// The median time of one operation of the workload, in nanoseconds. If the workload rebuilds
-    /// the structure, this time includes a part of the rebuilding.
+    /// the structure, this time includes a share of the rebuilding time.
     pub ns_per_operation: f64,
     /// The lower end of the 95 % confidence interval of `ns_per_operation`; `None` with fewer than
     /// three rounds.
@@ -120,7 +120,7 @@ pub struct Ranked {
     pub estimated: bool,
     /// The cost of each operation of the workload, timed alone.
     pub parts: Vec<PartCost>,
-    /// The number of rounds with a sample of this backend.
+    /// The number of rounds in which the workload was timed on this backend.
     pub samples: usize,
     /// The largest number of page faults in a sample; `None` if page faults were not counted.
     #[serde(default)]
@@ -159,8 +159,8 @@ impl PartCost {
     }
 }
 
-/// The number of operations after which building a backend pays off, compared with an existing
-/// indexed face set.
+/// The number of operations after which the time to build a backend is saved, compared with an
+/// indexed face set that is already built.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct BreakEven {
     /// The name of the backend, such as `half-edge`.
@@ -170,15 +170,16 @@ pub struct BreakEven {
     /// The time saved per operation, compared with the indexed face set, in nanoseconds. The value
     /// is negative if the backend is slower than the indexed face set.
     pub saves_ns_per_operation: f64,
-    /// The number of operations after which building pays off; `None` if building never pays off.
+    /// The number of operations after which the building time is saved; `None` if the building time
+    /// is never saved.
     pub operations: Option<f64>,
     /// The lower end of the 95 % confidence interval of `operations`.
     pub ci_low: Option<f64>,
-    /// The upper end of the 95 % confidence interval of `operations`; `None` if building may never
-    /// pay off.
+    /// The upper end of the 95 % confidence interval of `operations`; `None` if the building time
+    /// may never be saved.
     pub ci_high: Option<f64>,
-    /// The number of uses of the mesh after which building pays off: `operations` divided by the
-    /// number of operations in one use.
+    /// The number of uses of a mesh after which the building time is saved: `operations` divided by
+    /// the number of operations in one use.
     pub uses: Option<f64>,
 }
 

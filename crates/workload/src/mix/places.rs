@@ -1,4 +1,5 @@
-//! The places of the edits of a mix. Each edit has its own place, away from the queried elements.
+//! Chooses the faces at which the edits of a mix are done. These faces are away from the queried
+//! elements, and edits at different faces do not affect each other.
 
 use sixfold::{Edit, FaceId, FaceVertexMesh, PolygonMesh, Representation};
 
@@ -29,7 +30,7 @@ pub enum EditPlaceError {
          use a larger mesh"
     )]
     TooSmall { edits: usize },
-    /// At least one backend refuses the edit at each place that was chosen for the edit.
+    /// Each face that was chosen for the edit is refused by at least one backend.
     #[error(
         "at least one backend refuses {edit} at every tried face: remove {edit} from the \
          workload, or use another mesh"

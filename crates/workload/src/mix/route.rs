@@ -1,5 +1,5 @@
 //! The order in which a mix visits the elements. In sequential access, each structure uses its own
-//! order. Random access and patches have the same order for all structures.
+//! order of the elements. In random access and in patches, all structures use the same order.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;

@@ -1,4 +1,4 @@
-//! The handles of the elements of a route in one structure.
+//! The handles, in one structure, of the elements that a mix visits.
 
 use std::hint::black_box;
 use std::ops::Range;

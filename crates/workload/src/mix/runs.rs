@@ -1,4 +1,4 @@
-//! Runs of a mix, and of one part alone, on any mesh; without edits.
+//! Runs a mix without edits, or one kind of operation of the mix alone, on any mesh.
 
 use std::ops::Range;
 

@@ -1,4 +1,5 @@
-//! The schedule of a mix: the operations that each part (a kind of operation) runs in each turn.
+//! The schedule of a mix: how many operations of each kind run in each turn (a group of
+//! operations).
 
 use std::ops::Range;
 
@@ -45,8 +46,8 @@ impl Schedule {
         }
     }
 
-    /// Returns the numbers of the operations that `part` runs in turn `turn`. Operation 0 is the
-    /// first operation of the part in turn 0.
+    /// Returns the operations that the part with index `part` runs in turn `turn`, as a range of
+    /// numbers. The operations of each part are numbered from 0, starting in turn 0.
     pub fn turn_range(&self, part: usize, turn: u64) -> Range<u64> {
         if self.parts[part].action.is_pass() {
             return 0..0;
@@ -57,7 +58,8 @@ impl Schedule {
         done(turn)..done(turn + 1)
     }
 
-    /// Returns the number of operations that `part` runs in the first `turns` turns.
+    /// Returns the number of operations that the part with index `part` runs in the first `turns`
+    /// turns.
     pub fn operations_within(&self, part: usize, turns: u64) -> u64 {
         match turns {
             0 => 0,

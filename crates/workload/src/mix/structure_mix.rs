@@ -60,7 +60,7 @@ pub(crate) struct MixInput<'a> {
 /// # Errors
 ///
 /// Returns the reason if the structure cannot hold `polygons`, if the structure does not support an
-/// edit of the mix, or if the mesh has no room for an edit.
+/// edit of the mix, or if the mesh is not suited for the edits.
 pub fn prepare_mix<'a>(
     backend: &Backend,
     polygons: &'a PolygonMesh,

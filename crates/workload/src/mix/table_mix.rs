@@ -153,9 +153,9 @@ impl MeshQuery for Tables {
     }
 }
 
-/// Builds the structure of `backend` from `polygons`, then tables of the relations that `schedule`
-/// queries. Returns `None` if the structure cannot hold `polygons` or if an operation of the
-/// schedule changes the connectivity of the mesh.
+/// Builds the structure of `backend` from `polygons`, and copies the relations that `schedule`
+/// queries into flat tables. Returns `None` if the structure cannot hold `polygons` or if an
+/// operation of the schedule changes the connectivity of the mesh.
 pub fn tabulate<'a>(
     backend: &Backend,
     polygons: &'a PolygonMesh,
