@@ -23,10 +23,10 @@ Exit codes: 0 success; 2 wrong usage or unusable input; 4 interrupted.";
 #[command(after_help = EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Distance {
     /// The first mesh (- for standard input)
-    #[arg(value_name = "FIRST.obj")]
+    #[arg(value_name = "FIRST")]
     pub(crate) first: PathBuf,
     /// The second mesh
-    #[arg(value_name = "SECOND.obj")]
+    #[arg(value_name = "SECOND")]
     pub(crate) second: PathBuf,
     /// Number of sample points on each surface
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = samples, allow_hyphen_values = true)]

@@ -88,7 +88,7 @@ pub(crate) struct Subdivide {
     #[arg(long, value_name = "WHOSE", value_parser = loop_weights)]
     pub(crate) loop_weights: Option<LoopWeights>,
     /// Also write limit positions and normals to this file
-    #[arg(long, value_name = "LIMIT.obj")]
+    #[arg(long, value_name = "LIMIT")]
     pub(crate) limit: Option<PathBuf>,
     /// Also write the remaining sharpness, as a crease file
     #[arg(long, value_name = "FILE")]
