@@ -16,6 +16,7 @@ use sixfold_workload::{
 };
 
 use crate::inspect::{StudyMesh, per_vertex, unbuilt};
+use crate::refusal::Candidate;
 use crate::report::{BackendReport, MeshReport, SCHEMA, write_json};
 use crate::study::StudyError;
 
@@ -96,12 +97,11 @@ pub fn audit(
     heap: &dyn Heap,
     counting: &mut dyn FnMut(&Backend),
 ) -> Audit {
-    let polygons = &study_mesh.polygons;
-    let counts = polygons.counts(study_mesh.facts.edges);
+    let candidate = Candidate::from_study_mesh(study_mesh);
     let backends = backends.iter().map(|backend| {
         counting(backend);
-        let measured = count_bytes(backend, polygons, heap);
-        BackendAudit::new(backend, polygons, measured, &counts)
+        let measured = count_bytes(backend, candidate.polygons, heap);
+        BackendAudit::new(backend, &candidate, measured)
     });
     Audit {
         schema: SCHEMA,
@@ -225,13 +225,13 @@ impl Audit {
 impl BackendAudit {
     fn new(
         backend: &Backend,
-        polygons: &PolygonMesh,
+        candidate: &Candidate<'_>,
         measured: Result<MeasuredMemory, BuildError>,
-        counts: &Counts,
     ) -> Self {
+        let counts = &candidate.counts;
         let closed_triangles = closed_triangles_words(backend);
         let (report, measured) = match measured {
-            Err(refusal) => (unbuilt(backend, polygons, counts, Err(refusal)), None),
+            Err(refusal) => (unbuilt(backend, candidate, Err(refusal)), None),
             Ok(measured) => {
                 let bytes = measured.memory.total();
                 let report = BackendReport {
@@ -239,7 +239,7 @@ impl BackendAudit {
                     bytes_per_vertex: per_vertex(bytes, counts),
                     tables: measured.memory.tables,
                     merged_vertices: Some(measured.merged_vertices),
-                    ..unbuilt(backend, polygons, counts, Ok(()))
+                    ..unbuilt(backend, candidate, Ok(()))
                 };
                 (report, Some((measured.counted, measured.peak)))
             }

@@ -34,6 +34,7 @@ use crate::agreement::compare_checksums;
 use crate::environment::Environment;
 use crate::heap::Memory;
 use crate::measure::Progress;
+use crate::refusal::Candidate;
 use crate::report::{Agreement, Control, Refusal, ResultRow, SCHEMA, write_json};
 use crate::study::{StudyError, is_skewed, prepare, refusals, results, scans};
 use crate::trial::{Columns, Measured, Trial};
@@ -271,13 +272,14 @@ impl Sweep<'_> {
         let seed = self.settings.study.seed;
         let needs_draw = backends.iter().any(|b| skewed || scans(b, operations));
         let draw = needs_draw.then(|| Draw::new(mesh, seed));
+        let candidate = Candidate::with_facts(mesh, &facts);
         let mut subjects: Vec<Box<dyn TimedBackend + '_>> = Vec::new();
         let (mut backend_bytes, mut refused_by) = (Vec::new(), Vec::new());
         for backend in backends {
             if stopped() {
                 return Ok(None);
             }
-            let (report, subject) = prepare(backend, mesh, draw.as_ref(), &counts);
+            let (report, subject) = prepare(backend, &candidate, draw.as_ref());
             match subject {
                 Some(subject) => {
                     backend_bytes

@@ -3,7 +3,7 @@
 use sixfold::{BuildError, Facts, PolygonMesh};
 use sixfold_core::Counts;
 
-use crate::refusal::reason;
+use crate::refusal::Candidate;
 use crate::report::{BackendReport, Inspection, MeshReport, SCHEMA};
 use sixfold_workload::Backend;
 
@@ -44,14 +44,14 @@ impl StudyMesh {
 /// Checks which backends can hold the mesh, without building the backends. The expected time is
 /// O(corners) per backend.
 pub fn inspect(study_mesh: &StudyMesh, backends: &[Backend]) -> Inspection {
-    let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
+    let candidate = Candidate::from_study_mesh(study_mesh);
     let backends = backends.iter().map(|backend| {
         // The facts are known already, and enough for most meshes.
         let verdict = match backend.info.capabilities.is_satisfied_by(&study_mesh.facts) {
             true => Ok(()),
             false => backend.info.check(&study_mesh.polygons),
         };
-        unbuilt(backend, &study_mesh.polygons, &counts, verdict)
+        unbuilt(backend, &candidate, verdict)
     });
     Inspection {
         schema: SCHEMA,
@@ -63,12 +63,12 @@ pub fn inspect(study_mesh: &StudyMesh, backends: &[Backend]) -> Inspection {
 /// Returns the report of a backend that is not built.
 pub(crate) fn unbuilt(
     backend: &Backend,
-    polygons: &PolygonMesh,
-    counts: &Counts,
+    candidate: &Candidate<'_>,
     verdict: Result<(), BuildError>,
 ) -> BackendReport {
+    let counts = &candidate.counts;
     let refusal = verdict.err();
-    let reason = refusal.map(|refusal| reason(&refusal, &backend.info.capabilities, polygons));
+    let reason = refusal.map(|refusal| candidate.reason(&refusal, &backend.info.capabilities));
     let holds = reason.is_none();
     let layout_bytes = holds.then(|| (backend.layout_bytes)(counts));
     BackendReport {

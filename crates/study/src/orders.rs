@@ -29,6 +29,7 @@ use crate::environment::Environment;
 use crate::heap::Memory;
 use crate::inspect::StudyMesh;
 use crate::measure::{Entry, Progress};
+use crate::refusal::Candidate;
 use crate::report::{
     Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, SCHEMA, write_json,
 };
@@ -165,9 +166,13 @@ pub fn orders(
     let mut backends = Vec::new();
     let mut subjects: Vec<Box<dyn TimedBackend + '_>> = Vec::new();
     let mut columns: Vec<Column> = Vec::new();
+    let candidates: Vec<_> = meshes
+        .iter()
+        .map(|(order, mesh, draw)| (order, Candidate::new(mesh, study_mesh.facts.edges), draw))
+        .collect();
     for backend in &chosen {
-        for (order, mesh, draw) in meshes.iter() {
-            let (report, subject) = prepare(backend, mesh, draw, &counts);
+        for &(order, ref candidate, draw) in &candidates {
+            let (report, subject) = prepare(backend, candidate, draw);
             if order == Order::Given {
                 backends.push(report);
             }

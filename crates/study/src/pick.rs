@@ -38,7 +38,7 @@ use crate::budget::Budget;
 use crate::environment::Environment;
 use crate::heap::{CacheState, Memory};
 use crate::inspect::StudyMesh;
-use crate::refusal::reason;
+use crate::refusal::Candidate;
 use crate::study::{Settings, StudyError, needed_bytes};
 use crate::timer::Timer;
 use backend::PickBackend;
@@ -174,7 +174,7 @@ fn qualified(
     if polygons.face_count() == 0 {
         return Err(StudyError::NoFaces.into());
     }
-    let counts = polygons.counts(study_mesh.facts.edges);
+    let candidate = Candidate::from_study_mesh(study_mesh);
     let mut excluded = Vec::new();
     let mut qualified = Vec::new();
     for backend in settings.chosen_backends()? {
@@ -182,7 +182,7 @@ fn qualified(
             .needs
             .iter()
             .find_map(|need| need.unmet_reason(&backend));
-        let bytes = (backend.layout_bytes)(&counts) as u64;
+        let bytes = (backend.layout_bytes)(&candidate.counts) as u64;
         let excluded_because = match (lacks, settings.max_memory) {
             (Some(lacks), _) => Some(lacks),
             (None, Some(most)) if bytes > most => Some(report::over_memory_limit(bytes, most)),
@@ -190,7 +190,7 @@ fn qualified(
                 .info
                 .check(polygons)
                 .err()
-                .map(|refusal| reason(&refusal, &backend.info.capabilities, polygons)),
+                .map(|refusal| candidate.reason(&refusal, &backend.info.capabilities)),
         };
         match excluded_because {
             Some(reason) => excluded.push(Excluded::new(backend.name(), reason)),

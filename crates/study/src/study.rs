@@ -16,6 +16,7 @@ use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::measure::{Entry, Progress};
 use crate::orders::prepared_bytes;
 use crate::ranking::rank;
+use crate::refusal::Candidate;
 use crate::report::{
     Agreement, BackendReport, Control, RawSamples, Refusal, Report, ResultRow, SCHEMA,
 };
@@ -207,10 +208,11 @@ pub fn study(
         .any(|backend| skewed || scans(backend, &operations))
         .then(|| Draw::new(polygons, settings.seed));
 
+    let candidate = Candidate::from_study_mesh(study_mesh);
     let mut backends = Vec::new();
     let mut subjects: Vec<Box<dyn TimedBackend + '_>> = Vec::new();
     for backend in &chosen {
-        let (report, subject) = prepare(backend, polygons, draw.as_ref(), &counts);
+        let (report, subject) = prepare(backend, &candidate, draw.as_ref());
         backends.push(report);
         subjects.extend(subject);
     }
@@ -322,20 +324,19 @@ pub(crate) fn scans(backend: &Backend, operations: &[Operation]) -> bool {
 
 pub(crate) fn prepare<'a>(
     backend: &Backend,
-    polygons: &'a PolygonMesh,
+    candidate: &Candidate<'a>,
     draw: Option<&'a Draw>,
-    counts: &Counts,
 ) -> (BackendReport, Option<Box<dyn TimedBackend + 'a>>) {
-    match backend.prepare(polygons, draw) {
-        Err(refusal) => (unbuilt(backend, polygons, counts, Err(refusal)), None),
+    match backend.prepare(candidate.polygons, draw) {
+        Err(refusal) => (unbuilt(backend, candidate, Err(refusal)), None),
         Ok((subject, memory)) => {
             let bytes = memory.total();
             let report = BackendReport {
                 bytes: Some(bytes),
-                bytes_per_vertex: per_vertex(bytes, counts),
+                bytes_per_vertex: per_vertex(bytes, &candidate.counts),
                 tables: memory.tables,
                 merged_vertices: Some(subject.merged_vertices()),
-                ..unbuilt(backend, polygons, counts, Ok(()))
+                ..unbuilt(backend, candidate, Ok(()))
             };
             (report, Some(subject))
         }

@@ -21,6 +21,7 @@ use crate::budget::Budget;
 use crate::environment::Environment;
 use crate::inspect::{StudyMesh, unbuilt};
 use crate::measure::Progress;
+use crate::refusal::Candidate;
 use crate::report::{Agreement, BackendReport, MeshReport, Report, SCHEMA, write_json};
 use crate::study::{Settings, StudyError, study};
 
@@ -260,7 +261,7 @@ fn count_all(
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<(Vec<BackendReport>, Vec<WhyRow>), StudyError> {
     let chosen = settings.chosen_backends()?;
-    let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
+    let candidate = Candidate::from_study_mesh(study_mesh);
     let (mut backends, mut rows) = (Vec::new(), Vec::new());
     let all = (chosen.len() * relations.len()) as f64;
     for (i, backend) in chosen.iter().enumerate() {
@@ -271,9 +272,8 @@ fn count_all(
             rows: &mut rows,
             progress,
         };
-        let polygons = &study_mesh.polygons;
-        let verdict = backend.count_reads(polygons, relations, stop, &mut counting);
-        backends.push(unbuilt(backend, polygons, &counts, verdict));
+        let verdict = backend.count_reads(candidate.polygons, relations, stop, &mut counting);
+        backends.push(unbuilt(backend, &candidate, verdict));
     }
     if backends.iter().all(|backend| !backend.holds) {
         let refusals = backends
