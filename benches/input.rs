@@ -42,7 +42,7 @@ pub(crate) fn inputs() -> Vec<Input> {
 }
 
 /// Builds a closed surface of about `faces` triangles with varying valences.
-fn irregular(faces: usize) -> PolygonMesh {
+pub(crate) fn irregular(faces: usize) -> PolygonMesh {
     let blobs = shapes::generator("blobs").expect("the shape exists");
     let mesh = blobs
         .build(&[("faces", faces as f64)])

@@ -7,6 +7,7 @@ mod construction;
 mod editing;
 mod input;
 mod query;
+mod spatial;
 mod subdivision;
 mod workload;
 mod zero_cost;
@@ -31,6 +32,7 @@ criterion_group! {
     name = all;
     config = short_runs();
     targets = zero_cost::define, construction::define, workload::define, query::define,
-        subdivision::define, editing::define
+        subdivision::define, editing::define,
+        spatial::define
 }
 criterion_main!(all);

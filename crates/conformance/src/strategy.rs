@@ -12,7 +12,7 @@ use std::ops::RangeInclusive;
 
 use proptest::prelude::*;
 use proptest::{collection, sample};
-use sixfold_core::PolygonMesh;
+use sixfold_core::{Capabilities, PolygonMesh};
 
 use crate::gallery::distinct_position;
 use builder::MeshBuilder;
@@ -71,6 +71,18 @@ pub fn any_mesh() -> impl Strategy<Value = PolygonMesh> {
         (places, collection::vec(face, 0..=faces))
     });
     faces.prop_map(|(places, faces)| build_mesh(places, faces))
+}
+
+/// Generates capabilities of any combination, most of which no structure has.
+pub fn any_capabilities() -> impl Strategy<Value = Capabilities> {
+    any::<[bool; 6]>().prop_map(|[a, b, c, d, e, f]| Capabilities {
+        polygons: a,
+        non_manifold_edges: b,
+        non_manifold_vertices: c,
+        inconsistent_orientation: d,
+        isolated_vertices: e,
+        coincident_vertices: f,
+    })
 }
 
 fn build_mesh(places: Vec<u32>, faces: Vec<Vec<u32>>) -> PolygonMesh {

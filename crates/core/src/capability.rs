@@ -4,6 +4,7 @@ use rustc_hash::FxHashMap;
 
 use crate::Point;
 use crate::error::BuildError;
+use crate::facts::Facts;
 use crate::incidence::Incidence;
 use crate::pairing::{MAX_CORNERS, MAX_EDGES};
 use crate::polygon_mesh::PolygonMesh;
@@ -94,6 +95,21 @@ impl Capabilities {
             check_coincident_corners(polygons)?;
         }
         Ok(())
+    }
+
+    /// Returns whether the facts of a mesh show that [`check`](Self::check) finds no fault; O(1). If
+    /// not, only `check` can decide. Facts show nothing about a mesh with degenerate faces or
+    /// non-manifold edges, nor about equal coordinates.
+    pub fn is_satisfied_by(&self, facts: &Facts) -> bool {
+        let most_corners = facts.face_degree.as_ref().map_or(0, |degree| degree.max);
+        let fits = facts.edges <= MAX_EDGES && 2 * facts.edges <= MAX_CORNERS;
+        fits && facts.degenerate_faces == 0
+            && facts.non_manifold_edges == 0
+            && (self.polygons || most_corners <= 3)
+            && (self.non_manifold_vertices || facts.non_manifold_vertices == 0)
+            && (self.inconsistent_orientation || facts.inconsistent_edges == 0)
+            && (self.isolated_vertices || facts.isolated_vertices == 0)
+            && self.coincident_vertices
     }
 
     /// Returns the error that a constructor must return after it has found a fault in `polygons`.

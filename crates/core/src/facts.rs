@@ -1,11 +1,11 @@
 //! Topological properties of a list of faces.
 
 use std::collections::BTreeMap;
-
-use rustc_hash::FxHashSet;
+use std::ops::Range;
 
 use crate::error::PolygonError;
 use crate::face_list::FaceList;
+use crate::faces_by_lowest::FacesByLowest;
 use crate::incidence::{Incidence, corners_at_ends};
 use crate::partition::Partition;
 use crate::polygon_mesh::{PolygonMesh, repeated};
@@ -166,10 +166,8 @@ struct EdgePass<'a> {
     components: Partition,
     /// Sets of corners in the same fan. Each corner of an unused face is a set of its own.
     fans: Partition,
-    /// Sets of fans that are joined by boundary edges.
-    loops: Partition,
-    /// A fan of each boundary edge.
-    boundary_fans: Vec<usize>,
+    /// The two fans at the ends of each boundary edge.
+    boundary_fans: Vec<[usize; 2]>,
     /// By vertex: the number of edges that end there.
     valence: Vec<usize>,
     /// By vertex: whether a non-manifold edge ends there.
@@ -179,7 +177,6 @@ struct EdgePass<'a> {
 impl<'a> EdgePass<'a> {
     fn new(vertices: usize, faces: &'a FaceList, used: &'a [bool]) -> Self {
         let incidence = Incidence::new(vertices, faces, |f| used[f.index()]);
-        let corners = faces.corners().len();
         let mut pass = Self {
             faces,
             used,
@@ -190,7 +187,6 @@ impl<'a> EdgePass<'a> {
             orientable: true,
             components: Partition::new(faces.len()),
             fans: incidence.fans(faces),
-            loops: Partition::new(corners),
             boundary_fans: Vec::new(),
             valence: vec![0; vertices],
             on_non_manifold_edge: vec![false; vertices],
@@ -211,9 +207,8 @@ impl<'a> EdgePass<'a> {
                 [side] => {
                     pass.boundary_edges += 1;
                     let ends = corners_at_ends(side, faces);
-                    let [a, b] = ends.map(|corner| pass.fans.root(corner).0);
-                    pass.loops.join(a, b);
-                    pass.boundary_fans.push(a);
+                    let fans = ends.map(|corner| pass.fans.root(corner).0);
+                    pass.boundary_fans.push(fans);
                 }
                 [a, b] => {
                     let same = a.downward == b.downward;
@@ -263,7 +258,7 @@ impl<'a> EdgePass<'a> {
             closed: has_faces && self.boundary_edges == 0,
             genus,
             isolated_vertices: named.iter().filter(|&&named| !named).count(),
-            duplicate_faces: used_faces - self.distinct_vertex_sets(),
+            duplicate_faces: self.duplicate_faces(),
             degenerate_faces: faces.len() - used_faces,
             valence: Distribution::from_values(
                 self.valence.iter().copied().filter(|&valence| valence > 0),
@@ -272,10 +267,17 @@ impl<'a> EdgePass<'a> {
         }
     }
 
-    fn boundary_loops(&mut self) -> usize {
-        let fans = std::mem::take(&mut self.boundary_fans);
-        let loops = fans.into_iter().map(|fan| self.loops.root(fan).0);
-        loops.collect::<FxHashSet<_>>().len()
+    /// Returns the number of sets of fans that are joined by boundary edges.
+    fn boundary_loops(&self) -> usize {
+        let mut fans: Vec<usize> = self.boundary_fans.iter().flatten().copied().collect();
+        fans.sort_unstable();
+        fans.dedup();
+        let mut loops = Partition::new(fans.len());
+        for ends in &self.boundary_fans {
+            let [a, b] = ends.map(|fan| fans.binary_search(&fan).expect("listed above"));
+            loops.join(a, b);
+        }
+        loops.classes()
     }
 
     fn non_manifold_vertices(&mut self) -> usize {
@@ -293,13 +295,28 @@ impl<'a> EdgePass<'a> {
             .count()
     }
 
-    fn distinct_vertex_sets(&self) -> usize {
-        let mut corners = self.faces.corners().to_vec();
-        for (f, _) in self.faces.iter() {
-            corners[self.faces.range(f)].sort_unstable();
+    /// Returns the number of faces with the same vertices as an earlier face.
+    fn duplicate_faces(&self) -> usize {
+        let vertices = self.valence.len();
+        let by_lowest = FacesByLowest::new(vertices, self.faces, |f| self.used[f.index()]);
+        let mut corners = Vec::new();
+        let mut sets: Vec<Range<usize>> = Vec::new();
+        let mut duplicates = 0;
+        for faces in by_lowest.several() {
+            corners.clear();
+            sets.clear();
+            for &f in faces {
+                let start = corners.len();
+                corners.extend_from_slice(self.faces.face(f));
+                corners[start..].sort_unstable();
+                sets.push(start..corners.len());
+            }
+            sets.sort_unstable_by(|a, b| corners[a.clone()].cmp(&corners[b.clone()]));
+            let pairs = sets.windows(2);
+            let equal =
+                |pair: &&[Range<usize>]| corners[pair[0].clone()] == corners[pair[1].clone()];
+            duplicates += pairs.filter(equal).count();
         }
-        let used = self.faces.iter().filter(|(f, _)| self.used[f.index()]);
-        let sets = used.map(|(f, _)| &corners[self.faces.range(f)]);
-        sets.collect::<FxHashSet<_>>().len()
+        duplicates
     }
 }

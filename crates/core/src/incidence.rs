@@ -6,24 +6,24 @@ use crate::row_id::{FaceId, VertexId, row};
 
 /// One side of one face, stored under its lower end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Side {
+pub struct Side {
     /// The higher end.
-    pub(crate) high: VertexId,
+    pub high: VertexId,
     /// The face that has the side.
-    pub(crate) face: FaceId,
+    pub face: FaceId,
     /// The corner at which the side starts, numbered over all faces.
-    pub(crate) corner: u32,
+    pub corner: u32,
     /// Whether the side runs from the higher end to the lower end.
-    pub(crate) downward: bool,
+    pub downward: bool,
 }
 
 /// An edge and the sides along it, in the order of the faces.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct EdgeSides<'a> {
+pub struct EdgeSides<'a> {
     /// The two ends, the lower first.
-    pub(crate) ends: [VertexId; 2],
+    pub ends: [VertexId; 2],
     /// The sides along the edge; at least one.
-    pub(crate) sides: &'a [Side],
+    pub sides: &'a [Side],
 }
 
 /// An edge, the number of its faces, and whether the faces run along the edge in different
@@ -63,7 +63,7 @@ impl EdgeUse {
 
 /// The sides of all faces by edge; built in O(corners), plus O(n log n) for the n sides of each
 /// vertex.
-pub(crate) struct Incidence {
+pub struct Incidence {
     sides: Vec<Side>,
     /// By vertex: the end of the sides that are stored under this vertex.
     ends: Vec<u32>,
@@ -72,7 +72,11 @@ pub(crate) struct Incidence {
 impl Incidence {
     /// Collects the sides of the faces that `used` selects. These faces must name each vertex at
     /// most once.
-    pub(crate) fn new(vertices: usize, faces: &FaceList, used: impl Fn(FaceId) -> bool) -> Self {
+    ///
+    /// # Panics
+    ///
+    /// Panics if such a face names a vertex that is not below `vertices`.
+    pub fn new(vertices: usize, faces: &FaceList, used: impl Fn(FaceId) -> bool) -> Self {
         let sides = || {
             let used = faces.iter().filter(|&(f, _)| used(f));
             used.flat_map(|(face, corners)| sides_of(face, corners, faces.range(face).start))
@@ -109,7 +113,7 @@ impl Incidence {
     }
 
     /// Returns every edge, ordered by the lower end, then by the higher end.
-    pub(crate) fn edges(&self) -> impl Iterator<Item = EdgeSides<'_>> {
+    pub fn edges(&self) -> impl Iterator<Item = EdgeSides<'_>> {
         let starts = std::iter::once(0).chain(self.ends.iter().map(|&end| end as usize));
         let buckets = starts.zip(&self.ends).zip(0..);
         buckets.flat_map(|((start, &end), low)| {
@@ -140,7 +144,7 @@ impl Incidence {
     /// Returns the vertices whose faces form more than one fan. Each vertex has two faces: the
     /// first face of its first fan, and the first face of another fan. The vertices are in the
     /// order of the second faces.
-    pub(crate) fn several_fans(&self, faces: &FaceList) -> Vec<(VertexId, [FaceId; 2])> {
+    pub fn several_fans(&self, faces: &FaceList) -> Vec<(VertexId, [FaceId; 2])> {
         let mut fans = self.fans(faces);
         // By vertex: its first face, the fan of that face, and whether another fan was found.
         let mut first: Vec<Option<(FaceId, usize, bool)>> = vec![None; self.ends.len()];

@@ -39,6 +39,8 @@
 //! - [`check_rows`], [`check_corners`], [`check_cut`]: checks that an edit is allowed.
 //! - [`FaceSpans`]: the range of corners of each face in a flat table.
 //! - [`TwinPairs`]: the half-edges of a list of faces in pairs, found without hashing.
+//! - [`Incidence`]: the sides of any list of faces by edge; [`Partition`]: union–find with parity;
+//!   [`FacesByLowest`]: faces that can have the same vertices.
 //! - [`ScannedFaces`]: queries and edits of structures that scan all corners to find the faces at a
 //!   vertex.
 //! - [`Distinct`], [`ShortVec`], [`Lookup`]: an iterator without repeated items, short lists, and
@@ -73,6 +75,7 @@ mod element_data;
 mod error;
 mod face_list;
 mod face_spans;
+mod faces_by_lowest;
 mod facts;
 mod follow_edits;
 mod handle;
@@ -143,10 +146,13 @@ pub use editing::{
     VERTEX_HOLES,
 };
 pub use face_spans::{FaceSpans, ScatteredFaces};
+pub use faces_by_lowest::FacesByLowest;
 pub use holes::Holes;
+pub use incidence::{EdgeSides, Incidence, Side};
 pub use iterator_ext::{IteratorExt, MapInline};
 pub use new_rows::NewRows;
 pub use pairing::{LinkFaces, SideRows, TwinPairs, pair_triangle_sides};
+pub use partition::Partition;
 pub use ranks::Ranks;
 pub use refine::{
     CHUNK_ROWS, all_rows, check_split, chunk_starts, for_each_chunk, map_chunks, rows_of_chunk,

@@ -5,7 +5,7 @@ use crate::row_id::row;
 /// Disjoint classes of `0..len`, with the parity of each item relative to the root of its class.
 ///
 /// Union by size with path halving (Tarjan & van Leeuwen 1984): near-constant time per call.
-pub(crate) struct Partition {
+pub struct Partition {
     parent: Vec<u32>,
     size: Vec<u32>,
     /// Whether an item differs from its parent; used for orientability.
@@ -15,7 +15,11 @@ pub(crate) struct Partition {
 
 impl Partition {
     /// Builds a partition in which every item is a class of its own.
-    pub(crate) fn new(len: usize) -> Self {
+    ///
+    /// # Panics
+    ///
+    /// Panics if there are more than [`MAX_ROWS`](crate::MAX_ROWS) items.
+    pub fn new(len: usize) -> Self {
         let rows = row(len);
         Self {
             parent: (0..rows).collect(),
@@ -26,12 +30,16 @@ impl Partition {
     }
 
     /// Returns the number of classes.
-    pub(crate) fn classes(&self) -> usize {
+    pub fn classes(&self) -> usize {
         self.classes
     }
 
     /// Returns the root of the item's class, and whether the item differs from the root.
-    pub(crate) fn root(&mut self, item: usize) -> (usize, bool) {
+    ///
+    /// # Panics
+    ///
+    /// Panics if there is no such item; so do the methods below.
+    pub fn root(&mut self, item: usize) -> (usize, bool) {
         let (mut at, mut odd) = (item, false);
         loop {
             let up = self.parent[at] as usize;
@@ -49,14 +57,21 @@ impl Partition {
         }
     }
 
-    /// Merges the classes of `a` and `b`.
-    pub(crate) fn join(&mut self, a: usize, b: usize) {
+    /// Returns the number of items in the item's class.
+    pub fn class_size(&mut self, item: usize) -> usize {
+        let (root, _) = self.root(item);
+        self.size[root] as usize
+    }
+
+    /// Merges the classes of `a` and `b`. The root of the larger class becomes the root of the new
+    /// one; of two equal classes, the root of `a`.
+    pub fn join(&mut self, a: usize, b: usize) {
         self.relate(a, b, false);
     }
 
     /// Merges the classes of `a` and `b`, and records whether the two items differ. Returns false
     /// if `differ` contradicts earlier relations.
-    pub(crate) fn relate(&mut self, a: usize, b: usize, differ: bool) -> bool {
+    pub fn relate(&mut self, a: usize, b: usize, differ: bool) -> bool {
         let ((mut a, odd_a), (mut b, odd_b)) = (self.root(a), self.root(b));
         let differ = differ ^ odd_a ^ odd_b;
         if a == b {

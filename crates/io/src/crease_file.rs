@@ -6,8 +6,9 @@ use std::path::Path;
 
 use sixfold_core::{CreaseError, Creases, MAX_ROWS, PolygonMesh, VertexId};
 
-use crate::error::{Location, shortened};
+use crate::error::shortened;
 use crate::lines::{Lines, Start};
+use crate::place::Location;
 use crate::read::{OpenError, open_file};
 use crate::sharpness::sharpness;
 use crate::write::ShortestDecimal;
@@ -140,7 +141,7 @@ pub fn parse_creases(
     let edges = edges.map(|&(_, ends, sharpness)| (ends, sharpness));
     let corners = corners.map(|&(_, vertex, sharpness)| (vertex, sharpness));
     Creases::new(polygons, edges, corners).map_err(|cause| CreaseFileError::Mesh {
-        at: location(name, line.get()),
+        at: Location::line(name, line.get()),
         cause,
     })
 }
@@ -179,7 +180,7 @@ impl Entries {
     fn read(name: &str, source: impl BufRead, vertices: usize) -> Result<Self, CreaseFileError> {
         let mut lines = Lines::new(source).with_max_length(MAX_LINE_LENGTH);
         let read_error = |cause: io::Error, line| {
-            let at = location(name, u32::try_from(line).unwrap_or(u32::MAX));
+            let at = Location::line(name, u32::try_from(line).unwrap_or(u32::MAX));
             match cause.kind() {
                 io::ErrorKind::FileTooLarge => CreaseFileError::LongLine {
                     at,
@@ -189,7 +190,7 @@ impl Entries {
             }
         };
         if let Start::Utf16 = lines.start().map_err(|cause| read_error(cause, 1))? {
-            let at = location(name, 1);
+            let at = Location::line(name, 1);
             return Err(CreaseFileError::Utf16 { at });
         }
         let mut entries = Self::default();
@@ -204,10 +205,10 @@ impl Entries {
                 .ok()
                 .filter(|&n| (n as usize) < MAX_ROWS);
             let Some(line) = row else {
-                let (at, limit) = (location(name, u32::MAX), MAX_ROWS);
+                let (at, limit) = (Location::line(name, u32::MAX), MAX_ROWS);
                 return Err(CreaseFileError::TooMany { at, limit });
             };
-            let at = || location(name, line);
+            let at = || Location::line(name, line);
             let text = str::from_utf8(&text).map_err(|_| CreaseFileError::NotUtf8 { at: at() })?;
             let vertex = |text: &str| {
                 text.parse::<u32>().map_err(|_| CreaseFileError::BadVertex {
@@ -266,9 +267,4 @@ fn fields<'a, const N: usize>(
         return Err(CreaseFileError::Fields { at, found, form });
     }
     Ok(fields)
-}
-
-fn location(name: &str, line: u32) -> Location {
-    let file = name.to_owned();
-    Location { file, line }
 }

@@ -1,34 +1,23 @@
-//! Errors in OBJ files.
+//! Errors in mesh files.
 
-use std::fmt;
 use std::io;
 
-use crate::tags::TagFault;
-
-/// A line of a file, printed for example as `bunny.obj:17`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Location {
-    /// Name of the file, as the caller gave it.
-    pub file: String,
-    /// Line, counted from 1. If a statement has several lines, this is its first line.
-    pub line: u32,
-}
-
-impl fmt::Display for Location {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}", self.file, self.line)
-    }
-}
+use crate::format::Format;
+use crate::gltf::GltfFault;
+use crate::obj::TagFault;
+use crate::place::Location;
+use crate::ply::PlyHeaderFault;
 
 /// The reason why an OBJ file cannot be read, with the line and a way to correct the file.
 ///
 /// The first fault of the file is reported. Some faults can be detected only at the end of the
-/// file. They are reported in this order: vertex numbers of faces that are too high, coordinates
-/// that are not finite, tags of missing vertices and edges.
+/// file. They are reported in this order: vertex numbers of faces that are too high, and, in OBJ,
+/// tags of missing vertices and edges. Messages number vertices as the format does: OBJ from 1, the
+/// others from 0.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message shows the meaning of each field")]
-pub enum ObjError {
+pub enum ReadError {
     /// The file cannot be opened.
     #[error("{file}: cannot be opened ({cause}): check the path")]
     Open { file: String, cause: io::Error },
@@ -38,15 +27,27 @@ pub enum ObjError {
     /// Reading fails before the end of the file.
     #[error("{at}: cannot be read further ({cause}): copy the file again")]
     Read { at: Location, cause: io::Error },
+    /// Neither the content nor the name shows the format.
+    #[error(
+        "{file}: the format is not recognised: use a file in STL, PLY, OFF, glTF or OBJ, whose name ends in its format"
+    )]
+    UnknownFormat { file: String },
     /// The text has a byte order mark of UTF-16.
     #[error("{at}: the text is UTF-16: save it as UTF-8")]
     Utf16 { at: Location },
     /// A vertex, face or tag is not valid UTF-8 text.
     #[error("{at}: the statement is not UTF-8 text: save the file as UTF-8, or correct the line")]
     NotUtf8 { at: Location },
+    /// A line is too long.
+    #[error("{at}: the line is longer than {limit} bytes: check that it is {format}", format = .format.with_article())]
+    LongLine {
+        at: Location,
+        limit: usize,
+        format: Format,
+    },
     /// The file has no vertices and no faces.
-    #[error("{file}: no vertex and no face: check that it is an OBJ file")]
-    Empty { file: String },
+    #[error("{file}: no vertex and no face: check that it is {format}", format = .format.with_article())]
+    Empty { file: String, format: Format },
     /// There are more elements or lines than can be counted.
     #[error("{at}: more than {limit} {elements}: split the mesh, because handles have 32 bits")]
     TooMany {
@@ -54,6 +55,29 @@ pub enum ObjError {
         elements: &'static str,
         limit: usize,
     },
+    /// The file ends before everything that its header promises.
+    #[error("{at}: the file ends before {missing}: copy the file again, or correct its counts")]
+    Truncated { at: Location, missing: String },
+    /// A text does not have the expected form.
+    #[error("{at}: expected {expected}, found {found:?}: correct the line")]
+    Unexpected {
+        at: Location,
+        expected: String,
+        found: String,
+    },
+    /// A part of the format that is not read.
+    #[error("{at}: {feature}, which is not read: {way_out}")]
+    Unsupported {
+        at: Location,
+        feature: String,
+        way_out: &'static str,
+    },
+    /// The header of a PLY file is invalid.
+    #[error("{at}: {fault}")]
+    PlyHeader { at: Location, fault: PlyHeaderFault },
+    /// A glTF file is invalid.
+    #[error("{at}: {fault}")]
+    Gltf { at: Location, fault: GltfFault },
     /// A vertex has fewer than three coordinates.
     #[error("{at}: vertex {vertex} has {found} of three coordinates: add the missing ones")]
     TooFewCoordinates {
@@ -91,8 +115,15 @@ pub enum ObjError {
     #[error("{at}: face names vertex {index}, but there {count}: correct the index", count = vertices_phrase(*vertices))]
     IndexOutOfRange {
         at: Location,
-        index: u32,
+        index: i64,
         vertices: usize,
+    },
+    /// A number of corners or an index of a face is not a number.
+    #[error("{at}: {text:?} is not {what}: write a whole number")]
+    BadWhole {
+        at: Location,
+        what: &'static str,
+        text: String,
     },
     /// A negative vertex number of a face is too low.
     #[error("{at}: face names vertex {index}, but before this line there {count}: correct the \

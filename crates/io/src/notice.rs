@@ -2,16 +2,40 @@
 
 use std::fmt;
 
-/// A kind of ignored statement or ignored value.
+use crate::error::shortened;
+use crate::place::Place;
+
+/// A kind of content that a reader ignores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum IgnoredKind {
-    /// `vt`.
+    /// `vt` in OBJ, and texture coordinates of vertices or faces.
     TextureCoordinates,
-    /// `vn`.
+    /// `vn` in OBJ, and normals of vertices. Normals of STL facets follow from the positions and
+    /// are not reported.
     Normals,
+    /// Colours of vertices or faces; in binary STL, facets with attributes.
+    Colours,
+    /// Tangents of vertices.
+    Tangents,
     /// Values after the three coordinates of a vertex: a weight or a colour.
     ExtraValues,
+    /// Properties of PLY and attributes of glTF with another meaning.
+    Properties,
+    /// Elements of PLY other than vertices, faces and triangle strips.
+    Elements,
+    /// Triangles of a strip that have no area because they only continue it.
+    StripJoints,
+    /// Bytes or lines after the end of the mesh.
+    Trailing,
+    /// Primitives of glTF that are lines, or points by index; their vertices are kept.
+    OtherPrimitives,
+    /// Meshes of glTF that are not part of the scene.
+    UnusedMeshes,
+    /// Animations, skins and other shapes of glTF.
+    Deformations,
+    /// Extensions of glTF.
+    Extensions,
     /// `o`.
     Objects,
     /// `g`.
@@ -78,7 +102,20 @@ impl IgnoredKind {
         match self {
             Self::TextureCoordinates => ["texture coordinate", "texture coordinates"],
             Self::Normals => ["normal", "normals"],
+            Self::Colours => ["colour", "colours"],
+            Self::Tangents => ["tangent", "tangents"],
             Self::ExtraValues => ["vertex weight or colour", "vertex weights or colours"],
+            Self::Properties => ["other property", "other properties"],
+            Self::Elements => ["other element", "other elements"],
+            Self::StripJoints => ["joint of triangle strips", "joints of triangle strips"],
+            Self::Trailing => ["byte after the mesh", "bytes after the mesh"],
+            Self::OtherPrimitives => [
+                "primitive of points or lines",
+                "primitives of points or lines",
+            ],
+            Self::UnusedMeshes => ["mesh outside the scene", "meshes outside the scene"],
+            Self::Deformations => ["animation, skin or morph", "animations, skins and morphs"],
+            Self::Extensions => ["extension", "extensions"],
             Self::Objects => ["object name", "object names"],
             Self::Groups => ["group", "groups"],
             Self::Materials => ["material statement", "material statements"],
@@ -96,38 +133,87 @@ impl IgnoredKind {
     }
 }
 
-/// A kind of ignored statement and the number of such statements, printed for example as `ignored
-/// 48612 texture coordinates (first at line 12)`.
+/// A kind of ignored content and its amount, printed for example as `ignored 48612 texture
+/// coordinates (first at line 12)`.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Notice {
-    /// Kind of the ignored statements.
+    /// Kind of the ignored content.
     pub kind: IgnoredKind,
-    /// Number of ignored statements. For [`IgnoredKind::ExtraValues`], number of vertices with such
-    /// values.
-    pub count: usize,
-    /// Line of the first ignored statement, counted from 1.
-    pub first_line: u32,
+    /// Number of ignored values or statements. For [`IgnoredKind::ExtraValues`], number of vertices
+    /// with such values.
+    pub count: u64,
+    /// Place of the first one. If the format declares it in a header, the place of the declaration.
+    pub first: Place,
+    /// Names in the file, at most [`MAX_NAMES`](Self::MAX_NAMES). Empty if the kind has no names.
+    pub names: Vec<String>,
+}
+
+impl Notice {
+    /// Maximum number of names that a notice lists.
+    pub const MAX_NAMES: usize = 8;
 }
 
 impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [one, several] = self.kind.names();
-        let line = self.first_line;
+        let first = self.first;
         match self.count {
-            1 => write!(f, "ignored 1 {one} (line {line})"),
-            n => write!(f, "ignored {n} {several} (first at line {line})"),
+            1 => write!(f, "ignored 1 {one}")?,
+            n => write!(f, "ignored {n} {several}")?,
+        }
+        if !self.names.is_empty() {
+            write!(f, ": {}", self.names.join(", "))?;
+        }
+        match self.count {
+            1 => write!(f, " ({first})"),
+            _ => write!(f, " (first at {first})"),
         }
     }
 }
 
-/// Adds a statement of `kind` at `line` to `notices`.
-pub(crate) fn add_notice(notices: &mut Vec<Notice>, kind: IgnoredKind, line: u32) {
-    match notices.iter_mut().find(|notice| notice.kind == kind) {
-        Some(notice) => notice.count += 1,
-        None => notices.push(Notice {
-            kind,
-            count: 1,
-            first_line: line,
-        }),
+/// The notices of a file, one for each kind.
+#[derive(Default)]
+pub(crate) struct Notices(pub(crate) Vec<Notice>);
+
+impl Notices {
+    /// Counts one more occurrence of `kind`.
+    pub(crate) fn add(&mut self, kind: IgnoredKind, place: Place) {
+        self.add_many(kind, 1, place);
+    }
+
+    /// Counts `count` more occurrences of `kind`, unless it is 0.
+    pub(crate) fn add_many(&mut self, kind: IgnoredKind, count: u64, place: Place) {
+        if count > 0 {
+            let notice = self.entry(kind, place);
+            notice.count = notice.count.saturating_add(count);
+        }
+    }
+
+    /// Counts `count` more occurrences of `kind`, which the file calls `name`.
+    pub(crate) fn add_named(&mut self, kind: IgnoredKind, count: u64, place: Place, name: &str) {
+        if count == 0 {
+            return;
+        }
+        let notice = self.entry(kind, place);
+        notice.count = notice.count.saturating_add(count);
+        let name = shortened(name);
+        if notice.names.len() < Notice::MAX_NAMES && !notice.names.contains(&name) {
+            notice.names.push(name);
+        }
+    }
+
+    fn entry(&mut self, kind: IgnoredKind, first: Place) -> &mut Notice {
+        let known = self.0.iter().position(|notice| notice.kind == kind);
+        let at = known.unwrap_or_else(|| {
+            self.0.push(Notice {
+                kind,
+                count: 0,
+                first,
+                names: Vec::new(),
+            });
+            self.0.len() - 1
+        });
+        &mut self.0[at]
     }
 }

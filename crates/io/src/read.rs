@@ -1,36 +1,137 @@
-//! Reads OBJ files.
+//! Reads files of any format.
 
 use std::fs::{self, File};
-use std::io::{self, BufRead, BufReader};
+use std::io::{self, BufReader, Read};
 use std::path::Path;
 
-use sixfold_core::{FaceList, Point, VertexId, row};
+use crate::byte_source::ByteSource;
+use crate::error::ReadError;
+use crate::file_mesh::FileMesh;
+use crate::format::{DETECTION_BYTES, Format, detect};
+use crate::options::ReadOptions;
+use crate::place::{Location, Place};
+use crate::{gltf, obj, off, ply, stl};
 
-use crate::error::ObjError;
-use crate::normaliser::Normaliser;
-use crate::obj_mesh::ObjMesh;
+/// Reads the mesh file at `path`, whose format is recognised by its content; O(bytes) expected.
+///
+/// If the content has no sign of a format, the ending of the name decides. glTF may refer to other
+/// files in the same folder.
+///
+/// # Errors
+///
+/// Fails if the file cannot be read, if its format is not known, or if it is not valid
+/// ([`ReadError`]). Messages name the file by `path`.
+///
+/// # Examples
+///
+/// ```no_run
+/// use sixfold_io::{ReadOptions, read};
+///
+/// let mesh = read("scan.ply", &ReadOptions::default())?;
+/// for notice in &mesh.notices {
+///     println!("{notice}");
+/// }
+/// let (polygons, left_out) = mesh.into_polygons();
+/// # Ok::<(), sixfold_io::ReadError>(())
+/// ```
+pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<FileMesh, ReadError> {
+    let path = path.as_ref();
+    let name = path.display().to_string();
+    let file = match open(path) {
+        Ok(file) => file,
+        Err(OpenError::Directory) => return Err(ReadError::Directory { file: name }),
+        Err(OpenError::Failed(cause)) => return Err(ReadError::Open { file: name, cause }),
+    };
+    let regular = file.metadata().ok().filter(fs::Metadata::is_file);
+    let mut source = ByteSource::new(file, regular.map(|metadata| metadata.len()));
+    read_any(&name, Some(path), &mut source, *options)
+}
 
-/// Options for `tobj`: do not change faces, and read only vertex numbers.
-const LOAD_OPTIONS: tobj::LoadOptions = tobj::LoadOptions {
-    single_index: false,
-    triangulate: false,
-    ignore_points: false,
-    ignore_lines: false,
-};
+/// Reads a mesh from `source`, whose format is recognised by its content; O(bytes) expected.
+/// Messages use `name` as the name of the file, and the ending of `name` decides if the content has
+/// no sign of a format. `source` needs no buffer.
+///
+/// # Errors
+///
+/// Fails like [`read()`], and if the content refers to another file, as glTF may.
+///
+/// # Examples
+///
+/// ```
+/// use sixfold_io::{Format, ReadOptions, read_from};
+///
+/// let text = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+/// let mesh = read_from("standard input", text.as_bytes(), &ReadOptions::default())?;
+/// assert_eq!((mesh.format, mesh.faces.len()), (Format::Off, 1));
+///
+/// let cut = read_from("cut.off", &text.as_bytes()[..22], &ReadOptions::default());
+/// let message = "cut.off:4: the file ends before vertex 3 of 3: copy the file again, or correct \
+///                its counts";
+/// assert_eq!(cut.unwrap_err().to_string(), message);
+/// # Ok::<(), sixfold_io::ReadError>(())
+/// ```
+pub fn read_from(
+    name: &str,
+    source: impl Read,
+    options: &ReadOptions,
+) -> Result<FileMesh, ReadError> {
+    read_any(name, None, &mut ByteSource::new(source, None), *options)
+}
 
 /// Reads the OBJ file at `path`; O(bytes).
 ///
 /// # Errors
 ///
-/// Fails if the file cannot be read, or if [`parse_obj`] fails. Error messages name the file by
-/// `path`.
-pub fn read_obj(path: impl AsRef<Path>) -> Result<ObjMesh, ObjError> {
-    let path = path.as_ref();
-    let file = path.display().to_string();
-    match open_file(path) {
-        Ok(source) => parse_obj(&file, source),
-        Err(OpenError::Directory) => Err(ObjError::Directory { file }),
-        Err(OpenError::Failed(cause)) => Err(ObjError::Open { file, cause }),
+/// Fails if the file cannot be read, or if [`parse_obj`](crate::parse_obj) fails. Error messages
+/// name the file by `path`.
+pub fn read_obj(path: impl AsRef<Path>) -> Result<FileMesh, ReadError> {
+    read(path, &ReadOptions::default().with_format(Format::Obj))
+}
+
+/// Reads a mesh; `path` is the place of the file, if it has one.
+fn read_any(
+    name: &str,
+    path: Option<&Path>,
+    source: &mut ByteSource<impl Read>,
+    options: ReadOptions,
+) -> Result<FileMesh, ReadError> {
+    let known_size = source.size();
+    let start = source
+        .fill(DETECTION_BYTES)
+        .map_err(|cause| ReadError::Read {
+            at: Location::new(name, Place::Byte(0)),
+            cause,
+        })?;
+    // A stream that has ended has a known size, too.
+    let ended = (start.len() < DETECTION_BYTES).then_some(start.len() as u64);
+    let size = known_size.or(ended);
+    let by_content = || detect(start, size).or_else(|| Format::from_path(name));
+    let format = match options.format {
+        Some(format) => Some(format.form_of(start, size)),
+        None => by_content(),
+    };
+    let Some(format) = format else {
+        let file = name.to_owned();
+        return Err(ReadError::UnknownFormat { file });
+    };
+    match format {
+        Format::Obj => obj::read(name, source, options),
+        Format::Stl => stl::read_binary(name, source, options),
+        Format::StlAscii => stl::read_ascii(name, source, options),
+        Format::Ply | Format::PlyBigEndian | Format::PlyAscii => ply::read(name, source, options),
+        Format::Off => off::read(name, source, options),
+        Format::Gltf | Format::Glb => gltf::read(name, path, source, options),
+    }
+}
+
+impl Format {
+    /// Returns this format in the form that the content has: text or binary.
+    fn form_of(self, start: &[u8], size: Option<u64>) -> Self {
+        match (self, detect(start, size)) {
+            (Self::Stl | Self::StlAscii, Some(found @ (Self::Stl | Self::StlAscii))) => found,
+            (Self::Gltf | Self::Glb, Some(found @ (Self::Gltf | Self::Glb))) => found,
+            _ => self,
+        }
     }
 }
 
@@ -48,118 +149,13 @@ impl From<io::Error> for OpenError {
 }
 
 pub(crate) fn open_file(path: &Path) -> Result<BufReader<File>, OpenError> {
+    Ok(BufReader::with_capacity(1 << 16, open(path)?))
+}
+
+fn open(path: &Path) -> Result<File, OpenError> {
     // Some systems allow opening a directory, and then return an unclear error.
     if fs::metadata(path)?.is_dir() {
         return Err(OpenError::Directory);
     }
-    Ok(BufReader::with_capacity(1 << 16, File::open(path)?))
-}
-
-/// Reads OBJ text from `source`; O(bytes). Error messages use `name` as the name of the file.
-///
-/// # Errors
-///
-/// Returns the first fault, in the order documented at [`ObjError`]. A file may have vertices
-/// without faces. A file without vertices and faces is an error.
-///
-/// # Examples
-///
-/// ```
-/// let text = "v 0 0 0\nv 1 0 0\nv 9 9 9\nv 0 1 0\nvn 0 0 1\nf -4//1 2//1 4//1\n";
-/// let obj = sixfold_io::parse_obj("triangle.obj", text.as_bytes())?;
-/// assert_eq!(obj.notices[0].to_string(), "ignored 1 normal (line 5)");
-/// assert_eq!(obj.facts().isolated_vertices, 1);
-/// let (polygons, left_out) = obj.into_polygons();
-/// assert_eq!((polygons.face_count(), left_out.len()), (1, 0));
-///
-/// let error = sixfold_io::parse_obj("bunny.obj", &b"v 0 0 0\nf 1 2 3\n"[..]).unwrap_err();
-/// let message = "bunny.obj:2: face names vertex 2, but there is 1 vertex: correct the index";
-/// assert_eq!(error.to_string(), message);
-/// # Ok::<(), sixfold_io::ObjError>(())
-/// ```
-pub fn parse_obj(name: &str, source: impl BufRead) -> Result<ObjMesh, ObjError> {
-    let mut text = Normaliser::new(name, source);
-    // Never called: the text contains no material library.
-    let no_library = |_: &Path| Err(tobj::LoadError::OpenFileFailed);
-    let loaded = tobj::load_obj_buf(&mut text, &LOAD_OPTIONS, no_library);
-    if let Some(fault) = text.fault.take() {
-        return Err(fault);
-    }
-    let (models, _) = loaded.map_err(|refusal| text.diagnose(&refusal))?;
-    if text.vertex_lines.is_empty() && text.short_faces.is_empty() {
-        let file = name.to_owned();
-        return Err(ObjError::Empty { file });
-    }
-    let (positions, faces) = restore_numbering(models, text.vertex_lines.len());
-    check_finite(&text, &positions)?;
-    let tags = text.tags.check(positions.len(), &faces, &text.short_faces);
-    tags.map_err(|(line, fault)| ObjError::Tag {
-        at: text.location(line),
-        fault,
-    })?;
-    Ok(ObjMesh {
-        positions,
-        faces,
-        face_lines: text.face_lines,
-        short_faces: text.short_faces,
-        crease_tags: text.tags.creases,
-        corner_tags: text.tags.corners,
-        notices: text.notices,
-    })
-}
-
-/// Restores the numbering of the file. `tobj` numbers vertices in the order of their first use.
-///
-/// The last `vertices` corners are a polygon through all vertices in file order.
-fn restore_numbering(models: Vec<tobj::Model>, vertices: usize) -> (Vec<Point>, FaceList) {
-    let [model] = <[_; 1]>::try_from(models).expect("N1: one object");
-    let tobj::Mesh {
-        positions: coordinates,
-        mut indices,
-        mut face_arities,
-        ..
-    } = model.mesh;
-    let tobj_numbers = indices.split_off(indices.len() - vertices);
-    let mut numbers = vec![VertexId::new(0); vertices];
-    for (number, &tobj_number) in tobj_numbers.iter().enumerate() {
-        numbers[tobj_number as usize] = VertexId::new(row(number));
-    }
-    let position = |&tobj_number: &u32| Point::from_slice(&coordinates[3 * tobj_number as usize..]);
-    let positions = tobj_numbers.iter().map(position).collect();
-
-    let corners: Vec<VertexId> = indices
-        .iter()
-        .map(|&tobj_number| numbers[tobj_number as usize])
-        .collect();
-    // The list is empty if all polygons have three corners.
-    face_arities.pop();
-    let degree = face_arities.first().map_or(3, |&degree| degree as usize);
-    let faces = if face_arities.iter().all(|&other| other as usize == degree) {
-        FaceList::uniform(degree, corners).expect("N5 limits the corners")
-    } else {
-        let mut faces = FaceList::with_capacity(corners.len());
-        let mut rest = corners.as_slice();
-        for &degree in &face_arities {
-            let (face, after) = rest.split_at(degree as usize);
-            faces
-                .push(face.iter().copied())
-                .expect("N5 limits the corners");
-            rest = after;
-        }
-        faces
-    };
-    (positions, faces)
-}
-
-fn check_finite<R: BufRead>(text: &Normaliser<'_, R>, positions: &[Point]) -> Result<(), ObjError> {
-    let Some(v) = positions.iter().position(|p| !p.is_finite()) else {
-        return Ok(());
-    };
-    let coordinates = ['x', 'y', 'z'].into_iter().zip(positions[v].to_array());
-    let mut infinite = coordinates.filter(|(_, value)| !value.is_finite());
-    Err(ObjError::NonFinite {
-        at: text.location(text.vertex_lines[v]),
-        vertex: v + 1,
-        coordinate: infinite.next().map_or('x', |(name, _)| name),
-    })
+    Ok(File::open(path)?)
 }

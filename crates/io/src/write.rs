@@ -1,189 +1,194 @@
-//! Writes OBJ files.
+//! Writes meshes in any format.
+
+mod gltf;
+mod loss;
+mod obj;
+mod off;
+mod ply;
+mod stl;
+
+pub use loss::Loss;
+pub(crate) use obj::ShortestDecimal;
+pub use obj::{write_obj, write_obj_with_normals};
 
 use std::fmt;
 use std::io::{self, BufWriter, Write};
 
 use sixfold_core::{Point, PolygonMesh, VertexId};
 
-/// Writes `polygons` as OBJ text; O(corners). Reading the text gives the same mesh, bit for bit.
+use crate::format::Format;
+
+/// The reason why a mesh was not written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message shows the meaning of each field")]
+pub enum WriteError {
+    /// A position is infinite or NaN.
+    #[error(
+        "the position of vertex {vertex} is not finite, so {format} cannot store it: correct the position"
+    )]
+    NotFinite { vertex: VertexId, format: Format },
+    /// There must be one normal, possibly a missing one, for each vertex.
+    #[error("{normals} normals do not fit {vertices} vertices: give one normal for each vertex")]
+    NormalCount { normals: usize, vertices: usize },
+    /// The format cannot store a file of this size.
+    #[error("{format} stores at most {limit} bytes, the mesh needs {bytes}: use ply")]
+    TooLarge {
+        format: Format,
+        bytes: u64,
+        limit: u64,
+    },
+    /// The destination returned an error.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+}
+
+impl From<WriteError> for io::Error {
+    /// Returns the error of the destination, or an error of kind
+    /// [`InvalidInput`](io::ErrorKind::InvalidInput) if the mesh is the cause.
+    fn from(error: WriteError) -> Self {
+        match error {
+            WriteError::Io(error) => error,
+            error => Self::new(io::ErrorKind::InvalidInput, error),
+        }
+    }
+}
+
+/// Writes `polygons` in a format; O(corners). Reading the output gives the same mesh, bit for bit,
+/// except for what [`MeshWriter::losses`] lists.
 ///
-/// This function buffers the output. If a coordinate is not finite, nothing is written.
+/// This function buffers the output. If the format cannot represent the mesh, nothing is written.
 ///
 /// # Errors
 ///
-/// Returns any error of `out`, and [`io::ErrorKind::InvalidInput`] if a coordinate is not finite.
+/// Returns any error of `out`, and an error if a coordinate is not finite, or if the file would be
+/// too large for the format.
 ///
 /// # Examples
 ///
 /// ```
 /// use sixfold_core::{Point, PolygonMesh};
+/// use sixfold_io::{Format, ReadOptions, read_from, write};
 ///
-/// let corners = [Point::ZERO, Point::X, Point::new(0.1, 1e-30, -0.0)];
-/// let triangle = PolygonMesh::new(corners, [[0, 1, 2]])?;
-/// let mut text = Vec::new();
-/// sixfold_io::write_obj(&triangle, &mut text)?;
-/// let expected = "# vertices: 3, faces: 1\nv 0 0 0\nv 1 0 0\nv 0.1 1e-30 -0\nf 1 2 3\n";
-/// assert_eq!(text, expected.as_bytes());
+/// let corners = [Point::ZERO, Point::X, Point::ONE, Point::Y];
+/// let square = PolygonMesh::new(corners, [[0, 1, 2, 3]])?;
+/// let mut bytes = Vec::new();
+/// write(&square, Format::Ply, &mut bytes)?;
+/// let (again, _) = read_from("square.ply", bytes.as_slice(), &ReadOptions::default())?.into_polygons();
+/// assert_eq!(again, square);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn write_obj(polygons: &PolygonMesh, out: impl Write) -> io::Result<()> {
-    write_text(polygons, &[], out)
+pub fn write(polygons: &PolygonMesh, format: Format, out: impl Write) -> Result<(), WriteError> {
+    MeshWriter::new(polygons).write(format, out)
 }
 
-/// Writes `polygons` and the normals of vertices. If a corner of a face has no normal, the face is
-/// written without normals.
+/// A mesh to be written, with the data of its vertices.
 ///
-/// # Errors
+/// # Examples
 ///
-/// Returns the same errors as [`write_obj`], and [`io::ErrorKind::InvalidInput`] if the numbers of
-/// vertices and normals differ.
-pub fn write_obj_with_normals(
-    polygons: &PolygonMesh,
-    normals: &[Option<Point>],
-    out: impl Write,
-) -> io::Result<()> {
-    let vertices = polygons.vertex_count();
-    if normals.len() != vertices {
-        let message = format!(
-            "{} normals do not fit {vertices} vertices: give one normal for each vertex",
-            normals.len()
-        );
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
-    }
-    write_text(polygons, normals, out)
+/// ```
+/// use sixfold_core::{Point, PolygonMesh};
+/// use sixfold_io::{Format, MeshWriter};
+///
+/// let corners = [Point::ZERO, Point::X, Point::ONE, Point::Y];
+/// let square = PolygonMesh::new(corners, [[0, 1, 2, 3]])?;
+/// let losses = MeshWriter::new(&square).losses(Format::Stl);
+/// let messages: Vec<String> = losses.iter().map(ToString::to_string).collect();
+/// assert_eq!(
+///     messages,
+///     [
+///         "vertices are not shared: a reader has to join equal positions",
+///         "1 polygon is cut into triangles",
+///     ]
+/// );
+/// # Ok::<(), sixfold_core::PolygonError>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct MeshWriter<'a> {
+    polygons: &'a PolygonMesh,
+    /// One entry for each vertex, or none at all.
+    normals: &'a [Option<Point>],
 }
 
-fn write_text(
-    polygons: &PolygonMesh,
-    normals: &[Option<Point>],
-    out: impl Write,
-) -> io::Result<()> {
-    let positions = polygons.positions();
-    if let Some(v) = positions.iter().position(|p| !p.is_finite()) {
-        let message = format!(
-            "the position of vertex v{v} is not finite, so OBJ cannot store it: correct the position"
-        );
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+impl<'a> MeshWriter<'a> {
+    /// Creates a writer of the positions and faces of `polygons`.
+    pub fn new(polygons: &'a PolygonMesh) -> Self {
+        let normals = &[];
+        Self { polygons, normals }
     }
-    let mut out = BufWriter::new(out);
-    let (vertices, faces) = (polygons.vertex_count(), polygons.face_count());
-    writeln!(out, "# vertices: {vertices}, faces: {faces}")?;
-    for p in positions {
-        writeln!(
-            out,
-            "v {} {} {}",
-            ShortestDecimal(p.x),
-            ShortestDecimal(p.y),
-            ShortestDecimal(p.z)
-        )?;
-    }
-    // For each vertex, the number of the normal in the file.
-    let mut numbers = Vec::with_capacity(normals.len());
-    let mut number = 0;
-    for normal in normals {
-        numbers.push(normal.map(|_| number + 1));
-        if let Some(n) = normal {
-            number += 1;
-            writeln!(
-                out,
-                "vn {} {} {}",
-                ShortestDecimal(n.x),
-                ShortestDecimal(n.y),
-                ShortestDecimal(n.z)
-            )?;
+
+    /// Adds normals of unit length, one entry for each vertex. OBJ stores the normals that exist;
+    /// PLY and glTF store them if none is missing.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError::NormalCount`] if the numbers of vertices and normals differ.
+    pub fn with_normals(self, normals: &'a [Option<Point>]) -> Result<Self, WriteError> {
+        let vertices = self.polygons.vertex_count();
+        if normals.len() != vertices {
+            let normals = normals.len();
+            return Err(WriteError::NormalCount { normals, vertices });
         }
+        Ok(Self { normals, ..self })
     }
-    let normal = |v: &VertexId| numbers.get(v.index()).copied().flatten();
-    for (_, face) in polygons.faces().iter() {
-        let has_normals = face.iter().all(|v| normal(v).is_some());
-        write!(out, "f")?;
-        for v in face {
-            write!(out, " {}", v.index() + 1)?;
-            if let (true, Some(normal)) = (has_normals, normal(v)) {
-                write!(out, "//{normal}")?;
+
+    /// Writes the mesh; see [`write`](crate::write()).
+    ///
+    /// # Errors
+    ///
+    /// Returns the same errors as [`write`](crate::write()).
+    pub fn write(&self, format: Format, out: impl Write) -> Result<(), WriteError> {
+        let positions = self.polygons.positions();
+        if let Some(v) = positions.iter().position(|p| !p.is_finite()) {
+            let vertex = VertexId::new(sixfold_core::row(v));
+            return Err(WriteError::NotFinite { vertex, format });
+        }
+        let mut out = BufWriter::with_capacity(1 << 16, out);
+        match format {
+            Format::Obj => obj::write_text(self.polygons, self.normals, &mut out)?,
+            Format::Stl => stl::write_binary(self.polygons, &mut out)?,
+            Format::StlAscii => stl::write_ascii(self.polygons, &mut out)?,
+            Format::Ply | Format::PlyBigEndian | Format::PlyAscii => {
+                ply::write(self.polygons, self.complete_normals(), format, &mut out)?;
+            }
+            Format::Off => off::write(self.polygons, &mut out)?,
+            Format::Gltf | Format::Glb => {
+                gltf::write(self.polygons, self.complete_normals(), format, &mut out)?;
             }
         }
-        writeln!(out)?;
+        Ok(out.flush()?)
     }
-    out.flush()
+
+    /// Returns the normals if no vertex lacks one, otherwise an empty list.
+    fn complete_normals(&self) -> &'a [Option<Point>] {
+        match self.normals.iter().all(|normal| normal.is_some()) {
+            true => self.normals,
+            false => &[],
+        }
+    }
 }
 
-/// A number that is written with the fewest digits that read back as the same number. Very small
-/// and very large numbers are written with a power of ten.
-pub(crate) struct ShortestDecimal(pub(crate) f32);
+/// Three numbers separated by blanks.
+struct Numbers(Point);
 
-impl fmt::Display for ShortestDecimal {
+impl fmt::Display for Numbers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let size = self.0.abs();
-        if size == 0.0 || (1e-5..1e9).contains(&size) {
-            write!(f, "{}", self.0)
-        } else {
-            write!(f, "{:e}", self.0)
-        }
+        let [x, y, z] = self.0.to_array().map(ShortestDecimal);
+        write!(f, "{x} {y} {z}")
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// Returns the triangles of `polygons`; each polygon is cut into a fan from its first corner.
+fn triangles(polygons: &PolygonMesh) -> impl Iterator<Item = [VertexId; 3]> {
+    let faces = polygons.faces().iter();
+    faces.flat_map(|(_, face)| {
+        face[1..]
+            .windows(2)
+            .map(move |pair| [face[0], pair[0], pair[1]])
+    })
+}
 
-    #[test]
-    fn normals_are_written_if_all_corners_of_a_face_have_them() {
-        let corners = [Point::ZERO, Point::X, Point::Y, Point::ONE];
-        let mesh = PolygonMesh::new(corners, [[0, 1, 2], [1, 3, 2]]).expect("valid");
-        let normals = [Some(Point::Z), Some(Point::Z), Some(Point::Z), None];
-        let mut text = Vec::new();
-        write_obj_with_normals(&mesh, &normals, &mut text).expect("memory does not fail");
-        let text = String::from_utf8(text).expect("ASCII");
-        assert!(
-            text.ends_with("vn 0 0 1\nf 1//1 2//2 3//3\nf 2 4 3\n"),
-            "{text}"
-        );
-        assert!(write_obj_with_normals(&mesh, &normals[1..], &mut Vec::new()).is_err());
-    }
-
-    #[test]
-    fn a_mesh_is_written_with_the_fewest_digits() {
-        let positions = [
-            Point::new(0.1, -0.0, 100.0),
-            Point::new(1e-30, f32::MAX, -f32::from_bits(1)),
-            Point::new(0.00001, 999_999_940.0, 1e9),
-        ];
-        let mesh = PolygonMesh::new(positions, [[2, 1, 0]]).expect("valid");
-        let mut text = Vec::new();
-        write_obj(&mesh, &mut text).expect("memory does not fail");
-        let expected = "# vertices: 3, faces: 1\nv 0.1 -0 100\nv 1e-30 3.4028235e38 -1e-45\n\
-                    v 0.00001 999999940 1e9\nf 3 2 1\n";
-        assert_eq!(String::from_utf8(text).expect("text"), expected);
-    }
-
-    #[test]
-    fn a_mesh_that_is_not_finite_is_not_written() {
-        for bad in [f32::NAN, f32::INFINITY] {
-            let positions = [Point::ZERO, Point::new(0.0, bad, 0.0)];
-            let mesh = PolygonMesh::new(positions, [[0_u32; 0]; 0]).expect("valid");
-            let mut text = Vec::new();
-            let error = write_obj(&mesh, &mut text).expect_err("not finite");
-            assert_eq!(error.kind(), io::ErrorKind::InvalidInput);
-            let message = "the position of vertex v1 is not finite, so OBJ cannot store it: \
-                           correct the position";
-            assert_eq!(error.to_string(), message);
-            assert!(text.is_empty());
-        }
-    }
-
-    #[test]
-    fn a_full_disk_is_reported() {
-        struct Full;
-        impl Write for Full {
-            fn write(&mut self, _: &[u8]) -> io::Result<usize> {
-                Err(io::ErrorKind::StorageFull.into())
-            }
-            fn flush(&mut self) -> io::Result<()> {
-                Ok(())
-            }
-        }
-        let error = write_obj(&PolygonMesh::default(), Full).expect_err("full");
-        assert_eq!(error.kind(), io::ErrorKind::StorageFull);
-    }
+/// Returns the number of triangles.
+fn triangle_count(polygons: &PolygonMesh) -> usize {
+    polygons.corner_count() - 2 * polygons.face_count()
 }

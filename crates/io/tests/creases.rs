@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use sixfold_core::{Creases, Pair, Point, PolygonMesh, VertexId};
 use sixfold_io::{
-    CreaseFileError, ObjMesh, parse_creases, parse_obj, read_creases, read_obj, write_creases,
+    CreaseFileError, FileMesh, parse_creases, parse_obj, read_creases, read_obj, write_creases,
 };
 
 /// Two squares side by side.
@@ -26,7 +26,7 @@ fn squares() -> PolygonMesh {
     read(SQUARES).into_polygons().0
 }
 
-fn read(text: &str) -> ObjMesh {
+fn read(text: &str) -> FileMesh {
     parse_obj("a.obj", text.as_bytes()).unwrap_or_else(|error| panic!("{error}"))
 }
 

@@ -6,7 +6,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{select, subsequence};
 use sixfold_core::{FaceList, Point, PolygonMesh};
-use sixfold_io::{ObjMesh, parse_obj, write_obj};
+use sixfold_io::{FileMesh, Place, parse_obj, write_obj};
 
 fn coordinate() -> impl Strategy<Value = f32> {
     let any = any::<u32>()
@@ -51,7 +51,7 @@ fn bits(positions: &[Point]) -> Vec<[u32; 3]> {
         .collect()
 }
 
-fn check_same(obj: ObjMesh, mesh: &PolygonMesh) -> Result<(), TestCaseError> {
+fn check_same(obj: FileMesh, mesh: &PolygonMesh) -> Result<(), TestCaseError> {
     let (polygons, left_out) = obj.into_polygons();
     prop_assert_eq!(left_out, []);
     prop_assert_eq!(polygons.faces(), mesh.faces());
@@ -66,8 +66,7 @@ fn check_consistent(bytes: &[u8]) -> Result<(), TestCaseError> {
             let lines = bytes.iter().filter(|b| b"\r\n".contains(b)).count() + 1;
             prop_assert!(obj.positions.len() + obj.faces.len() <= lines);
             prop_assert!(obj.positions.iter().all(|p| p.is_finite()));
-            prop_assert_eq!(obj.face_lines.len(), obj.faces.len());
-            prop_assert!(obj.face_lines.is_sorted());
+            prop_assert!(obj.faces.iter().map(|(f, _)| obj.face_place(f)).is_sorted());
             prop_assert!(obj.faces.iter().all(|(_, face)| face.len() >= 3));
             prop_assert!(obj.short_faces.iter().all(|face| face.corners.len() < 3));
             let facts = obj.facts();
@@ -244,7 +243,8 @@ proptest! {
         let source = BufReader::with_capacity(buffer, text.as_bytes());
         let obj = parse_obj("a.obj", source);
         let obj = obj.unwrap_or_else(|error| panic!("{error}\n{text}"));
-        prop_assert_eq!(&obj.face_lines, &face_lines, "{}", text);
+        let found = obj.faces.iter().map(|(f, _)| obj.face_place(f));
+        prop_assert!(found.eq(face_lines.iter().map(|&line| Place::Line(line))), "{}", text);
         check_same(obj, &mesh)?;
     }
 

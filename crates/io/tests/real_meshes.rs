@@ -9,8 +9,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
-use sixfold_core::{Distribution, Facts};
-use sixfold_io::{ObjMesh, read_obj};
+use sixfold_core::{Distribution, FaceList, Facts, PolygonMesh};
+use sixfold_io::{FileMesh, Format, ReadOptions, Welding, read, read_from, write};
 
 const FOLDERS: [&str; 3] = ["tiny", "fetched", "derived"];
 
@@ -18,14 +18,14 @@ fn folder() -> Option<PathBuf> {
     env::var_os("SIXFOLD_MESHES").map(PathBuf::from)
 }
 
-/// Returns the `.obj` files in `folder`, with the names that `truth.json` uses.
+/// Returns the mesh files in `folder`, with the names that `truth.json` uses.
 fn files(folder: &Path) -> BTreeSet<String> {
     let mut files = BTreeSet::new();
     for sub in FOLDERS {
         for entry in fs::read_dir(folder.join(sub)).expect("a folder of meshes") {
             let name = entry.expect("readable").file_name();
             let name = name.to_str().expect("a name in UTF-8");
-            if name.ends_with(".obj") {
+            if Format::from_path(name).is_some() {
                 files.insert(format!("{sub}/{name}"));
             }
         }
@@ -33,8 +33,13 @@ fn files(folder: &Path) -> BTreeSet<String> {
     files
 }
 
-fn load(folder: &Path, name: &str) -> ObjMesh {
-    read_obj(folder.join(name)).unwrap_or_else(|error| panic!("{error}"))
+fn load(folder: &Path, name: &str) -> FileMesh {
+    load_as(folder, name, Welding::StlOnly)
+}
+
+fn load_as(folder: &Path, name: &str, welding: Welding) -> FileMesh {
+    let options = ReadOptions::default().with_welding(welding);
+    read(folder.join(name), &options).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn spread(spread: &Option<Distribution>) -> Value {
@@ -75,37 +80,116 @@ fn truth_fields(facts: &Facts) -> [(&'static str, Value); 18] {
     ]
 }
 
+/// Returns the name that `truth.json` has for a format.
+fn truth_format(format: Format) -> &'static str {
+    match format {
+        Format::Stl => "stl-binary",
+        Format::Ply => "ply-le",
+        Format::PlyBigEndian => "ply-be",
+        other => other.name(),
+    }
+}
+
+/// Returns the fields of `theirs` that differ from `facts`.
+fn differences(name: &str, theirs: &Value, facts: &Facts) -> Vec<String> {
+    let fields = truth_fields(facts).into_iter();
+    let wrong = fields.filter(|&(field, ref ours)| theirs.get(field).expect(field) != ours);
+    wrong
+        .map(|(field, ours)| format!("{name}: {field} is {}, found {ours}", theirs[field]))
+        .collect()
+}
+
 #[test]
 fn facts_equal_the_truth_file() {
     let Some(folder) = folder() else { return };
     let truth = fs::read_to_string(folder.join("truth.json")).expect("truth.json");
     let truth: Value = serde_json::from_str(&truth).expect("JSON");
     let known = truth.as_object().expect("a map of files").keys();
-    let known: BTreeSet<String> = known
-        .filter(|name| name.ends_with(".obj"))
-        .cloned()
-        .collect();
+    let known: BTreeSet<String> = known.cloned().collect();
     assert_eq!(files(&folder), known);
-    assert!(known.len() > 50, "{known:?}");
+    assert!(known.len() > 70, "{known:?}");
 
     let mut wrong = Vec::new();
     for name in &known {
-        let (truth, facts) = (&truth[name], load(&folder, name).facts());
+        let truth = &truth[name];
         assert_eq!(truth["status"], "ok", "{name}");
-        for (field, ours) in truth_fields(&facts) {
-            let theirs = truth["file"].get(field).expect(field);
-            if *theirs != ours {
-                wrong.push(format!("{name}: {field} is {theirs}, found {ours}"));
-            }
-        }
+        let mesh = load_as(&folder, name, Welding::Nothing);
+        assert_eq!(truth["format"], truth_format(mesh.format), "{name}");
+        let facts = mesh.facts();
+        wrong.extend(differences(
+            &format!("{name} (file)"),
+            &truth["file"],
+            &facts,
+        ));
         let hist = facts.face_degree.and_then(|degrees| degrees.hist);
         let sizes = histogram(&hist.unwrap_or_default());
         if truth["face_sizes"] != sizes {
             let theirs = &truth["face_sizes"];
             wrong.push(format!("{name}: face_sizes are {theirs}, found {sizes}"));
         }
+        assert_eq!(truth["V_merged"], truth["V_merged_f32"], "{name}");
+        let merged = load_as(&folder, name, Welding::All);
+        let theirs = match truth["merged"].is_object() {
+            true => &truth["merged"],
+            false => &truth["file"],
+        };
+        wrong.extend(differences(
+            &format!("{name} (merged)"),
+            theirs,
+            &merged.facts(),
+        ));
+        assert_eq!(mesh.narrowing.merged_vertices, 0, "{name}");
+        assert_eq!(
+            merged.positions.len() + merged.welded_vertices,
+            mesh.positions.len(),
+            "{name}"
+        );
+        let by_default = load(&folder, name);
+        let expected = match mesh.format {
+            Format::Stl | Format::StlAscii => &merged,
+            _ => &mesh,
+        };
+        assert_eq!(by_default.faces, expected.faces, "{name}");
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_mesh_survives_every_format() {
+    let Some(folder) = folder() else { return };
+    for name in files(&folder) {
+        let (mesh, _) = load(&folder, &name).into_polygons();
+        for format in Format::ALL {
+            let is_stl = matches!(format, Format::Stl | Format::StlAscii);
+            if is_stl && mesh.face_count() == 0 {
+                continue;
+            }
+            let mut bytes = Vec::new();
+            write(&mesh, format, &mut bytes).expect("memory does not fail");
+            let again = read_from(&name, bytes.as_slice(), &ReadOptions::default());
+            let again = again.unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(again.format, format, "{name}");
+            let expected = match format {
+                Format::Stl | Format::StlAscii | Format::Gltf | Format::Glb => {
+                    mesh.fan_triangulated().expect("few corners")
+                }
+                _ => mesh.clone(),
+            };
+            if is_stl {
+                let corners = corner_positions(again.positions, &again.faces);
+                let expected = corner_positions(expected.positions().to_vec(), expected.faces());
+                assert!(corners == expected, "{name} as {format}");
+            } else {
+                let polygons = PolygonMesh::from_faces(again.positions, again.faces);
+                assert!(polygons.expect("valid") == expected, "{name} as {format}");
+            }
+        }
+    }
+}
+
+fn corner_positions(positions: Vec<sixfold_core::Point>, faces: &FaceList) -> Vec<[f32; 3]> {
+    let corners = faces.corners().iter();
+    corners.map(|v| positions[v.index()].to_array()).collect()
 }
 
 #[test]
@@ -130,6 +214,9 @@ fn tobj_alone_agrees_on_files_that_it_reads_correctly() {
     let options = tobj::LoadOptions::default();
     let mut agreed = 0;
     for name in files(&folder) {
+        if !name.ends_with(".obj") {
+            continue;
+        }
         let Ok((models, _)) = tobj::load_obj(folder.join(&name), &options) else {
             continue;
         };

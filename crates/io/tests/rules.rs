@@ -5,11 +5,11 @@ use std::io::{self, BufReader, Read};
 use std::path::PathBuf;
 
 use sixfold_core::{FaceId, Point, VertexId};
-use sixfold_io::{LeftOutReason, ObjError, ObjMesh, parse_obj, read_obj};
+use sixfold_io::{FileMesh, LeftOutReason, Place, ReadError, parse_obj, read_obj};
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
-fn read(text: impl AsRef<[u8]>) -> ObjMesh {
+fn read(text: impl AsRef<[u8]>) -> FileMesh {
     let text = text.as_ref();
     parse_obj("a.obj", text).unwrap_or_else(|error| panic!("{error}"))
 }
@@ -21,7 +21,7 @@ fn assert_refused(text: impl AsRef<[u8]>, message: &str) {
 }
 
 /// Returns the faces with the vertex numbers of the file.
-fn faces(obj: &ObjMesh) -> Vec<Vec<usize>> {
+fn faces(obj: &FileMesh) -> Vec<Vec<usize>> {
     let faces = obj.faces.iter();
     faces
         .map(|(_, face)| face.iter().map(|v| v.index() + 1).collect())
@@ -83,7 +83,8 @@ fn corners_count_from_either_end_and_may_have_texture_and_normal_numbers() {
         "f 3 2 1\n{TRIANGLE}f 1/7/9 2//9 3/7\nf -3/-1 -2 -1//\nv 9 9 9\nf -1 +1 -3"
     ));
     assert_eq!(faces(&obj), [[3, 2, 1], [1, 2, 3], [1, 2, 3], [4, 1, 2]]);
-    assert_eq!(obj.face_lines, [1, 5, 6, 8]);
+    let lines = obj.faces.iter().map(|(f, _)| obj.face_place(f));
+    assert!(lines.eq([1, 5, 6, 8].map(Place::Line)));
 }
 
 #[test]
@@ -330,7 +331,7 @@ fn errors_name_a_path_that_cannot_be_read() {
         "{message}"
     );
     assert!(message.ends_with("): check the path"), "{message}");
-    assert!(matches!(error, ObjError::Open { .. }));
+    assert!(matches!(error, ReadError::Open { .. }));
 }
 
 #[test]

@@ -49,8 +49,11 @@ mod triangulation;
 
 pub use dual::dual;
 pub use error::{DualError, OrientationError, SmoothingError, SphereError};
-pub use normals::{NormalWeights, face_normals, vertex_normals};
-pub use orientation::{Facing, Oriented, oriented};
+pub use normals::{NormalWeights, area_vector, face_normals, vertex_normals};
+pub use orientation::{
+    Components, Facing, NotOrientable, Oriented, OrientedComponents, Reversal, faces_to_reverse,
+    oriented, oriented_components,
+};
 pub use smoothing::{Boundary, Smoothing, Weights, smoothed};
 pub use sphere::projected_to_sphere;
-pub use triangulation::{Triangulation, triangulated};
+pub use triangulation::{Triangulation, clipped_polygon, triangulated};

@@ -37,6 +37,14 @@ pub fn face_normals<M: MeshQuery>(mesh: &M) -> FaceMap<M, Point> {
     normals
 }
 
+/// Returns the area vector of a polygon, by Newell's method: its direction is the normal, and its
+/// length is the area. The unit is that of the coordinates, squared. O(corners).
+pub fn area_vector(corners: impl IntoIterator<Item = DVec3>) -> DVec3 {
+    let mut newell = Newell::default();
+    corners.into_iter().for_each(|p| newell.add(p));
+    newell.normal / 2.0
+}
+
 /// Returns the unit normal of every vertex, which is the mean of the normals of its faces, weighted
 /// by `weights`. Takes O(corners) time.
 ///

@@ -1,7 +1,7 @@
 //! Orientation repair: reverses faces until all adjacent faces have the same orientation.
 
 use glam::DVec3;
-use sixfold_core::{FaceId, FaceList, PolygonMesh, VertexId};
+use sixfold_core::{FaceId, FaceList, Incidence, Partition, PolygonMesh, Slot, VertexId, row};
 
 use crate::error::OrientationError;
 
@@ -17,6 +17,17 @@ pub enum Facing {
     Outward,
 }
 
+/// The components that [`oriented_components`] may reverse.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Components {
+    /// All orientable components.
+    #[default]
+    All,
+    /// Components with two faces that disagree. A component that is consistent remains as it is,
+    /// even if it faces inward.
+    Inconsistent,
+}
+
 /// A mesh with consistent orientation, and the list of the reversed faces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Oriented {
@@ -25,6 +36,30 @@ pub struct Oriented {
     pub polygons: PolygonMesh,
     /// The reversed faces, in ascending order.
     pub reversed: Vec<FaceId>,
+}
+
+/// A mesh whose orientable components are consistent, the faces that were reversed for it, and the
+/// components that are not orientable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OrientedComponents {
+    /// The mesh. The vertices, the order of the faces and their first corners are unchanged.
+    pub polygons: PolygonMesh,
+    /// The faces whose corners were reversed, ascending.
+    pub reversed: Vec<FaceId>,
+    /// The components that are not orientable, in the order of their first faces. None of their
+    /// faces is reversed.
+    pub not_orientable: Vec<NotOrientable>,
+}
+
+/// A component whose faces cannot agree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NotOrientable {
+    /// Its first face.
+    pub face: FaceId,
+    /// The number of its faces.
+    pub faces: usize,
+    /// The ends of an edge at which the faces cannot agree, the lower first.
+    pub ends: [VertexId; 2],
 }
 
 /// Reverses faces until, at every edge with exactly two faces, the two faces run along the edge in
@@ -45,88 +80,252 @@ pub struct Oriented {
 /// # Errors
 ///
 /// Returns [`OrientationError::NotOrientable`] with an edge if the faces of a component cannot have
-/// a consistent orientation.
+/// a consistent orientation. [`oriented_components`] leaves such components
+/// unchanged.
 ///
 /// # Complexity
 ///
 /// O(n log n) time for n corners.
 pub fn oriented(polygons: &PolygonMesh, facing: Facing) -> Result<Oriented, OrientationError> {
+    let OrientedComponents {
+        polygons,
+        reversed,
+        not_orientable,
+    } = oriented_components(polygons, facing, Components::All);
+    match not_orientable.first() {
+        Some(&NotOrientable { ends, .. }) => Err(OrientationError::NotOrientable { ends }),
+        None => Ok(Oriented { polygons, reversed }),
+    }
+}
+
+/// Orients the orientable components of the kind `which` like [`oriented`]; the components that are
+/// not orientable remain unchanged and are named. O(n log n) for n corners.
+pub fn oriented_components(
+    polygons: &PolygonMesh,
+    facing: Facing,
+    which: Components,
+) -> OrientedComponents {
+    let incidence = Incidence::new(polygons.vertex_count(), polygons.faces(), |_| true);
+    let Reversal {
+        reversed,
+        not_orientable,
+    } = faces_to_reverse(polygons, &incidence, facing, which);
+    OrientedComponents {
+        polygons: reverse_faces(polygons, &reversed),
+        reversed,
+        not_orientable,
+    }
+}
+
+/// The faces that [`oriented_components`] reverses.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Reversal {
+    /// The faces, ascending.
+    pub reversed: Vec<FaceId>,
+    /// The components that are not orientable, in the order of their first faces.
+    pub not_orientable: Vec<NotOrientable>,
+}
+
+/// Returns the faces that [`oriented_components`] reverses, without building the mesh. `incidence`
+/// has the sides of all faces of `polygons`. Takes O(corners) time.
+///
+/// # Panics
+///
+/// May panic if `incidence` belongs to another mesh.
+pub fn faces_to_reverse(
+    polygons: &PolygonMesh,
+    incidence: &Incidence,
+    facing: Facing,
+    which: Components,
+) -> Reversal {
     let faces = polygons.faces();
-    let neighbours = side_neighbours(faces);
-    let mut reverse: Vec<Option<bool>> = vec![None; faces.len()];
-    let mut component = Vec::new();
-    for (seed, _) in faces.iter() {
-        if reverse[seed.index()].is_some() {
-            continue;
+    let agreement = match is_consistent(incidence) {
+        true => Agreement::of_consistent(faces, incidence),
+        false => Agreement::new(faces, incidence),
+    };
+    let inward = match facing {
+        Facing::Outward => agreement.faces_inward(polygons, incidence),
+        Facing::Majority => vec![None; agreement.conflicts.len()],
+    };
+    // By component: the number of faces, and of reversed faces.
+    let mut sizes = vec![[0_usize; 2]; agreement.conflicts.len()];
+    let mut first = vec![None; agreement.conflicts.len()];
+    for (f, component) in faces.iter().map(|(f, _)| (f, agreement.component(f))) {
+        sizes[component][0] += 1;
+        sizes[component][1] += usize::from(agreement.reverse[f.index()]);
+        first[component].get_or_insert(f);
+    }
+    let reverse_all = sizes.iter().zip(inward).map(|(&[size, reversed], inward)| {
+        let majority = 2 * reversed > size;
+        match inward {
+            Some(inward) if which == Components::All || reversed > 0 => inward,
+            _ => majority,
         }
-        component.clear();
-        orient_component(seed, faces, &neighbours, &mut reverse, &mut component)?;
-        let reversed = component
-            .iter()
-            .filter(|f| reverse[f.index()] == Some(true));
-        let majority = 2 * reversed.count() > component.len();
-        let reverse_all = match facing {
-            Facing::Majority => majority,
-            Facing::Outward => {
-                faces_inward(polygons, &neighbours, &reverse, &component).unwrap_or(majority)
+    });
+    let reverse_all: Vec<bool> = reverse_all.collect();
+    let is_reversed = |&f: &FaceId| {
+        let component = agreement.component(f);
+        let orientable = agreement.conflicts[component].is_none();
+        orientable && agreement.reverse[f.index()] != reverse_all[component]
+    };
+    let conflicts = agreement.conflicts.iter().zip(first).zip(&sizes);
+    Reversal {
+        reversed: faces.iter().map(|(f, _)| f).filter(is_reversed).collect(),
+        not_orientable: conflicts
+            .filter_map(|((&ends, face), &[faces, _])| {
+                let (ends, face) = (ends?, face?);
+                Some(NotOrientable { face, faces, ends })
+            })
+            .collect(),
+    }
+}
+
+/// Returns whether the two faces of each edge with two faces agree.
+fn is_consistent(incidence: &Incidence) -> bool {
+    incidence.edges().all(|edge| match edge.sides {
+        [a, b] => a.downward != b.downward,
+        _ => true,
+    })
+}
+
+/// The components that are connected by edges with two faces, and the faces to reverse so that the
+/// faces of each component agree with its first face.
+struct Agreement {
+    /// By face: its component. Components are in the order of their first faces.
+    components: Vec<u32>,
+    reverse: Vec<bool>,
+    /// By component: the ends of an edge at which its faces cannot agree.
+    conflicts: Vec<Option<[VertexId; 2]>>,
+}
+
+impl Agreement {
+    /// Finds the components of a mesh whose faces agree.
+    fn of_consistent(faces: &FaceList, incidence: &Incidence) -> Self {
+        let mut classes = Partition::new(faces.len());
+        for edge in incidence.edges() {
+            if let [a, b] = edge.sides {
+                classes.join(a.face.index(), b.face.index());
             }
-        };
-        if reverse_all {
-            for f in &component {
-                reverse[f.index()] = reverse[f.index()].map(|reverse| !reverse);
-            }
+        }
+        let mut number: Vec<Slot<FaceId>> = vec![Slot::NONE; faces.len()];
+        let mut count = 0;
+        let components = (0..faces.len()).map(|f| {
+            let (root, _) = classes.root(f);
+            let component = number[root].get().unwrap_or_else(|| {
+                count += 1;
+                FaceId::new(count - 1)
+            });
+            number[root] = Slot::some(component);
+            row(component.index())
+        });
+        Self {
+            components: components.collect(),
+            reverse: vec![false; faces.len()],
+            conflicts: vec![None; count as usize],
         }
     }
-    Ok(reverse_faces(polygons, &reverse))
+
+    /// Visits the faces of each component from its first face on, from neighbour to neighbour.
+    fn new(faces: &FaceList, incidence: &Incidence) -> Self {
+        let neighbours = side_neighbours(faces, incidence);
+        let mut reverse: Vec<Option<bool>> = vec![None; faces.len()];
+        let mut components = vec![0; faces.len()];
+        let mut conflicts = Vec::new();
+        let mut component = Vec::new();
+        for (seed, _) in faces.iter() {
+            if reverse[seed.index()].is_none() {
+                component.clear();
+                let conflict =
+                    orient_component(seed, faces, &neighbours, &mut reverse, &mut component);
+                for f in &component {
+                    components[f.index()] = row(conflicts.len());
+                }
+                conflicts.push(conflict);
+            }
+        }
+        Self {
+            components,
+            reverse: reverse
+                .into_iter()
+                .map(|reverse| reverse == Some(true))
+                .collect(),
+            conflicts,
+        }
+    }
+
+    fn component(&self, f: FaceId) -> usize {
+        self.components[f.index()] as usize
+    }
+
+    /// Returns for each component whether it faces inward after its faces in `reverse` are
+    /// reversed; `None` if the component is open or encloses no volume.
+    ///
+    /// The sum of det(a, b, c) / 6 over all triangles is the signed volume. The coordinates are
+    /// relative to a vertex of the component.
+    fn faces_inward(&self, polygons: &PolygonMesh, incidence: &Incidence) -> Vec<Option<bool>> {
+        let mut is_closed = vec![true; self.conflicts.len()];
+        for edge in incidence.edges().filter(|edge| edge.sides.len() != 2) {
+            for side in edge.sides {
+                is_closed[self.component(side.face)] = false;
+            }
+        }
+        let mut from: Vec<Option<DVec3>> = vec![None; self.conflicts.len()];
+        let mut sums = vec![[0.0; 2]; self.conflicts.len()];
+        for (f, face) in polygons.faces().iter() {
+            let component = self.component(f);
+            if !is_closed[component] {
+                continue;
+            }
+            let at = |v: VertexId| polygons.position(v).as_dvec3();
+            let from = *from[component].get_or_insert_with(|| at(face[0]));
+            let sign = if self.reverse[f.index()] { -1.0 } else { 1.0 };
+            let [volume, size] = &mut sums[component];
+            let at = |v| at(v) - from;
+            for pair in face[1..].windows(2) {
+                let part = at(face[0]).dot(at(pair[0]).cross(at(pair[1])));
+                *volume += sign * part;
+                *size += part.abs();
+            }
+        }
+        let inward = sums
+            .iter()
+            .zip(is_closed)
+            .map(|(&[volume, size], is_closed)| {
+                // If the terms cancel, the sum is only a rounding error.
+                (is_closed && volume.abs() > 1e-9 * size).then_some(volume < 0.0)
+            });
+        inward.collect()
+    }
 }
 
 /// The face across a side, and whether both faces run along the edge in the same direction.
 type Neighbour = Option<(FaceId, bool)>;
 
 /// Returns the neighbour across each side, if the edge has two faces.
-fn side_neighbours(faces: &FaceList) -> Vec<Neighbour> {
-    struct Side {
-        ends: [VertexId; 2],
-        face: FaceId,
-        corner: usize,
-        is_ascending: bool,
-    }
-    let mut sides: Vec<Side> = Vec::with_capacity(faces.corners().len());
-    for (face, corners) in faces.iter() {
-        let next = corners.iter().cycle().skip(1);
-        for (corner, (&a, &b)) in faces.range(face).zip(corners.iter().zip(next)) {
-            let (ends, is_ascending) = ([a.min(b), a.max(b)], a < b);
-            sides.push(Side {
-                ends,
-                face,
-                corner,
-                is_ascending,
-            });
-        }
-    }
-    sides.sort_unstable_by_key(|side| (side.ends, side.corner));
-    let mut neighbours = vec![None; sides.len()];
-    for edge in sides.chunk_by(|a, b| a.ends == b.ends) {
-        if let [a, b] = edge {
-            let same = a.is_ascending == b.is_ascending;
-            neighbours[a.corner] = Some((b.face, same));
-            neighbours[b.corner] = Some((a.face, same));
+fn side_neighbours(faces: &FaceList, incidence: &Incidence) -> Vec<Neighbour> {
+    let mut neighbours = vec![None; faces.corners().len()];
+    for edge in incidence.edges() {
+        if let [a, b] = edge.sides {
+            let same = a.downward == b.downward;
+            neighbours[a.corner as usize] = Some((b.face, same));
+            neighbours[b.corner as usize] = Some((a.face, same));
         }
     }
     neighbours
 }
 
 /// Collects the component of `seed`. Decides for each face whether to reverse it, with `seed`
-/// unchanged.
+/// unchanged. Returns the ends of the first edge at which faces cannot agree.
 fn orient_component(
     seed: FaceId,
     faces: &FaceList,
     neighbours: &[Neighbour],
     reverse: &mut [Option<bool>],
     component: &mut Vec<FaceId>,
-) -> Result<(), OrientationError> {
+) -> Option<[VertexId; 2]> {
     reverse[seed.index()] = Some(false);
     component.push(seed);
+    let mut conflict = None;
     let mut head = 0;
     while let Some(&f) = component.get(head) {
         head += 1;
@@ -140,71 +339,32 @@ fn orient_component(
                 component.push(g);
                 reverse_g
             });
-            if decided != reverse_g {
+            if decided != reverse_g && conflict.is_none() {
                 let face = faces.face(f);
                 let (a, b) = (face[i], face[(i + 1) % face.len()]);
-                let ends = [a.min(b), a.max(b)];
-                return Err(OrientationError::NotOrientable { ends });
+                conflict = Some([a.min(b), a.max(b)]);
             }
         }
     }
-    Ok(())
+    conflict
 }
 
-/// Returns whether the component faces inward after the faces in `reverse` are reversed. Returns
-/// `None` if the component is open or encloses no volume.
-///
-/// The sum of det(a, b, c) / 6 over all triangles is the signed volume. The coordinates are
-/// relative to a vertex of the component.
-fn faces_inward(
-    polygons: &PolygonMesh,
-    neighbours: &[Neighbour],
-    reverse: &[Option<bool>],
-    component: &[FaceId],
-) -> Option<bool> {
-    let faces = polygons.faces();
-    let from = polygons
-        .position(faces.face(*component.first()?)[0])
-        .as_dvec3();
-    let (mut volume, mut size) = (0.0, 0.0);
-    for &f in component {
-        if neighbours[faces.range(f)].contains(&None) {
-            return None;
-        }
-        let sign = if reverse[f.index()] == Some(true) {
-            -1.0
-        } else {
-            1.0
-        };
-        let at = |v: VertexId| -> DVec3 { polygons.position(v).as_dvec3() - from };
-        let face = faces.face(f);
-        for pair in face[1..].windows(2) {
-            let part = at(face[0]).dot(at(pair[0]).cross(at(pair[1])));
-            volume += sign * part;
-            size += part.abs();
-        }
-    }
-    // If the terms cancel, the sum is only a rounding error.
-    (volume.abs() > 1e-9 * size).then_some(volume < 0.0)
-}
-
-/// Builds the mesh with the faces in `reverse` reversed. Each face keeps its first corner.
-fn reverse_faces(polygons: &PolygonMesh, reverse: &[Option<bool>]) -> Oriented {
+/// Builds the mesh with these faces reversed. The faces are ascending. Each face keeps its first
+/// corner.
+fn reverse_faces(polygons: &PolygonMesh, reversed: &[FaceId]) -> PolygonMesh {
     let faces = polygons.faces();
     let mut list = FaceList::with_capacity(faces.corners().len());
-    let mut reversed = Vec::new();
+    let mut next = reversed.iter().peekable();
     for (f, face) in faces.iter() {
-        let pushed = if reverse[f.index()] == Some(true) {
-            reversed.push(f);
+        let pushed = if next.next_if(|&&reversed| reversed == f).is_some() {
             list.push(face[..1].iter().chain(face[1..].iter().rev()).copied())
         } else {
             list.push(face.iter().copied())
         };
         pushed.expect("the same number of corners as before");
     }
-    let polygons = PolygonMesh::from_faces(polygons.positions().to_vec(), list)
-        .expect("each face has the same vertices as before");
-    Oriented { polygons, reversed }
+    PolygonMesh::from_faces(polygons.positions().to_vec(), list)
+        .expect("each face has the same vertices as before")
 }
 
 #[cfg(test)]
@@ -217,12 +377,9 @@ mod tests {
     use super::*;
 
     fn with_reversed(polygons: &PolygonMesh, reverse: impl Fn(usize) -> bool) -> PolygonMesh {
-        let faces = polygons
-            .faces()
-            .iter()
-            .map(|(f, _)| Some(reverse(f.index())));
-        let faces: Vec<Option<bool>> = faces.collect();
-        reverse_faces(polygons, &faces).polygons
+        let faces = polygons.faces().iter().map(|(f, _)| f);
+        let reversed: Vec<FaceId> = faces.filter(|f| reverse(f.index())).collect();
+        reverse_faces(polygons, &reversed)
     }
 
     fn face(row: u32) -> FaceId {
@@ -244,7 +401,9 @@ mod tests {
             prop_assert!(2 * repaired.reversed.len() <= polygons.face_count());
             // A face differs from the original only if its whole component is reversed.
             let unchanged = |f: FaceId| polygons.faces().face(f) == repaired.polygons.faces().face(f);
-            let neighbours = side_neighbours(polygons.faces());
+            let faces = polygons.faces();
+            let incidence = Incidence::new(polygons.vertex_count(), faces, |_| true);
+            let neighbours = side_neighbours(faces, &incidence);
             for (f, _) in polygons.faces().iter() {
                 prop_assert_eq!(unchanged(f), reverse(f.index()) == repaired.reversed.contains(&f));
                 for corner in polygons.faces().range(f) {

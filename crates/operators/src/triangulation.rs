@@ -1,5 +1,6 @@
 //! Triangulation: cuts polygons into triangles on the same vertices.
 
+use glam::DVec3;
 use sixfold_core::{FaceList, HandleMap, HashHandleMap, Pair, PolygonError, PolygonMesh, VertexId};
 
 use crate::ear_clipping::EarClipping;
@@ -76,6 +77,21 @@ pub fn triangulated(
     }
 }
 
+/// Cuts one polygon into `n − 2` triangles by ear clipping; each triangle is three of its corner
+/// numbers 0 to `n − 1`, in the orientation of the polygon.
+///
+/// `is_edge` returns whether a diagonal between two corner numbers is already an edge of the mesh.
+/// An ear with such a diagonal is cut only if the polygon has no other ear at that moment.
+/// [`triangulated`] describes the result and its time for each kind of polygon.
+pub fn clipped_polygon(
+    corners: impl IntoIterator<Item = DVec3>,
+    is_edge: impl Fn(usize, usize) -> bool,
+) -> Vec<[usize; 3]> {
+    let mut triangles = Vec::new();
+    EarClipping::default().clip(corners.into_iter(), is_edge, |cut| triangles.push(cut));
+    triangles
+}
+
 fn clip_ears(polygons: &PolygonMesh) -> Result<PolygonMesh, PolygonError> {
     let mut edges = possible_diagonals(polygons.faces(), polygons.vertex_count());
     let mut triangles = FaceList::with_capacity(polygons.corner_count());
@@ -118,7 +134,6 @@ fn possible_diagonals(faces: &FaceList, vertices: usize) -> HashHandleMap<Pair<V
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
     use proptest::collection;
     use proptest::prelude::*;
     use sixfold_core::{Capabilities, FaceId, Point};

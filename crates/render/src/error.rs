@@ -2,6 +2,7 @@
 
 use sixfold_core::VertexId;
 
+use crate::labels::MAX_LABELS;
 use crate::settings::{MAX_PIXELS, MAX_SIDE, MIN_PANEL};
 use crate::svg::MAX_SVG_FACES;
 
@@ -60,4 +61,7 @@ pub enum MeshFault {
     /// There are too many visible faces for an SVG.
     #[error("{faces} faces are visible, but an SVG can have at most {MAX_SVG_FACES}: write a PNG")]
     TooManyFaces { faces: usize },
+    /// There are too many labels.
+    #[error("{labels} labels are more than {MAX_LABELS}: draw a smaller mesh, or no labels")]
+    TooManyLabels { labels: usize },
 }

@@ -17,6 +17,7 @@
 mod depth_order;
 mod edges;
 mod error;
+mod labels;
 mod layout;
 mod light;
 mod normals;
@@ -28,8 +29,9 @@ mod strokes;
 mod svg;
 
 pub use error::{MeshFault, RenderError};
+pub use labels::MAX_LABELS;
 pub use picture::{Picture, draw};
 pub use settings::{
-    MAX_PIXELS, MAX_SIDE, MIN_PANEL, RenderMesh, Settings, Shading, Size, Up, View,
+    Faults, MAX_PIXELS, MAX_SIDE, MIN_PANEL, RenderMesh, Settings, Shading, Size, Up, View,
 };
 pub use svg::{MAX_SVG_FACES, draw_svg};

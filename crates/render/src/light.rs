@@ -14,6 +14,12 @@ const OUTSIDE: Colour = Colour(DVec3::new(0.30, 0.42, 0.60));
 const INSIDE: Colour = Colour(DVec3::new(0.66, 0.47, 0.26));
 /// Edges.
 pub(crate) const EDGE: Colour = Colour(DVec3::new(0.018, 0.030, 0.055));
+/// Faces that are turned against their neighbours.
+const TURNED: Colour = Colour(DVec3::new(0.80, 0.62, 0.03));
+/// Boundary edges that are painted as faults.
+pub(crate) const BOUNDARY: Colour = Colour(DVec3::new(0.95, 0.32, 0.0));
+/// Non-manifold edges and vertices that are painted as faults.
+pub(crate) const NON_MANIFOLD: Colour = Colour(DVec3::new(0.70, 0.0, 0.62));
 /// Sharp edges and corners.
 pub(crate) const CREASE: Colour = Colour(DVec3::new(0.86, 0.075, 0.020));
 
@@ -43,18 +49,28 @@ impl Colour {
     }
 }
 
-/// Returns the colour of a surface with this normal, in the axes of the picture. `inside` selects
-/// the colour of the inner side.
+/// The side of a surface that is seen.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Seen {
+    Outside,
+    Inside,
+    /// A side of a face that is painted as turned; `true` for the inner side.
+    Turned(bool),
+}
+
+/// Returns the colour of a surface with this normal, in the axes of the picture. `seen` selects the
+/// colour.
 ///
 /// The light is the sum of five parts: a key light from the upper left and a weak light from the
 /// right (Lambert 1760), light from the sky, a soft highlight (Blinn 1977), and light along the
 /// rim.
-pub(crate) fn shade(normal: DVec3, inside: bool) -> Colour {
+pub(crate) fn shade(normal: DVec3, seen: Seen) -> Colour {
     let normal = normal.normalize_or(DVec3::Z);
-    let (normal, base) = if inside {
-        (-normal, INSIDE)
-    } else {
-        (normal, OUTSIDE)
+    let (normal, base) = match seen {
+        Seen::Outside => (normal, OUTSIDE),
+        Seen::Inside => (-normal, INSIDE),
+        Seen::Turned(false) => (normal, TURNED),
+        Seen::Turned(true) => (-normal, TURNED),
     };
     let key = DVec3::new(-0.46, 0.62, 0.64).normalize();
     let fill = DVec3::new(0.84, 0.05, 0.54).normalize();
@@ -82,11 +98,15 @@ mod tests {
 
     #[test]
     fn light_comes_from_the_upper_left_and_a_surface_has_two_sides() {
-        let bright = |x, y, z| shade(DVec3::new(x, y, z), false).0.element_sum();
+        let bright = |x, y, z| shade(DVec3::new(x, y, z), Seen::Outside).0.element_sum();
         assert!(bright(-1.0, 1.0, 1.0) > bright(1.0, 1.0, 1.0));
         assert!(bright(0.0, 1.0, 1.0) > bright(0.0, -1.0, 1.0));
-        let inside = shade(DVec3::NEG_Z, true);
-        assert!(inside.0.x > inside.0.z && shade(DVec3::Z, false).0.z > shade(DVec3::Z, false).0.x);
-        assert!(shade(DVec3::ZERO, false).0.is_finite());
+        let inside = shade(DVec3::NEG_Z, Seen::Inside);
+        assert!(inside.0.x > inside.0.z);
+        let outside = shade(DVec3::Z, Seen::Outside);
+        assert!(outside.0.z > outside.0.x);
+        let turned = [true, false].map(|inside| shade(DVec3::Z, Seen::Turned(inside)));
+        assert!(turned.iter().all(|colour| colour.0.x > 2.0 * colour.0.z));
+        assert!(shade(DVec3::ZERO, Seen::Outside).0.is_finite());
     }
 }

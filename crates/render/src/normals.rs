@@ -1,9 +1,10 @@
 //! Normals for the lighting.
 
 use glam::DVec3;
-use sixfold_core::{Creases, PolygonMesh, VertexId, row};
+use sixfold_core::{Creases, FaceId, PolygonMesh, VertexId, row};
 
 use crate::edges::Edges;
+use crate::light::Seen;
 use crate::settings::{Shading, View};
 
 /// The cosine of 40°, the maximum angle between the faces of a smooth surface.
@@ -18,9 +19,38 @@ pub(crate) struct Normals {
     pub(crate) faces: Vec<DVec3>,
     /// For each corner, the normal for the lighting.
     pub(crate) corners: Vec<DVec3>,
+    /// By face: whether it is painted as turned. Empty if no face is.
+    turned: Vec<bool>,
 }
 
 impl Normals {
+    /// Paints these faces as turned.
+    pub(crate) fn paint_turned(&mut self, faces: &[FaceId]) {
+        self.turned = vec![
+            false;
+            if faces.is_empty() {
+                0
+            } else {
+                self.faces.len()
+            }
+        ];
+        for f in faces {
+            if let Some(turned) = self.turned.get_mut(f.index()) {
+                *turned = true;
+            }
+        }
+    }
+
+    /// Returns the side of `face` that is seen.
+    pub(crate) fn seen(&self, face: FaceId) -> Seen {
+        let inside = self.faces[face.index()].z < 0.0;
+        match (self.turned.get(face.index()), inside) {
+            (Some(true), inside) => Seen::Turned(inside),
+            (_, true) => Seen::Inside,
+            (_, false) => Seen::Outside,
+        }
+    }
+
     /// Computes the normals of `mesh`; O(corners · α), with the inverse Ackermann function α.
     ///
     /// Corners joined by smooth edges are one surface. The normal of a surface is the mean of its
@@ -48,6 +78,7 @@ impl Normals {
             return Self {
                 faces: units,
                 corners,
+                turned: Vec::new(),
             };
         }
         let mut surfaces = Surfaces::new(mesh.corner_count());
@@ -74,6 +105,7 @@ impl Normals {
         Self {
             faces: units,
             corners: (0..row(all.len())).map(corner).collect(),
+            turned: Vec::new(),
         }
     }
 }

@@ -5,9 +5,10 @@ use std::io::{self, Write};
 use glam::DVec2;
 
 use crate::edges::Edges;
-use crate::error::RenderError;
+use crate::error::{MeshFault, RenderError};
+use crate::labels::{LabelPixels, check_labels};
 use crate::layout::{Panel, layout};
-use crate::light::{BACKGROUND, CREASE, Colour, EDGE};
+use crate::light::{BACKGROUND, Colour};
 use crate::normals::Normals;
 use crate::samples::{Samples, allocate};
 use crate::settings::{RenderMesh, Settings, Size};
@@ -77,8 +78,9 @@ impl Picture {
 ///     shading: Shading::Smooth,
 ///     edges: true,
 ///     wireframe: false,
+///     labels: false,
 /// };
-/// let render_mesh = RenderMesh { mesh: &mesh, creases: &creases };
+/// let render_mesh = RenderMesh { mesh: &mesh, creases: &creases, faults: None };
 /// let picture = sixfold_render::draw(&[render_mesh], &settings)?;
 /// assert_eq!(picture.bytes().len(), 64 * 48 * 3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -87,20 +89,25 @@ pub fn draw(render_meshes: &[RenderMesh<'_>], settings: &Settings) -> Result<Pic
     let panels = layout(render_meshes, settings)?;
     let Size { width, height } = settings.size;
     let mut bytes = allocate(width as usize * height as usize * 3, 0)?;
-    for (render_mesh, panel) in render_meshes.iter().zip(&panels) {
-        let parts = VisibleParts::new(render_mesh, panel, settings)?;
-        let edges = LineCoverage::new(panel, [(&parts.strokes.edges, parts.strokes.edge_width)])?;
-        let sharp = [
-            (&parts.strokes.creases, parts.strokes.crease_width),
-            (&parts.strokes.corners, parts.strokes.corner_width),
-        ];
-        let sharp = LineCoverage::new(panel, sharp)?;
+    for (mesh, (render_mesh, panel)) in render_meshes.iter().zip(&panels).enumerate() {
+        let parts =
+            VisibleParts::new(render_mesh, panel, settings).map_err(|error| error.of_mesh(mesh))?;
+        let mut layers = Vec::new();
+        for layer in &parts.strokes.layers {
+            if layer.strokes.iter().any(|(strokes, _)| !strokes.is_empty()) {
+                layers.push((LineCoverage::new(panel, &layer.strokes)?, layer.colour));
+            }
+        }
+        let labels = LabelPixels::new(&parts.strokes.labels, panel);
         for row in 0..panel.height {
             for column in 0..panel.width {
                 let surface = parts.samples.as_ref();
                 let colour = surface.map_or(BACKGROUND, |s| s.pixel(column, row, BACKGROUND));
-                let colour = edges.blend(colour, EDGE, column, row);
-                let colour = sharp.blend(colour, CREASE, column, row);
+                let blend = |colour, (lines, over): &(LineCoverage, Colour)| {
+                    lines.blend(colour, *over, column, row)
+                };
+                let colour = layers.iter().fold(colour, blend);
+                let colour = labels.colour(column, row).unwrap_or(colour);
                 let at = 3 * (row * width as usize + panel.left + column);
                 bytes[at..at + 3].copy_from_slice(&colour.srgb_codes());
             }
@@ -108,6 +115,34 @@ pub fn draw(render_meshes: &[RenderMesh<'_>], settings: &Settings) -> Result<Pic
     }
     let size = settings.size;
     Ok(Picture { size, bytes })
+}
+
+/// The reason why the parts of one mesh cannot be drawn.
+pub(crate) enum PartsError {
+    Picture(RenderError),
+    Mesh(MeshFault),
+}
+
+impl PartsError {
+    /// Returns the error for mesh number `mesh` of the row.
+    pub(crate) fn of_mesh(self, mesh: usize) -> RenderError {
+        match self {
+            Self::Picture(error) => error,
+            Self::Mesh(fault) => RenderError::Mesh { mesh, fault },
+        }
+    }
+}
+
+impl From<RenderError> for PartsError {
+    fn from(error: RenderError) -> Self {
+        Self::Picture(error)
+    }
+}
+
+impl From<MeshFault> for PartsError {
+    fn from(fault: MeshFault) -> Self {
+        Self::Mesh(fault)
+    }
 }
 
 pub(crate) struct VisibleParts {
@@ -122,10 +157,18 @@ impl VisibleParts {
         render_mesh: &RenderMesh<'_>,
         panel: &Panel,
         settings: &Settings,
-    ) -> Result<Self, RenderError> {
-        let &RenderMesh { mesh, creases } = render_mesh;
+    ) -> Result<Self, PartsError> {
+        let &RenderMesh {
+            mesh,
+            creases,
+            faults,
+        } = render_mesh;
         let edges = Edges::new(mesh);
-        let normals = Normals::new(mesh, creases, &edges, settings.shading, &settings.view);
+        if settings.labels {
+            check_labels(mesh, &edges)?;
+        }
+        let mut normals = Normals::new(mesh, creases, &edges, settings.shading, &settings.view);
+        normals.paint_turned(faults.map_or(&[], |faults| &faults.turned_faces));
         let samples = match settings.wireframe {
             true => None,
             false => Some(Samples::new(render_mesh, panel, &normals)?),
@@ -147,10 +190,7 @@ struct LineCoverage {
 }
 
 impl LineCoverage {
-    fn new<const N: usize>(
-        panel: &Panel,
-        strokes: [(&Vec<Stroke>, f64); N],
-    ) -> Result<Self, RenderError> {
+    fn new(panel: &Panel, strokes: &[(Vec<Stroke>, f64)]) -> Result<Self, RenderError> {
         let Panel { width, height, .. } = *panel;
         let shares = allocate(width * height, 0)?;
         let mut coverage = Self { width, shares };

@@ -5,7 +5,7 @@ use sixfold_core::{FaceId, RowId, Slot};
 
 use crate::error::RenderError;
 use crate::layout::Panel;
-use crate::light::{Colour, shade};
+use crate::light::{Colour, Seen, shade};
 use crate::normals::Normals;
 use crate::rasterise::{Corner, Rasteriser, Sample};
 use crate::settings::RenderMesh;
@@ -48,15 +48,13 @@ impl Samples {
         let mut corners = Vec::new();
         for (f, face) in render_mesh.mesh.faces().iter() {
             let of_corners = &normals.corners[render_mesh.mesh.faces().range(f)];
-            let inside = normals.faces[f.index()].z < 0.0;
+            let seen = normals.seen(f);
             corners.clear();
             corners.extend(face.iter().zip(of_corners).map(|(&v, &normal)| Corner {
                 position: panel.position(v) * per_side,
                 normal,
             }));
-            rasteriser.rasterise(&corners, |sample| {
-                samples.store_if_nearer(f, &sample, inside)
-            });
+            rasteriser.rasterise(&corners, |sample| samples.store_if_nearer(f, &sample, seen));
         }
         Ok(samples)
     }
@@ -80,13 +78,13 @@ impl Samples {
         })
     }
 
-    fn store_if_nearer(&mut self, face: FaceId, sample: &Sample, inside: bool) {
+    fn store_if_nearer(&mut self, face: FaceId, sample: &Sample, seen: Seen) {
         let at = sample.row * self.columns + sample.column;
         let depth = sample.depth as f32;
         if depth > self.depths[at] {
             self.depths[at] = depth;
             self.faces[at] = Slot::some(face);
-            let light = shade(sample.normal, inside).0.to_array();
+            let light = shade(sample.normal, seen).0.to_array();
             self.lights[at] = light.map(|light| (light * FULL_LIGHT).round() as u16);
         }
     }

@@ -1,7 +1,7 @@
 //! The meshes and settings of a picture.
 
 use glam::DVec3;
-use sixfold_core::{Creases, Point, PolygonMesh};
+use sixfold_core::{Creases, FaceId, Point, PolygonMesh, VertexId};
 
 use crate::error::RenderError;
 
@@ -22,6 +22,24 @@ pub struct RenderMesh<'a> {
     /// The sharp edges and corners, drawn in colour. Shading is not smooth across an edge with a
     /// sharpness of 1 or more.
     pub creases: &'a Creases,
+    /// The faults to paint; `None` for no faults.
+    pub faults: Option<&'a Faults>,
+}
+
+/// Faults of a mesh, which are painted in colours of their own.
+///
+/// Edges and vertices that the mesh does not have are not drawn. Faces that it does not have are
+/// ignored.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Faults {
+    /// Boundary edges, painted in orange.
+    pub boundary_edges: Vec<[VertexId; 2]>,
+    /// Edges with three or more faces, painted in magenta.
+    pub non_manifold_edges: Vec<[VertexId; 2]>,
+    /// Vertices whose faces form several fans, painted in magenta.
+    pub non_manifold_vertices: Vec<VertexId>,
+    /// Faces that are turned against their neighbours, painted in yellow.
+    pub turned_faces: Vec<FaceId>,
 }
 
 /// The width and height of a picture in pixels.
@@ -149,6 +167,9 @@ pub struct Settings {
     pub edges: bool,
     /// True to draw all edges, including hidden edges, and no faces.
     pub wireframe: bool,
+    /// Whether to write the names of visible vertices (`v0`), edges (`e0`) and faces (`f0`). Edges are
+    /// numbered by their lower end, then by their higher end.
+    pub labels: bool,
 }
 
 #[cfg(test)]

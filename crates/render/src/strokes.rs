@@ -3,11 +3,14 @@
 use std::ops::Range;
 
 use glam::{DVec2, DVec3};
+use sixfold_core::{Pair, VertexId};
 
 use crate::edges::{Edges, Side};
+use crate::labels::{Label, labels};
 use crate::layout::Panel;
+use crate::light::{BOUNDARY, CREASE, Colour, EDGE, NON_MANIFOLD};
 use crate::samples::Samples;
-use crate::settings::{RenderMesh, Settings};
+use crate::settings::{Faults, RenderMesh, Settings};
 
 /// Width of an edge, in units of the panel.
 const EDGE_WIDTH: f64 = 1.1;
@@ -28,15 +31,33 @@ pub(crate) struct Stroke {
     pub(crate) opacity: f64,
 }
 
+/// Lines of one colour, and their width.
+pub(crate) struct Layer {
+    pub(crate) colour: Colour,
+    /// Lines, and dots.
+    pub(crate) strokes: [(Vec<Stroke>, f64); 2],
+}
+
+impl Layer {
+    fn new(colour: Colour, widths: [f64; 2]) -> Self {
+        let strokes = widths.map(|width| (Vec::new(), width));
+        Self { colour, strokes }
+    }
+}
+
 /// The lines of one panel.
 pub(crate) struct Strokes {
-    pub(crate) edges: Vec<Stroke>,
-    pub(crate) edge_width: f64,
-    pub(crate) creases: Vec<Stroke>,
-    pub(crate) crease_width: f64,
-    pub(crate) corners: Vec<Stroke>,
-    pub(crate) corner_width: f64,
+    /// Layers from the lowest to the highest: edges, creases, boundary edges and non-manifold
+    /// elements.
+    pub(crate) layers: [Layer; 4],
+    pub(crate) labels: Vec<Label>,
 }
+
+/// The numbers of the layers.
+const EDGES: usize = 0;
+const CREASES: usize = 1;
+const BOUNDARIES: usize = 2;
+const NON_MANIFOLD_ELEMENTS: usize = 3;
 
 impl Strokes {
     /// Collects the visible parts of edges and corners. Without `samples`, all parts are visible.
@@ -49,52 +70,92 @@ impl Strokes {
         settings: &Settings,
     ) -> Self {
         let unit = panel.unit();
+        let widths = [CREASE_WIDTH * unit, CORNER_WIDTH * unit];
         let mut strokes = Self {
-            edges: Vec::new(),
-            edge_width: EDGE_WIDTH * unit,
-            creases: Vec::new(),
-            crease_width: CREASE_WIDTH * unit,
-            corners: Vec::new(),
-            corner_width: CORNER_WIDTH * unit,
+            layers: [
+                Layer::new(EDGE, [EDGE_WIDTH * unit, 0.0]),
+                Layer::new(CREASE, widths),
+                Layer::new(BOUNDARY, widths),
+                Layer::new(NON_MANIFOLD, widths),
+            ],
+            labels: Vec::new(),
         };
         let visibility = VisibilityTest::new(panel, samples, render_mesh);
+        let painted = PaintedEdges::new(render_mesh.faults);
         let (mut length, mut count) = (0.0, 0.0);
         for sides in edges.iter() {
-            let [a, b] = sides[0].edge.ends();
-            let sharp = render_mesh.creases.edge(a, b) > 0.0;
-            if !(sharp || settings.edges || settings.wireframe) {
-                continue;
-            }
+            let edge = sides[0].edge;
+            let [a, b] = edge.ends();
+            let layer = match painted.layer(edge) {
+                Some(layer) => layer,
+                None if render_mesh.creases.edge(a, b) > 0.0 => CREASES,
+                None if settings.edges || settings.wireframe => EDGES,
+                None => continue,
+            };
             let ends = [a, b].map(|v| panel.position(v));
             length += ends[0].truncate().distance(ends[1].truncate());
             count += 1.0;
-            let into = if sharp {
-                &mut strokes.creases
-            } else {
-                &mut strokes.edges
-            };
+            let into = &mut strokes.layers[layer].strokes[0].0;
             visibility.add_visible_parts(ends, sides, into);
         }
         let opacity = EDGE_OPACITY
             * (length / f64::max(count, 1.0) / (FULL_OPACITY_LENGTH * unit)).clamp(0.3, 1.0);
-        for stroke in &mut strokes.edges {
+        for stroke in &mut strokes.layers[EDGES].strokes[0].0 {
             stroke.opacity *= opacity;
         }
-        for &(v, _) in render_mesh.creases.corners() {
+        let corners = render_mesh.creases.corners().iter();
+        let corners = corners.map(|&(v, _)| (v, CREASES));
+        let several = render_mesh
+            .faults
+            .map_or(&[][..], |faults| &faults.non_manifold_vertices);
+        let several = several.iter().map(|&v| (v, NON_MANIFOLD_ELEMENTS));
+        for (v, layer) in corners.chain(several) {
             // A vertex without faces can have infinite coordinates.
-            let position = panel.position(v);
+            let position = panel
+                .positions
+                .get(v.index())
+                .copied()
+                .unwrap_or(DVec3::NAN);
             if position.is_finite() && visibility.is_corner_visible(position) {
-                strokes.corners.push(Stroke {
+                strokes.layers[layer].strokes[1].0.push(Stroke {
                     ends: [position.truncate(); 2],
                     opacity: visibility.opacity(position.z),
                 });
             }
         }
+        if settings.labels {
+            strokes.labels = labels(render_mesh.mesh, panel, edges, &visibility);
+        }
         strokes
     }
 }
 
-struct VisibilityTest<'a> {
+/// The edges that are painted as faults, each with its layer.
+struct PaintedEdges(Vec<(Pair<VertexId>, usize)>);
+
+impl PaintedEdges {
+    fn new(faults: Option<&Faults>) -> Self {
+        let Some(faults) = faults else {
+            return Self(Vec::new());
+        };
+        let layer = |edges: &[[VertexId; 2]], layer| {
+            let pairs = edges.iter().map(move |&[a, b]| (Pair::new(a, b), layer));
+            pairs.collect::<Vec<_>>()
+        };
+        let mut painted = layer(&faults.boundary_edges, BOUNDARIES);
+        painted.extend(layer(&faults.non_manifold_edges, NON_MANIFOLD_ELEMENTS));
+        painted.sort_unstable();
+        Self(painted)
+    }
+
+    fn layer(&self, edge: Pair<VertexId>) -> Option<usize> {
+        let found = self.0.binary_search_by_key(&edge, |&(edge, _)| edge);
+        found.ok().map(|at| self.0[at].1)
+    }
+}
+
+/// A test whether elements are hidden by surfaces.
+pub(crate) struct VisibilityTest<'a> {
     samples: Option<&'a Samples>,
     /// The depths of the farthest and the nearest vertex.
     depths: Range<f64>,
@@ -152,8 +213,13 @@ impl<'a> VisibilityTest<'a> {
     }
 
     fn is_corner_visible(&self, position: DVec3) -> bool {
+        self.is_point_visible(position, |_| false)
+    }
+
+    /// Returns whether `position` is visible. Faces with `is_own` do not hide it.
+    pub(crate) fn is_point_visible(&self, position: DVec3, is_own: impl Fn(u32) -> bool) -> bool {
         let samples = self.samples;
-        samples.is_none_or(|samples| is_visible(samples, position, |_| false))
+        samples.is_none_or(|samples| is_visible(samples, position, is_own))
     }
 
     /// Returns the opacity of a stroke. In a wireframe, distant strokes have a lower opacity.

@@ -6,8 +6,9 @@ use glam::{DVec2, DVec3};
 
 use crate::depth_order::back_to_front;
 use crate::error::{MeshFault, RenderError};
+use crate::labels::Label;
 use crate::layout::{Panel, layout};
-use crate::light::{BACKGROUND, CREASE, EDGE, shade};
+use crate::light::{BACKGROUND, shade};
 use crate::picture::VisibleParts;
 use crate::settings::{RenderMesh, Settings, Size};
 use crate::strokes::Stroke;
@@ -37,21 +38,20 @@ pub fn draw_svg(
         BACKGROUND.to_hex()
     );
     for (mesh, (render_mesh, panel)) in render_meshes.iter().zip(&panels).enumerate() {
-        let parts = VisibleParts::new(render_mesh, panel, settings)?;
+        let parts =
+            VisibleParts::new(render_mesh, panel, settings).map_err(|error| error.of_mesh(mesh))?;
         svg += &format!(
             "<g transform=\"translate({})\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n",
             panel.left
         );
         draw_faces(render_mesh, panel, &parts, &mut svg)
             .map_err(|fault| RenderError::Mesh { mesh, fault })?;
-        let strokes = &parts.strokes;
-        for (strokes, width, colour) in [
-            (&strokes.edges, strokes.edge_width, EDGE),
-            (&strokes.creases, strokes.crease_width, CREASE),
-            (&strokes.corners, strokes.corner_width, CREASE),
-        ] {
-            draw_lines(strokes, width, &colour.to_hex(), &mut svg);
+        for layer in &parts.strokes.layers {
+            for (strokes, width) in &layer.strokes {
+                draw_lines(strokes, *width, &layer.colour.to_hex(), &mut svg);
+            }
         }
+        draw_labels(&parts.strokes.labels, panel.unit(), &mut svg);
         svg += "</g>\n";
     }
     svg += "</svg>\n";
@@ -79,8 +79,7 @@ fn draw_faces(
         if !visible[f.index()] {
             continue;
         }
-        let inside = parts.normals.faces[f.index()].z < 0.0;
-        let colour = shade(corners.iter().sum::<DVec3>(), inside).to_hex();
+        let colour = shade(corners.iter().sum::<DVec3>(), parts.normals.seen(f)).to_hex();
         let points = face.iter().map(|&v| panel.position(v).truncate());
         let outline = path(points);
         shapes[f.index()] =
@@ -109,6 +108,30 @@ fn draw_lines(strokes: &[Stroke], width: f64, colour: &str, svg: &mut String) {
             "<path d=\"{lines}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" stroke-opacity=\"{opacity}\"/>\n"
         );
     }
+}
+
+/// Adds labels, with an outline in the colour of the background.
+fn draw_labels(labels: &[Label], unit: f64, svg: &mut String) {
+    if labels.is_empty() {
+        return;
+    }
+    *svg += &format!(
+        "<g font-family=\"sans-serif\" font-size=\"{}\" text-anchor=\"middle\" \
+         dominant-baseline=\"central\" paint-order=\"stroke\" stroke=\"{}\" stroke-width=\"{}\">\n",
+        Number(11.0 * unit),
+        BACKGROUND.to_hex(),
+        Number(2.5 * unit)
+    );
+    for label in labels {
+        let (x, y, colour) = (
+            Number(label.at.x),
+            Number(label.at.y),
+            label.colour().to_hex(),
+        );
+        let text = &label.text;
+        *svg += &format!("<text x=\"{x}\" y=\"{y}\" fill=\"{colour}\">{text}</text>\n");
+    }
+    *svg += "</g>\n";
 }
 
 /// Returns a path. Example: `M1 2L3 4`. A path between equal points, such as `M1 2L1 2`, is a dot.

@@ -1,9 +1,9 @@
 //! Tests the content of pictures, and that the same input gives the same picture.
 
-use sixfold_core::{Creases, Point, PolygonMesh, VertexId};
+use sixfold_core::{Creases, FaceId, Point, PolygonMesh, VertexId};
 use sixfold_render::{
-    MAX_PIXELS, MAX_SIDE, MeshFault, Picture, RenderError, RenderMesh, Settings, Shading, Size, Up,
-    View, draw, draw_svg,
+    Faults, MAX_LABELS, MAX_PIXELS, MAX_SIDE, MeshFault, Picture, RenderError, RenderMesh,
+    Settings, Shading, Size, Up, View, draw, draw_svg,
 };
 
 /// The faces of a cube from −1 to 1; bits 1, 2 and 4 of a vertex number are its x, y and z.
@@ -33,6 +33,7 @@ fn settings() -> Settings {
         shading: Shading::Smooth,
         edges: false,
         wireframe: false,
+        labels: false,
     }
 }
 
@@ -41,11 +42,27 @@ fn edges(mesh: &PolygonMesh, edges: &[[u32; 2]]) -> Creases {
 }
 
 fn draw_mesh(mesh: &PolygonMesh, creases: &Creases, settings: &Settings) -> Picture {
-    draw(&[RenderMesh { mesh, creases }], settings).unwrap_or_else(|error| panic!("{error}"))
+    draw(
+        &[RenderMesh {
+            mesh,
+            creases,
+            faults: None,
+        }],
+        settings,
+    )
+    .unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn svg(mesh: &PolygonMesh, creases: &Creases, settings: &Settings) -> String {
-    draw_svg(&[RenderMesh { mesh, creases }], settings).unwrap_or_else(|error| panic!("{error}"))
+    draw_svg(
+        &[RenderMesh {
+            mesh,
+            creases,
+            faults: None,
+        }],
+        settings,
+    )
+    .unwrap_or_else(|error| panic!("{error}"))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -261,6 +278,7 @@ fn meshes_in_a_row_have_the_same_scale() {
     let render_mesh = |mesh| RenderMesh {
         mesh,
         creases: &creases,
+        faults: None,
     };
     let row = Settings {
         size: Size {
@@ -434,6 +452,7 @@ fn invalid_sizes_views_and_meshes_are_refused() {
     let render_mesh = RenderMesh {
         mesh: &mesh,
         creases: &creases,
+        faults: None,
     };
     let of_size = |width, height, panels| {
         let size = Size { width, height };
@@ -479,6 +498,7 @@ fn invalid_sizes_views_and_meshes_are_refused() {
             RenderMesh {
                 mesh: &mesh,
                 creases: &creases,
+                faults: None,
             },
         ];
         let error = draw(&render_meshes, &settings()).expect_err("refused");
@@ -518,9 +538,131 @@ fn an_svg_with_too_many_faces_is_refused() {
     let render_mesh = RenderMesh {
         mesh: &mesh,
         creases: &creases,
+        faults: None,
     };
     let error = draw_svg(&[render_mesh], &settings).expect_err("too many");
     let message = "mesh 1 of the row: 90000 faces are visible, but an SVG can have at most 50000: \
                    write a PNG";
     assert_eq!(error.to_string(), message);
+}
+
+/// Returns the number of pixels of a colour: of pixels for which `is_colour` accepts red, green and
+/// blue.
+fn pixels(picture: &Picture, is_colour: fn([i32; 3]) -> bool) -> usize {
+    let pixels = picture.bytes().chunks_exact(3);
+    let colours = pixels.map(|pixel| [pixel[0], pixel[1], pixel[2]].map(i32::from));
+    colours.filter(|&colour| is_colour(colour)).count()
+}
+
+#[test]
+fn faults_are_painted() {
+    let (mesh, creases) = (cube(1.0), Creases::default());
+    let orange = |[r, g, b]: [i32; 3]| r > 230 && (110..190).contains(&g) && b < 90;
+    let magenta = |[r, g, b]: [i32; 3]| r > 150 && b > 150 && g < 90;
+    let yellow = |[r, g, b]: [i32; 3]| r > b + 90 && g > b + 80;
+    let v = VertexId::new;
+    let marked = Faults {
+        boundary_edges: vec![[v(6), v(7)]],
+        non_manifold_edges: vec![[v(3), v(7)]],
+        non_manifold_vertices: vec![v(4)],
+        turned_faces: vec![FaceId::new(1)],
+    };
+    let draw_faults = |faults| {
+        let render_mesh = RenderMesh {
+            mesh: &mesh,
+            creases: &creases,
+            faults,
+        };
+        draw(&[render_mesh], &settings()).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let counts = |faults| {
+        let picture = draw_faults(faults);
+        [
+            pixels(&picture, orange),
+            pixels(&picture, magenta),
+            pixels(&picture, yellow),
+        ]
+    };
+    assert_eq!(counts(None), [0; 3]);
+    let none = Faults::default();
+    assert_eq!(draw_faults(Some(&none)), draw_faults(None));
+    let [boundary, non_manifold, turned] = counts(Some(&marked));
+    assert!(
+        boundary > 30 && non_manifold > 30 && turned > 300,
+        "{:?}",
+        counts(Some(&marked))
+    );
+    // Hidden elements, and elements of another mesh, are not drawn.
+    let hidden = Faults {
+        boundary_edges: vec![[v(0), v(1)], [v(0), v(99)]],
+        non_manifold_vertices: vec![v(0), v(99)],
+        turned_faces: vec![FaceId::new(0), FaceId::new(99)],
+        ..Faults::default()
+    };
+    assert_eq!(counts(Some(&hidden)), [0; 3]);
+    let render_mesh = RenderMesh {
+        mesh: &mesh,
+        creases: &creases,
+        faults: Some(&marked),
+    };
+    let svg = draw_svg(&[render_mesh], &settings()).expect("drawn");
+    for colour in ["#f999", "#da00"] {
+        assert!(svg.contains(colour), "{colour}: {svg}");
+    }
+}
+
+#[test]
+fn labels_name_the_visible_elements() {
+    let (mesh, creases) = (cube(1.0), Creases::default());
+    let labelled = Settings {
+        labels: true,
+        ..settings()
+    };
+    let text = svg(&mesh, &creases, &labelled);
+    let names: Vec<&str> = text
+        .split("</text>")
+        .filter_map(|part| part.rsplit_once('>').map(|(_, name)| name))
+        .filter(|name| name.starts_with(['v', 'e', 'f']))
+        .collect();
+    let count = |kind: char| names.iter().filter(|name| name.starts_with(kind)).count();
+    // The view hides one corner of the cube.
+    assert_eq!([count('v'), count('e'), count('f')], [7, 9, 3], "{names:?}");
+    assert!(!names.contains(&"v0") && names.contains(&"v7"));
+    assert!(!svg(&mesh, &creases, &settings()).contains("<text"));
+
+    let plain = draw_mesh(&mesh, &creases, &settings());
+    let picture = draw_mesh(&mesh, &creases, &labelled);
+    let black = |colour: [i32; 3]| colour == [0; 3];
+    assert_eq!(pixels(&plain, black), 0);
+    // A v has 8 pixels, and a digit at least 7.
+    let dark = pixels(&picture, black);
+    assert!((60..200).contains(&dark), "{dark}");
+    let wireframe = Settings {
+        wireframe: true,
+        ..labelled
+    };
+    assert!(svg(&mesh, &creases, &wireframe).contains(">v0<"));
+}
+
+#[test]
+fn large_meshes_have_no_labels() {
+    let mesh = sixfold_shapes::geodesic(10).expect("valid");
+    let creases = Creases::default();
+    let settings = Settings {
+        labels: true,
+        ..settings()
+    };
+    let render_mesh = RenderMesh {
+        mesh: &mesh,
+        creases: &creases,
+        faults: None,
+    };
+    let error = draw(&[render_mesh], &settings).expect_err("too many");
+    let labels = 1002 + 3000 + 2000;
+    let message = format!(
+        "mesh 1 of the row: {labels} labels are more than {MAX_LABELS}: draw a smaller mesh, or no \
+         labels"
+    );
+    assert_eq!(error.to_string(), message);
+    assert_eq!(draw_svg(&[render_mesh], &settings), Err(error));
 }

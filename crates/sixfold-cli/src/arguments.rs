@@ -1,12 +1,16 @@
 //! The command-line arguments.
 
 mod comparing;
+mod distance;
 mod files;
+mod inspect;
 mod memory;
 mod picking;
 mod remeshing;
 mod render;
+mod repair;
 mod reshaping;
+mod results;
 mod subdivision;
 mod why;
 
@@ -19,12 +23,16 @@ use sixfold::shapes::Order;
 use sixfold_study::{CacheState, External, Operation, Policy};
 
 pub(crate) use comparing::{Compare, GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders};
-pub(crate) use files::ResultFiles;
+pub(crate) use distance::Distance;
+pub(crate) use files::{FileOptions, file_options, with_file_options};
+pub(crate) use inspect::Inspect;
 pub(crate) use memory::Memory;
 pub(crate) use picking::{Pick, Workloads};
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
 pub(crate) use render::Render;
+pub(crate) use repair::{Repair, repair_options};
 pub(crate) use reshaping::{Dual, Smooth, Triangulate};
+pub(crate) use results::ResultFiles;
 pub(crate) use subdivision::{Schemes, Select, Subdivide};
 pub(crate) use why::Why;
 
@@ -51,7 +59,7 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study bunny.obj --json - --csv bunny.csv
   sixfold study bunny.obj --external mine='./mine {mesh}'
   sixfold study bunny.obj --report bunny            a page with figures
-  sixfold study scans --report results              all OBJ files in a folder; --resume continues
+  sixfold study scans --report results              all meshes in a folder; --resume continues
 
 Measurement: Each round runs every operation once on every backend, in random order. The clock
 measures the processor time of the thread. The table shows the median over the rounds. In each
@@ -93,12 +101,6 @@ const REPORT_EXAMPLES: &str = "Examples:
 
 Exit codes: 0 success; 2 wrong usage, or a file that is incomplete, is not a result, or has another
 schema version.";
-
-const INSPECT_EXAMPLES: &str = "Examples:
-  sixfold inspect bunny.obj
-  sixfold inspect bunny.obj --json -         machine-readable
-
-Exit codes: 0 success; 2 wrong usage or unusable input; 4 interrupted.";
 
 const COMPLETIONS_EXAMPLES: &str = "Examples:
   sixfold completions bash > ~/.local/share/bash-completion/completions/sixfold
@@ -144,8 +146,10 @@ pub(crate) enum Command {
     Report(Draw),
     /// Compare two files of results, and show the differences that exceed the noise
     Compare(Compare),
-    /// Show facts about a mesh, and which data structures can hold the mesh
+    /// Show facts about meshes, and which data structures can hold them
     Inspect(Inspect),
+    /// Measure the distance between the surfaces of two meshes
+    Distance(Distance),
     /// Count the memory of each data structure in three ways that must agree
     Memory(Memory),
     /// Write a built-in shape
@@ -166,6 +170,8 @@ pub(crate) enum Command {
     Decimate(Decimate),
     /// Replace the triangles of a mesh by nearly equilateral triangles of one size
     Remesh(Remesh),
+    /// Repair a mesh: weld, orient, cut, fill holes
+    Repair(Repair),
     /// Draw meshes with their edges and creases, as PNG or SVG
     Render(Render),
     /// Print a script that completes commands and options in a shell
@@ -202,8 +208,8 @@ pub(crate) struct Manual {
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Study {
-    /// OBJ files, or folders with OBJ files [default: a built-in mesh]
-    #[arg(value_name = "FILE.obj|DIR")]
+    /// Meshes, or folders with meshes [default: a built-in mesh]
+    #[arg(value_name = "MESH|DIR")]
     pub(crate) meshes: Vec<PathBuf>,
     /// Use only these data structures (backends), by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
@@ -319,20 +325,6 @@ impl Default for Study {
     }
 }
 
-/// Show facts about a mesh, and which data structures can hold the mesh.
-///
-/// Measures no times. Counts the faces that repeat a vertex or have fewer than three corners.
-#[derive(Debug, Args)]
-#[command(after_help = INSPECT_EXAMPLES, verbatim_doc_comment)]
-pub(crate) struct Inspect {
-    /// The mesh, an OBJ file
-    #[arg(value_name = "FILE.obj")]
-    pub(crate) mesh: PathBuf,
-    /// Write all facts as JSON (- for standard output)
-    #[arg(long, value_name = "FILE")]
-    pub(crate) json: Option<PathBuf>,
-}
-
 /// Write a built-in shape.
 #[derive(Debug, Args)]
 pub(crate) struct Generate {
@@ -349,7 +341,7 @@ pub(crate) struct Generate {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
     /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "FILE.obj")]
+    #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 }
 

@@ -19,11 +19,11 @@ impl Failure {
         }
     }
 
-    /// Returns a failure for a mesh that the selected backend cannot hold.
-    pub(crate) fn cannot_hold(refusal: impl Display) -> Self {
+    /// Returns a failure for a mesh that `structure` cannot hold.
+    pub(crate) fn cannot_hold(structure: &str, refusal: impl Display) -> Self {
         Self::unsupported(format!(
-            "{refusal}; or choose another --backend: `sixfold inspect` shows which backends can \
-             hold the mesh"
+            "{refusal}; `sixfold repair --for {structure}` makes a mesh that it can hold; or choose \
+             another --backend: `sixfold inspect` shows which backends can hold the mesh"
         ))
     }
 

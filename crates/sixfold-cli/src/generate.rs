@@ -2,11 +2,11 @@
 
 use std::process::ExitCode;
 
-use sixfold::io::write_obj;
 use sixfold::shapes::{GENERATORS, Generator, Parameter, generator};
 
 use crate::arguments::Generate;
 use crate::failure::Failure;
+use crate::mesh_files::write_mesh;
 use crate::output::{Output, is_stdout};
 use crate::progress::exit_on_interrupt;
 use crate::text::{TextOutput, hanging_indent, sanitize};
@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
     let made = generator.build(&settings).map_err(Failure::usage)?;
     let mesh = arguments.order.apply(&made, arguments.seed);
     let output = Output::open(&arguments.output)?;
-    output.finish(|writer| write_obj(&mesh, writer))?;
+    write_mesh(output, &arguments.output, &mesh, &[])?;
     let vertices = counted(mesh.vertex_count(), "vertex", "vertices");
     let faces = counted(mesh.face_count(), "face", "faces");
     let place = sanitize(&arguments.output.display().to_string());

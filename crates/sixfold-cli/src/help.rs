@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use clap::{Command as Definition, CommandFactory};
 
-use crate::arguments::{Arguments, Completions, Manual};
+use crate::arguments::{Arguments, Completions, Manual, with_file_options};
 use crate::failure::Failure;
 use crate::output::cannot_write;
 use crate::text::ignore_closed_pipe;
@@ -27,12 +27,14 @@ const GROUPS: [(&str, &[&str]); 5] = [
         "Meshes",
         &[
             "generate",
+            "distance",
             "subdivide",
             "smooth",
             "dual",
             "triangulate",
             "decimate",
             "remesh",
+            "repair",
             "render",
         ],
     ),
@@ -45,7 +47,8 @@ pub(crate) fn definition() -> Definition {
         .mut_subcommand("study", |study| study.after_help(study::help()))
         .mut_subcommand("orders", |orders| orders.after_help(orders::help()))
         .mut_subcommand("growth", |growth| growth.after_help(growth::help()))
-        .mut_subcommand("generate", |generate| generate.after_help(generate::help()));
+        .mut_subcommand("generate", |generate| generate.after_help(generate::help()))
+        .mut_subcommands(with_file_options);
     let template = format!(
         "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{}\n\nOptions:\n{{options}}\
          {{after-help}}",

@@ -1,35 +1,101 @@
-//! `sixfold inspect`: shows facts about a mesh, and the backends that can hold it.
+//! `sixfold inspect`: shows facts about meshes, their faults, and the backends that can hold them.
 
+use std::path::Path;
 use std::process::ExitCode;
 
-use sixfold_study::Backend;
+use serde::Serialize;
+use sixfold::repair::{Diagnosis, diagnose};
+use sixfold_study::{Backend, Inspection};
 
 use crate::arguments::Inspect;
 use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
+use crate::faults_text::{Diagnosed, SHOWN_PLACES};
 use crate::load;
+use crate::many::find_meshes;
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::exit_on_interrupt;
-use crate::text::TextOutput;
+use crate::text::{TextOutput, print_stderr};
 
+/// The inspection of a mesh as JSON.
+#[derive(Serialize)]
+struct Inspected {
+    #[serde(flatten)]
+    inspection: Inspection,
+    diagnosis: Diagnosis,
+}
+
+/// Inspects the meshes. If there are several, continues after a mesh that cannot be read.
 pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
     exit_on_interrupt();
-    check_outputs(
-        Some(&arguments.mesh),
-        &[("--json", arguments.json.as_ref())],
-    )?;
-    let study_mesh = load::study_mesh(&arguments.mesh)?;
-    let inspection = sixfold_study::inspect(&study_mesh, &Backend::structures());
+    let meshes = find_meshes(&arguments.meshes, &mut |note| print_stderr(note))?;
+    let paths: Vec<&Path> = meshes.iter().filter_map(|m| m.path.as_deref()).collect();
+    for path in &paths {
+        check_outputs(Some(path), &[("--json", arguments.json.as_ref())])?;
+    }
     let json = Output::open_if(arguments.json.as_ref())?;
     let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
-    text.print_line(&facts_text(&inspection.mesh));
-    text.print_line("");
-    text.print_line(&verdicts_text(&inspection.mesh, &inspection.backends));
+    let mut inspected = Vec::new();
+    let mut failed = 0;
+    for mesh in &meshes {
+        if let Some(problem) = &mesh.problem {
+            failed += 1;
+            print_stderr(&format!("error: {}: {problem}", mesh.name));
+        }
+    }
+    for path in &paths {
+        if !inspected.is_empty() {
+            text.print_line("");
+        }
+        match inspect(path, arguments.triangulate, &mut text) {
+            Ok(done) => inspected.push(done),
+            Err(failure) if paths.len() == 1 => return Err(failure),
+            Err(failure) => {
+                failed += 1;
+                print_stderr(&format!("error: {}", failure.message));
+            }
+        }
+    }
     // Print the text first, so that it is not lost if writing a file fails.
     let mut done = text.finish();
     if let Some(output) = json {
-        done = done.and(output.finish(|writer| inspection.write_json(writer)));
+        done = done.and(output.finish(|writer| {
+            match &inspected[..] {
+                [only] if paths.len() == 1 => serde_json::to_writer_pretty(&mut *writer, only)?,
+                all => serde_json::to_writer_pretty(&mut *writer, all)?,
+            }
+            writeln!(writer)
+        }));
     }
     done?;
-    Ok(ExitCode::SUCCESS)
+    match failed {
+        0 => Ok(ExitCode::SUCCESS),
+        _ => Err(Failure::usage(format!(
+            "{failed} of {} meshes could not be read: correct the files that the messages above \
+             name",
+            meshes.len()
+        ))),
+    }
+}
+
+/// Inspects one mesh and prints the text.
+fn inspect(path: &Path, triangulate: bool, text: &mut TextOutput) -> Result<Inspected, Failure> {
+    let (study_mesh, places) = load::for_inspection(path, triangulate)?;
+    let inspection = sixfold_study::inspect(&study_mesh, &Backend::structures());
+    let diagnosis = diagnose(&study_mesh.polygons, SHOWN_PLACES);
+    let diagnosed = Diagnosed {
+        polygons: &study_mesh.polygons,
+        places: places.as_ref(),
+        diagnosis: &diagnosis,
+        file: path,
+    };
+    text.print_line(&facts_text(&inspection.mesh));
+    text.print_line("");
+    text.print_line(&verdicts_text(&inspection.mesh, &inspection.backends));
+    text.print_line("");
+    text.print_line(&diagnosed.text());
+    Ok(Inspected {
+        inspection,
+        diagnosis,
+    })
 }

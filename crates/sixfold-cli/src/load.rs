@@ -3,12 +3,12 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use sixfold::io::{LeftOut, ObjMesh, read_obj};
+use sixfold::io::{LeftOut, PolygonPlaces};
 use sixfold::{Creases, PolygonMesh, shapes};
 use sixfold_study::{Results, StudyMesh, sha256_of};
 
 use crate::failure::Failure;
-use crate::output::is_stdout;
+use crate::mesh_files::{cut_polygons, read_mesh};
 use crate::text::print_stderr;
 use crate::triangulate::triangulated;
 use sixfold_study::numbers::counted;
@@ -16,26 +16,18 @@ use sixfold_study::numbers::counted;
 /// Maximum number of listed faces that were left out.
 const SHOWN: usize = 5;
 
-/// Reads an OBJ file. Prints a note for each ignored part.
-pub(crate) fn read(path: &Path) -> Result<ObjMesh, Failure> {
-    // Other arguments accept `-` as standard output. Here `-` would be a file name.
-    if is_stdout(path) {
-        return Err(Failure::usage(
-            "-: standard input is not read: write the mesh to a file and name the file",
-        ));
-    }
-    let mesh = read_obj(path).map_err(Failure::usage)?;
-    for notice in &mesh.notices {
-        print_stderr(&format!("note: {}: {notice}", path.display()));
-    }
-    Ok(mesh)
-}
-
-/// Reads a mesh without its degenerate faces. Lists the degenerate faces.
-pub(crate) fn study_mesh(path: &Path) -> Result<StudyMesh, Failure> {
-    let (study_mesh, left_out) = from_file(path)?;
+/// Reads a mesh without its degenerate faces, and lists the degenerate faces. `triangulate` cuts
+/// polygons. Also returns the places of the faces, unless they were cut.
+pub(crate) fn for_inspection(
+    path: &Path,
+    triangulate: bool,
+) -> Result<(StudyMesh, Option<PolygonPlaces>), Failure> {
+    let (study_mesh, left_out, places) = from_file(path)?;
     print_left_out(path, &left_out);
-    Ok(study_mesh)
+    match triangulate {
+        true => Ok((triangulated(study_mesh)?, None)),
+        false => Ok((study_mesh, Some(places))),
+    }
 }
 
 /// Reads a mesh for a study. `strict` refuses degenerate faces. `triangulate` cuts polygons.
@@ -44,7 +36,7 @@ pub(crate) fn for_study(
     strict: bool,
     triangulate: bool,
 ) -> Result<StudyMesh, Failure> {
-    let (mut study_mesh, left_out) = from_file(path)?;
+    let (mut study_mesh, left_out, _) = from_file(path)?;
     let file = path.display();
     if !left_out.is_empty() && strict {
         let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
@@ -67,6 +59,7 @@ pub(crate) fn for_study(
         )));
     }
     print_left_out(path, &left_out);
+    study_mesh.file_sha256 = file_hash(path);
     if triangulate {
         study_mesh = triangulated(study_mesh)?;
     }
@@ -75,14 +68,14 @@ pub(crate) fn for_study(
 
 /// Reads a mesh without its degenerate faces. Also returns the creases in the file.
 pub(crate) fn with_creases(path: &Path) -> Result<(PolygonMesh, Creases), Failure> {
-    let mesh = read(path)?;
+    let mesh = read_mesh(path)?;
     let (creases, unused) = mesh.creases();
     for crease in &unused {
         print_stderr(&format!("note: {}: {crease}", path.display()));
     }
     let (polygons, left_out) = mesh.into_polygons();
     print_left_out(path, &left_out);
-    Ok((polygons, creases))
+    Ok((cut_polygons(path, polygons)?, creases))
 }
 
 /// Reads a mesh for a command that drops creases. Prints a note if there are creases.
@@ -122,9 +115,14 @@ pub(crate) fn built_in() -> StudyMesh {
     StudyMesh::new("default study (built in)", shapes::default_study())
 }
 
-/// Returns the SHA-256 of a file; `None` if the file cannot be read.
+/// Returns the SHA-256 of a regular file; `None` if there is no such file. A pipe can be read only
+/// once, so it has no hash.
 pub(crate) fn file_hash(path: &Path) -> Option<String> {
-    sha256_of(fs::File::open(path).ok()?).ok()
+    let is_file = fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
+    match is_file {
+        true => sha256_of(fs::File::open(path).ok()?).ok(),
+        false => None,
+    }
 }
 
 fn print_left_out(path: &Path, left_out: &[LeftOut]) {
@@ -141,10 +139,10 @@ fn print_left_out(path: &Path, left_out: &[LeftOut]) {
     }
 }
 
-fn from_file(path: &Path) -> Result<(StudyMesh, Vec<LeftOut>), Failure> {
-    let mesh = read(path)?;
+fn from_file(path: &Path) -> Result<(StudyMesh, Vec<LeftOut>, PolygonPlaces), Failure> {
+    let mesh = read_mesh(path)?;
     let facts = mesh.facts();
-    let (polygons, left_out) = mesh.into_polygons();
+    let (polygons, left_out, places) = mesh.into_polygons_with_places();
     let mut changes = Vec::new();
     if !left_out.is_empty() {
         let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
@@ -155,7 +153,9 @@ fn from_file(path: &Path) -> Result<(StudyMesh, Vec<LeftOut>), Failure> {
         facts,
         polygons,
         changes,
-        file_sha256: file_hash(path),
+        left_out_faces: left_out.len(),
+        cut_faces: 0,
+        file_sha256: None,
     };
-    Ok((study_mesh, left_out))
+    Ok((study_mesh, left_out, places))
 }

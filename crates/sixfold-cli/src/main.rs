@@ -12,9 +12,11 @@
 
 mod arguments;
 mod compare;
+mod distance;
 mod edits;
 mod facts_text;
 mod failure;
+mod faults_text;
 mod free_memory;
 mod generate;
 mod growth;
@@ -25,12 +27,14 @@ mod load;
 mod many;
 mod measure;
 mod memory;
+mod mesh_files;
 mod orders;
 mod output;
 mod pick;
 mod progress;
 mod remesh;
 mod render;
+mod repair;
 mod reshape;
 mod results_table;
 mod schemes;
@@ -45,19 +49,22 @@ mod workloads;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
-use std::path::Path;
 use std::process::ExitCode;
 
 use clap::FromArgMatches;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
+use sixfold::io::Format;
+
 use arguments::{Arguments, Command};
 use failure::Failure;
 
 fn main() -> ExitCode {
-    let arguments = help::definition()
-        .try_get_matches_from(words())
-        .and_then(|matches| Arguments::from_arg_matches(&matches));
+    let matches = help::definition().try_get_matches_from(words());
+    let arguments = matches.and_then(|matches| {
+        mesh_files::set_options(arguments::file_options(&matches));
+        Arguments::from_arg_matches(&matches)
+    });
     let done = match arguments.map(|arguments| arguments.command) {
         Err(error) => print_clap_message(&error),
         Ok(None) => study::run(&arguments::Study::default()),
@@ -71,6 +78,7 @@ fn main() -> ExitCode {
         Ok(Some(Command::Report(arguments))) => many::draw(&arguments),
         Ok(Some(Command::Compare(arguments))) => compare::run(&arguments),
         Ok(Some(Command::Inspect(arguments))) => inspect::run(&arguments),
+        Ok(Some(Command::Distance(arguments))) => distance::run(&arguments),
         Ok(Some(Command::Memory(arguments))) => memory::run(&arguments),
         Ok(Some(Command::Generate(arguments))) => generate::run(&arguments),
         Ok(Some(Command::Schemes(arguments))) => schemes::run(&arguments),
@@ -81,6 +89,7 @@ fn main() -> ExitCode {
         Ok(Some(Command::Edits(arguments))) => edits::run(&arguments),
         Ok(Some(Command::Decimate(arguments))) => remesh::decimate(&arguments),
         Ok(Some(Command::Remesh(arguments))) => remesh::remesh(&arguments),
+        Ok(Some(Command::Repair(arguments))) => repair::run(&arguments),
         Ok(Some(Command::Render(arguments))) => render::run(&arguments),
         Ok(Some(Command::Completions(arguments))) => help::completions(&arguments),
         Ok(Some(Command::Manual(arguments))) => help::manual(&arguments),
@@ -107,9 +116,7 @@ fn words() -> Vec<OsString> {
 fn print_clap_message(error: &clap::Error) -> Result<ExitCode, Failure> {
     if let (ErrorKind::InvalidSubcommand, Some(ContextValue::String(word))) =
         (error.kind(), error.get(ContextKind::InvalidSubcommand))
-        && Path::new(word)
-            .extension()
-            .is_some_and(|ending| ending.eq_ignore_ascii_case("obj"))
+        && Format::from_path(word).is_some()
     {
         return Err(Failure::usage(format!(
             "`{word}` is a file, not a command: did you mean `sixfold study {word}`?"

@@ -31,7 +31,7 @@ pub(crate) use merge::run as merge;
 pub(crate) use meshes::Shard;
 
 use folder::Folder;
-use meshes::{Mesh, find_meshes};
+pub(crate) use meshes::{Mesh, find_meshes};
 
 /// The text of [`FailureKind::NoneHolds`].
 const NONE_HOLDS: &str = "none of the selected backends can hold the mesh";

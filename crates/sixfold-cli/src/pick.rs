@@ -1,6 +1,5 @@
 //! `sixfold pick`: finds the backend that fits a mesh and a workload.
 
-use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
@@ -12,6 +11,7 @@ use sixfold_study::{
 use crate::arguments::Pick;
 use crate::failure::Failure;
 use crate::load;
+use crate::many::{Mesh, find_meshes};
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::progress::Bar;
 use crate::tables::table;
@@ -24,9 +24,10 @@ const NONE_QUALIFIES: u8 = 1;
 
 pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     let workload = workload(&arguments.workload)?;
-    let meshes = arguments.meshes.iter().map(PathBuf::as_path);
-    let mut session = Session::open(meshes, &arguments.files, arguments.heap)?;
-    let study_meshes = study_meshes(arguments)?;
+    let meshes = find_meshes(&arguments.meshes, &mut |note| print_stderr(note))?;
+    let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
+    let mut session = Session::open(paths, &arguments.files, arguments.heap)?;
+    let study_meshes = study_meshes(&meshes, arguments)?;
     let settings = PickSettings {
         workload,
         backends: arguments.backends.clone(),
@@ -57,14 +58,13 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     Ok(code)
 }
 
-fn study_meshes(arguments: &Pick) -> Result<Vec<StudyMesh>, Failure> {
-    if arguments.meshes.is_empty() {
-        return Ok(vec![load::built_in()]);
-    }
-    let read = |path: &std::path::PathBuf| -> Result<StudyMesh, Failure> {
-        load::for_study(Path::new(path), false, arguments.triangulate)
+fn study_meshes(meshes: &[Mesh], arguments: &Pick) -> Result<Vec<StudyMesh>, Failure> {
+    let read = |mesh: &Mesh| match (&mesh.path, &mesh.problem) {
+        (Some(path), _) => load::for_study(path, false, arguments.triangulate),
+        (None, Some(problem)) => Err(Failure::usage(format!("{}: {problem}", mesh.name))),
+        (None, None) => Ok(load::built_in()),
     };
-    arguments.meshes.iter().map(read).collect()
+    meshes.iter().map(read).collect()
 }
 
 /// Prints the facts that are known before the measurement: the meshes, the mix, and the backends

@@ -4,7 +4,6 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 
-use sixfold::io::write_obj;
 use sixfold::remeshing::{
     Boundary, Decimation, RemeshError, Remeshing, Stop, decimate_watched, remesh_watched,
 };
@@ -16,6 +15,7 @@ use sixfold::{
 use crate::arguments::{Decimate, Remesh};
 use crate::failure::Failure;
 use crate::load;
+use crate::mesh_files::write_mesh;
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{StepBar, exit_on_interrupt};
 use crate::text::{TextOutput, print_stderr, sanitize};
@@ -58,7 +58,7 @@ fn edit_file([from, to]: [&Path; 2], backend: &str, work: &impl Work) -> Result<
     let done = visit_editable(backend, &mut job);
     let (polygons, EditSummary { edits, shortfall }) =
         done.ok_or_else(|| Failure::unsupported(not_editable(backend)))??;
-    output.finish(|writer| write_obj(&polygons, writer))?;
+    write_mesh(output, to, &polygons, &[])?;
     if let Some(shortfall) = shortfall {
         print_stderr(&format!("note: {}: {shortfall}", to.display()));
     }
@@ -218,7 +218,8 @@ impl<W: Work> EditVisitor for EditJob<'_, W> {
     fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output {
         let mesh = M::from_polygons(self.polygons);
         let mut mesh = mesh.map_err(|refusal| {
-            Failure::cannot_hold(format!("{} cannot hold the mesh: {refusal}", M::NAME))
+            let refusal = format!("{} cannot hold the mesh: {refusal}", M::NAME);
+            Failure::cannot_hold(M::NAME, refusal)
         })?;
         warn_of_scans::<M>(self.polygons.face_count());
         let summary = self.work.run(&mut mesh).map_err(remesh_failure)?;

@@ -4,9 +4,10 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use sixfold::io::read_creases;
+use sixfold::repair::{FaultKind, Place, diagnose};
 use sixfold::{Creases, PolygonMesh};
 use sixfold_render::{
-    MeshFault, Picture, RenderError, RenderMesh, Settings, Size, View, draw, draw_svg,
+    Faults, MeshFault, Picture, RenderError, RenderMesh, Settings, Size, View, draw, draw_svg,
 };
 
 use crate::arguments::Render;
@@ -29,9 +30,17 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     }
     let settings = settings(arguments)?;
     let loaded = load_meshes(arguments)?;
-    let render_mesh = |(mesh, creases)| RenderMesh { mesh, creases };
-    let render_meshes: Vec<RenderMesh<'_>> =
-        loaded.iter().map(|(m, c)| render_mesh((m, c))).collect();
+    let faults: Vec<Option<Faults>> = loaded
+        .iter()
+        .map(|(mesh, _)| arguments.faults.then(|| faults(mesh)))
+        .collect();
+    let render_meshes = loaded.iter().zip(&faults);
+    let render_meshes = render_meshes.map(|((mesh, creases), faults)| RenderMesh {
+        mesh,
+        creases,
+        faults: faults.as_ref(),
+    });
+    let render_meshes: Vec<RenderMesh<'_>> = render_meshes.collect();
     // Open the output before the work, so that an unusable path gives an error at once.
     let output = Output::open(&arguments.output)?;
     let faces: usize = loaded.iter().map(|(mesh, _)| mesh.face_count()).sum();
@@ -93,7 +102,29 @@ fn settings(arguments: &Render) -> Result<Settings, Failure> {
         shading: arguments.shade,
         edges: arguments.edges,
         wireframe: arguments.wireframe,
+        labels: arguments.labels,
     })
+}
+
+/// Returns the faults to paint.
+fn faults(mesh: &PolygonMesh) -> Faults {
+    let mut faults = Faults::default();
+    for fault in diagnose(mesh, usize::MAX).faults {
+        for place in fault.places {
+            match (fault.kind, place) {
+                (FaultKind::BoundaryEdge, Place::Edge(ends)) => faults.boundary_edges.push(ends),
+                (FaultKind::NonManifoldEdge, Place::Edge(ends)) => {
+                    faults.non_manifold_edges.push(ends);
+                }
+                (FaultKind::NonManifoldVertex, Place::Vertex(v)) => {
+                    faults.non_manifold_vertices.push(v);
+                }
+                (FaultKind::TurnedFace, Place::Face(f)) => faults.turned_faces.push(f),
+                _ => {}
+            }
+        }
+    }
+    faults
 }
 
 /// Loads the meshes with the creases in their files and in their crease files.
@@ -125,7 +156,9 @@ fn failure(arguments: &Render, error: &RenderError) -> Failure {
             let file = arguments.meshes[*mesh].display();
             let message = format!("{file}: {fault}");
             match fault {
-                MeshFault::TooManyFaces { .. } => Failure::unsupported(message),
+                MeshFault::TooManyFaces { .. } | MeshFault::TooManyLabels { .. } => {
+                    Failure::unsupported(message)
+                }
                 _ => Failure::usage(message),
             }
         }

@@ -3,13 +3,13 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use sixfold::io::write_obj;
 use sixfold::operators::{Smoothing, SmoothingError, dual, oriented, smoothed, triangulated};
 use sixfold::{PolygonMesh, Representation, Visitor, visit};
 
 use crate::arguments::{Dual, Smooth, Triangulate};
 use crate::failure::Failure;
 use crate::load;
+use crate::mesh_files::write_mesh;
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{Spinner, exit_on_interrupt};
 use crate::text::{TextOutput, sanitize};
@@ -66,7 +66,7 @@ fn reshape_file(
     let changed = change(&polygons);
     spinner.clear();
     let changed = changed?;
-    output.finish(|writer| write_obj(&changed, writer))?;
+    write_mesh(output, to, &changed, &[])?;
     let mut text = TextOutput::new(!is_stdout(to));
     let place = sanitize(&to.display().to_string());
     let vertices = counted(changed.vertex_count(), "vertex", "vertices");
@@ -115,7 +115,8 @@ fn on_backend(
         fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
             let mesh = M::from_polygons(self.0);
             let mesh = mesh.map_err(|refusal| {
-                Failure::cannot_hold(format!("{} cannot hold the mesh: {refusal}", M::NAME))
+                let refusal = format!("{} cannot hold the mesh: {refusal}", M::NAME);
+                Failure::cannot_hold(M::NAME, refusal)
             })?;
             self.1.run(mesh)
         }

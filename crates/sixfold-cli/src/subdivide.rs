@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPoolBuilder;
-use sixfold::io::{read_creases, write_creases, write_obj};
+use sixfold::io::{read_creases, write_creases};
 use sixfold::subdivision::{
     Boundary, Method, Scheme, Step, Subdivision, SubdivisionError, subdivide, subdivide_native,
 };
@@ -20,6 +20,7 @@ use sixfold::{
 use crate::arguments::Subdivide;
 use crate::failure::Failure;
 use crate::load;
+use crate::mesh_files::write_mesh;
 use crate::output::{Output, check_not_overwritten, check_outputs, is_stdout};
 use crate::progress::{FaceBar, exit_on_interrupt};
 use crate::text::{TextOutput, sanitize};
@@ -83,12 +84,12 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         Some(output) => Some((output, Limits::new(&subdivision, &step, arguments.levels)?)),
         None => None,
     };
-    output.finish(|writer| write_obj(&step.polygons, writer))?;
+    write_mesh(output, &arguments.output, &step.polygons, &[])?;
     if let Some(left) = left {
         left.finish(|writer| write_creases(&step.creases, writer))?;
     }
     if let (Some((output, limits)), Some(path)) = (limits, &arguments.limit) {
-        output.finish(|writer| limits.write(writer))?;
+        limits.write(output, path)?;
         limits
             .describe(path)
             .iter()
@@ -237,8 +238,8 @@ impl Job<'_> {
         self.bar.clear();
         match done {
             Some(Ok(step)) => Ok(step),
-            Some(Err(refusal @ SubdivisionError::Build { .. })) => {
-                Err(Failure::cannot_hold(refusal))
+            Some(Err(refusal @ SubdivisionError::Build { structure, .. })) => {
+                Err(Failure::cannot_hold(structure, refusal))
             }
             Some(Err(refusal)) => Err(Failure::unsupported(refusal)),
             None => Err(Failure::usage(format!("no backend is called `{backend}`"))),

@@ -16,6 +16,8 @@ pub(crate) fn triangulated(study_mesh: StudyMesh) -> Result<StudyMesh, Failure> 
     if polygons.face_count() == old.face_count() {
         return Ok(study_mesh);
     }
+    let is_cut = |face: &[VertexId]| face.len() > 3;
+    let cut = old.faces().iter().filter(|(_, face)| is_cut(face)).count();
     let faces = counted(old.face_count(), "face", "faces");
     let triangles = counted(polygons.face_count(), "triangle", "triangles");
     let facts = Facts::from_polygons(&polygons);
@@ -45,6 +47,8 @@ pub(crate) fn triangulated(study_mesh: StudyMesh) -> Result<StudyMesh, Failure> 
         },
         polygons,
         changes,
+        left_out_faces: study_mesh.left_out_faces,
+        cut_faces: cut,
         file_sha256: study_mesh.file_sha256,
     })
 }

@@ -3,7 +3,9 @@
 mod bad_input;
 mod changes;
 mod comparing;
+mod distance;
 mod external;
+mod formats;
 mod golden;
 mod help_texts;
 mod interrupt;
@@ -15,6 +17,7 @@ mod outputs;
 mod picking;
 mod remeshing;
 mod render;
+mod repair;
 mod reports;
 mod run;
 mod subdivision;

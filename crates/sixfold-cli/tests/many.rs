@@ -274,7 +274,7 @@ fn invalid_places_are_refused_before_anything_is_measured() {
     let sixfold = scans();
     fs::create_dir(sixfold.folder().join("empty")).expect("a folder");
     for (arguments, message) in [
-        (&["study", "empty"][..], "no .obj file"),
+        (&["study", "empty"][..], "no mesh file"),
         (
             &["study", "scans", "--report", "scans/a.OBJ/x"],
             "cannot be written",
@@ -305,8 +305,8 @@ fn places_without_meshes_do_not_stop_the_others() {
     let sixfold = scans();
     fs::create_dir(sixfold.folder().join("empty")).expect("a folder");
     fs::create_dir(sixfold.folder().join("prints")).expect("a folder");
-    sixfold.file("prints/part.STL", "solid");
-    sixfold.file("scans/b.ply", "ply");
+    sixfold.file("prints/part.FBX", "text");
+    sixfold.file("scans/b.x3d", "text");
     let run = sixfold.run(&[
         "study",
         "empty",
@@ -317,15 +317,15 @@ fn places_without_meshes_do_not_stop_the_others() {
     ]);
     assert_eq!(run.code, Some(0), "{run:?}");
     for message in [
-        "empty: not studied: no .obj file in this directory",
-        "prints: not studied: no .obj file in this directory or its subdirectories, but 1 .stl: convert",
+        "empty: not studied: no mesh file in this directory or its subdirectories\n",
+        "prints: not studied: no mesh file in this directory or its subdirectories, but 1 .fbx: convert",
     ] {
         assert!(run.stderr.contains(message), "{message}: {run:?}");
     }
     let run = sixfold.run(&["study", "scans", "--budget", "50ms"]);
     assert!(
         run.stderr
-            .contains("note: scans: files of other formats are left out (1 .ply)"),
+            .contains("note: scans: files of other formats are left out (1 .x3d)"),
         "{run:?}"
     );
 }

@@ -177,7 +177,10 @@ fn invalid_input_is_refused() {
     for (arguments, message) in [
         (&["memory", "points.obj"][..], "no faces"),
         (&["memory", "missing.obj"], "missing.obj"),
-        (&["memory", "-"], "standard input is not read"),
+        (
+            &["memory", "-"],
+            "standard input: the format is not recognised",
+        ),
         (&["memory", "ok.obj", "--backends", "abacus"], "half-edge"),
         (
             &["memory", "ok.obj", "--json", "nowhere/x.json"],

@@ -279,7 +279,7 @@ fn invalid_input_is_refused_before_anything_is_written() {
             (&["missing.obj"], 2, "missing.obj"),
             (&["empty.obj"], 2, "empty.obj"),
             (&["folder.obj"], 2, "directory"),
-            (&["-"], 2, "standard input is not read"),
+            (&["-"], 2, "standard input: the format is not recognised"),
             (&["t.obj", "--sideways"], 2, "--sideways"),
         ] {
             let arguments = [command, arguments, &["-o", "x.obj"]].concat();

@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::bad_input::assert_refused;
-use crate::run::{Sixfold, TETRAHEDRON};
+use crate::run::{Sixfold, TETRAHEDRON, run_ok, text};
 
 /// Returns the width and height in the header of a PNG.
 fn png_size(bytes: &[u8]) -> [u32; 2] {
@@ -90,7 +90,7 @@ fn invalid_input_gives_one_error_and_no_picture() {
         (&["mesh.obj", "-o", "out.gif"][..], "OUT.png or OUT.svg"),
         (&["mesh.obj", "-o", "-"], "OUT.png or OUT.svg"),
         (&["mesh.obj"], "--output"),
-        (&["-o", "out.png"], "IN.obj"),
+        (&["-o", "out.png"], "MESH"),
         (
             &["points.obj", "-o", "out.png"],
             "points.obj: the mesh has no faces",
@@ -159,4 +159,28 @@ fn too_many_faces_for_an_svg_are_not_supported() {
     let arguments = ["render", "grid.obj", "--view", "0,0", "-o", "out.svg"];
     let big = [&arguments[..], &["--size", "1200x1200"]].concat();
     assert_refused(&sixfold, &big, 3, "write a PNG");
+}
+
+#[test]
+fn faults_are_painted_and_elements_named() {
+    let sixfold = Sixfold::new();
+    let book = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 0 0\nf 1 2 3\nf 2 1 4\nf 2 1 5\n";
+    sixfold.file("book.obj", book);
+    run_ok(&sixfold, &["render", "book.obj", "-o", "plain.svg"]);
+    let command = [
+        "render",
+        "book.obj",
+        "-o",
+        "faults.svg",
+        "--faults",
+        "--labels",
+    ];
+    run_ok(&sixfold, &command);
+    let [plain, faults] = ["plain.svg", "faults.svg"].map(|name| text(&sixfold, name));
+    // Magenta is the colour of non-manifold edges.
+    assert!(faults.contains("#da00") && !plain.contains("#da00"));
+    assert!(faults.contains(">v2</text>") && !plain.contains("</text>"));
+    sixfold.grid("grid.obj", 40);
+    let command = ["render", "grid.obj", "-o", "grid.png", "--labels"];
+    assert_refused(&sixfold, &command, 3, "labels are more than 2000");
 }

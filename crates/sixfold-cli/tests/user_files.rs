@@ -213,7 +213,10 @@ fn wrong_arguments_get_a_useful_hint() {
             "the seed must be a whole number from 0",
         ),
         (&["study", "ok.obj", "--budget", "-1s"], "above 0"),
-        (&["inspect", "-"], "standard input is not read"),
+        (
+            &["inspect", "-"],
+            "standard input: the format is not recognised",
+        ),
     ] {
         let run = sixfold.run(arguments);
         assert_eq!(run.code, Some(2), "{run:?}");

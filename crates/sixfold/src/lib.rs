@@ -13,6 +13,8 @@
 //! | [choose a structure](#choose-a-structure) | the table below, [`MeshQuery::CAPABILITIES`] |
 //! | smooth, triangulate, compute normals | [`operators`] |
 //! | simplify, remesh, make Delaunay | [`remeshing`] |
+//! | find faults and repair them, so that a structure holds the mesh | [`repair::diagnose`], [`repair::repair_for`] |
+//! | find nearest vertices, closest points, ray hits; compare two meshes | [`spatial`] |
 //! | store data at vertices, edges and faces | [`MeshQuery::vertex_map`], [`MeshWithData`] |
 //! | number elements from 0, for matrices | [`MeshQuery::vertex_numbers`] |
 //! | find the boundary | [`MeshQuery::boundary_loops`] |
@@ -171,9 +173,10 @@
 //!
 //! # Features
 //!
-//! - `rayon` (default): subdivision steps in a structure's own tables use all threads.
-//! - `serde`: [`Facts`], [`Capabilities`], [`MemoryFootprint`], subdivision schemes and mesh orders
-//!   can be serialised.
+//! - `rayon` (default): subdivision steps in a structure's own tables use all threads; so do builds of
+//!   spatial indices and batches of their queries.
+//! - `serde`: [`Facts`], [`Capabilities`], [`MemoryFootprint`], diagnoses, reports of repairs,
+//!   subdivision schemes and mesh orders can be serialised.
 //! - `mint`: [`PolygonMesh::new`] takes points and vectors of the crate `mint`, and a [`Point`]
 //!   converts to such points and vectors.
 
@@ -233,7 +236,11 @@ pub use sixfold_operators as operators;
 #[doc(inline)]
 pub use sixfold_remeshing as remeshing;
 #[doc(inline)]
+pub use sixfold_repair as repair;
+#[doc(inline)]
 pub use sixfold_shapes as shapes;
+#[doc(inline)]
+pub use sixfold_spatial as spatial;
 #[doc(inline)]
 pub use sixfold_subdivision as subdivision;
 

@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 use sixfold::{BuildError, Facts, PolygonMesh};
 use sixfold_core::Counts;
 
-use crate::refusal::reason;
+use crate::refusal::Candidate;
 use crate::results::document::SCHEMA;
 use crate::results::json::write_json;
 use crate::results::rows::{BackendReport, MeshReport};
@@ -49,6 +49,10 @@ pub struct StudyMesh {
     pub polygons: PolygonMesh,
     /// Differences between `polygons` and the file, as phrases.
     pub changes: Vec<String>,
+    /// The number of degenerate faces of the file that `polygons` does not have.
+    pub left_out_faces: usize,
+    /// The number of faces of the file that were cut into triangles.
+    pub cut_faces: usize,
     /// The SHA-256 of the file, as 64 hexadecimal digits; `None` if the mesh was not read from a
     /// file.
     pub file_sha256: Option<String>,
@@ -62,6 +66,8 @@ impl StudyMesh {
             facts: Facts::from_polygons(&polygons),
             polygons,
             changes: Vec::new(),
+            left_out_faces: 0,
+            cut_faces: 0,
             file_sha256: None,
         }
     }
@@ -73,6 +79,8 @@ impl StudyMesh {
             name: self.name.clone(),
             facts: self.facts.clone(),
             changes: self.changes.clone(),
+            left_out_faces: self.left_out_faces,
+            cut_faces: self.cut_faces,
             sha256: content_hash(&self.polygons),
             file_sha256: self.file_sha256.clone(),
         }
@@ -134,10 +142,14 @@ fn hex(bytes: &[u8]) -> String {
 /// Checks which backends can hold the mesh, without building the backends. The expected time is
 /// O(corners) per backend.
 pub fn inspect(study_mesh: &StudyMesh, backends: &[Backend]) -> Inspection {
-    let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
+    let candidate = Candidate::from_study_mesh(study_mesh);
     let backends = backends.iter().map(|backend| {
-        let verdict = backend.info.check(&study_mesh.polygons);
-        unbuilt(backend, &study_mesh.polygons, &counts, verdict)
+        // The facts are known already, and enough for most meshes.
+        let verdict = match backend.info.capabilities.is_satisfied_by(&study_mesh.facts) {
+            true => Ok(()),
+            false => backend.info.check(&study_mesh.polygons),
+        };
+        unbuilt(backend, &candidate, verdict)
     });
     Inspection {
         schema: SCHEMA,
@@ -149,12 +161,12 @@ pub fn inspect(study_mesh: &StudyMesh, backends: &[Backend]) -> Inspection {
 /// Returns the report of a backend that is not built.
 pub(crate) fn unbuilt(
     backend: &Backend,
-    polygons: &PolygonMesh,
-    counts: &Counts,
+    candidate: &Candidate<'_>,
     verdict: Result<(), BuildError>,
 ) -> BackendReport {
+    let counts = &candidate.counts;
     let refusal = verdict.err();
-    let reason = refusal.map(|refusal| reason(&refusal, &backend.info.capabilities, polygons));
+    let reason = refusal.map(|refusal| candidate.reason(&refusal, &backend.info.capabilities));
     let holds = reason.is_none();
     let layout_bytes = holds.then(|| (backend.layout_bytes)(counts));
     BackendReport {

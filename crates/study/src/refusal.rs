@@ -1,8 +1,60 @@
 //! Why a structure cannot hold a mesh, as text: all kinds of faults, not only the first.
 
-use sixfold::{BuildError, Capabilities, Facts, PolygonMesh};
+use std::cell::OnceCell;
 
+use sixfold::{BuildError, Capabilities, Facts, PolygonMesh};
+use sixfold_core::Counts;
+
+use crate::inspect::StudyMesh;
 use crate::numbers::counted;
+
+/// A mesh from which backends are built. The facts that explain refusals are computed once, for the
+/// first refusal.
+pub(crate) struct Candidate<'a> {
+    pub(crate) polygons: &'a PolygonMesh,
+    pub(crate) counts: Counts,
+    facts: OnceCell<Facts>,
+}
+
+impl<'a> Candidate<'a> {
+    /// Creates a candidate from a mesh whose facts are not known, except its number of edges.
+    pub(crate) fn new(polygons: &'a PolygonMesh, edges: usize) -> Self {
+        Self {
+            polygons,
+            counts: polygons.counts(edges),
+            facts: OnceCell::new(),
+        }
+    }
+
+    /// Creates a candidate with known `facts` of `polygons`.
+    pub(crate) fn with_facts(polygons: &'a PolygonMesh, facts: &Facts) -> Self {
+        Self {
+            facts: OnceCell::from(facts.clone()),
+            ..Self::new(polygons, facts.edges)
+        }
+    }
+
+    /// Creates a candidate from the polygons of `study_mesh`. If the file has degenerate faces, the
+    /// facts of the file are not those of the polygons.
+    pub(crate) fn from_study_mesh(study_mesh: &'a StudyMesh) -> Self {
+        let StudyMesh {
+            polygons, facts, ..
+        } = study_mesh;
+        match facts.degenerate_faces {
+            0 => Self::with_facts(polygons, facts),
+            _ => Self::new(polygons, facts.edges),
+        }
+    }
+
+    /// Returns why a structure with `capabilities` refused the mesh with `refusal`, as
+    /// [`reason`] does. The first call takes O(corners) if the facts are not known; other calls
+    /// take O(1).
+    pub(crate) fn reason(&self, refusal: &BuildError, capabilities: &Capabilities) -> String {
+        let facts = || Facts::from_polygons(self.polygons);
+        let facts = self.facts.get_or_init(facts);
+        reason(refusal, capabilities, facts)
+    }
+}
 
 /// A kind of fault that some structures cannot hold.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -14,14 +66,9 @@ enum Fault {
     IsolatedVertices,
 }
 
-/// Returns why a structure with `capabilities` refused `polygons` with `refusal`: the elements of the
-/// first fault, then the number of faults of each other kind; O(corners) expected.
-pub(crate) fn reason(
-    refusal: &BuildError,
-    capabilities: &Capabilities,
-    polygons: &PolygonMesh,
-) -> String {
-    let facts = Facts::from_polygons(polygons);
+/// Returns why a structure with `capabilities` refused a mesh with `refusal`: the elements of the
+/// first fault, then the number of faults of each other kind, which `facts` of the mesh have.
+fn reason(refusal: &BuildError, capabilities: &Capabilities, facts: &Facts) -> String {
     let (first, text) = match refusal {
         BuildError::NotATriangle { .. } => (Some(Fault::Polygons), refusal.to_string()),
         BuildError::NonManifoldEdge { .. } => (Some(Fault::NonManifoldEdges), refusal.to_string()),
@@ -43,7 +90,7 @@ pub(crate) fn reason(
         BuildError::IsolatedVertex { .. } => (Some(Fault::IsolatedVertices), refusal.to_string()),
         _ => (None, refusal.to_string()),
     };
-    let others: Vec<String> = faults(capabilities, &facts)
+    let others: Vec<String> = faults(capabilities, facts)
         .into_iter()
         .filter(|(fault, _)| Some(*fault) != first)
         .map(|(_, text)| text)
@@ -107,7 +154,9 @@ mod tests {
             ..Capabilities::ORIENTED_MANIFOLDS
         };
         let refusal = capabilities.check(&polygons).expect_err("faults");
-        reason(&refusal, &capabilities, &polygons)
+        let facts = Facts::from_polygons(&polygons);
+        let candidate = Candidate::with_facts(&polygons, &facts);
+        candidate.reason(&refusal, &capabilities)
     }
 
     #[test]

@@ -8,6 +8,7 @@ use crate::engine::disturbance::{DisturbanceDetector, Verdict};
 use crate::engine::measure::{MAX_RUNS, untimed_runs};
 use crate::engine::plan::SHORTEST_SAMPLE_NS;
 use crate::labs::study::{StudyError, prepare};
+use crate::refusal::Candidate;
 use sixfold_workload::Backend;
 use sixfold_workload::Draw;
 use sixfold_workload::Operation;
@@ -63,8 +64,9 @@ impl<'a> BackendRunner<'a> {
     pub fn new(backend: &Backend, polygons: &'a PolygonMesh) -> Result<Self, StudyError> {
         let kept = pages::set_policy(Policy::Kept).policy == Policy::Kept;
         let draw: Option<&Draw> = None;
-        let counts = polygons.counts(Facts::from_polygons(polygons).edges);
-        let (report, subject) = prepare(backend, polygons, draw, &counts);
+        let facts = Facts::from_polygons(polygons);
+        let candidate = Candidate::with_facts(polygons, &facts);
+        let (report, subject) = prepare(backend, &candidate, draw);
         let refusals = || vec![(report.name, report.reason.unwrap_or_default())];
         let subject = subject.ok_or_else(|| StudyError::NoneHolds {
             refusals: refusals(),

@@ -35,8 +35,8 @@ usage or unusable input; 3 none of the selected backends can hold the mesh, or t
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Orders {
-    /// OBJ file of the mesh [default: a built-in mesh of 20,000 triangles]
-    #[arg(value_name = "MESH.obj")]
+    /// The mesh (- for standard input); without it, a built-in mesh of 20,000 triangles
+    #[arg(value_name = "MESH")]
     pub(crate) mesh: Option<PathBuf>,
     /// Use only these data structures (backends), by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]

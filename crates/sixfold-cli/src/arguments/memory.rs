@@ -33,8 +33,8 @@ input; 3 none of the selected backends can hold the mesh; 4 interrupted.";
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Memory {
-    /// OBJ file of the mesh [default: a built-in mesh of 20,000 triangles]
-    #[arg(value_name = "FILE.obj")]
+    /// The mesh (- for standard input); without it, a built-in mesh of 20,000 triangles
+    #[arg(value_name = "MESH")]
     pub(crate) mesh: Option<PathBuf>,
     /// Use only these data structures (backends), by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]

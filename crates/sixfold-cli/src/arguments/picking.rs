@@ -43,8 +43,8 @@ Exit codes: 0 success; 2 wrong usage.";
 #[derive(Debug, Args)]
 #[command(after_help = PICK_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Pick {
-    /// OBJ files of the meshes [default: a built-in mesh of 20,000 triangles]
-    #[arg(value_name = "FILE.obj")]
+    /// Meshes, or folders with meshes; without any, a built-in mesh of 20,000 triangles
+    #[arg(value_name = "MESH|DIR")]
     pub(crate) meshes: Vec<PathBuf>,
     /// A built-in workload, or your own file
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "smoothing")]

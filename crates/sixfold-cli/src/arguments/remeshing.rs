@@ -33,11 +33,11 @@ written.";
 #[derive(Debug, Args)]
 #[command(after_help = DECIMATE_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Decimate {
-    /// The mesh, an OBJ file of triangles
-    #[arg(value_name = "IN.obj")]
+    /// The mesh, with triangles only (- for standard input)
+    #[arg(value_name = "MESH")]
     pub(crate) mesh: PathBuf,
     /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT.obj")]
+    #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) goal: Goal,
@@ -105,11 +105,11 @@ needs too many faces; 4 interrupted, nothing written.";
 #[derive(Debug, Args)]
 #[command(after_help = REMESH_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Remesh {
-    /// The mesh, an OBJ file of triangles
-    #[arg(value_name = "IN.obj")]
+    /// The mesh, with triangles only (- for standard input)
+    #[arg(value_name = "MESH")]
     pub(crate) mesh: PathBuf,
     /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT.obj")]
+    #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
     /// Target edge length, in the units of the file
     #[arg(long, value_name = "LENGTH", value_parser = edge_length, allow_hyphen_values = true)]

@@ -10,6 +10,7 @@ const EXAMPLES: &str = "Examples:
   sixfold render cage.obj level1.obj level2.obj -o row.svg --edges --size 1200x400
   sixfold render part.obj --creases part.creases -o part.png --view iso --up z
   sixfold render part.obj -o part.svg --wireframe --view=-20,10
+  sixfold render scan.stl -o faults.png --faults --edges --labels
 
 Several meshes are drawn in a row, all at one scale. Sharp edges and corners are red. The tags
 `t crease` and `t corner` of the OBJ file, and the crease file, list the sharp edges and corners.
@@ -17,15 +18,19 @@ Give --creases at most once per mesh, in the order of the meshes. The front of a
 back is sand-coloured. Seen from the front, the corners of a face run counter-clockwise. An SVG has
 one colour per face.
 
-Exit codes: 0 success; 2 wrong usage or unusable input; 3 too many faces for an SVG; 4 interrupted,
-nothing written.";
+With --faults, boundary edges are orange, non-manifold edges and vertices are magenta, and faces
+that are turned against their neighbours or into their solid are yellow. `sixfold inspect` lists all
+faults. A mesh with --labels can have at most 2,000 vertices, edges and faces.
+
+Exit codes: 0 success; 2 wrong usage or unusable input; 3 too many faces for an SVG or too many
+labels; 4 interrupted, nothing written.";
 
 /// Draw meshes with their edges and creases, as PNG or SVG.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Render {
-    /// The meshes, OBJ files
-    #[arg(value_name = "IN.obj", required = true)]
+    /// The meshes
+    #[arg(value_name = "MESH", required = true)]
     pub(crate) meshes: Vec<PathBuf>,
     /// The picture to write; .png or .svg selects the format
     #[arg(short, long, value_name = "OUT.png|OUT.svg")]
@@ -45,6 +50,12 @@ pub(crate) struct Render {
     /// Draw all edges, including hidden ones, and no faces
     #[arg(long)]
     pub(crate) wireframe: bool,
+    /// Write the names of visible vertices, edges and faces
+    #[arg(long)]
+    pub(crate) labels: bool,
+    /// Paint boundary edges, non-manifold elements and turned faces
+    #[arg(long)]
+    pub(crate) faults: bool,
     /// Sharp edges and corners, in addition to those in the mesh file
     #[arg(long, value_name = "FILE")]
     pub(crate) creases: Vec<PathBuf>,

@@ -22,11 +22,11 @@ support the mesh; 4 interrupted, nothing written.";
 #[derive(Debug, Args)]
 #[command(after_help = SMOOTH_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Smooth {
-    /// The mesh, an OBJ file
-    #[arg(value_name = "IN.obj")]
+    /// The mesh (- for standard input)
+    #[arg(value_name = "MESH")]
     pub(crate) mesh: PathBuf,
     /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT.obj")]
+    #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
     /// Weights of the neighbours: uniform or cotangent
     #[arg(long, value_name = "WHICH", default_value = "uniform", value_parser = weights)]
@@ -65,11 +65,11 @@ cannot hold it; 4 interrupted, nothing written.";
 #[derive(Debug, Args)]
 #[command(after_help = DUAL_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Dual {
-    /// The mesh, an OBJ file
-    #[arg(value_name = "IN.obj")]
+    /// The mesh (- for standard input)
+    #[arg(value_name = "MESH")]
     pub(crate) mesh: PathBuf,
     /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT.obj")]
+    #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
     /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
@@ -90,11 +90,11 @@ Exit codes: 0 success; 2 wrong usage or unusable input; 3 the mesh cannot be ori
 #[derive(Debug, Args)]
 #[command(after_help = TRIANGULATE_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Triangulate {
-    /// The mesh, an OBJ file
-    #[arg(value_name = "IN.obj")]
+    /// The mesh (- for standard input)
+    #[arg(value_name = "MESH")]
     pub(crate) mesh: PathBuf,
     /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT.obj")]
+    #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
     /// ears (for any simple polygon) or fan (for convex polygons)
     #[arg(long, value_name = "NAME", default_value = "ears", value_parser = triangulation)]
@@ -134,7 +134,7 @@ fn triangulation(text: &str) -> Result<Triangulation, String> {
     parse_name(&all, name, text)
 }
 
-fn facing(text: &str) -> Result<Facing, String> {
+pub(super) fn facing(text: &str) -> Result<Facing, String> {
     let name = |facing| match facing {
         Facing::Majority => "majority",
         Facing::Outward => "outward",

@@ -51,11 +51,11 @@ pub(crate) struct Schemes {
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Subdivide {
-    /// The mesh, an OBJ file
-    #[arg(value_name = "IN.obj")]
+    /// The mesh (- for standard input)
+    #[arg(value_name = "MESH")]
     pub(crate) mesh: PathBuf,
     /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT.obj")]
+    #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
     /// The scheme, from the list below
     #[arg(long, value_name = "NAME", default_value = "catmull-clark", value_parser = scheme)]
@@ -88,7 +88,7 @@ pub(crate) struct Subdivide {
     #[arg(long, value_name = "WHOSE", value_parser = loop_weights)]
     pub(crate) loop_weights: Option<LoopWeights>,
     /// Also write limit positions and normals to this file
-    #[arg(long, value_name = "LIMIT.obj")]
+    #[arg(long, value_name = "LIMIT")]
     pub(crate) limit: Option<PathBuf>,
     /// Also write the remaining sharpness, as a crease file
     #[arg(long, value_name = "FILE")]

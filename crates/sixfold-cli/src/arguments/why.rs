@@ -39,8 +39,8 @@ are kept.";
 #[derive(Debug, Args)]
 #[command(after_help = WHY_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Why {
-    /// OBJ file of the mesh [default: a built-in mesh of 20,000 triangles]
-    #[arg(value_name = "FILE.obj")]
+    /// The mesh (- for standard input); without it, a built-in mesh of 20,000 triangles
+    #[arg(value_name = "MESH")]
     pub(crate) mesh: Option<PathBuf>,
     /// Use only these data structures (backends), by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]

@@ -6,6 +6,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use sixfold::io::Format;
+
 use crate::failure::Failure;
 
 #[derive(Clone, Debug)]
@@ -19,9 +21,7 @@ pub(crate) struct Mesh {
 }
 
 /// Endings of mesh files that folders can contain and that are not read.
-const OTHER_FORMATS: [&str; 12] = [
-    "3ds", "3mf", "blend", "dae", "fbx", "glb", "gltf", "off", "ply", "stl", "usd", "x3d",
-];
+const OTHER_FORMATS: [&str; 7] = ["3ds", "3mf", "blend", "dae", "fbx", "usd", "x3d"];
 
 /// A shard: every n-th mesh, starting with the i-th mesh. One of n jobs studies the shard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +54,7 @@ impl FromStr for Shard {
     }
 }
 
-/// Returns the meshes in `places`: files, and all OBJ files in folders and their subfolders, sorted
+/// Returns the meshes in `places`: files, and all meshes in folders and their subfolders, sorted
 /// by name. Each file occurs once. Without any place, returns the built-in mesh. Calls `note` with a
 /// message on mesh files of other formats.
 ///
@@ -109,7 +109,7 @@ pub(crate) fn find_meshes(
     }
 }
 
-/// Returns the OBJ files in a folder and its subfolders, at least one, or why there is none.
+/// Returns the mesh files in a folder and its subfolders, at least one, or why there is none.
 fn files_in_folder(folder: &Path, note: &mut dyn FnMut(&str)) -> Result<Vec<PathBuf>, String> {
     let mut found = Found::default();
     list_files(folder, &mut found).map_err(|(at, cause)| match at == folder {
@@ -125,15 +125,15 @@ fn files_in_folder(folder: &Path, note: &mut dyn FnMut(&str)) -> Result<Vec<Path
     if found.files.is_empty() {
         let but = match others.is_empty() {
             true => String::new(),
-            false => format!(", but {others}: convert them to OBJ"),
+            false => format!(", but {others}: convert them to OBJ or PLY"),
         };
         return Err(format!(
-            "no .obj file in this directory or its subdirectories{but}"
+            "no mesh file in this directory or its subdirectories{but}"
         ));
     }
     if !others.is_empty() {
         note(&format!(
-            "note: {}: files of other formats are left out ({others}): convert them to OBJ",
+            "note: {}: files of other formats are left out ({others}): convert them to OBJ or PLY",
             folder.display()
         ));
     }
@@ -143,7 +143,7 @@ fn files_in_folder(folder: &Path, note: &mut dyn FnMut(&str)) -> Result<Vec<Path
 /// The files of a folder.
 #[derive(Default)]
 struct Found {
-    /// The OBJ files.
+    /// The mesh files.
     files: Vec<PathBuf>,
     /// Number of mesh files of other formats, by ending.
     others: BTreeMap<String, usize>,
@@ -156,7 +156,7 @@ fn name_of(path: &Path) -> String {
         .map_or_else(|| format!("{path:?}"), ToOwned::to_owned)
 }
 
-/// Lists all OBJ files in `folder` and its subfolders, sorted by name, and counts those of other
+/// Lists all mesh files in `folder` and its subfolders, sorted by name, and counts those of other
 /// formats. Skips hidden files, which other programs leave behind. Does not follow links to folders,
 /// because they may form a cycle.
 fn list_files(folder: &Path, found: &mut Found) -> Result<(), (PathBuf, io::Error)> {
@@ -183,7 +183,7 @@ fn list_files(folder: &Path, found: &mut Found) -> Result<(), (PathBuf, io::Erro
         }
         let ending = path.extension().and_then(|ending| ending.to_str());
         let ending = ending.unwrap_or_default().to_ascii_lowercase();
-        if ending == "obj" {
+        if Format::from_path(&path).is_some() {
             found.files.push(path);
         } else if OTHER_FORMATS.contains(&&*ending) {
             *found.others.entry(ending).or_default() += 1;

@@ -82,6 +82,8 @@ fn report() -> Report {
             changes: Vec::new(),
             sha256: String::new(),
             file_sha256: None,
+            left_out_faces: 0,
+            cut_faces: 0,
         },
         backends: vec![backend("polygon-soup", 7200), backend("half-edge", 9600)],
         results: vec![

@@ -1,14 +1,14 @@
 //! The option `--limit`: moves the vertices to their limits for infinitely many levels.
 
 use std::collections::BTreeMap;
-use std::io::{self, Write};
 use std::path::Path;
 
-use sixfold::io::write_obj_with_normals;
 use sixfold::subdivision::{LimitPoint, NoLimit, Step, Subdivision};
 use sixfold::{FaceVertexMesh, MeshQuery, Point, PolygonMesh, Representation};
 
 use crate::failure::Failure;
+use crate::mesh_files::write_mesh;
+use crate::output::Output;
 use crate::text::sanitize;
 use sixfold_study::numbers::counted;
 
@@ -58,8 +58,9 @@ impl Limits {
         })
     }
 
-    pub(super) fn write(&self, writer: impl Write) -> io::Result<()> {
-        write_obj_with_normals(&self.moved, &self.normals, writer)
+    /// Writes the limits to `output`, which was opened at `path`.
+    pub(super) fn write(&self, output: Output, path: &Path) -> Result<(), Failure> {
+        write_mesh(output, path, &self.moved, &self.normals)
     }
 
     /// Describes the limits in lines. `path` is the file of the limits.

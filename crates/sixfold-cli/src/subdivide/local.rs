@@ -4,13 +4,13 @@ use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
-use sixfold::io::write_obj;
 use sixfold::subdivision::{LocalError, LocalMesh, Scheme, Selection};
 use sixfold::{FaceId, Point, PolygonMesh, Representation, Visitor, visit};
 
 use crate::arguments::{Select, Subdivide};
 use crate::failure::Failure;
 use crate::load;
+use crate::mesh_files::write_mesh;
 use crate::output::{Output, check_not_overwritten, is_stdout};
 use crate::progress::Spinner;
 use crate::text::{TextOutput, sanitize};
@@ -47,7 +47,7 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
     let refined = refined
         .ok_or_else(|| Failure::usage(format!("no backend is called `{}`", arguments.backend)))??;
     let mesh = refined.polygons();
-    output.finish(|writer| write_obj(mesh, writer))?;
+    write_mesh(output, &arguments.output, mesh, &[])?;
     let mut text = TextOutput::new(!is_stdout(&arguments.output));
     let place = sanitize(&arguments.output.display().to_string());
     let vertices = counted(mesh.vertex_count(), "vertex", "vertices");
@@ -151,11 +151,12 @@ impl Visitor for LocalRefinement<'_> {
         for level in 0..self.levels {
             let mesh = M::from_polygons(local.polygons()).map_err(|refusal| {
                 let structure = M::NAME;
-                Failure::cannot_hold(LocalError::Build {
+                let refusal = LocalError::Build {
                     structure,
                     level,
                     refusal,
-                })
+                };
+                Failure::cannot_hold(structure, refusal)
             })?;
             let chosen = match self.selection {
                 Selection::Faces(_) if level > 0 => local.chosen_parts(),

@@ -37,6 +37,7 @@ use crate::engine::timer::Timer;
 use crate::engine::trial::{Columns, Measured, Trial};
 use crate::engine::warnings::warnings;
 use crate::labs::study::{StudyError, is_skewed, prepare, refusals, results, scans};
+use crate::refusal::Candidate;
 use crate::results::figure::{Figure, FigureRow, samples_of};
 use crate::results::finding::LabFinding;
 use crate::results::read::ReadError;
@@ -344,13 +345,14 @@ impl Sweep<'_> {
         let seed = self.settings.study.seed;
         let needs_draw = backends.iter().any(|b| skewed || scans(b, operations));
         let draw = needs_draw.then(|| Draw::new(mesh, seed));
+        let candidate = Candidate::with_facts(mesh, &facts);
         let mut subjects: Vec<Box<dyn TimedBackend + '_>> = Vec::new();
         let (mut backend_bytes, mut refused_by) = (Vec::new(), Vec::new());
         for backend in backends {
             if stopped() {
                 return Ok(None);
             }
-            let (report, subject) = prepare(backend, mesh, draw.as_ref(), &counts);
+            let (report, subject) = prepare(backend, &candidate, draw.as_ref());
             match subject {
                 Some(subject) => {
                     backend_bytes

@@ -14,6 +14,7 @@ use sixfold_workload::{
 
 use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::labs::study::StudyError;
+use crate::refusal::Candidate;
 use crate::results::figure::{Figure, FigureRow, Status};
 use crate::results::finding::{LabFinding, only_mesh};
 use crate::results::read::ReadError;
@@ -97,13 +98,12 @@ pub fn audit(
     heap: &dyn Heap,
     counting: &mut dyn FnMut(&Backend),
 ) -> Audit {
-    let polygons = &study_mesh.polygons;
-    let counts = polygons.counts(study_mesh.facts.edges);
+    let candidate = Candidate::from_study_mesh(study_mesh);
     let names = backends.iter().map(|b| b.name().to_owned()).collect();
     let backends = backends.iter().map(|backend| {
         counting(backend);
-        let measured = count_bytes(backend, polygons, heap);
-        BackendAudit::new(backend, polygons, measured, &counts)
+        let measured = count_bytes(backend, candidate.polygons, heap);
+        BackendAudit::new(backend, &candidate, measured)
     });
     Audit {
         run: Run::start(RunSettings {
@@ -284,13 +284,13 @@ impl LabFinding for Audit {
 impl BackendAudit {
     fn new(
         backend: &Backend,
-        polygons: &PolygonMesh,
+        candidate: &Candidate<'_>,
         measured: Result<MeasuredMemory, BuildError>,
-        counts: &Counts,
     ) -> Self {
+        let counts = &candidate.counts;
         let closed_triangles = closed_triangles_words(backend);
         let (report, measured) = match measured {
-            Err(refusal) => (unbuilt(backend, polygons, counts, Err(refusal)), None),
+            Err(refusal) => (unbuilt(backend, candidate, Err(refusal)), None),
             Ok(measured) => {
                 let bytes = measured.memory.total();
                 let report = BackendReport {
@@ -298,7 +298,7 @@ impl BackendAudit {
                     bytes_per_vertex: per_vertex(bytes, counts),
                     tables: measured.memory.tables,
                     merged_vertices: Some(measured.merged_vertices),
-                    ..unbuilt(backend, polygons, counts, Ok(()))
+                    ..unbuilt(backend, candidate, Ok(()))
                 };
                 (report, Some((measured.counted, measured.peak)))
             }

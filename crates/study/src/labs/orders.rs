@@ -31,6 +31,7 @@ use crate::engine::warnings::warnings;
 use crate::inspect::StudyMesh;
 use crate::labs::study::report::bytes_of;
 use crate::labs::study::{Settings, StudyError, is_skewed, prepare, refusals, results, scans};
+use crate::refusal::Candidate;
 use crate::results::figure::{Figure, FigureRow};
 use crate::results::finding::{LabFinding, only_mesh};
 use crate::results::read::ReadError;
@@ -233,9 +234,13 @@ pub fn orders(
     let mut backends = Vec::new();
     let mut subjects: Vec<Box<dyn TimedBackend + '_>> = Vec::new();
     let mut columns: Vec<Column> = Vec::new();
+    let candidates: Vec<_> = meshes
+        .iter()
+        .map(|(order, mesh, draw)| (order, Candidate::new(mesh, study_mesh.facts.edges), draw))
+        .collect();
     for backend in &chosen {
-        for (order, mesh, draw) in meshes.iter() {
-            let (report, subject) = prepare(backend, mesh, draw, &counts);
+        for &(order, ref candidate, draw) in &candidates {
+            let (report, subject) = prepare(backend, candidate, draw);
             if order == Order::Given {
                 backends.push(report);
             }

@@ -39,7 +39,7 @@ use crate::engine::heap::{CacheState, Memory};
 use crate::engine::timer::Timer;
 use crate::inspect::StudyMesh;
 use crate::labs::study::{Settings, StudyError, needed_bytes};
-use crate::refusal::reason;
+use crate::refusal::Candidate;
 use crate::results::run::{Run, RunSettings};
 use backend::PickBackend;
 use measurement::PickMeasurement;
@@ -184,7 +184,7 @@ fn qualified(
     if polygons.face_count() == 0 {
         return Err(StudyError::NoFaces.into());
     }
-    let counts = polygons.counts(study_mesh.facts.edges);
+    let candidate = Candidate::from_study_mesh(study_mesh);
     let mut excluded = Vec::new();
     let mut qualified = Vec::new();
     for backend in settings.chosen_backends()? {
@@ -192,7 +192,7 @@ fn qualified(
             .needs
             .iter()
             .find_map(|need| need.unmet_reason(&backend));
-        let bytes = (backend.layout_bytes)(&counts) as u64;
+        let bytes = (backend.layout_bytes)(&candidate.counts) as u64;
         let excluded_because = match (lacks, settings.max_memory) {
             (Some(lacks), _) => Some(lacks),
             (None, Some(most)) if bytes > most => Some(report::over_memory_limit(bytes, most)),
@@ -200,7 +200,7 @@ fn qualified(
                 .info
                 .check(polygons)
                 .err()
-                .map(|refusal| reason(&refusal, &backend.info.capabilities, polygons)),
+                .map(|refusal| candidate.reason(&refusal, &backend.info.capabilities)),
         };
         match excluded_because {
             Some(reason) => excluded.push(Excluded::new(backend.name(), reason)),

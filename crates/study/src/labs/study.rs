@@ -27,6 +27,7 @@ use crate::engine::statistics::Median;
 use crate::engine::timer::Timer;
 use crate::engine::trial::{Columns, Measured, Trial};
 use crate::engine::warnings::warnings;
+use crate::refusal::Candidate;
 use sentences::sentences;
 use sixfold_workload::Backend;
 use sixfold_workload::Draw;
@@ -211,10 +212,11 @@ pub fn study(
         .any(|backend| skewed || scans(backend, &operations))
         .then(|| Draw::new(polygons, settings.seed));
 
+    let candidate = Candidate::from_study_mesh(study_mesh);
     let mut backends = Vec::new();
     let mut subjects: Vec<Box<dyn TimedBackend + '_>> = Vec::new();
     for backend in &chosen {
-        let (report, subject) = prepare(backend, polygons, draw.as_ref(), &counts);
+        let (report, subject) = prepare(backend, &candidate, draw.as_ref());
         backends.push(report);
         subjects.extend(subject);
     }
@@ -326,20 +328,19 @@ pub(crate) fn scans(backend: &Backend, operations: &[Operation]) -> bool {
 
 pub(crate) fn prepare<'a>(
     backend: &Backend,
-    polygons: &'a PolygonMesh,
+    candidate: &Candidate<'a>,
     draw: Option<&'a Draw>,
-    counts: &Counts,
 ) -> (BackendReport, Option<Box<dyn TimedBackend + 'a>>) {
-    match backend.prepare(polygons, draw) {
-        Err(refusal) => (unbuilt(backend, polygons, counts, Err(refusal)), None),
+    match backend.prepare(candidate.polygons, draw) {
+        Err(refusal) => (unbuilt(backend, candidate, Err(refusal)), None),
         Ok((subject, memory)) => {
             let bytes = memory.total();
             let report = BackendReport {
                 bytes: Some(bytes),
-                bytes_per_vertex: per_vertex(bytes, counts),
+                bytes_per_vertex: per_vertex(bytes, &candidate.counts),
                 tables: memory.tables,
                 merged_vertices: Some(subject.merged_vertices()),
-                ..unbuilt(backend, polygons, counts, Ok(()))
+                ..unbuilt(backend, candidate, Ok(()))
             };
             (report, Some(subject))
         }

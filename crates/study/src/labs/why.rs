@@ -20,6 +20,7 @@ use crate::engine::measure::Progress;
 use crate::inspect::{StudyMesh, unbuilt};
 use crate::labs::study::report::{Report, bytes_of};
 use crate::labs::study::{Settings, StudyError, study};
+use crate::refusal::Candidate;
 use crate::results::figure::{Figure, FigureRow, Status, samples_of};
 use crate::results::finding::{LabFinding, only_mesh};
 use crate::results::read::ReadError;
@@ -324,7 +325,7 @@ fn count_all(
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<(Vec<BackendReport>, Vec<WhyRow>), StudyError> {
     let chosen = settings.chosen_backends()?;
-    let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
+    let candidate = Candidate::from_study_mesh(study_mesh);
     let (mut backends, mut rows) = (Vec::new(), Vec::new());
     let all = (chosen.len() * relations.len()) as f64;
     for (i, backend) in chosen.iter().enumerate() {
@@ -335,9 +336,8 @@ fn count_all(
             rows: &mut rows,
             progress,
         };
-        let polygons = &study_mesh.polygons;
-        let verdict = backend.count_reads(polygons, relations, stop, &mut counting);
-        backends.push(unbuilt(backend, polygons, &counts, verdict));
+        let verdict = backend.count_reads(candidate.polygons, relations, stop, &mut counting);
+        backends.push(unbuilt(backend, &candidate, verdict));
     }
     if backends.iter().all(|backend| !backend.holds) {
         let refusals = backends

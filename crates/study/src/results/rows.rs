@@ -95,6 +95,10 @@ pub struct MeshReport {
     pub facts: Facts,
     /// Changes that were made to the mesh before the study, as phrases.
     pub changes: Vec<String>,
+    /// The number of degenerate faces of the file that were left out.
+    pub left_out_faces: usize,
+    /// The number of faces of the file that were cut into triangles.
+    pub cut_faces: usize,
 }
 
 /// The memory of a backend on one mesh, or the reason why the backend cannot hold the mesh.

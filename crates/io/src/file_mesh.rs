@@ -1,40 +1,58 @@
-//! The contents of an OBJ file, and their conversion to a mesh.
+//! The contents of a mesh file, and their conversion to a mesh.
 
 use std::fmt;
 
-use sixfold_core::{Creases, FaceList, Facts, IteratorExt, Point, PolygonMesh, VertexId};
+use sixfold_core::{Creases, FaceId, FaceList, Facts, IteratorExt, Point, PolygonMesh, VertexId};
 
+use crate::format::Format;
+use crate::narrowing::Narrowing;
 use crate::notice::Notice;
-use crate::tags::{CornerTag, CreaseTag, UnusedCrease, creases_on_polygons};
+use crate::obj::{CornerTag, CreaseTag, UnusedCrease, creases_on_polygons};
+use crate::place::{FacePlaces, Gaps, Place, PolygonPlaces};
 
 /// The vertices and faces of a file.
 ///
-/// A `VertexId` counts from 0 and the file counts from 1: `v0` is vertex 1 of the file.
+/// A `VertexId` counts from 0. OBJ counts from 1: `v0` is vertex 1 of the file. PLY, OFF and glTF
+/// count from 0. STL has no numbers: vertices are numbered by first use.
+///
+/// Normals, colours and texture coordinates are not kept; [`notices`](Self::notices) lists them.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct ObjMesh {
+pub struct FileMesh {
+    /// Format of the file.
+    pub format: Format,
     /// Positions of all vertices of the file, including unused vertices.
     pub positions: Vec<Point>,
     /// All faces with three corners or more, including faces that use a vertex twice.
     pub faces: FaceList,
-    /// Line of each face in `faces`, counted from 1.
-    pub face_lines: Vec<u32>,
+    /// Place of each face.
+    pub(crate) face_places: FacePlaces,
     /// Faces with fewer than three corners.
     pub short_faces: Vec<ShortFace>,
-    /// Sharp edges from `t crease` tags, in file order. Each edge is a side of a face; this face
-    /// can be degenerate or short.
+    /// Sharp edges from `t crease` tags, in file order; empty in other formats than OBJ. Each edge
+    /// is a side of a face; this face can be degenerate or short.
     pub crease_tags: Vec<CreaseTag>,
-    /// Sharp vertices from `t corner` tags, in file order.
+    /// Sharp vertices from `t corner` tags, in file order; empty in other formats than OBJ.
     pub corner_tags: Vec<CornerTag>,
-    /// Ignored statements, one entry per kind, in the order of the first occurrences.
+    /// Ignored contents, one entry per kind, in the order of the first occurrences.
     pub notices: Vec<Notice>,
+    /// Vertices of the file that became one vertex because their positions are equal: the number
+    /// of vertices in the file minus the number of [`positions`](Self::positions).
+    pub welded_vertices: usize,
+    /// What rounding to 32 bits did to the coordinates.
+    pub narrowing: Narrowing,
+    /// Place of the origin in the coordinates of the file: add it to a position to get the position
+    /// in the file. It is zero unless the mesh was moved
+    /// ([`ReadOptions::recentred`](crate::ReadOptions::recentred)).
+    pub origin: [f64; 3],
 }
 
 /// A face with fewer than three corners.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ShortFace {
-    /// Line of the face, counted from 1.
-    pub line: u32,
+    /// Place of the face.
+    pub place: Place,
     /// Vertices of the face, at most two.
     pub corners: Vec<VertexId>,
 }
@@ -42,10 +60,11 @@ pub struct ShortFace {
 /// A face that is not a valid polygon, printed for example as `line 23: face 1 1 2 names vertex 1
 /// twice`.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct LeftOut {
-    /// Line of the face, counted from 1.
-    pub line: u32,
-    /// Vertices of the face, counted from 1 as in the file.
+    /// Place of the face.
+    pub place: Place,
+    /// Vertices of the face, numbered as in the file.
     pub vertices: Vec<u32>,
     /// Reason why the face is left out.
     pub reason: LeftOutReason,
@@ -57,11 +76,11 @@ pub struct LeftOut {
 pub enum LeftOutReason {
     /// The face has fewer than three corners.
     TooFewCorners,
-    /// The face uses this vertex twice. The number counts from 1.
+    /// The face uses this vertex twice. The number is the number in the file.
     RepeatedVertex(u32),
 }
 
-impl ObjMesh {
+impl FileMesh {
     /// Returns the topology of the file. Faces with fewer than three corners count as
     /// degenerate. O(corners) expected.
     ///
@@ -73,6 +92,15 @@ impl ObjMesh {
         let mut facts = facts.unwrap_or_else(|error| panic!("{error}"));
         facts.degenerate_faces += self.short_faces.len();
         facts
+    }
+
+    /// Returns the place of `face` in the file: a line, a byte, or in glTF its number; O(1).
+    ///
+    /// # Panics
+    ///
+    /// Panics if there is no such face, or if `faces` was changed.
+    pub fn face_place(&self, face: FaceId) -> Place {
+        self.face_places.place(face, &self.faces)
     }
 
     /// Returns the sharpness of the edges and vertices of [`into_polygons`](Self::into_polygons),
@@ -89,33 +117,60 @@ impl ObjMesh {
     /// let obj = sixfold_io::parse_obj("triangle.obj", text.as_bytes())?;
     /// let (creases, unused) = obj.creases();
     /// assert_eq!((creases.edges().len(), creases.corners().len(), unused.len()), (2, 1, 0));
-    /// # Ok::<(), sixfold_io::ObjError>(())
+    /// # Ok::<(), sixfold_io::ReadError>(())
     /// ```
     pub fn creases(&self) -> (Creases, Vec<UnusedCrease>) {
         creases_on_polygons(&self.crease_tags, &self.corner_tags, &self.faces)
     }
 
     /// Returns the mesh without its degenerate and short faces. Also returns these faces, sorted by
-    /// line. O(corners).
+    /// place. O(corners).
     ///
     /// # Panics
     ///
-    /// Panics if `faces` was changed and uses a vertex that does not exist, or if `face_lines` is
-    /// too short.
+    /// Panics if `faces` was changed.
     pub fn into_polygons(self) -> (PolygonMesh, Vec<LeftOut>) {
+        let (polygons, left_out, _) = self.into_polygons_with_places();
+        (polygons, left_out)
+    }
+
+    /// Returns the mesh and the faces that were left out like [`into_polygons`](Self::into_polygons),
+    /// and the places of the faces of this mesh in the file. O(corners).
+    ///
+    /// # Panics
+    ///
+    /// Panics if `faces` was changed.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use sixfold_core::FaceId;
+    /// use sixfold_io::Place;
+    ///
+    /// let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 1 2\nf 1 2 3\n";
+    /// let obj = sixfold_io::parse_obj("triangle.obj", text.as_bytes())?;
+    /// let (polygons, left_out, places) = obj.into_polygons_with_places();
+    /// assert_eq!((polygons.face_count(), left_out.len()), (1, 1));
+    /// assert_eq!(places.place(FaceId::new(0), &polygons), Place::Line(5));
+    /// # Ok::<(), sixfold_io::ReadError>(())
+    /// ```
+    pub fn into_polygons_with_places(self) -> (PolygonMesh, Vec<LeftOut>, PolygonPlaces) {
+        let first = self.format.first_vertex();
         let mut left_out: Vec<LeftOut> = Vec::new();
         for short in &self.short_faces {
             let reason = LeftOutReason::TooFewCorners;
-            left_out.push(LeftOut::new(short.line, &short.corners, reason));
+            left_out.push(LeftOut::new(short.place, &short.corners, reason, first));
         }
+        let mut gaps = Gaps::default();
         for (f, face) in self.faces.iter() {
             if let Some(vertex) = repeated_vertex(face) {
-                let reason = LeftOutReason::RepeatedVertex(number(vertex));
-                left_out.push(LeftOut::new(self.face_lines[f.index()], face, reason));
+                let reason = LeftOutReason::RepeatedVertex(number(vertex, first));
+                left_out.push(LeftOut::new(self.face_place(f), face, reason, first));
+                gaps.push(f, face.len());
             }
         }
-        left_out.sort_by_key(|left_out| left_out.line);
-        let faces = if left_out.len() == self.short_faces.len() {
+        left_out.sort_by_key(|left_out| left_out.place);
+        let faces = if gaps.is_empty() {
             self.faces
         } else {
             let mut kept = FaceList::with_capacity(self.faces.corners().len());
@@ -130,15 +185,17 @@ impl ObjMesh {
             kept
         };
         let polygons = PolygonMesh::from_faces(self.positions, faces);
-        (polygons.unwrap_or_else(|error| panic!("{error}")), left_out)
+        let polygons = polygons.unwrap_or_else(|error| panic!("{error}"));
+        let places = PolygonPlaces::new(self.face_places, gaps);
+        (polygons, left_out, places)
     }
 }
 
 impl LeftOut {
-    fn new(line: u32, corners: &[VertexId], reason: LeftOutReason) -> Self {
-        let vertices = corners.iter().copied().map(number).collect();
+    fn new(place: Place, corners: &[VertexId], reason: LeftOutReason, first: usize) -> Self {
+        let vertices = corners.iter().map(|&v| number(v, first)).collect();
         Self {
-            line,
+            place,
             vertices,
             reason,
         }
@@ -149,7 +206,7 @@ impl fmt::Display for LeftOut {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         /// Maximum number of corners that are printed.
         const MAX_CORNERS: usize = 8;
-        write!(f, "line {}: face", self.line)?;
+        write!(f, "{}: face", self.place)?;
         for vertex in self.vertices.iter().take(MAX_CORNERS) {
             write!(f, " {vertex}")?;
         }
@@ -163,13 +220,20 @@ impl fmt::Display for LeftOut {
     }
 }
 
-/// Returns the number of `vertex` in the file, counted from 1.
-fn number(vertex: VertexId) -> u32 {
-    sixfold_core::row(vertex.index() + 1)
+/// Returns the number of `vertex` in a file that counts from `first`.
+fn number(vertex: VertexId, first: usize) -> u32 {
+    sixfold_core::row(vertex.index() + first)
 }
 
 /// Returns the first vertex that occurs twice in `face`; O(corners) expected.
 pub(crate) fn repeated_vertex(face: &[VertexId]) -> Option<VertexId> {
+    if let &[a, b, c] = face {
+        return match (a == b || a == c, b == c) {
+            (true, _) => Some(a),
+            (_, true) => Some(b),
+            _ => None,
+        };
+    }
     let mut distinct = face.iter().copied().distinct();
     face.iter().copied().find(|&v| distinct.next() != Some(v))
 }

@@ -5,7 +5,7 @@ use std::fmt;
 use sixfold_core::{CreaseError, Creases, FaceList, MAX_ROWS, Pair, VertexId, row};
 
 use crate::error::shortened;
-use crate::obj_mesh::{ShortFace, repeated_vertex};
+use crate::file_mesh::{ShortFace, repeated_vertex};
 use crate::sharpness::sharpness;
 
 /// One edge of a `t crease` tag. A tag can have several edges.

@@ -1,0 +1,370 @@
+//! Collects vertices and faces of a file, with the checks that all formats share.
+
+use std::io::{self, Read};
+
+use sixfold_core::{FaceList, MAX_ROWS, Point, VertexId};
+
+use crate::byte_source::{ByteSource, MAX_LINE_LENGTH};
+use crate::error::ReadError;
+use crate::file_mesh::{FileMesh, ShortFace};
+use crate::format::Format;
+use crate::narrowing::Positions;
+use crate::notice::{IgnoredKind, Notices};
+use crate::number::Coordinate;
+use crate::options::{ReadOptions, Welding};
+use crate::place::{FacePlaces, Location, Place};
+use crate::welder::Welder;
+
+/// The mesh of a file while it is read.
+///
+/// # Invariants
+///
+/// - B1  All positions are finite.
+/// - B2  `places` has a place for each face.
+/// - B3  There are at most [`MAX_ROWS`] vertices and corners.
+pub(crate) struct MeshBuilder<'a> {
+    name: &'a str,
+    format: Format,
+    options: ReadOptions,
+    positions: Positions,
+    faces: FaceList,
+    places: FacePlaces,
+    short_faces: Vec<ShortFace>,
+    pub(crate) notices: Notices,
+}
+
+impl<'a> MeshBuilder<'a> {
+    /// Creates an empty mesh of the file `name`. `places` is the kind of places that its faces have.
+    pub(crate) fn new(
+        name: &'a str,
+        format: Format,
+        options: ReadOptions,
+        places: FacePlaces,
+    ) -> Self {
+        Self {
+            name,
+            format,
+            options,
+            positions: Positions::new(options.recentre),
+            faces: FaceList::default(),
+            places,
+            short_faces: Vec::new(),
+            notices: Notices::default(),
+        }
+    }
+
+    /// Returns the name of the file.
+    pub(crate) fn name(&self) -> &'a str {
+        self.name
+    }
+
+    /// Sets the format, if the content decides between two forms.
+    pub(crate) fn set_format(&mut self, format: Format) {
+        self.format = format;
+    }
+
+    /// Returns the location of `place` in this file.
+    pub(crate) fn at(&self, place: Place) -> Location {
+        Location::new(self.name, place)
+    }
+
+    /// Sets the kind of places of faces in a binary file. If there are faces already, their kind
+    /// stays.
+    pub(crate) fn start_records(&mut self, places: FacePlaces) {
+        if self.faces.is_empty() {
+            self.places = places;
+        }
+    }
+
+    /// Returns whether vertices with equal positions become one vertex, if the format has no
+    /// numbers of vertices.
+    pub(crate) fn welds_facets(&self) -> bool {
+        self.options.welding != Welding::Nothing
+    }
+
+    /// Merges equal positions from now on; `vertices` is the expected number of different ones.
+    pub(crate) fn weld(&mut self, vertices: usize) {
+        self.positions.weld(vertices);
+    }
+
+    /// Adds vertices that may be equal to others, and appends their rows to `rows`. All
+    /// coordinates must be finite.
+    pub(crate) fn push_vertices(
+        &mut self,
+        vertices: &[[Coordinate; 3]],
+        rows: &mut Vec<u32>,
+        place: Place,
+    ) -> Result<(), ReadError> {
+        if self.positions.len() + vertices.len() > MAX_ROWS {
+            return Err(self.too_many("vertices", place));
+        }
+        self.positions.push_all(vertices, rows);
+        Ok(())
+    }
+
+    /// Reserves memory for `vertices` vertices, of which the caller is sure.
+    pub(crate) fn reserve_vertices(&mut self, vertices: usize) {
+        self.positions.reserve(vertices);
+    }
+
+    /// Returns the number of vertices.
+    pub(crate) fn vertex_count(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Reserves memory for `corners` corners, of which the caller is sure. Does nothing if there
+    /// are faces already.
+    pub(crate) fn reserve_corners(&mut self, corners: usize) {
+        if self.faces.is_empty() {
+            self.faces = FaceList::with_capacity(corners);
+        }
+    }
+
+    /// Returns the error of reading at `place`.
+    pub(crate) fn read_error(&self, place: Place, cause: io::Error) -> ReadError {
+        let at = self.at(place);
+        match cause.kind() {
+            io::ErrorKind::FileTooLarge => ReadError::LongLine {
+                at,
+                limit: MAX_LINE_LENGTH,
+                format: self.format,
+            },
+            _ => ReadError::Read { at, cause },
+        }
+    }
+
+    /// Returns the error of a text that is not as expected.
+    pub(crate) fn unexpected(&self, place: Place, expected: &str, found: &[u8]) -> ReadError {
+        ReadError::Unexpected {
+            at: self.at(place),
+            expected: expected.to_owned(),
+            found: crate::error::shortened(&String::from_utf8_lossy(found)),
+        }
+    }
+
+    /// Returns the error of a file that ends before `missing`.
+    pub(crate) fn truncated(&self, place: Place, missing: String) -> ReadError {
+        let at = self.at(place);
+        ReadError::Truncated { at, missing }
+    }
+
+    /// Returns the number that the next vertex has in the file.
+    pub(crate) fn next_vertex(&self) -> usize {
+        self.positions.len() + self.format.first_vertex()
+    }
+
+    /// Adds a vertex. `place` is called only for an error.
+    #[inline]
+    pub(crate) fn push_vertex(
+        &mut self,
+        coordinates: [Coordinate; 3],
+        place: impl Fn() -> Place,
+    ) -> Result<(), ReadError> {
+        // The product of a number that is not finite with 0 is not 0.
+        let zero = coordinates.map(|c| c.narrow * 0.0);
+        if zero != [0.0; 3] || self.positions.len() >= MAX_ROWS {
+            return Err(self.vertex_error(coordinates, place()));
+        }
+        self.positions.push(coordinates);
+        Ok(())
+    }
+
+    #[cold]
+    pub(crate) fn vertex_error(&self, coordinates: [Coordinate; 3], place: Place) -> ReadError {
+        if coordinates.iter().all(|c| c.narrow.is_finite()) {
+            return self.too_many("vertices", place);
+        }
+        self.infinite(coordinates, place, self.next_vertex())
+    }
+
+    /// Returns the error of a coordinate that is not finite. `vertex` is the number of the vertex
+    /// in the message; in STL that of the corner of its facet, from 1.
+    #[cold]
+    pub(crate) fn infinite(
+        &self,
+        coordinates: [Coordinate; 3],
+        place: Place,
+        vertex: usize,
+    ) -> ReadError {
+        let named = ['x', 'y', 'z'].into_iter().zip(coordinates);
+        let mut infinite = named.filter(|(_, c)| !c.narrow.is_finite());
+        ReadError::NonFinite {
+            at: self.at(place),
+            vertex,
+            coordinate: infinite.next().map_or('x', |(name, _)| name),
+        }
+    }
+
+    fn too_many(&self, elements: &'static str, place: Place) -> ReadError {
+        ReadError::TooMany {
+            at: self.at(place),
+            elements,
+            limit: MAX_ROWS,
+        }
+    }
+
+    /// Returns the row of the vertex that a face names with `index`, counted from 0. Whether the
+    /// vertex exists is checked at the end, because it may follow.
+    #[inline]
+    pub(crate) fn vertex_row(
+        &self,
+        index: i64,
+        place: impl Fn() -> Place,
+    ) -> Result<u32, ReadError> {
+        match u32::try_from(index) {
+            Ok(row) if row < u32::MAX => Ok(row),
+            _ => Err(self.index_error(index, place())),
+        }
+    }
+
+    #[cold]
+    fn index_error(&self, index: i64, place: Place) -> ReadError {
+        ReadError::IndexOutOfRange {
+            at: self.at(place),
+            index,
+            vertices: self.positions.len(),
+        }
+    }
+
+    /// Adds a face; if it has fewer than three corners, it is kept apart.
+    #[inline]
+    pub(crate) fn push_face(&mut self, corners: &[u32], place: Place) -> Result<(), ReadError> {
+        if corners.len() < 3 {
+            let corners = corners.iter().copied().map(VertexId::new).collect();
+            self.short_faces.push(ShortFace { place, corners });
+            return Ok(());
+        }
+        match (place, &mut self.places) {
+            (Place::Line(line), FacePlaces::Lines(lines)) => lines.push(line),
+            (Place::Byte(byte), places) => places.push_byte(&self.faces, byte),
+            _ => {}
+        }
+        let pushed = match *corners {
+            [a, b, c] => self.faces.push([a, b, c].map(VertexId::new)),
+            _ => self.faces.push(corners.iter().copied().map(VertexId::new)),
+        };
+        pushed.map_err(|_| self.too_many("corners", place))
+    }
+
+    /// Counts the bytes after the mesh, except white space.
+    pub(crate) fn note_trailing(
+        &mut self,
+        source: &mut ByteSource<impl Read>,
+    ) -> Result<(), ReadError> {
+        loop {
+            let offset = source.offset();
+            let lines = source.line_count();
+            let bytes = source
+                .fill(1)
+                .map_err(|e| self.read_error(Place::Byte(offset), e))?;
+            let (length, is_text) = (bytes.len(), self.format.is_text());
+            if length == 0 {
+                return Ok(());
+            }
+            let is_content = |byte: &u8| !byte.is_ascii_whitespace();
+            if let Some(first) = bytes.iter().position(is_content) {
+                let count = bytes.iter().filter(|byte| is_content(byte)).count();
+                let place = match is_text {
+                    true => Place::Line(lines.max(1)),
+                    false => Place::Byte(offset + first as u64),
+                };
+                self.notices
+                    .add_many(IgnoredKind::Trailing, count as u64, place);
+            }
+            source.advance(length);
+        }
+    }
+
+    /// Checks the numbers of vertices, merges vertices with equal positions if the options say so,
+    /// and returns the mesh.
+    pub(crate) fn finish(self) -> Result<FileMesh, ReadError> {
+        if self.positions.len() == 0 && self.faces.is_empty() && self.short_faces.is_empty() {
+            return Err(ReadError::Empty {
+                file: self.name.to_owned(),
+                format: self.format,
+            });
+        }
+        self.check_range()?;
+        let welded_vertices = self.positions.welded();
+        // Positions that are moved must be merged afterwards.
+        let weld_now = self.options.welding == Welding::All
+            || self.options.recentre && self.welds_facets() && self.format.is_stl();
+        let (positions, origin, narrowing) = self.positions.finish();
+        let mut mesh = FileMesh {
+            format: self.format,
+            positions,
+            faces: self.faces,
+            face_places: self.places,
+            short_faces: self.short_faces,
+            crease_tags: Vec::new(),
+            corner_tags: Vec::new(),
+            notices: self.notices.0,
+            welded_vertices,
+            narrowing,
+            origin,
+        };
+        if weld_now {
+            mesh.weld();
+        }
+        Ok(mesh)
+    }
+
+    /// Returns the first face with a vertex that does not exist, in the order of the file.
+    fn check_range(&self) -> Result<(), ReadError> {
+        let vertices = self.positions.len();
+        let beyond = |v: &&VertexId| v.index() >= vertices;
+        let index = |v: &VertexId| (v.index() + self.format.first_vertex()) as i64;
+        let mut wrong = None;
+        // Almost always no number is too high, and then the faces need not be told apart.
+        if self.faces.corners().iter().any(|v| v.index() >= vertices) {
+            let mut faces = self.faces.iter();
+            wrong = faces.find_map(|(f, face)| {
+                let v = face.iter().find(beyond)?;
+                Some((self.places.place(f, &self.faces), index(v)))
+            });
+        }
+        for short in &self.short_faces {
+            if let Some(v) = short.corners.iter().find(beyond) {
+                let other = (short.place, index(v));
+                wrong = Some(wrong.map_or(other, |wrong| wrong.min(other)));
+                break;
+            }
+        }
+        match wrong {
+            Some((place, index)) => Err(self.index_error(index, place)),
+            None => Ok(()),
+        }
+    }
+}
+
+impl FileMesh {
+    /// Merges vertices with equal positions; vertices are numbered by first occurrence.
+    fn weld(&mut self) {
+        let mut welder = Welder::with_capacity(0);
+        let mut numbers = Vec::with_capacity(self.positions.len());
+        let positions: Vec<Point> = std::mem::take(&mut self.positions);
+        welder.number_all(&positions, &mut numbers);
+        self.positions = welder.into_points();
+        self.welded_vertices += positions.len() - self.positions.len();
+        if self.positions.len() == positions.len() {
+            return;
+        }
+        let renumber = |v: VertexId| VertexId::new(numbers[v.index()]);
+        let mut faces = FaceList::with_capacity(self.faces.corners().len());
+        for (_, face) in self.faces.iter() {
+            let pushed = faces.push(face.iter().copied().map(renumber));
+            pushed.expect("as many corners as before");
+        }
+        self.faces = faces;
+        let corners = self
+            .short_faces
+            .iter_mut()
+            .flat_map(|face| &mut face.corners);
+        corners.for_each(|v| *v = renumber(*v));
+        let ends = self.crease_tags.iter_mut().flat_map(|tag| &mut tag.ends);
+        ends.for_each(|v| *v = renumber(*v));
+        self.corner_tags
+            .iter_mut()
+            .for_each(|tag| tag.vertex = renumber(tag.vertex));
+    }
+}

@@ -1,0 +1,322 @@
+//! The formats, and how a file's format is recognised.
+
+use std::fmt;
+use std::path::Path;
+use std::str::FromStr;
+
+use crate::byte_source::words;
+
+/// A file format. Formats with a text form and a binary form have one entry for each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Format {
+    /// Wavefront OBJ.
+    Obj,
+    /// STL with little-endian binary facets.
+    Stl,
+    /// STL as text.
+    StlAscii,
+    /// PLY with little-endian binary data.
+    Ply,
+    /// PLY with big-endian binary data.
+    PlyBigEndian,
+    /// PLY as text.
+    PlyAscii,
+    /// Geomview OFF as text.
+    Off,
+    /// glTF 2.0 in JSON.
+    Gltf,
+    /// glTF 2.0 in one binary file.
+    Glb,
+}
+
+impl Format {
+    /// All formats.
+    pub const ALL: [Self; 9] = [
+        Self::Obj,
+        Self::Stl,
+        Self::StlAscii,
+        Self::Ply,
+        Self::PlyBigEndian,
+        Self::PlyAscii,
+        Self::Off,
+        Self::Gltf,
+        Self::Glb,
+    ];
+
+    /// The endings of file names, without the dot, in lower case.
+    pub const EXTENSIONS: [&str; 6] = ["obj", "stl", "ply", "off", "gltf", "glb"];
+
+    /// Returns the name that [`FromStr`] accepts: `stl-ascii`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Obj => "obj",
+            Self::Stl => "stl",
+            Self::StlAscii => "stl-ascii",
+            Self::Ply => "ply",
+            Self::PlyBigEndian => "ply-big-endian",
+            Self::PlyAscii => "ply-ascii",
+            Self::Off => "off",
+            Self::Gltf => "gltf",
+            Self::Glb => "glb",
+        }
+    }
+
+    /// Returns the name for readers: `ASCII STL`.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Obj => "OBJ",
+            Self::Stl => "binary STL",
+            Self::StlAscii => "ASCII STL",
+            Self::Ply => "binary PLY",
+            Self::PlyBigEndian => "big-endian PLY",
+            Self::PlyAscii => "ASCII PLY",
+            Self::Off => "OFF",
+            Self::Gltf => "glTF",
+            Self::Glb => "binary glTF",
+        }
+    }
+
+    /// Returns the usual ending of a file name, without the dot.
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Obj => "obj",
+            Self::Stl | Self::StlAscii => "stl",
+            Self::Ply | Self::PlyBigEndian | Self::PlyAscii => "ply",
+            Self::Off => "off",
+            Self::Gltf => "gltf",
+            Self::Glb => "glb",
+        }
+    }
+
+    /// Returns the format for a file with the name `path`; `None` if the ending is missing or
+    /// unknown. For STL and PLY it is the binary form (little-endian).
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use sixfold_io::Format;
+    ///
+    /// assert_eq!(Format::from_path("parts/wheel.STL"), Some(Format::Stl));
+    /// assert_eq!(Format::from_path("wheel.step"), None);
+    /// ```
+    pub fn from_path(path: impl AsRef<Path>) -> Option<Self> {
+        let extension = path.as_ref().extension()?.to_str()?.to_ascii_lowercase();
+        Self::EXTENSIONS
+            .contains(&extension.as_str())
+            .then(|| extension.parse().ok())?
+    }
+
+    /// Returns the title with its article, for messages: `an OBJ file`.
+    pub(crate) fn with_article(self) -> String {
+        let article = match self {
+            Self::Obj | Self::StlAscii | Self::PlyAscii | Self::Off => "an",
+            _ => "a",
+        };
+        format!("{article} {self} file")
+    }
+
+    /// Returns whether the format is text that has lines.
+    pub(crate) const fn is_text(self) -> bool {
+        matches!(
+            self,
+            Self::Obj | Self::StlAscii | Self::PlyAscii | Self::Off
+        )
+    }
+
+    pub(crate) const fn is_stl(self) -> bool {
+        matches!(self, Self::Stl | Self::StlAscii)
+    }
+
+    /// Returns the number of the first vertex, as the format and its messages count.
+    pub(crate) const fn first_vertex(self) -> usize {
+        match self {
+            Self::Obj => 1,
+            _ => 0,
+        }
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.title())
+    }
+}
+
+/// A name is not the name of a format.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{name:?} is not a format: use one of {}", Format::ALL.map(Format::name).join(", "))]
+pub struct UnknownFormatName {
+    name: String,
+}
+
+impl FromStr for Format {
+    type Err = UnknownFormatName;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        let format = Self::ALL.into_iter().find(|format| format.name() == name);
+        let name = name.to_owned();
+        format.ok_or(UnknownFormatName { name })
+    }
+}
+
+/// Bytes of a file that are searched for its format.
+pub(crate) const DETECTION_BYTES: usize = 1 << 14;
+
+/// Bytes of a binary STL before its first facet, and bytes of a facet.
+pub(crate) const STL_HEADER: usize = 84;
+pub(crate) const STL_FACET: usize = 50;
+
+/// Returns the format of a file that begins with `start` and has `size` bytes, if it is known.
+/// `None` if the content has no sign of any format.
+///
+/// For PLY, the form may be another one; the header says which.
+pub(crate) fn detect(start: &[u8], size: Option<u64>) -> Option<Format> {
+    let text = start.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(start);
+    if start.starts_with(b"glTF") {
+        return Some(Format::Glb);
+    }
+    if text.starts_with(b"ply") && text.get(3).is_some_and(u8::is_ascii_whitespace) {
+        return Some(Format::Ply);
+    }
+    if is_binary_stl(start, size) {
+        return Some(Format::Stl);
+    }
+    let begins_solid = |text: &[u8]| text.len() > 4 && text[..5].eq_ignore_ascii_case(b"solid");
+    if begins_solid(text.trim_ascii_start()) && !text.contains(&0) {
+        return Some(Format::StlAscii);
+    }
+    if text.trim_ascii_start().first() == Some(&b'{') {
+        return Some(Format::Gltf);
+    }
+    text_format(text)
+}
+
+/// Returns whether the bytes can be a binary STL. If the size is not known, or the file is cut off,
+/// the numbers of the first facet decide.
+fn is_binary_stl(start: &[u8], size: Option<u64>) -> bool {
+    let Some(&[a, b, c, d]) = start.get(STL_HEADER - 4..STL_HEADER) else {
+        return false;
+    };
+    let facets = u64::from(u32::from_le_bytes([a, b, c, d]));
+    if size == Some(STL_HEADER as u64 + STL_FACET as u64 * facets) {
+        return true;
+    }
+    let Some(facet) = start.get(STL_HEADER..STL_HEADER + 48) else {
+        return false;
+    };
+    let numbers = facet.as_chunks::<4>().0.iter();
+    let mut numbers = numbers.map(|&bytes| f32::from_le_bytes(bytes));
+    // A text has no zero bytes; a binary STL has them in its count or in a coordinate.
+    start[..STL_HEADER + 48].contains(&0)
+        && facets > 0
+        && numbers.by_ref().take(3).all(|x| x.abs() <= 1.01)
+        && numbers.all(|x| x.abs() <= 1e15)
+}
+
+/// Returns the format of a text that begins with `text`.
+fn text_format(text: &[u8]) -> Option<Format> {
+    let mut first = true;
+    for line in text.split(|byte| matches!(byte, b'\n' | b'\r')) {
+        let mut words = words(line);
+        let Some(keyword) = words.next().filter(|word| word[0] != b'#') else {
+            continue;
+        };
+        if first && is_off_keyword(keyword) {
+            return Some(Format::Off);
+        }
+        first = false;
+        let values = words.count();
+        match keyword {
+            b"v" if values >= 3 => return Some(Format::Obj),
+            b"vn" | b"vt" | b"f" | b"o" | b"g" | b"usemtl" | b"mtllib" if values >= 1 => {
+                return Some(Format::Obj);
+            }
+            _ => {}
+        }
+    }
+    None
+}
+
+/// Returns whether `word` is `OFF`, possibly with prefixes: `STCN4nOFF`.
+pub(crate) fn is_off_keyword(word: &[u8]) -> bool {
+    off_prefixes(word).is_some()
+}
+
+/// Returns the prefixes of an OFF keyword; `None` if `word` is not such a keyword.
+pub(crate) fn off_prefixes(word: &[u8]) -> Option<&[u8]> {
+    let prefixes = word.strip_suffix(b"OFF")?;
+    let mut rest = prefixes;
+    for prefix in [&b"ST"[..], b"C", b"N", b"4", b"n"] {
+        rest = rest.strip_prefix(prefix).unwrap_or(rest);
+    }
+    rest.is_empty().then_some(prefixes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_and_endings_are_read_back() {
+        for format in Format::ALL {
+            assert_eq!(format.name().parse(), Ok(format));
+            let path = format!("a.{}", format.extension().to_uppercase());
+            let found = Format::from_path(&path).expect("an ending");
+            assert_eq!(found.extension(), format.extension());
+        }
+        let error = Format::from_str("step").expect_err("unknown");
+        assert!(
+            error
+                .to_string()
+                .starts_with("\"step\" is not a format: use one of obj, stl,")
+        );
+        assert_eq!(Format::from_path("stl"), None);
+        assert_eq!(Format::from_path("a.stl-ascii"), None);
+    }
+
+    #[test]
+    fn the_content_decides() {
+        for (text, format) in [
+            ("glTF\x02\0\0\0", Format::Glb),
+            ("ply\nformat ascii 1.0\n", Format::Ply),
+            ("\u{feff}ply\r\n", Format::Ply),
+            (" \n{\"asset\":{}}", Format::Gltf),
+            ("solid a\nfacet normal 0 0 0\n", Format::StlAscii),
+            ("SOLID\n", Format::StlAscii),
+            ("# a\n\nOFF\n", Format::Off),
+            ("STCN4nOFF 1 2 3", Format::Off),
+            ("# a\nmtllib b\n", Format::Obj),
+            ("x\nv 1 2 3\n", Format::Obj),
+        ] {
+            assert_eq!(detect(text.as_bytes(), None), Some(format), "{text}");
+        }
+        for text in [
+            "",
+            "plywood",
+            "NCOFF",
+            "v",
+            "hello world\n",
+            "\u{89}PNG\r\n\0\0",
+        ] {
+            assert_eq!(detect(text.as_bytes(), None), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn the_size_of_a_binary_stl_decides_against_its_header() {
+        let mut bytes = b"solid of an exporter".to_vec();
+        bytes.resize(80, b' ');
+        bytes.extend(2_u32.to_le_bytes());
+        bytes.resize(STL_HEADER + 2 * STL_FACET, b'z');
+        assert_eq!(detect(&bytes, Some(184)), Some(Format::Stl));
+        assert_eq!(
+            detect(&bytes, Some(185)),
+            None,
+            "the coordinates are not plausible"
+        );
+        bytes[84..132].fill(0);
+        assert_eq!(detect(&bytes, None), Some(Format::Stl));
+        assert_eq!(detect(&bytes[..100], None), None);
+    }
+}

@@ -1,0 +1,206 @@
+//! The data of the buffers of a glTF file.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Component, Path, PathBuf};
+
+use super::document::{Accessor, Document, Uri};
+use super::{GltfFault, fault, item};
+use crate::error::{ReadError, shortened};
+
+/// The data of each buffer that contains positions or indices.
+pub(super) struct Buffers<'a> {
+    pub(super) name: &'a str,
+    buffers: Vec<Option<Vec<u8>>>,
+}
+
+impl<'a> Buffers<'a> {
+    /// Reads the buffers of the document, and takes embedded ones out of it. `binary` is the data of a binary file; `folder` contains
+    /// the file, if the mesh comes from a file.
+    pub(super) fn load(
+        name: &'a str,
+        document: &mut Document,
+        mut binary: Option<Vec<u8>>,
+        folder: Option<&Path>,
+    ) -> Result<Self, ReadError> {
+        let used = used_buffers(name, document)?;
+        let mut buffers = Vec::new();
+        for (number, buffer) in document.buffers.iter_mut().enumerate() {
+            if !used[number] {
+                buffers.push(None);
+                continue;
+            }
+            let failed = |cause| fault(name, "buffer", number, cause);
+            let data = match buffer.uri.take() {
+                None => binary.take().filter(|_| number == 0).unwrap_or_default(),
+                Some(Uri::Embedded(data)) => data.ok_or_else(|| failed(GltfFault::Base64))?,
+                Some(Uri::File(uri)) => {
+                    load_file(&uri, folder, buffer.byte_length).map_err(failed)?
+                }
+            };
+            if (data.len() as u64) < buffer.byte_length {
+                return Err(failed(GltfFault::ShortBuffer {
+                    found: data.len() as u64,
+                    expected: buffer.byte_length,
+                }));
+            }
+            buffers.push(Some(data));
+        }
+        Ok(Self { name, buffers })
+    }
+
+    /// Returns the number of bytes of all buffers that were read.
+    pub(super) fn bytes(&self) -> u64 {
+        self.buffers
+            .iter()
+            .flatten()
+            .map(|data| data.len() as u64)
+            .sum()
+    }
+
+    /// Returns the bytes of `view`; `accessor` uses it.
+    pub(super) fn view(
+        &self,
+        document: &Document,
+        view: usize,
+        accessor: usize,
+    ) -> Result<&[u8], ReadError> {
+        let by = ("accessor", accessor);
+        let described = item(&document.buffer_views, "bufferView", view, by, self.name)?;
+        let data = self
+            .buffers
+            .get(described.buffer)
+            .and_then(Option::as_deref);
+        let data = data.unwrap_or_default();
+        let start = usize::try_from(described.byte_offset).ok();
+        let length = usize::try_from(described.byte_length).ok();
+        let range = start.zip(length).and_then(|(start, length)| {
+            let end = start.checked_add(length)?;
+            data.get(start..end)
+        });
+        range.ok_or_else(|| {
+            let end = described.byte_offset.checked_add(described.byte_length);
+            let fault_of = GltfFault::OutOfBuffer {
+                end: end.map_or("2^64".to_owned(), |end| end.to_string()),
+                length: data.len() as u64,
+            };
+            fault(self.name, "bufferView", view, fault_of)
+        })
+    }
+}
+
+/// Returns for each buffer whether it contains positions or indices.
+fn used_buffers(name: &str, document: &Document) -> Result<Vec<bool>, ReadError> {
+    let mut used = vec![false; document.buffers.len()];
+    let primitives = document.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let accessors = primitives.flat_map(|primitive| {
+        let position = primitive.attributes.get("POSITION").copied();
+        position.into_iter().chain(primitive.indices)
+    });
+    for number in accessors {
+        // An accessor that does not exist is reported when its mesh is read.
+        let Some(accessor) = document.accessors.get(number) else {
+            continue;
+        };
+        for view in views(accessor) {
+            let by = ("accessor", number);
+            let view_item = item(&document.buffer_views, "bufferView", view, by, name)?;
+            let by = ("bufferView", view);
+            item(&document.buffers, "buffer", view_item.buffer, by, name)?;
+            used[view_item.buffer] = true;
+        }
+    }
+    Ok(used)
+}
+
+fn views(accessor: &Accessor) -> impl Iterator<Item = usize> {
+    let sparse = accessor.sparse.as_ref();
+    let sparse = sparse.map(|sparse| [sparse.indices.buffer_view, sparse.values.buffer_view]);
+    accessor
+        .buffer_view
+        .into_iter()
+        .chain(sparse.into_iter().flatten())
+}
+
+/// Returns the first `length` bytes of the file at `uri`, relative to `folder`.
+fn load_file(uri: &str, folder: Option<&Path>, length: u64) -> Result<Vec<u8>, GltfFault> {
+    let shown = || shortened(uri);
+    let relative = PathBuf::from(percent_decoded(uri));
+    let is_below = relative
+        .components()
+        .all(|part| matches!(part, Component::Normal(_)));
+    if !is_below || uri.contains(':') || uri.is_empty() {
+        return Err(GltfFault::Uri { uri: shown() });
+    }
+    let folder = folder.ok_or_else(|| GltfFault::NeedsFolder { uri: shown() })?;
+    let path = folder.join(relative);
+    read_file(&path, length).map_err(|cause| GltfFault::BufferFile {
+        path: path.display().to_string(),
+        cause,
+    })
+}
+
+fn read_file(path: &Path, length: u64) -> io::Result<Vec<u8>> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "not a regular file",
+        ));
+    }
+    let mut data = Vec::new();
+    File::open(path)?.take(length).read_to_end(&mut data)?;
+    Ok(data)
+}
+
+/// Replaces `%20` and similar sequences by the bytes that they mean.
+fn percent_decoded(uri: &str) -> String {
+    let mut decoded = Vec::with_capacity(uri.len());
+    let mut rest = uri.as_bytes();
+    while let [byte, after @ ..] = rest {
+        let code = after.get(..2).and_then(|code| str::from_utf8(code).ok());
+        let code = code.filter(|_| *byte == b'%');
+        match code.and_then(|code| u8::from_str_radix(code, 16).ok()) {
+            Some(value) => {
+                decoded.push(value);
+                rest = &after[2..];
+            }
+            None => {
+                decoded.push(*byte);
+                rest = after;
+            }
+        }
+    }
+    String::from_utf8_lossy(&decoded).into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_files_below_the_folder_are_read() {
+        let folder = Some(Path::new("nowhere"));
+        for uri in [
+            "../a.bin",
+            "/etc/passwd",
+            "a/../../b",
+            "http://a/b.bin",
+            "%2e%2e/a",
+            "",
+        ] {
+            let found = load_file(uri, folder, 1);
+            assert!(
+                matches!(found, Err(GltfFault::Uri { .. })),
+                "{uri}: {found:?}"
+            );
+        }
+        assert!(matches!(
+            load_file("a.bin", None, 1),
+            Err(GltfFault::NeedsFolder { .. })
+        ));
+        let missing = load_file("my%20data/a.bin", folder, 1)
+            .expect_err("missing")
+            .to_string();
+        assert!(missing.contains("my data"), "{missing}");
+    }
+}

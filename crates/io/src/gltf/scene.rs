@@ -1,0 +1,289 @@
+//! Reads the meshes of a scene at their places.
+
+mod triangles;
+
+use sixfold_core::glam::{DMat4, DQuat, DVec3};
+
+use super::accessor::elements;
+use super::buffers::Buffers;
+use super::document::{Document, Node, Primitive};
+use super::{GltfFault, fault, item};
+use crate::builder::MeshBuilder;
+use crate::error::ReadError;
+use crate::notice::IgnoredKind;
+use crate::number::Coordinate;
+use crate::place::Place;
+
+/// How many times larger than the file a scene may be that repeats its meshes, in vertices and
+/// corners per byte; and the size that is always allowed.
+const MAX_GROWTH: u64 = 256;
+const MAX_SMALL: u64 = 1 << 20;
+
+/// Adds the meshes of a scene to a builder.
+pub(super) struct SceneReader<'a, 'b> {
+    document: &'a Document,
+    buffers: &'a Buffers<'a>,
+    builder: &'a mut MeshBuilder<'b>,
+    /// Number of vertices and corners that may be added.
+    limit: u64,
+    left: u64,
+    /// The meshes that the scene uses.
+    used: Vec<bool>,
+}
+
+impl<'a, 'b> SceneReader<'a, 'b> {
+    /// Creates a reader of a document of `bytes` bytes, and checks that no part of it is compressed.
+    pub(super) fn new(
+        document: &'a Document,
+        buffers: &'a Buffers<'a>,
+        builder: &'a mut MeshBuilder<'b>,
+        bytes: u64,
+    ) -> Result<Self, ReadError> {
+        let bytes = bytes.saturating_add(buffers.bytes());
+        let limit = bytes.saturating_mul(MAX_GROWTH).max(MAX_SMALL);
+        let reader = Self {
+            document,
+            buffers,
+            builder,
+            limit,
+            left: limit,
+            used: vec![false; document.meshes.len()],
+        };
+        reader.check_compression()?;
+        Ok(reader)
+    }
+
+    /// Refuses Draco and meshopt by name, unless the file has the data in plain form, too.
+    fn check_compression(&self) -> Result<(), ReadError> {
+        let unsupported = |extension: &str, kind, number| ReadError::Unsupported {
+            at: self.builder.at(Place::Item { kind, number }),
+            feature: format!("the mesh is compressed with {extension}"),
+            way_out: "export it without compression",
+        };
+        let required = |extension: &str| {
+            let mut names = self.document.extensions_required.iter();
+            names.any(|name| name == extension)
+        };
+        let draco = "KHR_draco_mesh_compression";
+        for (number, mesh) in self.document.meshes.iter().enumerate() {
+            let mut primitives = mesh.primitives.iter();
+            let is_draco = |primitive: &Primitive| primitive.extensions.contains_key(draco);
+            if required(draco) && primitives.any(is_draco) {
+                return Err(unsupported(draco, "mesh", number));
+            }
+        }
+        for meshopt in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {
+            let mut views = self.document.buffer_views.iter();
+            let found = views.position(|view| view.extensions.contains_key(meshopt));
+            if let Some(number) = found.filter(|_| required(meshopt)) {
+                return Err(unsupported(meshopt, "bufferView", number));
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads the scene, or all meshes if there is no scene.
+    pub(super) fn read(&mut self) -> Result<(), ReadError> {
+        let document = self.document;
+        if document.scenes.is_empty() && document.nodes.is_empty() {
+            for mesh in 0..document.meshes.len() {
+                self.read_mesh(mesh, DMat4::IDENTITY, ("mesh", mesh))?;
+            }
+            return Ok(());
+        }
+        let roots = match (document.scene, document.scenes.first()) {
+            (None, None) => self.nodes_without_parent(),
+            (None, Some(scene)) => scene.nodes.clone(),
+            (Some(number), _) => {
+                let by = ("scene", number);
+                item(&document.scenes, "scene", number, by, self.buffers.name)?
+                    .nodes
+                    .clone()
+            }
+        };
+        self.read_nodes(roots)?;
+        let unused = self.used.iter().filter(|used| !**used).count();
+        if let Some(number) = self.used.iter().position(|used| !used) {
+            let place = Place::Item {
+                kind: "mesh",
+                number,
+            };
+            let notices = &mut self.builder.notices;
+            notices.add_many(IgnoredKind::UnusedMeshes, unused as u64, place);
+        }
+        Ok(())
+    }
+
+    fn nodes_without_parent(&self) -> Vec<usize> {
+        let nodes = &self.document.nodes;
+        let mut is_root = vec![true; nodes.len()];
+        for &child in nodes.iter().flat_map(|node| &node.children) {
+            if let Some(is_root) = is_root.get_mut(child) {
+                *is_root = false;
+            }
+        }
+        (0..nodes.len()).filter(|&node| is_root[node]).collect()
+    }
+
+    /// Reads the meshes of the nodes below `roots`, in depth-first order.
+    fn read_nodes(&mut self, roots: Vec<usize>) -> Result<(), ReadError> {
+        let nodes = &self.document.nodes;
+        let name = self.buffers.name;
+        let mut visited = vec![false; nodes.len()];
+        let mut stack: Vec<(usize, DMat4, (&str, usize))> = Vec::new();
+        let scene = ("scene", self.document.scene.unwrap_or(0));
+        stack.extend(
+            roots
+                .into_iter()
+                .rev()
+                .map(|root| (root, DMat4::IDENTITY, scene)),
+        );
+        while let Some((number, parent, by)) = stack.pop() {
+            let node = item(nodes, "node", number, by, name)?;
+            if std::mem::replace(&mut visited[number], true) {
+                return Err(fault(name, "node", number, GltfFault::NodeRepeated));
+            }
+            let place = parent * local_transform(node);
+            let by = ("node", number);
+            if let Some(mesh) = node.mesh {
+                self.read_mesh(mesh, place, by)?;
+            }
+            stack.extend(node.children.iter().rev().map(|&child| (child, place, by)));
+        }
+        Ok(())
+    }
+
+    /// Adds a mesh at a place.
+    fn read_mesh(
+        &mut self,
+        number: usize,
+        place: DMat4,
+        by: (&'static str, usize),
+    ) -> Result<(), ReadError> {
+        let mesh = item(&self.document.meshes, "mesh", number, by, self.buffers.name)?;
+        self.used[number] = true;
+        // Primitives that share positions share vertices.
+        let mut first_vertices: Vec<(usize, usize)> = Vec::new();
+        for primitive in &mesh.primitives {
+            self.note_ignored(primitive, number);
+            let Some(&positions) = primitive.attributes.get("POSITION") else {
+                continue;
+            };
+            let known = first_vertices
+                .iter()
+                .find(|(accessor, _)| *accessor == positions);
+            let first = match known {
+                Some(&(_, first)) => first,
+                None => {
+                    let first = self.builder.vertex_count();
+                    self.read_positions(positions, place, ("mesh", number))?;
+                    first_vertices.push((positions, first));
+                    first
+                }
+            };
+            let vertices = self.document.accessors[positions].count;
+            self.read_triangles(
+                primitive,
+                first,
+                vertices,
+                place.determinant() < 0.0,
+                number,
+            )?;
+        }
+        Ok(())
+    }
+
+    /// Counts the data of a primitive that is not kept.
+    fn note_ignored(&mut self, primitive: &Primitive, number: usize) {
+        let place = Place::Item {
+            kind: "mesh",
+            number,
+        };
+        let notices = &mut self.builder.notices;
+        for (name, &accessor) in &primitive.attributes {
+            let count = self
+                .document
+                .accessors
+                .get(accessor)
+                .map_or(0, |accessor| accessor.count);
+            let prefix = name.split('_').next().unwrap_or_default();
+            match prefix {
+                "POSITION" => {}
+                "NORMAL" => notices.add_many(IgnoredKind::Normals, count, place),
+                "TANGENT" => notices.add_many(IgnoredKind::Tangents, count, place),
+                "TEXCOORD" => notices.add_many(IgnoredKind::TextureCoordinates, count, place),
+                "COLOR" => notices.add_many(IgnoredKind::Colours, count, place),
+                _ => notices.add_named(IgnoredKind::Properties, 1, place, name),
+            }
+        }
+        notices.add_many(
+            IgnoredKind::Materials,
+            u64::from(primitive.material.is_some()),
+            place,
+        );
+        notices.add_many(
+            IgnoredKind::Deformations,
+            primitive.targets.len() as u64,
+            place,
+        );
+        // Points without indices are the vertices, which are kept.
+        let is_lost = primitive.mode > 0 || primitive.indices.is_some();
+        if primitive.mode < 4 && is_lost {
+            notices.add(IgnoredKind::OtherPrimitives, place);
+        }
+    }
+
+    /// Subtracts `count` vertices or corners from those that may be added.
+    fn spend(&mut self, count: u64) -> Result<(), ReadError> {
+        let limit = self.limit;
+        self.left = self.left.checked_sub(count).ok_or_else(|| {
+            let at = self.builder.at(Place::Item {
+                kind: "scene",
+                number: self.document.scene.unwrap_or(0),
+            });
+            let fault = GltfFault::TooLarge { limit };
+            ReadError::Gltf { at, fault }
+        })?;
+        Ok(())
+    }
+
+    /// Adds the vertices of an accessor.
+    fn read_positions(
+        &mut self,
+        number: usize,
+        place: DMat4,
+        by: (&'static str, usize),
+    ) -> Result<(), ReadError> {
+        let mut positions = elements(self.document, self.buffers, number, 3, by)?;
+        self.spend(positions.count)?;
+        if !positions.is_unbounded() {
+            let count = usize::try_from(positions.count).unwrap_or(0);
+            self.builder.reserve_vertices(count);
+        }
+        let kind = "accessor";
+        let stays = place == DMat4::IDENTITY;
+        for vertex in 0..positions.count {
+            let position = positions.position(vertex);
+            let mut position = position.map_err(|f| fault(self.buffers.name, kind, number, f))?;
+            if !stays {
+                let moved = place.transform_point3(DVec3::from_array(position.map(|c| c.wide)));
+                position = moved.to_array().map(Coordinate::from);
+            }
+            self.builder
+                .push_vertex(position, || Place::Item { kind, number })?;
+        }
+        Ok(())
+    }
+}
+
+/// Returns the place of a node relative to its parent.
+fn local_transform(node: &Node) -> DMat4 {
+    if let Some(matrix) = &node.matrix {
+        return DMat4::from_cols_array(matrix);
+    }
+    let [x, y, z, w] = node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]);
+    let scale = DVec3::from_array(node.scale.unwrap_or([1.0; 3]));
+    let translation = DVec3::from_array(node.translation.unwrap_or([0.0; 3]));
+    let rotation = DQuat::from_xyzw(x, y, z, w);
+    DMat4::from_scale_rotation_translation(scale, rotation, translation)
+}

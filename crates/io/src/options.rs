@@ -1,0 +1,67 @@
+//! Options of reading.
+
+use crate::format::Format;
+
+/// Which vertices with equal positions become one vertex.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Welding {
+    /// Those of STL, which has no vertex numbers; other formats keep their vertices.
+    #[default]
+    StlOnly,
+    /// Those of every format.
+    All,
+    /// None: in STL, each facet has three vertices of its own.
+    Nothing,
+}
+
+/// Options of reading; the default suits most programs.
+///
+/// # Examples
+///
+/// ```
+/// use sixfold_io::{ReadOptions, Welding, read_from};
+///
+/// let text = "solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n\
+///             endfacet\nfacet\nouter loop\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\n\
+///             endfacet\nendsolid\n";
+/// let square = read_from("square.stl", text.as_bytes(), &ReadOptions::default())?;
+/// assert_eq!(square.positions.len(), 4);
+/// let as_stored = ReadOptions::default().with_welding(Welding::Nothing);
+/// let square = read_from("square.stl", text.as_bytes(), &as_stored)?;
+/// assert_eq!(square.positions.len(), 6);
+/// # Ok::<(), sixfold_io::ReadError>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ReadOptions {
+    pub(crate) format: Option<Format>,
+    pub(crate) welding: Welding,
+    pub(crate) recentre: bool,
+}
+
+impl ReadOptions {
+    /// Reads the file as `format`, whatever its content and name are. The two forms of a format
+    /// are still told apart by the content.
+    #[must_use]
+    pub fn with_format(self, format: Format) -> Self {
+        let format = Some(format);
+        Self { format, ..self }
+    }
+
+    /// Sets which vertices with equal positions become one vertex.
+    #[must_use]
+    pub fn with_welding(self, welding: Welding) -> Self {
+        Self { welding, ..self }
+    }
+
+    /// Moves the mesh so that the centre of its bounding box is the origin, before coordinates are
+    /// rounded to 32 bits. [`FileMesh::origin`](crate::FileMesh::origin) is the old place of the
+    /// origin.
+    #[must_use]
+    pub fn recentred(self) -> Self {
+        Self {
+            recentre: true,
+            ..self
+        }
+    }
+}

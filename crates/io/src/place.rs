@@ -1,0 +1,264 @@
+//! Places in files: lines, bytes and numbered items.
+
+use std::fmt;
+
+use sixfold_core::{FaceId, FaceList, PolygonMesh};
+
+/// A place in a file; printed as `line 17`, `byte 134` or `accessor 3`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Place {
+    /// A line of a text file, counted from 1; for a continued statement, its first line.
+    Line(u32),
+    /// A byte of a binary file, counted from 0.
+    Byte(u64),
+    /// An item of a numbered list, counted from 0.
+    Item {
+        /// What the list holds, in the singular.
+        kind: &'static str,
+        /// Number of the item, counted from 0.
+        number: usize,
+    },
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Byte(byte) => write!(f, "byte {byte}"),
+            Self::Item { kind, number } => write!(f, "{kind} {number}"),
+        }
+    }
+}
+
+/// A place with the name of its file; printed as `bunny.obj:17` or `bunny.stl: byte 134`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Location {
+    /// Name of the file, as given by the caller.
+    pub file: String,
+    /// Place in the file.
+    pub place: Place,
+}
+
+impl Location {
+    /// Returns the location of `place` in the file with this name.
+    pub(crate) fn new(file: &str, place: Place) -> Self {
+        let file = file.to_owned();
+        Self { file, place }
+    }
+
+    /// Returns the location of a line, counted from 1.
+    pub(crate) fn line(file: &str, line: u32) -> Self {
+        Self::new(file, Place::Line(line))
+    }
+}
+
+impl fmt::Display for Location {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.place {
+            Place::Line(line) => write!(f, "{}:{line}", self.file),
+            place => write!(f, "{}: {place}", self.file),
+        }
+    }
+}
+
+/// The place of each face in its file.
+///
+/// Text files need four bytes per face. In most binary files the place is computed: a record is a
+/// fixed number of bytes, plus a fixed number per corner.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum FacePlaces {
+    /// The line of each face.
+    Lines(Vec<u32>),
+    /// Records of a regular size.
+    Records {
+        /// Byte of the first face.
+        first: u64,
+        /// Bytes of a face without its corners.
+        per_face: u64,
+        /// Bytes of a corner.
+        per_corner: u64,
+    },
+    /// The byte of each face.
+    Bytes(Vec<u64>),
+    /// Faces without a place of their own: their numbers.
+    Numbers,
+}
+
+impl FacePlaces {
+    /// Returns the place of `face`, which is one of `faces`.
+    pub(crate) fn place(&self, face: FaceId, faces: &FaceList) -> Place {
+        self.place_of_number(face.index(), || faces.range(face).start)
+    }
+
+    /// Returns the place of face number `face` of the file. `corners` returns the number of corners
+    /// before it.
+    fn place_of_number(&self, face: usize, corners: impl FnOnce() -> usize) -> Place {
+        match self {
+            Self::Lines(lines) => Place::Line(lines[face]),
+            Self::Bytes(bytes) => Place::Byte(bytes[face]),
+            Self::Records { .. } => Place::Byte(self.predicted(face, corners())),
+            Self::Numbers => Place::Item {
+                kind: "face",
+                number: face,
+            },
+        }
+    }
+
+    /// Records that face number `face`, with `corners` corners before it, is at `byte`. If the
+    /// records are not regular, every byte is stored from now on.
+    pub(crate) fn push_byte(&mut self, faces: &FaceList, byte: u64) {
+        let (face, corners) = (faces.len(), faces.corners().len());
+        if matches!(self, Self::Records { .. }) && self.predicted(face, corners) != byte {
+            let before = faces
+                .iter()
+                .map(|(f, _)| self.predicted(f.index(), faces.range(f).start));
+            *self = Self::Bytes(before.collect());
+        }
+        if let Self::Bytes(bytes) = self {
+            bytes.push(byte);
+        }
+    }
+
+    fn predicted(&self, face: usize, corners: usize) -> u64 {
+        match *self {
+            Self::Records {
+                first,
+                per_face,
+                per_corner,
+            } => first + face as u64 * per_face + corners as u64 * per_corner,
+            _ => 0,
+        }
+    }
+}
+
+/// Where the faces of a mesh are in the file from which the mesh was read.
+///
+/// [`FileMesh::into_polygons_with_places`](crate::FileMesh::into_polygons_with_places) returns it.
+/// It takes four or eight bytes per face, or none if the places can be computed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PolygonPlaces {
+    faces: FacePlaces,
+    gaps: Gaps,
+}
+
+impl PolygonPlaces {
+    pub(crate) fn new(faces: FacePlaces, gaps: Gaps) -> Self {
+        Self { faces, gaps }
+    }
+
+    /// Returns the place of `face`, one of the faces of the mesh `polygons`; O(log n) for n faces
+    /// that were left out.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the mesh has no such face. If `polygons` is another mesh, the place may be wrong.
+    pub fn place(&self, face: FaceId, polygons: &PolygonMesh) -> Place {
+        let corners_before = polygons.faces().range(face).start;
+        let gap = self.gaps.before(face);
+        self.faces
+            .place_of_number(face.index() + gap.faces, || corners_before + gap.corners)
+    }
+}
+
+/// The faces that were left out of a mesh, in the order of the file.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Gaps(Vec<Gap>);
+
+/// A face that was left out, together with those before it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Gap {
+    /// Number of remaining faces before this face.
+    kept: usize,
+    /// Number of faces that were left out up to this face.
+    faces: usize,
+    /// Number of their corners.
+    corners: usize,
+}
+
+impl Gaps {
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Adds `face`, which has this number of corners. Faces are added in the order of the file.
+    pub(crate) fn push(&mut self, face: FaceId, corners: usize) {
+        let last = self.0.last().copied().unwrap_or_default();
+        self.0.push(Gap {
+            kept: face.index() - last.faces,
+            faces: last.faces + 1,
+            corners: last.corners + corners,
+        });
+    }
+
+    /// Returns the last gap before the remaining face `face`; all numbers are 0 if there is none.
+    fn before(&self, face: FaceId) -> Gap {
+        let gaps = self.0.partition_point(|gap| gap.kept <= face.index());
+        match gaps {
+            0 => Gap::default(),
+            gaps => self.0[gaps - 1],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+    use sixfold_core::{Point, VertexId};
+
+    #[test]
+    fn regular_records_are_computed_and_others_are_stored() {
+        let mut faces = FaceList::default();
+        let mut places = FacePlaces::Records {
+            first: 100,
+            per_face: 1,
+            per_corner: 4,
+        };
+        let mut bytes = Vec::new();
+        for (byte, degree) in [(100, 3), (113, 4), (130, 3), (150, 3)] {
+            places.push_byte(&faces, byte);
+            faces.push((0..degree).map(VertexId::new)).expect("few");
+            bytes.push(byte);
+            let found = faces.iter().map(|(f, _)| places.place(f, &faces));
+            assert!(found.eq(bytes.iter().map(|&byte| Place::Byte(byte))));
+            assert_eq!(matches!(places, FacePlaces::Bytes(_)), byte == 150);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn places_of_remaining_faces_are_those_of_the_file(
+            degrees in vec((3..6_u32, any::<bool>()), 0..20),
+        ) {
+            let (mut all, mut kept) = (FaceList::default(), FaceList::default());
+            let mut gaps = Gaps::default();
+            let mut remaining = Vec::new();
+            for (f, &(degree, is_kept)) in (0..).map(FaceId::new).zip(&degrees) {
+                let corners = || (0..degree).map(VertexId::new);
+                all.push(corners()).expect("few");
+                if is_kept {
+                    kept.push(corners()).expect("few");
+                    remaining.push(f);
+                } else {
+                    gaps.push(f, degree as usize);
+                }
+            }
+            let polygons = PolygonMesh::from_faces(vec![Point::ZERO; 6], kept).expect("valid");
+            let numbers = 0..u32::try_from(degrees.len()).expect("few");
+            for places in [
+                FacePlaces::Lines(numbers.clone().map(|n| 7 * n).collect()),
+                FacePlaces::Bytes(numbers.map(|n| 9 * u64::from(n)).collect()),
+                FacePlaces::Records { first: 100, per_face: 2, per_corner: 5 },
+                FacePlaces::Numbers,
+            ] {
+                let expected = remaining.iter().map(|&f| places.place(f, &all));
+                let found = PolygonPlaces::new(places.clone(), gaps.clone());
+                let found = polygons.faces().iter().map(|(f, _)| found.place(f, &polygons));
+                prop_assert!(found.eq(expected), "{:?}", places);
+            }
+        }
+    }
+}

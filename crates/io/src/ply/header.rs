@@ -1,0 +1,243 @@
+//! Reads the header of a PLY file.
+
+use std::io::Read;
+
+use super::Scalar;
+use crate::builder::MeshBuilder;
+use crate::byte_source::{ByteSource, words};
+use crate::error::{ReadError, shortened};
+use crate::format::Format;
+use crate::number::parse_whole;
+use crate::place::Place;
+
+/// A fault in the header of a PLY file.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message shows the meaning of each field")]
+pub enum PlyHeaderFault {
+    /// There is no `format` line before the first element.
+    #[error(
+        "the header has no `format` line before its elements: add `format ascii 1.0` if the data is text"
+    )]
+    NoFormat,
+    /// The form is not one of the three that exist.
+    #[error(
+        "{text:?} is not a form of PLY: use ascii, binary_little_endian or binary_big_endian, and version 1.0"
+    )]
+    UnknownForm { text: String },
+    /// A line does not start with a keyword.
+    #[error(
+        "{text:?} is not a line of a PLY header: use format, comment, obj_info, element, property or end_header"
+    )]
+    UnknownKeyword { text: String },
+    /// An `element` line is not a name and a number.
+    #[error("{text:?} is not an element: write `element`, a name and a count")]
+    Element { text: String },
+    /// A `property` line is not a type and a name.
+    #[error("{text:?} is not a property: write `property float x` or `property list uchar int x`")]
+    Property { text: String },
+    /// A `property` line precedes all elements.
+    #[error("the property {name:?} precedes all elements: move it below its element")]
+    PropertyWithoutElement { name: String },
+    /// Two elements or two properties have one name.
+    #[error("{name:?} is declared twice: remove one of the declarations")]
+    Repeated { name: String },
+    /// The numbers of a list property are counted by a type with fractions.
+    #[error("the length of list {name:?} has a type with fractions: use an integer type")]
+    ListLength { name: String },
+    /// There is no `vertex` element.
+    #[error("the header declares no vertices: add `element vertex` and a count")]
+    NoVertices,
+    /// The vertices have no coordinate with this name.
+    #[error("vertices have no number {coordinate:?}: declare `property float {coordinate}`")]
+    NoCoordinate { coordinate: &'static str },
+    /// The faces have no list of vertices.
+    #[error(
+        "the element {element:?} has no list of vertices: declare `property list uchar int vertex_indices`"
+    )]
+    NoIndices { element: String },
+}
+
+/// The header of a file.
+pub(super) struct Header {
+    pub(super) format: Format,
+    pub(super) elements: Vec<Element>,
+    /// Number of lines of the header.
+    pub(super) lines: u32,
+}
+
+/// A table of the file.
+pub(super) struct Element {
+    pub(super) name: String,
+    /// Number of records, as the header says; it may be wrong.
+    pub(super) count: u64,
+    pub(super) properties: Vec<Property>,
+    pub(super) line: u32,
+}
+
+/// A column of a table.
+pub(super) struct Property {
+    pub(super) name: String,
+    pub(super) kind: PropertyKind,
+    pub(super) line: u32,
+}
+
+/// The contents of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum PropertyKind {
+    Number(Scalar),
+    /// A list: its length and its items.
+    List {
+        length: Scalar,
+        item: Scalar,
+    },
+}
+
+impl Header {
+    /// Reads up to the end of the line `end_header`.
+    pub(super) fn read(
+        builder: &mut MeshBuilder,
+        source: &mut ByteSource<impl Read>,
+    ) -> Result<Self, ReadError> {
+        let mut format = None;
+        let mut header = Self {
+            format: Format::PlyAscii,
+            elements: Vec::new(),
+            lines: 0,
+        };
+        loop {
+            let place = Place::Line(source.line_count().saturating_add(1));
+            let line = source.line().map_err(|e| builder.read_error(place, e))?;
+            let Some(line) = line else {
+                return Err(builder.truncated(place, "`end_header`".to_owned()));
+            };
+            header.lines = line.number;
+            let ends_in_cr = line.ends_in_cr;
+            if line.number == 1 {
+                let text = line.text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(line.text);
+                if text.trim_ascii_end() != b"ply" {
+                    return Err(builder.unexpected(place, "ply", text));
+                }
+                if ends_in_cr {
+                    source.end_lines_in_cr();
+                }
+                continue;
+            }
+            match header.read_line(line.text, line.number, &mut format) {
+                Ok(true) => {}
+                Ok(false) => break,
+                Err(fault) => {
+                    let at = builder.at(place);
+                    return Err(ReadError::PlyHeader { at, fault });
+                }
+            }
+        }
+        let at = builder.at(Place::Line(header.lines));
+        let fault = PlyHeaderFault::NoFormat;
+        header.format = format.ok_or(ReadError::PlyHeader { at, fault })?;
+        Ok(header)
+    }
+
+    /// Parses a line; returns whether the header continues.
+    fn read_line(
+        &mut self,
+        text: &[u8],
+        number: u32,
+        format: &mut Option<Format>,
+    ) -> Result<bool, PlyHeaderFault> {
+        let mut words = words(text);
+        let keyword = words.next().unwrap_or_default();
+        let words: Vec<&[u8]> = match keyword {
+            b"comment" | b"obj_info" => Vec::new(),
+            _ => words.take(8).collect(),
+        };
+        match keyword {
+            b"" | b"comment" | b"obj_info" => {}
+            b"end_header" => return Ok(false),
+            b"format" => *format = Some(parse_form(&words)?),
+            b"element" | b"property" if format.is_none() => return Err(PlyHeaderFault::NoFormat),
+            b"element" => self.add_element(parse_element(&words, text, number)?)?,
+            b"property" => self.add_property(parse_property(&words, text, number)?)?,
+            _ => {
+                let text = shown(text);
+                return Err(PlyHeaderFault::UnknownKeyword { text });
+            }
+        }
+        Ok(true)
+    }
+
+    fn add_element(&mut self, element: Element) -> Result<(), PlyHeaderFault> {
+        if self.elements.iter().any(|other| other.name == element.name) {
+            let name = shortened(&element.name);
+            return Err(PlyHeaderFault::Repeated { name });
+        }
+        self.elements.push(element);
+        Ok(())
+    }
+
+    fn add_property(&mut self, property: Property) -> Result<(), PlyHeaderFault> {
+        let name = shortened(&property.name);
+        let Some(element) = self.elements.last_mut() else {
+            return Err(PlyHeaderFault::PropertyWithoutElement { name });
+        };
+        if element
+            .properties
+            .iter()
+            .any(|other| other.name == property.name)
+        {
+            return Err(PlyHeaderFault::Repeated { name });
+        }
+        element.properties.push(property);
+        Ok(())
+    }
+}
+
+fn shown(text: &[u8]) -> String {
+    shortened(String::from_utf8_lossy(text).trim())
+}
+
+fn parse_form(words: &[&[u8]]) -> Result<Format, PlyHeaderFault> {
+    match words {
+        [b"ascii", b"1.0"] => Ok(Format::PlyAscii),
+        [b"binary_little_endian", b"1.0"] => Ok(Format::Ply),
+        [b"binary_big_endian", b"1.0"] => Ok(Format::PlyBigEndian),
+        _ => {
+            let text = shown(&words.join(&b' '));
+            Err(PlyHeaderFault::UnknownForm { text })
+        }
+    }
+}
+
+fn parse_element(words: &[&[u8]], text: &[u8], line: u32) -> Result<Element, PlyHeaderFault> {
+    let fault = || PlyHeaderFault::Element { text: shown(text) };
+    let &[name, count] = words else {
+        return Err(fault());
+    };
+    Ok(Element {
+        name: String::from_utf8_lossy(name).into_owned(),
+        count: parse_whole(count).ok_or_else(fault)?,
+        properties: Vec::new(),
+        line,
+    })
+}
+
+fn parse_property(words: &[&[u8]], text: &[u8], line: u32) -> Result<Property, PlyHeaderFault> {
+    let fault = || PlyHeaderFault::Property { text: shown(text) };
+    let scalar = |name| Scalar::from_name(name).ok_or_else(fault);
+    let (name, kind) = match *words {
+        [b"list", length, item, name] => {
+            let (length, item) = (scalar(length)?, scalar(item)?);
+            (name, PropertyKind::List { length, item })
+        }
+        [number, name] => (name, PropertyKind::Number(scalar(number)?)),
+        _ => return Err(fault()),
+    };
+    let name = String::from_utf8_lossy(name).into_owned();
+    match kind {
+        PropertyKind::List { length, .. } if length.is_float() => {
+            let name = shortened(&name);
+            Err(PlyHeaderFault::ListLength { name })
+        }
+        _ => Ok(Property { name, kind, line }),
+    }
+}

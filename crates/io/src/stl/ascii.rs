@@ -1,0 +1,177 @@
+//! Reads STL as text.
+
+use std::io::Read;
+
+use super::Facets;
+use crate::byte_source::{ByteSource, words};
+use crate::error::{ReadError, shortened};
+use crate::notice::IgnoredKind;
+use crate::number::{Coordinate, parse_coordinate};
+use crate::place::Place;
+
+/// What the parser expects next. Line ends have no meaning, except after `solid` and `endsolid`.
+enum Expect {
+    Solid,
+    FacetOrEnd,
+    /// The numbers of a normal, or `outer`.
+    Outer,
+    Loop,
+    VertexOrEnd,
+    /// A coordinate of this number.
+    Coordinate(usize),
+    EndFacet,
+}
+
+/// The state of the parser.
+struct Parser<'a> {
+    facets: Facets<'a>,
+    expect: Expect,
+    /// Line of the current facet.
+    facet_line: u32,
+    /// The corners of the current facet.
+    corners: [[Coordinate; 3]; 3],
+    corner_count: usize,
+    solids: u32,
+}
+
+/// Reads all solids.
+pub(super) fn read<'a>(
+    mut facets: Facets<'a>,
+    source: &mut ByteSource<impl Read>,
+) -> Result<Facets<'a>, ReadError> {
+    facets.reserve(0);
+    let mut parser = Parser {
+        facets,
+        expect: Expect::Solid,
+        facet_line: 0,
+        corners: [[Coordinate::from(0.0_f32); 3]; 3],
+        corner_count: 0,
+        solids: 0,
+    };
+    loop {
+        let next = Place::Line(source.line_count().saturating_add(1));
+        let line = source.line();
+        let line = line.map_err(|e| parser.facets.builder.read_error(next, e))?;
+        let Some(line) = line else { break };
+        let bom = if line.number == 1 {
+            &b"\xEF\xBB\xBF"[..]
+        } else {
+            b""
+        };
+        let text = line.text.strip_prefix(bom).unwrap_or(line.text);
+        for word in words(text) {
+            if parser.read(word, line.number)? {
+                break;
+            }
+        }
+    }
+    parser.finish(source.line_count())
+}
+
+impl<'a> Parser<'a> {
+    /// Parses the next word; returns whether the rest of the line is a name.
+    fn read(&mut self, word: &[u8], line: u32) -> Result<bool, ReadError> {
+        let is = |keyword: &str| word.eq_ignore_ascii_case(keyword.as_bytes());
+        self.expect = match self.expect {
+            Expect::Coordinate(number) => self.read_coordinate(word, number, line)?,
+            Expect::VertexOrEnd if is("vertex") => self.start_vertex(line)?,
+            Expect::VertexOrEnd if is("endloop") && self.corner_count == 3 => Expect::EndFacet,
+            Expect::VertexOrEnd if is("endloop") => {
+                let found = format!("endloop after {} of them", self.corner_count);
+                return Err(self.unexpected(line, "three vertices in a facet", found.as_bytes()));
+            }
+            Expect::VertexOrEnd => return Err(self.unexpected(line, "vertex or endloop", word)),
+            Expect::EndFacet if is("endfacet") => {
+                self.facets
+                    .push(self.corners, Place::Line(self.facet_line))?;
+                Expect::FacetOrEnd
+            }
+            Expect::EndFacet => return Err(self.unexpected(line, "endfacet", word)),
+            Expect::FacetOrEnd if is("facet") => {
+                self.facet_line = line;
+                self.corner_count = 0;
+                Expect::Outer
+            }
+            Expect::FacetOrEnd if is("endsolid") => {
+                self.expect = Expect::Solid;
+                return Ok(true);
+            }
+            Expect::FacetOrEnd => return Err(self.unexpected(line, "facet or endsolid", word)),
+            Expect::Outer if is("outer") => Expect::Loop,
+            Expect::Outer if is("normal") || parse_coordinate(word).is_some() => Expect::Outer,
+            Expect::Outer => return Err(self.unexpected(line, "outer loop", word)),
+            Expect::Loop if is("loop") => Expect::VertexOrEnd,
+            Expect::Loop => return Err(self.unexpected(line, "loop", word)),
+            Expect::Solid if is("solid") => {
+                self.start_solid(line);
+                return Ok(true);
+            }
+            Expect::Solid => return Err(self.unexpected(line, "solid", word)),
+        };
+        Ok(false)
+    }
+
+    fn start_solid(&mut self, line: u32) {
+        self.solids += 1;
+        self.expect = Expect::FacetOrEnd;
+        if self.solids > 1 {
+            let notices = &mut self.facets.builder.notices;
+            notices.add(IgnoredKind::Objects, Place::Line(line));
+        }
+    }
+
+    fn start_vertex(&self, line: u32) -> Result<Expect, ReadError> {
+        if self.corner_count == 3 {
+            return Err(self.unexpected(line, "endloop after three vertices", b"vertex"));
+        }
+        Ok(Expect::Coordinate(0))
+    }
+
+    fn read_coordinate(
+        &mut self,
+        word: &[u8],
+        number: usize,
+        line: u32,
+    ) -> Result<Expect, ReadError> {
+        let builder = &self.facets.builder;
+        let Some(value) = parse_coordinate(word) else {
+            return Err(ReadError::BadNumber {
+                at: builder.at(Place::Line(line)),
+                vertex: self.corner_count + 1,
+                text: shortened(&String::from_utf8_lossy(word)),
+            });
+        };
+        let corner = &mut self.corners[self.corner_count];
+        corner[number] = value;
+        if !value.narrow.is_finite() {
+            let mut wrong = [Coordinate::from(0.0_f32); 3];
+            wrong[number] = value;
+            return Err(builder.infinite(wrong, Place::Line(line), self.corner_count + 1));
+        }
+        if number < 2 {
+            return Ok(Expect::Coordinate(number + 1));
+        }
+        self.corner_count += 1;
+        Ok(Expect::VertexOrEnd)
+    }
+
+    fn unexpected(&self, line: u32, expected: &str, found: &[u8]) -> ReadError {
+        self.facets
+            .builder
+            .unexpected(Place::Line(line), expected, found)
+    }
+
+    /// Checks that the file is complete.
+    fn finish(mut self, lines: u32) -> Result<Facets<'a>, ReadError> {
+        let missing = match self.expect {
+            Expect::Solid => {
+                self.facets.flush()?;
+                return Ok(self.facets);
+            }
+            Expect::FacetOrEnd => "endsolid",
+            _ => "endfacet",
+        };
+        let builder = &self.facets.builder;
+        Err(builder.truncated(Place::Line(lines.max(1)), missing.to_owned()))
+    }
+}

@@ -1,0 +1,178 @@
+//! Writes glTF 2.0: one mesh with one primitive.
+
+use std::io::{self, Write};
+
+use base64::engine::general_purpose::STANDARD;
+use base64::write::EncoderWriter;
+use serde_json::{Value, json};
+use sixfold_core::{Point, PolygonMesh, RowId};
+
+use super::{WriteError, triangle_count, triangles};
+use crate::format::Format;
+
+/// Codes of glTF.
+const FLOAT: u32 = 5126;
+const UNSIGNED_INT: u32 = 5125;
+const POINTS: u32 = 0;
+const TRIANGLES: u32 = 4;
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+
+/// The place of a `uri` in the JSON text; base64 text takes its place.
+const DATA_MARK: &str = "data:application/octet-stream;base64,";
+
+pub(super) fn write(
+    polygons: &PolygonMesh,
+    normals: &[Option<Point>],
+    format: Format,
+    out: &mut impl Write,
+) -> Result<(), WriteError> {
+    let layout = Layout::new(polygons, normals);
+    let json = layout.document(polygons, format).to_string();
+    if format == Format::Gltf {
+        let (before, after) = json.split_once(DATA_MARK).unwrap_or((&json, ""));
+        out.write_all(before.as_bytes())?;
+        if !after.is_empty() {
+            out.write_all(DATA_MARK.as_bytes())?;
+            let mut encoder = EncoderWriter::new(&mut *out, &STANDARD);
+            write_data(polygons, normals, &mut encoder)?;
+            encoder.finish()?;
+        }
+        out.write_all(after.as_bytes())?;
+        return Ok(writeln!(out)?);
+    }
+    // The lengths of a binary file have 32 bits. All data is a multiple of four bytes.
+    let padding = json.len().next_multiple_of(4) - json.len();
+    let json_length = (json.len() + padding) as u64;
+    let data_length = layout.bytes();
+    let chunks = if data_length > 0 { 2 } else { 1 };
+    let bytes = 12 + 8 * chunks + json_length + data_length;
+    let too_large = |_| WriteError::TooLarge {
+        format,
+        bytes,
+        limit: u64::from(u32::MAX),
+    };
+    let total = u32::try_from(bytes).map_err(too_large)?;
+    out.write_all(b"glTF")?;
+    out.write_all(&2_u32.to_le_bytes())?;
+    out.write_all(&total.to_le_bytes())?;
+    // Both are smaller than the whole.
+    out.write_all(&(json_length as u32).to_le_bytes())?;
+    out.write_all(b"JSON")?;
+    out.write_all(json.as_bytes())?;
+    out.write_all(&b"   "[..padding])?;
+    if data_length > 0 {
+        out.write_all(&(data_length as u32).to_le_bytes())?;
+        out.write_all(b"BIN\0")?;
+        write_data(polygons, normals, out)?;
+    }
+    Ok(())
+}
+
+/// Writes positions, normals and indices.
+fn write_data(
+    polygons: &PolygonMesh,
+    normals: &[Option<Point>],
+    out: &mut impl Write,
+) -> io::Result<()> {
+    for point in polygons.positions().iter().chain(normals.iter().flatten()) {
+        for x in point.to_array() {
+            out.write_all(&x.to_le_bytes())?;
+        }
+    }
+    for v in triangles(polygons).flatten() {
+        out.write_all(&v.row().to_le_bytes())?;
+    }
+    Ok(())
+}
+
+/// Numbers of elements.
+struct Layout {
+    vertices: usize,
+    has_normals: bool,
+    indices: usize,
+}
+
+impl Layout {
+    fn new(polygons: &PolygonMesh, normals: &[Option<Point>]) -> Self {
+        Self {
+            vertices: polygons.vertex_count(),
+            has_normals: !normals.is_empty(),
+            indices: 3 * triangle_count(polygons),
+        }
+    }
+
+    fn point_bytes(&self) -> u64 {
+        12 * self.vertices as u64
+    }
+
+    fn index_bytes(&self) -> u64 {
+        4 * self.indices as u64
+    }
+
+    /// Returns the number of bytes of the data.
+    fn bytes(&self) -> u64 {
+        let lists = if self.has_normals { 2 } else { 1 };
+        lists * self.point_bytes() + self.index_bytes()
+    }
+
+    /// Returns the JSON text.
+    fn document(&self, polygons: &PolygonMesh, format: Format) -> Value {
+        let asset = json!({"version": "2.0", "generator": "Sixfold"});
+        if self.vertices == 0 {
+            return json!({ "asset": asset });
+        }
+        let [min, max] = extremes(polygons.positions());
+        let mut views = vec![view(0, self.point_bytes(), ARRAY_BUFFER)];
+        let mut accessors = vec![json!({
+            "bufferView": 0, "componentType": FLOAT, "count": self.vertices, "type": "VEC3",
+            "min": min, "max": max,
+        })];
+        let mut attributes = json!({"POSITION": 0});
+        if self.has_normals {
+            views.push(view(self.point_bytes(), self.point_bytes(), ARRAY_BUFFER));
+            accessors.push(json!({
+                "bufferView": 1, "componentType": FLOAT, "count": self.vertices, "type": "VEC3",
+            }));
+            attributes["NORMAL"] = json!(1);
+        }
+        let mut primitive = json!({"attributes": attributes, "mode": POINTS});
+        if self.indices > 0 {
+            primitive["mode"] = json!(TRIANGLES);
+            primitive["indices"] = json!(accessors.len());
+            accessors.push(json!({
+                "bufferView": views.len(), "componentType": UNSIGNED_INT, "count": self.indices,
+                "type": "SCALAR",
+            }));
+            let offset = self.bytes() - self.index_bytes();
+            views.push(view(offset, self.index_bytes(), ELEMENT_ARRAY_BUFFER));
+        }
+        let mut buffer = json!({"byteLength": self.bytes()});
+        if format == Format::Gltf {
+            buffer["uri"] = json!(DATA_MARK);
+        }
+        json!({
+            "asset": asset,
+            "scene": 0,
+            "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [primitive]}],
+            "accessors": accessors,
+            "bufferViews": views,
+            "buffers": [buffer],
+        })
+    }
+}
+
+fn view(offset: u64, length: u64, target: u32) -> Value {
+    json!({"buffer": 0, "byteOffset": offset, "byteLength": length, "target": target})
+}
+
+/// Returns the smallest and the largest coordinates; there must be a point.
+fn extremes(points: &[Point]) -> [[f32; 3]; 2] {
+    let first = points[0];
+    let (min, max) = points
+        .iter()
+        .fold((first, first), |(min, max), &p| (min.min(p), max.max(p)));
+    [min.to_array(), max.to_array()]
+}

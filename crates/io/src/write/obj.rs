@@ -1,0 +1,167 @@
+//! Writes OBJ files.
+
+use std::fmt;
+use std::io::{self, Write};
+
+use sixfold_core::{Point, PolygonMesh, VertexId};
+
+use super::{MeshWriter, Numbers};
+use crate::format::Format;
+
+/// Writes `polygons` as OBJ text; O(corners). Reading the text gives the same mesh, bit for bit.
+///
+/// This function buffers the output. If OBJ cannot represent the mesh, nothing is written.
+///
+/// # Errors
+///
+/// Returns any error of `out`, and [`io::ErrorKind::InvalidInput`] if a coordinate is not finite.
+///
+/// # Examples
+///
+/// ```
+/// use sixfold_core::{Point, PolygonMesh};
+///
+/// let corners = [Point::ZERO, Point::X, Point::new(0.1, 1e-30, -0.0)];
+/// let triangle = PolygonMesh::new(corners, [[0, 1, 2]])?;
+/// let mut text = Vec::new();
+/// sixfold_io::write_obj(&triangle, &mut text)?;
+/// let expected = "# vertices: 3, faces: 1\nv 0 0 0\nv 1 0 0\nv 0.1 1e-30 -0\nf 1 2 3\n";
+/// assert_eq!(text, expected.as_bytes());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn write_obj(polygons: &PolygonMesh, out: impl Write) -> io::Result<()> {
+    Ok(super::write(polygons, Format::Obj, out)?)
+}
+
+/// Writes `polygons` like [`write_obj`], with the normals of vertices. A face is written without
+/// normals if one of its corners has no normal.
+///
+/// # Errors
+///
+/// Returns the same errors as [`write_obj`], and [`io::ErrorKind::InvalidInput`] if the numbers of
+/// vertices and normals differ.
+pub fn write_obj_with_normals(
+    polygons: &PolygonMesh,
+    normals: &[Option<Point>],
+    out: impl Write,
+) -> io::Result<()> {
+    let writer = MeshWriter::new(polygons).with_normals(normals)?;
+    Ok(writer.write(Format::Obj, out)?)
+}
+
+/// Writes the text; a face is written without normals if one of its corners has no normal.
+pub(super) fn write_text(
+    polygons: &PolygonMesh,
+    normals: &[Option<Point>],
+    out: &mut impl Write,
+) -> io::Result<()> {
+    let positions = polygons.positions();
+    let (vertices, faces) = (polygons.vertex_count(), polygons.face_count());
+    writeln!(out, "# vertices: {vertices}, faces: {faces}")?;
+    for &p in positions {
+        writeln!(out, "v {}", Numbers(p))?;
+    }
+    // For each vertex, the number of its normal in the file.
+    let mut numbers = Vec::with_capacity(normals.len());
+    let mut number = 0;
+    for normal in normals {
+        numbers.push(normal.map(|_| number + 1));
+        if let &Some(n) = normal {
+            number += 1;
+            writeln!(out, "vn {}", Numbers(n))?;
+        }
+    }
+    let normal = |v: &VertexId| numbers.get(v.index()).copied().flatten();
+    for (_, face) in polygons.faces().iter() {
+        let has_normals = face.iter().all(|v| normal(v).is_some());
+        write!(out, "f")?;
+        for v in face {
+            write!(out, " {}", v.index() + 1)?;
+            if let (true, Some(normal)) = (has_normals, normal(v)) {
+                write!(out, "//{normal}")?;
+            }
+        }
+        writeln!(out)?;
+    }
+    Ok(())
+}
+
+/// A number that is formatted with the fewest digits that read back as the same number. Very small
+/// and very large numbers are written with a power of ten.
+pub(crate) struct ShortestDecimal(pub(crate) f32);
+
+impl fmt::Display for ShortestDecimal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let size = self.0.abs();
+        if size == 0.0 || (1e-5..1e9).contains(&size) {
+            write!(f, "{}", self.0)
+        } else {
+            write!(f, "{:e}", self.0)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn normals_are_written_if_all_corners_of_a_face_have_them() {
+        let corners = [Point::ZERO, Point::X, Point::Y, Point::ONE];
+        let mesh = PolygonMesh::new(corners, [[0, 1, 2], [1, 3, 2]]).expect("valid");
+        let normals = [Some(Point::Z), Some(Point::Z), Some(Point::Z), None];
+        let mut text = Vec::new();
+        write_obj_with_normals(&mesh, &normals, &mut text).expect("memory does not fail");
+        let text = String::from_utf8(text).expect("ASCII");
+        assert!(
+            text.ends_with("vn 0 0 1\nf 1//1 2//2 3//3\nf 2 4 3\n"),
+            "{text}"
+        );
+        assert!(write_obj_with_normals(&mesh, &normals[1..], &mut Vec::new()).is_err());
+    }
+
+    #[test]
+    fn a_mesh_is_written_with_the_fewest_digits() {
+        let positions = [
+            Point::new(0.1, -0.0, 100.0),
+            Point::new(1e-30, f32::MAX, -f32::from_bits(1)),
+            Point::new(0.00001, 999_999_940.0, 1e9),
+        ];
+        let mesh = PolygonMesh::new(positions, [[2, 1, 0]]).expect("valid");
+        let mut text = Vec::new();
+        write_obj(&mesh, &mut text).expect("memory does not fail");
+        let expected = "# vertices: 3, faces: 1\nv 0.1 -0 100\nv 1e-30 3.4028235e38 -1e-45\n\
+                    v 0.00001 999999940 1e9\nf 3 2 1\n";
+        assert_eq!(String::from_utf8(text).expect("text"), expected);
+    }
+
+    #[test]
+    fn a_mesh_that_is_not_finite_is_not_written() {
+        for bad in [f32::NAN, f32::INFINITY] {
+            let positions = [Point::ZERO, Point::new(0.0, bad, 0.0)];
+            let mesh = PolygonMesh::new(positions, [[0_u32; 0]; 0]).expect("valid");
+            let mut text = Vec::new();
+            let error = write_obj(&mesh, &mut text).expect_err("not finite");
+            assert_eq!(error.kind(), io::ErrorKind::InvalidInput);
+            let message = "the position of vertex v1 is not finite, so OBJ cannot store it: \
+                           correct the position";
+            assert_eq!(error.to_string(), message);
+            assert!(text.is_empty());
+        }
+    }
+
+    #[test]
+    fn a_full_disk_is_reported() {
+        struct Full;
+        impl Write for Full {
+            fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+                Err(io::ErrorKind::StorageFull.into())
+            }
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        let error = write_obj(&PolygonMesh::default(), Full).expect_err("full");
+        assert_eq!(error.kind(), io::ErrorKind::StorageFull);
+    }
+}

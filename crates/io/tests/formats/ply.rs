@@ -1,0 +1,271 @@
+//! The rules of PLY.
+
+use sixfold_core::Point;
+use sixfold_io::{Format, Place, ReadOptions, read_from};
+
+use crate::{assert_refused, faces, notices, places, read};
+
+const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+                   property float z\nelement face 1\nproperty list uchar int vertex_indices\n\
+                   end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+#[test]
+fn ply_has_properties_in_any_order_and_type() {
+    let text = "ply\r\ncomment a\r\nformat ascii 1.0\r\nobj_info b\r\nelement face 2\r\n\
+                property list uint double vertex_index\r\nproperty uchar red\r\nelement edge 1\r\n\
+                property int vertex1\r\nelement vertex 3\r\nproperty short z\r\nproperty list char \
+                float weights\r\nproperty double x\r\nproperty uchar y\r\nproperty float nx\r\n\
+                property float ny\r\nproperty float nz\r\nproperty float quality\r\nend_header\r\n\
+                3 0 1 2 255\r\n\r\n2 2.0 1 7 8\r\n9\r\n-1 0 0.1 2 0 0 1 5\r\n-2 2 7 8 3 4 0 0 1 5\r\n\
+                3 0 1e-40 0 0 0 1 5\r\n";
+    let mesh = read(text);
+    assert_eq!(mesh.format, Format::PlyAscii);
+    let expected = [[0.1, 2.0, -1.0], [3.0, 4.0, -2.0], [1e-40, 0.0, 3.0]];
+    assert_eq!(mesh.positions, expected.map(Point::from_array));
+    assert_eq!(faces(&mesh), [[0, 1, 2]]);
+    assert_eq!(mesh.short_faces.len(), 1);
+    assert_eq!(mesh.short_faces[0].place, Place::Line(22));
+    assert_eq!(
+        notices(&mesh),
+        [
+            "ignored 2 colours (first at line 7)",
+            "ignored 1 other element: edge (line 8)",
+            "ignored 2 other properties: weights, quality (first at line 12)",
+            "ignored 3 normals (first at line 15)",
+            "ignored 1 vertex weight or colour (line 22)",
+        ]
+    );
+}
+
+/// Returns a binary PLY with double coordinates, other properties, and faces of several degrees.
+fn binary_ply(big: bool) -> Vec<u8> {
+    let form = if big { "big" } else { "little" };
+    let mut bytes = format!(
+        "ply\nformat binary_{form}_endian 1.0\nelement vertex 4\nproperty double x\nproperty list \
+         uchar short w\nproperty float y\nproperty int z\nelement face 3\nproperty short flag\n\
+         property list ushort uint vertex_indices\nproperty list uchar uchar more\nend_header\n"
+    )
+    .into_bytes();
+    let mut number = |big_endian: &[u8]| {
+        let mut number = big_endian.to_vec();
+        if !big {
+            number.reverse();
+        }
+        bytes.extend(number);
+    };
+    for (v, [x, y]) in [[0, 0], [1, 0], [1, 1], [0, 1]].into_iter().enumerate() {
+        number(&f64::from(x).to_be_bytes());
+        number(&[v as u8]);
+        for _ in 0..v {
+            number(&7_u16.to_be_bytes());
+        }
+        number(&(y as f32).to_be_bytes());
+        number(&(-1_i32).to_be_bytes());
+    }
+    for face in [&[0_u32, 1, 2, 3][..], &[0, 1, 2], &[2, 3]] {
+        number(&5_u16.to_be_bytes());
+        number(&(face.len() as u16).to_be_bytes());
+        for v in face {
+            number(&v.to_be_bytes());
+        }
+        number(&[2]);
+        number(&[8]);
+        number(&[9]);
+    }
+    bytes
+}
+
+#[test]
+fn binary_ply_has_both_byte_orders() {
+    for (big, format) in [(false, Format::Ply), (true, Format::PlyBigEndian)] {
+        let bytes = binary_ply(big);
+        let mesh = read(&bytes);
+        assert_eq!(mesh.format, format);
+        assert_eq!(faces(&mesh), [&[0, 1, 2, 3][..], &[0, 1, 2]]);
+        assert_eq!(mesh.positions[2], Point::new(1.0, 1.0, -1.0));
+        assert_eq!(mesh.narrowing, sixfold_io::Narrowing::default());
+        let last = bytes.len() as u64;
+        let expected = [last - 15 - 19 - 23, last - 15 - 19].map(Place::Byte);
+        assert_eq!(places(&mesh), expected);
+        assert_eq!(mesh.short_faces[0].place, Place::Byte(last - 15));
+        for cut in 0..bytes.len() {
+            assert!(
+                read_from("a.ply", &bytes[..cut], &ReadOptions::default()).is_err(),
+                "{cut}"
+            );
+        }
+    }
+}
+
+#[test]
+fn an_lf_after_a_header_with_lone_cr_belongs_to_the_data() {
+    let header = PLY
+        .split("0 0 0")
+        .next()
+        .expect("a header")
+        .replace('\n', "\r");
+    let header = header.replace("ascii", "binary_little_endian");
+    let mut bytes = header.into_bytes();
+    // The first byte of the first coordinate is an LF.
+    let first = f32::from_bits(0x3F80_000A);
+    for x in [first, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
+        bytes.extend(x.to_le_bytes());
+    }
+    bytes.push(3);
+    for v in [0_i32, 1, 2] {
+        bytes.extend(v.to_le_bytes());
+    }
+    let mesh = read(bytes);
+    assert_eq!(mesh.positions[0].x, first);
+    assert_eq!(faces(&mesh), [[0, 1, 2]]);
+}
+
+#[test]
+fn triangle_strips_turn_every_other_triangle() {
+    let text = PLY
+        .replace("element face 1", "element tristrips 1")
+        .replace("element vertex 3", "element vertex 5")
+        .replace("3 0 1 2", "0 0 1\n1 1 1\n11 0 1 2 3 3 4 -1 4 3 2 1");
+    let mesh = read(text);
+    assert_eq!(faces(&mesh), [[0, 1, 2], [2, 1, 3], [4, 3, 2], [2, 3, 1]]);
+    assert_eq!(
+        notices(&mesh),
+        ["ignored 2 joints of triangle strips (first at line 15)"]
+    );
+}
+
+#[test]
+fn faults_of_ply_headers_are_named_with_their_lines() {
+    let refused = |from: &str, to: &str, message: &str| {
+        assert!(PLY.contains(from), "{from}");
+        assert_refused("a.ply", PLY.replace(from, to), &format!("a.ply:{message}"));
+    };
+    refused(
+        "format ascii 1.0",
+        "comment",
+        "3: the header has no `format` line before its elements: add `format ascii 1.0` if the \
+         data is text",
+    );
+    refused(
+        "ascii",
+        "text",
+        "2: \"text 1.0\" is not a form of PLY: use ascii, binary_little_endian or \
+         binary_big_endian, and version 1.0",
+    );
+    refused(
+        "element vertex 3",
+        "element vertex -3",
+        "3: \"element vertex -3\" is not an element: write `element`, a name and a count",
+    );
+    refused(
+        "property float y",
+        "property real y",
+        "5: \"property real y\" is not a property: write `property float x` or `property list \
+         uchar int x`",
+    );
+    refused(
+        "property float y",
+        "property float x",
+        "5: \"x\" is declared twice: remove one of the declarations",
+    );
+    refused(
+        "property float y",
+        "property list uchar int y",
+        "3: vertices have no number \"y\": declare `property float y`",
+    );
+    refused(
+        "uchar int",
+        "float int",
+        "8: the length of list \"vertex_indices\" has a type with fractions: use an integer type",
+    );
+    refused(
+        "vertex_indices",
+        "corners",
+        "7: the element \"face\" has no list of vertices: declare `property list uchar int \
+         vertex_indices`",
+    );
+    refused(
+        "element vertex",
+        "element point",
+        "9: the header declares no vertices: add `element vertex` and a count",
+    );
+    refused(
+        "end_header",
+        "begin",
+        "9: \"begin\" is not a line of a PLY header: use format, comment, obj_info, element, \
+         property or end_header",
+    );
+    assert_refused(
+        "a.ply",
+        "ply\nformat ascii 1.0\n",
+        "a.ply:3: the file ends before `end_header`: copy the file again, or correct its counts",
+    );
+}
+
+#[test]
+fn faults_of_ply_data_are_named_with_their_places() {
+    let refused = |from: &str, to: &str, message: &str| {
+        assert!(PLY.contains(from), "{from}");
+        assert_refused("a.ply", PLY.replace(from, to), &format!("a.ply:{message}"));
+    };
+    refused(
+        "vertex 3",
+        "vertex 4",
+        "14: the file ends before face 1 of 1: copy the file again, or correct its counts",
+    );
+    refused(
+        "1 0 0",
+        "1 0",
+        "11: expected a value of \"z\", found \"the end of the line\": correct the line",
+    );
+    refused(
+        "1 0 0",
+        "1 a 0",
+        "11: coordinate \"a\" of vertex 1 is not a number: write it like 0.5 or -2e-3",
+    );
+    refused(
+        "1 0 0",
+        "1 0 -inf",
+        "11: coordinate z of vertex 1 is not finite: keep coordinates below 3.4e38",
+    );
+    refused(
+        "3 0 1 2",
+        "3 0 1 3",
+        "13: face names vertex 3, but there are 3 vertices: correct the index",
+    );
+    refused(
+        "3 0 1 2",
+        "3 0 1 -1",
+        "13: face names vertex -1, but there are 3 vertices: correct the index",
+    );
+    refused(
+        "3 0 1 2",
+        "3 0 1 0.5",
+        "13: \"0.5\" is not a vertex number: write a whole number",
+    );
+    refused(
+        "3 0 1 2",
+        "-3 0 1 2",
+        "13: \"-3\" is not the length of a list: write a whole number",
+    );
+    refused(
+        "3 0 1 2",
+        "99999999999 0 1 2",
+        "13: expected a value of \"vertex_indices\", found \"the end of the line\": correct the line",
+    );
+}
+
+#[test]
+fn elements_without_content_need_no_time() {
+    for form in ["ascii", "binary_little_endian"] {
+        let text = format!(
+            "ply\nformat {form} 1.0\nelement nothing 18446744073709551615\nelement vertex 0\n\
+             property float x\nproperty float y\nproperty float z\nend_header\n"
+        );
+        let error = read_from("a", text.as_bytes(), &ReadOptions::default()).expect_err("empty");
+        assert!(
+            error.to_string().starts_with("a: no vertex and no face"),
+            "{error}"
+        );
+    }
+}

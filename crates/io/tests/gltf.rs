@@ -1,0 +1,413 @@
+//! The rules of glTF, and its errors with their messages.
+
+use std::fs;
+
+use serde_json::{Value, json};
+use sixfold_core::{Point, PolygonMesh};
+use sixfold_io::{FileMesh, Format, GltfFault, ReadError, ReadOptions, read, read_from, write};
+
+/// A document in parts, so that tests can change one of them.
+struct Parts {
+    document: Value,
+    data: Vec<u8>,
+}
+
+impl Parts {
+    /// Returns a square of two triangles in the plane z = 0.
+    fn square() -> Self {
+        let positions = [
+            [0.0_f32, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0],
+        ];
+        let mut parts = Self {
+            document: json!({
+                "asset": {"version": "2.0"},
+                "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+                "accessors": [], "bufferViews": [], "buffers": [{}],
+            }),
+            data: Vec::new(),
+        };
+        let bytes = positions
+            .iter()
+            .flatten()
+            .flat_map(|x| x.to_le_bytes())
+            .collect();
+        parts.add(
+            bytes,
+            json!({"componentType": 5126, "count": 4, "type": "VEC3"}),
+        );
+        let bytes = vec![0, 1, 2, 0, 2, 3];
+        parts.add(
+            bytes,
+            json!({"componentType": 5121, "count": 6, "type": "SCALAR"}),
+        );
+        parts
+    }
+
+    /// Adds data and a view of it.
+    fn add_view(&mut self, bytes: Vec<u8>) -> usize {
+        let view = json!({"buffer": 0, "byteOffset": self.data.len(), "byteLength": bytes.len()});
+        self.data.extend(bytes);
+        let views = self.document["bufferViews"].as_array_mut().expect("a list");
+        views.push(view);
+        views.len() - 1
+    }
+
+    /// Adds data, a view of it, and an accessor; returns the number of the accessor.
+    fn add(&mut self, bytes: Vec<u8>, mut accessor: Value) -> usize {
+        accessor["bufferView"] = json!(self.add_view(bytes));
+        let accessors = self.document["accessors"].as_array_mut().expect("a list");
+        accessors.push(accessor);
+        accessors.len() - 1
+    }
+
+    /// Returns the file in binary form.
+    fn glb(&self) -> Vec<u8> {
+        let mut document = self.document.clone();
+        document["buffers"][0]["byteLength"] = json!(self.data.len());
+        let json = document.to_string();
+        let mut bytes = b"glTF\x02\0\0\0\0\0\0\0".to_vec();
+        for (kind, chunk) in [(b"JSON", json.as_bytes()), (b"BIN\0", &self.data)] {
+            bytes.extend((chunk.len() as u32).to_le_bytes());
+            bytes.extend(kind);
+            bytes.extend(chunk);
+        }
+        bytes
+    }
+
+    fn read(&self) -> FileMesh {
+        let bytes = self.glb();
+        let mesh = read_from("a.glb", bytes.as_slice(), &ReadOptions::default());
+        mesh.unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    #[track_caller]
+    fn assert_refused(&self, message: &str) {
+        let bytes = self.glb();
+        let error = read_from("a.glb", bytes.as_slice(), &ReadOptions::default());
+        assert_eq!(
+            error.expect_err(message).to_string(),
+            format!("a.glb: {message}")
+        );
+    }
+}
+
+fn faces(mesh: &FileMesh) -> Vec<Vec<usize>> {
+    let faces = mesh.faces.iter();
+    faces
+        .map(|(_, face)| face.iter().map(|v| v.index()).collect())
+        .collect()
+}
+
+fn notices(mesh: &FileMesh) -> Vec<String> {
+    mesh.notices.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn triangles_strips_and_fans_have_the_same_side() {
+    let mut parts = Parts::square();
+    let mesh = parts.read();
+    assert_eq!(mesh.format, Format::Glb);
+    assert_eq!(faces(&mesh), [[0, 1, 2], [0, 2, 3]]);
+    let accessor = |count| json!({"componentType": 5123, "count": count, "type": "SCALAR"});
+    let strip = [0_u16, 1, 3, 3, 3, 2, 1]
+        .iter()
+        .flat_map(|i| i.to_le_bytes())
+        .collect();
+    let strip = parts.add(strip, accessor(7));
+    let primitive = &mut parts.document["meshes"][0]["primitives"][0];
+    primitive["indices"] = json!(strip);
+    primitive["mode"] = json!(5);
+    let mesh = parts.read();
+    assert_eq!(faces(&mesh), [[0, 1, 3], [3, 2, 1]]);
+    assert_eq!(
+        notices(&mesh),
+        ["ignored 3 joints of triangle strips (first at mesh 0)"]
+    );
+    let primitive = &mut parts.document["meshes"][0]["primitives"][0];
+    primitive["mode"] = json!(6);
+    primitive
+        .as_object_mut()
+        .expect("an object")
+        .remove("indices");
+    assert_eq!(faces(&parts.read()), [[0, 1, 2], [0, 2, 3]]);
+}
+
+#[test]
+fn nodes_move_and_mirror_their_meshes() {
+    let mut parts = Parts::square();
+    let document = &mut parts.document;
+    document["nodes"] = json!([
+        {"children": [1, 2], "translation": [10, 0, 0]},
+        {"mesh": 0, "rotation": [0, 0, 0.5_f64.sqrt(), 0.5_f64.sqrt()], "scale": [2, 1, 1]},
+        {"mesh": 0, "matrix": [-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 5, 1]},
+    ]);
+    document["scenes"] = json!([{"nodes": []}, {"nodes": [0]}]);
+    document["scene"] = json!(1);
+    let mesh = parts.read();
+    let expected = [
+        [10.0, 0.0, 0.0],
+        [10.0, 2.0, 0.0],
+        [9.0, 2.0, 0.0],
+        [9.0, 0.0, 0.0],
+        [10.0, 0.0, 5.0],
+        [9.0, 0.0, 5.0],
+        [9.0, 1.0, 5.0],
+        [10.0, 1.0, 5.0],
+    ];
+    for (found, expected) in mesh.positions.iter().zip(expected.map(Point::from_array)) {
+        assert!((*found - expected).length() < 1e-6, "{found} {expected}");
+    }
+    assert_eq!(faces(&mesh), [[0, 1, 2], [0, 2, 3], [5, 4, 6], [6, 4, 7]]);
+}
+
+#[test]
+fn primitives_with_the_same_positions_share_vertices() {
+    let mut parts = Parts::square();
+    let primitives = &mut parts.document["meshes"][0]["primitives"];
+    let mut points = primitives[0].clone();
+    points["mode"] = json!(0);
+    points["material"] = json!(0);
+    primitives.as_array_mut().expect("a list").push(points);
+    let mut meshes = parts.document["meshes"].as_array().expect("a list").clone();
+    meshes.push(meshes[0].clone());
+    parts.document["meshes"] = json!(meshes);
+    parts.document["nodes"] = json!([{"mesh": 0}]);
+    let mesh = parts.read();
+    assert_eq!((mesh.positions.len(), mesh.faces.len()), (4, 2));
+    assert_eq!(
+        notices(&mesh),
+        [
+            "ignored 1 material statement (mesh 0)",
+            "ignored 1 primitive of points or lines (mesh 0)",
+            "ignored 1 mesh outside the scene (mesh 1)",
+        ]
+    );
+}
+
+#[test]
+fn quantised_strided_and_sparse_accessors_are_read() {
+    let mut parts = Parts::square();
+    let bytes = [
+        [0_i8, 0, 0, 9],
+        [127, 0, 0, 9],
+        [127, 127, 0, 9],
+        [-128, 127, 0, 9],
+    ];
+    let bytes: Vec<u8> = bytes.iter().flatten().map(|&x| x as u8).collect();
+    let accessor = json!({"componentType": 5120, "normalized": true, "count": 4, "type": "VEC3"});
+    let quantised = parts.add(bytes, accessor);
+    let view = parts.document["bufferViews"]
+        .as_array_mut()
+        .expect("a list")
+        .last_mut();
+    view.expect("a view")["byteStride"] = json!(4);
+    parts.document["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(quantised);
+    parts.document["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+    assert_eq!(parts.read().positions[3], Point::new(-1.0, 1.0, 0.0));
+
+    let indices = parts.add_view(vec![1, 3]);
+    let values = [7_i8, 7, 7, 127, 0, -127].map(|x| x as u8).to_vec();
+    let values = parts.add_view(values);
+    parts.document["accessors"][quantised]["sparse"] = json!({
+        "count": 2,
+        "indices": {"bufferView": indices, "componentType": 5121},
+        "values": {"bufferView": values},
+    });
+    let positions = parts.read().positions;
+    assert_eq!(positions[1], Point::splat(7.0 / 127.0));
+    assert_eq!(
+        positions[2..],
+        [Point::new(1.0, 1.0, 0.0), Point::new(1.0, 0.0, -1.0)]
+    );
+    let accessor = parts.document["accessors"][quantised]
+        .as_object_mut()
+        .expect("an object");
+    accessor.remove("bufferView");
+    assert_eq!(parts.read().positions[2], Point::ZERO);
+    let offset = indices_offset(&parts, indices);
+    parts.data[offset] = 4;
+    let message = "accessor 2: its sparse index 4 is not above the one before and below 4: export \
+                   again";
+    parts.assert_refused(message);
+}
+
+fn indices_offset(parts: &Parts, view: usize) -> usize {
+    let offset = parts.document["bufferViews"][view]["byteOffset"].as_u64();
+    offset.expect("a number") as usize
+}
+
+#[test]
+fn compression_is_refused_by_name() {
+    let mut parts = Parts::square();
+    let draco = "KHR_draco_mesh_compression";
+    parts.document["meshes"][0]["primitives"][0]["extensions"] = json!({draco: {}});
+    assert_eq!(parts.read().faces.len(), 2, "the plain data is there, too");
+    parts.document["extensionsRequired"] = json!([draco]);
+    parts.assert_refused(
+        "mesh 0: the mesh is compressed with KHR_draco_mesh_compression, which is not read: export \
+         it without compression",
+    );
+}
+
+#[test]
+fn wrong_numbers_are_named_with_their_places() {
+    let refused = |pointer: &str, value: Value, message: &str| {
+        let mut parts = Parts::square();
+        parts.document["nodes"] = json!([{"mesh": 0}]);
+        parts.document["scenes"] = json!([{"nodes": [0]}]);
+        *parts.document.pointer_mut(pointer).expect("a member") = value;
+        parts.assert_refused(message);
+    };
+    let again = "export the file again";
+    refused(
+        "/meshes/0/primitives/0/attributes/POSITION",
+        json!(9),
+        &format!("mesh 0: it names accessor 9, but the file has 2 of them: {again}"),
+    );
+    refused(
+        "/nodes/0/mesh",
+        json!(1),
+        &format!("node 0: it names mesh 1, but the file has 1 of them: {again}"),
+    );
+    refused(
+        "/accessors/0/count",
+        json!(5),
+        "accessor 0: its data ends at byte 60 of 48: copy the file again, or export it again",
+    );
+    refused(
+        "/accessors/0/count",
+        json!(u64::MAX),
+        "accessor 0: its data ends at byte 2^64 of 48: copy the file again, or export it again",
+    );
+    refused(
+        "/bufferViews/1/byteOffset",
+        json!(49),
+        "bufferView 1: its data ends at byte 55 of 54: copy the file again, or export it again",
+    );
+    refused(
+        "/accessors/0/type",
+        json!("VEC2"),
+        &format!(
+            "accessor 0: it has type \"VEC2 of 5126\", but positions need VEC3 of numbers of 8, 16 \
+             or 32 bits: {again}"
+        ),
+    );
+    refused(
+        "/accessors/1/componentType",
+        json!(5126),
+        &format!(
+            "accessor 1: it has type \"SCALAR of 5126\", but indices need SCALAR of unsigned \
+             integers: {again}"
+        ),
+    );
+    refused(
+        "/nodes/0",
+        json!({"children": [0]}),
+        &format!("node 0: it has several parents, or is its own ancestor: {again}"),
+    );
+}
+
+#[test]
+fn other_versions_are_refused() {
+    let mut parts = Parts::square();
+    parts.document["asset"]["version"] = json!("1.0");
+    let bytes = parts.glb();
+    let error = read_from("a.glb", bytes.as_slice(), &ReadOptions::default());
+    let message = "a.glb:1: the file has glTF version \"1.0\": export it as version 2.0";
+    assert_eq!(error.expect_err(message).to_string(), message);
+}
+
+#[test]
+fn an_index_without_a_vertex_is_refused() {
+    let mut parts = Parts::square();
+    *parts.data.last_mut().expect("indices") = 4;
+    let message = "accessor 1: face names vertex 4, but there are 4 vertices: correct the index";
+    parts.assert_refused(message);
+}
+
+#[test]
+fn scenes_that_repeat_meshes_are_limited() {
+    let mut parts = Parts::square();
+    let count = 1_u64 << 40;
+    let zeros = json!({"componentType": 5126, "count": count, "type": "VEC3"});
+    parts.document["accessors"][0] = zeros;
+    let bytes = parts.glb();
+    let error = read_from("a.glb", bytes.as_slice(), &ReadOptions::default()).expect_err("large");
+    assert!(matches!(
+        error,
+        ReadError::Gltf {
+            fault: GltfFault::TooLarge { limit: 1_048_576 },
+            ..
+        }
+    ));
+}
+
+#[test]
+fn buffers_in_other_files_are_read() {
+    let folder = std::env::temp_dir().join(format!("sixfold-io-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("the temporary folder is writable");
+    let mut parts = Parts::square();
+    parts.document["buffers"][0] = json!({"uri": "the%20data.bin", "byteLength": parts.data.len()});
+    let text = parts.document.to_string();
+    let path = folder.join("a.gltf");
+    fs::write(&path, &text).expect("writable");
+    fs::write(folder.join("the data.bin"), &parts.data).expect("writable");
+    let mesh = read(&path, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((mesh.format, mesh.faces.len()), (Format::Gltf, 2));
+
+    fs::write(folder.join("the data.bin"), &parts.data[1..]).expect("writable");
+    let error = read(&path, &ReadOptions::default())
+        .expect_err("too short")
+        .to_string();
+    let rest = "buffer 0: it has 53 bytes, expected 54: copy the file again, with its .bin files";
+    assert!(error.ends_with(rest), "{error}");
+    let error = read_from("-", text.as_bytes(), &ReadOptions::default()).expect_err("no folder");
+    let message = "-: buffer 0: its data is in the file \"the%20data.bin\": name the glTF file \
+                   instead of passing its content";
+    assert_eq!(error.to_string(), message);
+    fs::remove_dir_all(&folder).expect("removable");
+}
+
+#[test]
+fn containers_are_checked() {
+    let glb = Parts::square().glb();
+    let refused = |bytes: &[u8], message: &str| {
+        let error = read_from("a.glb", bytes, &ReadOptions::default()).expect_err(message);
+        assert!(
+            error.to_string().starts_with(&format!("a.glb{message}")),
+            "{error}"
+        );
+    };
+    refused(
+        &glb[..9],
+        ": byte 9: the file ends before the length of the file",
+    );
+    refused(&glb[..15], ": byte 12: the file ends before the JSON chunk");
+    refused(&glb[..40], ": byte 40: the file ends before byte ");
+    refused(
+        b"glTF\x01\0\0\0\0\0\0\0",
+        ": byte 4: the file has glTF version \"1\"",
+    );
+    refused(
+        b"{\n\"asset\": 1}",
+        ":2: the JSON text is not glTF (invalid type: integer `1`",
+    );
+    refused(b"{\n\"asset\"", ":2: the JSON text is not glTF (EOF");
+    let mut kind = glb.clone();
+    kind[16] = b'X';
+    refused(&kind, ": byte 16: the first chunk of the file is not JSON");
+}
+
+#[test]
+fn points_without_faces_are_kept() {
+    let mesh = PolygonMesh::new([Point::ONE, Point::X], [[0_u32; 0]; 0]).expect("valid");
+    for format in [Format::Gltf, Format::Glb] {
+        let mut bytes = Vec::new();
+        write(&mesh, format, &mut bytes).expect("memory does not fail");
+        let file = read_from("a", bytes.as_slice(), &ReadOptions::default()).expect("valid");
+        assert_eq!(file.into_polygons().0, mesh);
+    }
+}

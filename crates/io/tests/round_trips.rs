@@ -1,0 +1,236 @@
+//! What every format gives back of a mesh that was written to it.
+
+use std::collections::HashMap;
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::sample::subsequence;
+use sixfold_core::{Point, PolygonMesh};
+use sixfold_io::{
+    FileMesh, Format, Loss, MeshWriter, ReadOptions, Welding, WriteError, read_from, write,
+};
+
+/// Generates any finite `f32`, including those with extreme exponents.
+fn coordinate() -> impl Strategy<Value = f32> {
+    let any = any::<u32>().prop_map(f32::from_bits);
+    prop_oneof![
+        any.prop_filter("finite", |x| x.is_finite()),
+        (-9_i8..9).prop_map(f32::from),
+        Just(-0.0),
+    ]
+}
+
+/// Generates random polygons over random points, some of which may be equal.
+fn mesh() -> impl Strategy<Value = PolygonMesh> {
+    let point = [coordinate(), coordinate(), coordinate()].prop_map(Point::from_array);
+    vec(point, 3..12).prop_flat_map(|positions| {
+        let numbers: Vec<u32> = (0..).take(positions.len()).collect();
+        let max_corners = numbers.len();
+        let face = subsequence(numbers, 3..=max_corners).prop_shuffle();
+        vec(face, 0..12).prop_map(move |faces| {
+            PolygonMesh::new(positions.clone(), faces).expect("three corners, each once")
+        })
+    })
+}
+
+fn written(mesh: &PolygonMesh, format: Format) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write(mesh, format, &mut bytes).expect("memory does not fail");
+    bytes
+}
+
+fn read_again(bytes: &[u8], options: &ReadOptions) -> FileMesh {
+    read_from("mesh", bytes, options).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn bits(point: Point) -> [u32; 3] {
+    point.to_array().map(f32::to_bits)
+}
+
+/// Returns the mesh as a format keeps it that stores only triangles.
+fn triangulated(mesh: &PolygonMesh) -> PolygonMesh {
+    mesh.fan_triangulated().expect("few corners")
+}
+
+/// Returns the positions of the corners of all faces.
+fn soup(mesh: &PolygonMesh) -> Vec<[u32; 3]> {
+    let corners = mesh.faces().corners().iter();
+    corners.map(|&v| bits(mesh.position(v))).collect()
+}
+
+/// Checks that `format` gives `mesh` back, except for what it cannot keep.
+fn check(mesh: &PolygonMesh, format: Format) -> Result<(), TestCaseError> {
+    let losses = MeshWriter::new(mesh).losses(format);
+    let bytes = written(mesh, format);
+    let is_stl = matches!(format, Format::Stl | Format::StlAscii);
+    prop_assert_eq!(losses.contains(&Loss::SharedVertices), is_stl);
+    if is_stl && mesh.face_count() == 0 {
+        prop_assert!(read_from("mesh", bytes.as_slice(), &ReadOptions::default()).is_err());
+        return Ok(());
+    }
+    let as_stored = ReadOptions::default().with_welding(Welding::Nothing);
+    let file = read_again(&bytes, &as_stored);
+    prop_assert_eq!(file.format, format);
+    prop_assert_eq!(&file.notices, &[]);
+    prop_assert_eq!(file.welded_vertices, 0);
+    prop_assert_eq!(file.narrowing.merged_vertices, 0);
+    let (again, left_out) = file.into_polygons();
+    prop_assert_eq!(left_out, []);
+    let cuts = losses.iter().any(|loss| matches!(loss, Loss::Polygons(_)));
+    let expected = if cuts {
+        triangulated(mesh)
+    } else {
+        mesh.clone()
+    };
+    if is_stl {
+        prop_assert_eq!(again.vertex_count(), again.corner_count());
+        prop_assert_eq!(soup(&again), soup(&expected));
+        return check_welded(&bytes, &expected);
+    }
+    prop_assert_eq!(again.faces(), expected.faces());
+    prop_assert_eq!(again.vertex_count(), expected.vertex_count());
+    for (&found, &expected) in again.positions().iter().zip(expected.positions()) {
+        prop_assert_eq!(bits(found), bits(expected));
+    }
+    Ok(())
+}
+
+/// Checks that an STL file is read with one vertex for each position.
+fn check_welded(bytes: &[u8], expected: &PolygonMesh) -> Result<(), TestCaseError> {
+    let file = read_again(bytes, &ReadOptions::default());
+    let corners = expected.faces().corners();
+    let mut numbers = HashMap::new();
+    let mut faces = Vec::new();
+    for &v in corners {
+        // −0 and 0 are equal.
+        let key = bits(expected.position(v) + Point::ZERO);
+        let next = numbers.len();
+        faces.push(*numbers.entry(key).or_insert(next));
+    }
+    prop_assert!(file.faces.corners().iter().map(|v| v.index()).eq(faces));
+    prop_assert_eq!(file.positions.len(), numbers.len());
+    prop_assert_eq!(file.welded_vertices, corners.len() - numbers.len());
+    Ok(())
+}
+
+proptest! {
+    #[test]
+    fn every_format_gives_back_what_it_keeps(mesh in mesh()) {
+        for format in Format::ALL {
+            check(&mesh, format)?;
+        }
+    }
+
+    #[test]
+    fn moving_the_mesh_does_not_change_it(mesh in mesh()) {
+        let bytes = written(&mesh, Format::Ply);
+        let file = read_again(&bytes, &ReadOptions::default().recentred());
+        prop_assert_eq!(&file.faces, mesh.faces());
+        let [x, y, z] = file.origin;
+        for (found, old) in file.positions.iter().zip(mesh.positions()) {
+            let found = found.as_dvec3() + sixfold_core::glam::DVec3::new(x, y, z);
+            let scale = old.as_dvec3().abs().max_element().max(x.abs()).max(y.abs()).max(z.abs());
+            let largest = (found - old.as_dvec3()).abs().max_element();
+            prop_assert!(largest <= file.narrowing.largest_shift + scale * 1e-15, "{}", largest);
+        }
+    }
+}
+
+#[test]
+fn every_shape_survives_every_format() -> Result<(), TestCaseError> {
+    for generator in sixfold_shapes::GENERATORS {
+        let mesh = generator.build(&[]).expect("defaults are possible");
+        for format in Format::ALL {
+            check(&mesh, format)?;
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn polygons_with_many_corners_survive() -> Result<(), TestCaseError> {
+    let positions = (0..300).map(|i| Point::new(i as f32, 0.5, -1.0));
+    let faces = [(0..300).collect::<Vec<u32>>(), vec![0, 1, 2]];
+    let mesh = PolygonMesh::new(positions, faces).expect("valid");
+    Format::ALL
+        .into_iter()
+        .try_for_each(|format| check(&mesh, format))
+}
+
+#[test]
+fn losses_are_counted() {
+    let positions = [Point::ZERO, Point::X, Point::ONE, Point::Y, Point::Z];
+    let mesh = PolygonMesh::new(positions, [[0, 1, 2, 3]]).expect("valid");
+    let some = [Some(Point::Z), None, None, None, None];
+    let all = [Some(Point::Z); 5];
+    let with_some = MeshWriter::new(&mesh)
+        .with_normals(&some)
+        .expect("one for each");
+    let with_all = MeshWriter::new(&mesh)
+        .with_normals(&all)
+        .expect("one for each");
+    let stl = [
+        Loss::SharedVertices,
+        Loss::Polygons(1),
+        Loss::IsolatedVertices(1),
+    ];
+    for format in [Format::Stl, Format::StlAscii] {
+        assert_eq!(MeshWriter::new(&mesh).losses(format), stl);
+    }
+    assert_eq!(with_some.losses(Format::Obj), []);
+    assert_eq!(with_some.losses(Format::Ply), [Loss::Normals(1)]);
+    assert_eq!(with_all.losses(Format::Ply), []);
+    assert_eq!(with_all.losses(Format::Off), [Loss::Normals(5)]);
+    assert_eq!(with_all.losses(Format::Glb), [Loss::Polygons(1)]);
+}
+
+#[test]
+fn normals_are_written_and_reported_when_read() {
+    let mesh = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]]).expect("valid");
+    let normals = [Some(Point::Z); 3];
+    let writer = MeshWriter::new(&mesh)
+        .with_normals(&normals)
+        .expect("one for each");
+    for format in [
+        Format::Obj,
+        Format::Ply,
+        Format::PlyAscii,
+        Format::Gltf,
+        Format::Glb,
+    ] {
+        let mut bytes = Vec::new();
+        writer
+            .write(format, &mut bytes)
+            .expect("memory does not fail");
+        let file = read_again(&bytes, &ReadOptions::default());
+        let notices: Vec<String> = file.notices.iter().map(ToString::to_string).collect();
+        assert_eq!(notices.len(), 1, "{format}: {notices:?}");
+        assert!(
+            notices[0].starts_with("ignored 3 normals (first at "),
+            "{format}: {notices:?}"
+        );
+        assert_eq!(file.into_polygons().0, mesh, "{format}");
+    }
+    let error = MeshWriter::new(&mesh)
+        .with_normals(&normals[1..])
+        .expect_err("one is missing");
+    assert_eq!(
+        error.to_string(),
+        "2 normals do not fit 3 vertices: give one normal for each vertex"
+    );
+}
+
+#[test]
+fn a_mesh_that_is_not_finite_is_not_written() {
+    let mesh = PolygonMesh::new([Point::ZERO, Point::NAN], [[0_u32; 0]; 0]).expect("valid");
+    for format in Format::ALL {
+        let mut bytes = Vec::new();
+        let error = write(&mesh, format, &mut bytes).expect_err("not finite");
+        assert!(matches!(error, WriteError::NotFinite { .. }));
+        let expected = format!(
+            "the position of vertex v1 is not finite, so {format} cannot store it: correct the position"
+        );
+        assert_eq!(error.to_string(), expected);
+        assert!(bytes.is_empty());
+    }
+}

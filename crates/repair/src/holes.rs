@@ -1,0 +1,184 @@
+//! Filling of boundary holes.
+
+mod minimum_area;
+
+use glam::DVec3;
+use rustc_hash::FxHashSet;
+use sixfold_core::{Capabilities, Incidence, Pair, PolygonMesh, RowId, Slot, VertexId};
+use sixfold_operators::clipped_polygon;
+
+use crate::error::RepairError;
+use crate::report::{Left, StepCounts};
+use crate::step::Outcome;
+use crate::trace::Rebuild;
+use minimum_area::minimum_area_triangulation;
+
+/// Options of filling holes.
+///
+/// A hole is a closed chain of boundary edges. The outer boundary of an open surface is such a chain
+/// too: limit the number of edges to keep it open.
+///
+/// A hole with n edges is filled with n − 2 triangles, without new vertices. No diagonal is used
+/// that is already an edge, because that edge would get more than two faces. If this is impossible,
+/// the hole remains and is named in the report.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FillHoles {
+    /// Holes with more edges than this remain; `None` for no limit.
+    pub max_edges: Option<usize>,
+    /// The method of triangulation.
+    pub method: HoleFilling,
+}
+
+/// The method by which a hole is triangulated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum HoleFilling {
+    /// The triangulation with the smallest area, by dynamic programming in O(n³) time and O(n²)
+    /// memory for n edges (Barequet & Sharir 1995, as in the first part of Liepa 2003). Holes with
+    /// more than 400 edges are filled by ear clipping.
+    #[default]
+    MinimumArea,
+    /// Ear clipping of the projection along the axis nearest to the normal; O(n²) (Meisters 1975).
+    EarClipping,
+}
+
+/// The largest number of edges for [`HoleFilling::MinimumArea`]: some 11 million triangles are
+/// compared.
+const MINIMUM_AREA_EDGES: usize = 400;
+
+/// Fills holes.
+pub(crate) fn fill(polygons: &PolygonMesh, options: &FillHoles) -> Result<Outcome, RepairError> {
+    let check = Capabilities::ORIENTED_MANIFOLDS.check(polygons);
+    check.map_err(RepairError::NotOrientedManifold)?;
+    let mut holes = Holes::new(polygons);
+    let mut rebuild = Rebuild::new(polygons);
+    for (f, _) in polygons.faces().iter() {
+        rebuild.keep(f, |v, _| v)?;
+    }
+    let mut counts = StepCounts::default();
+    let mut left = Vec::new();
+    for hole in holes.loops() {
+        let (vertex, edges) = (hole[0], hole.len());
+        if options.max_edges.is_some_and(|most| edges > most) {
+            left.push(Left::LargeHole { vertex, edges });
+            continue;
+        }
+        let Some(triangles) = holes.triangulate(polygons, &hole, options.method) else {
+            left.push(Left::BlockedHole { vertex, edges });
+            continue;
+        };
+        counts.holes_filled += 1;
+        counts.faces_added += triangles.len();
+        for triangle in triangles {
+            let corners = triangle.map(|i| hole[i]);
+            holes.add_edges(corners);
+            rebuild.push(None, corners.into_iter().map(|v| (v, None)))?;
+        }
+    }
+    let outcome = match counts.is_change() {
+        true => Outcome::changed(rebuild.finish_with_old_vertices()?, counts),
+        false => Outcome::unchanged(),
+    };
+    Ok(Outcome { left, ..outcome })
+}
+
+/// The boundary of an oriented manifold.
+struct Holes {
+    /// By vertex: the vertex after it along its hole, with the hole on the left.
+    next: Vec<Slot<VertexId>>,
+    /// The edges between boundary vertices.
+    edges: FxHashSet<Pair<VertexId>>,
+}
+
+impl Holes {
+    fn new(polygons: &PolygonMesh) -> Self {
+        let faces = polygons.faces();
+        let incidence = Incidence::new(polygons.vertex_count(), faces, |_| true);
+        let mut next = vec![Slot::NONE; polygons.vertex_count()];
+        for edge in incidence.edges() {
+            if let [side] = edge.sides {
+                let [low, high] = edge.ends;
+                // Against the direction of the face.
+                let (from, to) = if side.downward {
+                    (low, high)
+                } else {
+                    (high, low)
+                };
+                next[from.index()] = Slot::some(to);
+            }
+        }
+        let on_boundary = |v: VertexId| next[v.index()].get().is_some();
+        let ends = incidence.edges().map(|edge| edge.ends);
+        let inner = ends.filter(|ends| ends.iter().all(|&v| on_boundary(v)));
+        let edges = inner.map(|[a, b]| Pair::new(a, b)).collect();
+        Self { next, edges }
+    }
+
+    /// Returns the vertices of every hole, in the order of its boundary, from the lowest vertex on.
+    fn loops(&self) -> Vec<Vec<VertexId>> {
+        let mut visited = vec![false; self.next.len()];
+        let mut loops = Vec::new();
+        for start in 0..self.next.len() {
+            let mut hole = Vec::new();
+            let mut at = VertexId::from_row(start as u32);
+            // In an oriented manifold, one boundary edge starts at a boundary vertex, and one ends.
+            while let Some(next) = self.next[at.index()].get() {
+                if std::mem::replace(&mut visited[at.index()], true) {
+                    break;
+                }
+                hole.push(at);
+                at = next;
+            }
+            if !hole.is_empty() {
+                loops.push(hole);
+            }
+        }
+        loops
+    }
+
+    fn add_edges(&mut self, [a, b, c]: [VertexId; 3]) {
+        self.edges
+            .extend([Pair::new(a, b), Pair::new(b, c), Pair::new(c, a)]);
+    }
+
+    /// Returns the triangles of a hole as numbers of its vertices; `None` if no triangulation
+    /// without a diagonal that is an edge was found.
+    fn triangulate(
+        &self,
+        polygons: &PolygonMesh,
+        hole: &[VertexId],
+        method: HoleFilling,
+    ) -> Option<Vec<[usize; 3]>> {
+        let points: Vec<DVec3> = hole
+            .iter()
+            .map(|&v| polygons.position(v).as_dvec3())
+            .collect();
+        let is_edge = |i: usize, j: usize| self.edges.contains(&Pair::new(hole[i], hole[j]));
+        let smallest = || match hole.len() {
+            ..=MINIMUM_AREA_EDGES => minimum_area_triangulation(&points, is_edge),
+            _ => None,
+        };
+        if method == HoleFilling::MinimumArea && hole.len() <= MINIMUM_AREA_EDGES {
+            return smallest();
+        }
+        let ears = clipped_polygon(points.iter().copied(), is_edge);
+        let is_blocked = |&[a, b, c]: &[usize; 3]| {
+            let sides = [[a, b], [b, c], [c, a]];
+            sides
+                .into_iter()
+                .any(|[i, j]| is_diagonal(i, j, hole.len()) && is_edge(i, j))
+        };
+        if ears.iter().any(is_blocked) {
+            return smallest();
+        }
+        Some(ears)
+    }
+}
+
+/// Returns whether corners `i` and `j` of a polygon with `n` corners are not adjacent.
+fn is_diagonal(i: usize, j: usize, n: usize) -> bool {
+    let apart = i.abs_diff(j);
+    apart > 1 && apart < n - 1
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,91 @@
+//! Removal of isolated vertices and of small components.
+
+use sixfold_core::{FaceId, Incidence, Partition, PolygonMesh, Slot, VertexId, row};
+
+use crate::error::RepairError;
+use crate::report::StepCounts;
+use crate::step::Outcome;
+use crate::trace::{Rebuild, VertexTrace};
+
+/// Removes vertices without a face; O(vertices + corners).
+pub(crate) fn isolated_vertices(polygons: &PolygonMesh) -> Result<Outcome, RepairError> {
+    let used = named_by(polygons, |_| true);
+    without(polygons, |v| used[v.index()], |_| true)
+}
+
+/// Removes components with fewer than `min_faces` faces, and their vertices unless another face
+/// names them; O(corners).
+pub(crate) fn small_components(
+    polygons: &PolygonMesh,
+    min_faces: usize,
+) -> Result<Outcome, RepairError> {
+    let faces = polygons.faces();
+    let mut components = Partition::new(faces.len());
+    let incidence = Incidence::new(polygons.vertex_count(), faces, |_| true);
+    for edge in incidence.edges() {
+        for pair in edge.sides.windows(2) {
+            components.join(pair[0].face.index(), pair[1].face.index());
+        }
+    }
+    let kept: Vec<bool> = (0..faces.len())
+        .map(|f| components.class_size(f) >= min_faces)
+        .collect();
+    let keeps_face = |f: FaceId| kept[f.index()];
+    let (before, after) = (named_by(polygons, |_| true), named_by(polygons, keeps_face));
+    // Vertices that were isolated before remain.
+    let keeps_vertex = |v: VertexId| after[v.index()] || !before[v.index()];
+    without(polygons, keeps_vertex, keeps_face)
+}
+
+/// Returns for each vertex whether one of the faces that `counts` selects names it.
+fn named_by(polygons: &PolygonMesh, counts: impl Fn(FaceId) -> bool) -> Vec<bool> {
+    let mut named = vec![false; polygons.vertex_count()];
+    for (_, face) in polygons.faces().iter().filter(|&(f, _)| counts(f)) {
+        for v in face {
+            named[v.index()] = true;
+        }
+    }
+    named
+}
+
+/// Returns the mesh with the vertices and faces that are kept; kept faces name kept vertices only.
+pub(crate) fn without(
+    polygons: &PolygonMesh,
+    keeps_vertex: impl Fn(VertexId) -> bool,
+    keeps_face: impl Fn(FaceId) -> bool,
+) -> Result<Outcome, RepairError> {
+    let mut positions = Vec::with_capacity(polygons.vertex_count());
+    let mut numbers = vec![Slot::NONE; polygons.vertex_count()];
+    let mut origins = Vec::with_capacity(polygons.vertex_count());
+    for v in polygons.vertices().filter(|&v| keeps_vertex(v)) {
+        numbers[v.index()] = Slot::some(VertexId::new(row(positions.len())));
+        origins.push(Slot::some(v));
+        positions.push(polygons.position(v));
+    }
+    let mut faces_removed = 0;
+    let mut rebuild = Rebuild::new(polygons);
+    for (f, _) in polygons.faces().iter() {
+        if !keeps_face(f) {
+            faces_removed += 1;
+            continue;
+        }
+        rebuild.keep(f, |v, _| {
+            let number = numbers[v.index()].get();
+            number.expect("kept faces name kept vertices")
+        })?;
+    }
+    let counts = StepCounts {
+        vertices_removed: polygons.vertex_count() - positions.len(),
+        faces_removed,
+        ..StepCounts::default()
+    };
+    if !counts.is_change() {
+        return Ok(Outcome::unchanged());
+    }
+    let vertices = VertexTrace {
+        replacements: numbers,
+        origins,
+    };
+    let changed = rebuild.finish(positions, vertices)?;
+    Ok(Outcome::changed(changed, counts))
+}

@@ -1,0 +1,133 @@
+//! `sixfold distance`: the distance between the surfaces of two meshes.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use comfy_table::{Cell, CellAlignment};
+use serde::Serialize;
+use sixfold::PolygonMesh;
+use sixfold::spatial::{MeshDistance, OneSidedDistance, Sampling, mesh_distance};
+
+use crate::arguments::Distance;
+use crate::failure::Failure;
+use crate::load;
+use crate::output::{Output, check_outputs, is_stdout};
+use crate::progress::exit_on_interrupt;
+use crate::tables::table;
+use crate::text::{TextOutput, sanitize};
+
+/// The distances in one direction, or in both.
+#[derive(Serialize)]
+struct Row {
+    from: String,
+    to: String,
+    mean: f64,
+    root_mean_square: f64,
+    largest: f64,
+    /// The largest distance in per cent of the diagonal of the first mesh.
+    largest_percent: f64,
+    /// The point with the largest distance; `None` for both directions together.
+    farthest: Option<[f64; 3]>,
+}
+
+/// Measures the distance and prints it.
+pub(crate) fn run(arguments: &Distance) -> Result<ExitCode, Failure> {
+    exit_on_interrupt();
+    let outputs = [("--json", arguments.json.as_ref())];
+    check_outputs(Some(&arguments.first), &outputs)?;
+    check_outputs(Some(&arguments.second), &outputs)?;
+    let json = Output::open_if(arguments.json.as_ref())?;
+    let first = load::with_creases(&arguments.first)?.0;
+    let second = load::with_creases(&arguments.second)?.0;
+    let sampling = Sampling {
+        samples: arguments.samples,
+        seed: arguments.seed,
+    };
+    let distance = mesh_distance(&first, &second, sampling).map_err(Failure::usage)?;
+    let rows = rows(arguments, &distance, diagonal(&first));
+    let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
+    text.print_line(&rows_text(&rows));
+    // Text is printed first, so that it is not lost if a file fails.
+    let mut done = text.finish();
+    if let Some(output) = json {
+        done = done.and(output.finish(|writer| {
+            serde_json::to_writer_pretty(&mut *writer, &rows)?;
+            writeln!(writer)
+        }));
+    }
+    done.map(|()| ExitCode::SUCCESS)
+}
+
+fn rows(arguments: &Distance, distance: &MeshDistance, diagonal: f64) -> [Row; 3] {
+    let name = |path: &Path| path.display().to_string();
+    let (first, second) = (name(&arguments.first), name(&arguments.second));
+    let percent = |largest: f64| 100.0 * largest / diagonal;
+    let one_sided = |from: &str, to: &str, side: &OneSidedDistance| Row {
+        from: from.to_owned(),
+        to: to.to_owned(),
+        mean: side.mean,
+        root_mean_square: side.root_mean_square,
+        largest: side.largest,
+        largest_percent: percent(side.largest),
+        farthest: Some(side.farthest.to_array()),
+    };
+    let forward = one_sided(&first, &second, &distance.forward);
+    let backward = one_sided(&second, &first, &distance.backward);
+    let both = Row {
+        from: "both".to_owned(),
+        to: "both".to_owned(),
+        mean: distance.mean(),
+        root_mean_square: distance.root_mean_square(),
+        largest: distance.largest(),
+        largest_percent: percent(distance.largest()),
+        farthest: None,
+    };
+    [forward, backward, both]
+}
+
+/// Returns the length of the diagonal of the box around all vertices.
+fn diagonal(mesh: &PolygonMesh) -> f64 {
+    let bounds = sixfold::spatial::Bounds::from_points(mesh.positions().iter().copied());
+    bounds.extent().length()
+}
+
+fn rows_text(rows: &[Row]) -> String {
+    let header = [
+        "from",
+        "to",
+        "mean",
+        "root mean square",
+        "largest",
+        "% of diagonal",
+        "farthest",
+    ];
+    let mut table = table(header.map(Cell::new).to_vec());
+    for row in rows {
+        let farthest = row.farthest.map(|at| at.map(figure).join(" "));
+        let figures = [
+            row.mean,
+            row.root_mean_square,
+            row.largest,
+            row.largest_percent,
+        ];
+        let names = [&row.from, &row.to].map(|name| Cell::new(sanitize(name)));
+        let figures =
+            figures.map(|value| Cell::new(figure(value)).set_alignment(CellAlignment::Right));
+        let last = Cell::new(farthest.unwrap_or_default());
+        table.add_row(names.into_iter().chain(figures).chain([last]));
+    }
+    table.to_string()
+}
+
+/// Returns a figure with five significant digits.
+fn figure(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let digits = 4 - value.abs().log10().floor() as i32;
+    if (0..12).contains(&digits) {
+        format!("{value:.0$}", digits as usize)
+    } else {
+        format!("{value:.4e}")
+    }
+}

@@ -1,0 +1,53 @@
+//! Tests of `sixfold distance`: figures, JSON, refusals.
+
+use serde_json::Value;
+
+use crate::bad_input::assert_refused;
+use crate::run::{Sixfold, run_ok};
+
+/// Two unit squares, one cut in two triangles and 0.5 above the other.
+const LOW: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+const HIGH: &str = "v 0 0 0.5\nv 1 0 0.5\nv 1 1 0.5\nv 0 1 0.5\nf 1 2 3\nf 1 3 4\n";
+
+#[test]
+fn parallel_squares_have_one_distance() {
+    let sixfold = Sixfold::new();
+    sixfold.file("low.obj", LOW);
+    sixfold.file("high.obj", HIGH);
+    let run = run_ok(
+        &sixfold,
+        &["distance", "low.obj", "high.obj", "--samples", "500"],
+    );
+    // Nine distances and a farthest point. The diagonal of the first square is 1.4142.
+    assert_eq!(run.stdout.matches("0.50000").count(), 10, "{}", run.stdout);
+    assert_eq!(run.stdout.matches("35.355").count(), 3, "{}", run.stdout);
+    let arguments = ["distance", "low.obj", "high.obj", "--json", "-"];
+    let rows: Value = serde_json::from_str(&run_ok(&sixfold, &arguments).stdout).expect("JSON");
+    let rows = rows.as_array().expect("rows");
+    assert_eq!(rows.len(), 3);
+    for row in rows {
+        assert_eq!(
+            (row["mean"].as_f64(), row["largest"].as_f64()),
+            (Some(0.5), Some(0.5))
+        );
+    }
+    assert_eq!(rows[0]["farthest"][2], 0.0);
+    assert_eq!(rows[1]["farthest"][2], 0.5);
+}
+
+#[test]
+fn meshes_without_faces_and_bad_counts_are_refused() {
+    let sixfold = Sixfold::new();
+    sixfold.file("low.obj", LOW);
+    sixfold.file("points.obj", "v 0 0 0\nv 1 0 0\n");
+    assert_refused(
+        &sixfold,
+        &["distance", "low.obj", "points.obj"],
+        2,
+        "no faces",
+    );
+    for samples in ["0", "-1", "4294967296", "many"] {
+        let arguments = ["distance", "low.obj", "low.obj", "--samples", samples];
+        assert_refused(&sixfold, &arguments, 2, "from 1 to 4294967295");
+    }
+}

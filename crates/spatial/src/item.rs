@@ -1,0 +1,216 @@
+//! The items of an index: vertices with their positions, and the triangles of faces.
+
+use glam::{DVec3, Vec3};
+use sixfold_core::{FaceId, MAX_ROWS, MeshQuery, PolygonMesh, VertexId, row};
+
+use crate::bounds::Bounds;
+use crate::error::SpatialError;
+
+/// An element that an index stores: it has a bounding box.
+pub trait Item: Copy + Send + Sync {
+    /// Returns the smallest box around the item.
+    fn bounds(&self) -> Bounds;
+
+    /// Returns whether all coordinates are finite.
+    fn is_finite(&self) -> bool;
+}
+
+/// A vertex and its position. `V` is any name with an order, usually the handle of a structure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VertexPoint<V> {
+    /// The name of the vertex.
+    pub vertex: V,
+    /// Its position.
+    pub position: Vec3,
+}
+
+impl<V: Copy + Send + Sync> Item for VertexPoint<V> {
+    #[inline]
+    fn bounds(&self) -> Bounds {
+        Bounds {
+            low: self.position,
+            high: self.position,
+        }
+    }
+
+    #[inline]
+    fn is_finite(&self) -> bool {
+        self.position.is_finite()
+    }
+}
+
+/// A triangle of a face. A polygon has several: the fan from its first corner. `F` is any name with
+/// an order, usually the handle of a structure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FaceTriangle<F> {
+    /// The name of the face.
+    pub face: F,
+    /// The corners, in the order of the face.
+    pub corners: [Vec3; 3],
+}
+
+impl<F> FaceTriangle<F> {
+    /// Returns the corners in double precision.
+    #[inline]
+    pub fn corners_f64(&self) -> [DVec3; 3] {
+        self.corners.map(|corner| corner.as_dvec3())
+    }
+
+    /// Returns the normal, to the side from which the corners run counter-clockwise. Its length is
+    /// twice the area.
+    #[inline]
+    pub fn normal(&self) -> DVec3 {
+        let [a, b, c] = self.corners_f64();
+        (b - a).cross(c - a)
+    }
+
+    /// Returns the area.
+    #[inline]
+    pub fn area(&self) -> f64 {
+        0.5 * self.normal().length()
+    }
+}
+
+impl<F: Copy + Send + Sync> Item for FaceTriangle<F> {
+    #[inline]
+    fn bounds(&self) -> Bounds {
+        let [a, b, c] = self.corners;
+        Bounds {
+            low: a.min(b).min(c),
+            high: a.max(b).max(c),
+        }
+    }
+
+    #[inline]
+    fn is_finite(&self) -> bool {
+        self.corners.iter().all(|corner| corner.is_finite())
+    }
+}
+
+/// Returns the vertices of `mesh`, isolated vertices included, in the order of `vertices()`;
+/// O(vertices).
+///
+/// # Errors
+///
+/// [`SpatialError::PositionNotFinite`] for the first vertex without a finite position.
+pub fn vertex_points<M: MeshQuery>(mesh: &M) -> Result<Vec<VertexPoint<M::Vertex>>, SpatialError> {
+    let points = mesh.vertices().map(|vertex| VertexPoint {
+        vertex,
+        position: mesh.position(vertex),
+    });
+    finite_points(points)
+}
+
+/// Returns the vertices of `polygons`, isolated vertices included, in their order; O(vertices).
+///
+/// # Errors
+///
+/// [`SpatialError::PositionNotFinite`] for the first vertex without a finite position.
+pub fn polygon_points(polygons: &PolygonMesh) -> Result<Vec<VertexPoint<VertexId>>, SpatialError> {
+    let points = polygons.vertices().map(|vertex| VertexPoint {
+        vertex,
+        position: polygons.position(vertex),
+    });
+    finite_points(points)
+}
+
+fn finite_points<V: Copy + Send + Sync>(
+    points: impl Iterator<Item = VertexPoint<V>>,
+) -> Result<Vec<VertexPoint<V>>, SpatialError> {
+    let points: Vec<VertexPoint<V>> = points.collect();
+    match points.iter().position(|point| !point.is_finite()) {
+        Some(index) => Err(position_not_finite(index, points[index].position)),
+        None => Ok(points),
+    }
+}
+
+fn position_not_finite(vertex: usize, position: Vec3) -> SpatialError {
+    SpatialError::PositionNotFinite {
+        vertex: VertexId::new(row(vertex)),
+        position: position.to_array(),
+    }
+}
+
+/// Returns the triangles of the faces of `mesh`, in the order of `faces()`; O(corners).
+///
+/// A polygon is cut into the fan from its first corner. For convex planar polygons the fan is the
+/// polygon; for other polygons the fan *is* the surface that the queries see.
+///
+/// # Errors
+///
+/// [`SpatialError::PositionNotFinite`] for the first vertex without a finite position, if it is a
+/// corner of a face.
+pub fn face_triangles<M: MeshQuery>(mesh: &M) -> Result<Vec<FaceTriangle<M::Face>>, SpatialError> {
+    let mut triangles = Vec::with_capacity(mesh.face_count());
+    mesh.faces().for_each(|face| {
+        let corners = mesh.face_vertices(face).map(|v| mesh.position(v));
+        push_fan(&mut triangles, face, corners);
+    });
+    let positions = || mesh.vertices().map(|v| mesh.position(v));
+    finite_triangles(triangles, positions)
+}
+
+/// Returns the triangles of the faces of `polygons`, in their order, as [`face_triangles`] does;
+/// O(corners).
+///
+/// # Errors
+///
+/// [`SpatialError::PositionNotFinite`] for the first vertex without a finite position, if it is a
+/// corner of a face.
+pub fn polygon_triangles(
+    polygons: &PolygonMesh,
+) -> Result<Vec<FaceTriangle<FaceId>>, SpatialError> {
+    let mut triangles = Vec::with_capacity(polygons.face_count());
+    for (face, corners) in polygons.faces().iter() {
+        let corners = corners.iter().map(|&v| polygons.position(v));
+        push_fan(&mut triangles, face, corners);
+    }
+    finite_triangles(triangles, || polygons.positions().iter().copied())
+}
+
+/// Appends the fan of triangles from the first of `corners`.
+#[inline]
+fn push_fan<F: Copy>(
+    triangles: &mut Vec<FaceTriangle<F>>,
+    face: F,
+    mut corners: impl Iterator<Item = Vec3>,
+) {
+    let (Some(first), Some(mut before)) = (corners.next(), corners.next()) else {
+        return; // unreachable: a face has at least three corners
+    };
+    for corner in corners {
+        triangles.push(FaceTriangle {
+            face,
+            corners: [first, before, corner],
+        });
+        before = corner;
+    }
+}
+
+fn finite_triangles<F: Copy + Send + Sync, P: Iterator<Item = Vec3>>(
+    triangles: Vec<FaceTriangle<F>>,
+    positions: impl Fn() -> P,
+) -> Result<Vec<FaceTriangle<F>>, SpatialError> {
+    if let Some(item) = triangles.iter().position(|t| !t.is_finite()) {
+        let vertex = positions().enumerate().find(|(_, p)| !p.is_finite());
+        return Err(match vertex {
+            Some((vertex, position)) => position_not_finite(vertex, position),
+            None => SpatialError::ItemNotFinite { item },
+        });
+    }
+    Ok(triangles)
+}
+
+/// Checks that `items` can be numbered, and that all of them are finite.
+pub(crate) fn check_items<I: Item>(items: &[I]) -> Result<(), SpatialError> {
+    if items.len() > MAX_ROWS {
+        return Err(SpatialError::TooManyItems {
+            items: items.len(),
+            limit: MAX_ROWS,
+        });
+    }
+    match items.iter().position(|item| !item.is_finite()) {
+        Some(item) => Err(SpatialError::ItemNotFinite { item }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,4 @@
+#![no_main]
+//! Reads the input as a file whose name ends in `ply`.
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| sixfold_fuzz::read("a.ply", bytes));

@@ -1,0 +1,4 @@
+#![no_main]
+//! Reads the input as a file whose name ends in `stl`.
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| sixfold_fuzz::read("a.stl", bytes));
