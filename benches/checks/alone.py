@@ -47,7 +47,7 @@ def studied(sixfold, mesh, budget, operations, seed, folder):
     out = folder / "study.json"
     lines([sixfold, "study", mesh, "--budget", f"{budget}s", "--seed", str(seed), "--json", out,
            "--backends", ",".join(STRUCTURES), "--operations", ",".join(operations)])
-    rows = json.loads(out.read_text())["results"]
+    rows = json.loads(out.read_text())["findings"][0]["results"]
     # A single sample is nearly a warm-up run, so its time cannot be compared.
     return {(r["operation"], r["backend"]): r["median_ns"] for r in rows
             if r["median_ns"] and r["samples"] > 1}

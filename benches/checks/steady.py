@@ -40,7 +40,7 @@ def main():
         for study in range(chosen.times):
             subprocess.run([chosen.sixfold, "study", mesh, "--budget", chosen.budget, "--backends", STRUCTURES,
                             "--heap", chosen.heap, "--json", out], check=True, capture_output=True)
-            report = json.loads(out.read_text())
+            [report] = json.loads(out.read_text())["findings"]
             beyond = []
             for row in report["control"]["operations"]:
                 limit = 1.10 if row["operation"].startswith(MAKES) else 1.05
@@ -54,7 +54,7 @@ def main():
             faults += sum(row["faults"] or 0 for row in measured)
             for row in measured:
                 figures.setdefault((row["operation"], row["backend"]), []).append(row["ns_per_element"])
-            load = report["environment"]["load_average"]
+            load = report["start"]["load_average"]
             print(f"{study + 1}: control within its limits" if not beyond else f"{study + 1}: control: {', '.join(beyond)}",
                   f"(load {load:.2f}; {wide[-1]} of {len(known)} intervals wide)", flush=True)
     spread = {cell: max(values) / min(values) for cell, values in figures.items()}

@@ -245,7 +245,7 @@ def check_roofline(figure, why):
 
 
 def check_memory(figure, study):
-    columns = {n: c for n, c in study["backends"].items() if c["tables"]}
+    columns = {c["name"]: c for c in study["backends"] if c["tables"]}
     vertices = study["mesh"]["vertices"]
     shown, heights = {}, {}
     for mark in figure["marks"]:
@@ -268,13 +268,19 @@ def check_break_even(figure, columns):
     assert figure["rows"] <= len(columns), figure
 
 
+def of_kind(results, kind):
+    """Returns the findings of one command. A study has its mesh as `mesh`."""
+    found = [finding for finding in results["findings"] if finding["kind"] == kind]
+    return [{**one, "mesh": results["meshes"][one["meshes"][0]] if one["meshes"] else None} for one in found]
+
+
 def check(figure, results):
     """Compares one figure with the data."""
-    studies, labs, kind = results["studies"], results["labs"], figure["id"]
+    studies, kind = of_kind(results, "study"), figure["id"]
     lab = re.match(r"(orders|growth|roofline|pick)(?:-(\d+))?(?:-|$)", kind)
     if lab:
-        name = {"roofline": "why", "pick": "picks"}.get(lab.group(1), lab.group(1))
-        lab = labs[name][int(lab.group(2) or 1) - 1]
+        name = {"roofline": "why"}.get(lab.group(1), lab.group(1))
+        lab = of_kind(results, name)[int(lab.group(2) or 1) - 1]
     if kind.startswith("orders"):
         return check_orders(figure, lab)
     if kind.startswith("growth"):
@@ -285,14 +291,14 @@ def check(figure, results):
         return check_break_even(figure, [row["backend"] for row in lab["ranking"]])
     if kind.startswith("pick"):
         return check_ranking(figure, lab["ranking"], lab["workload"]["name"])
-    pooled = len(results["meshes"]) > 1 and not figure["mesh"]
+    pooled = len(results["planned"]) > 1 and not figure["mesh"]
     if pooled:
-        rows = results["groups"][0]["pooled"]
+        rows = results["pool"]["groups"][0]["pooled"]
         columns = list(dict.fromkeys(row["backend"] for row in rows))
     else:
         [study] = [s for s in studies if s["mesh"]["name"] == figure["mesh"]] if figure["mesh"] else studies
         rows = study["results"]
-        columns = [name for name, column in study["backends"].items() if column["holds"]]
+        columns = [column["name"] for column in study["backends"] if column["holds"]]
     if kind.startswith("ranking-"):
         operation = operation_of(figure, "ranking")
         rows = [row for row in rows if row["operation"] == operation and row["ratio_to_best"]]
@@ -327,9 +333,9 @@ def main():
             # The file of the figure must be valid XML, which is stricter than HTML.
             xml.etree.ElementTree.parse(folder / "figures" / f"{figure['id']}.svg")
         kinds = {re.sub(r"-.*", "", figure["id"]) for figure in figures}
-        expected = {name for name in ("orders", "growth") if results["labs"][name]}
-        expected |= {"roofline"} if results["labs"]["why"] else set()
-        expected |= {"ranking", "heat"} if results["studies"] else set()
+        expected = {name for name in ("orders", "growth") if of_kind(results, name)}
+        expected |= {"roofline"} if of_kind(results, "why") else set()
+        expected |= {"ranking", "heat"} if of_kind(results, "study") else set()
         assert expected <= kinds, f"{expected - kinds} is missing"
 
         # On a phone, the page must not be wider than the screen; wide figures scroll in their boxes.

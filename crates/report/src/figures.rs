@@ -114,7 +114,7 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
         sections.push(Section {
             title: format!("Effect of the order in memory: {}", orders.mesh.name),
             facts: facts(&orders.mesh),
-            sentences: orders.sentences.clone(),
+            sentences: [&orders.sentences[..], &orders.warnings].concat(),
             figures: orders::from_orders(
                 orders,
                 &numbered_id("orders", i),
@@ -132,7 +132,7 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
         sections.push(Section {
             title: format!("How costs grow: {}, order {}", growth.shape, growth.order),
             facts: sizes,
-            sentences: growth.sentences.clone(),
+            sentences: [&growth.sentences[..], &growth.warnings].concat(),
             figures: growth::from_growth(
                 growth,
                 &numbered_id("growth", i),
@@ -146,7 +146,7 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
         sections.extend(figure.map(|figure| Section {
             title: format!("Limiting factors of the queries on {}", why.mesh.name),
             facts: facts(&why.mesh),
-            sentences: Vec::new(),
+            sentences: why.warnings.clone(),
             figures: vec![figure],
         }));
     }

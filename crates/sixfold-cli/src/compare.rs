@@ -88,6 +88,9 @@ fn name(measurement: &Measurement) -> String {
     format!("{} on {}", measurement.operation, measurement.backend)
 }
 
+/// A title, and the part of a measurement that a column shows.
+type PlaceColumn = (&'static str, fn(&Measurement) -> &str);
+
 fn changes_table(rows: &[&Change]) -> String {
     let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
     // A column with one value for all rows says nothing.
@@ -96,7 +99,7 @@ fn changes_table(rows: &[&Change]) -> String {
         let first = values.next();
         values.any(|value| Some(value) != first)
     };
-    let columns: [(&str, fn(&Measurement) -> &str); 3] = [
+    let columns: [PlaceColumn; 3] = [
         ("mesh", |m| &m.mesh),
         ("command", |m| m.kind),
         ("case", |m| &m.case),

@@ -20,6 +20,7 @@ mod render;
 mod repair;
 mod reports;
 mod run;
+mod schema;
 mod subdivision;
 mod user_files;
 mod why;

@@ -11,19 +11,18 @@
 //! last round, operations that allocate are also measured on fresh memory pages.
 
 use std::hint::black_box;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::sync::atomic::Ordering;
 
 use rand::RngExt;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
 use crate::engine::disturbance::{DisturbanceDetector, Verdict, undisturbed};
-use crate::engine::heap::Memory;
 use crate::engine::statistics::Median;
+use crate::engine::trial::Trial;
 use sixfold_workload::Operation;
+use sixfold_workload::Time;
 use sixfold_workload::pages;
-use sixfold_workload::{Clock, Time};
 use sixfold_workload::{
     Job, MIN_TIMED_NS, Outcome, Run, Series, Start, Task, TimedBackend, exceeds_second_level,
 };
@@ -209,41 +208,32 @@ pub(crate) fn entries_of(subjects: usize, operations: &[Operation]) -> Vec<Entry
     operations.iter().flat_map(of_operation).collect()
 }
 
-/// The measurement of several subjects, with its clock and budget.
-pub(crate) struct Measurement<'b, 's> {
-    pub(crate) subjects: &'b mut [Box<dyn TimedBackend + 's>],
-    /// Index of the control: a second subject of a backend that is measured twice.
+/// A trial that runs: the trial, its subjects, and the random numbers.
+pub(crate) struct Measurement<'m, 't, 's> {
+    pub(crate) trial: &'m mut Trial<'t>,
+    pub(crate) subjects: &'m mut [Box<dyn TimedBackend + 's>],
+    /// Index of the second copy of the backend that is measured twice.
     pub(crate) control: Option<usize>,
-    /// Numbers of vertices, edges and faces of the mesh.
-    pub(crate) population: [usize; 3],
-    /// Whether some valence or degree is very large. Visiting all neighbours is then as slow as a
-    /// scan.
-    pub(crate) skewed: bool,
-    pub(crate) clock: &'b dyn Clock,
-    pub(crate) memory: &'b mut Memory,
-    pub(crate) budget: Duration,
-    /// Whether the operations were requested by name.
-    pub(crate) named: bool,
     pub(crate) random: ChaCha8Rng,
-    pub(crate) stop: &'b AtomicBool,
-    pub(crate) progress: &'b mut dyn FnMut(Progress<'_>),
 }
 
-impl Measurement<'_, '_> {
+impl Measurement<'_, '_, '_> {
     /// Measures `entries`; those of the same task must be adjacent. Returns early, with the
     /// finished part, if `stop` is set.
     pub(crate) fn measure(&mut self, mut entries: Vec<Entry>) -> Vec<Entry> {
-        let start = self.clock.now().wall_ns;
-        let deadline = start + self.budget.as_nanos() as f64;
+        let start = self.trial.clock.now().wall_ns;
+        let deadline = start + self.trial.budget.as_nanos() as f64;
         // Reserve for the warm-up: its runs may be the only ones that fit the budget.
         let largest = self.subjects.iter().map(|subject| subject.bytes()).max();
-        self.memory.reserve_for(2 * largest.unwrap_or(0) as u64);
+        self.trial
+            .memory
+            .reserve_for(2 * largest.unwrap_or(0) as u64);
         self.warm_up(&mut entries, deadline);
-        self.memory.reserve();
+        self.trial.memory.reserve();
         let allocates = entries.iter().any(|entry| entry.job.task.allocates());
-        let fresh_pages = pages::can_release_pages() && !self.memory.is_cold();
+        let fresh_pages = pages::can_release_pages() && !self.trial.memory.is_cold();
         let for_first_times = match allocates && fresh_pages {
-            true => FIRST_TIMES_SHARE * self.budget.as_nanos() as f64,
+            true => FIRST_TIMES_SHARE * self.trial.budget.as_nanos() as f64,
             false => 0.0,
         };
         self.rounds(&mut entries, start, deadline - for_first_times);
@@ -256,7 +246,7 @@ impl Measurement<'_, '_> {
     }
 
     pub(crate) fn stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
+        self.trial.stop.load(Ordering::Relaxed)
     }
 
     /// Runs `job` `untimed` times without the clock, then `runs` times with the clock.
@@ -270,9 +260,9 @@ impl Measurement<'_, '_> {
         let series = Series {
             untimed,
             runs,
-            start: self.memory.start_of_runs(),
+            start: self.trial.memory.start_of_runs(),
             check,
-            clock: self.clock,
+            clock: self.trial.clock,
         };
         self.subjects[subject].run(job, &series)
     }
@@ -281,15 +271,15 @@ impl Measurement<'_, '_> {
     /// leaves out entries that would exceed the time.
     fn rounds(&mut self, entries: &mut [Entry], start: f64, deadline: f64) {
         let mut groups = groups(entries);
-        let mut detector = DisturbanceDetector::new(self.budget.as_nanos() as f64);
+        let mut detector = DisturbanceDetector::new(self.trial.budget.as_nanos() as f64);
         // First estimate: building and touching a structure takes 1 ns per byte.
         let mut rebuild_ns: f64 = self.subjects.iter().map(|s| s.bytes() as f64).sum();
         let mut rebuilding_ns = 0.0;
         for round in 0..MAX_ROUNDS {
-            self.memory.check_free_memory();
+            self.trial.memory.check_free_memory();
             let costs = entries.iter().filter(|e| takes_part(e, round));
             let cost: f64 = costs.map(|e| e.cost_ns).sum();
-            let now = self.clock.now().wall_ns;
+            let now = self.trial.clock.now().wall_ns;
             let over = now >= deadline || (round > 0 && now + cost > deadline);
             if over || self.stopped() || !entries.iter().any(can_take_part) {
                 return;
@@ -298,7 +288,7 @@ impl Measurement<'_, '_> {
             let affordable = rebuilding_ns + rebuild_ns <= REBUILDING_SHARE * (now - start);
             if round > 0 && in_time && affordable && self.has_room_to_rebuild() {
                 self.rebuild();
-                rebuild_ns = self.clock.now().wall_ns - now;
+                rebuild_ns = self.trial.clock.now().wall_ns - now;
                 rebuilding_ns += rebuild_ns;
             }
             groups.shuffle(&mut self.random);
@@ -316,7 +306,7 @@ impl Measurement<'_, '_> {
                     if self.stopped() {
                         return;
                     }
-                    let now = self.clock.now().wall_ns;
+                    let now = self.trial.clock.now().wall_ns;
                     if now + entry.cost_ns > deadline {
                         continue; // a shorter one may still fit
                     }
@@ -331,7 +321,9 @@ impl Measurement<'_, '_> {
 
     fn has_room_to_rebuild(&self) -> bool {
         let largest = self.subjects.iter().map(|subject| subject.bytes()).max();
-        self.memory.has_room_for(2 * largest.unwrap_or(0) as u64)
+        self.trial
+            .memory
+            .has_room_for(2 * largest.unwrap_or(0) as u64)
     }
 
     /// Builds all structures again, at other addresses. If pages are kept, returns them to the
@@ -343,22 +335,22 @@ impl Measurement<'_, '_> {
             if self.stopped() {
                 return;
             }
-            self.memory.release_pages();
+            self.trial.memory.release_pages();
             let bytes = self.subjects[subject].bytes();
             if exceeds_second_level(bytes) {
-                self.memory.reserve_in_random_order(2 * bytes as u64);
+                self.trial.memory.reserve_in_random_order(2 * bytes as u64);
             }
             let gap: Vec<u8> = Vec::with_capacity(self.random.random_range(0..LARGEST_GAP));
             self.subjects[subject].rebuild();
             drop(black_box(gap));
         }
-        self.memory.reserve();
+        self.trial.memory.reserve();
     }
 
     /// Takes and records a sample, or records a refusal. An external program can refuse at any
     /// time.
     fn sample(&mut self, detector: &mut DisturbanceDetector, entry: &mut Entry, round: u32) {
-        let (stop, kept) = (self.stop, self.memory.keeps_pages());
+        let (stop, kept) = (self.trial.stop, self.trial.memory.keeps_pages());
         let runs = [entry.untimed, entry.runs];
         // Each round continues a mix where the last round ended.
         let job = Job {
@@ -366,7 +358,7 @@ impl Measurement<'_, '_> {
             ..entry.job
         };
         let taken = detector.take_sample(
-            self.clock,
+            self.trial.clock,
             || self.run(entry.subject, &job, runs, false),
             |run| match run.refusal.is_some() || stop.load(Ordering::Relaxed) {
                 true => Verdict::Final,
@@ -400,7 +392,7 @@ impl Measurement<'_, '_> {
         for _ in 0..MAX_FIRST_TIMES {
             entries.shuffle(&mut self.random);
             for entry in &mut entries {
-                let now = self.clock.now().wall_ns;
+                let now = self.trial.clock.now().wall_ns;
                 if self.stopped() {
                     return;
                 }
@@ -410,7 +402,7 @@ impl Measurement<'_, '_> {
                 self.report(1.0, "first times", entry);
                 let series = Series {
                     start: Start::FreshPages,
-                    ..Series::once(self.clock)
+                    ..Series::once(self.trial.clock)
                 };
                 let first = self.subjects[entry.subject].run(&entry.job, &series);
                 let later = self.run(entry.subject, &entry.job, [1, 1], false);
@@ -422,7 +414,7 @@ impl Measurement<'_, '_> {
     }
 
     pub(crate) fn report(&mut self, done: f64, stage: &str, entry: &Entry) {
-        (self.progress)(Progress {
+        (self.trial.progress)(Progress {
             done,
             stage,
             task: entry.name,

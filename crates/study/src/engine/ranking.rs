@@ -21,11 +21,13 @@ pub(crate) struct Rank {
 /// Ranks the backends of one operation by their samples. Each sample has the number of its round. A
 /// backend without samples has the rank `None`.
 ///
-/// The fastest backend has the smallest median. Another backend is tied with it in three cases:
+/// The fastest backend has the smallest median, unless another backend is faster in most of the
+/// rounds. Its ratio is 1, and no ratio is smaller. Another backend is tied with the fastest in
+/// three cases:
 ///
-/// - The interval of the ratio includes 1 or less.
+/// - The 95 % interval of the ratio includes 1.
 /// - The ratio is at most `noise`.
-/// - There are too few samples for an interval, and the ratio is below 2.
+/// - There are fewer than three samples, so there is no interval, and the ratio is below 2.
 pub(crate) fn rank(backends: &[Vec<(u32, Time)>], noise: f64) -> Vec<Option<Rank>> {
     let measured = backends
         .iter()
@@ -69,8 +71,9 @@ pub(crate) fn rank(backends: &[Vec<(u32, Time)>], noise: f64) -> Vec<Option<Rank
 
 /// Returns the index of the fastest backend; `None` if none has samples.
 ///
-/// Begins with the smallest median, and moves on to a backend that is faster in most of the rounds
-/// in common: ratios within rounds hardly depend on drift, but medians over all rounds do.
+/// The search begins with the backend with the smallest median. It goes on to a backend that is
+/// faster in most of the rounds that have samples of both. The speed of the machine may change
+/// between rounds. This affects the medians over all rounds, but hardly the ratios within rounds.
 fn fastest(backends: &[Vec<(u32, Time)>]) -> Option<usize> {
     let median = |samples: &[(u32, Time)]| {
         let median = Median::from_samples(samples.iter().map(|(_, time)| time.ns()));
@@ -93,8 +96,8 @@ fn fastest(backends: &[Vec<(u32, Time)>]) -> Option<usize> {
     Some(best)
 }
 
-/// Returns the median ratio over the rounds in common, or the ratio of the medians if there are no
-/// such rounds. The ratio of a series to itself is exactly 1.
+/// Returns the median ratio over the rounds that have samples of both. If there are no such rounds,
+/// returns the ratio of the medians. The ratio of a series to itself is exactly 1.
 pub(crate) fn ratio(samples: &[(u32, Time)], best: &[(u32, Time)]) -> Option<Median> {
     if samples == best && !samples.is_empty() {
         return Some(Median {

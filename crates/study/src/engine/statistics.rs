@@ -144,7 +144,7 @@ fn without_outliers(samples: &[f64]) -> Option<Vec<f64>> {
     Some(samples.iter().map(nearer).collect())
 }
 
-/// Returns the sorted samples; `None` if there are none.
+/// Returns the samples in ascending order. Returns `None` if there are no samples.
 fn sorted(samples: impl Iterator<Item = f64>) -> Option<Vec<f64>> {
     let mut sorted: Vec<f64> = samples.collect();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -210,8 +210,8 @@ fn resampled_interval(count: usize, mut figure: impl FnMut() -> f64) -> [f64; 2]
     [figures[skipped], figures[RESAMPLES - 1 - skipped]]
 }
 
-/// Returns the part of the resampled means that is left out at each end. It is 2.5 % for many samples, and
-/// less for few samples. The value is Φ(−√(n / (n − 1)) · t). Here t is the 97.5 % quantile of
+/// Returns the part of the resampled means that is left out at each end. This part is 2.5 % for many
+/// samples, and less for few samples. The value is Φ(−√(n / (n − 1)) · t). Here t is the 97.5 % quantile of
 /// Student's distribution with n − 1 degrees of freedom.
 fn tail_probability(count: usize) -> f64 {
     let n = count as f64;

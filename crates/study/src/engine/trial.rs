@@ -95,22 +95,26 @@ impl<'s> Columns<'s> {
 }
 
 impl Trial<'_> {
+    /// Returns the numbers of vertices, edges and faces.
+    pub(crate) fn population(&self) -> [usize; 3] {
+        let Counts {
+            vertices,
+            edges,
+            faces,
+            ..
+        } = self.counts;
+        [vertices, edges, faces]
+    }
+
     /// Measures `entries`, the tasks of `columns`; those of one task must be adjacent. Returns
     /// early, with the finished part, if `stop` is set.
     pub(crate) fn run(&mut self, columns: &mut Columns<'_>, entries: Vec<Entry>) -> Measured {
         let second = columns.control.map(|[_, second]| second);
         let mut measurement = Measurement {
-            control: second,
-            subjects: &mut columns.subjects,
-            population: [self.counts.vertices, self.counts.edges, self.counts.faces],
-            skewed: self.skewed,
-            clock: self.clock,
-            memory: self.memory,
-            budget: self.budget,
-            named: self.named,
             random: ChaCha8Rng::seed_from_u64(self.seed),
-            stop: self.stop,
-            progress: self.progress,
+            trial: self,
+            subjects: &mut columns.subjects,
+            control: second,
         };
         let entries = measurement.measure(entries);
         let control = columns.control.and_then(|[first, second]| {

@@ -174,13 +174,13 @@ impl LabFinding for GrowthReport {
     fn figures(&self) -> Vec<Figure<'_>> {
         let figures = self.sizes.iter().flat_map(|size| {
             size.results.iter().map(|row| {
-                let bytes = size.backend_bytes.iter();
-                let bytes = bytes.filter(|b| b.backend == row.backend).map(|b| b.bytes);
+                let mut bytes = size.backend_bytes.iter();
+                let bytes = bytes.find(|bytes| bytes.backend == row.backend);
                 Figure {
                     mesh: None,
                     elements_of_mesh: [size.vertices, size.edges, size.faces],
                     case: format!("{}, {}, {} faces", self.shape, self.order, size.faces),
-                    backend_bytes: bytes.last(),
+                    backend_bytes: bytes.map(|bytes| bytes.bytes),
                     row: FigureRow::of_result(row),
                     samples: samples_of(&size.samples, row.operation.name(), &row.backend),
                     noise: noise(size.control.as_ref(), row.operation),

@@ -225,7 +225,7 @@ impl LabFinding for Why {
                 true => Status::Sampled,
                 false => Status::Measured,
             };
-            let elements = row.reads.elements as u64;
+            let elements = row.reads.elements;
             let samples = samples_of(&self.samples, operation, &row.backend);
             Some(Figure {
                 mesh: Some(&self.mesh),

@@ -2,17 +2,20 @@
 
 use std::cell::Cell;
 use std::rc::Rc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
-use rand_chacha::rand_core::SeedableRng;
 use sixfold::subdivision::Method;
 use sixfold::{QueryCost, Relation};
 
 use super::*;
 use crate::engine::control::{control, noise};
-use crate::engine::heap::CacheState;
+use crate::engine::heap::{CacheState, Memory};
 use crate::engine::plan::MIN_ELEMENTS;
 use crate::engine::simulated_machine::SimulatedMachine;
 use crate::engine::statistics::Median;
+use crate::engine::trial::Columns;
+use sixfold_core::Counts;
 use sixfold_workload::pages::Policy;
 
 struct Synthetic {
@@ -22,6 +25,20 @@ struct Synthetic {
     costs: [QueryCost; 9],
     most_run: Rc<Cell<usize>>,
     placement: Placement,
+}
+
+impl Synthetic {
+    /// A backend that stays in its place, on a mesh with 10,000 elements of each kind.
+    fn new(machine: &SimulatedMachine, ns_per_element: f64, cost: QueryCost) -> Self {
+        Self {
+            machine: machine.clone(),
+            ns_per_element,
+            elements: 10_000,
+            costs: [cost; 9],
+            most_run: Rc::default(),
+            placement: Placement::default(),
+        }
+    }
 }
 
 #[derive(Clone, Default)]
@@ -98,43 +115,64 @@ fn measure_all(
         QueryCost::Local
     };
     let subject = |&ns_per_element: &f64| {
-        Box::new(Synthetic {
-            machine: machine.clone(),
-            ns_per_element,
-            elements: 10_000,
-            costs: [cost; 9],
-            most_run: Rc::default(),
-            placement: Placement::default(),
-        }) as Box<dyn TimedBackend>
+        Box::new(Synthetic::new(&machine, ns_per_element, cost)) as Box<dyn TimedBackend>
     };
-    let mut subjects: Vec<_> = costs_ns.iter().map(subject).collect();
-    run(&machine, &mut subjects, budget, stop, skewed)
+    let subjects: Vec<_> = costs_ns.iter().map(subject).collect();
+    run(&machine, subjects, budget, stop, skewed)
+}
+
+/// The limits of a trial on a mesh with 10,000 elements of each kind.
+#[derive(Clone, Copy)]
+struct Limits {
+    budget: Duration,
+    stop: bool,
+    skewed: bool,
+    named: bool,
+}
+
+fn run_trial(
+    machine: &SimulatedMachine,
+    subjects: Vec<Box<dyn TimedBackend>>,
+    operations: &[Operation],
+    limits: Limits,
+) -> Vec<Entry> {
+    let mut columns = Columns::new(subjects, Vec::new(), |_| None);
+    let entries = columns.entries(operations);
+    let mut trial = Trial {
+        counts: Counts {
+            vertices: 10_000,
+            edges: 10_000,
+            faces: 10_000,
+            corners: 30_000,
+            uniform: true,
+        },
+        skewed: limits.skewed,
+        clock: machine,
+        memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0),
+        budget: limits.budget,
+        named: limits.named,
+        seed: 3,
+        stop: &AtomicBool::new(limits.stop),
+        progress: &mut |_| (),
+    };
+    trial.run(&mut columns, entries).entries
 }
 
 fn run(
     machine: &SimulatedMachine,
-    subjects: &mut [Box<dyn TimedBackend>],
+    subjects: Vec<Box<dyn TimedBackend>>,
     budget: Duration,
     stop: bool,
     skewed: bool,
 ) -> (Vec<Entry>, Duration) {
-    let stop = AtomicBool::new(stop);
-    let mut measurement = Measurement {
-        subjects,
-        control: None,
-        population: [10_000; 3],
-        skewed,
-        clock: machine,
-        memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0),
-        budget,
-        named: false,
-        random: ChaCha8Rng::seed_from_u64(3),
-        stop: &stop,
-        progress: &mut |_| (),
-    };
     let operations = [VV, Operation::Circulate, Operation::FfBfs];
-    let entries = entries_of(measurement.subjects.len(), &operations);
-    let entries = measurement.measure(entries);
+    let limits = Limits {
+        budget,
+        stop,
+        skewed,
+        named: false,
+    };
+    let entries = run_trial(machine, subjects, &operations, limits);
     (entries, Duration::from_nanos(machine.ns() as u64))
 }
 
@@ -165,20 +203,16 @@ fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget()
         let rebuilt: [Rc<Cell<u32>>; 2] = Default::default();
         let subject = |i: usize, slowdowns: [f64; 2]| {
             Box::new(Synthetic {
-                machine: machine.clone(),
-                ns_per_element: 7.0,
-                elements: 10_000,
-                costs: [QueryCost::Local; 9],
-                most_run: Rc::default(),
                 placement: Placement {
                     rebuild_ns,
                     rebuilt: rebuilt[i].clone(),
                     slowdowns: slowdowns.to_vec(),
                 },
+                ..Synthetic::new(&machine, 7.0, QueryCost::Local)
             }) as Box<dyn TimedBackend>
         };
-        let mut subjects = vec![subject(0, [1.0, 1.2]), subject(1, [1.2, 1.0])];
-        let (entries, elapsed) = run(&machine, &mut subjects, budget, false, false);
+        let subjects = vec![subject(0, [1.0, 1.2]), subject(1, [1.2, 1.0])];
+        let (entries, elapsed) = run(&machine, subjects, budget, false, false);
         (entries, elapsed, rebuilt[0].get())
     };
     let (entries, elapsed, rebuilt) = placed(100_000.0);
@@ -311,27 +345,14 @@ fn scans_are_sampled_or_estimated_to_fit_the_budget() {
 fn long_runs_of_other_backends_leave_time_for_scans() {
     let machine = SimulatedMachine::default();
     let subject = |ns_per_element: f64, cost: QueryCost| {
-        Box::new(Synthetic {
-            machine: machine.clone(),
-            ns_per_element,
-            elements: 10_000,
-            costs: [cost; 9],
-            most_run: Rc::default(),
-            placement: Placement::default(),
-        }) as Box<dyn TimedBackend>
+        Box::new(Synthetic::new(&machine, ns_per_element, cost)) as Box<dyn TimedBackend>
     };
     // The three first runs of the local backend take almost half of the budget.
-    let mut subjects = [
+    let subjects = vec![
         subject(60_000.0, QueryCost::Local),
         subject(1_000.0, QueryCost::Scan),
     ];
-    let (entries, _) = run(
-        &machine,
-        &mut subjects,
-        Duration::from_secs(4),
-        false,
-        false,
-    );
+    let (entries, _) = run(&machine, subjects, Duration::from_secs(4), false, false);
     assert!(entries.iter().all(|entry| entry.refusal.is_none()));
     assert!(
         entries
@@ -397,35 +418,20 @@ fn a_stopped_study_has_no_times_and_a_tiny_budget_has_the_warm_up() {
 #[test]
 fn a_long_subdivision_is_only_estimated_unless_requested_by_name() {
     let machine = SimulatedMachine::default();
-    let stop = AtomicBool::new(false);
     let planned = |ns_per_element: f64, cost: QueryCost, named: bool| {
         let most_run: Rc<Cell<usize>> = Rc::default();
-        let mut subjects: Vec<Box<dyn TimedBackend>> = vec![Box::new(Synthetic {
-            machine: machine.clone(),
-            ns_per_element,
-            elements: 10_000,
-            costs: [cost; 9],
+        let subjects: Vec<Box<dyn TimedBackend>> = vec![Box::new(Synthetic {
             most_run: most_run.clone(),
-            placement: Placement::default(),
+            ..Synthetic::new(&machine, ns_per_element, cost)
         })];
-        let mut measurement = Measurement {
-            subjects: &mut subjects,
-            control: None,
-            population: [10_000; 3],
-            skewed: false,
-            clock: &machine,
-            memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0),
+        let operations = [Operation::CatmullClark(Method::Gather)];
+        let limits = Limits {
             budget: Duration::from_secs(2),
+            stop: false,
+            skewed: false,
             named,
-            random: ChaCha8Rng::seed_from_u64(3),
-            stop: &stop,
-            progress: &mut |_| (),
         };
-        let entries = entries_of(
-            measurement.subjects.len(),
-            &[Operation::CatmullClark(Method::Gather)],
-        );
-        let entries = measurement.measure(entries);
+        let entries = run_trial(&machine, subjects, &operations, limits);
         (entries[0].clone(), most_run.get())
     };
     // A run takes 1 ms, so it takes part in rounds.

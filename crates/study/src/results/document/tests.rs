@@ -7,7 +7,7 @@ use super::*;
 use sixfold_workload::Operation;
 use sixfold_workload::pages::Policy;
 
-use crate::{Settings, Standing, StudyMesh, study};
+use crate::{Samples, Settings, Standing, StudyMesh, study};
 
 /// A study in which the time of half-edge is `ratio` times the time of corner-table.
 fn report(mesh: &str, ratio: f64) -> Report {
@@ -41,6 +41,27 @@ fn report(mesh: &str, ratio: f64) -> Report {
             Standing::Slower
         });
     }
+    report
+}
+
+/// Gives each result three samples, and one result the samples of a control.
+fn with_samples(mut report: Report) -> Report {
+    let samples = |backend: &str, control: bool| Samples {
+        backend: backend.into(),
+        operation: "boundary".into(),
+        control,
+        rounds: vec![0, 1, 2],
+        cpu_ns: Some(vec![10.0, 20.0, 30.0]),
+        wall_ns: vec![11.0, 21.0, 31.0],
+        faults: None,
+        slowdowns: vec![1.0, 1.1, 1.2],
+        first_ns: Vec::new(),
+    };
+    let first = report
+        .results
+        .iter()
+        .map(|row| samples(&row.backend, false));
+    report.samples = first.chain([samples("half-edge", true)]).collect();
     report
 }
 
@@ -191,8 +212,8 @@ fn written_documents_are_read_back_exactly() {
 
 #[test]
 fn tables_have_a_row_for_each_time_and_each_sample() {
-    let mut all = Results::from(report("a, with a comma", 2.0));
-    all.add(report("b", 2.0).into());
+    let mut all = Results::from(with_samples(report("a, with a comma", 2.0)));
+    all.add(with_samples(report("b", 2.0)).into());
     let table = |samples: bool| {
         let mut text = Vec::new();
         match samples {
@@ -223,11 +244,17 @@ fn tables_have_a_row_for_each_time_and_each_sample() {
     let number = |name: &str| -> f64 { row[name].parse().expect(name) };
     let product = number("ns_per_element") * number("elements");
     assert!((number("ns") - product).abs() < 1e-9 * product, "{row:?}");
-    let samples: usize = all
-        .studies()
-        .flat_map(|study| study.results.iter().map(|row| row.samples + row.disturbed))
-        .sum();
-    assert_eq!(table(true).len(), samples);
+    // Three samples of each of the four times; the samples of the control have no rows.
+    let samples = table(true);
+    assert_eq!(samples.len(), 3 * 4);
+    let row = &samples[1];
+    let fields = [
+        "backend", "round", "cpu_ns", "wall_ns", "faults", "slowdown",
+    ];
+    assert_eq!(
+        fields.map(|name| row[name].as_str()),
+        ["half-edge", "1", "20.0", "21.0", "", "1.1"]
+    );
     // Without findings, there is only the header.
     let mut empty = Vec::new();
     Results::default().write_csv(&mut empty).expect("memory");
@@ -273,7 +300,7 @@ fn text_that_is_no_document_is_refused() {
 fn impossible_values_are_refused() {
     let mut negative = report("a", 2.0);
     negative.results[0].median_ns = Some(-1.0);
-    let mut short = report("a", 2.0);
+    let mut short = with_samples(report("a", 2.0));
     short.samples[0].rounds.pop();
     for (study, expected) in [
         (negative, "invalid time or ratio"),
