@@ -1,6 +1,7 @@
 //! Facts of a mesh, and the backends that can hold it.
 
-use sixfold::{BuildError, Facts, PolygonMesh};
+use sixfold::repair::Diagnosis;
+use sixfold::{BuildError, Capabilities, Facts, PolygonMesh};
 use sixfold_core::Counts;
 
 use crate::refusal::Candidate;
@@ -44,10 +45,34 @@ impl StudyMesh {
 /// Checks which backends can hold the mesh, without building the backends. The expected time is
 /// O(corners) per backend.
 pub fn inspect(study_mesh: &StudyMesh, backends: &[Backend]) -> Inspection {
+    // The facts are known already, and enough for most meshes.
+    let facts = &study_mesh.facts;
+    inspect_unless(study_mesh, backends, |own| own.is_satisfied_by(facts))
+}
+
+/// Checks which backends can hold the mesh as [`inspect`] does, in less time. `diagnosis` must be
+/// that of the polygons of `study_mesh`.
+pub fn inspect_diagnosed(
+    study_mesh: &StudyMesh,
+    diagnosis: &Diagnosis,
+    backends: &[Backend],
+) -> Inspection {
+    // A diagnosis has no faults of size. The polygons have no more edges than the file.
+    let edges = study_mesh.facts.edges;
+    inspect_unless(study_mesh, backends, |own| {
+        own.can_name_edges(edges) && diagnosis.refusals(own).next().is_none()
+    })
+}
+
+/// Checks which backends can hold the mesh, except those whose capabilities are known to suffice.
+fn inspect_unless(
+    study_mesh: &StudyMesh,
+    backends: &[Backend],
+    suffices: impl Fn(&Capabilities) -> bool,
+) -> Inspection {
     let candidate = Candidate::from_study_mesh(study_mesh);
     let backends = backends.iter().map(|backend| {
-        // The facts are known already, and enough for most meshes.
-        let verdict = match backend.info.capabilities.is_satisfied_by(&study_mesh.facts) {
+        let verdict = match suffices(&backend.info.capabilities) {
             true => Ok(()),
             false => backend.info.check(&study_mesh.polygons),
         };

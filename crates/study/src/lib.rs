@@ -70,7 +70,7 @@ pub use growth::{
     SCALABLE_SHAPES, ScalableShape, SizeReport, growth, growth_bytes,
 };
 pub use heap::{CacheState, CachesReport, free_memory};
-pub use inspect::{StudyMesh, inspect};
+pub use inspect::{StudyMesh, inspect, inspect_diagnosed};
 pub use labs::Labs;
 pub use measure::Progress;
 pub use orders::{
