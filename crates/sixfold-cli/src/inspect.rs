@@ -4,13 +4,12 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use serde::Serialize;
-use sixfold::repair::Diagnosis;
 use sixfold_study::{Backend, Inspection, inspect_diagnosed};
 
 use crate::arguments::Inspect;
 use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
-use crate::faults_text::Diagnosed;
+use crate::faults_text::{Diagnosed, DiagnosisRecord};
 use crate::load;
 use crate::many::find_meshes;
 use crate::output::{Output, check_outputs, is_stdout};
@@ -22,7 +21,7 @@ use crate::text::{TextOutput, print_stderr};
 struct Inspected {
     #[serde(flatten)]
     inspection: Inspection,
-    diagnosis: Diagnosis,
+    diagnosis: DiagnosisRecord,
 }
 
 /// Inspects the meshes. If there are several, continues after a mesh that cannot be read.
@@ -93,6 +92,7 @@ fn inspect(path: &Path, triangulate: bool, text: &mut TextOutput) -> Result<Insp
     text.print_line(&verdicts_text(&inspection.mesh, &inspection.backends));
     text.print_line("");
     text.print_line(&diagnosed.text());
+    let diagnosis = diagnosed.record();
     Ok(Inspected {
         inspection,
         diagnosis,

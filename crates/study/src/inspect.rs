@@ -70,11 +70,26 @@ fn inspect_unless(
     backends: &[Backend],
     suffices: impl Fn(&Capabilities) -> bool,
 ) -> Inspection {
+    let polygons = &study_mesh.polygons;
     let candidate = Candidate::from_study_mesh(study_mesh);
+    let only_triangles = polygons.first_polygon().is_none();
+    let mut checked: Vec<(Capabilities, Result<(), BuildError>)> = Vec::new();
     let backends = backends.iter().map(|backend| {
-        let verdict = match suffices(&backend.info.capabilities) {
-            true => Ok(()),
-            false => backend.info.check(&study_mesh.polygons),
+        let own = backend.info.capabilities;
+        // Backends with the same capabilities have the same verdict, and a mesh of triangles needs no
+        // polygons.
+        let needed = Capabilities {
+            polygons: own.polygons || only_triangles,
+            ..own
+        };
+        let verdict = if suffices(&own) {
+            Ok(())
+        } else if let Some((_, known)) = checked.iter().find(|(other, _)| *other == needed) {
+            known.clone()
+        } else {
+            let verdict = needed.check(polygons);
+            checked.push((needed, verdict.clone()));
+            verdict
         };
         unbuilt(backend, &candidate, verdict)
     });
