@@ -5,6 +5,7 @@ use rustc_hash::FxHashMap;
 use crate::Point;
 use crate::error::BuildError;
 use crate::facts::Facts;
+use crate::fans::Fans;
 use crate::incidence::Incidence;
 use crate::pairing::{MAX_CORNERS, MAX_EDGES};
 use crate::polygon_mesh::PolygonMesh;
@@ -85,7 +86,7 @@ impl Capabilities {
                 check_orientation(&incidence)?;
             }
             if !self.non_manifold_vertices {
-                check_vertices(polygons, &incidence)?;
+                check_vertices(&incidence)?;
             }
         }
         if !self.isolated_vertices {
@@ -102,14 +103,22 @@ impl Capabilities {
     /// non-manifold edges, nor about equal coordinates.
     pub fn is_satisfied_by(&self, facts: &Facts) -> bool {
         let most_corners = facts.face_degree.as_ref().map_or(0, |degree| degree.max);
-        let fits = facts.edges <= MAX_EDGES && 2 * facts.edges <= MAX_CORNERS;
-        fits && facts.degenerate_faces == 0
+        self.can_name_edges(facts.edges)
+            && facts.degenerate_faces == 0
             && facts.non_manifold_edges == 0
             && (self.polygons || most_corners <= 3)
             && (self.non_manifold_vertices || facts.non_manifold_vertices == 0)
             && (self.inconsistent_orientation || facts.inconsistent_edges == 0)
             && (self.isolated_vertices || facts.isolated_vertices == 0)
             && self.coincident_vertices
+    }
+
+    /// Returns whether the handles of a structure with these capabilities can name `edges` edges and
+    /// their sides, if each edge has at most two faces; O(1).
+    pub fn can_name_edges(&self, edges: usize) -> bool {
+        let is_unlimited =
+            self.inconsistent_orientation && self.non_manifold_edges && self.non_manifold_vertices;
+        is_unlimited || (edges <= MAX_EDGES && 2 * edges <= MAX_CORNERS)
     }
 
     /// Returns the error that a constructor must return after it has found a fault in `polygons`.
@@ -136,22 +145,21 @@ fn check_triangles(polygons: &PolygonMesh) -> Result<(), BuildError> {
     }
 }
 
-fn check_edges(incidence: &Incidence) -> Result<(), BuildError> {
-    match incidence.edges().find(|edge| edge.sides.len() > 2) {
+fn check_edges(incidence: &Incidence<'_>) -> Result<(), BuildError> {
+    match incidence.edges().find(|edge| edge.len() > 2) {
         Some(edge) => Err(BuildError::NonManifoldEdge {
             vertices: edge.ends,
-            faces: edge.sides.iter().map(|side| side.face).collect(),
+            faces: edge.sides().map(|side| side.face).collect(),
         }),
         None => Ok(()),
     }
 }
 
-fn check_orientation(incidence: &Incidence) -> Result<(), BuildError> {
+fn check_orientation(incidence: &Incidence<'_>) -> Result<(), BuildError> {
     for edge in incidence.edges() {
-        for (i, later) in edge.sides.iter().enumerate() {
-            let earlier = edge.sides[..i]
-                .iter()
-                .find(|s| s.downward == later.downward);
+        for (i, later) in edge.sides().enumerate() {
+            let mut earlier = edge.sides().take(i);
+            let earlier = earlier.find(|s| s.downward == later.downward);
             if let Some(earlier) = earlier {
                 let [low, high] = edge.ends;
                 let (from, to) = if later.downward {
@@ -172,8 +180,8 @@ fn check_orientation(incidence: &Incidence) -> Result<(), BuildError> {
     Ok(())
 }
 
-fn check_vertices(polygons: &PolygonMesh, incidence: &Incidence) -> Result<(), BuildError> {
-    let faults = incidence.several_fans(polygons.faces());
+fn check_vertices(incidence: &Incidence<'_>) -> Result<(), BuildError> {
+    let faults = Fans::new(incidence).several();
     match faults.into_iter().min_by_key(|&(vertex, _)| vertex) {
         Some((vertex, [first, second])) => Err(BuildError::NonManifoldVertex {
             vertex,

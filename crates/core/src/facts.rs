@@ -3,12 +3,16 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use crate::classes::Classes;
 use crate::error::PolygonError;
 use crate::face_list::FaceList;
 use crate::faces_by_lowest::FacesByLowest;
-use crate::incidence::{Incidence, corners_at_ends};
+use crate::fans::Fans;
+use crate::incidence::Incidence;
 use crate::partition::Partition;
 use crate::polygon_mesh::{PolygonMesh, repeated};
+use crate::row_id::FaceId;
+use crate::threads::join;
 
 /// Topological properties of a list of faces, computed without a mesh data structure.
 ///
@@ -99,9 +103,17 @@ type Histogram = serde_with::As<Option<BTreeMap<serde_with::DisplayFromStr, serd
 impl Distribution {
     fn from_values(values: impl Iterator<Item = usize>) -> Option<Self> {
         let mut hist = BTreeMap::new();
+        // Most values equal the value before them.
+        let mut run = (0, 0);
         for value in values {
-            *hist.entry(value).or_insert(0_usize) += 1;
+            if value != run.0 {
+                *hist.entry(run.0).or_insert(0_usize) += run.1;
+                run = (value, 0);
+            }
+            run.1 += 1;
         }
+        *hist.entry(run.0).or_insert(0) += run.1;
+        hist.retain(|_, &mut times| times > 0);
         let count: usize = hist.values().sum();
         let sum: f64 = hist
             .iter()
@@ -117,14 +129,24 @@ impl Distribution {
 }
 
 impl Facts {
-    /// Returns the topological properties of a polygon mesh; O(corners) expected.
+    /// Returns the topological properties of a polygon mesh; O(n log n) for n corners.
     pub fn from_polygons(polygons: &PolygonMesh) -> Self {
-        let (vertices, faces) = (polygons.vertex_count(), polygons.faces());
-        let mut named = vec![false; vertices];
+        let faces = polygons.faces();
+        let incidence = Incidence::new(polygons.vertex_count(), faces, |_| true);
+        Self::from_fans(&Fans::new(&incidence))
+    }
+
+    /// Returns the topological properties of the polygon mesh whose fans are known; O(n log n) for n
+    /// corners. The incidence of the fans must have the sides of all faces of a [`PolygonMesh`].
+    ///
+    /// With the feature `rayon`, runs on two threads.
+    pub fn from_fans(fans: &Fans<'_>) -> Self {
+        let faces = fans.incidence().faces();
+        let mut named = vec![false; fans.incidence().vertex_count()];
         for vertex in faces.corners() {
             named[vertex.index()] = true;
         }
-        EdgePass::new(vertices, faces, &vec![true; faces.len()]).facts(&named)
+        FaceFacts::new(fans, None).facts(&named)
     }
 
     /// Returns the topological properties of a list of faces; O(corners) expected. The faces may be
@@ -150,173 +172,205 @@ impl Facts {
             .iter()
             .map(|(_, f)| f.len() >= 3 && repeated(f).is_none())
             .collect();
-        Ok(EdgePass::new(vertices, faces, &used).facts(&named))
+        let incidence = Incidence::new(vertices, faces, |f| used[f.index()]);
+        Ok(FaceFacts::new(&Fans::new(&incidence), Some(&used)).facts(&named))
     }
 }
 
-struct EdgePass<'a> {
-    faces: &'a FaceList,
-    used: &'a [bool],
+/// What the facts are computed from.
+struct FaceFacts<'a> {
+    fans: &'a Fans<'a>,
+    /// By face: whether it is not degenerate; `None` if no face is.
+    used: Option<&'a [bool]>,
+    edges: EdgeFacts,
+    /// The number of classes of faces that are connected by shared edges. Each unused face is a
+    /// class of its own.
+    components: usize,
+    duplicate_faces: usize,
+}
+
+/// Numbers of edges.
+struct EdgeFacts {
     edges: usize,
     boundary_edges: usize,
     non_manifold_edges: usize,
     inconsistent_edges: usize,
-    orientable: bool,
-    /// Sets of faces that are connected by shared edges. Each unused face is a set of its own.
-    components: Partition,
-    /// Sets of corners in the same fan. Each corner of an unused face is a set of its own.
-    fans: Partition,
     /// The two fans at the ends of each boundary edge.
-    boundary_fans: Vec<[usize; 2]>,
+    boundary_fans: Vec<[u32; 2]>,
     /// By vertex: the number of edges that end there.
-    valence: Vec<usize>,
+    valence: Vec<u32>,
     /// By vertex: whether a non-manifold edge ends there.
     on_non_manifold_edge: Vec<bool>,
 }
 
-impl<'a> EdgePass<'a> {
-    fn new(vertices: usize, faces: &'a FaceList, used: &'a [bool]) -> Self {
-        let incidence = Incidence::new(vertices, faces, |f| used[f.index()]);
-        let mut pass = Self {
-            faces,
-            used,
+impl EdgeFacts {
+    fn new(fans: &Fans<'_>) -> Self {
+        let incidence = fans.incidence();
+        let vertices = incidence.vertex_count();
+        let mut facts = Self {
             edges: 0,
             boundary_edges: 0,
             non_manifold_edges: 0,
             inconsistent_edges: 0,
-            orientable: true,
-            components: Partition::new(faces.len()),
-            fans: incidence.fans(faces),
             boundary_fans: Vec::new(),
             valence: vec![0; vertices],
             on_non_manifold_edge: vec![false; vertices],
         };
-        // For each edge with two faces: whether exactly one of the two faces must be flipped.
-        let mut flipped = Partition::new(faces.len());
         for edge in incidence.edges() {
-            pass.edges += 1;
+            facts.edges += 1;
             for v in edge.ends {
-                pass.valence[v.index()] += 1;
-                pass.on_non_manifold_edge[v.index()] |= edge.sides.len() > 2;
+                facts.valence[v.index()] += 1;
             }
-            for pair in edge.sides.windows(2) {
-                pass.components
-                    .join(pair[0].face.index(), pair[1].face.index());
-            }
-            match edge.sides {
-                [side] => {
-                    pass.boundary_edges += 1;
-                    let ends = corners_at_ends(side, faces);
-                    let fans = ends.map(|corner| pass.fans.root(corner).0);
-                    pass.boundary_fans.push(fans);
+            match edge.len() {
+                1 => {
+                    facts.boundary_edges += 1;
+                    let corners = incidence.corners_at_ends(edge.first());
+                    facts.boundary_fans.push(corners.map(|c| fans.root(c)));
                 }
-                [a, b] => {
-                    let same = a.downward == b.downward;
-                    pass.inconsistent_edges += usize::from(same);
-                    pass.orientable &= flipped.relate(a.face.index(), b.face.index(), same);
+                2 => facts.inconsistent_edges += usize::from(edge.downward() != 1),
+                _ => {
+                    facts.non_manifold_edges += 1;
+                    for v in edge.ends {
+                        facts.on_non_manifold_edge[v.index()] = true;
+                    }
                 }
-                _ => pass.non_manifold_edges += 1,
             }
         }
-        pass
-    }
-
-    fn facts(mut self, named: &[bool]) -> Facts {
-        let faces = self.faces;
-        let used_faces = self.used.iter().filter(|&&used| used).count();
-        let used_vertices = self.valence.iter().filter(|&&valence| valence > 0).count();
-        let components = self.components.classes() - (faces.len() - used_faces);
-        let unused_corners: usize = faces
-            .iter()
-            .filter(|(f, _)| !self.used[f.index()])
-            .map(|(_, c)| c.len())
-            .sum();
-        let fans = self.fans.classes() - unused_corners;
-        let polygons = faces.iter().filter(|(_, face)| face.len() >= 3);
-        let boundary_loops = (self.non_manifold_edges == 0).then(|| self.boundary_loops());
-        let has_faces = used_faces > 0;
-        let signed = |count: usize| i64::try_from(count).expect("counts fit");
-        let genus = boundary_loops
-            .filter(|_| has_faces && self.orientable)
-            .map(|loops| {
-                let characteristic = signed(fans) - signed(self.edges) + signed(used_faces);
-                (2 * signed(components) - characteristic - signed(loops)) / 2
-            });
-        Facts {
-            vertices: named.len(),
-            edges: self.edges,
-            faces: polygons.clone().count(),
-            euler_characteristic: signed(used_vertices) - signed(self.edges) + signed(used_faces),
-            components,
-            boundary_edges: self.boundary_edges,
-            boundary_loops,
-            non_manifold_edges: self.non_manifold_edges,
-            non_manifold_vertices: self.non_manifold_vertices(),
-            inconsistent_edges: self.inconsistent_edges,
-            consistently_oriented: has_faces.then_some(self.inconsistent_edges == 0),
-            orientable: has_faces.then_some(self.orientable),
-            closed: has_faces && self.boundary_edges == 0,
-            genus,
-            isolated_vertices: named.iter().filter(|&&named| !named).count(),
-            duplicate_faces: self.duplicate_faces(),
-            degenerate_faces: faces.len() - used_faces,
-            valence: Distribution::from_values(
-                self.valence.iter().copied().filter(|&valence| valence > 0),
-            ),
-            face_degree: Distribution::from_values(polygons.map(|(_, face)| face.len())),
-        }
+        facts
     }
 
     /// Returns the number of sets of fans that are joined by boundary edges.
     fn boundary_loops(&self) -> usize {
-        let mut fans: Vec<usize> = self.boundary_fans.iter().flatten().copied().collect();
+        let mut fans: Vec<u32> = self.boundary_fans.iter().flatten().copied().collect();
         fans.sort_unstable();
         fans.dedup();
-        let mut loops = Partition::new(fans.len());
+        let mut loops = Classes::new(fans.len());
         for ends in &self.boundary_fans {
             let [a, b] = ends.map(|fan| fans.binary_search(&fan).expect("listed above"));
             loops.join(a, b);
         }
-        loops.classes()
+        loops.into_numbers().1
+    }
+}
+
+impl<'a> FaceFacts<'a> {
+    fn new(fans: &'a Fans<'a>, used: Option<&'a [bool]>) -> Self {
+        let incidence = fans.incidence();
+        let (edges, (components, duplicate_faces)) = join(
+            || EdgeFacts::new(fans),
+            || (components(incidence), duplicate_faces(incidence, used)),
+        );
+        Self {
+            fans,
+            used,
+            edges,
+            components,
+            duplicate_faces,
+        }
     }
 
-    fn non_manifold_vertices(&mut self) -> usize {
-        let mut fan: Vec<Option<usize>> = vec![None; self.valence.len()];
-        for (f, face) in self.faces.iter().filter(|(f, _)| self.used[f.index()]) {
-            for (corner, v) in self.faces.range(f).zip(face) {
-                let (root, _) = self.fans.root(corner);
-                let first = *fan[v.index()].get_or_insert(root);
-                self.on_non_manifold_edge[v.index()] |= root != first;
-            }
-        }
-        self.on_non_manifold_edge
-            .iter()
-            .filter(|&&is_non_manifold| is_non_manifold)
-            .count()
+    fn is_used(&self, f: FaceId) -> bool {
+        self.used.is_none_or(|used| used[f.index()])
     }
 
-    /// Returns the number of faces with the same vertices as an earlier face.
-    fn duplicate_faces(&self) -> usize {
-        let vertices = self.valence.len();
-        let by_lowest = FacesByLowest::new(vertices, self.faces, |f| self.used[f.index()]);
-        let mut corners = Vec::new();
-        let mut sets: Vec<Range<usize>> = Vec::new();
-        let mut duplicates = 0;
-        for faces in by_lowest.several() {
-            corners.clear();
-            sets.clear();
-            for &f in faces {
-                let start = corners.len();
-                corners.extend_from_slice(self.faces.face(f));
-                corners[start..].sort_unstable();
-                sets.push(start..corners.len());
-            }
-            sets.sort_unstable_by(|a, b| corners[a.clone()].cmp(&corners[b.clone()]));
-            let pairs = sets.windows(2);
-            let equal =
-                |pair: &&[Range<usize>]| corners[pair[0].clone()] == corners[pair[1].clone()];
-            duplicates += pairs.filter(equal).count();
+    fn facts(self, named: &[bool]) -> Facts {
+        let faces = self.fans.incidence().faces();
+        let unused = faces.iter().filter(|&(f, _)| !self.is_used(f));
+        let (unused_faces, unused_corners) = unused.fold((0, 0), |(faces, corners), (_, face)| {
+            (faces + 1, corners + face.len())
+        });
+        let used_faces = faces.len() - unused_faces;
+        let components = self.components - unused_faces;
+        let fans = self.fans.len() - unused_corners;
+        let edges = &self.edges;
+        let used_vertices = edges.valence.iter().filter(|&&valence| valence > 0).count();
+        let polygons = faces.iter().filter(|(_, face)| face.len() >= 3);
+        let boundary_loops = (edges.non_manifold_edges == 0).then(|| edges.boundary_loops());
+        let has_faces = used_faces > 0;
+        let orientable = edges.inconsistent_edges == 0 || is_orientable(self.fans.incidence());
+        let signed = |count: usize| i64::try_from(count).expect("counts fit");
+        let genus = boundary_loops
+            .filter(|_| has_faces && orientable)
+            .map(|loops| {
+                let characteristic = signed(fans) - signed(edges.edges) + signed(used_faces);
+                (2 * signed(components) - characteristic - signed(loops)) / 2
+            });
+        let valences = edges.valence.iter().filter(|&&valence| valence > 0);
+        Facts {
+            vertices: named.len(),
+            edges: edges.edges,
+            faces: polygons.clone().count(),
+            euler_characteristic: signed(used_vertices) - signed(edges.edges) + signed(used_faces),
+            components,
+            boundary_edges: edges.boundary_edges,
+            boundary_loops,
+            non_manifold_edges: edges.non_manifold_edges,
+            non_manifold_vertices: self.non_manifold_vertices(),
+            inconsistent_edges: edges.inconsistent_edges,
+            consistently_oriented: has_faces.then_some(edges.inconsistent_edges == 0),
+            orientable: has_faces.then_some(orientable),
+            closed: has_faces && edges.boundary_edges == 0,
+            genus,
+            isolated_vertices: named.iter().filter(|&&named| !named).count(),
+            duplicate_faces: self.duplicate_faces,
+            degenerate_faces: unused_faces,
+            valence: Distribution::from_values(valences.map(|&valence| valence as usize)),
+            face_degree: Distribution::from_values(polygons.map(|(_, face)| face.len())),
         }
-        duplicates
     }
+
+    fn non_manifold_vertices(&self) -> usize {
+        let on_edge = &self.edges.on_non_manifold_edge;
+        let several = self.fans.several_of(|f| self.is_used(f));
+        let others = several.iter().filter(|(v, _)| !on_edge[v.index()]).count();
+        others + on_edge.iter().filter(|&&on_edge| on_edge).count()
+    }
+}
+
+fn components(incidence: &Incidence<'_>) -> usize {
+    let mut components = Classes::new(incidence.faces().len());
+    for edge in incidence.edges() {
+        let first = edge.first().face;
+        for side in edge.sides().skip(1) {
+            components.join(first.index(), side.face.index());
+        }
+    }
+    components.into_numbers().1
+}
+
+fn is_orientable(incidence: &Incidence<'_>) -> bool {
+    // For each edge with two faces: whether exactly one of the two faces must be flipped.
+    let mut flipped = Partition::new(incidence.faces().len());
+    incidence
+        .edges()
+        .filter_map(|edge| edge.pair())
+        .all(|[a, b]| {
+            let same = a.downward == b.downward;
+            flipped.relate(a.face.index(), b.face.index(), same)
+        })
+}
+
+/// Returns the number of faces with the same vertices as an earlier face.
+fn duplicate_faces(incidence: &Incidence<'_>, used: Option<&[bool]>) -> usize {
+    let (vertices, faces) = (incidence.vertex_count(), incidence.faces());
+    let is_used = |f: FaceId| used.is_none_or(|used| used[f.index()]);
+    let by_lowest = FacesByLowest::new(vertices, faces, is_used);
+    let mut corners = Vec::new();
+    let mut sets: Vec<Range<usize>> = Vec::new();
+    let mut duplicates = 0;
+    for listed in by_lowest.several() {
+        corners.clear();
+        sets.clear();
+        for &f in listed {
+            let start = corners.len();
+            corners.extend_from_slice(faces.face(f));
+            corners[start..].sort_unstable();
+            sets.push(start..corners.len());
+        }
+        sets.sort_unstable_by(|a, b| corners[a.clone()].cmp(&corners[b.clone()]));
+        let pairs = sets.windows(2);
+        let equal = |pair: &&[Range<usize>]| corners[pair[0].clone()] == corners[pair[1].clone()];
+        duplicates += pairs.filter(equal).count();
+    }
+    duplicates
 }

@@ -1,14 +1,11 @@
 //! The faces that run along each edge, for any list of faces.
 
 use crate::face_list::FaceList;
-use crate::partition::Partition;
 use crate::row_id::{FaceId, VertexId, row};
 
-/// One side of one face, stored under its lower end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+/// One side of one face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Side {
-    /// The higher end.
-    pub high: VertexId,
     /// The face that has the side.
     pub face: FaceId,
     /// The corner at which the side starts, numbered over all faces.
@@ -17,13 +14,65 @@ pub struct Side {
     pub downward: bool,
 }
 
-/// An edge and the sides along it, in the order of the faces.
-#[derive(Clone, Copy, Debug)]
+/// A side in the table of its lower end. The order is that of the edges, then of the faces.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct StoredSide {
+    /// The higher end.
+    high: VertexId,
+    /// The corner at which the side starts, numbered over all faces.
+    corner: u32,
+}
+
+/// An edge and the sides along it.
+#[derive(Clone, Copy)]
 pub struct EdgeSides<'a> {
     /// The two ends, the lower first.
     pub ends: [VertexId; 2],
-    /// The sides along the edge; at least one.
-    pub sides: &'a [Side],
+    stored: &'a [StoredSide],
+    incidence: &'a Incidence<'a>,
+}
+
+impl<'a> EdgeSides<'a> {
+    /// Returns the number of sides; at least one.
+    #[expect(clippy::len_without_is_empty, reason = "an edge has a side")]
+    pub fn len(&self) -> usize {
+        self.stored.len()
+    }
+
+    /// Returns the sides, in the order of the faces.
+    pub fn sides(&self) -> impl ExactSizeIterator<Item = Side> + Clone + use<'a> {
+        let incidence = self.incidence;
+        self.stored.iter().map(|&side| incidence.side(side))
+    }
+
+    /// Returns the side of the first face.
+    pub fn first(&self) -> Side {
+        self.incidence.side(self.stored[0])
+    }
+
+    /// Returns the side, if it is the only one.
+    pub fn single(&self) -> Option<Side> {
+        match *self.stored {
+            [side] => Some(self.incidence.side(side)),
+            _ => None,
+        }
+    }
+
+    /// Returns the two sides, if there are exactly two.
+    pub fn pair(&self) -> Option<[Side; 2]> {
+        match *self.stored {
+            [first, second] => Some([first, second].map(|side| self.incidence.side(side))),
+            _ => None,
+        }
+    }
+
+    /// Returns the number of sides that run from the higher end to the lower end.
+    pub fn downward(&self) -> usize {
+        let stored = self.stored.iter();
+        stored
+            .filter(|side| self.incidence.is_downward(side.corner))
+            .count()
+    }
 }
 
 /// An edge, the number of its faces, and whether the faces run along the edge in different
@@ -40,8 +89,7 @@ pub struct EdgeUse {
 
 impl EdgeUse {
     pub(crate) fn from_sides(edge: EdgeSides<'_>) -> Self {
-        let faces = edge.sides.len();
-        let down = edge.sides.iter().filter(|side| side.downward).count();
+        let (faces, down) = (edge.len(), edge.downward());
         Self {
             ends: edge.ends,
             faces,
@@ -61,145 +109,190 @@ impl EdgeUse {
     }
 }
 
-/// The sides of all faces by edge; built in O(corners), plus O(n log n) for the n sides of each
+/// The sides of all faces by edge.
+///
+/// Takes 8 bytes and one bit per corner and 4 bytes per vertex; 4 more bytes per corner if the
+/// degrees of the faces differ. Building takes O(corners), plus O(n log n) for the n sides of each
 /// vertex.
-pub struct Incidence {
-    sides: Vec<Side>,
+pub struct Incidence<'a> {
+    faces: &'a FaceList,
+    /// The sides of the edges, by their lower ends.
+    sides: Vec<StoredSide>,
     /// By vertex: the end of the sides that are stored under this vertex.
     ends: Vec<u32>,
+    /// By corner, 64 to a word: whether the side that starts there runs from the higher end to the
+    /// lower end.
+    downward: Vec<u64>,
+    face_of_corner: FaceOfCorner,
 }
 
-impl Incidence {
+/// The face of each corner.
+enum FaceOfCorner {
+    Triangles,
+    /// All faces have this degree.
+    Uniform(u32),
+    Mixed(Vec<FaceId>),
+}
+
+impl<'a> Incidence<'a> {
     /// Collects the sides of the faces that `used` selects. These faces must name each vertex at
     /// most once.
     ///
     /// # Panics
     ///
     /// Panics if such a face names a vertex that is not below `vertices`.
-    pub fn new(vertices: usize, faces: &FaceList, used: impl Fn(FaceId) -> bool) -> Self {
+    pub fn new(vertices: usize, faces: &'a FaceList, used: impl Fn(FaceId) -> bool) -> Self {
         let sides = || {
             let used = faces.iter().filter(|&(f, _)| used(f));
-            used.flat_map(|(face, corners)| sides_of(face, corners, faces.range(face).start))
+            used.flat_map(|(face, corners)| sides_of(corners, faces.range(face).start))
         };
         let mut ends = vec![0_u32; vertices];
-        for (low, _) in sides() {
+        let mut downward = vec![0_u64; faces.corners().len().div_ceil(64)];
+        for (low, side, is_downward) in sides() {
             ends[low.index()] += 1;
+            downward[side.corner as usize / 64] |= u64::from(is_downward) << (side.corner % 64);
         }
         let mut total = 0;
         for end in &mut ends {
             total += std::mem::replace(end, total);
         }
-        let blank = Side {
+        let blank = StoredSide {
             high: VertexId::new(0),
-            face: FaceId::new(0),
             corner: 0,
-            downward: false,
         };
         let mut sorted = vec![blank; total as usize];
-        for (low, side) in sides() {
+        for (low, side, _) in sides() {
             let at = &mut ends[low.index()];
             sorted[*at as usize] = side;
             *at += 1;
         }
-        let mut start = 0;
-        for &end in &ends {
-            sorted[start..end as usize].sort_unstable();
-            start = end as usize;
-        }
+        sort_by_edge(&mut sorted, 0, &ends);
         Self {
+            faces,
             sides: sorted,
             ends,
+            downward,
+            face_of_corner: FaceOfCorner::new(faces),
         }
+    }
+
+    /// Returns the faces whose sides these are.
+    pub fn faces(&self) -> &'a FaceList {
+        self.faces
+    }
+
+    /// Returns the number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.ends.len()
     }
 
     /// Returns every edge, ordered by the lower end, then by the higher end.
     pub fn edges(&self) -> impl Iterator<Item = EdgeSides<'_>> {
         let starts = std::iter::once(0).chain(self.ends.iter().map(|&end| end as usize));
         let buckets = starts.zip(&self.ends).zip(0..);
-        buckets.flat_map(|((start, &end), low)| {
+        buckets.flat_map(move |((start, &end), low)| {
             let by_high = self.sides[start..end as usize].chunk_by(|a, b| a.high == b.high);
-            by_high.map(move |sides| EdgeSides {
-                ends: [VertexId::new(low), sides[0].high],
-                sides,
+            by_high.map(move |stored| EdgeSides {
+                ends: [VertexId::new(low), stored[0].high],
+                stored,
+                incidence: self,
             })
         })
     }
 
-    /// Returns the fans of all vertices as classes of corners. Two corners of a vertex are in the
-    /// same fan if their faces share an edge at the vertex.
-    pub(crate) fn fans(&self, faces: &FaceList) -> Partition {
-        let mut fans = Partition::new(faces.corners().len());
-        for edge in self.edges() {
-            let (first, others) = edge.sides.split_first().expect("an edge has a side");
-            let first = corners_at_ends(first, faces);
-            for side in others {
-                let corners = corners_at_ends(side, faces);
-                fans.join(first[0], corners[0]);
-                fans.join(first[1], corners[1]);
-            }
+    /// Returns the corners of a side: the corner at its lower end, then the corner at its higher
+    /// end.
+    pub(crate) fn corners_at_ends(&self, side: Side) -> [usize; 2] {
+        let range = self.faces.range(side.face);
+        let start = side.corner as usize;
+        let end = if start + 1 == range.end {
+            range.start
+        } else {
+            start + 1
+        };
+        if side.downward {
+            [end, start]
+        } else {
+            [start, end]
         }
-        fans
     }
 
-    /// Returns the vertices whose faces form more than one fan. Each vertex has two faces: the
-    /// first face of its first fan, and the first face of another fan. The vertices are in the
-    /// order of the second faces.
-    pub fn several_fans(&self, faces: &FaceList) -> Vec<(VertexId, [FaceId; 2])> {
-        let mut fans = self.fans(faces);
-        // By vertex: its first face, the fan of that face, and whether another fan was found.
-        let mut first: Vec<Option<(FaceId, usize, bool)>> = vec![None; self.ends.len()];
-        let mut found = Vec::new();
-        for (f, face) in faces.iter() {
-            for (corner, &v) in faces.range(f).zip(face) {
-                let (fan, _) = fans.root(corner);
-                let known = first[v.index()].get_or_insert((f, fan, false));
-                if known.1 != fan && !known.2 {
-                    known.2 = true;
-                    found.push((v, [known.0, f]));
-                }
-            }
+    /// Returns the face of a corner.
+    #[inline]
+    pub(crate) fn face_of(&self, corner: u32) -> FaceId {
+        match &self.face_of_corner {
+            FaceOfCorner::Triangles => FaceId::new(corner / 3),
+            FaceOfCorner::Uniform(degree) => FaceId::new(corner / degree),
+            FaceOfCorner::Mixed(faces) => faces[corner as usize],
         }
-        found
+    }
+
+    #[inline]
+    fn side(&self, StoredSide { corner, .. }: StoredSide) -> Side {
+        Side {
+            face: self.face_of(corner),
+            corner,
+            downward: self.is_downward(corner),
+        }
+    }
+
+    #[inline]
+    fn is_downward(&self, corner: u32) -> bool {
+        self.downward[corner as usize / 64] >> (corner % 64) & 1 == 1
     }
 }
 
-/// Returns the corners of a side: the corner at its lower end, then the corner at its higher end.
-pub(crate) fn corners_at_ends(side: &Side, faces: &FaceList) -> [usize; 2] {
-    let range = faces.range(side.face);
-    let start = side.corner as usize;
-    let end = if start + 1 == range.end {
-        range.start
-    } else {
-        start + 1
-    };
-    if side.downward {
-        [end, start]
-    } else {
-        [start, end]
+impl FaceOfCorner {
+    fn new(faces: &FaceList) -> Self {
+        match faces.uniform_degree() {
+            Some(3) => Self::Triangles,
+            Some(degree) => Self::Uniform(row(degree)),
+            None => {
+                let by_corner = faces
+                    .iter()
+                    .flat_map(|(f, corners)| corners.iter().map(move |_| f));
+                Self::Mixed(by_corner.collect())
+            }
+        }
     }
 }
 
+/// Minimum number of vertices whose sides are sorted on two threads.
+#[cfg(feature = "rayon")]
+const MIN_PARALLEL: usize = 1 << 14;
+
+/// Sorts the sides of each vertex. `first` is the number of the first side, and `ends` has the end of
+/// the sides of each vertex.
+fn sort_by_edge(sides: &mut [StoredSide], first: u32, ends: &[u32]) {
+    #[cfg(feature = "rayon")]
+    if ends.len() >= MIN_PARALLEL {
+        let (low, high) = ends.split_at(ends.len() / 2);
+        let middle = low[low.len() - 1];
+        let (left, right) = sides.split_at_mut((middle - first) as usize);
+        rayon::join(
+            || sort_by_edge(left, first, low),
+            || sort_by_edge(right, middle, high),
+        );
+        return;
+    }
+    let mut start = 0;
+    for &end in ends {
+        let end = (end - first) as usize;
+        sides[start..end].sort_unstable();
+        start = end;
+    }
+}
+
+/// Returns the sides of a face, each with its lower end and whether it runs down to this end.
 fn sides_of(
-    face: FaceId,
     corners: &[VertexId],
     first: usize,
-) -> impl Iterator<Item = (VertexId, Side)> {
+) -> impl Iterator<Item = (VertexId, StoredSide, bool)> {
     let next = corners.iter().cycle().skip(1);
     let corner_numbers = (row(first))..;
-    corners
-        .iter()
-        .zip(next)
-        .zip(corner_numbers)
-        .map(move |((&a, &b), corner)| {
-            let (low, high, downward) = if a < b { (a, b, false) } else { (b, a, true) };
-            (
-                low,
-                Side {
-                    high,
-                    face,
-                    corner,
-                    downward,
-                },
-            )
-        })
+    let sides = corners.iter().zip(next).zip(corner_numbers);
+    sides.map(move |((&a, &b), corner)| {
+        let (low, high) = if a < b { (a, b) } else { (b, a) };
+        (low, StoredSide { high, corner }, b < a)
+    })
 }

@@ -39,14 +39,15 @@
 //! - [`check_rows`], [`check_corners`], [`check_cut`]: checks that an edit is allowed.
 //! - [`FaceSpans`]: the range of corners of each face in a flat table.
 //! - [`TwinPairs`]: the half-edges of a list of faces in pairs, found without hashing.
-//! - [`Incidence`]: the sides of any list of faces by edge; [`Partition`]: union–find with parity;
+//! - [`Incidence`]: the sides of any list of faces by edge; [`Fans`]: the fans of all vertices;
 //!   [`FacesByLowest`]: faces that can have the same vertices.
+//! - [`Classes`]: union–find; [`Partition`]: union–find with parities and sizes.
 //! - [`ScannedFaces`]: queries and edits of structures that scan all corners to find the faces at a
 //!   vertex.
 //! - [`Distinct`], [`ShortVec`], [`Lookup`]: an iterator without repeated items, short lists, and
 //!   search in short lists.
 //! - [`Ranks`], [`for_each_chunk`], [`map_chunks`], [`check_split`]: helpers for refinement, some
-//!   of which use several threads.
+//!   of which use several threads. [`join`]: two computations at the same time.
 //!
 //! # For measurements
 //!
@@ -55,12 +56,13 @@
 //!
 //! # Features
 //!
-//! No feature is on by default. `rayon`: refinement on all threads. `serde`: serialisation of
+//! No feature is on by default. `rayon`: refinement on all threads, and facts on two. `serde`: serialisation of
 //! facts, capabilities, costs and memory tables. `mint`: positions can be points and vectors of the
 //! crate `mint`.
 
 mod boundary;
 mod capability;
+mod classes;
 mod clone_by_field;
 mod convert;
 mod creases;
@@ -77,6 +79,7 @@ mod face_list;
 mod face_spans;
 mod faces_by_lowest;
 mod facts;
+mod fans;
 mod follow_edits;
 mod handle;
 mod holes;
@@ -104,6 +107,7 @@ mod scanned;
 mod short_vec;
 mod sides;
 mod table;
+mod threads;
 
 // For programs.
 pub use boundary::BoundaryLoop;
@@ -138,6 +142,7 @@ pub use representation::{QueryCost, Relation, Representation};
 pub use row_id::{EdgeId, FaceId, VertexId};
 
 // For authors of structures.
+pub use classes::Classes;
 pub use distinct::{Distinct, DistinctWalk};
 pub use edit_check::{check_corners, check_cut, check_rows};
 pub use edit_log::uses_reports;
@@ -147,6 +152,7 @@ pub use editing::{
 };
 pub use face_spans::{FaceSpans, ScatteredFaces};
 pub use faces_by_lowest::FacesByLowest;
+pub use fans::Fans;
 pub use holes::Holes;
 pub use incidence::{EdgeSides, Incidence, Side};
 pub use iterator_ext::{IteratorExt, MapInline};
@@ -163,6 +169,7 @@ pub use scan_edit::ScannedMesh;
 pub use scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};
 pub use short_vec::{Lookup, ShortVec};
 pub use table::Table;
+pub use threads::join;
 
 // For measurements.
 pub use measured::{Counts, Measured};

@@ -5,6 +5,7 @@ use std::fmt;
 use crate::Point;
 use crate::error::PolygonError;
 use crate::face_list::FaceList;
+use crate::fans::Fans;
 use crate::handle::Handle;
 use crate::incidence::{EdgeUse, Incidence};
 use crate::iterator_ext::IteratorExt;
@@ -168,7 +169,7 @@ impl PolygonMesh {
     /// orientation of the faces does not matter.
     pub fn vertices_of_several_fans(&self) -> Vec<VertexId> {
         let incidence = Incidence::new(self.vertex_count(), &self.faces, |_| true);
-        let fans = incidence.several_fans(&self.faces).into_iter();
+        let fans = Fans::new(&incidence).several().into_iter();
         let mut vertices: Vec<VertexId> = fans.map(|(v, _)| v).collect();
         vertices.sort_unstable();
         vertices

@@ -94,6 +94,13 @@ impl FileMesh {
         facts
     }
 
+    /// Returns whether [`into_polygons`](Self::into_polygons) leaves out faces. If not, the facts of
+    /// that mesh are the facts of the file. O(corners) expected.
+    pub fn has_degenerate_faces(&self) -> bool {
+        let mut faces = self.faces.iter();
+        !self.short_faces.is_empty() || faces.any(|(_, face)| repeated_vertex(face).is_some())
+    }
+
     /// Returns the place of `face` in the file: a line, a byte, or in glTF its number; O(1).
     ///
     /// # Panics

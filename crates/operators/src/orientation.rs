@@ -1,7 +1,7 @@
 //! Orientation repair: reverses faces until all adjacent faces have the same orientation.
 
 use glam::DVec3;
-use sixfold_core::{FaceId, FaceList, Incidence, Partition, PolygonMesh, Slot, VertexId, row};
+use sixfold_core::{Classes, FaceId, FaceList, Incidence, PolygonMesh, VertexId, row};
 
 use crate::error::OrientationError;
 
@@ -134,7 +134,7 @@ pub struct Reversal {
 /// May panic if `incidence` belongs to another mesh.
 pub fn faces_to_reverse(
     polygons: &PolygonMesh,
-    incidence: &Incidence,
+    incidence: &Incidence<'_>,
     facing: Facing,
     which: Components,
 ) -> Reversal {
@@ -181,11 +181,9 @@ pub fn faces_to_reverse(
 }
 
 /// Returns whether the two faces of each edge with two faces agree.
-fn is_consistent(incidence: &Incidence) -> bool {
-    incidence.edges().all(|edge| match edge.sides {
-        [a, b] => a.downward != b.downward,
-        _ => true,
-    })
+fn is_consistent(incidence: &Incidence<'_>) -> bool {
+    let mut pairs = incidence.edges().filter(|edge| edge.len() == 2);
+    pairs.all(|edge| edge.downward() == 1)
 }
 
 /// The components that are connected by edges with two faces, and the faces to reverse so that the
@@ -200,33 +198,21 @@ struct Agreement {
 
 impl Agreement {
     /// Finds the components of a mesh whose faces agree.
-    fn of_consistent(faces: &FaceList, incidence: &Incidence) -> Self {
-        let mut classes = Partition::new(faces.len());
-        for edge in incidence.edges() {
-            if let [a, b] = edge.sides {
-                classes.join(a.face.index(), b.face.index());
-            }
+    fn of_consistent(faces: &FaceList, incidence: &Incidence<'_>) -> Self {
+        let mut classes = Classes::new(faces.len());
+        for [a, b] in incidence.edges().filter_map(|edge| edge.pair()) {
+            classes.join(a.face.index(), b.face.index());
         }
-        let mut number: Vec<Slot<FaceId>> = vec![Slot::NONE; faces.len()];
-        let mut count = 0;
-        let components = (0..faces.len()).map(|f| {
-            let (root, _) = classes.root(f);
-            let component = number[root].get().unwrap_or_else(|| {
-                count += 1;
-                FaceId::new(count - 1)
-            });
-            number[root] = Slot::some(component);
-            row(component.index())
-        });
+        let (components, count) = classes.into_numbers();
         Self {
-            components: components.collect(),
+            components,
             reverse: vec![false; faces.len()],
-            conflicts: vec![None; count as usize],
+            conflicts: vec![None; count],
         }
     }
 
     /// Visits the faces of each component from its first face on, from neighbour to neighbour.
-    fn new(faces: &FaceList, incidence: &Incidence) -> Self {
+    fn new(faces: &FaceList, incidence: &Incidence<'_>) -> Self {
         let neighbours = side_neighbours(faces, incidence);
         let mut reverse: Vec<Option<bool>> = vec![None; faces.len()];
         let mut components = vec![0; faces.len()];
@@ -262,10 +248,10 @@ impl Agreement {
     ///
     /// The sum of det(a, b, c) / 6 over all triangles is the signed volume. The coordinates are
     /// relative to a vertex of the component.
-    fn faces_inward(&self, polygons: &PolygonMesh, incidence: &Incidence) -> Vec<Option<bool>> {
+    fn faces_inward(&self, polygons: &PolygonMesh, incidence: &Incidence<'_>) -> Vec<Option<bool>> {
         let mut is_closed = vec![true; self.conflicts.len()];
-        for edge in incidence.edges().filter(|edge| edge.sides.len() != 2) {
-            for side in edge.sides {
+        for edge in incidence.edges().filter(|edge| edge.len() != 2) {
+            for side in edge.sides() {
                 is_closed[self.component(side.face)] = false;
             }
         }
@@ -302,14 +288,12 @@ impl Agreement {
 type Neighbour = Option<(FaceId, bool)>;
 
 /// Returns the neighbour across each side, if the edge has two faces.
-fn side_neighbours(faces: &FaceList, incidence: &Incidence) -> Vec<Neighbour> {
+fn side_neighbours(faces: &FaceList, incidence: &Incidence<'_>) -> Vec<Neighbour> {
     let mut neighbours = vec![None; faces.corners().len()];
-    for edge in incidence.edges() {
-        if let [a, b] = edge.sides {
-            let same = a.downward == b.downward;
-            neighbours[a.corner as usize] = Some((b.face, same));
-            neighbours[b.corner as usize] = Some((a.face, same));
-        }
+    for [a, b] in incidence.edges().filter_map(|edge| edge.pair()) {
+        let same = a.downward == b.downward;
+        neighbours[a.corner as usize] = Some((b.face, same));
+        neighbours[b.corner as usize] = Some((a.face, same));
     }
     neighbours
 }

@@ -71,17 +71,17 @@ impl Sides {
         let mut one_way = 0;
         for edge in incidence.edges() {
             let start = row(table.len());
-            let of = |downward| edge.sides.iter().filter(move |s| s.downward == downward);
+            let of = |downward| edge.sides().filter(move |s| s.downward == downward);
             table.extend(of(false).map(|side| CornerId::new(side.corner)));
             let middle = row(table.len());
             table.extend(of(true).map(|side| CornerId::new(side.corner)));
             let end = row(table.len());
             if start == middle || middle == end {
-                one_way += usize::from(edge.sides.len() > 1);
+                one_way += usize::from(edge.len() > 1);
                 table.truncate(start as usize);
                 continue;
             }
-            let list = match edge.sides.len() {
+            let list = match edge.len() {
                 2 => &mut simple,
                 _ => &mut crowded,
             };

@@ -95,7 +95,7 @@ impl Holes {
         let incidence = Incidence::new(polygons.vertex_count(), faces, |_| true);
         let mut next = vec![Slot::NONE; polygons.vertex_count()];
         for edge in incidence.edges() {
-            if let [side] = edge.sides {
+            if let Some(side) = edge.single() {
                 let [low, high] = edge.ends;
                 // Against the direction of the face.
                 let (from, to) = if side.downward {

@@ -46,7 +46,8 @@
 //!
 //! # Features
 //!
-//! No feature is on by default. `serde`: diagnoses and reports can be written.
+//! No feature is on by default. `rayon`: a diagnosis runs on two threads. `serde`: diagnoses and
+//! reports can be written.
 //!
 //! [`PolygonMesh`]: sixfold_core::PolygonMesh
 
@@ -67,7 +68,7 @@ mod trace;
 mod triangulate;
 mod weld;
 
-pub use diagnosis::{Diagnosis, Fault, FaultKind, Place, diagnose};
+pub use diagnosis::{Diagnosis, Fault, FaultKind, Place, diagnose, facts_and_diagnosis};
 pub use duplicates::OppositeFaces;
 pub use error::RepairError;
 pub use holes::{FillHoles, HoleFilling};

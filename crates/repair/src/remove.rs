@@ -1,6 +1,6 @@
 //! Removal of isolated vertices and of small components.
 
-use sixfold_core::{FaceId, Incidence, Partition, PolygonMesh, Slot, VertexId, row};
+use sixfold_core::{Classes, FaceId, Incidence, PolygonMesh, Slot, VertexId, row};
 
 use crate::error::RepairError;
 use crate::report::StepCounts;
@@ -20,16 +20,21 @@ pub(crate) fn small_components(
     min_faces: usize,
 ) -> Result<Outcome, RepairError> {
     let faces = polygons.faces();
-    let mut components = Partition::new(faces.len());
+    let mut components = Classes::new(faces.len());
     let incidence = Incidence::new(polygons.vertex_count(), faces, |_| true);
     for edge in incidence.edges() {
-        for pair in edge.sides.windows(2) {
-            components.join(pair[0].face.index(), pair[1].face.index());
+        let first = edge.first().face;
+        for side in edge.sides().skip(1) {
+            components.join(first.index(), side.face.index());
         }
     }
-    let kept: Vec<bool> = (0..faces.len())
-        .map(|f| components.class_size(f) >= min_faces)
-        .collect();
+    let (component, count) = components.into_numbers();
+    let mut sizes = vec![0; count];
+    for &number in &component {
+        sizes[number as usize] += 1;
+    }
+    let is_kept = |&number: &u32| sizes[number as usize] >= min_faces;
+    let kept: Vec<bool> = component.iter().map(is_kept).collect();
     let keeps_face = |f: FaceId| kept[f.index()];
     let (before, after) = (named_by(polygons, |_| true), named_by(polygons, keeps_face));
     // Vertices that were isolated before remain.

@@ -157,20 +157,37 @@ impl Places {
         places
     }
 
+    /// Returns only the numbers of the places.
+    pub(crate) fn into_numbers(self) -> PlaceNumbers {
+        PlaceNumbers {
+            places: self.points.len(),
+            place: self.place,
+        }
+    }
+
+    /// Returns a vertex at the place that represents `v`: `v` itself if it is alone.
+    fn representative(&self, v: VertexId) -> VertexId {
+        let place = self.place[v.index()];
+        self.vertices[self.claimed_by[place as usize] as usize]
+    }
+}
+
+/// The numbers of the distinct positions of vertices, in lexicographic order.
+pub(crate) struct PlaceNumbers {
+    places: usize,
+    /// By vertex: its place.
+    place: Vec<u32>,
+}
+
+impl PlaceNumbers {
     /// Returns the number of places.
     pub(crate) fn len(&self) -> usize {
-        self.points.len()
+        self.places
     }
 
     /// Returns the place of `v`, from 0 on in lexicographic order.
     pub(crate) fn place(&self, v: VertexId) -> u32 {
         self.place[v.index()]
-    }
-
-    /// Returns a vertex at the place that represents `v`: `v` itself if it is alone.
-    fn representative(&self, v: VertexId) -> VertexId {
-        let place = self.place(v);
-        self.vertices[self.claimed_by[place as usize] as usize]
     }
 }
 

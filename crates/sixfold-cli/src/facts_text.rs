@@ -1,6 +1,6 @@
 //! Text about the facts of a mesh and about the backends that can hold the mesh.
 
-use sixfold::{Distribution, Facts};
+use sixfold::{Distribution, Facts, structure_infos};
 use sixfold_study::{BackendReport, MeshReport, Settings, StudyMesh};
 
 use crate::text::{TextOutput, hanging_indent, sanitize};
@@ -29,6 +29,15 @@ pub(crate) fn print_before_measuring(
     text.print_line("");
     let inspection = sixfold_study::inspect(study_mesh, &chosen);
     text.print_line(&verdicts_text(&inspection.mesh, &inspection.backends));
+    let mut refusing = inspection.backends.iter().filter(|b| !b.holds);
+    if let Some(first) = refusing.find(|b| structure_infos().iter().any(|info| info.name == b.name))
+    {
+        let note = format!(
+            "`sixfold repair --for {}` makes a mesh that this structure can hold",
+            first.name
+        );
+        text.print_line(&hanging_indent("repair       ", &note));
+    }
 }
 
 pub(crate) fn facts_text(mesh: &MeshReport) -> String {

@@ -1,12 +1,14 @@
-//! Text about the faults of a mesh and the commands that repair them.
+//! Faults of a mesh and the commands that repair them, as text and as JSON.
 
 use std::cmp::Reverse;
 use std::path::Path;
 
-use sixfold::io::PolygonPlaces;
+use sixfold::io::{self, PolygonPlaces};
 use sixfold::repair::{Diagnosis, Fault, FaultKind, Place};
 use sixfold::{Capabilities, FaceId, PolygonMesh, structure_infos};
 use sixfold_study::numbers::grouped;
+
+use serde::Serialize;
 
 use crate::arguments::repair_options;
 use crate::text::{hanging_indent, sanitize};
@@ -27,7 +29,88 @@ pub(crate) struct Diagnosed<'a> {
     pub(crate) file: &'a Path,
 }
 
+/// The diagnosis of a mesh as JSON: a [`Diagnosis`] with places in the file, the structures that
+/// refuse, and commands.
+#[derive(Serialize)]
+pub(crate) struct DiagnosisRecord {
+    faults: Vec<FaultRecord>,
+    vertices: usize,
+    positions: usize,
+    boundary_edges: usize,
+    seam_edges: usize,
+}
+
+#[derive(Serialize)]
+struct FaultRecord {
+    kind: FaultKind,
+    count: usize,
+    places: Vec<PlaceRecord>,
+    refused_by: Vec<&'static str>,
+    /// The command; `None` if only other coordinates repair the fault.
+    repair: Option<String>,
+}
+
+/// An element, and where its first face is in the file.
+#[derive(Serialize)]
+struct PlaceRecord {
+    #[serde(flatten)]
+    element: Place,
+    #[serde(flatten)]
+    place: Option<FilePlace>,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "snake_case")]
+enum FilePlace {
+    Line(u32),
+    Byte(u64),
+    Item(String),
+}
+
+impl From<io::Place> for FilePlace {
+    fn from(place: io::Place) -> Self {
+        match place {
+            io::Place::Line(line) => Self::Line(line),
+            io::Place::Byte(byte) => Self::Byte(byte),
+            other => Self::Item(other.to_string()),
+        }
+    }
+}
+
 impl Diagnosed<'_> {
+    /// Returns the faults for JSON.
+    pub(crate) fn record(&self) -> DiagnosisRecord {
+        let faces = self.first_faces();
+        let faults = self.diagnosis.faults.iter().map(|fault| {
+            let places = fault.places.iter().map(|place| PlaceRecord {
+                element: *place,
+                place: self.file_place(place, &faces).map(FilePlace::from),
+            });
+            let options = self.options(fault);
+            FaultRecord {
+                kind: fault.kind,
+                count: fault.count,
+                places: places.collect(),
+                refused_by: refusing(|own| fault.kind.is_refused_by(own)),
+                repair: (!options.is_empty()).then(|| self.command(&options)),
+            }
+        });
+        let Diagnosis {
+            vertices,
+            positions,
+            boundary_edges,
+            seam_edges,
+            ..
+        } = *self.diagnosis;
+        DiagnosisRecord {
+            faults: faults.collect(),
+            vertices,
+            positions,
+            boundary_edges,
+            seam_edges,
+        }
+    }
+
     /// Returns the list of faults: each with its first places, the structures that refuse the mesh
     /// for it, and the command that repairs it. The last lines are the command that repairs the mesh
     /// for a structure.
@@ -40,7 +123,7 @@ impl Diagnosed<'_> {
                 grouped(self.diagnosis.positions)
             );
             lines.push(hanging_indent(&label(&lines), &text));
-            lines.push(self.command("--weld"));
+            lines.push(self.command_line("--weld"));
         }
         let faces = self.first_faces();
         for fault in &self.diagnosis.faults {
@@ -50,10 +133,10 @@ impl Diagnosed<'_> {
                 let first = format!("{:LABEL$}  refused by ", "");
                 lines.push(hanging_indent(&first, &refusing.join(", ")));
             }
-            let options = repair_options(&self.diagnosis.repairs(fault.kind));
+            let options = self.options(fault);
             match options.is_empty() {
                 true => lines.push(format!("{:LABEL$}  correct the coordinates", "")),
-                false => lines.push(self.command(&options)),
+                false => lines.push(self.command_line(&options)),
             }
         }
         if lines.is_empty() {
@@ -82,20 +165,33 @@ impl Diagnosed<'_> {
         };
         let text = format!("all that {first} refuses{others}:");
         let first_line = hanging_indent(&format!("{:LABEL$}", "repair"), &text);
-        vec![first_line, self.command(&format!("--for {first}"))]
+        vec![first_line, self.command_line(&format!("--for {first}"))]
+    }
+
+    /// Returns the options of the command that repairs `fault`; empty if no command does.
+    fn options(&self, fault: &Fault) -> String {
+        repair_options(&self.diagnosis.repairs(fault.kind))
     }
 
     /// Returns a line with the command that repairs the file with `options`.
+    fn command_line(&self, options: &str) -> String {
+        format!("{:LABEL$}  {}", "", self.command(options))
+    }
+
+    /// Returns the command that repairs the file with `options`.
     fn command(&self, options: &str) -> String {
         let file = self.file.display().to_string();
         let file = match shlex::try_quote(&file) {
             Ok(quoted) => sanitize(&quoted),
             Err(_) => sanitize(&file),
         };
-        format!(
-            "{:LABEL$}  sixfold repair {file} {options} -o repaired.obj",
-            ""
-        )
+        format!("sixfold repair {file} {options} -o repaired.obj")
+    }
+
+    /// Returns where the first face at `place` is in the file, if `faces` has this face.
+    fn file_place(&self, place: &Place, faces: &[(Place, FaceId)]) -> Option<io::Place> {
+        let (_, face) = faces.iter().find(|(other, _)| other == place)?;
+        Some(self.places?.place(*face, self.polygons))
     }
 
     /// Describes a fault: its number, kind and first places.
@@ -109,9 +205,8 @@ impl Diagnosed<'_> {
         for (i, place) in fault.places.iter().enumerate() {
             text += if i == 0 { ": " } else { ", " };
             text += &place.to_string();
-            let face = faces.iter().find(|(other, _)| other == place);
-            if let (Some(&(_, face)), Some(places)) = (face, self.places) {
-                text += &format!(" ({})", places.place(face, self.polygons));
+            if let Some(place) = self.file_place(place, faces) {
+                text += &format!(" ({place})");
             }
         }
         if fault.count > fault.places.len() {

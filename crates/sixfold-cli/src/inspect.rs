@@ -4,13 +4,12 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use serde::Serialize;
-use sixfold::repair::{Diagnosis, diagnose};
-use sixfold_study::{Backend, Inspection};
+use sixfold_study::{Backend, Inspection, inspect_diagnosed};
 
 use crate::arguments::Inspect;
 use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
-use crate::faults_text::{Diagnosed, SHOWN_PLACES};
+use crate::faults_text::{Diagnosed, DiagnosisRecord};
 use crate::load;
 use crate::many::find_meshes;
 use crate::output::{Output, check_outputs, is_stdout};
@@ -22,7 +21,7 @@ use crate::text::{TextOutput, print_stderr};
 struct Inspected {
     #[serde(flatten)]
     inspection: Inspection,
-    diagnosis: Diagnosis,
+    diagnosis: DiagnosisRecord,
 }
 
 /// Inspects the meshes. If there are several, continues after a mesh that cannot be read.
@@ -80,9 +79,8 @@ pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
 
 /// Inspects one mesh and prints the text.
 fn inspect(path: &Path, triangulate: bool, text: &mut TextOutput) -> Result<Inspected, Failure> {
-    let (study_mesh, places) = load::for_inspection(path, triangulate)?;
-    let inspection = sixfold_study::inspect(&study_mesh, &Backend::structures());
-    let diagnosis = diagnose(&study_mesh.polygons, SHOWN_PLACES);
+    let (study_mesh, diagnosis, places) = load::for_inspection(path, triangulate)?;
+    let inspection = inspect_diagnosed(&study_mesh, &diagnosis, &Backend::structures());
     let diagnosed = Diagnosed {
         polygons: &study_mesh.polygons,
         places: places.as_ref(),
@@ -94,6 +92,7 @@ fn inspect(path: &Path, triangulate: bool, text: &mut TextOutput) -> Result<Insp
     text.print_line(&verdicts_text(&inspection.mesh, &inspection.backends));
     text.print_line("");
     text.print_line(&diagnosed.text());
+    let diagnosis = diagnosed.record();
     Ok(Inspected {
         inspection,
         diagnosis,

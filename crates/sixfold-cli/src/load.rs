@@ -3,11 +3,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use sixfold::io::{LeftOut, PolygonPlaces};
+use sixfold::io::{FileMesh, LeftOut, PolygonPlaces};
+use sixfold::repair::{Diagnosis, diagnose, facts_and_diagnosis};
 use sixfold::{Creases, PolygonMesh, shapes};
 use sixfold_study::{Results, StudyMesh, sha256_of};
 
 use crate::failure::Failure;
+use crate::faults_text::SHOWN_PLACES;
 use crate::mesh_files::{cut_polygons, read_mesh};
 use crate::text::print_stderr;
 use crate::triangulate::triangulated;
@@ -16,18 +18,27 @@ use sixfold_study::numbers::counted;
 /// Maximum number of listed faces that were left out.
 const SHOWN: usize = 5;
 
-/// Reads a mesh without its degenerate faces, and lists the degenerate faces. `triangulate` cuts
-/// polygons. Also returns the places of the faces, unless they were cut.
+/// Reads a mesh without its degenerate faces, lists the degenerate faces, and diagnoses the mesh.
+/// `triangulate` cuts polygons first. Also returns the places of the faces, unless they were cut.
 pub(crate) fn for_inspection(
     path: &Path,
     triangulate: bool,
-) -> Result<(StudyMesh, Option<PolygonPlaces>), Failure> {
-    let (study_mesh, left_out, places) = from_file(path)?;
-    print_left_out(path, &left_out);
-    match triangulate {
-        true => Ok((triangulated(study_mesh)?, None)),
-        false => Ok((study_mesh, Some(places))),
+) -> Result<(StudyMesh, Diagnosis, Option<PolygonPlaces>), Failure> {
+    let mesh = read_mesh(path)?;
+    if triangulate || mesh.has_degenerate_faces() {
+        let (mut study_mesh, left_out, places) = into_study_mesh(path, mesh);
+        print_left_out(path, &left_out);
+        if triangulate {
+            study_mesh = triangulated(study_mesh)?;
+        }
+        let diagnosis = diagnose(&study_mesh.polygons, SHOWN_PLACES);
+        return Ok((study_mesh, diagnosis, (!triangulate).then_some(places)));
     }
+    // The facts of the file are those of the polygons.
+    let (polygons, _, places) = mesh.into_polygons_with_places();
+    let (facts, diagnosis) = facts_and_diagnosis(&polygons, SHOWN_PLACES);
+    let study_mesh = StudyMesh::with_facts(path.display().to_string(), polygons, facts);
+    Ok((study_mesh, diagnosis, Some(places)))
 }
 
 /// Reads a mesh for a study. `strict` refuses degenerate faces. `triangulate` cuts polygons.
@@ -36,7 +47,7 @@ pub(crate) fn for_study(
     strict: bool,
     triangulate: bool,
 ) -> Result<StudyMesh, Failure> {
-    let (mut study_mesh, left_out, _) = from_file(path)?;
+    let (mut study_mesh, left_out, _) = into_study_mesh(path, read_mesh(path)?);
     let file = path.display();
     if !left_out.is_empty() && strict {
         let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
@@ -139,8 +150,7 @@ fn print_left_out(path: &Path, left_out: &[LeftOut]) {
     }
 }
 
-fn from_file(path: &Path) -> Result<(StudyMesh, Vec<LeftOut>, PolygonPlaces), Failure> {
-    let mesh = read_mesh(path)?;
+fn into_study_mesh(path: &Path, mesh: FileMesh) -> (StudyMesh, Vec<LeftOut>, PolygonPlaces) {
     let facts = mesh.facts();
     let (polygons, left_out, places) = mesh.into_polygons_with_places();
     let mut changes = Vec::new();
@@ -149,13 +159,9 @@ fn from_file(path: &Path) -> Result<(StudyMesh, Vec<LeftOut>, PolygonPlaces), Fa
         changes.push(format!("left out {faces}"));
     }
     let study_mesh = StudyMesh {
-        name: path.display().to_string(),
-        facts,
-        polygons,
         changes,
         left_out_faces: left_out.len(),
-        cut_faces: 0,
-        file_sha256: None,
+        ..StudyMesh::with_facts(path.display().to_string(), polygons, facts)
     };
-    Ok((study_mesh, left_out, places))
+    (study_mesh, left_out, places)
 }

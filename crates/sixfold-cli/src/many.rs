@@ -34,7 +34,8 @@ use folder::Folder;
 pub(crate) use meshes::{Mesh, find_meshes};
 
 /// The text of [`FailureKind::NoneHolds`].
-const NONE_HOLDS: &str = "none of the selected backends can hold the mesh";
+const NONE_HOLDS: &str = "none of the selected backends can hold the mesh: see `sixfold inspect`, or repair the mesh with \
+     `sixfold repair --for NAME`";
 
 /// Studies the selected meshes without a finished study. If a mesh cannot be loaded, lists the mesh
 /// and continues.

@@ -192,7 +192,11 @@ fn inspect_takes_several_meshes_and_folders() {
     assert_eq!(all[1]["mesh"]["name"], "scans/quad.obj");
     let faults = all[0]["diagnosis"]["faults"].as_array().expect("faults");
     assert_eq!(faults[0]["kind"], "non_manifold_edge");
-    assert_eq!(faults[0]["places"][0]["edge"], serde_json::json!([0, 1]));
+    let place = serde_json::json!({ "edge": [0, 1], "line": 6 });
+    assert_eq!(faults[0]["places"][0], place);
+    let command = "sixfold repair book.obj --cut -o repaired.obj";
+    assert_eq!(faults[0]["repair"], command);
+    assert_eq!(faults[0]["refused_by"][0], "winged-edge");
 
     let cut = ["inspect", "scans", "--triangulate", "--json", "one.json"];
     let run = run_ok(&sixfold, &cut);

@@ -174,7 +174,7 @@
 //! # Features
 //!
 //! - `rayon` (default): subdivision steps in a structure's own tables use all threads; so do builds of
-//!   spatial indices and batches of their queries.
+//!   spatial indices and batches of their queries. Facts and diagnoses use two threads.
 //! - `serde`: [`Facts`], [`Capabilities`], [`MemoryFootprint`], diagnoses, reports of repairs,
 //!   subdivision schemes and mesh orders can be serialised.
 //! - `mint`: [`PolygonMesh::new`] takes points and vectors of the crate `mint`, and a [`Point`]

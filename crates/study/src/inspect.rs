@@ -4,7 +4,8 @@ use std::io;
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use sixfold::{BuildError, Facts, PolygonMesh};
+use sixfold::repair::Diagnosis;
+use sixfold::{BuildError, Capabilities, Facts, PolygonMesh};
 use sixfold_core::Counts;
 
 use crate::refusal::Candidate;
@@ -61,9 +62,15 @@ pub struct StudyMesh {
 impl StudyMesh {
     /// Creates a mesh to study and computes its facts. The expected time is O(corners).
     pub fn new(name: impl Into<String>, polygons: PolygonMesh) -> Self {
+        let facts = Facts::from_polygons(&polygons);
+        Self::with_facts(name, polygons, facts)
+    }
+
+    /// Creates a mesh to study from known facts, without changes.
+    pub fn with_facts(name: impl Into<String>, polygons: PolygonMesh, facts: Facts) -> Self {
         Self {
             name: name.into(),
-            facts: Facts::from_polygons(&polygons),
+            facts,
             polygons,
             changes: Vec::new(),
             left_out_faces: 0,
@@ -142,12 +149,51 @@ fn hex(bytes: &[u8]) -> String {
 /// Checks which backends can hold the mesh, without building the backends. The expected time is
 /// O(corners) per backend.
 pub fn inspect(study_mesh: &StudyMesh, backends: &[Backend]) -> Inspection {
+    // The facts are known already, and enough for most meshes.
+    let facts = &study_mesh.facts;
+    inspect_unless(study_mesh, backends, |own| own.is_satisfied_by(facts))
+}
+
+/// Checks which backends can hold the mesh as [`inspect`] does, in less time. `diagnosis` must be
+/// that of the polygons of `study_mesh`.
+pub fn inspect_diagnosed(
+    study_mesh: &StudyMesh,
+    diagnosis: &Diagnosis,
+    backends: &[Backend],
+) -> Inspection {
+    // A diagnosis has no faults of size. The polygons have no more edges than the file.
+    let edges = study_mesh.facts.edges;
+    inspect_unless(study_mesh, backends, |own| {
+        own.can_name_edges(edges) && diagnosis.refusals(own).next().is_none()
+    })
+}
+
+/// Checks which backends can hold the mesh, except those whose capabilities are known to suffice.
+fn inspect_unless(
+    study_mesh: &StudyMesh,
+    backends: &[Backend],
+    suffices: impl Fn(&Capabilities) -> bool,
+) -> Inspection {
+    let polygons = &study_mesh.polygons;
     let candidate = Candidate::from_study_mesh(study_mesh);
+    let only_triangles = polygons.first_polygon().is_none();
+    let mut checked: Vec<(Capabilities, Result<(), BuildError>)> = Vec::new();
     let backends = backends.iter().map(|backend| {
-        // The facts are known already, and enough for most meshes.
-        let verdict = match backend.info.capabilities.is_satisfied_by(&study_mesh.facts) {
-            true => Ok(()),
-            false => backend.info.check(&study_mesh.polygons),
+        let own = backend.info.capabilities;
+        // Backends with the same capabilities have the same verdict, and a mesh of triangles needs no
+        // polygons.
+        let needed = Capabilities {
+            polygons: own.polygons || only_triangles,
+            ..own
+        };
+        let verdict = if suffices(&own) {
+            Ok(())
+        } else if let Some((_, known)) = checked.iter().find(|(other, _)| *other == needed) {
+            known.clone()
+        } else {
+            let verdict = needed.check(polygons);
+            checked.push((needed, verdict.clone()));
+            verdict
         };
         unbuilt(backend, &candidate, verdict)
     });

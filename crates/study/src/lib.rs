@@ -36,7 +36,7 @@ pub use engine::measure::Progress;
 pub use engine::statistics::UNSEEN_DRIFT;
 pub use engine::timer::Timer;
 pub use external::{EXTERNAL_TIMEOUT, External, ExternalError, ExternalReport};
-pub use inspect::{Inspection, StudyMesh, inspect, sha256_of};
+pub use inspect::{Inspection, StudyMesh, inspect, inspect_diagnosed, sha256_of};
 pub use labs::Slope;
 pub use labs::growth::{
     BackendBytes, BackendRefusal, CacheLimit, Fit, GrowthError, GrowthReport, GrowthSettings,

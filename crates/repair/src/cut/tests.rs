@@ -38,7 +38,7 @@ fn edges(mesh: &PolygonMesh) -> Vec<[Vec<usize>; 2]> {
     let incidence = Incidence::new(mesh.vertex_count(), mesh.faces(), |_| true);
     let lists = incidence.edges().map(|edge| {
         [false, true].map(|downward| {
-            let sides = edge.sides.iter().filter(|side| side.downward == downward);
+            let sides = edge.sides().filter(|side| side.downward == downward);
             sides.map(|side| side.corner as usize).collect()
         })
     });

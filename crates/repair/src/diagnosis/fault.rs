@@ -87,7 +87,7 @@ impl fmt::Display for Place {
 ///
 /// The first six are the reasons for which structures refuse meshes. The others are not errors for
 /// any structure, and some of them can be intended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize),

@@ -53,6 +53,13 @@ proptest! {
         prop_assert!(count(FaultKind::RepeatedSide) >= facts.inconsistent_edges);
     }
 
+    /// Computing facts and diagnosis together does not change them.
+    #[test]
+    fn both_together_equal_each_alone(polygons in damaged()) {
+        let alone = (Facts::from_polygons(&polygons), diagnose(&polygons, 3));
+        prop_assert_eq!(facts_and_diagnosis(&polygons, 3), alone);
+    }
+
     /// The steps that a diagnosis names repair the fault. A hole can remain if no triangles fit.
     #[test]
     fn the_named_steps_repair_the_fault(polygons in damaged()) {

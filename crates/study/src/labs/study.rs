@@ -110,7 +110,10 @@ pub enum StudyError {
     #[error("the mesh file for the external programs cannot be written: {cause}")]
     NoMeshFile { cause: String },
     /// None of the selected backends can hold the mesh.
-    #[error("none of the selected backends can hold the mesh: {}", reasons(.refusals))]
+    #[error(
+        "none of the selected backends can hold the mesh: {}; `sixfold repair --for NAME` makes a \
+         mesh that the structure NAME can hold", reasons(.refusals)
+    )]
     NoneHolds { refusals: Vec<(String, String)> },
 }
 
