@@ -14,6 +14,9 @@ use crate::tables::table;
 use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::{duration, grouped};
 
+/// Maximum number of listed measurements that only one file has.
+const SHOWN: usize = 8;
+
 /// The exit code of `--fail-if-slower` if a row is slower.
 const SLOWER: u8 = 1;
 
@@ -75,7 +78,10 @@ fn print(changes: &Changes, all: bool, text: &mut TextOutput) {
         ("second", &changes.only_after),
     ] {
         if !only.is_empty() {
-            let names: Vec<String> = only.iter().map(name).collect();
+            let mut names: Vec<String> = only.iter().take(SHOWN).map(name).collect();
+            if only.len() > SHOWN {
+                names.push(format!("and {} more", grouped(only.len() - SHOWN)));
+            }
             let sentence = format!("Only in the {which} file: {}.", names.join(", "));
             text.print_line(&hanging_indent("- ", &sentence));
         }

@@ -13,7 +13,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use sixfold_study::{Failed, FailureKind, Report, Results, Settings, StudyError, StudyMesh};
+use sixfold_study::{
+    Failed, FailureKind, Finding, Report, Results, Settings, StudyError, StudyMesh,
+};
 
 use crate::arguments::Study;
 use crate::facts_text::print_before_measuring;
@@ -278,9 +280,16 @@ fn print(results: &Results, single: bool, text: &mut TextOutput) {
 }
 
 fn print_all(results: &Results, text: &mut TextOutput) {
-    let studied = counted(results.studies().count(), "mesh", "meshes");
     text.print_line("");
-    text.print_line(&format!("{studied} of {} studied", results.planned.len()));
+    if !results.planned.is_empty() {
+        let studied = counted(results.studies().count(), "mesh", "meshes");
+        text.print_line(&format!("{studied} of {} studied", results.planned.len()));
+    }
+    let others = results.findings.iter().map(Finding::kind);
+    let others: Vec<&str> = others.filter(|kind| *kind != "study").collect();
+    if !others.is_empty() {
+        text.print_line(&format!("results of other commands: {}", others.join(", ")));
+    }
     for failed in &results.failures {
         let first = format!("! {}: ", sanitize(&failed.mesh));
         text.print_line(&hanging_indent(&first, &sanitize(&failed.reason)));

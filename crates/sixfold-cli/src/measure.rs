@@ -1,5 +1,5 @@
-//! The frame of all commands that measure: files are opened before the measurement begins, text is
-//! printed before the files are written, and the exit code follows from the results.
+//! The common steps of all commands that write results: open the files before the measurement,
+//! print the text before the files are written, and derive the exit code from the results.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -18,7 +18,7 @@ use crate::text::{TextOutput, print_stderr};
 /// The exit code if backends found different results for the same work.
 const MISMATCH: u8 = 1;
 
-/// A measuring command between the opening of its files and the writing of its results.
+/// A command that writes results, between the opening of its files and the writing of the results.
 pub(crate) struct Session {
     /// Set by Ctrl-C.
     pub(crate) stop: Arc<AtomicBool>,
@@ -35,8 +35,8 @@ struct OpenFiles {
 }
 
 impl Session {
-    /// Opens the files. Returns an error if a file cannot be written, or would overwrite one of
-    /// `meshes` or another file.
+    /// Opens the files. Returns an error if a file cannot be written or would overwrite one of
+    /// `meshes`, or if two options name the same file.
     pub(crate) fn open<'p>(
         meshes: impl IntoIterator<Item = &'p Path>,
         files: &ResultFiles,
@@ -63,14 +63,15 @@ impl Session {
         })
     }
 
-    /// Writes the files after the text was printed, and returns the exit code of the results.
+    /// Prints the remaining text, writes the files, and returns the exit code of the results.
     pub(crate) fn finish(self, results: &Results) -> Result<ExitCode, Failure> {
         let interrupted = results.is_interrupted();
         let written = self.write(results);
         exit_code(written, results, interrupted)
     }
 
-    /// Writes the files after the text was printed. If one file fails, writes the others anyway.
+    /// Prints the remaining text and writes the files. If one file cannot be written, writes the
+    /// others anyway, and returns the first error.
     pub(crate) fn write(self, results: &Results) -> Result<(), Failure> {
         let OpenFiles {
             json,
@@ -91,7 +92,8 @@ impl Session {
     }
 }
 
-/// Adds the command line to the finding, and whether its meshes were triangulated.
+/// Converts the result of a lab to a finding. Adds the command line, and whether the meshes were
+/// triangulated.
 pub(crate) fn with_command(finding: impl Into<Finding>, triangulate: bool) -> Finding {
     let mut finding = finding.into();
     let run = finding.run_mut();
@@ -115,9 +117,9 @@ pub(crate) fn command_line() -> String {
     shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
 }
 
-/// Prints the final messages of a command and returns its exit code. Different results come first,
-/// then errors of writing (`written`), then an interruption, then different results of external
-/// programs.
+/// Prints the final messages of a command and returns its exit code. An error of writing
+/// (`written`) takes precedence over different results, and different results take precedence over
+/// an interruption.
 pub(crate) fn exit_code(
     written: Result<(), Failure>,
     results: &Results,
@@ -137,6 +139,7 @@ pub(crate) fn exit_code(
     })
 }
 
+/// Returns the exit code without regard to external programs, and prints its message.
 fn code_of(
     written: Result<(), Failure>,
     mismatches: usize,
@@ -160,7 +163,7 @@ fn code_of(
     Ok(ExitCode::SUCCESS)
 }
 
-/// Reports the different result of an external program.
+/// Prints an error about a result of an external program that differs from the results of Sixfold.
 fn print_different_work(study: &Report, row: &ResultRow) {
     let ours = study.rows(row.operation);
     let mut ours = ours.filter(|other| other.agreement == Agreement::Same);

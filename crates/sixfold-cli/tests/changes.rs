@@ -136,3 +136,39 @@ fn files_without_common_results_are_refused_in_one_message() {
     let over = ["compare", "a.json", "b.json", "--json", "b.json"];
     assert_refused(&sixfold, &over, 2, "would overwrite");
 }
+
+#[test]
+fn results_of_any_command_are_merged_and_compared() {
+    let sixfold = Sixfold::new();
+    sixfold.file("t.obj", TETRAHEDRON);
+    run_ok(&sixfold, &["memory", "t.obj", "--json", "m.json"]);
+    let quick = ["--budget", "200ms", "--json", "p.json"];
+    run_ok(&sixfold, &[&["pick", "t.obj"], &quick[..]].concat());
+    let same = run_ok(&sixfold, &["compare", "m.json", "m.json"]);
+    assert!(same.stdout.contains("the same counts of bytes"), "{same:?}");
+    let more =
+        text(&sixfold, "m.json").replacen("\"allocated_bytes\": ", "\"allocated_bytes\": 1", 1);
+    sixfold.file("more.json", &more);
+    let different = run_ok(&sixfold, &["compare", "m.json", "more.json"]);
+    assert!(
+        different.stdout.contains("1 count of bytes differs"),
+        "{different:?}"
+    );
+    assert!(different.stdout.contains("(build)"), "{different:?}");
+    let merged = run_ok(
+        &sixfold,
+        &["merge", "p.json", "m.json", "--json", "all.json"],
+    );
+    assert!(
+        merged
+            .stdout
+            .contains("results of other commands: pick, memory"),
+        "{merged:?}"
+    );
+    let left_out = run_ok(&sixfold, &["compare", "all.json", "p.json"]).stdout;
+    assert!(
+        left_out.contains("Only in the first file: build on polygon-soup, "),
+        "{left_out}"
+    );
+    assert!(left_out.contains("more."), "{left_out}");
+}

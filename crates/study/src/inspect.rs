@@ -22,7 +22,7 @@ const HASH_BLOCK: usize = 1 << 16;
 pub struct Inspection {
     /// The version of the JSON schema.
     pub schema: u32,
-    /// Name and topology of the mesh.
+    /// The name, the facts and the hashes of the mesh.
     pub mesh: MeshReport,
     /// The backends, in the order of [`Backend::structures`](crate::Backend::structures).
     pub backends: Vec<BackendReport>,
@@ -44,9 +44,10 @@ impl Inspection {
 pub struct StudyMesh {
     /// Origin of the mesh, such as its file name.
     pub name: String,
-    /// Topological facts of the file, including the number of degenerate faces.
+    /// Topological facts of the file. If `polygons` was triangulated, the facts describe the
+    /// triangulated mesh, but the number of degenerate faces is that of the file.
     pub facts: Facts,
-    /// The mesh without the degenerate faces of the file.
+    /// The mesh to measure, without the degenerate faces of the file.
     pub polygons: PolygonMesh,
     /// Differences between `polygons` and the file, as phrases.
     pub changes: Vec<String>,
@@ -55,7 +56,7 @@ pub struct StudyMesh {
     /// The number of faces of the file that were cut into triangles.
     pub cut_faces: usize,
     /// The SHA-256 of the file, as 64 hexadecimal digits; `None` if the mesh was not read from a
-    /// file.
+    /// regular file.
     pub file_sha256: Option<String>,
 }
 
@@ -79,8 +80,8 @@ impl StudyMesh {
         }
     }
 
-    /// Returns the name, the facts and the hash of the mesh, in the format of reports. The time is
-    /// O(corners).
+    /// Returns the name, the facts and the hashes of the mesh, in the format of documents. The time
+    /// is O(vertices + corners).
     pub fn report(&self) -> MeshReport {
         MeshReport {
             name: self.name.clone(),
@@ -94,9 +95,9 @@ impl StudyMesh {
     }
 }
 
-/// Returns the SHA-256 of the positions and faces, as 64 hexadecimal digits. All numbers have 32
-/// bits and begin with the lowest byte: the number of vertices, three coordinates for each vertex,
-/// and for each face the number of corners and the vertices of the corners.
+/// Returns the SHA-256 of the positions and faces, as 64 hexadecimal digits. The hashed numbers
+/// have 32 bits, each with the lowest byte first: the number of vertices, three coordinates for
+/// each vertex, and for each face the number of corners and the vertices of the corners.
 fn content_hash(polygons: &PolygonMesh) -> String {
     let mut hash = Sha256::new();
     let mut bytes: Vec<u8> = Vec::with_capacity(HASH_BLOCK + 64);
@@ -116,7 +117,7 @@ fn content_hash(polygons: &PolygonMesh) -> String {
     hex(&hash.finalize())
 }
 
-/// Hashes and removes `bytes` if there are at least `least`.
+/// Hashes and clears `bytes` if its length is at least `least`.
 fn flush(hash: &mut Sha256, bytes: &mut Vec<u8>, least: usize) {
     if bytes.len() >= least {
         hash.update(&*bytes);
@@ -124,7 +125,7 @@ fn flush(hash: &mut Sha256, bytes: &mut Vec<u8>, least: usize) {
     }
 }
 
-/// Returns the SHA-256 of everything that `reader` returns, as 64 hexadecimal digits.
+/// Returns the SHA-256 of all bytes that `reader` returns, as 64 hexadecimal digits.
 ///
 /// # Errors
 ///
@@ -149,26 +150,28 @@ fn hex(bytes: &[u8]) -> String {
 /// Checks which backends can hold the mesh, without building the backends. The expected time is
 /// O(corners) per backend.
 pub fn inspect(study_mesh: &StudyMesh, backends: &[Backend]) -> Inspection {
-    // The facts are known already, and enough for most meshes.
+    // The facts are already known, and are sufficient for most meshes.
     let facts = &study_mesh.facts;
     inspect_unless(study_mesh, backends, |own| own.is_satisfied_by(facts))
 }
 
-/// Checks which backends can hold the mesh as [`inspect`] does, in less time. `diagnosis` must be
-/// that of the polygons of `study_mesh`.
+/// Checks which backends can hold the mesh, with the same result as [`inspect`], in less time.
+/// `diagnosis` must be the diagnosis of `study_mesh.polygons`.
 pub fn inspect_diagnosed(
     study_mesh: &StudyMesh,
     diagnosis: &Diagnosis,
     backends: &[Backend],
 ) -> Inspection {
-    // A diagnosis has no faults of size. The polygons have no more edges than the file.
+    // A diagnosis does not check the number of edges. The polygons have at most as many edges as
+    // the facts.
     let edges = study_mesh.facts.edges;
     inspect_unless(study_mesh, backends, |own| {
         own.can_name_edges(edges) && diagnosis.refusals(own).next().is_none()
     })
 }
 
-/// Checks which backends can hold the mesh, except those whose capabilities are known to suffice.
+/// Checks which backends can hold the mesh. Backends whose capabilities satisfy `suffices` can hold
+/// the mesh and are not checked further.
 fn inspect_unless(
     study_mesh: &StudyMesh,
     backends: &[Backend],
@@ -180,8 +183,8 @@ fn inspect_unless(
     let mut checked: Vec<(Capabilities, Result<(), BuildError>)> = Vec::new();
     let backends = backends.iter().map(|backend| {
         let own = backend.info.capabilities;
-        // Backends with the same capabilities have the same verdict, and a mesh of triangles needs no
-        // polygons.
+        // Backends with the same capabilities have the same verdict. For a mesh of triangles, the
+        // capability `polygons` makes no difference.
         let needed = Capabilities {
             polygons: own.polygons || only_triangles,
             ..own

@@ -1,4 +1,4 @@
-//! The files with results that all measuring commands can write.
+//! The files with results that all measuring commands and `sixfold merge` can write.
 
 use std::path::PathBuf;
 

@@ -21,17 +21,18 @@ use crate::results::json::write_json;
 use crate::results::rows::{MeshReport, Standing};
 use crate::results::run::Run;
 
-/// Default limit for the drift between two studies on an unchanged machine, as a ratio of times.
-/// The limit of 20 % is about twice the typical drift of a virtual machine (reports/repeatability).
+/// Default limit for the drift between two measurements on an unchanged machine, as a ratio of
+/// times. The limit of 20 % is about twice the typical drift of a virtual machine
+/// (reports/repeatability).
 pub const DRIFT: f64 = 1.2;
 
 /// Options of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompareSettings {
-    /// If true, each ratio is divided by the median ratio of all operations and backends. Use this
-    /// option for two machines of different speed.
+    /// If true, each ratio is divided by the median of all ratios. Use this option for two machines
+    /// of different speed.
     pub relative: bool,
-    /// Ratios of times up to this value are ignored, even if the samples show a difference.
+    /// Ratios of times up to this value count as noise, even if the samples show a difference.
     pub drift: f64,
 }
 
@@ -56,13 +57,13 @@ pub struct Changes {
     pub overall: Option<f64>,
     /// True if each ratio was divided by `overall` before the ratio was compared with the noise.
     pub relative: bool,
-    /// Ratios of times up to this value are ignored.
+    /// Ratios of times up to this value always count as noise.
     pub drift: f64,
-    /// The times that both documents have, in the order of the first document.
+    /// The measured times that both documents have, in the order of the first document.
     pub rows: Vec<Change>,
     /// The counts of bytes that differ.
     pub bytes: Vec<BytesChange>,
-    /// Operations whose fastest backend changed.
+    /// The operations of studies whose fastest backend changed.
     pub winners: Vec<NewWinner>,
     /// Measurements that only the first document has.
     pub only_before: Vec<Measurement>,
@@ -86,11 +87,12 @@ pub struct SettingChange {
 /// What was measured: an operation on a backend.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Measurement {
-    /// The name of the mesh in the first document that has it; empty if the lab made its own mesh.
+    /// The name of the mesh. If the two documents have different names for the mesh, this is the
+    /// name in the first document. Empty if the lab made its own mesh.
     pub mesh: String,
     /// The name of the command, such as `study`.
     pub kind: &'static str,
-    /// The order, size or workload; empty in a study.
+    /// The order, size or workload; empty in `study`, `why` and `memory`.
     pub case: String,
     /// The name of the operation, such as `vertex_normal`.
     pub operation: String,
@@ -115,7 +117,7 @@ pub struct Change {
     pub ci_low: Option<f64>,
     /// Upper end of the 95 % confidence interval of `ratio`.
     pub ci_high: Option<f64>,
-    /// Ratios of times up to this value count as noise.
+    /// The largest ratio that counts as noise, from `drift` and the controls of both documents.
     pub noise: f64,
     /// Whether the second time is shorter, longer, or equal within the noise.
     pub verdict: Verdict,
@@ -150,12 +152,12 @@ pub enum Verdict {
     Same,
 }
 
-/// An operation whose fastest backend changed.
+/// An operation of a study whose fastest backend changed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct NewWinner {
-    /// The name of the mesh; empty if the lab made its own mesh.
+    /// The name of the mesh.
     pub mesh: String,
-    /// The order, size or workload; empty in a study.
+    /// Always empty, because a study has only one case.
     pub case: String,
     /// The name of the operation, such as `vertex_normal`.
     pub operation: String,
@@ -180,13 +182,13 @@ pub enum CompareError {
         before: &'static str,
         after: &'static str,
     },
-    /// No mesh is in both documents.
+    /// The documents have no mesh in common.
     #[error(
         "the first is of {before}, the second of {after}: times of different meshes cannot be \
          compared; measure one mesh twice"
     )]
     OtherMesh { before: String, after: String },
-    /// No measurement is in both documents.
+    /// The documents have no measurement in common.
     #[error(
         "no operation was measured on the same backend in both, so there is nothing to compare: \
          use the same command with the same --backends and --operations"
@@ -195,10 +197,10 @@ pub enum CompareError {
 }
 
 /// Compares two documents. Two measurements are compared if they are of the same command, mesh,
-/// case, operation and backend. Estimated times are not compared.
+/// case, operation and backend. Counts of bytes are also compared, estimated times are not.
 ///
 /// Meshes are the same if their hashes are equal, or if their names and facts are equal. If each
-/// document has only one mesh, equal facts are enough.
+/// document has only one mesh, equal facts are enough, and the names may differ.
 ///
 /// # Errors
 ///
@@ -305,7 +307,8 @@ impl<'r> CommonMeshes<'r> {
         })
     }
 
-    /// Returns the name of the mesh in the first document that has it.
+    /// Returns the name of the mesh in `before`. If `before` does not have the mesh, returns
+    /// the name of `mesh`.
     fn name(&self, mesh: &'r MeshReport, is_second: bool) -> &'r str {
         let same = |other: &&&MeshReport| self.are_same(other, mesh);
         let first = self.before.iter().filter(|_| is_second).find(same);
@@ -313,7 +316,7 @@ impl<'r> CommonMeshes<'r> {
     }
 }
 
-/// One figure of a document, and the finding that has it.
+/// A figure of a document, and its finding.
 struct Measured<'r> {
     key: Measurement,
     figure: Figure<'r>,
@@ -340,7 +343,8 @@ impl<'r> AllMeasured<'r> {
     }
 }
 
-/// Collects the figures that were measured or counted. Of two equal measurements, the first counts.
+/// Collects the figures that were measured or counted. If two figures have the same key, keeps the
+/// first.
 fn measurements<'r>(
     results: &'r Results,
     name: impl Fn(&'r MeshReport) -> &'r str,
@@ -371,6 +375,7 @@ fn measurements<'r>(
     AllMeasured { in_order, places }
 }
 
+/// Returns an error if the heap policies or the cache states differ.
 fn check_memory(before: &Finding, after: &Finding) -> Result<(), CompareError> {
     let [a, b] = [before, after].map(|finding| finding.run().environment.memory_settings());
     for (i, option) in ["--heap", "--caches"].into_iter().enumerate() {
@@ -386,6 +391,8 @@ fn check_memory(before: &Finding, after: &Finding) -> Result<(), CompareError> {
     Ok(())
 }
 
+/// Compares two figures, without the verdict. Returns `None` if there are no times, or if the ratio
+/// is not finite.
 fn change(before: &Measured<'_>, after: &Measured<'_>, drift: f64) -> Option<Change> {
     let [a, b] = [before, after].map(|measured| &measured.figure);
     let (before_ns, after_ns) = (a.row.ns?, b.row.ns?);
@@ -409,8 +416,8 @@ fn change(before: &Measured<'_>, after: &Measured<'_>, drift: f64) -> Option<Cha
     })
 }
 
-/// Returns whether two checksums may be of the same work. Sums of `f32` in different orders differ
-/// by at most 10⁻⁴ of their size.
+/// Returns whether two checksums may be of the same work. Sums of `f32` in different orders may
+/// have a relative difference of up to 10⁻⁴.
 fn nearly_equal(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-4 * a.abs().max(b.abs())
 }
@@ -431,6 +438,7 @@ fn verdict(row: &Change, divisor: f64) -> Verdict {
     }
 }
 
+/// Returns the differences between machines, programs and settings.
 fn differences(before: &Run, after: &Run) -> Vec<SettingChange> {
     fn shown<T: ToString>(value: Option<&T>) -> String {
         value.map_or_else(|| "not known".into(), ToString::to_string)
@@ -508,7 +516,8 @@ fn bytes<'r>(
     changes
 }
 
-/// Returns the operations that have one fastest backend in each document, but not the same one.
+/// Returns the operations of studies that have a single fastest backend in each document, but a
+/// different one.
 fn winners(before: &AllMeasured<'_>, after: &AllMeasured<'_>) -> Vec<NewWinner> {
     let best = |all: &AllMeasured<'_>| {
         let best = all.in_order.iter().filter(|measured| {
@@ -572,6 +581,19 @@ impl Changes {
         let mut sentences = Vec::new();
         let (slower, faster) = (self.count(Verdict::Slower), self.count(Verdict::Faster));
         let same = self.count(Verdict::Same);
+        if self.rows.is_empty() {
+            return vec![match self.bytes.len() {
+                0 => "The files have the same counts of bytes.".into(),
+                different => format!(
+                    "{} between the two files.",
+                    counted(
+                        different,
+                        "count of bytes differs",
+                        "counts of bytes differ"
+                    )
+                ),
+            }];
+        }
         sentences.push(format!(
             "Of {}, {faster} {} faster in the second file, {slower} {} slower, and {same} \
              {} equal within the noise.",

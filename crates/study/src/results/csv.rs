@@ -100,8 +100,8 @@ const SAMPLE_COLUMNS: [&str; 10] = [
 ];
 
 impl Results {
-    /// Writes the times as CSV: a header line, and one line for each mesh, case, operation and
-    /// backend of each finding.
+    /// Writes the times as CSV: a header, and one row for each mesh, case, operation and backend of
+    /// each finding.
     ///
     /// # Errors
     ///
@@ -112,8 +112,8 @@ impl Results {
         })
     }
 
-    /// Writes the samples as CSV: a header line, and one line for each sample. The samples of the
-    /// second measurement of the control are left out.
+    /// Writes the samples as CSV: a header, and one row for each sample. The samples of the second
+    /// measurement of the control are left out.
     ///
     /// # Errors
     ///
@@ -124,7 +124,7 @@ impl Results {
         })
     }
 
-    /// Writes the header, and the lines that `write` writes for each figure.
+    /// Writes the header, and the rows that `write` writes for each figure.
     fn write_lines<W: io::Write>(
         &self,
         writer: W,

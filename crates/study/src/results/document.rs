@@ -1,6 +1,6 @@
 //! The document that all measuring commands write.
 //!
-//! A document lists each run and each mesh once. A finding names them by their places in these
+//! In JSON, the document lists each run and each mesh once, and a finding has their places in these
 //! lists. In memory, each finding has its own copy, so that a finding can be used alone.
 
 use std::io;
@@ -118,7 +118,8 @@ impl Results {
         }
     }
 
-    /// Adds a finding. Replaces a study or failure of the same mesh by a new study.
+    /// Adds a finding. If the finding is a study, it replaces an earlier study or failure of the
+    /// same mesh.
     pub fn add(&mut self, finding: Finding) {
         match &finding {
             Finding::Study(study) => {
@@ -140,12 +141,14 @@ impl Results {
         self.sort();
     }
 
+    /// Adds a name to the planned meshes if it is new.
     pub(crate) fn plan(&mut self, mesh: String) {
         if !self.planned.contains(&mesh) {
             self.planned.push(mesh);
         }
     }
 
+    /// Removes the study and the failure of a mesh.
     fn remove(&mut self, mesh: &str) {
         self.findings.retain(|finding| match finding {
             Finding::Study(study) => study.mesh.name != mesh,
@@ -189,7 +192,7 @@ impl Results {
         })
     }
 
-    /// Iterates over the comparisons of query times with the memory that the queries read.
+    /// Iterates over the explanations of query times by the memory that the queries read.
     pub fn why(&self) -> impl Iterator<Item = &Why> {
         self.findings.iter().filter_map(|finding| match finding {
             Finding::Why(why) => Some(&**why),
@@ -234,8 +237,8 @@ impl Results {
         Pool::new(&studies)
     }
 
-    /// Writes the document as JSON, in the format that `reports/SCHEMA.md` explains. With studies of
-    /// several meshes, the document also has the results over all meshes ([`Pool`]).
+    /// Writes the document as JSON, in the format that `reports/SCHEMA.md` explains. If several
+    /// meshes were planned, the document also has the results over all studied meshes ([`Pool`]).
     ///
     /// # Errors
     ///
@@ -274,8 +277,8 @@ impl Results {
     ///
     /// # Errors
     ///
-    /// Returns an error if the text is truncated or is not JSON, if another program wrote the text,
-    /// if the schema has another version, or if a value is impossible.
+    /// Returns an error if the text is truncated or is not JSON, if the schema is missing or has
+    /// another version, if there are no `findings`, or if a field is missing or invalid.
     pub fn read_json(text: &str) -> Result<Self, ReadError> {
         check_schema(text)?;
         let document: ReadDocument = parse_json(text)?;

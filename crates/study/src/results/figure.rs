@@ -1,22 +1,22 @@
-//! Single times of findings, in one form for all labs.
+//! Single times and counts of bytes of findings, in one form for all labs.
 
 use serde::Serialize;
 
 use crate::results::rows::{Agreement, MeshReport, ResultRow, Samples, Standing};
 
-/// One time in a finding: an operation on a backend.
+/// One time or count of bytes in a finding: an operation on a backend, on a mesh and in a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure<'r> {
     /// The mesh; `None` if the lab made its own mesh.
     pub mesh: Option<&'r MeshReport>,
     /// The numbers of vertices, edges and faces of the measured mesh.
     pub elements_of_mesh: [usize; 3],
-    /// What distinguishes measurements of the same operation in one finding: the order of the
-    /// elements, the size of the shape, or the workload. Empty if there is only one case.
+    /// What was measured besides the operation: in `orders`, the order; in `growth`, the shape, the
+    /// order and the number of faces; in `pick`, the name of the workload. Empty in other labs.
     pub case: String,
     /// The size of the backend in bytes; `None` if unknown.
     pub backend_bytes: Option<usize>,
-    /// The time.
+    /// The operation, the backend, and the time or the bytes.
     pub row: FigureRow<'r>,
     /// The samples of the time; `None` if there are none.
     pub samples: Option<&'r Samples>,
@@ -24,21 +24,22 @@ pub struct Figure<'r> {
     pub noise: f64,
 }
 
-/// The time of an operation on a backend, without the mesh.
+/// The time or the bytes of an operation on a backend, without the mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FigureRow<'r> {
-    /// The name of the operation. In a pick, `mix` is the whole mix.
+    /// The name of the operation. In a pick, `mix` is the whole mix, and the other names are the
+    /// parts of the mix and `build`.
     pub operation: String,
     /// The name of the backend, such as `half-edge`.
     pub backend: &'r str,
-    /// How the time was obtained.
+    /// How the time or the count of bytes was obtained.
     pub status: Status,
-    /// The median time of one run, or the estimated time, in nanoseconds. `None` if the backend
-    /// refuses the operation.
+    /// The median time of one run, or the estimated time, in nanoseconds. `None` if there is no
+    /// time, see `status`.
     pub ns: Option<f64>,
     /// The bytes that one run allocates; `None` if they were not counted.
     pub allocated_bytes: Option<usize>,
-    /// The smallest time of a sample.
+    /// The smallest time of a sample, in nanoseconds.
     pub min_ns: Option<f64>,
     /// The 95 % confidence interval of `ns`.
     pub interval_ns: Option<[f64; 2]>,
@@ -46,24 +47,26 @@ pub struct FigureRow<'r> {
     pub elements: Option<u64>,
     /// The kind of the visited elements, such as `vertex`.
     pub unit: String,
-    /// The ratio to the fastest backend.
+    /// The time divided by the time of the fastest backend. In `orders`, the time divided by the
+    /// time of the best order of the backend.
     pub ratio_to_best: Option<f64>,
     /// The 95 % confidence interval of `ratio_to_best`.
     pub ratio_interval: Option<[f64; 2]>,
-    /// The comparison with the other backends.
+    /// The comparison with the other backends. In `orders`, the comparison with the other orders on
+    /// this backend.
     pub standing: Option<Standing>,
-    /// The comparison of the results with those of the other backends; `None` if the lab compares
-    /// all results of a backend at once.
+    /// The comparison of the checksum with the checksums of other backends. `None` if there is no
+    /// time, and in `pick`, which compares all results of a backend at once.
     pub agreement: Option<Agreement>,
     /// The number of samples.
     pub samples: usize,
     /// The checksum of all results.
     pub checksum: Option<f64>,
-    /// The number of elements of a sample; `None` if all elements were measured.
+    /// The number of elements on which the operation was run; `None` if it was run on all elements.
     pub sample_size: Option<usize>,
 }
 
-/// How a time was obtained.
+/// How a time or a count of bytes was obtained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
@@ -71,11 +74,12 @@ pub enum Status {
     Measured,
     /// Runs on some of the elements were measured and scaled to the whole mesh.
     Sampled,
-    /// The time is an estimate, because a run would exceed the time limit.
+    /// The time is an estimate, because a whole run would exceed the time limit.
     Estimated,
     /// Bytes were counted. There is no time.
     Counted,
-    /// There is no time, because the backend cannot do the operation on this mesh.
+    /// There is no value, because the backend cannot do the operation on this mesh. In `memory`,
+    /// the operation was not run, possibly only because it would take too long.
     Refused,
 }
 
@@ -102,6 +106,7 @@ impl<'r> FigureRow<'r> {
         }
     }
 
+    /// Returns the row of a measured or estimated result.
     pub(crate) fn of_result(row: &'r ResultRow) -> Self {
         let status = match (row.median_ns, row.sampled) {
             (None, _) => Status::Estimated,
@@ -126,7 +131,7 @@ impl<'r> FigureRow<'r> {
         }
     }
 
-    /// Returns true if something was measured or counted, not estimated.
+    /// Returns true if the time was measured or the bytes were counted.
     pub const fn is_measured(&self) -> bool {
         matches!(
             self.status,
@@ -141,13 +146,13 @@ impl<'r> FigureRow<'r> {
 }
 
 impl Figure<'_> {
-    /// Returns the times of all samples that count, in nanoseconds.
+    /// Returns the times of all samples that count, in nanoseconds. See [`Samples::counted_ns`].
     pub fn counted_ns(&self) -> Vec<f64> {
         self.samples.map_or_else(Vec::new, Samples::counted_ns)
     }
 }
 
-/// Finds the samples of an operation on a backend.
+/// Returns the samples of an operation on a backend, without the second measurement of the control.
 pub(crate) fn samples_of<'r>(
     samples: &'r [Samples],
     operation: &str,

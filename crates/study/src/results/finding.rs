@@ -32,23 +32,24 @@ pub enum Finding {
     Pick(Box<PickReport>),
 }
 
-/// What the findings of all labs have in common.
+/// The common interface of the findings of all labs.
 pub(crate) trait LabFinding {
-    /// How the finding was measured.
+    /// Returns how the finding was measured.
     fn run(&self) -> &Run;
+    /// Returns the run, so that it can be changed.
     fn run_mut(&mut self) -> &mut Run;
-    /// The meshes of the finding. A lab that makes its own meshes has none.
+    /// Returns the measured meshes. The list is empty for a lab that makes its own meshes.
     fn meshes(&self) -> &[MeshReport];
     /// Sets the meshes after reading. Returns an error if their number is wrong.
     fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError>;
     fn sentences(&self) -> &[String];
     fn warnings(&self) -> &[String];
-    /// Whether the measurement was stopped early.
+    /// Returns true if the measurement was stopped early.
     fn is_interrupted(&self) -> bool;
     /// Counts the results that differ, for no known reason, from the results of other backends of
     /// Sixfold.
     fn mismatches(&self) -> usize;
-    /// The times of the finding, for comparisons and CSV.
+    /// Returns the times and counts of bytes of the finding, for comparisons and CSV.
     fn figures(&self) -> Vec<Figure<'_>>;
     /// Returns an error for values that no measurement can produce.
     fn check(&self) -> Result<(), ReadError> {
@@ -96,12 +97,12 @@ impl Finding {
         self.lab().run()
     }
 
-    /// Returns how the finding was measured, to complete the description.
+    /// Returns the run, so that it can be changed. For example, the command line adds `command`.
     pub fn run_mut(&mut self) -> &mut Run {
         self.lab_mut().run_mut()
     }
 
-    /// Returns the measured meshes; none for a lab that makes its own meshes.
+    /// Returns the measured meshes. The list is empty for a lab that makes its own meshes.
     pub fn meshes(&self) -> &[MeshReport] {
         self.lab().meshes()
     }
@@ -127,12 +128,13 @@ impl Finding {
         self.lab().mismatches()
     }
 
-    /// Returns the times of the finding, one for each case, operation and backend.
+    /// Returns the times and counts of bytes of the finding: one figure for each mesh, case,
+    /// operation and backend.
     pub fn figures(&self) -> Vec<Figure<'_>> {
         self.lab().figures()
     }
 
-    /// Completes a finding that was read from a file, and checks its values.
+    /// Adds the run and the meshes to a finding that was read from a file, and checks its values.
     pub(crate) fn complete(&mut self, run: Run, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
         let lab = self.lab_mut();
         *lab.run_mut() = run;
@@ -160,7 +162,7 @@ from_lab!(
     PickReport => Pick
 );
 
-/// Returns the only mesh of a finding that was read from a file.
+/// Returns the only mesh of a finding. Returns an error if the number of meshes is not 1.
 pub(crate) fn only_mesh(meshes: Vec<MeshReport>) -> Result<MeshReport, ReadError> {
     let count = meshes.len();
     let only: Result<[MeshReport; 1], _> = meshes.try_into();

@@ -25,7 +25,7 @@ pub enum MergeError {
          measure it again"
     )]
     OtherMesh { mesh: String },
-    /// Both documents have a study of the mesh.
+    /// The documents have two different studies of the same mesh.
     #[error(
         "both have a study of {mesh}: compare the two with `sixfold compare`, or leave one out"
     )]
@@ -33,14 +33,14 @@ pub enum MergeError {
 }
 
 impl Results {
-    /// Adds the findings of `other`. A study replaces a failure. A finding that `self` has already
-    /// is not added again.
+    /// Adds the findings and failures of `other`. A study replaces a failure of the same mesh. A
+    /// copy of a finding of `self` is not added.
     ///
     /// # Errors
     ///
-    /// Returns an error if the studies of the two documents have different settings, if both have a
-    /// study of the same mesh, or if two different meshes have the same name. `self` is then
-    /// unchanged.
+    /// Returns an error if the studies of the two documents have different settings, if they are of
+    /// different meshes with the same name, or if there are two different studies of one mesh.
+    /// `self` is then unchanged.
     pub fn merge(&mut self, other: Self) -> Result<(), MergeError> {
         if let (Some(ours), Some(theirs)) = (self.studies().next(), other.studies().next()) {
             ours.run.settings.check_equal(&theirs.run.settings)?;
@@ -81,7 +81,8 @@ impl Results {
     }
 
     /// Returns an error if the studies of `other` used another heap policy or cache state. With
-    /// little free memory, a study uses the system's heap instead of the policy in the settings.
+    /// little free memory, a study uses the policy `system` instead of the policy in the settings,
+    /// so comparing the settings is not enough.
     fn check_memory(&self, other: &Self) -> Result<(), MergeError> {
         let memory = |study: &Report| study.run.environment.memory_settings();
         let Some(ours) = self.studies().next().map(memory) else {

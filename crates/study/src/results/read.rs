@@ -25,7 +25,7 @@ pub enum ReadError {
         column: usize,
         cause: String,
     },
-    /// The text is JSON, but Sixfold did not write it.
+    /// The text is JSON without `schema`, so Sixfold did not write it.
     #[error("is JSON, but has no `schema`: choose a file that sixfold wrote")]
     Foreign,
     /// The file has another version of the schema.
@@ -34,18 +34,18 @@ pub enum ReadError {
         remedy(*found)
     )]
     OtherSchema { found: u64 },
-    /// The file is a list of facts or a comparison, which contains no measurement.
+    /// The file contains no measurement. For example, `sixfold inspect` or `compare` wrote it.
     #[error(
         "has no findings: choose a file that `sixfold study`, `orders`, `growth`, `why`, `memory` \
          or `pick` wrote"
     )]
     NoFindings,
-    /// A field of the JSON is missing or invalid.
+    /// A field of the JSON is missing or has an impossible value.
     #[error("is not in the format that sixfold writes: {cause}")]
     Malformed { cause: String },
 }
 
-/// Returns an error if this version of Sixfold cannot have written the text.
+/// Returns an error if the text is not a document of the current schema.
 pub(crate) fn check_schema(text: &str) -> Result<(), ReadError> {
     #[derive(Deserialize)]
     struct Head {
@@ -70,6 +70,7 @@ fn remedy(found: u64) -> &'static str {
     }
 }
 
+/// Parses JSON. The error distinguishes text that is cut off from text that is not JSON.
 pub(crate) fn parse_json<T: DeserializeOwned>(text: &str) -> Result<T, ReadError> {
     serde_json::from_str(text).map_err(|error| {
         // The parser reports a syntax error if the text ends within a number or a word.

@@ -23,7 +23,7 @@ pub struct Run {
     pub settings: RunSettings,
     /// The program and the machine.
     pub environment: Environment,
-    /// The start of the measurement. In JSON, each finding has its own start.
+    /// The start of the measurement. In JSON, the field `start` of the finding.
     #[serde(skip)]
     pub start: Start,
 }
@@ -31,7 +31,7 @@ pub struct Run {
 /// The start of a measurement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct Start {
-    /// The time of day, in seconds since 1970.
+    /// The time, in seconds since 1970.
     pub unix_time: u64,
     /// Mean number of runnable threads in the minute before the measurement; `None` if unknown.
     pub load_average: Option<f64>,
@@ -48,10 +48,10 @@ pub struct RunSettings {
     pub operations: Vec<Operation>,
     /// Time budget of the finding, in seconds.
     pub budget_s: f64,
-    /// Seed of the random numbers. They determine the order of elements in a sample and the order
-    /// of the measurements, but not the size of a sample.
+    /// Seed of the random numbers. The seed determines the order in which samples take elements,
+    /// the order of the measurements, and the order `shuffled`, but not the size of a sample.
     pub seed: u64,
-    /// What happens to freed memory pages.
+    /// The requested policy for freed memory pages. The environment has the policy in force.
     pub heap: Policy,
     /// State of the processor caches when a timed series of runs begins.
     pub caches: CacheState,
@@ -72,12 +72,14 @@ impl Run {
         }
     }
 
-    /// Returns whether the command, the settings and the environment are the same.
+    /// Returns whether the command, the settings and the environment are the same. The start may
+    /// differ.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         let parts = |run: &Self| (run.command.clone(), run.settings.clone());
         parts(self) == parts(other) && self.environment == other.environment
     }
 
+    /// Adds the heap policy and the cache state that are in force.
     pub(crate) fn with_memory(self, memory: &Memory) -> Self {
         Self {
             environment: self.environment.with_memory(memory),
@@ -87,6 +89,7 @@ impl Run {
 }
 
 impl Start {
+    /// Returns the current time and load.
     fn now() -> Self {
         let since = SystemTime::now().duration_since(UNIX_EPOCH);
         Self {
@@ -97,7 +100,8 @@ impl Start {
 }
 
 impl RunSettings {
-    /// Returns the settings of a study.
+    /// Returns the settings of a study. The study does not know `triangulate` and `strict`, so both
+    /// are false.
     pub fn of_study(settings: &Settings) -> Self {
         let externals = settings.externals.iter().map(|other| other.name.clone());
         Self {

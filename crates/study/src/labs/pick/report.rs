@@ -289,6 +289,11 @@ impl PickReport {
         let facts = &mesh.facts;
         let figure = |row: FigureRow<'r>| {
             let samples = samples_of(samples, &row.operation, row.backend);
+            let count = samples.map_or(0, |samples| samples.rounds.len());
+            let row = FigureRow {
+                samples: row.samples.max(count),
+                ..row
+            };
             Figure {
                 mesh: Some(mesh),
                 elements_of_mesh: [facts.vertices, facts.edges, facts.faces],

@@ -17,16 +17,17 @@ use crate::results::run::Run;
 /// The result of a study.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Report {
-    /// How the study was measured. In JSON, the document has this field.
+    /// How the study was measured. In JSON, the finding has the place of the run in `runs`.
     #[serde(skip)]
     pub run: Run,
-    /// Name and topology of the mesh. In JSON, the document has this field.
+    /// The name, facts and hashes of the mesh. In JSON, the finding has the place of the mesh in
+    /// `meshes`.
     #[serde(skip)]
     pub mesh: MeshReport,
-    /// The backends, in the order of [`Backend::structures`](crate::Backend::structures).
+    /// The requested backends, in the order of [`Backend::structures`](crate::Backend::structures),
+    /// then the external programs.
     pub backends: Vec<BackendReport>,
-    /// The results, sorted by operation, then in the order of
-    /// [`Backend::structures`](crate::Backend::structures).
+    /// The results, sorted by operation, then in the order of `backends`.
     pub results: Vec<ResultRow>,
     /// The operations that a backend cannot do, in the order of `results`.
     pub refusals: Vec<Refusal>,
@@ -141,7 +142,7 @@ impl LabFinding for Report {
     }
 }
 
-/// Returns the size of a backend that was built.
+/// Returns the actual size of a backend in bytes; `None` if it was not measured.
 pub(crate) fn bytes_of(backends: &[BackendReport], name: &str) -> Option<usize> {
     backends.iter().find(|backend| backend.name == name)?.bytes
 }
