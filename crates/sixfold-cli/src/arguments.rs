@@ -88,19 +88,19 @@ const MERGE_EXAMPLES: &str = "Examples:
   sixfold study scans --shard 2/2 --report two      part 2, on another machine
   sixfold merge one two --report all
 
-A shard is the result of one part of a study. All shards must have the same list of mesh names and
-the same settings. If several shards contain the same mesh, `merge` uses the first of these shards.
+A shard is the result of one part of a study. All studies must have the same settings. A copy of a
+result is used once. Two different studies of one mesh are refused.
 
-Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold); 2 wrong usage, or
-shards with different mesh names or settings.";
+Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold), or the results of an
+external program differ; 2 wrong usage, an invalid file, or studies that cannot be merged.";
 
 const REPORT_EXAMPLES: &str = "Examples:
   sixfold growth --to 4000000 --budget 5m --json growth.json
   sixfold report growth.json --to growth
   sixfold report results pick.json orders.json --to all
 
-Exit codes: 0 success; 2 wrong usage, or a file that is incomplete, is not a result, or has another
-schema version.";
+Exit codes: 0 success; 2 wrong usage, a file that is incomplete, has no results or has another
+schema version, or studies that cannot be merged.";
 
 const COMPLETIONS_EXAMPLES: &str = "Examples:
   sixfold completions bash > ~/.local/share/bash-completion/completions/sixfold

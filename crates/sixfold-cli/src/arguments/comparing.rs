@@ -64,27 +64,29 @@ const COMPARE_EXAMPLES: &str = "Examples:
   sixfold compare before.json after.json --fail-if-slower      for CI: exit code 1
   sixfold compare laptop.json server.json --relative
 
-Each file has results of any commands that measure. A figure is the time of one operation on one
-backend, on the same mesh and by the same command in both files. The ratio of a figure is the median
-time in the second file, divided by the median time in the first file. A figure counts as slower if
-three conditions hold:
+Each file has results of any commands that measure. A measurement is the time of one operation on
+one backend, by the same command, on the same mesh and in the same case (order, size or workload).
+The ratio of a measurement is the median time in the second file, divided by the median time in the
+first file. A measurement counts as slower if three conditions hold:
   - The 95 % interval of the ratio lies above 1.
   - The ratio is above --noise.
   - The ratio is above the noise of this operation in both files.
-A figure counts as faster if the same conditions hold for the inverse of the ratio. If a file has
-fewer than three samples of a figure, the first condition is that the ratio is above 2.
+A measurement counts as faster if the same conditions hold for the inverse of the ratio. If a file
+has fewer than three samples of a measurement, the first condition is that the ratio is above 2.
 
 The default of --noise is chosen for shared virtual machines, whose speed changes over time. A
-dedicated machine allows a lower value. To find a suitable value, compare two measurements of
-the same program.
+dedicated machine allows a lower value. To find a suitable value, measure twice with the same
+program, and compare the two files.
 
-Exit codes: 0 success; 1 a figure is slower and --fail-if-slower is given; 2 wrong usage, or a file
-that is incomplete, has no results, or has another schema version.";
+Exit codes: 0 success; 1 a measurement is slower and --fail-if-slower is given; 2 wrong usage, a
+file that is incomplete, has no results or has another schema version, files without a common
+measurement, or files with different --heap or --caches.";
 
 /// Compare two files of results, and show the differences that exceed the noise.
 ///
-/// Compares measurements on two machines, with two compilers or of two commits. Shows which figures
-/// are faster or slower, which backend is now the fastest, and how machines and programs differ.
+/// Compares measurements on two machines, with two compilers or of two commits. Shows which
+/// times are shorter or longer, which backend is now the fastest, and how machines and programs
+/// differ.
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment, after_help = COMPARE_EXAMPLES)]
 pub(crate) struct Compare {
@@ -100,10 +102,10 @@ pub(crate) struct Compare {
     /// Ignore ratios below this threshold
     #[arg(long, value_name = "RATIO", default_value_t = sixfold_study::DRIFT, value_parser = noise)]
     pub(crate) noise: f64,
-    /// Show all figures, including unchanged figures
+    /// Show all measurements, including unchanged ones
     #[arg(long)]
     pub(crate) all: bool,
-    /// End with exit code 1 if a figure is slower
+    /// End with exit code 1 if a measurement is slower
     #[arg(long)]
     pub(crate) fail_if_slower: bool,
     /// Write all results as JSON (- for standard output)

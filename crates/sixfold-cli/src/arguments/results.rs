@@ -10,10 +10,10 @@ pub(crate) struct ResultFiles {
     /// Write all results as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
-    /// Write one line per time as CSV (- for standard output)
+    /// Write one row per time as CSV (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) csv: Option<PathBuf>,
-    /// Write one line per sample as CSV (- for standard output)
+    /// Write one row per sample as CSV (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) samples_csv: Option<PathBuf>,
 }

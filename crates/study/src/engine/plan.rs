@@ -32,7 +32,7 @@ const LONGEST_ONCE: f64 = 0.5;
 /// left.
 const LONGEST_UNNAMED: f64 = 0.02;
 /// Why an operation that was not requested by name has no result.
-const BUDGET_ENDED: &str = "not run, because the budget ended: use a longer --budget";
+pub(crate) const BUDGET_ENDED: &str = "not run, because the budget ended: use a longer --budget";
 /// Number of faces of the first patch on which an operation is timed.
 const FIRST_PATCH: usize = 1024;
 

@@ -39,7 +39,7 @@ use crate::engine::warnings::warnings;
 use crate::labs::study::{StudyError, is_skewed, prepare, refusals, results, scans};
 use crate::refusal::Candidate;
 use crate::results::figure::{Figure, FigureRow, samples_of};
-use crate::results::finding::LabFinding;
+use crate::results::finding::{Common, LabFinding};
 use crate::results::read::ReadError;
 use crate::results::rows::{
     Agreement, Control, MeshReport, Refusal, ResultRow, Samples, check_control, check_results,
@@ -55,7 +55,7 @@ use sixfold_workload::{Cache, caches, last_level_bytes};
 /// The results for one shape in several sizes.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct GrowthReport {
-    /// How the finding was measured. In JSON, the document has this field.
+    /// How the finding was measured. In JSON, the finding has the place of the run in `runs`.
     #[serde(skip)]
     pub run: Run,
     /// Name of the shape.
@@ -132,16 +132,18 @@ pub struct BackendBytes {
 }
 
 impl LabFinding for GrowthReport {
-    fn run(&self) -> &Run {
-        &self.run
+    fn common(&self) -> Common<'_> {
+        Common {
+            run: &self.run,
+            meshes: &[],
+            sentences: &self.sentences,
+            warnings: &self.warnings,
+            interrupted: self.interrupted,
+        }
     }
 
     fn run_mut(&mut self) -> &mut Run {
         &mut self.run
-    }
-
-    fn meshes(&self) -> &[MeshReport] {
-        &[]
     }
 
     fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
@@ -153,27 +155,15 @@ impl LabFinding for GrowthReport {
         }
     }
 
-    fn sentences(&self) -> &[String] {
-        &self.sentences
-    }
-
-    fn warnings(&self) -> &[String] {
-        &self.warnings
-    }
-
-    fn is_interrupted(&self) -> bool {
-        self.interrupted
-    }
-
     fn mismatches(&self) -> usize {
         let rows = self.sizes.iter().flat_map(|size| &size.results);
         rows.filter(|row| row.agreement == Agreement::Mismatch)
             .count()
     }
 
-    fn figures(&self) -> Vec<Figure<'_>> {
+    fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
         let figures = self.sizes.iter().flat_map(|size| {
-            size.results.iter().map(|row| {
+            let figure = |row: FigureRow<'s>| {
                 let mut bytes = size.backend_bytes.iter();
                 let bytes = bytes.find(|bytes| bytes.backend == row.backend);
                 Figure {
@@ -181,11 +171,19 @@ impl LabFinding for GrowthReport {
                     elements_of_mesh: [size.vertices, size.edges, size.faces],
                     case: format!("{}, {}, {} faces", self.shape, self.order, size.faces),
                     backend_bytes: bytes.map(|bytes| bytes.bytes),
-                    row: FigureRow::of_result(row),
-                    samples: samples_of(&size.samples, row.operation.name(), &row.backend),
-                    noise: noise(size.control.as_ref(), row.operation),
+                    row,
+                    samples: None,
+                    noise: 1.0,
                 }
-            })
+            };
+            let timed = size.results.iter().map(|row| Figure {
+                samples: samples_of(&size.samples, row.operation.name(), &row.backend),
+                noise: noise(size.control.as_ref(), row.operation),
+                ..figure(FigureRow::of_result(row))
+            });
+            let refused = size.refusals.iter();
+            let refused = refused.map(|refusal| figure(FigureRow::of_refusal(refusal)));
+            timed.chain(refused).collect::<Vec<_>>()
         });
         figures.collect()
     }

@@ -16,7 +16,7 @@ use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::labs::study::StudyError;
 use crate::refusal::Candidate;
 use crate::results::figure::{Figure, FigureRow, Status};
-use crate::results::finding::{LabFinding, only_mesh};
+use crate::results::finding::{Common, LabFinding, only_mesh};
 use crate::results::read::ReadError;
 use crate::results::rows::{BackendReport, MeshReport};
 use crate::results::run::{Run, RunSettings};
@@ -30,10 +30,11 @@ const MAX_COUNTS: usize = 8;
 /// The memory of each backend, counted by a formula, by the tables and by the allocator.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Audit {
-    /// How the finding was measured. In JSON, the document has this field.
+    /// How the finding was measured. In JSON, the finding has the place of the run in `runs`.
     #[serde(skip)]
     pub run: Run,
-    /// Name and topology of the mesh. In JSON, the document has this field.
+    /// The name, facts and hashes of the mesh. In JSON, the finding has the place of the mesh in
+    /// `meshes`.
     #[serde(skip)]
     pub mesh: MeshReport,
     /// The backends, in the requested order.
@@ -219,33 +220,23 @@ impl Audit {
 }
 
 impl LabFinding for Audit {
-    fn run(&self) -> &Run {
-        &self.run
+    fn common(&self) -> Common<'_> {
+        Common {
+            run: &self.run,
+            meshes: std::slice::from_ref(&self.mesh),
+            sentences: &[],
+            warnings: &[],
+            interrupted: false,
+        }
     }
 
     fn run_mut(&mut self) -> &mut Run {
         &mut self.run
     }
 
-    fn meshes(&self) -> &[MeshReport] {
-        std::slice::from_ref(&self.mesh)
-    }
-
     fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
         self.mesh = only_mesh(meshes)?;
         Ok(())
-    }
-
-    fn sentences(&self) -> &[String] {
-        &[]
-    }
-
-    fn warnings(&self) -> &[String] {
-        &[]
-    }
-
-    fn is_interrupted(&self) -> bool {
-        false
     }
 
     fn mismatches(&self) -> usize {
@@ -266,9 +257,10 @@ impl LabFinding for Audit {
                     ..FigureRow::new(
                         counted.operation.name().into(),
                         &backend.name,
-                        match counted.allocated_bytes {
-                            Some(_) => Status::Counted,
-                            None => Status::Refused,
+                        match (counted.allocated_bytes, counted.scans) {
+                            (Some(_), _) => Status::Counted,
+                            (None, true) => Status::NotRun,
+                            (None, false) => Status::Refused,
                         },
                     )
                 },

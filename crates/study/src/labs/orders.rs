@@ -33,7 +33,7 @@ use crate::labs::study::report::bytes_of;
 use crate::labs::study::{Settings, StudyError, is_skewed, prepare, refusals, results, scans};
 use crate::refusal::Candidate;
 use crate::results::figure::{Figure, FigureRow};
-use crate::results::finding::{LabFinding, only_mesh};
+use crate::results::finding::{Common, LabFinding, only_mesh};
 use crate::results::read::ReadError;
 use crate::results::rows::{
     Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, Samples, check_control,
@@ -66,10 +66,11 @@ pub enum OrdersError {
 /// The results of one mesh with its elements in several orders.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct OrdersReport {
-    /// How the finding was measured. In JSON, the document has this field.
+    /// How the finding was measured. In JSON, the finding has the place of the run in `runs`.
     #[serde(skip)]
     pub run: Run,
-    /// Name and facts of the mesh in its original order. In JSON, the document has this field.
+    /// The name, facts and hashes of the mesh in its original order. In JSON, the finding has the
+    /// place of the mesh in `meshes`.
     #[serde(skip)]
     pub mesh: MeshReport,
     /// The measured orders.
@@ -134,33 +135,23 @@ impl OrdersReport {
 }
 
 impl LabFinding for OrdersReport {
-    fn run(&self) -> &Run {
-        &self.run
+    fn common(&self) -> Common<'_> {
+        Common {
+            run: &self.run,
+            meshes: std::slice::from_ref(&self.mesh),
+            sentences: &self.sentences,
+            warnings: &self.warnings,
+            interrupted: self.interrupted,
+        }
     }
 
     fn run_mut(&mut self) -> &mut Run {
         &mut self.run
     }
 
-    fn meshes(&self) -> &[MeshReport] {
-        std::slice::from_ref(&self.mesh)
-    }
-
     fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
         self.mesh = only_mesh(meshes)?;
         Ok(())
-    }
-
-    fn sentences(&self) -> &[String] {
-        &self.sentences
-    }
-
-    fn warnings(&self) -> &[String] {
-        &self.warnings
-    }
-
-    fn is_interrupted(&self) -> bool {
-        self.interrupted
     }
 
     fn mismatches(&self) -> usize {
@@ -170,16 +161,23 @@ impl LabFinding for OrdersReport {
 
     fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
         let facts = &self.mesh.facts;
-        let figure = |OrderRow { order, row }: &'s OrderRow| Figure {
+        let figure = |case: String, row: FigureRow<'s>| Figure {
             mesh: Some(&self.mesh),
             elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
-            case: order.to_string(),
-            backend_bytes: bytes_of(&self.backends, &row.backend),
-            row: FigureRow::of_result(row),
+            case,
+            backend_bytes: bytes_of(&self.backends, row.backend),
+            row,
+            samples: None,
+            noise: 1.0,
+        };
+        let timed = self.results.iter().map(|OrderRow { order, row }| Figure {
             samples: self.samples_of(*order, row),
             noise: noise(self.control.as_ref(), row.operation),
-        };
-        self.results.iter().map(figure).collect()
+            ..figure(order.to_string(), FigureRow::of_result(row))
+        });
+        let refused = self.refusals.iter();
+        let refused = refused.map(|r| figure(String::new(), FigureRow::of_refusal(r)));
+        timed.chain(refused).collect()
     }
 
     fn check(&self) -> Result<(), ReadError> {

@@ -22,7 +22,7 @@ use crate::labs::study::report::{Report, bytes_of};
 use crate::labs::study::{Settings, StudyError, study};
 use crate::refusal::Candidate;
 use crate::results::figure::{Figure, FigureRow, Status, samples_of};
-use crate::results::finding::{LabFinding, only_mesh};
+use crate::results::finding::{Common, LabFinding, only_mesh};
 use crate::results::read::ReadError;
 use crate::results::rows::{Agreement, BackendReport, MeshReport, Samples, check_samples};
 use crate::results::run::{Run, RunSettings};
@@ -53,10 +53,11 @@ pub struct Timing {
 /// The memory that queries read on each structure, compared with the times of the queries.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Why {
-    /// How the finding was measured. In JSON, the document has this field.
+    /// How the finding was measured. In JSON, the finding has the place of the run in `runs`.
     #[serde(skip)]
     pub run: Run,
-    /// Name and topology of the mesh. In JSON, the document has this field.
+    /// The name, facts and hashes of the mesh. In JSON, the finding has the place of the mesh in
+    /// `meshes`.
     #[serde(skip)]
     pub mesh: MeshReport,
     /// The backends, in the order of [`Backend::structures`].
@@ -180,33 +181,23 @@ impl Bound {
 }
 
 impl LabFinding for Why {
-    fn run(&self) -> &Run {
-        &self.run
+    fn common(&self) -> Common<'_> {
+        Common {
+            run: &self.run,
+            meshes: std::slice::from_ref(&self.mesh),
+            sentences: &[],
+            warnings: &self.warnings,
+            interrupted: self.interrupted,
+        }
     }
 
     fn run_mut(&mut self) -> &mut Run {
         &mut self.run
     }
 
-    fn meshes(&self) -> &[MeshReport] {
-        std::slice::from_ref(&self.mesh)
-    }
-
     fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
         self.mesh = only_mesh(meshes)?;
         Ok(())
-    }
-
-    fn sentences(&self) -> &[String] {
-        &[]
-    }
-
-    fn warnings(&self) -> &[String] {
-        &self.warnings
-    }
-
-    fn is_interrupted(&self) -> bool {
-        self.interrupted
     }
 
     fn mismatches(&self) -> usize {

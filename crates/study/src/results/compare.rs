@@ -157,8 +157,6 @@ pub enum Verdict {
 pub struct NewWinner {
     /// The name of the mesh.
     pub mesh: String,
-    /// Always empty, because a study has only one case.
-    pub case: String,
     /// The name of the operation, such as `vertex_normal`.
     pub operation: String,
     /// The name of the fastest backend in the first document.
@@ -530,13 +528,11 @@ fn winners(before: &AllMeasured<'_>, after: &AllMeasured<'_>) -> Vec<NewWinner> 
     let after = best(after);
     let new = best(before).into_iter().filter_map(|before| {
         let same = |other: &&Measurement| {
-            (&other.mesh, &other.case, &other.operation)
-                == (&before.mesh, &before.case, &before.operation)
+            (&other.mesh, &other.operation) == (&before.mesh, &before.operation)
         };
         let now = after.iter().find(same)?;
         (now.backend != before.backend).then(|| NewWinner {
             mesh: before.mesh,
-            case: before.case,
             operation: before.operation,
             before: before.backend,
             after: now.backend.clone(),

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use crate::results::rows::{Agreement, MeshReport, ResultRow, Samples, Standing};
+use crate::engine::plan::BUDGET_ENDED;
+use crate::results::rows::{Agreement, MeshReport, Refusal, ResultRow, Samples, Standing};
 
 /// One time or count of bytes in a finding: an operation on a backend, on a mesh and in a case.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,9 +79,10 @@ pub enum Status {
     Estimated,
     /// Bytes were counted. There is no time.
     Counted,
-    /// There is no value, because the backend cannot do the operation on this mesh. In `memory`,
-    /// the operation was not run, possibly only because it would take too long.
+    /// There is no value, because the backend cannot do the operation on this mesh.
     Refused,
+    /// There is no value, because the operation would take too long, or because the budget ended.
+    NotRun,
 }
 
 impl<'r> FigureRow<'r> {
@@ -107,6 +109,15 @@ impl<'r> FigureRow<'r> {
     }
 
     /// Returns the row of a measured or estimated result.
+    /// Returns a row for an operation that was not run.
+    pub(crate) fn of_refusal(refusal: &'r Refusal) -> Self {
+        let status = match refusal.reason == BUDGET_ENDED {
+            true => Status::NotRun,
+            false => Status::Refused,
+        };
+        Self::new(refusal.operation.name().into(), &refusal.backend, status)
+    }
+
     pub(crate) fn of_result(row: &'r ResultRow) -> Self {
         let status = match (row.median_ns, row.sampled) {
             (None, _) => Status::Estimated,

@@ -32,20 +32,25 @@ pub enum Finding {
     Pick(Box<PickReport>),
 }
 
+/// The parts that the findings of all labs have.
+pub(crate) struct Common<'f> {
+    pub(crate) run: &'f Run,
+    /// The measured meshes. The list is empty for a lab that makes its own meshes.
+    pub(crate) meshes: &'f [MeshReport],
+    pub(crate) sentences: &'f [String],
+    pub(crate) warnings: &'f [String],
+    /// Whether the measurement was stopped early.
+    pub(crate) interrupted: bool,
+}
+
 /// The common interface of the findings of all labs.
 pub(crate) trait LabFinding {
-    /// Returns how the finding was measured.
-    fn run(&self) -> &Run;
+    /// Returns the parts that all findings have.
+    fn common(&self) -> Common<'_>;
     /// Returns the run, so that it can be changed.
     fn run_mut(&mut self) -> &mut Run;
-    /// Returns the measured meshes. The list is empty for a lab that makes its own meshes.
-    fn meshes(&self) -> &[MeshReport];
     /// Sets the meshes after reading. Returns an error if their number is wrong.
     fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError>;
-    fn sentences(&self) -> &[String];
-    fn warnings(&self) -> &[String];
-    /// Returns true if the measurement was stopped early.
-    fn is_interrupted(&self) -> bool;
     /// Counts the results that differ, for no known reason, from the results of other backends of
     /// Sixfold.
     fn mismatches(&self) -> usize;
@@ -94,7 +99,7 @@ impl Finding {
 
     /// Returns how the finding was measured.
     pub fn run(&self) -> &Run {
-        self.lab().run()
+        self.lab().common().run
     }
 
     /// Returns the run, so that it can be changed. For example, the command line adds `command`.
@@ -104,22 +109,22 @@ impl Finding {
 
     /// Returns the measured meshes. The list is empty for a lab that makes its own meshes.
     pub fn meshes(&self) -> &[MeshReport] {
-        self.lab().meshes()
+        self.lab().common().meshes
     }
 
     /// Returns the sentences that describe the main results.
     pub fn sentences(&self) -> &[String] {
-        self.lab().sentences()
+        self.lab().common().sentences
     }
 
     /// Returns sentences about possible faults of the measurement and their remedies.
     pub fn warnings(&self) -> &[String] {
-        self.lab().warnings()
+        self.lab().common().warnings
     }
 
     /// Returns true if the measurement was stopped early. Some results may then be missing.
     pub fn is_interrupted(&self) -> bool {
-        self.lab().is_interrupted()
+        self.lab().common().interrupted
     }
 
     /// Counts the results that differ, for no known reason, from the results of other backends of

@@ -136,8 +136,13 @@ impl RunSettings {
         };
         for ((what, ours), (_, theirs)) in options(self).into_iter().zip(options(other)) {
             if ours != theirs {
+                let none = match what {
+                    "--backends" => "all",
+                    "--external" => "not given",
+                    _ => "the default",
+                };
                 let [ours, theirs] = [ours, theirs].map(|text| match text.is_empty() {
-                    true => "all".into(),
+                    true => none.into(),
                     false => text,
                 });
                 return Err(MergeError::OtherSettings { what, ours, theirs });

@@ -8,7 +8,7 @@ use crate::labs::pick::choice::Choice;
 use crate::labs::pick::needs::Need;
 use crate::numbers::grouped;
 use crate::results::figure::{Figure, FigureRow, Status, samples_of};
-use crate::results::finding::LabFinding;
+use crate::results::finding::{Common, LabFinding};
 use crate::results::read::ReadError;
 use crate::results::rows::{MeshReport, Samples, check_samples};
 use crate::results::run::Run;
@@ -19,10 +19,10 @@ pub(crate) const MIX: &str = "mix";
 /// The result of a pick: the backends, ranked by their times for a workload.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct PickReport {
-    /// How the finding was measured. In JSON, the document has this field.
+    /// How the finding was measured. In JSON, the finding has the place of the run in `runs`.
     #[serde(skip)]
     pub run: Run,
-    /// The meshes. In JSON, the document has this field.
+    /// The meshes. In JSON, the finding has the places of the meshes in `meshes`.
     #[serde(skip)]
     pub meshes: Vec<MeshReport>,
     /// The workload that was run.
@@ -208,33 +208,23 @@ pub(crate) fn over_memory_limit(bytes: u64, most: u64) -> String {
 }
 
 impl LabFinding for PickReport {
-    fn run(&self) -> &Run {
-        &self.run
+    fn common(&self) -> Common<'_> {
+        Common {
+            run: &self.run,
+            meshes: &self.meshes,
+            sentences: &self.sentences,
+            warnings: &self.warnings,
+            interrupted: self.interrupted,
+        }
     }
 
     fn run_mut(&mut self) -> &mut Run {
         &mut self.run
     }
 
-    fn meshes(&self) -> &[MeshReport] {
-        &self.meshes
-    }
-
     fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
         self.meshes = meshes;
         Ok(())
-    }
-
-    fn sentences(&self) -> &[String] {
-        &self.sentences
-    }
-
-    fn warnings(&self) -> &[String] {
-        &self.warnings
-    }
-
-    fn is_interrupted(&self) -> bool {
-        self.interrupted
     }
 
     fn mismatches(&self) -> usize {

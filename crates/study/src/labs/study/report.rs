@@ -5,8 +5,8 @@ use sixfold_workload::Operation;
 
 use crate::engine::control::noise;
 use crate::engine::timer::Timer;
-use crate::results::figure::{Figure, FigureRow, Status, samples_of};
-use crate::results::finding::{LabFinding, only_mesh};
+use crate::results::figure::{Figure, FigureRow, samples_of};
+use crate::results::finding::{Common, LabFinding, only_mesh};
 use crate::results::read::ReadError;
 use crate::results::rows::{
     Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, Samples, check_control,
@@ -80,33 +80,23 @@ impl Report {
 }
 
 impl LabFinding for Report {
-    fn run(&self) -> &Run {
-        &self.run
+    fn common(&self) -> Common<'_> {
+        Common {
+            run: &self.run,
+            meshes: std::slice::from_ref(&self.mesh),
+            sentences: &self.sentences,
+            warnings: &self.warnings,
+            interrupted: self.interrupted,
+        }
     }
 
     fn run_mut(&mut self) -> &mut Run {
         &mut self.run
     }
 
-    fn meshes(&self) -> &[MeshReport] {
-        std::slice::from_ref(&self.mesh)
-    }
-
     fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
         self.mesh = only_mesh(meshes)?;
         Ok(())
-    }
-
-    fn sentences(&self) -> &[String] {
-        &self.sentences
-    }
-
-    fn warnings(&self) -> &[String] {
-        &self.warnings
-    }
-
-    fn is_interrupted(&self) -> bool {
-        self.interrupted
     }
 
     fn mismatches(&self) -> usize {
@@ -128,10 +118,8 @@ impl LabFinding for Report {
             let noise = noise(self.control.as_ref(), row.operation);
             figure(FigureRow::of_result(row), noise)
         });
-        let refused = self.refusals.iter().map(|refusal| {
-            let name = refusal.operation.name().into();
-            figure(FigureRow::new(name, &refusal.backend, Status::Refused), 1.0)
-        });
+        let refused = self.refusals.iter();
+        let refused = refused.map(|refusal| figure(FigureRow::of_refusal(refusal), 1.0));
         timed.chain(refused).collect()
     }
 
