@@ -192,7 +192,7 @@ impl Gaps {
         });
     }
 
-    /// Returns the last gap before the remaining face `face`; all numbers are 0 if there is none.
+    /// Returns the last gap before the remaining face `face`. Without such a gap, all numbers are 0.
     fn before(&self, face: FaceId) -> Gap {
         let gaps = self.0.partition_point(|gap| gap.kept <= face.index());
         match gaps {

@@ -115,8 +115,8 @@ impl Slots {
         self.stored.len()
     }
 
-    /// Returns the number of the one of `points` in the table that equals `point`; if there is none,
-    /// adds and returns `number`. The slot is `slot` or a later one.
+    /// Returns the number of the stored point that equals `point`. If no stored point equals it,
+    /// stores and returns `number`. The search begins at `slot`.
     fn find_or_insert(
         &mut self,
         points: &[Point],

@@ -108,7 +108,7 @@ impl Tolerance {
     }
 }
 
-/// Returns the diagonal of the bounding box of all finite positions; 0 if there are none.
+/// Returns the diagonal of the bounding box of all finite positions; 0 without finite positions.
 pub(crate) fn diagonal(positions: &[Point]) -> f64 {
     let finite = || positions.iter().filter(|p| p.is_finite());
     let low = finite().fold(DVec3::INFINITY, |low, p| low.min(p.as_dvec3()));

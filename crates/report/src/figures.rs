@@ -150,6 +150,16 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
             figures: vec![figure],
         }));
     }
+    for (i, neighbours) in results.neighbours().enumerate() {
+        let command = recorded_command(&neighbours.run, command);
+        let id = numbered_id("neighbours", i);
+        sections.push(Section {
+            title: format!("Neighbours in space: {}", neighbours.mesh.name),
+            facts: facts(&neighbours.mesh),
+            sentences: [&neighbours.sentences[..], &neighbours.warnings].concat(),
+            figures: ranking::from_neighbours(neighbours, &id, command).collect(),
+        });
+    }
     for (i, pick) in results.picks().enumerate() {
         let command = recorded_command(&pick.run, command);
         let id = numbered_id("pick", i);

@@ -5,6 +5,7 @@ mod distance;
 mod files;
 mod inspect;
 mod memory;
+mod neighbours;
 mod picking;
 mod remeshing;
 mod render;
@@ -27,6 +28,7 @@ pub(crate) use distance::Distance;
 pub(crate) use files::{FileOptions, file_options, with_file_options};
 pub(crate) use inspect::Inspect;
 pub(crate) use memory::Memory;
+pub(crate) use neighbours::Neighbours;
 pub(crate) use picking::{Pick, Workloads};
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
 pub(crate) use render::Render;
@@ -150,6 +152,8 @@ pub(crate) enum Command {
     Inspect(Inspect),
     /// Measure the distance between the surfaces of two meshes
     Distance(Distance),
+    /// Measure searches for neighbours in space with five spatial indices
+    Neighbours(Neighbours),
     /// Count the memory of each data structure in three ways that must agree
     Memory(Memory),
     /// Write a built-in shape

@@ -20,7 +20,15 @@ const GROUPS: [(&str, &[&str]); 5] = [
     ),
     (
         "Explain the costs",
-        &["why", "memory", "orders", "growth", "edits", "schemes"],
+        &[
+            "why",
+            "memory",
+            "orders",
+            "growth",
+            "neighbours",
+            "edits",
+            "schemes",
+        ],
     ),
     ("Saved results", &["report", "compare", "merge"]),
     (

@@ -28,6 +28,7 @@ mod many;
 mod measure;
 mod memory;
 mod mesh_files;
+mod neighbours;
 mod orders;
 mod output;
 mod pick;
@@ -79,6 +80,7 @@ fn main() -> ExitCode {
         Ok(Some(Command::Compare(arguments))) => compare::run(&arguments),
         Ok(Some(Command::Inspect(arguments))) => inspect::run(&arguments),
         Ok(Some(Command::Distance(arguments))) => distance::run(&arguments),
+        Ok(Some(Command::Neighbours(arguments))) => neighbours::run(&arguments),
         Ok(Some(Command::Memory(arguments))) => memory::run(&arguments),
         Ok(Some(Command::Generate(arguments))) => generate::run(&arguments),
         Ok(Some(Command::Schemes(arguments))) => schemes::run(&arguments),

@@ -12,6 +12,7 @@ mod interrupt;
 mod json_csv;
 mod many;
 mod memory;
+mod neighbours;
 mod obj;
 mod outputs;
 mod picking;

@@ -34,7 +34,7 @@ fn written_fields() -> BTreeSet<String> {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 12);
     sixfold.file("t.obj", TETRAHEDRON);
-    let commands: [&[&str]; 7] = [
+    let commands: [&[&str]; 8] = [
         &["study", "grid.obj", "--budget", "300ms"],
         &["study", "t.obj", "--budget", "300ms"],
         &["orders", "grid.obj", "--budget", "300ms"],
@@ -43,6 +43,7 @@ fn written_fields() -> BTreeSet<String> {
         ],
         &["why", "grid.obj", "--budget", "300ms"],
         &["memory", "grid.obj"],
+        &["neighbours", "grid.obj", "--budget", "300ms"],
         &["pick", "grid.obj", "t.obj", "--budget", "1s"],
     ];
     let mut merge = vec!["merge".to_owned()];

@@ -24,8 +24,8 @@
 //!
 //! [`Bvh`], unless there are few queries: then [`KdTree`] or [`Octree`], which are built in about half
 //! the time. The grid is built fastest, but its queries are fast only if the items fill their box
-//! evenly, which a surface does not. The benchmark `spatial` measures all of them on your machine:
-//! `cargo bench -p sixfold-benches --bench all -- spatial/`.
+//! evenly, which a surface does not. `sixfold neighbours MESH` measures all of them on your mesh and
+//! machine, and names the index that takes the least time for a number of queries.
 //!
 //! # From a mesh
 //!

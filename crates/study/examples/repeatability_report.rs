@@ -83,8 +83,8 @@ fn report_text(reports: &[Report], now: &Run, seconds: u64, each: f64) -> String
     );
     let _ = writeln!(
         text,
-        "{runs} studies, one after the other, of a shuffled torus of 100,352 triangles: all structures, all nine\n\
-         relations, a budget of {seconds} s and a different seed each; each took {each:.0} s on average.\n"
+        "{runs} studies of a shuffled torus of 100,352 triangles ran one after the other. Each study measured all nine\n\
+         relations on all structures, with a budget of {seconds} s and a different seed. A study took {each:.0} s on average.\n"
     );
     text += &winners(reports);
     text += &orders(reports);
@@ -175,13 +175,13 @@ fn orders(reports: &[Report]) -> String {
         }
     }
     let mut text = format!(
-        "## Order of pairs\n\nOf {pairs} pairs of backends, {apart} differ by more than {:.0} % in the median of all studies. {steady} of\n\
-         these have the same order in 19 of 20 studies or more.\n\n",
+        "## Order of pairs\n\nFor each relation, the times of each two structures were compared. In {apart} of the {pairs} comparisons, the medians over\n\
+         all studies differ by more than {:.0} %. In {steady} of these comparisons, the same structure is faster in at least 95 % of\n\
+         the studies.\n\n",
         100.0 * (GAP - 1.0)
     );
     if !unsteady.is_empty() {
-        text +=
-            "The others:\n\n| operation | pair | difference | same order in |\n|---|---|---|---|\n";
+        text += "In the other comparisons, fewer studies have the same order:\n\n| operation | pair | difference | same order in |\n|---|---|---|---|\n";
         text += &unsteady;
         text.push('\n');
     }
@@ -207,8 +207,8 @@ fn differences(reports: &[Report]) -> String {
         }
     }
     format!(
-        "## Differences from the best backend\n\nA backend whose median ratio to the best is above {GAP} is called slower in {slower} of {all} cases\n\
-         ({:.1} %).\n\n",
+        "## Differences from the best backend\n\nFor some backends, the ratio to the best backend (median over all studies) is above {GAP}. These\n\
+         backends have {all} results in single studies. In {slower} of these results ({:.1} %), the study calls the backend slower.\n\n",
         100.0 * slower as f64 / all as f64
     )
 }
@@ -250,8 +250,9 @@ fn unseen_drift(reports: &[Report]) -> String {
         return String::new();
     }
     format!(
-        "\n## Drift that one study does not show\n\nThe variance between the studies minus the variance that each study shows gives a standard deviation of\n\
-         {:.1} % (the median over all backends and relations, without scans). The intervals assume {:.1} %.\n",
+        "\n## Drift that one study does not show\n\nThe times vary more between studies than the samples of one study show. The variation that no single study\n\
+         shows has a standard deviation of {:.1} % (median over all backends and relations, without scans). The intervals\n\
+         assume {:.1} %.\n",
         100.0 * median(&variances).max(0.0).sqrt(),
         100.0 * UNSEEN_DRIFT
     )
@@ -260,10 +261,10 @@ fn unseen_drift(reports: &[Report]) -> String {
 /// Reports how often the interval of one study contains the median of all studies.
 fn coverage(reports: &[Report]) -> String {
     let mut text = String::from(
-        "## Coverage of the intervals\n\nThe share of 95 % intervals that contain the median over all studies, and their width (upper minus lower end,\n\
-         divided by the median of the study; the median over all intervals). The intervals include a drift\n\
-         from study to study, which the samples of one study do not show.\n\n\
-         | interval of | contain it | intervals | width |\n|---|---|---|---|\n",
+        "## Coverage of the intervals\n\nThe table shows the share of 95 % intervals that contain the median over all studies. The table also shows the\n\
+         width of the intervals: the upper end minus the lower end, divided by the median of the study (median over all\n\
+         intervals).\n\n\
+         | interval of | contain the median of all studies | number of intervals | width |\n|---|---|---|---|\n",
     );
     let of_time = |row: &ResultRow| Some([row.ci_low_ns?, row.median_ns?, row.ci_high_ns?]);
     let of_ratio =
@@ -328,8 +329,8 @@ fn coverage(reports: &[Report]) -> String {
         let worst = noises.iter().copied().fold(1.0, f64::max);
         let _ = writeln!(
             text,
-            "\nThe two columns of the backend that is measured twice differ by {:.1} % (the median over the studies of the\n\
-             median over the relations), at most by {:.1} %.",
+            "\nIn each study, one structure is measured twice. The two times of this structure differ by {:.1} % (the median over\n\
+             the relations, then over the studies), and by at most {:.1} %.",
             100.0 * (median(&noises) - 1.0),
             100.0 * (worst - 1.0)
         );
@@ -347,7 +348,8 @@ fn drift(reports: &[Report]) -> String {
         rows.collect()
     };
     let mut text = String::from(
-        "\n## Variation between studies\n\nThe standard deviation over the studies of a figure of one backend in one operation, divided by the mean.\n\n\
+        "\n## Variation between studies\n\nThe variation of a figure is its standard deviation over all studies, divided by its mean. A figure is the result of\n\
+         one structure in one relation.\n\n\
          | figure | median of all | 90 % are below | largest |\n|---|---|---|---|\n",
     );
     type Of<'a> = &'a dyn Fn(Operation, &str) -> Vec<f64>;

@@ -3,6 +3,7 @@
 
 pub(crate) mod growth;
 pub(crate) mod memory;
+pub(crate) mod neighbours;
 pub(crate) mod orders;
 pub(crate) mod pick;
 mod slope;

@@ -43,6 +43,11 @@ pub use labs::growth::{
     SCALABLE_SHAPES, ScalableShape, SizeReport, growth, growth_bytes,
 };
 pub use labs::memory::{Audit, BackendAudit, OperationBytes, audit, count_allocations};
+pub use labs::neighbours::{
+    Cheapest, CheapestIndices, IndexReport, NeighbourRow, NeighboursError, NeighboursReport,
+    NeighboursSettings, QueryPoints, SpatialTask, UnknownSpatialTask, neighbour_indices,
+    neighbours,
+};
 pub use labs::orders::{
     Comparison, DEFAULT_OPERATIONS, Factor, Larger, OrderEffect, OrderRow, OrdersError,
     OrdersReport, SamplesInOrder, StructureEffect, orders, orders_bytes,

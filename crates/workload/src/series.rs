@@ -143,7 +143,7 @@ impl<'c> Series<'c> {
 
     /// Runs `work` as the series describes, without stopping the clock between timed runs. `work`
     /// must not change its input. Returns the total time of the timed runs.
-    pub(crate) fn time_together(&self, mut work: impl FnMut()) -> Time {
+    pub fn time_together(&self, mut work: impl FnMut()) -> Time {
         for _ in 0..self.untimed {
             work();
         }

@@ -106,7 +106,7 @@ impl<'a> Joins<'a> {
         }
     }
 
-    /// Joins pairs that close a fan, until there are none.
+    /// Joins all pairs that close a fan, including pairs that result from these joins.
     fn join_closing(&mut self) {
         while let Some(pair) = self.closing.pop_front() {
             self.try_join(pair);

@@ -152,8 +152,8 @@ impl<'a> Search<'a> {
         Some(search)
     }
 
-    /// Returns joined pairs in which `allowed` pairs are missing from the largest number; `None` if
-    /// there are none, or if the attempts are used up.
+    /// Searches for a set of joined pairs that has `allowed` pairs fewer than the largest possible
+    /// number. Returns `None` if no such set exists, or if the attempts are used up.
     fn run(&mut self, allowed: usize) -> Option<Vec<[CornerId; 2]>> {
         self.pairs.clear();
         let mut fans = [0; MAX_CORNERS];

@@ -4,7 +4,10 @@
 use kuva::plot::BarPlot;
 use kuva::render::plots::Plot;
 use sixfold_study::numbers::{counted, duration};
-use sixfold_study::{FIRST_TIME_SHOWN, Operation, PickReport, Pool, Report, ResultRow, Standing};
+use sixfold_study::{
+    FIRST_TIME_SHOWN, NeighboursReport, Operation, PickReport, Pool, Report, ResultRow,
+    SpatialTask, Standing,
+};
 
 use super::{Row, per_unit};
 use crate::colours::{INTERVAL_COLOUR, column_colour};
@@ -82,6 +85,33 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
     });
     let title = format!("{}: time relative to the fastest", report.workload.name);
     figure(title, id.into(), rows.collect(), "operation", command)
+}
+
+pub(super) fn from_neighbours(
+    report: &NeighboursReport,
+    id: &str,
+    command: &str,
+) -> impl Iterator<Item = Figure> {
+    SpatialTask::ALL.into_iter().filter_map(move |task| {
+        let rows = report.rows(task).filter_map(|row| {
+            Some(Row {
+                backend: &row.backend,
+                ratio: row.ratio_to_best?,
+                interval: row.ratio_ci_low.zip(row.ratio_ci_high).map(|(a, b)| [a, b]),
+                ns: Some(row.ns_per_element),
+                first_ns: None,
+                note: match row.standing {
+                    Some(Standing::Best) => "best".into(),
+                    Some(Standing::Tied) => "tied for best".into(),
+                    _ if row.sample_size.is_some() => "from a sample of the queries".into(),
+                    _ => String::new(),
+                },
+            })
+        });
+        let title = format!("{task}: time relative to the fastest");
+        let id = format!("{id}-{}", task.name().replace('_', "-"));
+        figure(title, id, rows.collect(), task.unit(), command)
+    })
 }
 
 fn operation_figure(

@@ -109,7 +109,7 @@ pub(crate) fn find_meshes(
     }
 }
 
-/// Returns the mesh files in a folder and its subfolders, at least one, or why there is none.
+/// Returns the mesh files in a folder and its subfolders. A folder without mesh files is an error.
 fn files_in_folder(folder: &Path, note: &mut dyn FnMut(&str)) -> Result<Vec<PathBuf>, String> {
     let mut found = Found::default();
     list_files(folder, &mut found).map_err(|(at, cause)| match at == folder {

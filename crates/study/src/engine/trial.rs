@@ -38,7 +38,7 @@ pub(crate) struct Columns<'s> {
     /// The backends; the second copy of the control comes last.
     pub(crate) subjects: Vec<Box<dyn TimedBackend + 's>>,
     /// The indices of a backend and of its second copy.
-    control: Option<[usize; 2]>,
+    pub(crate) control: Option<[usize; 2]>,
 }
 
 /// The result of a trial.

@@ -5,21 +5,23 @@
 //! of both medians. The speed of a machine may also drift between two measurements, and the samples
 //! do not show this drift. [`DRIFT`] is the default limit for the drift.
 
-use std::collections::{BTreeMap, BTreeSet};
+mod matching;
+mod sentences;
+
+use std::collections::BTreeSet;
 use std::io;
 
 use serde::Serialize;
 
 use crate::engine::ranking::CLEAR_DIFFERENCE;
 use crate::engine::statistics::{Median, quotient};
-use crate::numbers::counted;
 use crate::results::document::{Results, SCHEMA};
 use crate::results::environment::Environment;
-use crate::results::figure::Figure;
 use crate::results::finding::Finding;
 use crate::results::json::write_json;
-use crate::results::rows::{MeshReport, Standing};
+use crate::results::rows::Standing;
 use crate::results::run::Run;
+use matching::{AllMeasured, CommonMeshes, Measured, measurements};
 
 /// Default limit for the drift between two measurements on an unchanged machine, as a ratio of
 /// times. The limit of 20 % is about twice the typical drift of a virtual machine
@@ -254,125 +256,6 @@ pub fn compare(
     Ok(changes)
 }
 
-/// The meshes that two documents have in common.
-struct CommonMeshes<'r> {
-    before: Vec<&'r MeshReport>,
-    after: Vec<&'r MeshReport>,
-}
-
-impl<'r> CommonMeshes<'r> {
-    fn new(before: &'r Results, after: &'r Results) -> Self {
-        let all = |results: &'r Results| {
-            let mut meshes: Vec<&MeshReport> = Vec::new();
-            for mesh in results.findings.iter().flat_map(Finding::meshes) {
-                if !meshes.contains(&mesh) {
-                    meshes.push(mesh);
-                }
-            }
-            meshes
-        };
-        Self {
-            before: all(before),
-            after: all(after),
-        }
-    }
-
-    fn are_same(&self, a: &MeshReport, b: &MeshReport) -> bool {
-        let single = self.before.len() == 1 && self.after.len() == 1;
-        a.sha256 == b.sha256 || (a.facts == b.facts && (single || a.name == b.name))
-    }
-
-    /// Returns an error if both documents have meshes, but none in common.
-    fn check(&self) -> Result<(), CompareError> {
-        let (Some(a), Some(b)) = (self.before.first(), self.after.first()) else {
-            return Ok(());
-        };
-        let mut pairs = self
-            .before
-            .iter()
-            .flat_map(|&a| self.after.iter().map(move |&b| (a, b)));
-        if pairs.any(|(a, b)| self.are_same(a, b)) {
-            return Ok(());
-        }
-        let described = |mesh: &MeshReport| {
-            let vertices = counted(mesh.facts.vertices, "vertex", "vertices");
-            let faces = counted(mesh.facts.faces, "face", "faces");
-            format!("{} ({vertices}, {faces})", mesh.name)
-        };
-        Err(CompareError::OtherMesh {
-            before: described(a),
-            after: described(b),
-        })
-    }
-
-    /// Returns the name of the mesh in `before`. If `before` does not have the mesh, returns
-    /// the name of `mesh`.
-    fn name(&self, mesh: &'r MeshReport, is_second: bool) -> &'r str {
-        let same = |other: &&&MeshReport| self.are_same(other, mesh);
-        let first = self.before.iter().filter(|_| is_second).find(same);
-        first.map_or(mesh.name.as_str(), |other| other.name.as_str())
-    }
-}
-
-/// A figure of a document, and its finding.
-struct Measured<'r> {
-    key: Measurement,
-    figure: Figure<'r>,
-    finding: &'r Finding,
-}
-
-/// The measured figures of a document.
-struct AllMeasured<'r> {
-    in_order: Vec<Measured<'r>>,
-    places: BTreeMap<Measurement, usize>,
-}
-
-impl<'r> AllMeasured<'r> {
-    fn get(&self, key: &Measurement) -> Option<&Measured<'r>> {
-        self.places.get(key).map(|&place| &self.in_order[place])
-    }
-
-    /// Returns the measurements that `other` does not have.
-    fn without(&self, other: &Self) -> Vec<Measurement> {
-        let keys = self.in_order.iter().map(|measured| &measured.key);
-        keys.filter(|key| other.get(key).is_none())
-            .cloned()
-            .collect()
-    }
-}
-
-/// Collects the figures that were measured or counted. If two figures have the same key, keeps the
-/// first.
-fn measurements<'r>(
-    results: &'r Results,
-    name: impl Fn(&'r MeshReport) -> &'r str,
-) -> AllMeasured<'r> {
-    let (mut in_order, mut places) = (Vec::new(), BTreeMap::new());
-    for finding in &results.findings {
-        for figure in finding.figures() {
-            if !figure.row.is_measured() {
-                continue;
-            }
-            let key = Measurement {
-                mesh: figure.mesh.map_or("", &name).to_owned(),
-                kind: finding.kind(),
-                case: figure.case.clone(),
-                operation: figure.row.operation.clone(),
-                backend: figure.row.backend.to_owned(),
-            };
-            if !places.contains_key(&key) {
-                places.insert(key.clone(), in_order.len());
-                in_order.push(Measured {
-                    key,
-                    figure,
-                    finding,
-                });
-            }
-        }
-    }
-    AllMeasured { in_order, places }
-}
-
 /// Returns an error if the heap policies or the cache states differ.
 fn check_memory(before: &Finding, after: &Finding) -> Result<(), CompareError> {
     let [a, b] = [before, after].map(|finding| finding.run().environment.memory_settings());
@@ -541,13 +424,6 @@ fn winners(before: &AllMeasured<'_>, after: &AllMeasured<'_>) -> Vec<NewWinner> 
     new.collect()
 }
 
-fn is_or_are(count: usize) -> &'static str {
-    match count {
-        1 => "is",
-        _ => "are",
-    }
-}
-
 impl Changes {
     /// Iterates over the entries of `rows` in which the second time is shorter or longer, or which
     /// have different checksums.
@@ -571,79 +447,6 @@ impl Changes {
     /// Returns the errors of `writer`.
     pub fn write_json(&self, writer: impl io::Write) -> io::Result<()> {
         write_json(self, writer)
-    }
-
-    fn describe(&self) -> Vec<String> {
-        let mut sentences = Vec::new();
-        let (slower, faster) = (self.count(Verdict::Slower), self.count(Verdict::Faster));
-        let same = self.count(Verdict::Same);
-        if self.rows.is_empty() {
-            return vec![match self.bytes.len() {
-                0 => "The files have the same counts of bytes.".into(),
-                different => format!(
-                    "{} between the two files.",
-                    counted(
-                        different,
-                        "count of bytes differs",
-                        "counts of bytes differ"
-                    )
-                ),
-            }];
-        }
-        sentences.push(format!(
-            "Of {}, {faster} {} faster in the second file, {slower} {} slower, and {same} \
-             {} equal within the noise.",
-            counted(self.rows.len(), "measurement", "measurements"),
-            is_or_are(faster),
-            is_or_are(slower),
-            is_or_are(same)
-        ));
-        if let Some(overall) = self.overall {
-            let factor = overall.max(overall.recip());
-            let machines = self.environment.iter().any(|s| s.what == "processor");
-            if factor > self.drift {
-                let hint = match (self.relative, machines) {
-                    (true, _) => ". Each ratio is divided by this median before it is judged",
-                    (false, true) => {
-                        ". The machines differ: to divide each ratio by this median, \
-                                      use --relative"
-                    }
-                    (false, false) => {
-                        ". If a machine was busy or hot, use --relative to divide each ratio by \
-                         this median"
-                    }
-                };
-                sentences.push(format!(
-                    "Overall, the second file has {overall:.2} × the times of the first (median of \
-                     all ratios){hint}."
-                ));
-            }
-        }
-        for winner in &self.winners {
-            sentences.push(format!(
-                "{}: the fastest backend was {} and is now {}.",
-                winner.operation, winner.before, winner.after
-            ));
-        }
-        let others: Vec<String> = self
-            .rows
-            .iter()
-            .filter(|row| row.other_checksum)
-            .map(|row| {
-                let Measurement {
-                    operation, backend, ..
-                } = &row.measurement;
-                format!("{operation} on {backend}")
-            })
-            .collect();
-        if !others.is_empty() {
-            sentences.push(format!(
-                "The checksums of these results differ, so the two measurements did different \
-                 work: {}.",
-                others.join(", ")
-            ));
-        }
-        sentences
     }
 }
 

@@ -8,6 +8,7 @@ use std::io;
 use serde::{Deserialize, Serialize};
 
 use crate::labs::growth::GrowthReport;
+use crate::labs::neighbours::NeighboursReport;
 use crate::labs::orders::OrdersReport;
 use crate::labs::pick::PickReport;
 use crate::labs::study::Report;
@@ -196,6 +197,14 @@ impl Results {
     pub fn why(&self) -> impl Iterator<Item = &Why> {
         self.findings.iter().filter_map(|finding| match finding {
             Finding::Why(why) => Some(&**why),
+            _ => None,
+        })
+    }
+
+    /// Iterates over the measurements of spatial indices.
+    pub fn neighbours(&self) -> impl Iterator<Item = &NeighboursReport> {
+        self.findings.iter().filter_map(|finding| match finding {
+            Finding::Neighbours(neighbours) => Some(&**neighbours),
             _ => None,
         })
     }

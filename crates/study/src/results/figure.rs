@@ -19,7 +19,7 @@ pub struct Figure<'r> {
     pub backend_bytes: Option<usize>,
     /// The operation, the backend, and the time or the bytes.
     pub row: FigureRow<'r>,
-    /// The samples of the time; `None` if there are none.
+    /// The samples of the time; `None` for a time or size without samples.
     pub samples: Option<&'r Samples>,
     /// Ratios of times up to this value are noise, as the control of the finding shows.
     pub noise: f64,
@@ -108,8 +108,7 @@ impl<'r> FigureRow<'r> {
         }
     }
 
-    /// Returns the row of a measured or estimated result.
-    /// Returns a row for an operation that was not run.
+    /// Returns the row of an operation that was refused or not run.
     pub(crate) fn of_refusal(refusal: &'r Refusal) -> Self {
         let status = match refusal.reason == BUDGET_ENDED {
             true => Status::NotRun,
@@ -118,6 +117,7 @@ impl<'r> FigureRow<'r> {
         Self::new(refusal.operation.name().into(), &refusal.backend, status)
     }
 
+    /// Returns the row of a measured or estimated result.
     pub(crate) fn of_result(row: &'r ResultRow) -> Self {
         let status = match (row.median_ns, row.sampled) {
             (None, _) => Status::Estimated,

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::labs::growth::GrowthReport;
 use crate::labs::memory::Audit;
+use crate::labs::neighbours::NeighboursReport;
 use crate::labs::orders::OrdersReport;
 use crate::labs::pick::PickReport;
 use crate::labs::study::Report;
@@ -28,6 +29,8 @@ pub enum Finding {
     Why(Box<Why>),
     /// `sixfold memory`: the bytes of each backend, counted in three ways.
     Memory(Box<Audit>),
+    /// `sixfold neighbours`: the times of spatial indices on one mesh.
+    Neighbours(Box<NeighboursReport>),
     /// `sixfold pick`: the backends, ranked for a workload.
     Pick(Box<PickReport>),
 }
@@ -70,6 +73,7 @@ impl Finding {
             Self::Growth(finding) => &**finding,
             Self::Why(finding) => &**finding,
             Self::Memory(finding) => &**finding,
+            Self::Neighbours(finding) => &**finding,
             Self::Pick(finding) => &**finding,
         }
     }
@@ -81,6 +85,7 @@ impl Finding {
             Self::Growth(finding) => &mut **finding,
             Self::Why(finding) => &mut **finding,
             Self::Memory(finding) => &mut **finding,
+            Self::Neighbours(finding) => &mut **finding,
             Self::Pick(finding) => &mut **finding,
         }
     }
@@ -93,6 +98,7 @@ impl Finding {
             Self::Growth(_) => "growth",
             Self::Why(_) => "why",
             Self::Memory(_) => "memory",
+            Self::Neighbours(_) => "neighbours",
             Self::Pick(_) => "pick",
         }
     }
@@ -164,6 +170,7 @@ from_lab!(
     GrowthReport => Growth,
     Why => Why,
     Audit => Memory,
+    NeighboursReport => Neighbours,
     PickReport => Pick
 );
 

@@ -21,13 +21,14 @@ pub enum MergeError {
     },
     /// Both documents have a study of the mesh, but the two meshes are different.
     #[error(
-        "both have a study of {mesh}, but of different meshes: rename one of the two files and \
-         measure it again"
+        "this file and an earlier one both have a study of {mesh}, but of different meshes: rename \
+         one of the two mesh files and measure it again"
     )]
     OtherMesh { mesh: String },
     /// The documents have two different studies of the same mesh.
     #[error(
-        "both have a study of {mesh}: compare the two with `sixfold compare`, or leave one out"
+        "this file and an earlier one both have a study of {mesh}: compare them with \
+         `sixfold compare`, or leave one out"
     )]
     SecondStudy { mesh: String },
 }

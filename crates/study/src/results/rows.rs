@@ -44,8 +44,8 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// Returns the samples of an entry; `None` if there are none. `control` tells whether they
-    /// belong to the second copy of the control.
+    /// Returns the samples of an entry; `None` if the entry was not sampled. `control` tells whether
+    /// the samples belong to the second copy of the control.
     pub(crate) fn of_entry(entry: &Entry, backend: &str, control: bool) -> Option<Self> {
         if entry.samples.is_empty() {
             return None;

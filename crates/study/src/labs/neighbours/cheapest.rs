@@ -1,0 +1,125 @@
+//! Which index costs the least time for a number of queries, building included.
+
+use serde::{Deserialize, Serialize};
+
+/// The cheapest index for a range of numbers of queries.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+pub struct Cheapest {
+    /// The smallest number of queries of the range; at least 1. The range ends before the start of
+    /// the next range.
+    pub from: u64,
+    /// The name of the index, such as `bvh`.
+    pub index: String,
+}
+
+/// The time to build an index and the time of one query, in nanoseconds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cost<'n> {
+    pub(crate) index: &'n str,
+    pub(crate) build_ns: f64,
+    pub(crate) query_ns: f64,
+}
+
+/// Returns the cheapest index for each number of queries, as ranges in ascending order. The time
+/// for n queries is the building time plus n times the time of a query, so the result is the lower
+/// envelope of straight lines. Of two equal times, the earlier entry of `costs` counts as the
+/// smaller.
+///
+/// Takes O(k²) time for k indices.
+pub(crate) fn cheapest(costs: &[Cost<'_>]) -> Vec<Cheapest> {
+    let mut ranges: Vec<Cheapest> = Vec::new();
+    let mut from = 1_u64;
+    let total = |cost: &Cost<'_>, queries: u64| cost.build_ns + queries as f64 * cost.query_ns;
+    let at_start = costs
+        .iter()
+        .min_by(|a, b| total(a, from).total_cmp(&total(b, from)));
+    let Some(mut now) = at_start else {
+        return ranges;
+    };
+    loop {
+        ranges.push(Cheapest {
+            from,
+            index: now.index.to_owned(),
+        });
+        // The next index is the one with faster queries whose line is crossed first.
+        let faster = costs.iter().filter(|cost| cost.query_ns < now.query_ns);
+        let crossing = faster.map(|cost| {
+            let saved = now.query_ns - cost.query_ns;
+            let queries = (cost.build_ns - now.build_ns) / saved;
+            // At `queries` the times are equal. The faster queries pay off from the next number on.
+            (queries.floor().max(from as f64) as u64 + 1, cost)
+        });
+        let next = crossing.min_by(|&(a, one), &(b, other)| {
+            let times = total(one, a).total_cmp(&total(other, b));
+            a.cmp(&b).then(times)
+        });
+        match next {
+            Some((queries, cost)) if queries < u64::MAX => (from, now) = (queries, cost),
+            _ => return ranges,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const LIST: Cost<'_> = Cost {
+        index: "list",
+        build_ns: 0.0,
+        query_ns: 1000.0,
+    };
+
+    #[test]
+    fn an_index_is_cheapest_after_its_building_time_is_saved() {
+        let tree = Cost {
+            index: "tree",
+            build_ns: 9_000.0,
+            query_ns: 100.0,
+        };
+        let slow = Cost {
+            index: "slow to build",
+            build_ns: 1e6,
+            query_ns: 99.0,
+        };
+        let never = Cost {
+            index: "never",
+            build_ns: 20_000.0,
+            query_ns: 500.0,
+        };
+        let ranges = cheapest(&[LIST, tree, slow, never]);
+        let found: Vec<_> = ranges.iter().map(|r| (r.from, r.index.as_str())).collect();
+        // 10 queries take 10,000 ns with either: the earlier one is named.
+        let expected = [(1, "list"), (11, "tree"), (991_001, "slow to build")];
+        assert_eq!(found, expected);
+        assert_eq!(cheapest(&[]), []);
+    }
+
+    proptest! {
+        #[test]
+        fn no_other_index_is_cheaper(
+            costs in prop::collection::vec((0_u32..100_000, 1_u32..1_000), 1..6),
+            queries in 1_u64..100_000,
+        ) {
+            let names = ["a", "b", "c", "d", "e"];
+            let costs: Vec<Cost<'_>> = costs
+                .iter()
+                .zip(names)
+                .map(|(&(build, query), index)| Cost {
+                    index,
+                    build_ns: build.into(),
+                    query_ns: query.into(),
+                })
+                .collect();
+            let total = |cost: &Cost<'_>| cost.build_ns + queries as f64 * cost.query_ns;
+            let ranges = cheapest(&costs);
+            prop_assert!(ranges.windows(2).all(|pair| pair[0].from < pair[1].from));
+            let named = ranges.iter().rfind(|range| range.from <= queries).unwrap();
+            let named = costs.iter().find(|cost| cost.index == named.index).unwrap();
+            let least = costs.iter().map(total).fold(f64::INFINITY, f64::min);
+            prop_assert_eq!(total(named), least);
+        }
+    }
+}

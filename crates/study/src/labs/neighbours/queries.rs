@@ -1,0 +1,106 @@
+//! The vertices, triangles, query points and rays of the lab.
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use serde::{Deserialize, Serialize};
+use sixfold::glam::DVec3;
+use sixfold::spatial::{
+    FaceTriangle, Ray, SpatialError, VertexPoint, polygon_points, polygon_triangles,
+};
+use sixfold::{FaceId, PolygonMesh, VertexId};
+
+/// Maximum number of query points.
+pub(crate) const MAX_QUERIES: usize = 10_000;
+/// How far a query point near the surface may be from a vertex, as a part of the diagonal of the
+/// bounding box.
+const NEAR: f64 = 0.01;
+/// The radius of a query, as a multiple of the mean distance from a vertex to the next vertex of
+/// its face.
+const RADIUS: f64 = 2.0;
+
+pub(crate) type Vertex = VertexPoint<VertexId>;
+pub(crate) type Triangle = FaceTriangle<FaceId>;
+
+/// Where the query points are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum QueryPoints {
+    /// Near the surface: vertices, each moved by up to 1 % of the diagonal of the bounding box, in
+    /// the order of the mesh. Registration and the distance between similar meshes have such
+    /// queries.
+    #[default]
+    Near,
+    /// Anywhere in the bounding box, in random order. Signed distance fields have such queries.
+    Box,
+}
+
+impl QueryPoints {
+    /// Returns the name that users write: `near` or `box`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Near => "near",
+            Self::Box => "box",
+        }
+    }
+}
+
+/// The input of all indices: what they store, and what they are asked.
+pub(crate) struct Input {
+    pub(crate) vertices: Vec<Vertex>,
+    pub(crate) triangles: Vec<Triangle>,
+    pub(crate) points: Vec<DVec3>,
+    /// A ray from each query point to another query point.
+    pub(crate) rays: Vec<Ray>,
+    pub(crate) radius: f64,
+}
+
+impl Input {
+    /// Makes up to [`MAX_QUERIES`] query points. Returns an error if a position of the mesh is not
+    /// finite.
+    pub(crate) fn new(
+        polygons: &PolygonMesh,
+        points: QueryPoints,
+        seed: u64,
+    ) -> Result<Self, SpatialError> {
+        let (vertices, triangles) = (polygon_points(polygons)?, polygon_triangles(polygons)?);
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let positions = || vertices.iter().map(|vertex| vertex.position.as_dvec3());
+        let low = positions().fold(DVec3::INFINITY, DVec3::min);
+        let high = positions().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let count = vertices.len().min(MAX_QUERIES);
+        let mut in_cube = || DVec3::from_array(std::array::from_fn(|_| random.random::<f64>()));
+        let points: Vec<DVec3> = match points {
+            QueryPoints::Near => {
+                let reach = NEAR * low.distance(high);
+                let chosen = (0..count).map(|i| i * vertices.len() / count);
+                let near = chosen.map(|vertex| {
+                    let offset = 2.0 * in_cube() - 1.0;
+                    vertices[vertex].position.as_dvec3() + reach * offset
+                });
+                near.collect()
+            }
+            QueryPoints::Box => (0..count).map(|_| low + in_cube() * (high - low)).collect(),
+        };
+        let targets = points.iter().rev();
+        let rays = points.iter().zip(targets);
+        let rays = rays.filter_map(|(&from, &to)| Ray::new(from, to - from).ok());
+        Ok(Self {
+            rays: rays.collect(),
+            radius: RADIUS * mean_side(&triangles),
+            points,
+            vertices,
+            triangles,
+        })
+    }
+}
+
+/// Returns the mean length of the first sides of all triangles.
+fn mean_side(triangles: &[Triangle]) -> f64 {
+    let sides = triangles.iter().map(|triangle| {
+        let [a, b, _] = triangle.corners_f64();
+        a.distance(b)
+    });
+    sides.sum::<f64>() / triangles.len().max(1) as f64
+}
