@@ -119,8 +119,9 @@ Exit codes: 0 success; 2 wrong usage, or a file that cannot be written.";
 /// Measure which mesh data structure fits a mesh and a workload.
 ///
 /// Builds six data structures from the same mesh, runs the same operations on each of them, and
-/// compares the times. A backend is one of these structures, or an external program. Without a
-/// command, sixfold studies a built-in mesh of about 20,000 triangles for about 20 seconds.
+/// compares the times. A backend is what is measured: one of these structures, an external program,
+/// or, in `pick`, flat tables of relations. Without a command, sixfold studies a built-in mesh of
+/// about 20,000 triangles for about 20 seconds.
 #[derive(Debug, Parser)]
 #[command(name = "sixfold", version, after_help = EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Arguments {
@@ -221,7 +222,7 @@ pub(crate) struct Study {
     /// Run only these operations, by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = operation)]
     pub(crate) operations: Vec<Operation>,
-    /// Total time, such as 20s or 2m [default: 20s for each mesh and lab]
+    /// Total time for all meshes and labs, such as 20s or 2m [default: 20s for each of them]
     #[arg(long, value_name = "TIME", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Option<Duration>,
     /// Seed of the random order and of random samples
@@ -246,7 +247,7 @@ pub(crate) struct Study {
     /// Write a page, its figures, and all results as JSON and CSV to DIR
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
-    /// Labs (extra measurements): orders,growth,why or none [default: all]
+    /// Extra measurements (labs) in the report: orders,growth,why or none [default: all]
     #[arg(long, value_name = "NAME,…", requires = "report")]
     pub(crate) labs: Option<LabSelection>,
     /// Continue the study in the folder of --report

@@ -260,7 +260,7 @@ fn progress_line(position: &str, mesh: &Mesh, result: &Result<Report, Failed>) -
         Ok(report) => {
             let faces = counted(report.mesh.facts.faces, "face", "faces");
             let columns = report.backends.iter().filter(|column| column.holds).count();
-            let columns = counted(columns, "column", "columns");
+            let columns = counted(columns, "backend", "backends");
             let rows = counted(report.results.len(), "figure", "figures");
             format!("{position}: {name}, {faces}, {columns}, {rows}")
         }

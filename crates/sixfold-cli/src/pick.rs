@@ -125,7 +125,10 @@ fn predicted_lines(prediction: &Prediction) -> Vec<(&'static str, String)> {
     let counted = local().map(|p| Some(format!("{} {}", p.backend, figure(p.lines?))));
     let counted: Option<Vec<String>> = counted.collect();
     if let Some(counted) = counted.filter(|counted| !counted.is_empty()) {
-        let text = format!("{} cache lines per operation", counted.join(", "));
+        let text = format!(
+            "{} cache lines per operation (counted, not timed)",
+            counted.join(", ")
+        );
         lines.push(("Reads:    ", text));
     }
     let scanning = prediction.candidates.iter().filter(|p| !p.scans.is_empty());
@@ -168,15 +171,16 @@ fn ranking(report: &PickReport) -> String {
     let header = [
         "",
         "operation",
-        "/ best",
-        "95 %",
-        "1st build",
-        "again",
+        "ratio to best",
+        "95 % interval",
+        "first build",
+        "later build",
         "B/vertex",
         "pays after",
     ];
     let mut rows = table(header.iter().map(|name| right((*name).into())).collect());
-    let mut notes = [false; 3];
+    let mut notes = [false; 4];
+    let several_tied = report.ranking.iter().filter(|r| r.tied_with_best).count() > 1;
     for ranked in &report.ranking {
         let mark = match (ranked.estimated, ranked.sampled) {
             (true, _) => "?",
@@ -185,8 +189,13 @@ fn ranking(report: &PickReport) -> String {
         };
         notes[0] |= ranked.sampled && !ranked.estimated;
         notes[1] |= ranked.estimated;
-        notes[2] |= ranked.tied_with_best && report.ranking.len() > 1;
-        let tied = if ranked.tied_with_best { " =" } else { "" };
+        notes[2] |= ranked.tied_with_best && several_tied;
+        notes[3] |= ranked.tied_with_best && !several_tied;
+        let tied = match (ranked.tied_with_best, several_tied) {
+            (false, _) => "",
+            (true, false) => " *",
+            (true, true) => " =",
+        };
         let interval = ranked.ci_low.zip(ranked.ci_high);
         let interval = interval.map_or("–".into(), |(low, high)| {
             format!("{} to {}", ratio(low), ratio(high))
@@ -206,7 +215,8 @@ fn ranking(report: &PickReport) -> String {
     let legend = [
         "~ measured on a sample of the elements, because each query scans all faces",
         "? estimated, because a full run would exceed the budget",
-        "= tied with the best: no measurable difference",
+        "= tied with the fastest: no measurable difference",
+        "* fastest",
     ];
     for (line, _) in legend.into_iter().zip(notes).filter(|(_, note)| *note) {
         text += "\n";
@@ -221,10 +231,11 @@ fn ranking(report: &PickReport) -> String {
             "\nrelation-tables: flat tables of only the relations in the mix, made from {over}"
         );
     }
-    text + "\n1st build: time of the first build, on new memory pages\n\
-            again: time of a later build, on memory pages that were used before\n\
-            pays after: number of operations after which the first build saves time,\n\
-            compared with an indexed face set that is already built"
+    text + "\noperation: mean time of an operation of the mix\n\
+            first build: time to build on new memory pages\n\
+            later build: time to build on memory pages that were used before\n\
+            pays after: number of operations after which the first build and the operations take\n\
+            less time than the operations on an indexed face set that is already built"
 }
 
 /// Formats a ratio as `1.04`, `12.3` or `1,230`.

@@ -35,7 +35,7 @@ fn all_indices_are_measured_and_the_cheapest_is_named() {
     let json = text(&sixfold, "n.json");
     let found = finding(&json);
     assert_eq!(found["kind"], "neighbours");
-    assert_eq!(found["queries"], 169);
+    assert_eq!(found["queries"], 144);
     let rows = found["results"].as_array().expect("a list");
     assert_eq!(rows.len(), 7 * 5);
     assert!(rows.iter().all(|row| row["agreement"] == "same"));

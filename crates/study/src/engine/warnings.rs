@@ -27,12 +27,12 @@ pub(crate) fn warnings(
 ) -> Vec<String> {
     let environment = &run.environment;
     let all = [
-        nothing_measured(run, results),
+        nothing_measured(results),
         pages_not_kept(environment),
         page_faults(environment, results),
         busy(run),
         interrupted(environment, results),
-        noisy(control),
+        noisy(control, results),
         coarse(timer),
         wall_time_only(environment),
         few(results),
@@ -53,14 +53,13 @@ pub(crate) fn machine_warnings(run: &Run) -> Vec<String> {
     all.into_iter().flatten().collect()
 }
 
-fn nothing_measured(run: &Run, results: &[&ResultRow]) -> Option<String> {
+fn nothing_measured(results: &[&ResultRow]) -> Option<String> {
     let mut measured = results.iter().filter(|row| row.median_ns.is_some());
     let nothing = measured.clone().next().is_some() && measured.all(|row| row.warm_up_only);
-    let budget = run.settings.budget_s;
     nothing.then(|| {
-        format!(
-            "The budget of {budget} s was too small to measure anything: every figure is from one run with cold caches. Use a longer --budget or fewer --operations."
-        )
+        "The budget was too small for repeated runs: each time is from a single run. Use a longer \
+         --budget or fewer --operations."
+            .to_owned()
     })
 }
 
@@ -135,8 +134,10 @@ fn interrupted(environment: &Environment, results: &[&ResultRow]) -> Option<Stri
     })
 }
 
-fn noisy(control: Option<&Control>) -> Option<String> {
+fn noisy(control: Option<&Control>, results: &[&ResultRow]) -> Option<String> {
     let control = control.filter(|control| control.typical > NOISY)?;
+    // With fewer samples, there is no interval, and `few` warns of this.
+    results.iter().find(|row| row.ci_low_ns.is_some())?;
     Some(format!(
         "Two measurements of one backend typically differ by {:.0} %: smaller differences between backends are not significant. Measure on a quieter machine, or with a longer --budget.",
         100.0 * (control.typical - 1.0)
@@ -168,7 +169,7 @@ fn few(results: &[&ResultRow]) -> Option<String> {
     let once = results.iter().all(|row| row.warm_up_only); // `nothing_measured` warns of this
     (few > 0 && !once).then(|| {
         format!(
-            "{few} of {all} figures are from fewer than {MIN_SAMPLES} samples, so their intervals are wide \
+            "{few} of {all} times are from fewer than {MIN_SAMPLES} samples, so their intervals are wide \
              or missing. Use a longer --budget or fewer --operations."
         )
     })

@@ -434,7 +434,8 @@ fn results(
 ) -> Vec<NeighbourRow> {
     let mut rows = Vec::new();
     let mut agreements = agreements.iter().copied();
-    for (group, task) in entries.chunks(subjects.len()).zip(SpatialTask::ALL) {
+    let groups = entries.chunk_by(|a, b| a.job.task == b.job.task);
+    for (group, task) in groups.zip(SpatialTask::ALL) {
         let agreements: Vec<Agreement> = agreements.by_ref().take(group.len()).collect();
         let times: Vec<Vec<(u32, Time)>> = group.iter().map(Entry::times).collect();
         let right = times.iter().zip(&agreements);

@@ -7,6 +7,7 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+use sixfold::structure_infos;
 use sixfold::subdivision::Scheme;
 use sixfold_workload::Operation;
 
@@ -169,7 +170,7 @@ impl Pool {
         };
         let mut sentences = vec![self.describe_meshes(all.meshes.len(), studied)];
         for rows in all.overall.chunk_by(|a, b| a.purpose == b.purpose) {
-            sentences.extend(leader(rows, &all.name));
+            sentences.extend(leader(rows, &all.name, self.compared.len()));
             for part in parts {
                 let own: Vec<Overall> = part
                     .overall
@@ -180,7 +181,7 @@ impl Pool {
                 // Only where the answer is another one.
                 let differs = own.first().zip(rows.first());
                 if differs.is_some_and(|(own, all)| own.backend != all.backend) {
-                    sentences.extend(leader(&own, &part.name));
+                    sentences.extend(leader(&own, &part.name, self.compared.len()));
                 }
             }
         }
@@ -188,24 +189,34 @@ impl Pool {
     }
 
     fn describe_meshes(&self, pooled: usize, studied: usize) -> String {
-        let fewer: Vec<String> = self
-            .holding
-            .iter()
-            .filter(|holding| holding.meshes < studied)
-            .map(|holding| format!("{} can hold {}", holding.backend, holding.meshes))
-            .collect();
-        match fewer.is_empty() {
-            true => format!(
+        let holds_all = |holding: &&Holding| holding.meshes == studied;
+        let (all, fewer): (Vec<&Holding>, Vec<&Holding>) = self.holding.iter().partition(holds_all);
+        if fewer.is_empty() {
+            return format!(
                 "All backends can hold all {}.",
                 counted(studied, "mesh", "meshes")
-            ),
-            false => format!(
-                "The means are over the {} that all compared backends can hold. Of {studied} \
-                 studied, {}; the other backends can hold all meshes.",
-                counted(pooled, "mesh", "meshes"),
-                fewer.join(", ")
-            ),
+            );
         }
+        let counts = fewer
+            .iter()
+            .map(|holding| format!("{} can hold {}", holding.backend, holding.meshes));
+        let counts: Vec<String> = counts.collect();
+        let others = match all.is_empty() {
+            true => "",
+            false => "; the other backends can hold all meshes",
+        };
+        let is_structure =
+            |holding: &&Holding| structure_infos().iter().any(|s| s.name == holding.backend);
+        let repair = match fewer.iter().any(is_structure) {
+            true => " `sixfold repair --for NAME` makes a mesh that the structure NAME can hold.",
+            false => "",
+        };
+        format!(
+            "The means are over the {} that all compared backends can hold. Of {studied} studied, \
+             {}{others}.{repair}",
+            counted(pooled, "mesh", "meshes"),
+            counts.join(", ")
+        )
     }
 }
 
@@ -456,8 +467,8 @@ fn mean_over_sizes(values: &[(u32, f64)]) -> Option<(f64, Option<[f64; 2]>)> {
     ))
 }
 
-/// Describes the fastest backends of one purpose.
-fn leader(rows: &[Overall], group: &str) -> Option<String> {
+/// Describes the fastest backends of one purpose. `compared` is the number of all compared backends.
+fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
     let (first, others) = rows.split_first()?;
     let equal = others
         .iter()
@@ -472,9 +483,14 @@ fn leader(rows: &[Overall], group: &str) -> Option<String> {
             names.join(" and ")
         ),
     };
+    let with_times: Vec<&str> = rows.iter().map(|row| row.backend.as_str()).collect();
+    let only = match with_times.len() < compared {
+        true => format!(" Only {} have times.", with_times.join(", ")),
+        false => String::new(),
+    };
     Some(format!(
-        "{}, {group} ({}): {lead}: {} the time of the fastest backend of each mesh and \
-         operation. Next is {} with {}.",
+        "{}, {group} (mean over {}): {lead}: {} the time of the fastest backend of each mesh and \
+         operation. Next is {} with {}.{only}",
         first.purpose.name(),
         counted(first.meshes, "mesh", "meshes"),
         times(first.ratio_to_best),

@@ -20,9 +20,10 @@ pub(super) fn sentences(
     sentences.extend(control.map(|control| {
         let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
         format!(
-            "Noise: {} in the given order was measured twice. The two times typically differ by \
-             {}, at most by {}. For each operation, results that differ by no more than these two \
-             times are tied.",
+            "Noise: {} in the given order was measured twice. Its two times differ by {} (median \
+             over the operations), and by at most {}. Two results are tied if they differ by no \
+             more than the noise of the operation. With one or two samples, they are tied if the \
+             longer time is less than 2 × the shorter time.",
             control.backend,
             percent(control.typical),
             percent(control.worst),
@@ -120,6 +121,10 @@ fn effects(comparison: &Comparison) -> Option<String> {
     };
     let operation = comparison.operation;
     let orders = match local().count() {
+        _ if !most.matters => format!(
+            "{operation}: the order makes no measurable difference on the structures that do not \
+             scan all faces"
+        ),
         1 => format!(
             "{operation}: time of the worst order relative to the best order: {}",
             describe(most)
@@ -135,14 +140,16 @@ fn effects(comparison: &Comparison) -> Option<String> {
     };
     let between = match structures.matters {
         true => format!(
-            "Time of the slowest structure ({}) relative to the fastest ({}), each in its best \
-             order: {}",
+            "Among the structures that do not scan all faces, each in its best order, the slowest \
+             ({}) takes {} the time of the fastest ({})",
             structures.slowest,
-            structures.fastest,
-            times(structures.slowest_to_fastest.ratio)
+            times(structures.slowest_to_fastest.ratio),
+            structures.fastest
         ),
         false => {
-            "The times of the structures, each in its best order, are equal within the noise".into()
+            "The times of the structures that do not scan all faces, each in its best order, are \
+             equal within the noise"
+                .into()
         }
     };
     let larger = match comparison.larger? {

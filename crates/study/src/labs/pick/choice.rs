@@ -130,16 +130,16 @@ impl Choice {
     pub(crate) fn what_would_change(&self) -> String {
         match &self.turning_point {
             Some(point) => format!(
-                "{} would be as fast as {} if the share of {} in the mix were {} the present \
-                 share.",
+                "{} would be as fast as {} if the weight of {} in the mix were {} its present \
+                 weight.",
                 point.backend,
                 self.backend,
                 point.operation,
                 times(point.factor)
             ),
             None => format!(
-                "No slower backend would be as fast as {}, even if the share of one operation in \
-                 the mix were 100 × the present share.",
+                "{} stays the fastest even if the weight of any one operation in the mix is \
+                 multiplied by 100.",
                 self.backend
             ),
         }

@@ -9,7 +9,7 @@ use crate::labs::pick::PickSettings;
 use crate::labs::pick::choice::choose;
 use crate::labs::pick::measurement::Outcome;
 use crate::labs::pick::reasons;
-use crate::labs::pick::report::{BreakEven, Excluded, MeshRanking, PickReport, Ranked};
+use crate::labs::pick::report::{BreakEven, Excluded, MeshRanking, PartCost, PickReport, Ranked};
 use crate::results::run::Run;
 
 /// Combines the results of the meshes. A backend must qualify on every mesh to be ranked. Backends
@@ -152,10 +152,25 @@ fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
             sampled: rows.iter().any(|r| r.sampled),
             estimated: rows.iter().any(|r| r.estimated),
             samples: rows.iter().map(|r| r.samples).min().unwrap_or(0),
+            parts: parts_on_all(rows),
             ..rows[0].clone()
         }
     });
     rows.collect()
+}
+
+/// Returns the mean cost of each part of the mix over all meshes. Every row has the same parts.
+fn parts_on_all(rows: &[&Ranked]) -> Vec<PartCost> {
+    let parts = rows[0].parts.iter().enumerate().map(|(i, part)| {
+        let on_each = || rows.iter().filter_map(|row| row.parts.get(i));
+        let times: Option<Vec<f64>> = on_each().map(|part| part.ns).collect();
+        PartCost {
+            share: mean(on_each().map(|part| part.share)).unwrap_or(part.share),
+            ns: times.map(|times| geometric(times.into_iter())),
+            ..*part
+        }
+    });
+    parts.collect()
 }
 
 /// Returns the break-even of `ranked` over all meshes. The number of operations is `None` if

@@ -102,9 +102,10 @@ fn noise(control: &Control) -> Option<String> {
         .max_by(|a, b| difference(a).total_cmp(&difference(b)))?;
     let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
     Some(format!(
-        "Noise: {} was measured twice. The two times typically differ by {}, at most by {} \
-         ({}). For each operation, backends that differ by no more than these two times are \
-         tied.",
+        "Noise: {} was measured twice. Its two times differ by {} (median over the operations), \
+         and by at most {} ({}). A backend is tied with the fastest if it differs by no more than \
+         the noise of the operation. With one or two samples, it is tied if it takes less than \
+         2 × the time.",
         control.backend,
         percent(control.typical),
         percent(control.worst),
