@@ -31,6 +31,19 @@ pub fn counted(number: usize, singular: &str, plural: &str) -> String {
     format!("{} {word}", grouped(number))
 }
 
+/// Joins names: `a`, `a and b`, `a, b and c`.
+pub(crate) fn list<N: AsRef<str>>(names: impl IntoIterator<Item = N>) -> String {
+    let names: Vec<N> = names.into_iter().collect();
+    let Some((last, first)) = names.split_last() else {
+        return String::new();
+    };
+    let first: Vec<&str> = first.iter().map(AsRef::as_ref).collect();
+    match first.is_empty() {
+        true => last.as_ref().to_owned(),
+        false => format!("{} and {}", first.join(", "), last.as_ref()),
+    }
+}
+
 /// Formats a number of bytes with a suitable decimal unit, such as `1.50 kB` (1 kB = 1,000 bytes).
 pub fn bytes(number: usize) -> String {
     match number as f64 {

@@ -343,12 +343,12 @@ mod tests {
             ),
             (
                 warnings(&good, &TIMER, &[&fine(), &few], None),
-                "1 of 2 figures",
+                "1 of 2 times",
                 "--budget",
             ),
             (
                 warnings(&good, &TIMER, &[&once], None),
-                "too small to measure",
+                "each time is from a single run",
                 "--operations",
             ),
         ];

@@ -14,7 +14,7 @@ use sixfold_workload::Operation;
 use crate::engine::statistics::geometric_mean;
 use crate::labs::pick::EQUAL_UP_TO;
 use crate::labs::study::Report;
-use crate::numbers::{counted, grouped, times};
+use crate::numbers::{counted, grouped, list, times};
 use crate::results::rows::{Agreement, ResultRow, Standing};
 
 /// The results over all meshes of a collection.
@@ -473,15 +473,14 @@ fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
     let equal = others
         .iter()
         .filter(|row| row.ratio_to_best <= EQUAL_UP_TO * first.ratio_to_best);
-    let names: Vec<&str> = equal.map(|row| row.backend.as_str()).collect();
-    let next = others.get(names.len())?;
-    let lead = match names.is_empty() {
-        true => format!("{} is fastest on average", first.backend),
-        false => format!(
-            "{} and {} are fastest on average, within 5 % of each other",
-            first.backend,
-            names.join(" and ")
-        ),
+    let best: Vec<&str> = std::iter::once(first)
+        .chain(equal)
+        .map(|row| row.backend.as_str())
+        .collect();
+    let next = rows.get(best.len())?;
+    let lead = match best.len() {
+        1 => "is fastest on average",
+        _ => "are fastest on average, within 5 % of each other",
     };
     let with_times: Vec<&str> = rows.iter().map(|row| row.backend.as_str()).collect();
     let only = match with_times.len() < compared {
@@ -489,10 +488,11 @@ fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
         false => String::new(),
     };
     Some(format!(
-        "{}, {group} (mean over {}): {lead}: {} the time of the fastest backend of each mesh and \
+        "{}, {group} (mean over {}): {} {lead}: {} the time of the fastest backend of each mesh and \
          operation. Next is {} with {}.{only}",
         first.purpose.name(),
         counted(first.meshes, "mesh", "meshes"),
+        list(best),
         times(first.ratio_to_best),
         next.backend,
         times(next.ratio_to_best)

@@ -1,7 +1,7 @@
 //! The sentences of the report.
 
 use super::{Cheapest, NeighboursReport, SpatialTask};
-use crate::numbers::{figure, grouped};
+use crate::numbers::{counted, figure, list};
 use crate::results::rows::Standing;
 
 /// Returns the sentences that describe the results.
@@ -11,7 +11,7 @@ pub(super) fn sentences(report: &NeighboursReport) -> Vec<String> {
     for query in &report.cheapest {
         if let Some(ranges) = in_words(&query.ranges) {
             sentences.push(format!(
-                "{} with building: the least total time has {ranges}.",
+                "With building, least total time of {}: {ranges}.",
                 query.operation
             ));
         }
@@ -42,10 +42,14 @@ fn fastest(report: &NeighboursReport, task: SpatialTask) -> Option<String> {
         let ratio = figure(row.ratio_to_best?);
         Some(format!("; {} takes {ratio} × this time", row.backend))
     });
+    let lead = if best.len() == 1 {
+        "is fastest"
+    } else {
+        "are fastest, with no clear difference between them"
+    };
     Some(format!(
-        "{task}: {} {} fastest, with {} ns per {}{}.",
-        names.join(" and "),
-        if best.len() == 1 { "is" } else { "are" },
+        "{task}: {} {lead} ({} ns per {}){}.",
+        list(names),
         figure(first.ns_per_element),
         first.per,
         slowest.unwrap_or_default()
@@ -58,13 +62,13 @@ fn in_words(ranges: &[Cheapest]) -> Option<String> {
     if others.is_empty() {
         return Some(format!("{} for any number of queries", last.index));
     }
-    let ends = ranges
-        .iter()
-        .skip(1)
-        .map(|next| grouped((next.from - 1) as usize));
+    let ends = ranges.iter().skip(1).map(|next| next.from - 1);
     let others = others.iter().zip(ends);
     let others: Vec<String> = others
-        .map(|(range, end)| format!("{} for up to {end} queries", range.index))
+        .map(|(range, end)| {
+            let queries = counted(end as usize, "query", "queries");
+            format!("{} for up to {queries}", range.index)
+        })
         .collect();
     Some(format!(
         "{}, and {} for more",

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::labs::pick::report::{PartCost, Ranked};
-use crate::numbers::times;
+use crate::numbers::{list, times};
 
 /// Two backends count as equally fast if the ratio of their times is at most this value. Another
 /// program, compiler or machine can change the ratio by 5 %.
@@ -146,16 +146,6 @@ impl Choice {
     }
 }
 
-/// Joins names: `a`, `a and b`, `a, b and c`.
-pub(crate) fn list<'n>(names: impl IntoIterator<Item = &'n String>) -> String {
-    let names: Vec<&str> = names.into_iter().map(String::as_str).collect();
-    match &names[..] {
-        [] => String::new(),
-        [name] => (*name).to_owned(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use sixfold_workload::Operation;
@@ -233,7 +223,7 @@ mod tests {
         assert!(
             choice
                 .what_would_change()
-                .contains("if the share of boundary in the mix were 3.0 ×"),
+                .contains("if the weight of boundary in the mix were 3.0 × its present weight"),
             "{}",
             choice.what_would_change()
         );

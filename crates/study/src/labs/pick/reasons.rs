@@ -1,9 +1,9 @@
 //! The result of a pick and its reasons, as sentences.
 
 use crate::engine::statistics::MIN_SAMPLES;
-use crate::labs::pick::choice::{Choice, list};
+use crate::labs::pick::choice::Choice;
 use crate::labs::pick::report::{PartCost, PickReport, Ranked};
-use crate::numbers::{counted, duration, grouped, times};
+use crate::numbers::{counted, duration, grouped, list, times};
 
 /// Returns sentences about the fastest backend, the reasons, the break-even and the packages.
 pub(crate) fn sentences(report: &PickReport) -> Vec<String> {

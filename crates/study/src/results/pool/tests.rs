@@ -195,11 +195,12 @@ fn meshes_are_grouped_by_size_and_kind_with_equal_weight() {
     assert!((face_vertex(4) - 1.0).abs() < 1e-9, "{}", face_vertex(4));
     let sentences = pool.sentences.join("\n");
     assert!(
-        sentences.contains("Queries, all meshes (5 meshes): half-edge is fastest"),
+        sentences.contains("Queries, all meshes (mean over 5 meshes): half-edge is fastest"),
         "{sentences}"
     );
     assert!(
-        sentences.contains("Queries, meshes with polygons (1 mesh): face-vertex is fastest"),
+        sentences
+            .contains("Queries, meshes with polygons (mean over 1 mesh): face-vertex is fastest"),
         "{sentences}"
     );
     assert!(
