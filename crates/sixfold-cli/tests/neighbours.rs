@@ -28,7 +28,7 @@ fn all_indices_are_measured_and_the_cheapest_is_named() {
         "kd-tree",
         "bvh",
         "closest_point",
-        "with building",
+        "With building",
     ] {
         assert!(run.stdout.contains(name), "{name}: {}", run.stdout);
     }

@@ -86,7 +86,7 @@ fn the_cheapest_index_changes_with_the_number_of_queries() {
         );
         assert_ne!(last.index, "list", "{}", query.operation);
     }
-    assert!(report.sentences.iter().any(|s| s.contains("with building")));
+    assert!(report.sentences.iter().any(|s| s.contains("With building")));
 }
 
 #[test]

@@ -47,10 +47,16 @@ fn fastest(report: &NeighboursReport, task: SpatialTask) -> Option<String> {
     } else {
         "are fastest, with no clear difference between them"
     };
+    let times = best.iter().map(|row| row.ns_per_element);
+    let least = figure(times.clone().fold(f64::INFINITY, f64::min));
+    let most = figure(times.fold(0.0, f64::max));
+    let range = match least == most {
+        true => least,
+        false => format!("{least} to {most}"),
+    };
     Some(format!(
-        "{task}: {} {lead} ({} ns per {}){}.",
+        "{task}: {} {lead} ({range} ns per {}){}.",
         list(names),
-        figure(first.ns_per_element),
         first.per,
         slowest.unwrap_or_default()
     ))
