@@ -222,7 +222,7 @@ pub(crate) struct Study {
     /// Run only these operations, by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = operation)]
     pub(crate) operations: Vec<Operation>,
-    /// Total time for all meshes and labs, such as 20s or 2m [default: 20s for each of them]
+    /// Total time of all meshes and labs [default: 20s each]
     #[arg(long, value_name = "TIME", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Option<Duration>,
     /// Seed of the random order and of random samples
@@ -247,7 +247,7 @@ pub(crate) struct Study {
     /// Write a page, its figures, and all results as JSON and CSV to DIR
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
-    /// Extra measurements (labs) in the report: orders,growth,why or none [default: all]
+    /// More labs in the report: orders,growth,why or none [default: all]
     #[arg(long, value_name = "NAME,…", requires = "report")]
     pub(crate) labs: Option<LabSelection>,
     /// Continue the study in the folder of --report

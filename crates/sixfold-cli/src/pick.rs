@@ -171,10 +171,10 @@ fn ranking(report: &PickReport) -> String {
     let header = [
         "",
         "operation",
-        "ratio to best",
-        "95 % interval",
-        "first build",
-        "later build",
+        "ratio",
+        "interval",
+        "1st build",
+        "rebuild",
         "B/vertex",
         "pays after",
     ];
@@ -232,9 +232,10 @@ fn ranking(report: &PickReport) -> String {
         );
     }
     text + "\noperation: mean time of an operation of the mix\n\
-            first build: time to build on new memory pages\n\
-            later build: time to build on memory pages that were used before\n\
-            pays after: number of operations after which the first build and the operations take\n\
+            ratio: to the time of the fastest, with its 95 % confidence interval\n\
+            1st build: time to build on new memory pages\n\
+            rebuild: time to build on memory pages that were used before\n\
+            pays after: number of operations after which the 1st build and the operations take\n\
             less time than the operations on an indexed face set that is already built"
 }
 

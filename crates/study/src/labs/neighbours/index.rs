@@ -15,11 +15,14 @@ use super::tasks::{EIGHT, SpatialTask};
 /// The name of the list, which visits all elements for each query.
 pub(crate) const LIST: &str = "list";
 
+/// Both indices of a kind, as a backend of a trial.
+type Built<'i> = Result<Box<dyn TimedBackend + 'i>, SpatialError>;
+
 /// A kind of index: how to build it.
 #[derive(Clone, Copy)]
 pub(crate) struct IndexKind {
     pub(crate) name: &'static str,
-    build: for<'i> fn(&'static str, &'i Input) -> Result<Box<dyn TimedBackend + 'i>, SpatialError>,
+    build: for<'i> fn(&'static str, &'i Input) -> Built<'i>,
 }
 
 /// All kinds of indices, in the order of the tables. The list comes first.
@@ -44,18 +47,12 @@ impl IndexKind {
     }
 
     /// Builds both indices of this kind.
-    pub(crate) fn build<'i>(
-        &self,
-        input: &'i Input,
-    ) -> Result<Box<dyn TimedBackend + 'i>, SpatialError> {
+    pub(crate) fn build<'i>(&self, input: &'i Input) -> Built<'i> {
         (self.build)(self.name, input)
     }
 }
 
-fn build<'i, V, T>(
-    name: &'static str,
-    input: &'i Input,
-) -> Result<Box<dyn TimedBackend + 'i>, SpatialError>
+fn build<'i, V, T>(name: &'static str, input: &'i Input) -> Built<'i>
 where
     V: SpatialIndex<Vertex> + 'static,
     T: SpatialIndex<Triangle> + 'static,
