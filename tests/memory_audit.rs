@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::{env, fs};
 
 use peak_alloc::PeakAlloc;
-use sixfold::remeshing::{Boundary, Decimation, Target, decimate};
+use sixfold::remeshing::{Decimation, DecimationBoundary, Target, decimate};
 use sixfold::{
     MeshEdit, MeshQuery, Point, PolygonMesh, Representation, for_each_editable, io, shapes,
     structure_infos,
@@ -241,7 +241,7 @@ fn tables_report_all_bytes_after_edits() {
     let polygons = shapes::geodesic(12).expect("2,880 triangles");
     let decimation = Decimation {
         target: Target::Ratio(0.3),
-        boundary: Boundary::default(),
+        boundary: DecimationBoundary::default(),
     };
     for_each_editable!(M => {
         let before = HEAP.current_usage();

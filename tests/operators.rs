@@ -3,8 +3,8 @@
 
 use proptest::prelude::*;
 use sixfold::operators::{
-    Boundary, DualError, Facing, NormalWeights, OrientationError, Smoothing, Weights, dual,
-    face_normals, oriented, smoothed, vertex_normals,
+    DualError, Facing, NormalWeights, OrientationError, Smoothing, SmoothingBoundary, Weights,
+    dual, face_normals, oriented, smoothed, vertex_normals,
 };
 use sixfold::{
     Facts, HalfEdgeMesh, MeshQuery, Point, PolygonMesh, Representation, for_each_representation,
@@ -68,7 +68,10 @@ macro_rules! compare_structures {
 
 fn smoothing() -> impl Strategy<Value = Smoothing> {
     let weights = prop_oneof![Just(Weights::Uniform), Just(Weights::Cotangent)];
-    let boundary = prop_oneof![Just(Boundary::Fixed), Just(Boundary::Curve)];
+    let boundary = prop_oneof![
+        Just(SmoothingBoundary::Fixed),
+        Just(SmoothingBoundary::Curve)
+    ];
     let steps = prop_oneof![
         Just((0.33, Some(-0.34))),
         (0.1..0.6).prop_map(|step| (step, None))

@@ -2,7 +2,7 @@
 //! structure.
 
 use sixfold::remeshing::{
-    Boundary, Decimation, Remeshing, Target, decimate, flip_to_delaunay, remesh,
+    Decimation, DecimationBoundary, Remeshing, Target, decimate, flip_to_delaunay, remesh,
 };
 use sixfold::{for_each_editable, shapes};
 use sixfold_core::{MeshEdit, Point, PolygonMesh, Representation};
@@ -86,7 +86,7 @@ fn compare_structures(operator: &impl Operator, polygons: &PolygonMesh, what: &s
 #[test]
 fn decimation_is_the_same_on_all() {
     for (i, polygons) in surfaces().iter().enumerate() {
-        for boundary in [Boundary::Follow, Boundary::Fixed] {
+        for boundary in [DecimationBoundary::Follow, DecimationBoundary::Fixed] {
             for ratio in [0.6, 0.3, 0.1] {
                 let target = Target::Ratio(ratio);
                 let operator = Decimation { target, boundary };

@@ -3,7 +3,7 @@
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::Index;
-use sixfold::subdivision::{Boundary, Creasing, Method, Scheme, Step, Subdivision};
+use sixfold::subdivision::{BoundaryRule, Creasing, FaceKind, Method, Scheme, Step, Subdivision};
 use sixfold::{
     Creases, Point, PolygonMesh, Refine, Representation, VertexId, for_each_refinable,
     for_each_representation,
@@ -30,7 +30,7 @@ fn step_by_polygons<M: Representation>(
     };
     let step = match method {
         Method::Gather => subdivision.gather(&mesh, &creases, level),
-        Method::Scatter if !subdivision.scheme.kind().scatter => return None,
+        Method::Scatter if !subdivision.scheme.properties().scatter => return None,
         _ => subdivision.scatter(&mesh, &creases, level),
     };
     Some(step.map_err(|refusal| refusal.to_string()))
@@ -247,8 +247,8 @@ pub(crate) fn creases_on(polygons: &PolygonMesh, choices: &[(Index, Index, f32)]
 /// Triangulates the mesh if the scheme accepts only triangles, and numbers the vertices like a
 /// soup.
 fn for_scheme(scheme: Scheme, polygons: &PolygonMesh) -> Option<PolygonMesh> {
-    let polygons = match scheme.kind().takes {
-        "triangles" => polygons.fan_triangulated().ok()?,
+    let polygons = match scheme.properties().takes {
+        FaceKind::Triangles => polygons.fan_triangulated().ok()?,
         _ => polygons.clone(),
     };
     welded(&polygons).ok()
@@ -256,7 +256,7 @@ fn for_scheme(scheme: Scheme, polygons: &PolygonMesh) -> Option<PolygonMesh> {
 
 fn schemes() -> impl Strategy<Value = Subdivision> {
     let scheme = prop::sample::select(Scheme::ALL.to_vec());
-    let boundary = prop::sample::select(Boundary::ALL.to_vec());
+    let boundary = prop::sample::select(BoundaryRule::ALL.to_vec());
     let creasing = prop::sample::select(Creasing::ALL.to_vec());
     (scheme, boundary, creasing).prop_map(|(scheme, boundary, creasing)| Subdivision {
         boundary,
@@ -289,7 +289,7 @@ proptest! {
         choices in sharpness(),
     ) {
         if let Some(polygons) = for_scheme(subdivision.scheme, &polygons) {
-            let creases = match subdivision.scheme.kind().creases {
+            let creases = match subdivision.scheme.properties().creases {
                 true => creases_on(&polygons, &choices),
                 false => Creases::default(),
             };
@@ -304,7 +304,7 @@ proptest! {
         choices in sharpness(),
     ) {
         if let Some(polygons) = for_scheme(subdivision.scheme, &polygons) {
-            let creases = match subdivision.scheme.kind().creases {
+            let creases = match subdivision.scheme.properties().creases {
                 true => creases_on(&polygons, &choices),
                 false => Creases::default(),
             };

@@ -7,8 +7,8 @@ mod regular;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use sixfold::subdivision::{
-    Boundary, Creasing, Extent, LoopWeights, Method, Scheme, Step, Subdivision, subdivide,
-    subdivide_native,
+    BoundaryRule, Creasing, Extent, FaceKind, LoopWeights, Method, Scheme, Step, Subdivision,
+    subdivide, subdivide_native,
 };
 use sixfold::{
     Creases, Facts, HalfEdgeMesh, IndexedFaceSet, Point, PolygonMesh, Representation, VertexId,
@@ -49,7 +49,10 @@ fn subdivided(
     step.expect("the scheme accepts the mesh")
 }
 
-fn cases_with(schemes: &[Scheme], boundaries: &[Boundary]) -> impl Strategy<Value = Case> + use<> {
+fn cases_with(
+    schemes: &[Scheme],
+    boundaries: &[BoundaryRule],
+) -> impl Strategy<Value = Case> + use<> {
     let options = (
         select(schemes.to_vec()),
         select(boundaries.to_vec()),
@@ -78,11 +81,11 @@ fn cases_with(schemes: &[Scheme], boundaries: &[Boundary]) -> impl Strategy<Valu
 }
 
 fn cases() -> impl Strategy<Value = Case> {
-    cases_with(&Scheme::ALL, &Boundary::ALL)
+    cases_with(&Scheme::ALL, &BoundaryRule::ALL)
 }
 
 fn creases_for(scheme: Scheme, polygons: &PolygonMesh, choices: &[(Index, Index, f32)]) -> Creases {
-    match scheme.kind().creases {
+    match scheme.properties().creases {
         true => creases_on(polygons, choices),
         false => Creases::default(),
     }
@@ -91,7 +94,7 @@ fn creases_for(scheme: Scheme, polygons: &PolygonMesh, choices: &[(Index, Index,
 /// Triangulates the mesh if the scheme accepts only triangles. Returns `None` if the result is not
 /// a manifold or contains a triangle twice.
 fn for_scheme(scheme: Scheme, polygons: PolygonMesh) -> Option<PolygonMesh> {
-    if scheme.kind().takes != "triangles" {
+    if scheme.properties().takes != FaceKind::Triangles {
         return Some(polygons);
     }
     let polygons = polygons.fan_triangulated().ok()?;
@@ -161,10 +164,10 @@ fn expected_counts(scheme: Scheme, polygons: &PolygonMesh, level: u32) -> [usize
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, cases: 96, ..ProptestConfig::default() })]
 
-    /// `Boundary::None` removes faces, so it is not used here.
+    /// `BoundaryRule::None` removes faces, so it is not used here.
     #[test]
     fn topology_is_kept_and_counts_follow_the_formulas(
-        start in cases_with(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
+        start in cases_with(&Scheme::ALL, &[BoundaryRule::EdgeAndCorner, BoundaryRule::EdgeOnly]),
     ) {
         let before = Facts::from_polygons(&start.polygons);
         let (mut parent, mut extent) = (start.polygons.clone(), Extent::from_polygons(&start.polygons));
@@ -184,10 +187,10 @@ proptest! {
             prop_assert_eq!(facts.genus, before.genus);
             prop_assert_eq!(facts.consistently_oriented, before.consistently_oriented);
             prop_assert_eq!(facts.non_manifold_vertices, 0);
-            let degree = match start.scheme().kind().makes {
-                "quads" => Some(4),
-                "triangles" => Some(3),
-                _ => None,
+            let degree = match start.scheme().properties().makes {
+                FaceKind::Quads => Some(4),
+                FaceKind::Triangles => Some(3),
+                FaceKind::Polygons => None,
             };
             for (f, face) in child.faces().iter() {
                 prop_assert!(degree.is_none_or(|degree| face.len() == degree), "{}", f);
@@ -198,7 +201,7 @@ proptest! {
 
     #[test]
     fn valences_are_kept(
-        start in cases_with(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
+        start in cases_with(&Scheme::ALL, &[BoundaryRule::EdgeAndCorner, BoundaryRule::EdgeOnly]),
     ) {
         let (old, new) = (valences(&start.polygons), valences(&start.subdivided(1).polygons));
         let (vertices, faces) = (old.len(), start.polygons.face_count());
@@ -295,10 +298,10 @@ proptest! {
 
     #[test]
     fn interpolating_schemes_keep_old_vertices(
-        start in cases_with(&[Scheme::Butterfly, Scheme::Midpoint, Scheme::Bilinear], &Boundary::ALL),
+        start in cases_with(&[Scheme::Butterfly, Scheme::Midpoint, Scheme::Bilinear], &BoundaryRule::ALL),
         levels in 1..3_u32,
     ) {
-        prop_assert!(start.scheme().kind().interpolating);
+        prop_assert!(start.scheme().properties().interpolating);
         let step = start.subdivided(levels);
         let bits = |p: &Point| p.to_array().map(f32::to_bits);
         let (old, new) = (start.polygons.positions(), step.polygons.positions());
@@ -307,7 +310,7 @@ proptest! {
 
     #[test]
     fn zero_levels_give_the_mesh_itself(
-        start in cases_with(&Scheme::ALL, &[Boundary::EdgeAndCorner, Boundary::EdgeOnly]),
+        start in cases_with(&Scheme::ALL, &[BoundaryRule::EdgeAndCorner, BoundaryRule::EdgeOnly]),
     ) {
         let Case { subdivision, polygons, creases } = &start;
         let itself = Step { polygons: polygons.clone(), creases: creases.clone() };

@@ -35,6 +35,14 @@ fn main() {
         "cargo::rustc-env=STUDY_RUSTFLAGS={}",
         flags.replace('\u{1f}', " ")
     );
+    // Cargo sets `CARGO_FEATURE_NAME` for each feature of this package that is on.
+    let features = env::vars().filter_map(|(name, _)| {
+        let feature = name.strip_prefix("CARGO_FEATURE_")?;
+        Some(feature.to_lowercase().replace('_', "-"))
+    });
+    let mut features: Vec<String> = features.collect();
+    features.sort();
+    println!("cargo::rustc-env=STUDY_FEATURES={}", features.join(","));
     println!("cargo::rerun-if-changed=build.rs");
 }
 

@@ -6,7 +6,7 @@ use std::f32::consts::TAU;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::Index;
-use sixfold::subdivision::{Boundary, Creasing, Scheme, Subdivision};
+use sixfold::subdivision::{BoundaryRule, Creasing, Scheme, Subdivision};
 use sixfold::{Creases, Point, PolygonMesh, shapes};
 use sixfold_conformance::strategy::{any_mesh, manifold_mesh};
 
@@ -37,7 +37,7 @@ pub(crate) fn non_manifold() -> impl Strategy<Value = Case> {
 
 fn cases_on(mesh: impl Strategy<Value = PolygonMesh>) -> impl Strategy<Value = Case> {
     let scheme = prop::sample::select(vec![Scheme::CatmullClark, Scheme::Loop]);
-    let boundary = prop::sample::select(Boundary::ALL.to_vec());
+    let boundary = prop::sample::select(BoundaryRule::ALL.to_vec());
     let creasing = prop::sample::select(Creasing::ALL.to_vec());
     let options = (scheme, boundary, creasing, 1..4_u32);
     let creases = (sharpness(), sharpness()).prop_map(|(first, second)| [first, second].concat());
@@ -125,9 +125,10 @@ pub(crate) fn fixed() -> Vec<Case> {
     cases
 }
 
-fn all_options() -> impl Iterator<Item = (Scheme, Boundary, Creasing)> {
+fn all_options() -> impl Iterator<Item = (Scheme, BoundaryRule, Creasing)> {
     let schemes = [Scheme::CatmullClark, Scheme::Loop].into_iter();
-    let boundaries = schemes.flat_map(|scheme| Boundary::ALL.map(|boundary| (scheme, boundary)));
+    let boundaries =
+        schemes.flat_map(|scheme| BoundaryRule::ALL.map(|boundary| (scheme, boundary)));
     boundaries
         .flat_map(|(scheme, boundary)| Creasing::ALL.map(|creasing| (scheme, boundary, creasing)))
 }

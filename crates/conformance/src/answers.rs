@@ -11,9 +11,10 @@ use crate::subject::Subject;
 /// boundary loop. Returns `None` if `M` cannot hold `polygons`.
 ///
 /// Elements are identified by their numbers in `polygons`. Sets are sorted, and cycles start at
-/// their lowest element. The key of a one-ring is for example `one_ring v7`; the key is missing if
-/// vertex v7 has no one-ring. Boundary loops are lists of vertices. The key of a closed loop is for
-/// example `boundary_loop 0`, and the key of an open chain is for example `boundary_chain 0`.
+/// their lowest element. The key of a one-ring is, for example, `one_ring v7`. If a vertex has no
+/// one-ring, the key of its one-ring is missing. Boundary loops are lists of vertices. The key of a
+/// closed loop is for example `boundary_loop 0`, and the key of an open chain is for example
+/// `boundary_chain 0`.
 pub fn answers<M: Representation>(
     polygons: &PolygonMesh,
 ) -> Option<BTreeMap<String, Vec<Element>>> {

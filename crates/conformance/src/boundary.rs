@@ -1,4 +1,4 @@
-//! Checks the boundary edges and loops of a mesh by a search in the lists of the corners of its
+//! Checks the boundary edges and the boundary loops of a mesh against the corner lists of its
 //! faces.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};

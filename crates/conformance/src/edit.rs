@@ -3,7 +3,8 @@
 //!
 //! The model is independent of any structure: faces are lists of numbers, and every rule of
 //! [`MeshEdit`](sixfold_core::MeshEdit) is implemented by brute force. A step of a script selects
-//! its elements from the current mesh. So a failing script can be shrunk by leaving out steps.
+//! its elements from the current mesh. So a script that makes a test fail can be shrunk by leaving
+//! out steps.
 
 mod action;
 mod apply;

@@ -1,4 +1,4 @@
-//! One vertex, edge or face, with the numbers of the input.
+//! One vertex, edge or face, identified by the numbers of the input.
 
 use std::fmt;
 
@@ -17,7 +17,7 @@ pub enum Element {
 }
 
 impl Element {
-    /// Returns the edge between `a` and `b`, in any order.
+    /// Returns the edge between `a` and `b`; the order of `a` and `b` does not matter.
     pub fn edge(a: VertexId, b: VertexId) -> Self {
         Self::Edge(a.min(b), a.max(b))
     }

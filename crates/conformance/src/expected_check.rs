@@ -9,7 +9,7 @@ use crate::weld::position_key;
 
 /// Computes the expected result of [`Capabilities::check`] for `polygons` with independent code.
 ///
-/// The function does not check whether the numbers of elements are too large.
+/// This function does not check whether there are too many elements.
 ///
 /// # Errors
 ///

@@ -14,7 +14,7 @@ pub(crate) use make::{distinct_position, double_cone, strip};
 /// A mesh of the gallery, with its name.
 #[derive(Clone, Debug)]
 pub struct GalleryMesh {
-    /// A name that describes the corner case.
+    /// A name that describes the mesh.
     pub name: &'static str,
     /// The mesh.
     pub polygons: PolygonMesh,

@@ -1,9 +1,9 @@
 //! The requirements on every structure, one function per law.
 //!
 //! A law builds the structure from a given mesh, and panics if the structure breaks the law. The
-//! message contains the structure, the element and the relation. A law skips a mesh that the
-//! capabilities of the structure exclude. Only [`verdict`] tests that the structure refuses the
-//! meshes that its capabilities exclude.
+//! message contains the structure, the element and the relation. All laws except [`verdict`] skip
+//! the meshes that the capabilities of the structure exclude; [`verdict`] tests that the structure
+//! refuses them.
 #![expect(
     clippy::missing_panics_doc,
     reason = "every law panics if it is broken"

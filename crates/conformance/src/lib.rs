@@ -8,7 +8,7 @@
 //!   faces. The meshes are shrunk when a law fails.
 //! - [`edit`]: a model of edits, random scripts of edits, and a test that compares a structure with
 //!   the model.
-//! - [`suite!`]: a macro that makes one `#[test]` from each law.
+//! - [`suite!`]: a macro that makes one `#[test]` for each law.
 //!
 //! A structure is tested with one line in its `tests/conformance.rs`:
 //!
@@ -38,6 +38,7 @@ mod weld;
 pub use answers::answers;
 pub use element::Element;
 pub use expected_check::expected_check;
+pub use folds::check_fold;
 pub use gallery::{GalleryMesh, gallery};
 pub use oracle::Oracle;
 pub use print::one_line;

@@ -8,7 +8,7 @@ use crate::element::Element;
 
 /// The expected answer of each query, computed by brute force from lists of corners.
 ///
-/// The code is slow and simple on purpose. The oracle copies the relation FV from the input, and
+/// The code is slow and simple on purpose. The oracle takes the relation FV from the input, and
 /// computes FE from FV. For the other seven relations, the oracle collects the edges and corners of
 /// the faces in ordered sets. The oracle uses no structure and no incidence code of `sixfold-core`.
 #[derive(Clone, Debug)]
@@ -118,7 +118,7 @@ impl Oracle {
         answer.map_or(&[], Vec::as_slice)
     }
 
-    /// Returns true if `v` is the end of a boundary edge.
+    /// Returns true if `v` is an end of a boundary edge.
     pub fn is_boundary(&self, v: VertexId) -> bool {
         let edges = self.answer(Relation::VertexEdges, Element::Vertex(v));
         edges
@@ -126,8 +126,8 @@ impl Oracle {
             .any(|&edge| self.answer(Relation::EdgeFaces, edge).len() == 1)
     }
 
-    /// Returns the one-ring of `v`, counter-clockwise. The second value is true if the ring is
-    /// closed. Returns `None` if the faces at `v` are not one oriented fan.
+    /// Returns the one-ring of `v`, counter-clockwise, and whether the ring is closed. Returns
+    /// `None` if the faces at `v` do not form one oriented fan.
     ///
     /// A closed ring starts at its lowest vertex. An isolated vertex has an empty, open ring.
     pub fn one_ring(&self, v: VertexId) -> Option<(Vec<VertexId>, bool)> {

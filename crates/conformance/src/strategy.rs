@@ -1,8 +1,8 @@
 //! Generators of random meshes. If a test fails, the mesh is shrunk towards a single triangle.
 //!
 //! Random manifolds are constructed in three steps. First, shapes are placed side by side. Then
-//! operations change the shapes (`operation`); the mesh stays manifold. Finally, all elements are
-//! renumbered (`builder`).
+//! operations change the shapes, and the mesh stays manifold (file `operation.rs`). Finally, all
+//! elements are renumbered (file `builder.rs`).
 
 mod builder;
 mod faults;
@@ -73,7 +73,7 @@ pub fn any_mesh() -> impl Strategy<Value = PolygonMesh> {
     faces.prop_map(|(places, faces)| build_mesh(places, faces))
 }
 
-/// Generates capabilities of any combination, most of which no structure has.
+/// Generates any combination of capabilities. Most combinations belong to no structure.
 pub fn any_capabilities() -> impl Strategy<Value = Capabilities> {
     any::<[bool; 6]>().prop_map(|[a, b, c, d, e, f]| Capabilities {
         polygons: a,

@@ -1,4 +1,5 @@
-//! A mesh under test: the structure, the oracle, and maps between handles and input numbers.
+//! A mesh under test: the structure, the oracle, and maps between handles and the numbers of the
+//! input.
 
 use std::collections::BTreeMap;
 use std::fmt::Debug;

@@ -91,8 +91,8 @@ macro_rules! edit_suite {
 /// Makes the tests for a structure that implements `OrientedWalk`:
 /// `sixfold_conformance::walk_suite!(half_edge::HalfEdgeMesh, half_edge::EditableHalfEdgeMesh);`
 ///
-/// The second type is the editable form of the structure. Without the second type, two tests are
-/// left out: the test after edits, and the test that steps are local.
+/// The second type is the editable form of the structure. Without the second type, the macro leaves
+/// out two tests: the test after edits, and the test that steps are local.
 #[macro_export]
 macro_rules! walk_suite {
     ($mesh:ty) => {

@@ -1,4 +1,4 @@
-//! The conversion of a mesh for structures in which a vertex is identified by its coordinates.
+//! The conversion of a mesh for structures that identify a vertex by its coordinates.
 
 use std::collections::BTreeMap;
 

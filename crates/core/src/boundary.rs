@@ -42,7 +42,7 @@ pub(crate) fn boundary_loops<M: MeshQuery + ?Sized>(
     let counts = mesh.edge_face_counts();
     let sides = boundary_sides(mesh, &counts);
     let turns = boundary_turns(mesh, &sides);
-    let boundary = Boundary {
+    let boundary = BoundaryEdges {
         mesh,
         counts,
         turns,
@@ -135,13 +135,13 @@ fn boundary_turns<M: MeshQuery + ?Sized>(mesh: &M, sides: &[Side<M::Vertex, M::E
     turns
 }
 
-struct Boundary<'m, M: MeshQuery + ?Sized> {
+struct BoundaryEdges<'m, M: MeshQuery + ?Sized> {
     mesh: &'m M,
     counts: EdgeMap<M, u8>,
     turns: Turns<M>,
 }
 
-impl<M: MeshQuery + ?Sized> Boundary<'_, M> {
+impl<M: MeshQuery + ?Sized> BoundaryEdges<'_, M> {
     /// Returns the whole chain through `side`, in the direction of `side`.
     fn chain(&self, side: Side<M::Vertex, M::Edge>) -> BoundaryLoop<M::Vertex, M::Edge> {
         let [from, to] = side.ends;

@@ -54,11 +54,12 @@ impl Capabilities {
         ..Self::ALL
     };
 
-    /// Checks whether a structure with these capabilities can hold `polygons`; O(corners) expected.
+    /// Checks whether a structure with these capabilities can hold `polygons`; O(n log n) expected
+    /// for n corners.
     ///
     /// # Errors
     ///
-    /// Returns the first fault, in the order that [`BuildError`] defines.
+    /// Returns the first fault. [`BuildError`] defines the order of the checks.
     pub fn check(&self, polygons: &PolygonMesh) -> Result<(), BuildError> {
         if !self.polygons {
             check_triangles(polygons)?;
@@ -98,9 +99,9 @@ impl Capabilities {
         Ok(())
     }
 
-    /// Returns whether the facts of a mesh show that [`check`](Self::check) finds no fault; O(1). If
-    /// not, only `check` can decide. Facts show nothing about a mesh with degenerate faces or
-    /// non-manifold edges, nor about equal coordinates.
+    /// Returns true if the facts of a mesh prove that [`check`](Self::check) finds no fault; O(1).
+    /// If the result is false, only `check` can decide. The result is always false if the mesh has
+    /// degenerate faces or non-manifold edges, or if `coincident_vertices` is false.
     pub fn is_satisfied_by(&self, facts: &Facts) -> bool {
         let most_corners = facts.face_degree.as_ref().map_or(0, |degree| degree.max);
         self.can_name_edges(facts.edges)
@@ -113,23 +114,23 @@ impl Capabilities {
             && self.coincident_vertices
     }
 
-    /// Returns whether the handles of a structure with these capabilities can name `edges` edges and
-    /// their sides, if each edge has at most two faces; O(1).
+    /// Returns whether a structure with these capabilities has enough handles for `edges` edges and
+    /// their sides; O(1). Each edge must have at most two faces.
     pub fn can_name_edges(&self, edges: usize) -> bool {
         let is_unlimited =
             self.inconsistent_orientation && self.non_manifold_edges && self.non_manifold_vertices;
         is_unlimited || (edges <= MAX_EDGES && 2 * edges <= MAX_CORNERS)
     }
 
-    /// Returns the error that a constructor must return after it has found a fault in `polygons`.
+    /// Returns the error for a constructor that has found a fault in `polygons`.
     ///
     /// Constructors call this method, so that constructors and [`check`](Self::check) always return
     /// the same error.
     ///
     /// # Panics
     ///
-    /// Panics if [`check`](Self::check) finds no fault. The cause of such a panic is a bug in the
-    /// constructor or in `check`.
+    /// Panics if [`check`](Self::check) finds no fault, which means that the constructor or `check`
+    /// has a bug.
     pub fn build_error(&self, polygons: &PolygonMesh) -> BuildError {
         match self.check(polygons) {
             Err(fault) => fault,

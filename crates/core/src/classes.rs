@@ -2,16 +2,18 @@
 
 use crate::row_id::row;
 
-/// Disjoint classes of `0..len`. The root of a class is its lowest item.
+/// A partition of the numbers `0..len`, called items, into disjoint classes. The root of a class is
+/// its lowest item.
 ///
-/// Linking by index with path halving (Tarjan & van Leeuwen 1984): O(log n) amortised per call for n
-/// items. Takes 4 bytes per item; [`Partition`](crate::Partition) also has parities and sizes.
+/// The method is linking by index with path halving (Tarjan & van Leeuwen 1984). Each call takes
+/// O(log n) amortised time for n items. The classes take 4 bytes per item.
+/// [`Partition`](crate::Partition) also stores parities and sizes.
 pub struct Classes {
     parent: Vec<u32>,
 }
 
 impl Classes {
-    /// Builds classes of one item each.
+    /// Builds `len` classes of one item each.
     ///
     /// # Panics
     ///
@@ -26,7 +28,7 @@ impl Classes {
     ///
     /// # Panics
     ///
-    /// Panics if there is no such item.
+    /// Panics if `a` or `b` is not an item.
     #[inline]
     pub fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(row(a)), self.root(row(b)));

@@ -35,8 +35,8 @@ impl Creases {
     ///
     /// # Errors
     ///
-    /// Returns the first entry that is not a vertex or an edge of `polygons`, or whose sharpness is
-    /// negative or NaN. Edges are checked before vertices.
+    /// Returns an error for the first entry that is not a vertex or an edge of `polygons`, or whose
+    /// sharpness is negative or NaN. Edges are checked before vertices.
     pub fn new(
         polygons: &PolygonMesh,
         edges: impl IntoIterator<Item = ([u32; 2], f32)>,
@@ -76,8 +76,8 @@ impl Creases {
         Ok(Self::from_entries(creases.edges, creases.corners))
     }
 
-    /// Builds creases from entries in any order. The entries must be edges and vertices of a mesh.
-    /// If an edge or vertex has several entries, the last entry counts. Entries of sharpness 0 are
+    /// Builds creases from entries in any order. The edges and vertices must exist in the mesh to
+    /// which the creases are applied; this function does not check them. If an edge or vertex has several entries, the last entry counts. Entries of sharpness 0 are
     /// dropped.
     pub fn from_entries(
         mut edges: Vec<(Pair<VertexId>, f32)>,

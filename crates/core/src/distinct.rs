@@ -83,10 +83,10 @@ const SET_STEPS: usize = 32;
 /// the walk are skipped.
 ///
 /// Structures use this iterator to find the faces across the sides of a face. The iterator stores
-/// the last three items, which is enough for triangles and quads. For larger faces, the iterator
-/// repeats the walk to find earlier items. From 32 steps on, the iterator uses a hash set. For
-/// triangles and quads, this iterator is faster than [`Distinct`], because it needs no array in
-/// memory. The expected time is O(1) per step.
+/// the last three items that it has yielded, which is enough for triangles and quads. For larger
+/// faces, the iterator repeats the walk to find earlier items. From 32 steps on, the iterator uses
+/// a hash set. For triangles and quads, this iterator is faster than [`Distinct`], because it needs
+/// no array in memory. The expected time is O(1) per step.
 ///
 /// ```
 /// use sixfold_core::{DistinctWalk, FaceId, Slot};

@@ -44,10 +44,12 @@ macro_rules! edits {
 ///   handle is refused and does not panic.
 /// - **Legality.** An edit is legal if none of the errors in its documentation applies and the
 ///   structure can hold the resulting mesh ([`Capabilities`](crate::Capabilities)). For example,
-///   structures that can hold non-manifold meshes accept edits that make a mesh non-manifold.
-/// - **Handles.** Elements that an edit does not touch keep their handles. In some structures, the
-///   handle of an element is a pair of ends, coordinates, or the corner opposite an edge. If an
-///   edit changes the handle of an element, the element is called renamed. The edit reports every
+///   structures that can hold non-manifold meshes accept edits that make a mesh non-manifold. An
+///   edit that would make more elements than 32-bit handles can number returns
+///   [`EditError::TooMany`].
+/// - **Handles.** Elements that an edit does not touch keep their handles. In some structures, a
+///   handle is a pair of ends, coordinates, or the corner opposite an edge, so an edit can change
+///   the handle of an element that stays. Such an element is called renamed. The edit reports every
 ///   created, removed or renamed element to the [`EditLog`].
 /// - **Holes.** Counts, iterations, relations and conversions do not contain removed elements. The
 ///   row of a removed element becomes a hole, and a query with the handle of this row panics. No
@@ -114,11 +116,11 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// # Errors
         ///
-        /// Refuses fewer than three corners, a repeated corner, and a face that is not a triangle
-        /// if the structure holds only triangles. If the structure holds only manifolds, refuses
-        /// the face in these cases: another face already has a side of the new face in the same
-        /// direction; an edge already has two faces; the faces at a corner would form more than one
-        /// fan.
+        /// Refuses the edit in these cases: there are fewer than three corners; a corner occurs
+        /// twice; the structure holds only triangles, and the face is not a triangle. If the
+        /// structure holds only manifolds, also refuses the edit in these cases: another face
+        /// already has a side of the new face in the same direction; an edge already has two faces;
+        /// the faces at a corner would form more than one fan.
         fn add_face, add_face_logged(corners: &[Self::Vertex]) -> Result<Self::Face, Refusal<Self>>;
 
         /// Removes `f`, and the edges whose only face is `f`. The vertices of `f` stay, even if
@@ -200,9 +202,9 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// # Errors
         ///
-        /// Refuses `ends` that are not corners of `f`, are equal, or are adjacent in `f`.
-        /// [`EditError::EdgeExists`] if the structure holds only manifold edges and an edge already
-        /// joins the two vertices; [`EditError::Unsupported`] if the structure holds only
+        /// Refuses the edit if the `ends` are not corners of `f`, are equal, or are adjacent in
+        /// `f`. [`EditError::EdgeExists`] if the structure holds only manifold edges and an edge
+        /// already joins the two vertices; [`EditError::Unsupported`] if the structure holds only
         /// triangles.
         fn split_face, split_face_logged(
             f: Self::Face, ends: [Self::Vertex; 2],
@@ -213,9 +215,9 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// # Errors
         ///
-        /// Refuses an edge that does not have exactly two faces. Refuses faces that run along `e`
-        /// in the same direction, or that share a vertex other than the ends of `e`.
-        /// [`EditError::Unsupported`] if the structure holds only triangles.
+        /// Refuses the edit in these cases: `e` does not have exactly two faces; the two faces run
+        /// along `e` in the same direction; the two faces share a vertex other than the ends of
+        /// `e`. [`EditError::Unsupported`] if the structure holds only triangles.
         fn dissolve_edge, dissolve_edge_logged(e: Self::Edge) -> Result<Self::Face, Refusal<Self>>;
 
         /// Replaces `e` by the other diagonal of the quad that its two triangles form; returns the
@@ -255,14 +257,16 @@ pub trait MeshEdit: MeshQuery + Sized {
         ///
         /// Refuses the edit in these cases: `keep` is not an end of `e`; a face has corners at both
         /// ends of `e`, but these corners are not adjacent in the face; a vertex would lose its
-        /// last face. [`EditError::Occupied`] if vertices are identified by coordinates and another
-        /// vertex is at `to`.
+        /// last face. [`EditError::Occupied`] if vertices are identified by coordinates and a
+        /// vertex that is not an end of `e` is at `to`.
         ///
         /// If the structure holds only manifolds, refuses violations of the link condition (Dey et
         /// al. 1999):
         ///
         /// - [`EditError::CommonNeighbour`]: a vertex is adjacent to both ends of `e`, but is not
         ///   the third corner of a triangle along `e`.
+        /// - [`EditError::SameApex`] or [`EditError::LastFace`]: both faces of `e` are triangles
+        ///   with the same third corner.
         /// - [`EditError::AcrossBoundary`]: an inner edge joins two boundary vertices.
         /// - [`EditError::Pillow`]: two triangles would have the same corners.
         fn collapse_edge, collapse_edge_logged(

@@ -24,8 +24,8 @@ pub fn check_rows<V: Debug, E: Debug, F: Debug>(
     Ok(())
 }
 
-/// Checks the corners of a new face, in this order: the number of corners, each corner with
-/// `check_vertex`, repeated corners.
+/// Checks the corners of a new face. First, there must be at least three corners; then
+/// `check_vertex` must accept each corner; finally, all corners must differ.
 ///
 /// # Errors
 ///

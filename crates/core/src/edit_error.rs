@@ -4,8 +4,8 @@ use std::fmt::Debug;
 
 use crate::edit_kind::Edit;
 
-/// The reason why an edit was refused; the mesh is unchanged. The fields name elements by the
-/// handles of the structure.
+/// The reason why an edit was refused; the mesh is unchanged. The fields contain handles of the
+/// structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]

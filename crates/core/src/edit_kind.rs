@@ -53,9 +53,9 @@ impl Edit {
         Self::Compact,
     ];
 
-    /// The costs of the edits in a structure that stores adjacency. By default, an edit reads the
-    /// faces around the element. `set_position` and `add_vertex` read O(1) rows.
-    /// `remove_isolated_vertices` and `compact` read whole tables.
+    /// The costs of the edits in a structure that stores adjacency. `set_position` and `add_vertex`
+    /// read O(1) rows. `remove_isolated_vertices` and `compact` read whole tables. All other edits
+    /// read the faces around the edited element.
     pub const LOCAL_COSTS: [Option<QueryCost>; Self::ALL.len()] = {
         let mut costs = [Some(QueryCost::Local); Self::ALL.len()];
         costs[Self::SetPosition as usize] = Some(QueryCost::Constant);
@@ -65,10 +65,9 @@ impl Edit {
         costs
     };
 
-    /// The costs of the edits in a structure that scans all faces, if the log ignores reports. By
-    /// default, the cost of an edit is a scan of all faces. `add_face` reads O(1) rows.
-    /// `remove_face`, `poke_face` and `split_face` read one face. A structure can declare a
-    /// different cost for an edit.
+    /// The costs of the edits in a structure that scans all faces, if the log ignores reports.
+    /// `add_face` reads O(1) rows. `remove_face`, `poke_face` and `split_face` read one face. All
+    /// other edits scan all faces. A structure can declare a different cost for an edit.
     pub const SCAN_COSTS: [Option<QueryCost>; Self::ALL.len()] = {
         let mut costs = [Some(QueryCost::Scan); Self::ALL.len()];
         costs[Self::AddFace as usize] = Some(QueryCost::Constant);

@@ -1,5 +1,5 @@
-//! The changes that edits make to elements and handles: a trait that receives the changes, a record
-//! of the changes, and the update of maps.
+//! Reports of edits: a trait that receives the changes of elements and handles, a record of these
+//! changes, and the update of maps.
 
 use std::fmt;
 
@@ -33,10 +33,10 @@ impl<M: MeshQuery> EditLog<M> for OldToNew<M> {
 
 /// A receiver of the changes that an edit makes to elements and their handles.
 ///
-/// An edit reports every change, and nothing else. A refused edit reports nothing. The order of the
-/// calls within one edit is not specified. A log that stores handles must apply the changes of an
-/// edit in three steps: drop all removed handles; rename all renamed handles at once, because
-/// elements may exchange handles; add the created handles.
+/// An edit reports each change once. A refused edit reports nothing. The order of the calls within
+/// one edit is not specified. A log that stores handles must apply the changes of an edit in three
+/// steps: drop all removed handles; rename all renamed handles at once, because elements may
+/// exchange handles; add the created handles.
 ///
 /// # Which log to use
 ///
@@ -119,7 +119,7 @@ impl<M: MeshQuery> EditRecord<M> {
         self.vertices.is_empty() && self.edges.is_empty() && self.faces.is_empty()
     }
 
-    /// Removes all changes but keeps the memory, for the next edit.
+    /// Removes all changes, but keeps the allocated memory for the next edit.
     pub fn clear(&mut self) {
         self.vertices.clear();
         self.edges.clear();
@@ -176,8 +176,8 @@ impl<H: Handle> Changes<H> {
         self.created.is_empty() && self.removed.is_empty() && self.renamed.is_empty()
     }
 
-    /// Updates `map` after one edit; O(changes). The values of removed elements are dropped; a
-    /// [`RowMap`](crate::RowMap) leaves such values in the unused rows. Renamed elements keep their
+    /// Updates `map` after one edit; O(changes). The values of removed elements are dropped, except
+    /// that a [`RowMap`](crate::RowMap) keeps them in unused rows. Renamed elements keep their
     /// values under the new handles. New elements get the value `initial`.
     ///
     /// `self` must hold the changes of a single edit. To apply several edits, keep one record for

@@ -27,7 +27,8 @@ pub trait Editing: sealed::Sealed + Clone + Copy + Debug + Send + Sync + 'static
     /// The type that stores the faces of a mesh after an edit has changed the degree of a face.
     type Scattered<P: Probe>: AsRef<ScatteredFaces<P>> + Clone + Debug + Send + Sync;
 
-    /// Converts the corner ranges of the faces of a compact mesh to the form for this parameter.
+    /// Converts the corner ranges of the faces of a compact mesh to the form for a mesh with this
+    /// parameter.
     fn spans<P: Probe>(spans: FaceSpans<P>) -> FaceSpans<P, Self>;
 
     /// Returns an empty set of holes. In an editable mesh, `name` is the name of the table that
@@ -127,8 +128,7 @@ pub trait HoleSet<P: Probe>: Clone + Debug + Send + Sync {
     /// Returns whether `row` is a hole; O(1).
     fn has(&self, row: usize) -> bool;
 
-    /// Returns whether `handle` is the handle of an element: its row is below `end` and is not a
-    /// hole. O(1).
+    /// Returns whether the row of `handle` is below `end` and is not a hole; O(1).
     #[inline]
     fn contains<H: RowId>(&self, handle: H, end: usize) -> bool {
         let row = handle.row() as usize;

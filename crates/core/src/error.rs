@@ -36,8 +36,9 @@ pub enum PolygonError {
 /// The reason why a structure cannot hold a polygon mesh.
 ///
 /// Only the first fault is reported. The checks have a fixed order: faces that are not triangles,
-/// number of elements, edges with three faces, orientation, vertices with several fans, isolated
-/// vertices, coincident corners. Each check reports the faulty element with the lowest number.
+/// number of elements, edges with three or more faces, orientation, vertices with several fans,
+/// isolated vertices, coincident corners. Each check reports its first fault: faces and vertices
+/// are ordered by number, and edges are ordered by their lower end, then by their higher end.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
@@ -78,7 +79,7 @@ pub enum BuildError {
         second: FaceId,
     },
     /// A vertex without a face.
-    #[error("vertex {vertex} has no face ({count} in total): remove isolated vertices")]
+    #[error("vertex {vertex} has no face (isolated vertices: {count}): remove them")]
     IsolatedVertex { vertex: VertexId, count: usize },
     /// Two corners of a face with the same position, in a structure that identifies vertices by
     /// coordinates.
@@ -141,8 +142,8 @@ pub enum RefineError {
     },
 }
 
-/// The reason why creases do not fit a mesh; the field `entry` is the number of the faulty edge or
-/// vertex in the input, counted from 0.
+/// The reason why creases do not fit a mesh. The field `entry` is the position of the faulty entry
+/// in the list of edges or of vertices, counted from 0.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]

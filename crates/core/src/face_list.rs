@@ -108,7 +108,11 @@ impl FaceList {
     /// Panics if `face` does not exist.
     pub fn range(&self, face: FaceId) -> Range<usize> {
         let f = face.index();
-        assert!(f < self.faces, "no face {face}: there are {}", self.faces);
+        assert!(
+            f < self.faces,
+            "no face {face}: every face has a row below {}",
+            self.faces
+        );
         match self.uniform_degree() {
             Some(degree) => f * degree..(f + 1) * degree,
             None => self.offsets[f] as usize..self.offsets[f + 1] as usize,

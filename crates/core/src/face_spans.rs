@@ -179,7 +179,7 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
     }
 
     /// Returns the face of a corner; O(1), or O(log faces) for [`Mixed`](Self::Mixed). If the
-    /// corner does not exist, the result is arbitrary.
+    /// corner does not exist, the result is arbitrary, or the method panics.
     ///
     /// # Panics
     ///
@@ -295,5 +295,5 @@ impl<P: Probe> FaceSpans<P, Editable> {
 #[cold]
 #[inline(never)]
 fn no_such_face(face: FaceId, faces: usize) -> ! {
-    panic!("no face {face}: there are {faces}")
+    panic!("no face {face}: every face has a row below {faces}")
 }

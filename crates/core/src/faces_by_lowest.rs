@@ -17,7 +17,7 @@ impl FacesByLowest {
     ///
     /// # Panics
     ///
-    /// Panics if such a face has no vertex, or a vertex that is not below `vertices`.
+    /// Panics if a selected face has no vertices, or if its lowest vertex is not below `vertices`.
     pub fn new(vertices: usize, faces: &FaceList, used: impl Fn(FaceId) -> bool) -> Self {
         let lowest = || {
             let used = faces.iter().filter(|&(f, _)| used(f));
@@ -43,7 +43,8 @@ impl FacesByLowest {
         }
     }
 
-    /// Returns the faces of each vertex that is the lowest of several faces, in ascending order.
+    /// Yields a list of faces for each vertex that is the lowest vertex of several faces. Each list
+    /// is ascending.
     pub fn several(&self) -> impl Iterator<Item = &[FaceId]> {
         let starts = std::iter::once(0).chain(self.ends.iter().copied());
         let faces = starts.zip(&self.ends);

@@ -22,9 +22,9 @@ use crate::threads::join;
 /// fields except `faces`, `face_degree`, `isolated_vertices` and `degenerate_faces` ignore
 /// degenerate faces. A field is `None` if its value is not defined for the mesh.
 ///
-/// `genus` is computed from the Euler–Poincaré formula v − e + f = 2(c − g) − h, for v vertices, e
-/// edges, f faces, c components, h boundary loops and genus g. In this formula, a vertex whose
-/// faces form several fans (chains of faces that share edges) counts once per fan.
+/// The field `genus` is computed from the Euler–Poincaré formula v − e + f = 2(c − g) − h, for v
+/// vertices, e edges, f faces, c components, h boundary loops and genus g. In this formula, a
+/// vertex whose faces form several fans (chains of faces that share edges) counts once per fan.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct Facts {
@@ -139,7 +139,7 @@ impl Facts {
     /// Returns the topological properties of the polygon mesh whose fans are known; O(n log n) for n
     /// corners. The incidence of the fans must have the sides of all faces of a [`PolygonMesh`].
     ///
-    /// With the feature `rayon`, runs on two threads.
+    /// With the feature `rayon`, two threads share the work.
     pub fn from_fans(fans: &Fans<'_>) -> Self {
         let faces = fans.incidence().faces();
         let mut named = vec![false; fans.incidence().vertex_count()];
@@ -149,8 +149,8 @@ impl Facts {
         FaceFacts::new(fans, None).facts(&named)
     }
 
-    /// Returns the topological properties of a list of faces; O(corners) expected. The faces may be
-    /// degenerate, for example if they were read from a file.
+    /// Returns the topological properties of a list of faces; O(n log n) expected for n corners.
+    /// The faces may be degenerate, for example if they were read from a file.
     ///
     /// # Errors
     ///

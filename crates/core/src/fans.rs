@@ -7,7 +7,7 @@ use crate::row_id::{FaceId, VertexId};
 /// The fans of all vertices, as classes of corners. Two corners of a vertex are in the same fan if
 /// their faces share an edge at the vertex.
 ///
-/// Takes 4 bytes per corner. Building takes O(corners log corners).
+/// The fans take 4 bytes per corner. Building takes O(n log n) time for n corners.
 pub struct Fans<'a> {
     incidence: &'a Incidence<'a>,
     /// By corner: the lowest corner of its fan. A corner of a face without sides in the incidence is
@@ -16,7 +16,7 @@ pub struct Fans<'a> {
 }
 
 impl<'a> Fans<'a> {
-    /// Finds the fans of the faces whose sides `incidence` has.
+    /// Finds the fans of the faces whose sides are in `incidence`.
     pub fn new(incidence: &'a Incidence<'a>) -> Self {
         let mut fans = Classes::new(incidence.faces().corners().len());
         for edge in incidence.edges() {
@@ -47,11 +47,11 @@ impl<'a> Fans<'a> {
         roots.filter(|&(&root, corner)| root == corner).count()
     }
 
-    /// Returns the vertices whose faces form more than one fan. Each vertex has two faces: the
-    /// first face of its first fan, and the first face of another fan. The vertices are in the
-    /// order of the second faces. O(corners).
+    /// Returns the vertices whose faces form more than one fan, each with two faces at the vertex:
+    /// the first face, and the first face that is in another fan. The vertices are in the order of
+    /// the second faces. O(corners).
     ///
-    /// The incidence must have the sides of all faces.
+    /// The incidence must contain the sides of all faces.
     pub fn several(&self) -> Vec<(VertexId, [FaceId; 2])> {
         self.several_of(|_| true)
     }

@@ -37,10 +37,10 @@ pub struct AcceptedEdit<'a, M: MeshQuery> {
 
 impl<M: MeshQuery> AcceptedEdit<'_, M> {
     /// Returns the old vertices from which a new vertex was made: the ends of the split edge, the
-    /// corners of the poked face, or the vertex that was split. The list is empty if the vertex was
-    /// not made by a split.
+    /// corners of the poked face, or the vertex that was split. The list is empty if the edit is
+    /// not one of these splits.
     ///
-    /// The list is empty if [`uses_parents`](FollowEdits::uses_parents) returns false.
+    /// The list is also empty if [`uses_parents`](FollowEdits::uses_parents) returns false.
     pub fn vertex_parents(&self) -> ShortVec<M::Vertex> {
         let parents: &[M::Vertex] = match &self.source {
             Source::Nothing => &[],

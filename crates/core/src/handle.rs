@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 use crate::iterator_ext::IteratorExt;
 use crate::row_id::RowId;
 
-/// A value that names an element of a structure: a row, a pair of vertices, or coordinates.
+/// A value that identifies an element of a structure: a row, a pair of vertices, or coordinates.
 ///
 /// The type of the handle determines the type of maps from handles to values ([`Handle::Map`]).
 pub trait Handle: Copy + Eq + Ord + Hash + Debug + Send + Sync + 'static {
@@ -36,10 +36,11 @@ pub trait HandleMap<H: Copy, T: Clone>: Index<H, Output = T> + IndexMut<H> + Clo
     /// necessary, and all rows that it adds get `value`.
     fn insert(&mut self, handle: H, value: T);
 
-    /// Removes the value of `handle` after its element was removed; O(1).
+    /// Removes the value of `handle`, whose element was removed; O(1). A [`RowMap`] keeps the value
+    /// in the unused row.
     fn remove(&mut self, handle: H);
 
-    /// Moves the value of `old` to `new`; O(1) amortised.
+    /// Moves the value of the handle `old` to the handle `new`; O(1) amortised.
     ///
     /// This method changes the handle of a single element. If an edit exchanges the handles of
     /// several elements, [`Changes::apply_to`](crate::Changes::apply_to) changes all of these
@@ -234,8 +235,8 @@ impl<H: Handle, T: Clone> IndexMut<H> for HashHandleMap<H, T> {
     }
 }
 
-/// An edge as the pair of its ends, the lower end first. Structures without a table of edges use
-/// pairs as edge handles. A pair is printed as `v3–v7`.
+/// An edge as the pair of its ends, the lower end first. Structures that identify an edge by its
+/// ends use pairs as edge handles. A pair is printed as `v3–v7`.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Pair<V>([V; 2]);
 
@@ -247,6 +248,7 @@ impl<V: Handle> Pair<V> {
     }
 
     /// Yields the edges of a face of `degree` corners: edge `i` joins corners `i` and `i + 1`.
+    /// `corner(i)` must return the vertex at corner `i`.
     ///
     /// ```
     /// use sixfold_core::{Pair, VertexId};

@@ -50,7 +50,7 @@ impl<'a> EdgeSides<'a> {
         self.incidence.side(self.stored[0])
     }
 
-    /// Returns the side, if it is the only one.
+    /// Returns the side if the edge has exactly one side.
     pub fn single(&self) -> Option<Side> {
         match *self.stored {
             [side] => Some(self.incidence.side(side)),
@@ -58,7 +58,7 @@ impl<'a> EdgeSides<'a> {
         }
     }
 
-    /// Returns the two sides, if there are exactly two.
+    /// Returns the two sides if the edge has exactly two sides.
     pub fn pair(&self) -> Option<[Side; 2]> {
         match *self.stored {
             [first, second] => Some([first, second].map(|side| self.incidence.side(side))),
@@ -75,7 +75,7 @@ impl<'a> EdgeSides<'a> {
     }
 }
 
-/// An edge, the number of its faces, and whether the faces run along the edge in different
+/// An edge, the number of its faces, and whether the faces run along the edge in opposite
 /// directions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EdgeUse {
@@ -111,9 +111,9 @@ impl EdgeUse {
 
 /// The sides of all faces by edge.
 ///
-/// Takes 8 bytes and one bit per corner and 4 bytes per vertex; 4 more bytes per corner if the
-/// degrees of the faces differ. Building takes O(corners), plus O(n log n) for the n sides of each
-/// vertex.
+/// The tables take 8 bytes and one bit per corner, and 4 bytes per vertex. If the degrees of the
+/// faces differ, the tables take 4 more bytes per corner. Building takes O(corners + vertices)
+/// time, plus O(n log n) time for each vertex that is the lower end of n sides.
 pub struct Incidence<'a> {
     faces: &'a FaceList,
     /// The sides of the edges, by their lower ends.
@@ -140,7 +140,7 @@ impl<'a> Incidence<'a> {
     ///
     /// # Panics
     ///
-    /// Panics if such a face names a vertex that is not below `vertices`.
+    /// Panics if the lower end of a side is not below `vertices`.
     pub fn new(vertices: usize, faces: &'a FaceList, used: impl Fn(FaceId) -> bool) -> Self {
         let sides = || {
             let used = faces.iter().filter(|&(f, _)| used(f));
@@ -176,7 +176,7 @@ impl<'a> Incidence<'a> {
         }
     }
 
-    /// Returns the faces whose sides these are.
+    /// Returns the list of faces from which the incidence was built.
     pub fn faces(&self) -> &'a FaceList {
         self.faces
     }

@@ -21,8 +21,8 @@ pub trait IteratorExt: Iterator + Sized {
         Distinct::new(self)
     }
 
-    /// Maps each item with `f`, like [`map`](Iterator::map). Use this method for iterators that
-    /// public functions return.
+    /// Maps each item with `f`, like [`map`](Iterator::map). Use this method in public functions
+    /// that return iterators.
     ///
     /// The `fold` of the result is always inlined; `for_each` and `sum` call `fold`. The `fold` of
     /// the standard library's `Map` may not be inlined. Without link-time optimisation, `for_each`

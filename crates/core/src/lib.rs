@@ -14,10 +14,10 @@
 //! - [`LocalQueries`]: the trait of structures whose queries never read all faces.
 //! - [`Handle`] and [`HandleMap`]: handles of vertices, edges and faces, and maps from handles to
 //!   values.
-//! - [`Numbers`]: vertices, edges or faces with numbers from 0 without gaps.
+//! - [`Numbers`]: the vertices, edges or faces of a mesh, numbered from 0 without gaps.
 //! - [`BoundaryLoop`]: boundary edges that form a chain.
-//! - [`BuildError`]: the reason why a structure refuses a mesh; [`Capabilities`]: the check that
-//!   finds this reason.
+//! - [`BuildError`]: the reason why a structure refuses a mesh; [`Capabilities`]: the kinds of
+//!   meshes that a structure can hold.
 //! - [`Refine`] and [`Split`]: subdivision steps that split every face in the structure's own
 //!   tables.
 //! - [`MeshEdit`], [`EditRecord`] and [`EditError`]: edits in place, the record of created, removed
@@ -40,14 +40,14 @@
 //! - [`FaceSpans`]: the range of corners of each face in a flat table.
 //! - [`TwinPairs`]: the half-edges of a list of faces in pairs, found without hashing.
 //! - [`Incidence`]: the sides of any list of faces by edge; [`Fans`]: the fans of all vertices;
-//!   [`FacesByLowest`]: faces that can have the same vertices.
+//!   [`FacesByLowest`]: the search for faces that have the same vertices.
 //! - [`Classes`]: union–find; [`Partition`]: union–find with parities and sizes.
 //! - [`ScannedFaces`]: queries and edits of structures that scan all corners to find the faces at a
 //!   vertex.
 //! - [`Distinct`], [`ShortVec`], [`Lookup`]: an iterator without repeated items, short lists, and
 //!   search in short lists.
 //! - [`Ranks`], [`for_each_chunk`], [`map_chunks`], [`check_split`]: helpers for refinement, some
-//!   of which use several threads. [`join`]: two computations at the same time.
+//!   of which use several threads. [`join`]: runs two computations at the same time.
 //!
 //! # For measurements
 //!
@@ -56,9 +56,9 @@
 //!
 //! # Features
 //!
-//! No feature is on by default. `rayon`: refinement on all threads, and facts on two. `serde`: serialisation of
-//! facts, capabilities, costs and memory tables. `mint`: positions can be points and vectors of the
-//! crate `mint`.
+//! No feature is on by default. `rayon`: refinement and the computation of facts use several
+//! threads. `serde`: facts, capabilities, costs and memory tables can be serialised. `mint`:
+//! positions can be points and vectors of the crate `mint`.
 
 mod boundary;
 mod capability;
@@ -131,6 +131,7 @@ pub use incidence::EdgeUse;
 #[doc(hidden)]
 pub use local_queries::CostsAreLocal;
 pub use local_queries::LocalQueries;
+pub use measured::Counts;
 pub use memory::{MemoryFootprint, TableBytes};
 pub use mesh_with_data::MeshWithData;
 pub use numbering::Numbers;
@@ -172,7 +173,7 @@ pub use table::Table;
 pub use threads::join;
 
 // For measurements.
-pub use measured::{Counts, Measured};
+pub use measured::Measured;
 pub use probe::{Access, AccessKind, Probe, Traced, Untraced};
 
 /// The imports of a program that uses meshes: the traits with queries, walks, edits and refinement,

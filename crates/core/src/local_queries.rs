@@ -2,7 +2,7 @@
 
 use crate::representation::{QueryCost, Representation};
 
-/// A structure whose queries never scan: none of its [`COSTS`](Representation::COSTS) is
+/// A structure whose queries never scan all faces: none of its [`COSTS`](Representation::COSTS) is
 /// [`QueryCost::Scan`].
 ///
 /// An algorithm that queries each of n elements takes O(n) time on a structure with local queries,
@@ -24,7 +24,7 @@ use crate::representation::{QueryCost, Representation};
 #[diagnostic::on_unimplemented(
     message = "queries of `{Self}` may scan all faces of the mesh",
     label = "this structure does not implement `LocalQueries`",
-    note = "these structures never scan: FaceVertexMesh, WingedEdgeMesh, HalfEdgeMesh, CornerTable"
+    note = "use a structure that implements `LocalQueries`: none of its queries scans"
 )]
 pub trait LocalQueries: Representation {
     /// Proof that the costs were checked; only [`local_queries!`](crate::local_queries) creates it.

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-/// The bytes that one table holds.
+/// The number of bytes that one table allocates.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct TableBytes {
@@ -17,7 +17,7 @@ pub struct TableBytes {
     pub row_bytes: usize,
 }
 
-/// The bytes that a structure holds on the heap, table by table, including positions.
+/// The number of bytes that a structure allocates on the heap, table by table, including positions.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub struct MemoryFootprint {

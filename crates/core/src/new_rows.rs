@@ -82,8 +82,8 @@ impl NewRows {
     ///
     /// # Panics
     ///
-    /// Panics if the faces of `mesh` are not valid polygons, which the invariants of `mesh`
-    /// exclude.
+    /// Panics if a face of `mesh` is not a valid polygon. In a mesh that satisfies its invariants,
+    /// all faces are valid polygons.
     pub fn polygons<M: MeshQuery<Vertex = VertexId>>(
         &self,
         mesh: &M,

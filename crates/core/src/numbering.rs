@@ -17,7 +17,7 @@ const NO_NUMBER: u32 = u32::MAX;
 /// order in which the mesh lists them. [`Numbers::new`] numbers a selection of elements, for
 /// example only the free vertices of a system with a fixed boundary.
 ///
-/// Edits of the mesh do not change the numbers, so the numbers are valid until the next edit.
+/// An edit of the mesh does not update the numbers. The numbers are valid until the next edit.
 ///
 /// [`MeshQuery::vertex_numbers`]: crate::MeshQuery::vertex_numbers
 /// [`edge_numbers`]: crate::MeshQuery::edge_numbers
@@ -125,7 +125,7 @@ impl<H: Handle> Index<H> for Numbers<H> {
 #[cold]
 #[inline(never)]
 fn no_number<H: fmt::Debug>(handle: H) -> ! {
-    panic!("no number for {handle:?}: it was not an element when the numbers were built")
+    panic!("no number for {handle:?}: it is not one of the numbered elements")
 }
 
 impl<H: Handle> fmt::Debug for Numbers<H> {
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    #[should_panic(expected = "no number for v2: it was not an element")]
+    #[should_panic(expected = "no number for v2: it is not one of the numbered elements")]
     fn a_handle_without_a_number_panics_with_its_name() {
         let numbers = Numbers::new(3, [VertexId::new(0)].into_iter());
         let _ = numbers[VertexId::new(2)];

@@ -33,8 +33,8 @@ pub type SideMap<M, T> = <<M as OrientedWalk>::Side as Handle>::Map<T>;
 ///   `outgoing_sides` is not guaranteed.
 /// - **Twin.** Two sides are twins if they are the only sides of their edge and run in opposite
 ///   directions. So the twin of the twin of a side is the side itself. A side has no twin in three
-///   cases: its edge is on a boundary, the edge has three or more faces, or the two faces of the
-///   edge run along it in the same direction.
+///   cases: its edge is on a boundary, its edge has three or more faces, or both faces of its edge
+///   run along the edge in the same direction.
 /// - **No cache.** As in [`MeshQuery`], each result is computed from the stored tables alone.
 /// - **Handles.** The handle of a side is valid until the next edit; an [`EditLog`](crate::EditLog)
 ///   does not report changes of sides. If the handle of a side is out of range or the face of the

@@ -2,9 +2,11 @@
 
 use crate::row_id::row;
 
-/// Disjoint classes of `0..len`, with the parity of each item relative to the root of its class.
+/// A partition of the numbers `0..len`, called items, into disjoint classes. Each item is equal to
+/// the root of its class, or differs from the root (its parity).
 ///
-/// Union by size with path halving (Tarjan & van Leeuwen 1984): near-constant time per call.
+/// The method is union by size with path halving (Tarjan & van Leeuwen 1984). Each call takes
+/// nearly constant amortised time.
 pub struct Partition {
     parent: Vec<u32>,
     size: Vec<u32>,
@@ -34,11 +36,12 @@ impl Partition {
         self.classes
     }
 
-    /// Returns the root of the item's class, and whether the item differs from the root.
+    /// Returns the root of the class of `item`, and the parity of `item`: true if `item` differs
+    /// from the root.
     ///
     /// # Panics
     ///
-    /// Panics if there is no such item; so do the methods below.
+    /// Panics if `item` does not exist.
     pub fn root(&mut self, item: usize) -> (usize, bool) {
         let (mut at, mut odd) = (item, false);
         loop {
@@ -57,20 +60,33 @@ impl Partition {
         }
     }
 
-    /// Returns the number of items in the item's class.
+    /// Returns the number of items in the class of `item`.
+    ///
+    /// # Panics
+    ///
+    /// Panics if `item` does not exist.
     pub fn class_size(&mut self, item: usize) -> usize {
         let (root, _) = self.root(item);
         self.size[root] as usize
     }
 
-    /// Merges the classes of `a` and `b`. The root of the larger class becomes the root of the new
-    /// one; of two equal classes, the root of `a`.
+    /// Merges the classes of `a` and `b`. The root of the larger class becomes the root of the
+    /// merged class. If both classes have the same size, the root of the class of `a` becomes the
+    /// root.
+    ///
+    /// # Panics
+    ///
+    /// Panics if `a` or `b` does not exist.
     pub fn join(&mut self, a: usize, b: usize) {
         self.relate(a, b, false);
     }
 
     /// Merges the classes of `a` and `b`, and records whether the two items differ. Returns false
-    /// if `differ` contradicts earlier relations.
+    /// if `differ` contradicts what earlier calls have recorded.
+    ///
+    /// # Panics
+    ///
+    /// Panics if `a` or `b` does not exist.
     pub fn relate(&mut self, a: usize, b: usize, differ: bool) -> bool {
         let ((mut a, odd_a), (mut b, odd_b)) = (self.root(a), self.root(b));
         let differ = differ ^ odd_a ^ odd_b;

@@ -117,7 +117,7 @@ impl PolygonMesh {
     }
 
     /// Returns the sizes that determine the memory of a structure. The polygon mesh does not store
-    /// the number of `edges`, so the caller passes it. O(1).
+    /// the number of edges, so the caller must pass `edges`. O(1).
     pub fn counts(&self, edges: usize) -> Counts {
         Counts {
             vertices: self.vertex_count(),
@@ -163,7 +163,8 @@ impl PolygonMesh {
         degrees.find(|&(_, degree)| degree != 3)
     }
 
-    /// Returns the vertices whose faces form more than one fan, ascending; O(corners) expected.
+    /// Returns the vertices whose faces form more than one fan, ascending; O(n log n) for n
+    /// corners.
     ///
     /// Two faces at a vertex are in the same fan if they share an edge at this vertex. The
     /// orientation of the faces does not matter.
@@ -175,8 +176,8 @@ impl PolygonMesh {
         vertices
     }
 
-    /// Returns every edge once, with the number of its faces, ordered by its ends; O(corners)
-    /// expected.
+    /// Returns every edge once, with the number and the directions of its faces; O(n log n) for n
+    /// corners. The edges are ordered by their lower end, then by their higher end.
     pub fn edge_uses(&self) -> Vec<EdgeUse> {
         let incidence = Incidence::new(self.vertex_count(), &self.faces, |_| true);
         incidence.edges().map(EdgeUse::from_sides).collect()
@@ -213,9 +214,9 @@ impl PolygonMesh {
     /// Returns the mesh with every polygon cut into a fan of triangles from its first corner;
     /// O(corners).
     ///
-    /// The result is correct for convex faces; for other faces, the triangles may overlap. If two
-    /// polygons share two corners that are not adjacent, both polygons may be cut along the same
-    /// edge. The vertices are unchanged.
+    /// The triangles of a convex polygon do not overlap; the triangles of another polygon may
+    /// overlap. If two polygons share two corners that are not adjacent, both polygons may be cut
+    /// along the same edge. The vertices are unchanged.
     ///
     /// # Errors
     ///
@@ -235,7 +236,7 @@ impl PolygonMesh {
     }
 }
 
-/// Prints the number of vertices and faces: `8 vertices, 6 faces`.
+/// Prints the numbers of vertices and faces, for example `8 vertices, 6 faces`.
 impl fmt::Display for PolygonMesh {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let vertices = match self.vertex_count() {

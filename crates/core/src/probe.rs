@@ -53,7 +53,7 @@ pub struct Traced {
 }
 
 impl Traced {
-    /// Returns the accesses since the last call of `take`, in order, and empties the log.
+    /// Returns all accesses since the previous call of `take`, in order, and empties the log.
     pub fn take(&self) -> Vec<Access> {
         std::mem::take(&mut *self.log.lock().unwrap_or_else(PoisonError::into_inner))
     }

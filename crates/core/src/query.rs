@@ -1,4 +1,4 @@
-//! The query trait.
+//! The trait of mesh queries: the nine relations, counts, maps and boundary loops.
 
 use crate::Point;
 use crate::boundary::{self, BoundaryLoop};
@@ -42,9 +42,10 @@ pub type FaceMap<M, T> = <<M as MeshQuery>::Face as Handle>::Map<T>;
 ///   if `next` takes the first items and `fold` takes the remaining items.
 /// - **No cache.** Each result is computed from the stored tables alone; nothing is stored between
 ///   calls. If the tables have no links for a query, the query scans all faces.
-/// - **Handles.** A handle is valid until the next edit. A query panics if its handle is out of
-///   range or belongs to a deleted element; the message names the handle. The use of a handle of
-///   another mesh may panic or give a wrong result, but is always memory-safe.
+/// - **Handles.** A handle is valid until an edit removes or renames its element
+///   ([`MeshEdit`](crate::MeshEdit)). A query panics if its handle is out of range or belongs to a
+///   deleted element; the message names the handle. The use of a handle of another mesh may panic
+///   or give a wrong result, but is always memory-safe.
 ///
 /// # Panics
 ///
@@ -55,7 +56,8 @@ pub type FaceMap<M, T> = <<M as MeshQuery>::Face as Handle>::Map<T>;
 pub trait MeshQuery {
     /// The handle of a vertex: a row number, or the coordinates of the vertex.
     type Vertex: Handle;
-    /// The handle of an edge: a row number, a corner opposite the edge, or the pair of its ends.
+    /// The handle of an edge: a row number, a corner opposite the edge, or the pair of the ends of
+    /// the edge.
     type Edge: Handle;
     /// The handle of a face.
     type Face: Handle;
@@ -71,18 +73,20 @@ pub trait MeshQuery {
     /// Yields every face once, in the order of the input.
     fn faces(&self) -> impl Iterator<Item = Self::Face>;
 
-    /// Returns the number of vertices.
+    /// Returns the number of vertices; O(1) if vertex handles are row numbers. By default, counts
+    /// [`vertices`](Self::vertices): if handles are coordinates, O(corners) expected.
     fn vertex_count(&self) -> usize {
         self.vertices().count()
     }
-    /// Returns the number of edges.
+    /// Returns the number of edges; O(1) if the structure has a row for each edge. By default, counts
+    /// [`edges`](Self::edges): O(corners) expected on the structures that store no edges.
     fn edge_count(&self) -> usize {
         self.edges().count()
     }
     /// Returns the number of faces; O(1).
     fn face_count(&self) -> usize;
 
-    /// Returns the position of `v`.
+    /// Returns the position of `v`; O(1).
     fn position(&self, v: Self::Vertex) -> Point;
 
     /// VV: yields the vertices that are joined to `v` by an edge (the one-ring of `v`).
@@ -95,7 +99,7 @@ pub trait MeshQuery {
     fn edge_vertices(&self, e: Self::Edge) -> [Self::Vertex; 2];
     /// EE: yields the edges that share an end with `e`.
     fn edge_edges(&self, e: Self::Edge) -> impl Iterator<Item = Self::Edge>;
-    /// EF: yields the faces that have `e` as a side. A boundary edge has exactly one face.
+    /// EF: yields the faces along `e`. A boundary edge has exactly one face.
     fn edge_faces(&self, e: Self::Edge) -> impl Iterator<Item = Self::Face>;
     /// FV: yields the vertices at the corners of `f`, in order.
     fn face_vertices(&self, f: Self::Face) -> impl Iterator<Item = Self::Vertex>;
@@ -156,7 +160,8 @@ pub trait MeshQuery {
     /// Returns whether `v` is the handle of a vertex of this mesh. The result is false if an edit
     /// has deleted the vertex or changed its handle.
     ///
-    /// O(1) if vertex handles are row numbers; costs as much as `vertex_faces` if they are
+    /// The default searches all vertices: O(vertices). The six structures override it: O(1) if
+    /// vertex handles are row numbers; costs as much as `vertex_faces` if vertex handles are
     /// coordinates.
     fn contains_vertex(&self, v: Self::Vertex) -> bool {
         self.vertices().any(|vertex| vertex == v)
@@ -168,13 +173,16 @@ pub trait MeshQuery {
     /// Use this method to check an edge handle that was stored before an edit. If a later edit
     /// created a new edge with the same handle, the result is true.
     ///
-    /// O(1) if edge handles are rows or corners; costs as much as `vertex_edges` if they are pairs
-    /// of ends.
+    /// The default searches all edges: O(edges). The six structures override it: O(1) if edge
+    /// handles are rows or corners; costs as much as `vertex_edges` if edge handles are pairs of
+    /// ends.
     fn contains_edge(&self, e: Self::Edge) -> bool {
         self.edges().any(|edge| edge == e)
     }
 
-    /// Returns whether `f` is the handle of a face of this mesh; false for a deleted face. O(1).
+    /// Returns whether `f` is the handle of a face of this mesh; false for a deleted face.
+    ///
+    /// The default searches all faces: O(faces). The six structures override it: O(1).
     fn contains_face(&self, f: Self::Face) -> bool {
         self.faces().any(|face| face == f)
     }
@@ -187,15 +195,17 @@ pub trait MeshQuery {
     /// Returns a number that is larger than every face row; O(1).
     fn face_rows(&self) -> usize;
 
-    /// Returns a map that holds `value` for every vertex.
+    /// Returns a map that holds `value` for every vertex. O([`vertex_rows`](Self::vertex_rows)), which
+    /// is O(1) if vertex handles are not rows.
     fn vertex_map<T: Clone>(&self, value: T) -> VertexMap<Self, T> {
         HandleMap::filled(self.vertex_rows(), value)
     }
-    /// Returns a map that holds `value` for every edge.
+    /// Returns a map that holds `value` for every edge. O([`edge_rows`](Self::edge_rows)), which is
+    /// O(1) if edge handles are not rows.
     fn edge_map<T: Clone>(&self, value: T) -> EdgeMap<Self, T> {
         HandleMap::filled(self.edge_rows(), value)
     }
-    /// Returns a map that holds `value` for every face.
+    /// Returns a map that holds `value` for every face. O([`face_rows`](Self::face_rows)).
     fn face_map<T: Clone>(&self, value: T) -> FaceMap<Self, T> {
         HandleMap::filled(self.face_rows(), value)
     }
@@ -262,9 +272,9 @@ pub trait MeshQuery {
         boundary::boundary_loops(self)
     }
 
-    /// Returns the vertices adjacent to the manifold vertex `v`, counter-clockwise. At a boundary
-    /// vertex, the ring starts at one boundary edge and ends at the other boundary edge. At an
-    /// inner vertex, the start of the ring is arbitrary.
+    /// Returns the one-ring of the manifold vertex `v`: the vertices adjacent to `v`,
+    /// counter-clockwise. At a boundary vertex, the ring starts at one boundary edge and ends at
+    /// the other boundary edge. At an inner vertex, the start of the ring is arbitrary.
     ///
     /// Returns `None` if the faces at `v` do not form one consistently oriented fan. The ring of an
     /// isolated vertex is empty. The cost is O(valence log valence), plus `vertex_faces(v)` and

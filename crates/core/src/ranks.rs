@@ -137,7 +137,11 @@ impl Ranks {
     ///
     /// Panics if `rank` is not less than the number of members.
     pub fn select(&self, rank: usize) -> usize {
-        assert!(rank < self.members, "no member {rank} of {}", self.members);
+        assert!(
+            rank < self.members,
+            "no member of rank {rank}: every rank is below {}",
+            self.members
+        );
         if self.blocks.is_empty() {
             return rank;
         }
@@ -156,7 +160,7 @@ impl Ranks {
     pub fn select_missing(&self, rank: usize) -> usize {
         assert!(
             rank < self.missing(),
-            "no missing item {rank} of {}",
+            "no missing item of rank {rank}: every rank is below {}",
             self.missing()
         );
         // The number of missing items before a block.

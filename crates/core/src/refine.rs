@@ -24,9 +24,10 @@ use crate::row_id::{FaceId, MAX_ROWS, VertexId, row};
 /// The vertices of the refined mesh have a fixed order:
 ///
 /// 1. the old vertices, in their order;
-/// 2. one face point for each face, in the order of `faces()`, except for
-///    [`Triangles`](Self::Triangles);
-/// 3. one edge point for each edge, in the order of `edges()`, except for [`Sqrt3`](Self::Sqrt3).
+/// 2. for [`Quads`](Self::Quads) and [`Sqrt3`](Self::Sqrt3), one face point for each face, in the
+///    order of `faces()`;
+/// 3. for [`Quads`](Self::Quads) and [`Triangles`](Self::Triangles), one edge point for each edge,
+///    in the order of `edges()`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -65,8 +66,8 @@ impl Split {
     }
 
     /// Returns the sizes of the refined mesh, computed by formula. `boundary` is the number of
-    /// edges with one face; only the √3 split with `trisect` uses this number. A size that does not
-    /// fit in `usize` is replaced by `usize::MAX`.
+    /// edges with one face; only the split [`Sqrt3`](Self::Sqrt3) with `trisect` uses this number.
+    /// A size that does not fit in `usize` is replaced by `usize::MAX`.
     ///
     /// For [`Quads`](Self::Quads) and [`Triangles`](Self::Triangles), the sizes are correct even if
     /// edges have three or more faces.
@@ -123,7 +124,7 @@ impl fmt::Display for Split {
 ///
 /// The refined mesh is called the child; the mesh before the split is called the parent. The
 /// structure computes only the connectivity of the child. The subdivision scheme queries the
-/// parent, computes the positions of the child, and writes them through
+/// parent, computes the positions of the child, and writes these positions through
 /// [`positions_mut`](Self::positions_mut).
 ///
 /// # Contract
@@ -184,7 +185,7 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
     ///
     /// # Errors
     ///
-    /// Returns [`RefineError`] and leaves `child` unchanged in these cases:
+    /// Returns a [`RefineError`] and leaves `child` unchanged in these cases:
     ///
     /// - the split is not in [`SPLITS`](Self::SPLITS);
     /// - a face is not a triangle, but the split requires triangles;
@@ -214,8 +215,9 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
     fn position_rows(&self) -> &[Point];
 }
 
-/// Checks that the structure supports `split` and that the refined mesh is not too large. Returns
-/// the sizes of the refined mesh. Every [`Refine::split_into`] calls this function first.
+/// Checks that the structure `M` supports `split`, and that the refined mesh has at most
+/// [`MAX_ROWS`](crate::MAX_ROWS) vertices, half-edges and corners. Returns the sizes of the refined
+/// mesh. Every [`Refine::split_into`] calls this function first.
 ///
 /// # Errors
 ///

@@ -103,8 +103,9 @@ impl QueryCost {
 ///
 /// # Contract
 ///
-/// - Unless a mesh has too many elements for the handles of the structure, `from_polygons` and
-///   [`CAPABILITIES`](MeshQuery::CAPABILITIES)`.check` both succeed, or both return the same error.
+/// - `from_polygons` and [`CAPABILITIES`](MeshQuery::CAPABILITIES)`.check` agree: both succeed, or
+///   both return the same error. The results may differ only if the mesh has too many elements for
+///   the handles of the structure.
 /// - `faces()` and `vertices()` keep the order of the input. If vertices are identified by
 ///   coordinates, `vertices()` has the order in which the faces first name the vertices.
 /// - `to_polygons(from_polygons(m))` equals `m`, except that a face may start at another corner. If
@@ -166,7 +167,7 @@ pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
     /// After an error, every vertex has its old position.
     fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError>;
 
-    /// Returns the bytes that each table holds on the heap.
+    /// Returns the number of bytes that each table allocates on the heap.
     fn memory(&self) -> MemoryFootprint;
 
     /// Checks all numbered invariants of the structure; O(corners) expected.

@@ -13,8 +13,8 @@ pub const MAX_ROWS: usize = u32::MAX as usize;
 ///
 /// # Panics
 ///
-/// Panics if `index` is larger than [`MAX_ROWS`]; code that builds a table must refuse larger
-/// tables.
+/// Panics if `index` is larger than [`MAX_ROWS`]. Code that builds a table must refuse a table with
+/// more rows.
 #[inline]
 pub fn row(index: usize) -> u32 {
     assert!(

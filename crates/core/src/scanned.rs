@@ -15,7 +15,7 @@ use crate::scan::hits_in;
 use crate::table::Table;
 
 /// The handle of a vertex in a structure that scans all corners. Each row of the table of corners
-/// stores such a handle.
+/// stores the vertex of one corner as a [`Corner`](Self::Corner).
 pub trait ScannedVertex: Handle {
     /// The type of the rows of the table of corners.
     type Corner: Copy;
@@ -196,8 +196,8 @@ impl<V: ScannedVertex, E: Editing> ScannedFaces<V, Untraced, E> {
 }
 
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
-    /// Converts to the faces of a mesh without deleted elements. Returns `None` if a face was
-    /// deleted or if an edit changed the degree of a face.
+    /// Converts to the faces of a compact mesh. Returns `None` if, since the last compaction, a
+    /// face was deleted or an edit changed the degree of a face.
     pub fn into_compact(self) -> Option<ScannedFaces<V, P>> {
         let spans = self
             .spans

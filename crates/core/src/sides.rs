@@ -148,7 +148,8 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
     ///
     /// # Panics
     ///
-    /// Panics if a corner names a vertex that is not below `vertices`.
+    /// Panics if a corner names a vertex that is not below `vertices`, at the latest during the
+    /// iteration.
     pub fn edges(
         &self,
         corners: &Table<VertexId, P>,

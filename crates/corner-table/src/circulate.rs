@@ -77,8 +77,8 @@ impl<P: Probe, E: Editing> Iterator for CornersAt<'_, P, E> {
 }
 
 impl<P: Probe, E: Editing> CornerTable<E, P> {
-    /// Returns the corners at `v`, counter-clockwise. If `v` is on a boundary, the first and the
-    /// last corner are each next to a boundary edge.
+    /// Returns the corners at `v`, counter-clockwise. If `v` is on a boundary, the triangle of the
+    /// first corner and the triangle of the last corner have a boundary edge at `v`.
     ///
     /// # Panics
     ///

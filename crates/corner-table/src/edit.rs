@@ -1,6 +1,7 @@
 //! Edits in place.
 //!
-//! Every edit changes one triangle, the two triangles at an edge, or the fan of a vertex:
+//! Every edit changes one triangle, the two triangles at an edge, or the fan of a vertex. The
+//! drawing names the corners and edges at an edge e:
 //!
 //! ```text
 //!            C
@@ -20,8 +21,8 @@
 //! ```
 //!
 //! The handle of an edge is the lower of the two corners that face the edge. So an edit that
-//! changes one of the corners may change the handle of the edge. New triangles have the highest
-//! rows and change no handle.
+//! changes one of the corners may change the handle of the edge. New triangles get the highest
+//! rows, so no corner of another triangle moves to another row.
 
 mod collapse;
 mod compact;

@@ -1,11 +1,11 @@
 //! Corner table: a triangle mesh in two arrays, the vertex and the opposite corner of each corner.
 //!
-//! Use a corner table for large triangle meshes whose neighbours are queried. A corner table is the
-//! smallest structure that answers every query about an element without a search of the whole mesh.
-//! A renderer can use the `vertex` table as an index list. If a mesh has a polygon with more than
-//! three sides or an edge with three faces, building returns an error. [`generic::CornerTable`]
-//! documents the tables and their numbered invariants. The structure follows Rossignac, Safonova &
-//! Szymczak, *3D compression made simple* (2001).
+//! Use a corner table for queries of neighbours in large triangle meshes. Of the six structures,
+//! the corner table is the smallest that answers every query about an element without a search of
+//! the whole mesh. A renderer can use the `vertex` table as an index list. If a mesh has a polygon
+//! with more than three sides or an edge with three faces, building returns an error.
+//! [`generic::CornerTable`] documents the tables and their numbered invariants. The structure
+//! follows Rossignac, Safonova & Szymczak, *3D compression made simple* (2001).
 //!
 //! | holds | |
 //! |---|---|
@@ -14,7 +14,8 @@
 //!
 //! # Complexity
 //!
-//! A query has two letters, for vertex (V), edge (E) or face (F): VE lists the edges of a vertex.
+//! The name of a query has two letters, for vertex (V), edge (E) or face (F): VE lists the edges of
+//! a vertex.
 //!
 //! | query | cost | reads |
 //! |---|---|---|
@@ -42,17 +43,17 @@
 //! | `remove_face` | O(1) | the rows of the triangle; `opposite` across its sides, `corner` of its vertices |
 //! | `remove_vertex` | O(valence) | as for `remove_face`, for all triangles of the vertex |
 //! | `remove_isolated_vertices` | O(vertices) | one bit per removed vertex |
-//! | `bisect_edge` | O(1) | two rows of `vertex`, two new triangles, `opposite` across four corners |
+//! | `bisect_edge` | O(1) | up to two rows of `vertex`, up to two new triangles, `opposite` across up to four corners |
 //! | `poke_face` | O(1) | one row of `vertex`, two new triangles, `opposite` across four corners |
-//! | `flip_edge` | O(valence) to check, O(1) to change | two rows of `vertex`, six of `opposite`; no position |
-//! | `collapse_edge` | O(valence) | `vertex` around the removed end, four rows of `opposite`, two triangles deleted |
-//! | `split_vertex` | O(valence) | `vertex` around the new vertex, two new triangles, `opposite` across four corners |
+//! | `flip_edge` | O(valence) to check, O(1) to change | two rows of `vertex`, six rows of `opposite` |
+//! | `collapse_edge` | O(valence) | `vertex` around the removed end, up to four rows of `opposite`, one or two deleted triangles |
+//! | `split_vertex` | O(valence) | `vertex` around the new vertex, one or two new triangles, `opposite` across up to four corners |
 //! | `split_edge`, `split_face`, `dissolve_edge` | | not supported: the results are polygons |
 //! | `compact` | O(corners + vertices) | every row |
 //!
-//! A corner faces the edge of its triangle that the corner does not touch. The handle of an edge is
-//! the lower of the two corners that face the edge. If an edit changes the handle of an edge, the
-//! edit reports the new handle to the [`EditLog`](sixfold_core::EditLog).
+//! A corner faces the edge of its triangle that does not end at the corner. The handle of an edge
+//! is the lower of the two corners that face the edge. If an edit changes the handle of an edge,
+//! the edit reports the new handle to the [`EditLog`](sixfold_core::EditLog).
 //!
 //! Corner `c` belongs to triangle `c / 3`. `next` and `prev` are computed, not stored. A map of
 //! values for edges has one row per corner; in a closed mesh, half of the rows are unused.
@@ -68,9 +69,9 @@
 //! visited in random order, each step waits for the cache or the memory. Smoothing in random order
 //! takes 58 ns per vertex in a mesh of 82,000 triangles. In a mesh of 1.3 million triangles,
 //! smoothing in random order takes 390 ns per vertex, which is the time of one memory access per
-//! neighbour. The queries FV, FE and FF read three consecutive rows, so the caller's work with the
-//! rows takes most of the time. The query EF and the list of edges take 1.5 ns per edge, mostly for
-//! the caller's work.
+//! neighbour. The queries FV, FE and FF read three consecutive rows, so most of the time is the
+//! caller's work with the results. The query EF and the list of edges take 1.5 ns per edge, most of
+//! which is the caller's work.
 //!
 //! # Examples
 //!

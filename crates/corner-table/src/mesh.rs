@@ -77,22 +77,23 @@ impl EdgeCorner {
 ///   `vertex(prev(opposite(c)))`, and `vertex(prev(c))` is `vertex(next(opposite(c)))`.
 /// - I4  `corner(v)` is a corner at `v`, or `None` if `v` is isolated.
 /// - I5  If `v` is on a boundary, `corner(v)` is the first corner counter-clockwise, so `unswing`
-///   of this corner is `None`.
+///   returns `None` for this corner.
 /// - I6  Repeated `swing` from `corner(v)` visits all corners at `v`, so every vertex is manifold.
 /// - I7  No two edges have the same ends.
 /// - I8  The corners of a deleted triangle have the vertex row `u32::MAX`, and each of these
 ///   corners is its own opposite. No corner of another triangle is its own opposite. A deleted
-///   vertex has no corner. `face_holes` and `vertex_holes` contain exactly the deleted rows.
+///   vertex has no corner. `face_holes` and `vertex_holes` contain exactly the rows of deleted
+///   faces and vertices.
 ///
-/// I1 to I7 apply to elements that are not deleted. The handle of an edge is a corner that faces
-/// the edge, with an opposite that has a higher row or is `None`. By I8, a corner of a deleted
-/// triangle is therefore not the handle of an edge.
+/// I1 to I7 apply to elements that are not deleted. A corner is the handle of the edge that it
+/// faces if its opposite is `None` or has a higher row. By I8, a corner of a deleted triangle is
+/// its own opposite, so it is not the handle of an edge.
 ///
 /// # Memory
 ///
-/// The tables use 16 bytes per vertex and 24 bytes per triangle. For a large closed mesh, this is
-/// 64 bytes per vertex, or 16 words of 4 bytes. After the first deletion, the tables also use one
-/// bit per row.
+/// The tables use 16 bytes per vertex and 24 bytes per triangle. A large closed mesh uses 64 bytes
+/// per vertex (16 words of 4 bytes). After the first deletion, the tables also use up to one bit
+/// per vertex and one bit per triangle.
 #[derive(Debug)]
 pub struct CornerTable<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) positions: Table<Point, P>,

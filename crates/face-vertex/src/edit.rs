@@ -1,9 +1,10 @@
 //! Edits in place: they rewrite corners and repair the fans at these corners.
 //!
 //! The structure holds every polygon mesh, so an edit is refused only if the edit itself is not
-//! possible, for example the flip of a boundary edge. An edge can have any number of faces, and a
-//! vertex any number of fans. After a collapse, an edge may have many faces, and several faces may
-//! have the same corners. [`EditableFaceVertexMesh`] documents the cost of each edit.
+//! possible (for example the flip of a boundary edge), if a handle is not valid, or if the tables
+//! are full. An edge can have any number of faces, and a vertex any number of fans. After a
+//! collapse, an edge may have many faces, and several faces may have the same corners.
+//! [`EditableFaceVertexMesh`] documents the cost of each edit.
 
 mod collapse;
 mod compact;

@@ -1,13 +1,14 @@
 //! Face-vertex mesh: shared vertices, a vertex list for each face, a face list for each vertex.
 //!
-//! Use a face-vertex mesh if the main query is the faces around a vertex, for example for normals.
-//! Use a face-vertex mesh also if the input is unrestricted, because the structure holds every
-//! polygon mesh. Edges are not stored; the handle of an edge is the [pair](sixfold_core::Pair) of
-//! its ends. A query has two letters, for vertex (V), edge (E) or face (F): VF lists the faces of a
-//! vertex. The queries FV, FE, EV and VF take O(1) per item. The queries VV, VE, EE, EF and FF
-//! search the faces around the element. All edits of [`MeshEdit`](sixfold_core::MeshEdit) are
-//! supported. An edit is refused only if the edit itself is not possible, for example the flip of a
-//! boundary edge. [`generic::FaceVertexMesh`] documents the tables and their four invariants.
+//! Use a face-vertex mesh if most queries ask for the faces around a vertex, for example to compute
+//! normals. Also use a face-vertex mesh if the input can be any mesh, because the structure holds
+//! every polygon mesh. Edges are not stored; the handle of an edge is the
+//! [pair](sixfold_core::Pair) of its ends. The name of a query has two letters, for vertex (V),
+//! edge (E) or face (F): VF lists the faces of a vertex. The queries FV, FE, EV and VF take O(1)
+//! per item. The queries VV, VE, EE, EF and FF search the faces around the element. All edits of
+//! [`MeshEdit`](sixfold_core::MeshEdit) are supported. An edit is refused only if the edit itself
+//! is not possible (for example the flip of a boundary edge), if a handle is not valid, or if the
+//! tables are full. [`generic::FaceVertexMesh`] documents the tables and their four invariants.
 
 mod circulate;
 mod construct;

@@ -31,16 +31,16 @@ use sixfold_core::{
 ///
 /// A large closed triangle mesh uses 17 words of 4 bytes per vertex: 3 for positions, 6 for
 /// corners, 2 for fans and 6 for the pool. If the faces have different degrees, the mesh uses one
-/// more word per face. A fan stores its start and its length, so a fan that grows can move to the
-/// end of the pool without the other fans. The first deletion adds one bit per row of vertices or
-/// of faces. An edit that changes the degree of a face adds two words per face and one word per
-/// corner.
+/// more word per face. For each fan, the mesh stores the start and the length, so a fan that grows
+/// can move to the end of the pool without moving other fans. The first deletion of a vertex adds
+/// up to one bit per vertex, and the first deletion of a face adds up to one bit per face. The
+/// first edit that changes the degree of a face adds two words per face and one word per corner.
 ///
 /// # Complexity
 ///
 /// In the table of queries, `length` is the number of faces in a fan, and `d` is the degree of
-/// these faces. A query has two letters, for vertex (V), edge (E) or face (F): VE lists the edges
-/// of a vertex.
+/// these faces. The name of a query has two letters, for vertex (V), edge (E) or face (F): VE lists
+/// the edges of a vertex.
 ///
 /// | query | reads | time |
 /// |---|---|---|
@@ -49,19 +49,19 @@ use sixfold_core::{
 /// | EV | the handle itself | O(1), reads no table |
 /// | VV, VE | the corners of the fan | O(length · d) expected |
 /// | EF | the corners of the shorter fan of the two ends | O(length · d) |
-/// | EE | the corners of the fans of both ends | O(lengths · d) expected |
+/// | EE | the corners of the fans of both ends | O(d · sum of both lengths) expected |
 /// | FF | for each side of the face, the corners of the shorter fan of its two ends | O(sides · length · d) expected |
 /// | `vertices`, `faces` | the deleted rows, if there are any | O(1) per item |
 /// | `edges`, `edge_count` | all corners | O(corners + vertices), without hashing |
 ///
 /// A pass over all vertices with VF, or over all faces with FV, reads the tables from start to end.
-/// If the tables fit in the cache, most of the time of a pass is the loop over the results of each
-/// query: six faces around a vertex (VF), or three vertices of a face (FV). If the tables do not
-/// fit in the cache, the number of bytes that are read limits the speed. VF reads 32 bytes per
+/// If the tables fit in the cache, a pass spends most of its time in the loop over the results of
+/// each query: six faces around a vertex (VF), or three vertices of a face (FV). If the tables do
+/// not fit in the cache, the number of bytes that are read limits the speed. VF reads 32 bytes per
 /// vertex (8 of fans, 24 of pool), and FV reads 12 bytes per triangle. The queries VV, VE, EE, EF
-/// and FF jump from the pool to the corners of the faces, then compare the vertices at these
-/// corners. If neighbours are close in memory, the comparisons limit the speed of VV. In a mesh in
-/// random order, the latency of the jumps limits the speed of VV.
+/// and FF read the faces of a fan in the pool, then compare the vertices at the corners of these
+/// faces. If neighbours are close in memory, the comparisons limit the speed of VV. In a mesh in
+/// random order, the latency of the memory limits the speed of VV.
 ///
 /// [`Refine`](sixfold_core::Refine) takes O(corners · d + vertices) time to split every face, and
 /// the same time to number the edges; d is the degree of a face.
@@ -81,13 +81,13 @@ use sixfold_core::{
 /// | `add_vertex` | O(1) | a position, an empty fan |
 /// | `add_face` | O(d) | d new corners, one entry in each of d fans |
 /// | `remove_face` | O(d · n) | blanks in the d corners of the face, and in one entry of each of d fans |
-/// | `remove_vertex` | O(n · d · n) | as `remove_face`, for each face of the vertex |
+/// | `remove_vertex` | O(n² · d) | as for `remove_face`, for each face of the vertex |
 /// | `split_edge` | O(n · d) | the corners of the faces at the edge, at the end of the table; a new fan |
 /// | `bisect_edge` | O(n) | one corner in each face at the edge, three in each new face; four fans if the edge has two faces |
 /// | `poke_face` | O(d · n) | the corners of the face, three in each new face; d fans, and a new fan |
 /// | `split_face` | O(d · n) | the corners of both parts, the fans of the new part |
 /// | `dissolve_edge` | O(n · d) | the corners of both faces, the fans of the removed face |
-/// | `flip_edge` | O(n) | one corner of each face, one entry in each of four fans |
+/// | `flip_edge` | O(n) | one corner of each of the two faces, one entry in each of four fans |
 /// | `collapse_edge` | O(n · d) | one corner in each face of the removed end, the fans of both ends and of the third corners |
 /// | `split_vertex` | O(n · d + n log n) | one corner in each face that the new vertex gets, four fans |
 /// | `remove_isolated_vertices` | O(vertices) | the fans of the removed vertices |
@@ -95,10 +95,11 @@ use sixfold_core::{
 ///
 /// Some edits change the degree of a face, or add a face of a different degree to a mesh whose
 /// faces all have the same degree. `split_edge`, `split_face` and `dissolve_edge` always change
-/// degrees. `add_face`, `poke_face` and `collapse_edge` change degrees only if a face is not a
-/// triangle. The first edit that changes degrees after a `compact` takes O(corners) time: it builds
-/// a table with the range of each face and a table with the face of each corner
-/// ([`FaceSpans::Scattered`]).
+/// degrees. `poke_face`, `collapse_edge` and `split_vertex` change degrees only if the mesh has a
+/// face that is not a triangle. `add_face` changes degrees only if the new face is the first face
+/// of a different degree. The first edit that changes degrees after a `compact` takes O(corners)
+/// time, because this edit builds a table with the range of each face and a table with the face of
+/// each corner ([`FaceSpans::Scattered`]).
 ///
 /// # Examples
 ///
@@ -148,18 +149,18 @@ pub(crate) const BLANK_CORNER: VertexId = VertexId::new(u32::MAX);
 /// The face in a blank place of the pool.
 pub(crate) const BLANK_PLACE: FaceId = FaceId::new(u32::MAX);
 
-/// The range of the pool that contains the faces around one vertex.
+/// A fan: the range of the pool that contains the faces around one vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Fan {
     /// The row of the first face in the pool.
     pub start: u32,
-    /// Number of faces around the vertex.
+    /// The number of faces around the vertex.
     pub len: u32,
 }
 
 impl Fan {
-    /// The fan of a deleted vertex. Its range is beyond the end of every pool, so a read of this
-    /// range fails the bounds check.
+    /// The fan of a deleted vertex. The range of this fan is beyond the end of every pool, so a
+    /// read of this range fails the bounds check.
     pub const DELETED: Self = Self {
         start: u32::MAX,
         len: u32::MAX,
@@ -185,17 +186,19 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         self.corners.rows()
     }
 
-    /// Returns the range of corners of each face.
+    /// Returns the range of corners of each face, including deleted faces.
     pub fn spans(&self) -> &FaceSpans<P, E> {
         &self.spans
     }
 
-    /// Returns the range of each vertex in the [`pool`](Self::pool), including deleted vertices.
+    /// Returns the fan of each vertex, which is a range of the [`pool`](Self::pool). A deleted
+    /// vertex has the fan [`Fan::DELETED`].
     pub fn fans(&self) -> &[Fan] {
         self.fans.rows()
     }
 
-    /// Returns the table with the faces around each vertex. Unused rows contain face `u32::MAX`.
+    /// Returns the pool: the table with the faces around each vertex. Unused rows contain face
+    /// `u32::MAX`.
     pub fn pool(&self) -> &[FaceId] {
         self.pool.rows()
     }

@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    #[should_panic(expected = "no face f3: there are 3")]
+    #[should_panic(expected = "no face f3: every face has a row below 3")]
     fn a_missing_face_panics_with_its_handle() {
         let _ = wheel(3).face_edges(FaceId::new(3));
     }

@@ -99,7 +99,9 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         for (v, fan) in (0..row(self.fans.len())).zip(self.fans.rows()) {
             if (*fan == Fan::DELETED) != self.vertex_holes.has(v as usize) {
                 let v = VertexId::new(v);
-                return Err(fails(format!("{v} has {fan:?}, but the holes disagree")));
+                return Err(fails(format!(
+                    "vertex holes and {fan:?} disagree on whether {v} was deleted"
+                )));
             }
         }
         let faces = (0..row(self.spans.len())).map(FaceId::new);
@@ -129,7 +131,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
         let named = named.count();
         if named != places {
             return fails(format!(
-                "{named} places are not blank, but the fans have {places} places"
+                "{named} entries of the pool are not blank, but the fans have {places} entries"
             ));
         }
         Ok(())
@@ -241,7 +243,7 @@ mod tests {
         );
         let mut broken = mesh(&[&[0, 1, 2]]);
         broken.vertex_holes.insert(3);
-        let expected = "I4 fails: v3 has Fan { start: 3, len: 0 }, but the holes disagree";
+        let expected = "I4 fails: vertex holes and Fan { start: 3, len: 0 } disagree on whether v3 was deleted";
         assert_eq!(fault(&broken), expected);
         let mut broken = triangles();
         broken.face_holes.insert(1);
@@ -256,7 +258,7 @@ mod tests {
         broken.corners.rows_mut()[3..].fill(BLANK_CORNER);
         assert_eq!(
             fault(&broken),
-            "I4 fails: 6 places are not blank, but the fans have 3 places"
+            "I4 fails: 6 entries of the pool are not blank, but the fans have 3 entries"
         );
         for place in [1, 4, 5] {
             broken.pool.rows_mut()[place] = BLANK_PLACE;
@@ -264,7 +266,7 @@ mod tests {
         assert_eq!(broken.validate(), Ok(()));
         let mut broken = triangles();
         broken.pool.push(FaceId::new(0));
-        let expected = "I4 fails: 7 places are not blank, but the fans have 6 places";
+        let expected = "I4 fails: 7 entries of the pool are not blank, but the fans have 6 entries";
         assert_eq!(fault(&broken), expected);
     }
 

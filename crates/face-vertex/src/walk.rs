@@ -93,9 +93,9 @@ impl<T> IndexMut<FaceSide> for CornerMap<T> {
 }
 
 /// The steps along a face take O(1) time. Twins are not stored. Therefore `twin_side`, `cw_side`,
-/// `ccw_side` and `edge_sides` search the faces at one end of the edge. Each search takes O(length
-/// · degree) time, for a vertex with `length` faces. `outgoing_sides` takes O(degree) time for each
-/// side.
+/// `ccw_side` and `edge_sides` search the faces at the end of the edge that has fewer faces. Each
+/// search takes O(length · degree) time, for an end with `length` faces. `outgoing_sides` takes
+/// O(degree) time for each side.
 impl<P: Probe, E: Editing> OrientedWalk for FaceVertexMesh<E, P> {
     type Side = FaceSide;
 

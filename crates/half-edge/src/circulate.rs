@@ -15,6 +15,11 @@ impl<P: Probe, E: Editing> Iterator for Leaving<'_, P, E> {
     fn next(&mut self) -> Option<HalfEdgeId> {
         self.0.next().map(|(h, _)| h)
     }
+
+    #[inline]
+    fn fold<B, F: FnMut(B, HalfEdgeId) -> B>(self, init: B, mut f: F) -> B {
+        self.0.fold(init, |folded, (h, _)| f(folded, h))
+    }
 }
 
 /// The half-edges along a face, counter-clockwise: each step is `h → next(h)`.
@@ -27,6 +32,11 @@ impl<P: Probe, E: Editing> Iterator for AroundFace<'_, P, E> {
     #[inline]
     fn next(&mut self) -> Option<HalfEdgeId> {
         self.0.next().map(|(h, _)| h)
+    }
+
+    #[inline]
+    fn fold<B, F: FnMut(B, HalfEdgeId) -> B>(self, init: B, mut f: F) -> B {
+        self.0.fold(init, |folded, (h, _)| f(folded, h))
     }
 }
 

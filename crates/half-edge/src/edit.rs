@@ -189,7 +189,7 @@ impl<P: Probe> MeshEdit for HalfEdgeMesh<Editable, P> {
     }
 }
 
-/// Checks that elements exist and that there is room for more.
+/// Checks that elements exist and that there is room for new elements.
 impl<P: Probe> HalfEdgeMesh<Editable, P> {
     #[inline]
     fn check_vertex(&self, v: VertexId) -> Result<(), Refusal> {

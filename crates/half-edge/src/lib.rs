@@ -2,9 +2,10 @@
 //! loop on its left.
 //!
 //! Use a half-edge mesh to walk around vertices and to change connectivity. A half-edge mesh cannot
-//! hold edges with three faces: building a mesh with such edges returns an error. Start at
-//! [`generic::HalfEdgeMesh`], whose numbered invariants define the tables. The structure follows
-//! Weiler (1985) and Mäntylä (1988). The pairs of twins follow Campagna, Kobbelt & Seidel (1998).
+//! hold edges with three faces: if the input has an edge with three faces, building returns an
+//! error. [`generic::HalfEdgeMesh`] documents the tables and their numbered invariants. The
+//! structure follows Weiler (1985) and Mäntylä (1988). The pairs of twins follow Campagna, Kobbelt
+//! & Seidel (1998).
 //!
 //! | holds | |
 //! |---|---|
@@ -46,21 +47,22 @@
 //! stay in the tables as holes.
 //!
 //! The handles of vertices, edges and faces are row numbers. A loop over all handles reads no
-//! table, except the bits that mark deleted elements. `prev` is not stored: finding the half-edge
-//! before a given half-edge costs O(degree) along a face and O(valence) along a boundary. A stored
-//! `prev` would make the record of a half-edge larger. In a test, a stored `prev` slowed every
-//! sweep (one-rings by 6 to 20 %) and made no function of this crate faster.
+//! table; in an editable mesh, the loop reads the bits that mark deleted elements. `prev` is not
+//! stored: finding the half-edge before a given half-edge costs O(degree) along a face and
+//! O(valence) along a boundary. A stored `prev` would make the record of a half-edge larger. In a
+//! measurement, a stored `prev` made every sweep slower (a sweep over one-rings by 6 to 20 %) and
+//! no function of this crate faster.
 //!
 //! # What limits the speed of the sweeps
 //!
 //! A step around a vertex takes about nine instructions and one load, and the next step waits for
 //! the load. On 82,000 triangles whose neighbours are close in memory (a good order), a one-ring
-//! sweep takes 12 ns per vertex, or 2 ns per step. If neighbours are close in memory, the records
-//! are in the nearer caches, so the number of instructions limits the speed. On 82,000 triangles in
-//! random order, a one-ring sweep takes 26 ns per vertex. In random order, the sweep touches about
-//! ten cache lines per vertex that are not in the nearer caches. An FF query reads two records per
-//! side. In a breadth-first search, an FF query takes about 110 instructions, and the number of
-//! instructions limits the speed.
+//! sweep takes 12 ns per vertex, or 2 ns per step. In a good order, the records are in the caches
+//! close to the processor core, so the number of instructions limits the speed. On 82,000 triangles
+//! in random order, a one-ring sweep takes 26 ns per vertex. In random order, the sweep reads about
+//! ten cache lines per vertex that are not in the caches close to the core. An FF query reads two
+//! records per side. In a breadth-first search, an FF query takes about 110 instructions, and the
+//! number of instructions limits the speed.
 //!
 //! # Examples
 //!

@@ -30,8 +30,8 @@ impl HalfEdgeId {
 ///
 /// The three fields are stored together, in 12 bytes. A step around a vertex needs two of the three
 /// fields. If the fields were in three tables, each step on a mesh in random order could wait for
-/// two cache misses. Compared with three tables, the record saved a quarter of the time of a
-/// one-ring sweep over 82,000 triangles in random order.
+/// two cache misses. In a measurement on 82,000 triangles in random order, a one-ring sweep with
+/// one table took three quarters of the time of a sweep with three tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Half {
     /// The next half-edge along the face, or along the boundary loop.
@@ -85,7 +85,7 @@ pub(crate) const NO_HALF: HalfEdgeId = HalfEdgeId::new(u32::MAX);
 /// - I7  `first(f)` is a half-edge with face `f`. The cycle of `first(f)` has at least three
 ///   vertices, and no vertex occurs twice.
 /// - I8  No two edges have the same ends.
-/// - I9  The bits in the tables of holes are set exactly for deleted vertices, edges and faces.
+/// - I9  In the tables of holes, a bit is set exactly if its vertex, edge or face was deleted.
 ///   `leaving` of a deleted vertex is empty. Both half-edges of a deleted edge, and `first` of a
 ///   deleted face, hold values that no row has. A walk that starts at a deleted element can
 ///   therefore detect the deletion.

@@ -56,12 +56,18 @@ fn check_holes<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError>
     for (e, pair) in mesh.half_rows().as_chunks::<2>().0.iter().enumerate() {
         let marked = pair.map(|half| half == Half::DELETED);
         if marked != [mesh.edge_holes.has(e); 2] {
-            return fails("I9", format!("deletion marks of e{e} disagree: {pair:?}"));
+            return fails(
+                "I9",
+                format!("edge holes and `halves` disagree on whether e{e} was deleted: {pair:?}"),
+            );
         }
     }
     for (f, &first) in mesh.first_rows().iter().enumerate() {
         if (first == NO_HALF) != mesh.face_holes.has(f) {
-            return fails("I9", format!("the deletion marks of f{f} disagree"));
+            return fails(
+                "I9",
+                format!("face holes and `first` disagree on whether f{f} was deleted"),
+            );
         }
     }
     Ok(())

@@ -49,8 +49,8 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         at: Point,
         log: &mut impl EditLog<Self>,
     ) -> Result<VertexId, Refusal<Self>> {
-        let v = self.next_vertex()?;
-        self.positions.push(at);
+        let v = self.next_vertex(at)?;
+        self.store_vertex(at);
         log.created_vertex(v);
         Ok(v)
     }
@@ -65,14 +65,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         self.faces.add_face(corners, log)
     }
 
-    /// Takes O(degree) time, and one scan if the log records edits.
-    fn remove_face_logged(
-        &mut self,
-        f: FaceId,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<(), Refusal<Self>> {
-        self.faces.remove_face(f, log)
-    }
+    sixfold_core::scanned_edits!();
 
     /// Takes one scan, or two scans if the log records edits.
     fn remove_vertex_logged(
@@ -101,73 +94,6 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
             .insert_unused(used.len(), |v| !used[v], |v| log.removed_vertex(v))
     }
 
-    /// Takes one scan.
-    fn split_edge_logged(
-        &mut self,
-        e: Pair<VertexId>,
-        at: Point,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<VertexId, Refusal<Self>> {
-        let m = self.next_vertex()?;
-        self.faces.split_edge(e, m, log)?;
-        self.positions.push(at);
-        Ok(m)
-    }
-
-    /// Takes one scan.
-    fn bisect_edge_logged(
-        &mut self,
-        e: Pair<VertexId>,
-        at: Point,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<VertexId, Refusal<Self>> {
-        let m = self.next_vertex()?;
-        self.faces.bisect_edge(e, m, log)?;
-        self.positions.push(at);
-        Ok(m)
-    }
-
-    /// Takes O(degree) time.
-    fn poke_face_logged(
-        &mut self,
-        f: FaceId,
-        at: Point,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<VertexId, Refusal<Self>> {
-        let m = self.next_vertex()?;
-        self.faces.poke_face(f, m, log)?;
-        self.positions.push(at);
-        Ok(m)
-    }
-
-    /// Takes O(degree) time, and one scan if the log records edits.
-    fn split_face_logged(
-        &mut self,
-        f: FaceId,
-        ends: [VertexId; 2],
-        log: &mut impl EditLog<Self>,
-    ) -> Result<Pair<VertexId>, Refusal<Self>> {
-        self.faces.split_face(f, ends, log)
-    }
-
-    /// Takes one scan.
-    fn dissolve_edge_logged(
-        &mut self,
-        e: Pair<VertexId>,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<FaceId, Refusal<Self>> {
-        self.faces.dissolve_edge(e, log)
-    }
-
-    /// Takes two scans.
-    fn flip_edge_logged(
-        &mut self,
-        e: Pair<VertexId>,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<Pair<VertexId>, Refusal<Self>> {
-        self.faces.flip_edge(e, log)
-    }
-
     /// Takes one scan, or two scans if the removed triangles may be the last faces of a vertex.
     fn collapse_edge_logged(
         &mut self,
@@ -194,9 +120,9 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         log: &mut impl EditLog<Self>,
     ) -> Result<VertexId, Refusal<Self>> {
         self.check_vertex(v)?;
-        let n = self.next_vertex()?;
+        let n = self.next_vertex(at)?;
         self.faces.split_vertex(v, left, right, n, log)?;
-        self.positions.push(at);
+        self.store_vertex(at);
         Ok(n)
     }
 
@@ -226,9 +152,14 @@ impl<P: Probe> IndexedFaceSet<Editable, P> {
     }
 
     /// Returns the handle of the next new vertex, or an error if all handles are in use.
-    fn next_vertex(&self) -> Result<VertexId, Refusal<Self>> {
+    fn next_vertex(&self, _: Point) -> Result<VertexId, Refusal<Self>> {
         check_rows("vertices", self.positions.len() + 1, MAX_ROWS)?;
         Ok(VertexId::new(row(self.positions.len())))
+    }
+
+    /// Adds the vertex with the handle that [`next_vertex`](Self::next_vertex) returned.
+    fn store_vertex(&mut self, at: Point) {
+        self.positions.push(at);
     }
 }
 

@@ -2,10 +2,11 @@
 //!
 //! Files and renderers use the form of an indexed face set. Use an indexed face set to read faces
 //! in order, or to keep a mesh in memory without queries. The indexed face set is the smallest
-//! structure with shared vertices, and holds every polygon mesh. A query has two letters, for
-//! vertex (V), edge (E) or face (F): FV lists the vertices of a face. The queries FV, FE and EV
-//! take O(1) per item. The queries VV, VE, VF, EE, EF and FF scan all corners, because no table
-//! stores neighbours. [`generic::IndexedFaceSet`] documents the tables and their three invariants.
+//! structure with shared vertices, and holds every polygon mesh. The name of a query has two
+//! letters, for vertex (V), edge (E) or face (F): FV lists the vertices of a face. The queries FV,
+//! FE and EV take O(1) per item. The queries VV, VE, VF, EE, EF and FF scan all corners, because no
+//! table stores neighbours. [`generic::IndexedFaceSet`] documents the tables and their three
+//! invariants.
 //!
 //! Edges are not stored; the handle of an edge is the [pair](sixfold_core::Pair) of its ends.
 //!
@@ -23,10 +24,10 @@
 //!
 //! # Editing
 //!
-//! All edits are supported. All edits except `set_position`, `add_vertex` and edits of one face
-//! begin with a scan of all corners. An edge flip needs two scans. Use the structure to edit a few
-//! elements, or to add and remove faces, which takes O(1) per corner. For many edits of edges, use
-//! a structure that stores neighbours. [`ScannedFaces`](sixfold_core::ScannedFaces) implements the
+//! All edits are supported. All edits except `set_position`, `add_vertex` and edits of a single
+//! face scan all corners. An edge flip needs two scans. Use the structure to edit a few elements,
+//! or to add and remove faces, which takes O(1) per corner. For many edits of edges, use a
+//! structure that stores neighbours. [`ScannedFaces`](sixfold_core::ScannedFaces) implements the
 //! scan and the face edits of the indexed face set and of the polygon soup.
 //!
 //! # Examples

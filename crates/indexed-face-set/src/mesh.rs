@@ -30,9 +30,9 @@ use sixfold_core::{
 /// A large closed triangle mesh uses 9 words of 4 bytes per vertex: 3 for positions and 6 for
 /// corners. If the faces have different degrees, the mesh uses one more word per face. After an
 /// edit that changes the degree of a face, the mesh uses two more words per face and one more word
-/// per corner than a mesh whose faces have the same degree. After a deletion, the mesh uses one
-/// more bit per row. [`compact`](sixfold_core::MeshEdit::compact) frees the additional memory of
-/// edits and deletions.
+/// per corner than a mesh whose faces have the same degree. After a deletion, the mesh uses up to
+/// one more bit per vertex and per face. [`compact`](sixfold_core::MeshEdit::compact) frees the
+/// additional memory of edits and deletions.
 ///
 /// # Complexity
 ///
@@ -45,9 +45,9 @@ use sixfold_core::{
 /// | `vertices`, `faces` | the deleted rows, if there are any | O(1) per item |
 /// | `edges`, `edge_count` | all corners | O(corners + vertices), without hashing |
 ///
-/// A scan finds the face of each corner at the given vertex, in O(1) time, or in O(log faces) time
-/// if the faces have different degrees. After an edit that changes a degree, a table stores the
-/// face of each corner, so a scan finds the face in O(1) time.
+/// For each corner at the given vertex, a scan finds the face of the corner in O(1) time, or in
+/// O(log faces) time if the faces have different degrees. After an edit that changes a degree, a
+/// table stores the face of each corner, so finding the face takes O(1) time.
 ///
 /// # Edits
 ///
@@ -60,8 +60,8 @@ use sixfold_core::{
 /// | `split_edge`, `dissolve_edge` | all corners, in one scan | the faces at the edge, which may move to the end of the table |
 /// | `bisect_edge` | all corners, in one scan | a corner of each face at the edge, and a new face for each of these faces |
 /// | `flip_edge` | all corners, in two scans | one corner of each of the two faces |
-/// | `collapse_edge` | all corners, in one scan, rarely two | the corners at the removed vertex |
-/// | `split_vertex` | all corners, in one scan | the corners that the new vertex gets, and two new faces |
+/// | `collapse_edge` | all corners, in one scan, rarely more | the corners at the removed vertex |
+/// | `split_vertex` | all corners, in one scan | the corners that the new vertex gets, and one or two new faces |
 /// | `remove_vertex` | all corners, in one scan | the corners of the faces at the vertex |
 /// | `remove_isolated_vertices` | all corners | one bit per removed vertex |
 /// | `compact` | everything | everything |
@@ -130,7 +130,10 @@ impl<P: Probe, E: Editing> IndexedFaceSet<E, P> {
     #[inline]
     pub(crate) fn expect_vertex(&self, v: VertexId) -> VertexId {
         let vertices = self.positions.len();
-        assert!(v.index() < vertices, "no vertex {v}: there are {vertices}");
+        assert!(
+            v.index() < vertices,
+            "no vertex {v}: every vertex has a row below {vertices}"
+        );
         self.check_not_deleted(v);
         v
     }

@@ -1,6 +1,8 @@
 //! Prints how fast mesh files are read, and the most memory that this took:
 //! `reading FILE…`. On Linux only, because the memory comes from `/proc`.
 //!
+//! With `reading --json FILE` it prints seconds, bytes of memory, vertices and faces as a JSON list.
+//!
 //! With `reading --generate FREQUENCY FOLDER` it writes a sphere of 20 · FREQUENCY² triangles in
 //! every format.
 
@@ -9,7 +11,7 @@ use std::fs::{self, File};
 use std::path::Path;
 use std::time::Instant;
 
-use sixfold_io::{Format, ReadOptions, read, write};
+use sixfold_io::{FileMesh, Format, ReadOptions, read, write};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -30,15 +32,22 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         return Ok(());
     }
+    if let [option, file] = arguments.as_slice()
+        && option == "--json"
+    {
+        let (mesh, seconds, peak) = measure(file)?;
+        let (vertices, faces) = (mesh.positions.len(), mesh.faces.len());
+        println!("[{seconds}, {peak}, {vertices}, {faces}]");
+        return Ok(());
+    }
     for file in &arguments {
-        measure(file)?;
+        print(file)?;
     }
     Ok(())
 }
 
-/// Reads a file and prints time, speed and memory.
-fn measure(file: &str) -> Result<(), Box<dyn Error>> {
-    let bytes = fs::metadata(file)?.len() as f64;
+/// Reads a file; also returns the seconds and the bytes of memory.
+fn measure(file: &str) -> Result<(FileMesh, f64, f64), Box<dyn Error>> {
     // Resets the largest memory.
     fs::write("/proc/self/clear_refs", "5")?;
     let before = memory("VmRSS:")?;
@@ -46,6 +55,13 @@ fn measure(file: &str) -> Result<(), Box<dyn Error>> {
     let mesh = read(file, &ReadOptions::default())?;
     let seconds = start.elapsed().as_secs_f64();
     let peak = memory("VmHWM:")? - before;
+    Ok((mesh, seconds, peak))
+}
+
+/// Reads a file and prints time, speed and memory.
+fn print(file: &str) -> Result<(), Box<dyn Error>> {
+    let bytes = fs::metadata(file)?.len() as f64;
+    let (mesh, seconds, peak) = measure(file)?;
     let mesh_bytes = 12 * mesh.positions.len() + 4 * mesh.faces.corners().len();
     println!(
         "{file}: {} vertices, {} faces, {seconds:.2} s, {:.0} MB/s, {:.0} MB at most = {:.2} × the mesh",

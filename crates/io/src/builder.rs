@@ -2,17 +2,17 @@
 
 use std::io::{self, Read};
 
-use sixfold_core::{FaceList, MAX_ROWS, Point, VertexId};
+use sixfold_core::{FaceList, MAX_ROWS, Point, VertexId, row};
 
 use crate::byte_source::{ByteSource, MAX_LINE_LENGTH};
 use crate::error::ReadError;
 use crate::file_mesh::{FileMesh, ShortFace};
 use crate::format::Format;
-use crate::narrowing::Positions;
+use crate::narrowing::{Finished, Origin, Positions};
 use crate::notice::{IgnoredKind, Notices};
 use crate::number::Coordinate;
 use crate::options::{ReadOptions, Welding};
-use crate::place::{FacePlaces, Location, Place};
+use crate::place::{FacePlaces, Location, Place, VertexPlaces};
 use crate::welder::Welder;
 
 /// The mesh of a file while it is read.
@@ -29,6 +29,7 @@ pub(crate) struct MeshBuilder<'a> {
     positions: Positions,
     faces: FaceList,
     places: FacePlaces,
+    vertex_places: VertexPlaces,
     short_faces: Vec<ShortFace>,
     pub(crate) notices: Notices,
 }
@@ -45,9 +46,10 @@ impl<'a> MeshBuilder<'a> {
             name,
             format,
             options,
-            positions: Positions::new(options.recentre),
+            positions: Positions::new(options.origin != Origin::Stored),
             faces: FaceList::default(),
             places,
+            vertex_places: VertexPlaces::default(),
             short_faces: Vec::new(),
             notices: Notices::default(),
         }
@@ -153,18 +155,19 @@ impl<'a> MeshBuilder<'a> {
         self.positions.len() + self.format.first_vertex()
     }
 
-    /// Adds a vertex. `place` is called only for an error.
+    /// Adds a vertex.
     #[inline]
     pub(crate) fn push_vertex(
         &mut self,
         coordinates: [Coordinate; 3],
-        place: impl Fn() -> Place,
+        place: Place,
     ) -> Result<(), ReadError> {
         // The product of a number that is not finite with 0 is not 0.
         let zero = coordinates.map(|c| c.narrow * 0.0);
         if zero != [0.0; 3] || self.positions.len() >= MAX_ROWS {
-            return Err(self.vertex_error(coordinates, place()));
+            return Err(self.vertex_error(coordinates, place));
         }
+        self.vertex_places.push(place);
         self.positions.push(coordinates);
         Ok(())
     }
@@ -286,15 +289,38 @@ impl<'a> MeshBuilder<'a> {
         }
         self.check_range()?;
         let welded_vertices = self.positions.welded();
-        // Positions that are moved must be merged afterwards.
-        let weld_now = self.options.welding == Welding::All
-            || self.options.recentre && self.welds_facets() && self.format.is_stl();
-        let (positions, origin, narrowing) = self.positions.finish();
+        let is_welded_stl = self.welds_facets() && self.format.is_stl();
+        let is_moved = self.options.origin != Origin::Stored;
+        let Finished {
+            points: positions,
+            origin,
+            narrowing,
+        } = self.positions.finish(self.options.origin);
+        // Only a mesh that is moved to a given origin can exceed 32 bits here (invariant B1).
+        if let Some(v) = positions.iter().position(|p| !p.is_finite()) {
+            let place = self.vertex_places.place(VertexId::new(row(v)));
+            let [x, y, _] = positions[v].to_array();
+            return Err(ReadError::NonFinite {
+                at: Location::new(self.name, place.unwrap_or(Place::Byte(0))),
+                vertex: v + self.format.first_vertex(),
+                coordinate: match (x.is_finite(), y.is_finite()) {
+                    (false, _) => 'x',
+                    (_, false) => 'y',
+                    _ => 'z',
+                },
+            });
+        }
+        // Facets were welded before they were moved; rounding can make further positions equal.
+        let weld_now = match is_welded_stl {
+            true => is_moved && narrowing.merged_vertices > 0,
+            false => self.options.welding == Welding::All,
+        };
         let mut mesh = FileMesh {
             format: self.format,
             positions,
             faces: self.faces,
             face_places: self.places,
+            vertex_places: self.vertex_places,
             short_faces: self.short_faces,
             crease_tags: Vec::new(),
             corner_tags: Vec::new(),
@@ -348,6 +374,17 @@ impl FileMesh {
         self.welded_vertices += positions.len() - self.positions.len();
         if self.positions.len() == positions.len() {
             return;
+        }
+        let all_places = std::mem::take(&mut self.vertex_places);
+        let mut next = 0;
+        for (v, &number) in (0..).map(VertexId::new).zip(&numbers) {
+            if number == next {
+                next += 1;
+                all_places
+                    .place(v)
+                    .into_iter()
+                    .for_each(|place| self.vertex_places.push(place));
+            }
         }
         let renumber = |v: VertexId| VertexId::new(numbers[v.index()]);
         let mut faces = FaceList::with_capacity(self.faces.corners().len());

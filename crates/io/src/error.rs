@@ -32,6 +32,11 @@ pub enum ReadError {
         "{file}: the format is not recognised: use a file in STL, PLY, OFF, glTF or OBJ, whose name ends in its format"
     )]
     UnknownFormat { file: String },
+    /// The name or the options say STL, but the content is another text.
+    #[error(
+        "{file}: neither ASCII STL, which begins with `solid`, nor binary STL, whose size follows from its number of facets: export the file again, or rename it if it has another format"
+    )]
+    NotStl { file: String },
     /// The text has a byte order mark of UTF-16.
     #[error("{at}: the text is UTF-16: save it as UTF-8")]
     Utf16 { at: Location },

@@ -8,7 +8,7 @@ use crate::format::Format;
 use crate::narrowing::Narrowing;
 use crate::notice::Notice;
 use crate::obj::{CornerTag, CreaseTag, UnusedCrease, creases_on_polygons};
-use crate::place::{FacePlaces, Gaps, Place, PolygonPlaces};
+use crate::place::{FacePlaces, Gaps, Place, PolygonPlaces, VertexPlaces};
 
 /// The vertices and faces of a file.
 ///
@@ -27,6 +27,8 @@ pub struct FileMesh {
     pub faces: FaceList,
     /// Place of each face.
     pub(crate) face_places: FacePlaces,
+    /// Places of the vertices.
+    pub(crate) vertex_places: VertexPlaces,
     /// Faces with fewer than three corners.
     pub short_faces: Vec<ShortFace>,
     /// Sharp edges from `t crease` tags, in file order; empty in other formats than OBJ. Each edge
@@ -142,7 +144,7 @@ impl FileMesh {
     }
 
     /// Returns the mesh and the faces that were left out like [`into_polygons`](Self::into_polygons),
-    /// and the places of the faces of this mesh in the file. O(corners).
+    /// and the places of the vertices and faces of this mesh in the file. O(corners).
     ///
     /// # Panics
     ///
@@ -151,7 +153,7 @@ impl FileMesh {
     /// # Examples
     ///
     /// ```
-    /// use sixfold_core::FaceId;
+    /// use sixfold_core::{FaceId, VertexId};
     /// use sixfold_io::Place;
     ///
     /// let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 1 2\nf 1 2 3\n";
@@ -159,6 +161,7 @@ impl FileMesh {
     /// let (polygons, left_out, places) = obj.into_polygons_with_places();
     /// assert_eq!((polygons.face_count(), left_out.len()), (1, 1));
     /// assert_eq!(places.place(FaceId::new(0), &polygons), Place::Line(5));
+    /// assert_eq!(places.vertex_place(VertexId::new(2)), Some(Place::Line(3)));
     /// # Ok::<(), sixfold_io::ReadError>(())
     /// ```
     pub fn into_polygons_with_places(self) -> (PolygonMesh, Vec<LeftOut>, PolygonPlaces) {
@@ -193,7 +196,7 @@ impl FileMesh {
         };
         let polygons = PolygonMesh::from_faces(self.positions, faces);
         let polygons = polygons.unwrap_or_else(|error| panic!("{error}"));
-        let places = PolygonPlaces::new(self.face_places, gaps);
+        let places = PolygonPlaces::new(self.face_places, gaps, self.vertex_places);
         (polygons, left_out, places)
     }
 }

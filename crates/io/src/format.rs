@@ -5,6 +5,7 @@ use std::path::Path;
 use std::str::FromStr;
 
 use crate::byte_source::words;
+use crate::off::OffKeyword;
 
 /// A file format. Formats with a text form and a binary form have one entry for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -214,6 +215,35 @@ fn is_binary_stl(start: &[u8], size: Option<u64>) -> bool {
         && numbers.all(|x| x.abs() <= 1e15)
 }
 
+/// Returns whether the start of a stream, whose size is not known, can be that of a binary STL: it is
+/// not text, its number of facets needs at least the bytes that are there, and the corners of all
+/// these facets are plausible. Normals of any length are allowed.
+pub(crate) fn may_be_binary_stl(start: &[u8]) -> bool {
+    let Some((header, rest)) = start.split_at_checked(STL_HEADER) else {
+        return false;
+    };
+    let &[.., a, b, c, d] = header else {
+        return false;
+    };
+    let facets = u32::from_le_bytes([a, b, c, d]) as usize;
+    let records = rest.as_chunks::<STL_FACET>().0;
+    let are_plausible = |record: &[u8; STL_FACET]| {
+        let corners = record[12..48].as_chunks::<4>().0.iter();
+        let mut corners = corners.map(|&bytes| f32::from_le_bytes(bytes));
+        corners.all(|x| x.abs() <= 1e15)
+    };
+    start.contains(&0)
+        && !records.is_empty()
+        && facets >= rest.len() / STL_FACET
+        && records.iter().all(are_plausible)
+}
+
+/// Returns whether the start of a file is text, and not white space only.
+pub(crate) fn is_text(start: &[u8]) -> bool {
+    let is_control = |byte: &u8| byte.is_ascii_control() && !matches!(byte, b'\t'..=b'\r');
+    !start.trim_ascii().is_empty() && !start.iter().any(is_control)
+}
+
 /// Returns the format of a text that begins with `text`.
 fn text_format(text: &[u8]) -> Option<Format> {
     let mut first = true;
@@ -222,7 +252,7 @@ fn text_format(text: &[u8]) -> Option<Format> {
         let Some(keyword) = words.next().filter(|word| word[0] != b'#') else {
             continue;
         };
-        if first && is_off_keyword(keyword) {
+        if first && OffKeyword::parse(keyword).is_some() {
             return Some(Format::Off);
         }
         first = false;
@@ -236,21 +266,6 @@ fn text_format(text: &[u8]) -> Option<Format> {
         }
     }
     None
-}
-
-/// Returns whether `word` is `OFF`, possibly with prefixes: `STCN4nOFF`.
-pub(crate) fn is_off_keyword(word: &[u8]) -> bool {
-    off_prefixes(word).is_some()
-}
-
-/// Returns the prefixes of an OFF keyword; `None` if `word` is not such a keyword.
-pub(crate) fn off_prefixes(word: &[u8]) -> Option<&[u8]> {
-    let prefixes = word.strip_suffix(b"OFF")?;
-    let mut rest = prefixes;
-    for prefix in [&b"ST"[..], b"C", b"N", b"4", b"n"] {
-        rest = rest.strip_prefix(prefix).unwrap_or(rest);
-    }
-    rest.is_empty().then_some(prefixes)
 }
 
 #[cfg(test)]
@@ -286,6 +301,8 @@ mod tests {
             ("SOLID\n", Format::StlAscii),
             ("# a\n\nOFF\n", Format::Off),
             ("STCN4nOFF 1 2 3", Format::Off),
+            ("NCSTOFF\n", Format::Off),
+            ("off 3 1 0\n", Format::Off),
             ("# a\nmtllib b\n", Format::Obj),
             ("x\nv 1 2 3\n", Format::Obj),
         ] {
@@ -294,7 +311,8 @@ mod tests {
         for text in [
             "",
             "plywood",
-            "NCOFF",
+            "CCOFF",
+            "SOFF",
             "v",
             "hello world\n",
             "\u{89}PNG\r\n\0\0",

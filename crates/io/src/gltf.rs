@@ -4,6 +4,7 @@ mod accessor;
 mod buffers;
 mod container;
 mod document;
+mod extensions;
 mod scene;
 
 use std::io::Read;
@@ -78,7 +79,7 @@ pub enum GltfFault {
     NodeRepeated,
     /// The nodes repeat their meshes so often that the result is much larger than the file.
     #[error(
-        "the scene has more than {limit} vertices and corners, many times the size of the file: split it, or join its copies"
+        "the scene has more than {limit} vertices, corners and primitives, many times the size of the file: split it, or join its copies"
     )]
     TooLarge { limit: u64 },
 }
@@ -108,10 +109,11 @@ pub(crate) fn read(
     let mut document = Document::parse(&json, &builder)?;
     drop(json);
     note_ignored(&mut builder, &document);
+    extensions::check(&document, binary.as_ref().map_or(0, Vec::len), &builder)?;
     let bytes = source.offset();
     let folder = path.map(|path| path.parent().unwrap_or(Path::new("")));
     let buffers = Buffers::load(name, &mut document, binary, folder)?;
-    let mut reader = SceneReader::new(&document, &buffers, &mut builder, bytes)?;
+    let mut reader = SceneReader::new(&document, &buffers, &mut builder, bytes);
     reader.read()?;
     builder.finish()
 }

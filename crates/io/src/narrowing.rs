@@ -19,28 +19,23 @@ pub struct Narrowing {
     pub largest_shift: f64,
 }
 
-/// Prints `rounding to 32 bits merged 2 positions with different ones, and moved coordinates by up
-/// to 1.2e-2`.
+/// Prints `rounding to 32 bits merged 2 positions with different ones and moved coordinates by up to
+/// 1.20e-2`.
 impl fmt::Display for Narrowing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("rounding to 32 bits ")?;
         match self.merged_vertices {
-            0 => {}
-            1 => f.write_str("merged 1 position with a different one, and ")?,
-            n => write!(f, "merged {n} positions with different ones, and ")?,
+            0 => f.write_str("merged no positions and ")?,
+            1 => f.write_str("merged 1 position with a different one and ")?,
+            n => write!(f, "merged {n} positions with different ones and ")?,
         }
         write!(f, "moved coordinates by up to {:.2e}", self.largest_shift)
     }
 }
 
 /// The positions of a file while it is read.
-#[derive(Default)]
 pub(crate) struct Positions {
-    narrow: Vec<Point>,
-    /// Positions before rounding, if they are needed to move the mesh.
-    wide: Option<Vec<[f64; 3]>>,
-    /// Merges equal positions, and holds the distinct ones instead of `narrow`.
-    welder: Option<Welder>,
+    stored: Stored,
     /// Number of positions that were merged into an earlier one.
     welded: usize,
     /// A hash of each position before rounding. Empty as long as rounding changed nothing.
@@ -50,30 +45,71 @@ pub(crate) struct Positions {
     largest_shift: f64,
 }
 
+/// Positions after or before rounding. Those before rounding are needed to move the mesh.
+enum Stored {
+    Narrow(Vec<Point>),
+    /// Equal positions are merged.
+    NarrowWelded(Welder<Point>),
+    Wide(Vec<[f64; 3]>),
+    /// Positions that are equal in 64 bits are merged.
+    WideWelded(Welder<[f64; 3]>),
+}
+
+/// The origin of a mesh that is moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Origin {
+    /// The mesh is not moved.
+    #[default]
+    Stored,
+    /// The centre of the bounding box.
+    Centre,
+    /// This point.
+    At([f64; 3]),
+}
+
+/// All positions after rounding.
+pub(crate) struct Finished {
+    pub(crate) points: Vec<Point>,
+    /// Place of their origin in the file.
+    pub(crate) origin: [f64; 3],
+    pub(crate) narrowing: Narrowing,
+}
+
 impl Positions {
-    /// Creates an empty list. If `recentre`, the positions are kept in 64 bits.
-    pub(crate) fn new(recentre: bool) -> Self {
-        let wide = recentre.then(Vec::new);
+    /// Creates an empty list. If `is_moved`, the positions are kept in 64 bits.
+    pub(crate) fn new(is_moved: bool) -> Self {
         Self {
-            wide,
-            ..Self::default()
+            stored: match is_moved {
+                true => Stored::Wide(Vec::new()),
+                false => Stored::Narrow(Vec::new()),
+            },
+            welded: 0,
+            hashes: Vec::new(),
+            other_hashes: HashSet::new(),
+            largest_shift: 0.0,
         }
     }
 
     /// Merges equal positions from now on; there must be none yet. `positions` is the expected
-    /// number of different ones. Does nothing if positions are kept in 64 bits.
+    /// number of different ones.
     pub(crate) fn weld(&mut self, positions: usize) {
-        if self.wide.is_none() {
-            self.welder = Some(Welder::with_capacity(positions));
-        }
+        self.stored = match self.stored {
+            Stored::Narrow(_) | Stored::NarrowWelded(_) => {
+                Stored::NarrowWelded(Welder::with_capacity(positions))
+            }
+            Stored::Wide(_) | Stored::WideWelded(_) => {
+                Stored::WideWelded(Welder::with_capacity(positions))
+            }
+        };
     }
 
     pub(crate) fn len(&self) -> usize {
-        let narrow = self
-            .welder
-            .as_ref()
-            .map_or(self.narrow.len(), |welder| welder.points().len());
-        self.wide.as_ref().map_or(narrow, Vec::len)
+        match &self.stored {
+            Stored::Narrow(points) => points.len(),
+            Stored::NarrowWelded(welder) => welder.points().len(),
+            Stored::Wide(positions) => positions.len(),
+            Stored::WideWelded(welder) => welder.points().len(),
+        }
     }
 
     /// Returns the number of positions that were merged into an earlier one.
@@ -83,34 +119,64 @@ impl Positions {
 
     /// Reserves memory for `count` further positions, of which the caller is sure.
     pub(crate) fn reserve(&mut self, count: usize) {
-        match &mut self.wide {
-            Some(wide) => wide.reserve_exact(count),
-            None => self.narrow.reserve_exact(count),
+        match &mut self.stored {
+            Stored::Narrow(points) => points.reserve_exact(count),
+            Stored::Wide(positions) => positions.reserve_exact(count),
+            // Room was made when welding began.
+            Stored::NarrowWelded(_) | Stored::WideWelded(_) => {}
         }
     }
 
-    /// Adds a position.
+    /// Adds a position. Positions that are welded are added with [`push_all`](Self::push_all).
     #[inline]
     pub(crate) fn push(&mut self, coordinates: [Coordinate; 3]) {
-        match &mut self.wide {
-            Some(wide) => wide.push(coordinates.map(|c| c.wide)),
-            None => self.push_narrow(coordinates),
+        match &mut self.stored {
+            Stored::Narrow(points) => {
+                note_shift(
+                    coordinates,
+                    points,
+                    &mut self.hashes,
+                    &mut self.largest_shift,
+                );
+                points.push(point(coordinates));
+            }
+            Stored::Wide(positions) => positions.push(coordinates.map(|c| c.wide)),
+            Stored::NarrowWelded(_) | Stored::WideWelded(_) => {
+                self.push_all(&[coordinates], &mut Vec::new());
+            }
         }
     }
 
     /// Adds positions that may be equal to others, and appends their numbers to `numbers`.
     pub(crate) fn push_all(&mut self, positions: &[[Coordinate; 3]], numbers: &mut Vec<u32>) {
         let known = self.len();
-        let Some(mut welder) = self.welder.take() else {
-            numbers.extend((0..positions.len()).map(|i| row(known + i)));
-            positions.iter().for_each(|&position| self.push(position));
+        let before = numbers.len();
+        match &mut self.stored {
+            Stored::Narrow(_) | Stored::Wide(_) => {
+                numbers.extend((0..positions.len()).map(|i| row(known + i)));
+                positions.iter().for_each(|&position| self.push(position));
+            }
+            Stored::WideWelded(welder) => {
+                let wide: Vec<[f64; 3]> = positions.iter().map(|p| p.map(|c| c.wide)).collect();
+                welder.number_all(&wide, numbers);
+                self.welded += positions.len() - (welder.points().len() - known);
+            }
+            Stored::NarrowWelded(welder) => {
+                let narrow: Vec<Point> = positions.iter().map(|&p| point(p)).collect();
+                welder.number_all(&narrow, numbers);
+                self.welded += positions.len() - (welder.points().len() - known);
+                self.note_welded(positions, &numbers[before..], known);
+            }
+        }
+    }
+
+    /// Records what rounding did to welded positions, of which `known` were there before.
+    fn note_welded(&mut self, positions: &[[Coordinate; 3]], numbers: &[u32], known: usize) {
+        let Stored::NarrowWelded(welder) = &self.stored else {
             return;
         };
-        let narrow: Vec<Point> = positions.iter().map(|&position| point(position)).collect();
-        let before = numbers.len();
-        welder.number_all(&narrow, numbers);
         let mut next = known;
-        for (&position, &number) in positions.iter().zip(&numbers[before..]) {
+        for (&position, &number) in positions.iter().zip(numbers) {
             let is_new = number as usize == next;
             let shift = largest_shift(position);
             if shift > 0.0 || !self.hashes.is_empty() {
@@ -127,46 +193,74 @@ impl Positions {
             }
             next += usize::from(is_new);
         }
-        self.welded += positions.len() - (next - known);
-        self.welder = Some(welder);
     }
 
-    #[inline]
-    fn push_narrow(&mut self, position: [Coordinate; 3]) {
-        let shift = largest_shift(position);
-        if shift > 0.0 || !self.hashes.is_empty() {
-            if self.hashes.is_empty() {
-                self.hashes = exact_hashes(&self.narrow);
+    /// Rounds the positions, and moves them to `origin` if they were kept in 64 bits.
+    pub(crate) fn finish(self, origin: Origin) -> Finished {
+        let wide = match self.stored {
+            Stored::Narrow(points) => {
+                let merged = merged(&points, &self.hashes);
+                return Finished::new(points, [0.0; 3], merged, self.largest_shift);
             }
-            self.hashes.push(hash(position.map(|c| c.wide)));
-            self.largest_shift = self.largest_shift.max(shift);
-        }
-        self.narrow.push(point(position));
-    }
-
-    /// Returns the positions, the place of their origin in the file, and what rounding did.
-    pub(crate) fn finish(mut self) -> (Vec<Point>, [f64; 3], Narrowing) {
-        let mut origin = [0.0; 3];
-        if let Some(wide) = self.wide.take() {
-            origin = centre(&wide);
-            self.narrow.reserve_exact(wide.len());
-            for position in &wide {
-                let moved = [0, 1, 2].map(|i| Coordinate::from(position[i] - origin[i]));
-                self.push_narrow(moved);
+            Stored::NarrowWelded(welder) => {
+                let merged = self.other_hashes.len();
+                return Finished::new(welder.into_points(), [0.0; 3], merged, self.largest_shift);
             }
-        }
-        let (points, merged_vertices) = match self.welder {
-            Some(welder) => (welder.into_points(), self.other_hashes.len()),
-            None => {
-                let merged = merged(&self.narrow, &self.hashes);
-                (self.narrow, merged)
-            }
+            Stored::Wide(positions) => positions,
+            Stored::WideWelded(welder) => welder.into_points(),
         };
+        let origin = match origin {
+            Origin::Stored => [0.0; 3],
+            Origin::Centre => centre(&wide),
+            Origin::At(origin) => origin,
+        };
+        let (mut points, mut hashes, mut shift) = (Vec::new(), Vec::new(), 0.0);
+        points.reserve_exact(wide.len());
+        for position in &wide {
+            let moved = [0, 1, 2].map(|i| Coordinate::from(position[i] - origin[i]));
+            note_shift(moved, &points, &mut hashes, &mut shift);
+            points.push(point(moved));
+        }
+        drop(wide); // before more memory is needed
+        let merged = merged(&points, &hashes);
+        Finished::new(points, origin, merged, shift)
+    }
+}
+
+impl Finished {
+    fn new(
+        points: Vec<Point>,
+        origin: [f64; 3],
+        merged_vertices: usize,
+        largest_shift: f64,
+    ) -> Self {
         let narrowing = Narrowing {
             merged_vertices,
-            largest_shift: self.largest_shift,
+            largest_shift,
         };
-        (points, origin, narrowing)
+        Self {
+            points,
+            origin,
+            narrowing,
+        }
+    }
+}
+
+/// Records what rounding does to `position`, which follows `points`.
+#[inline]
+fn note_shift(
+    position: [Coordinate; 3],
+    points: &[Point],
+    hashes: &mut Vec<u64>,
+    largest: &mut f64,
+) {
+    let shift = largest_shift(position);
+    if shift > 0.0 || !hashes.is_empty() {
+        if hashes.is_empty() {
+            *hashes = exact_hashes(points);
+        }
+        hashes.push(hash(position.map(|c| c.wide)));
+        *largest = largest.max(shift);
     }
 }
 
@@ -234,7 +328,37 @@ mod tests {
             positions.push([x, 0.0, 0.5].map(Coordinate::from));
         }
         assert_eq!(positions.len(), values.len());
-        positions.finish()
+        finish(positions)
+    }
+
+    fn finish(positions: Positions) -> (Vec<Point>, [f64; 3], Narrowing) {
+        let finished = positions.finish(Origin::Centre);
+        (finished.points, finished.origin, finished.narrowing)
+    }
+
+    #[test]
+    fn positions_of_64_bits_are_welded() {
+        let values = [500_000.0, 500_000.01, 500_000.0, 500_000.01, 500_001.0];
+        let mut positions = Positions::new(true);
+        positions.weld(0);
+        let mut numbers = Vec::new();
+        let all = values.map(|x| [x, 0.0, 0.5].map(Coordinate::from));
+        positions.push_all(&all[..2], &mut numbers);
+        positions.push_all(&all[2..], &mut numbers);
+        assert_eq!(numbers, [0, 1, 0, 1, 2]);
+        assert_eq!((positions.len(), positions.welded()), (3, 2));
+        let (points, origin, narrowing) = finish(positions);
+        assert_eq!((points.len(), origin), (3, [500_000.5, 0.0, 0.5]));
+        assert_eq!(narrowing.merged_vertices, 0);
+    }
+
+    #[test]
+    fn a_given_origin_is_used() {
+        let mut positions = Positions::new(true);
+        positions.push([500_000.0, 1.0, 2.0].map(Coordinate::from));
+        let finished = positions.finish(Origin::At([499_999.0, 0.0, 0.0]));
+        assert_eq!(finished.points, [Point::ONE.with_z(2.0)]);
+        assert_eq!(finished.origin, [499_999.0, 0.0, 0.0]);
     }
 
     #[test]
@@ -281,7 +405,7 @@ mod tests {
         }
         assert_eq!(numbers, [0, 1, 1, 1, 1, 1, 0]);
         assert_eq!((positions.len(), positions.welded()), (2, 5));
-        let (points, _, narrowing) = positions.finish();
+        let (points, _, narrowing) = finish(positions);
         assert_eq!((points.len(), narrowing.merged_vertices), (2, 2));
         let (_, _, unwelded) = read(&values, false);
         assert_eq!(unwelded, narrowing);

@@ -97,6 +97,11 @@ impl IgnoredKind {
         }
     }
 
+    /// Returns the name of the ignored contents, in the plural: `texture coordinates`.
+    pub const fn title(self) -> &'static str {
+        self.names()[1]
+    }
+
     /// Returns the name in the singular and in the plural.
     const fn names(self) -> [&'static str; 2] {
         match self {

@@ -6,7 +6,7 @@ use crate::builder::MeshBuilder;
 use crate::byte_source::ByteSource;
 use crate::error::{ReadError, shortened};
 use crate::file_mesh::FileMesh;
-use crate::format::{Format, off_prefixes};
+use crate::format::Format;
 use crate::notice::IgnoredKind;
 use crate::number::{Coordinate, parse_coordinate, parse_whole};
 use crate::options::ReadOptions;
@@ -28,6 +28,7 @@ pub(crate) fn read(
         source,
         line: Vec::new(),
         number: 1,
+        is_pending: false,
     };
     let header = reader.read_header()?;
     let Header {
@@ -53,13 +54,55 @@ pub(crate) fn read(
     builder.finish()
 }
 
+/// The first word of a file, `OFF`, and its prefixes, which say what a vertex has.
+///
+/// Geomview writes the prefixes in the order `ST`, `C`, `N`, `4`, `n`, and the values of a vertex in
+/// the order position, normal, colour, texture coordinates. Other programs write the prefixes in
+/// other orders; the order of the values stays.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct OffKeyword {
+    /// `ST`: two texture coordinates.
+    texture: bool,
+    /// `C`: a colour.
+    colour: bool,
+    /// `N`: a normal.
+    normal: bool,
+    /// `4`: a fourth coordinate, by which the others are divided.
+    homogeneous: bool,
+    /// `n`: the number of coordinates follows the keyword.
+    any_dimension: bool,
+}
+
+impl OffKeyword {
+    /// Parses a keyword; `None` if `word` is not one. Each prefix may occur once, in any order.
+    /// Only `N` and `n` depend on upper and lower case.
+    pub(crate) fn parse(word: &[u8]) -> Option<Self> {
+        let (mut rest, off) = word.split_at_checked(word.len().checked_sub(3)?)?;
+        if !off.eq_ignore_ascii_case(b"OFF") {
+            return None;
+        }
+        let mut keyword = Self::default();
+        while let [first, after @ ..] = rest {
+            let (flag, after) = match (first, after) {
+                (b'S' | b's', [b'T' | b't', after @ ..]) => (&mut keyword.texture, after),
+                (b'C' | b'c', _) => (&mut keyword.colour, after),
+                (b'N', _) => (&mut keyword.normal, after),
+                (b'4', _) => (&mut keyword.homogeneous, after),
+                (b'n', _) => (&mut keyword.any_dimension, after),
+                _ => return None,
+            };
+            if std::mem::replace(flag, true) {
+                return None;
+            }
+            rest = after;
+        }
+        Some(keyword)
+    }
+}
+
 /// The header of a file.
 struct Header {
-    /// Whether a vertex has texture coordinates, a colour, a normal, and a fourth coordinate.
-    texture: bool,
-    colour: bool,
-    normal: bool,
-    homogeneous: bool,
+    keyword: OffKeyword,
     vertices: u64,
     faces: u64,
 }
@@ -72,6 +115,8 @@ struct Reader<'a, 'b, R> {
     line: Vec<u8>,
     /// The number of the current line.
     number: u32,
+    /// Whether [`next_line`](Self::next_line) returns the current line once more.
+    is_pending: bool,
 }
 
 impl<R: Read> Reader<'_, '_, R> {
@@ -81,6 +126,9 @@ impl<R: Read> Reader<'_, '_, R> {
 
     /// Reads the next line with a word; returns whether there is one.
     fn next_line(&mut self) -> Result<bool, ReadError> {
+        if std::mem::take(&mut self.is_pending) {
+            return Ok(true);
+        }
         loop {
             let place = Place::Line(self.source.line_count().saturating_add(1));
             let line = self
@@ -108,69 +156,106 @@ impl<R: Read> Reader<'_, '_, R> {
         }
     }
 
-    /// Reads the keyword and the counts, which may be on one line. The keyword may be missing.
+    /// Reads the keyword, if there is one, and the counts, which may be on lines of their own.
     fn read_header(&mut self) -> Result<Header, ReadError> {
         if !self.next_line()? {
             let file = self.builder.name().to_owned();
             let format = Format::Off;
             return Err(ReadError::Empty { file, format });
         }
-        let line = std::mem::take(&mut self.line);
-        let mut words = crate::byte_source::words(&line).peekable();
-        let keyword = words.next_if(|word| word.ends_with(b"OFF"));
-        let prefixes = keyword.map_or(Some(&b""[..]), off_prefixes);
-        let Some(prefixes) = prefixes else {
-            let found = keyword.unwrap_or_default();
-            return Err(self.builder.unexpected(self.place(), "OFF", found));
-        };
-        let has = |letter: u8| prefixes.contains(&letter);
-        if has(b'n') {
-            return Err(self.unsupported("points of n dimensions", "write three coordinates"));
+        let mut words = self.words();
+        let keyword = words.first().and_then(|word| OffKeyword::parse(word));
+        if keyword.is_some() {
+            words.remove(0);
         }
-        if words
-            .peek()
-            .is_some_and(|word| word.eq_ignore_ascii_case(b"binary"))
-        {
-            return Err(self.unsupported("the file is binary OFF", "save it as text, or as PLY"));
+        let keyword = keyword.unwrap_or_default();
+        let is_binary = |word: &Vec<u8>| word.eq_ignore_ascii_case(b"binary");
+        if words.first().is_some_and(is_binary) {
+            let feature = "the file is binary OFF".to_owned();
+            return Err(self.unsupported(feature, "save it as text, or as PLY"));
         }
-        let rest: Vec<&[u8]> = words.collect();
-        let [vertices, faces] = if rest.is_empty() {
-            if !self.next_line()? {
-                let missing = "the numbers of vertices and faces".to_owned();
-                return Err(self.builder.truncated(self.place(), missing));
-            }
-            let line = std::mem::take(&mut self.line);
-            let words: Vec<&[u8]> = crate::byte_source::words(&line).collect();
-            self.parse_counts(&words)?
-        } else {
-            self.parse_counts(&rest)?
-        };
+        if keyword.any_dimension {
+            self.check_dimension(&mut words)?;
+        }
+        let [vertices, faces] = self.read_counts(words)?;
         Ok(Header {
-            texture: has(b'T'),
-            colour: has(b'C'),
-            normal: has(b'N'),
-            homogeneous: has(b'4'),
+            keyword,
             vertices,
             faces,
         })
     }
 
-    /// Parses the numbers of vertices, faces and edges; the last one is not used.
-    fn parse_counts(&self, words: &[&[u8]]) -> Result<[u64; 2], ReadError> {
-        let count = |word: Option<&&[u8]>| word.and_then(|word| parse_whole::<u64>(word));
-        let counts = count(words.first()).zip(count(words.get(1)));
-        let Some((vertices, faces)) = counts.filter(|_| words.len() <= 3) else {
-            let expected = "OFF, or the numbers of vertices, faces and edges";
-            let found = words.join(&b' ');
-            return Err(self.builder.unexpected(self.place(), expected, &found));
-        };
-        Ok([vertices, faces])
+    /// Returns the words of the current line.
+    fn words(&self) -> Vec<Vec<u8>> {
+        let words = crate::byte_source::words(&self.line);
+        words.map(<[u8]>::to_vec).collect()
     }
 
-    fn unsupported(&self, feature: &str, way_out: &'static str) -> ReadError {
+    /// Removes the number of coordinates, which must be 3, from `words` or from the next line.
+    fn check_dimension(&mut self, words: &mut Vec<Vec<u8>>) -> Result<(), ReadError> {
+        if words.is_empty() {
+            if !self.next_line()? {
+                let missing = "the number of coordinates".to_owned();
+                return Err(self.builder.truncated(self.place(), missing));
+            }
+            *words = self.words();
+        }
+        let word = words.remove(0);
+        match parse_whole::<u64>(&word) {
+            Some(3) => Ok(()),
+            Some(dimension) => {
+                let feature = format!("points have {dimension} coordinates");
+                Err(self.unsupported(feature, "write three coordinates"))
+            }
+            None => {
+                let expected = "the number of coordinates";
+                Err(self.builder.unexpected(self.place(), expected, &word))
+            }
+        }
+    }
+
+    /// Parses the numbers of vertices, faces and edges, of which `words` are the first ones. The
+    /// number of edges is not used and may be missing.
+    fn read_counts(&mut self, mut words: Vec<Vec<u8>>) -> Result<[u64; 2], ReadError> {
+        let mut counts: Vec<u64> = Vec::new();
+        loop {
+            for word in &words {
+                match parse_whole::<u64>(word) {
+                    Some(count) if counts.len() < 3 => counts.push(count),
+                    _ => {
+                        let expected = "OFF, or the numbers of vertices, faces and edges";
+                        let found = words.join(&b' ');
+                        return Err(self.builder.unexpected(self.place(), expected, &found));
+                    }
+                }
+            }
+            if counts.len() == 3 {
+                break;
+            }
+            if !self.next_line()? {
+                if counts.len() == 2 {
+                    break;
+                }
+                let missing = match counts.len() {
+                    0 => "the numbers of vertices and faces",
+                    _ => "the number of faces",
+                };
+                return Err(self.builder.truncated(self.place(), missing.to_owned()));
+            }
+            words = self.words();
+            // A line with one number cannot be a vertex: it is the number of edges.
+            if counts.len() == 2 && words.len() > 1 {
+                self.is_pending = true;
+                break;
+            }
+        }
+        Ok([counts[0], counts[1]])
+    }
+
+    fn unsupported(&self, feature: String, way_out: &'static str) -> ReadError {
         ReadError::Unsupported {
             at: self.builder.at(self.place()),
-            feature: feature.to_owned(),
+            feature,
             way_out,
         }
     }
@@ -183,7 +268,7 @@ impl<R: Read> Reader<'_, '_, R> {
         }
         let mut words = crate::byte_source::words(&self.line);
         let mut values = [Coordinate::from(0.0_f32); 4];
-        let wanted = if header.homogeneous { 4 } else { 3 };
+        let wanted = if header.keyword.homogeneous { 4 } else { 3 };
         for (i, value) in values[..wanted].iter_mut().enumerate() {
             let at = || self.builder.at(Place::Line(self.number));
             let vertex = self.builder.next_vertex();
@@ -200,17 +285,17 @@ impl<R: Read> Reader<'_, '_, R> {
         }
         let rest = words.count();
         let place = Place::Line(self.number);
-        self.note_rest(header, rest, place);
+        self.note_rest(header.keyword, rest, place);
         let [x, y, z, w] = values;
-        let position = match header.homogeneous {
+        let position = match header.keyword.homogeneous {
             true => [x, y, z].map(|c| Coordinate::from(c.wide / w.wide)),
             false => [x, y, z],
         };
-        self.builder.push_vertex(position, || place)
+        self.builder.push_vertex(position, place)
     }
 
     /// Counts the values after the coordinates of a vertex.
-    fn note_rest(&mut self, header: &Header, mut rest: usize, place: Place) {
+    fn note_rest(&mut self, keyword: OffKeyword, mut rest: usize, place: Place) {
         let notices = &mut self.builder.notices;
         let mut take = |is_there: bool, values: usize, kind: IgnoredKind| {
             if is_there && rest > 0 {
@@ -218,12 +303,12 @@ impl<R: Read> Reader<'_, '_, R> {
                 notices.add(kind, place);
             }
         };
-        take(header.normal, 3, IgnoredKind::Normals);
+        take(keyword.normal, 3, IgnoredKind::Normals);
         // Colours have three or four values, so what follows them cannot be told apart.
-        take(header.colour, usize::MAX, IgnoredKind::Colours);
-        take(header.texture, 2, IgnoredKind::TextureCoordinates);
+        take(keyword.colour, usize::MAX, IgnoredKind::Colours);
+        take(keyword.texture, 2, IgnoredKind::TextureCoordinates);
         take(true, usize::MAX, IgnoredKind::ExtraValues);
-        if header.colour && header.texture {
+        if keyword.colour && keyword.texture {
             notices.add(IgnoredKind::TextureCoordinates, place);
         }
     }

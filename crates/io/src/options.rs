@@ -1,6 +1,7 @@
 //! Options of reading.
 
 use crate::format::Format;
+use crate::narrowing::Origin;
 
 /// Which vertices with equal positions become one vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -32,11 +33,11 @@ pub enum Welding {
 /// assert_eq!(square.positions.len(), 6);
 /// # Ok::<(), sixfold_io::ReadError>(())
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReadOptions {
     pub(crate) format: Option<Format>,
     pub(crate) welding: Welding,
-    pub(crate) recentre: bool,
+    pub(crate) origin: Origin,
 }
 
 impl ReadOptions {
@@ -59,9 +60,27 @@ impl ReadOptions {
     /// origin.
     #[must_use]
     pub fn recentred(self) -> Self {
-        Self {
-            recentre: true,
-            ..self
-        }
+        let origin = Origin::Centre;
+        Self { origin, ..self }
+    }
+
+    /// Moves the mesh so that `origin`, in the coordinates of the file, is the origin, before
+    /// coordinates are rounded to 32 bits. So several files can be moved in the same way:
+    ///
+    /// ```
+    /// use sixfold_io::{ReadOptions, read_from};
+    ///
+    /// let [first, second] = ["OFF 2 0\n5e5 0 0\n5e5 2 0\n", "OFF 1 0\n500000.01 1 0\n"];
+    /// let first = read_from("a.off", first.as_bytes(), &ReadOptions::default().recentred())?;
+    /// let options = ReadOptions::default().with_origin(first.origin);
+    /// let second = read_from("b.off", second.as_bytes(), &options)?;
+    /// assert_eq!((first.origin, second.positions[0].y), ([5e5, 1.0, 0.0], 0.0));
+    /// assert!((second.positions[0].x - 0.01).abs() < 1e-9);
+    /// # Ok::<(), sixfold_io::ReadError>(())
+    /// ```
+    #[must_use]
+    pub fn with_origin(self, origin: [f64; 3]) -> Self {
+        let origin = Origin::At(origin);
+        Self { origin, ..self }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use sixfold_core::{FaceId, FaceList, PolygonMesh};
+use sixfold_core::{FaceId, FaceList, PolygonMesh, VertexId};
 
 /// A place in a file; printed as `line 17`, `byte 134` or `accessor 3`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -133,19 +133,101 @@ impl FacePlaces {
     }
 }
 
-/// Where the faces of a mesh are in the file from which the mesh was read.
+/// The lines or bytes of vertices in their file, as runs of vertices at equal distances.
+///
+/// A file with all vertices one after the other is one run.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct VertexPlaces {
+    runs: Vec<VertexRun>,
+    /// Number of vertices.
+    vertices: usize,
+    /// Place of the next vertex, if the last run continues.
+    expected: u64,
+    /// Whether places are bytes, and not lines.
+    are_bytes: bool,
+}
+
+/// Vertices at equal distances in the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct VertexRun {
+    /// Number of the first vertex.
+    first: usize,
+    /// Line or byte of the first vertex.
+    start: u64,
+    /// Distance from one vertex to the next; 0 if there is only one vertex.
+    step: u64,
+}
+
+impl VertexPlaces {
+    /// Adds the place of the next vertex. Numbered items have no places of their own: they are not
+    /// added.
+    #[inline]
+    pub(crate) fn push(&mut self, place: Place) {
+        let at = match place {
+            Place::Line(line) => u64::from(line),
+            Place::Byte(byte) => byte,
+            Place::Item { .. } => return,
+        };
+        self.are_bytes = matches!(place, Place::Byte(_));
+        match self.runs.last_mut() {
+            Some(run) if at == self.expected => self.expected += run.step,
+            Some(run) if run.step == 0 && at > run.start => {
+                run.step = at - run.start;
+                self.expected = at + run.step;
+            }
+            _ => {
+                self.runs.push(VertexRun {
+                    first: self.vertices,
+                    start: at,
+                    step: 0,
+                });
+                self.expected = u64::MAX; // the step is not known yet
+            }
+        }
+        self.vertices += 1;
+    }
+
+    /// Returns the place of `vertex`, if it is known; O(log n) for n runs.
+    pub(crate) fn place(&self, vertex: VertexId) -> Option<Place> {
+        let number = vertex.index();
+        if number >= self.vertices {
+            return None;
+        }
+        let run = self.runs.partition_point(|run| run.first <= number) - 1;
+        let VertexRun { first, start, step } = self.runs[run];
+        let at = start + (number - first) as u64 * step;
+        Some(match self.are_bytes {
+            true => Place::Byte(at),
+            false => Place::Line(u32::try_from(at).ok()?),
+        })
+    }
+}
+
+/// Where the vertices and faces of a mesh are in the file from which the mesh was read.
 ///
 /// [`FileMesh::into_polygons_with_places`](crate::FileMesh::into_polygons_with_places) returns it.
-/// It takes four or eight bytes per face, or none if the places can be computed.
+/// It takes four or eight bytes per face, or none if the places can be computed. Vertices take
+/// memory only where their distances in the file change.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PolygonPlaces {
     faces: FacePlaces,
     gaps: Gaps,
+    vertices: VertexPlaces,
 }
 
 impl PolygonPlaces {
-    pub(crate) fn new(faces: FacePlaces, gaps: Gaps) -> Self {
-        Self { faces, gaps }
+    pub(crate) fn new(faces: FacePlaces, gaps: Gaps, vertices: VertexPlaces) -> Self {
+        Self {
+            faces,
+            gaps,
+            vertices,
+        }
+    }
+
+    /// Returns the place of `vertex`: a line or a byte. Returns `None` if the vertex has no place of
+    /// its own, as in STL and glTF. O(log n) for n changes of the distance between vertices.
+    pub fn vertex_place(&self, vertex: VertexId) -> Option<Place> {
+        self.vertices.place(vertex)
     }
 
     /// Returns the place of `face`, one of the faces of the mesh `polygons`; O(log n) for n faces
@@ -207,7 +289,7 @@ mod tests {
     use super::*;
     use proptest::collection::vec;
     use proptest::prelude::*;
-    use sixfold_core::{Point, VertexId};
+    use sixfold_core::Point;
 
     #[test]
     fn regular_records_are_computed_and_others_are_stored() {
@@ -228,7 +310,40 @@ mod tests {
         }
     }
 
+    #[test]
+    fn vertices_at_equal_distances_are_one_run() {
+        let mut places = VertexPlaces::default();
+        for line in [3, 4, 5, 6, 10, 12, 14, 14, 2] {
+            places.push(Place::Line(line));
+        }
+        places.push(Place::Item {
+            kind: "accessor",
+            number: 0,
+        });
+        assert_eq!(places.runs.len(), 4);
+        assert_eq!(places.place(VertexId::new(9)), None);
+    }
+
     proptest! {
+        #[test]
+        fn places_of_vertices_are_kept(steps in vec((0..3_u64, 1..5_usize), 0..10)) {
+            let mut at = 0;
+            let mut bytes = Vec::new();
+            for (step, count) in steps {
+                for _ in 0..count {
+                    at += step;
+                    bytes.push(at);
+                }
+            }
+            let mut places = VertexPlaces::default();
+            for &byte in &bytes {
+                places.push(Place::Byte(byte));
+            }
+            for (v, &byte) in (0..).map(VertexId::new).zip(&bytes) {
+                prop_assert_eq!(places.place(v), Some(Place::Byte(byte)));
+            }
+        }
+
         #[test]
         fn places_of_remaining_faces_are_those_of_the_file(
             degrees in vec((3..6_u32, any::<bool>()), 0..20),
@@ -255,7 +370,8 @@ mod tests {
                 FacePlaces::Numbers,
             ] {
                 let expected = remaining.iter().map(|&f| places.place(f, &all));
-                let found = PolygonPlaces::new(places.clone(), gaps.clone());
+                let vertices = VertexPlaces::default();
+                let found = PolygonPlaces::new(places.clone(), gaps.clone(), vertices);
                 let found = polygons.faces().iter().map(|(f, _)| found.place(f, &polygons));
                 prop_assert!(found.eq(expected), "{:?}", places);
             }

@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::byte_source::ByteSource;
 use crate::error::ReadError;
 use crate::file_mesh::FileMesh;
-use crate::format::{DETECTION_BYTES, Format, detect};
+use crate::format::{DETECTION_BYTES, Format, detect, is_text, may_be_binary_stl};
 use crate::options::ReadOptions;
 use crate::place::{Location, Place};
 use crate::{gltf, obj, off, ply, stl};
@@ -110,10 +110,20 @@ fn read_any(
         Some(format) => Some(format.form_of(start, size)),
         None => by_content(),
     };
-    let Some(format) = format else {
+    let unknown = || {
         let file = name.to_owned();
-        return Err(ReadError::UnknownFormat { file });
+        Err(ReadError::UnknownFormat { file })
     };
+    let Some(format) = format else {
+        return match size.is_none() && may_be_binary_stl(start) {
+            true => stl::read_binary_if_complete(name, source, options)?.map_or_else(unknown, Ok),
+            false => unknown(),
+        };
+    };
+    if format == Format::Stl && detect(start, size) != Some(Format::Stl) && is_text(start) {
+        let file = name.to_owned();
+        return Err(ReadError::NotStl { file });
+    }
     match format {
         Format::Obj => obj::read(name, source, options),
         Format::Stl => stl::read_binary(name, source, options),

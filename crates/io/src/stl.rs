@@ -10,6 +10,7 @@ use crate::byte_source::ByteSource;
 use crate::error::ReadError;
 use crate::file_mesh::FileMesh;
 use crate::format::Format;
+use crate::notice::IgnoredKind;
 use crate::number::Coordinate;
 use crate::options::ReadOptions;
 use crate::place::{FacePlaces, Place};
@@ -26,6 +27,24 @@ pub(crate) fn read_binary(
     let builder = MeshBuilder::new(name, Format::Stl, options, binary::PLACES);
     let facets = binary::read(Facets::new(builder), source)?;
     facets.builder.finish()
+}
+
+/// Reads the binary form of a stream whose format is not known; `None` if its number of facets is
+/// not that of the facets that follow, so that it is not STL. O(bytes) expected.
+pub(crate) fn read_binary_if_complete(
+    name: &str,
+    source: &mut ByteSource<impl Read>,
+    options: ReadOptions,
+) -> Result<Option<FileMesh>, ReadError> {
+    match read_binary(name, source, options) {
+        Ok(mesh) => {
+            let mut kinds = mesh.notices.iter().map(|notice| notice.kind);
+            let is_complete = kinds.all(|kind| kind != IgnoredKind::Trailing);
+            Ok(is_complete.then_some(mesh))
+        }
+        Err(ReadError::Truncated { .. } | ReadError::NonFinite { .. }) => Ok(None),
+        Err(error) => Err(error),
+    }
 }
 
 /// Reads the text form; O(bytes) expected.

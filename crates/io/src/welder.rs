@@ -7,16 +7,48 @@ use sixfold_core::{Point, row};
 /// Number of points that are looked up together.
 const BATCH: usize = 256;
 
+/// A position that can be numbered: in 32 bits or in 64 bits. −0 equals 0.
+pub(crate) trait Key: Copy + PartialEq {
+    /// Returns a hash, which is equal for equal positions. It depends on the random `seeds`, so that
+    /// a file cannot be made whose positions all have one hash.
+    fn hash(self, seeds: [u64; 2]) -> u64;
+}
+
+impl Key for Point {
+    #[inline]
+    fn hash(self, seeds: [u64; 2]) -> u64 {
+        // −0 + 0 is 0.
+        let [x, y, z] = self.to_array().map(|x| u64::from((x + 0.0).to_bits()));
+        mixed(((x << 32) | y) ^ seeds[0], ((z << 32) | z) ^ seeds[1])
+    }
+}
+
+impl Key for [f64; 3] {
+    #[inline]
+    fn hash(self, seeds: [u64; 2]) -> u64 {
+        let [x, y, z] = self.map(|x| (x + 0.0).to_bits());
+        let xy = mixed(x ^ seeds[0], y ^ seeds[1]);
+        mixed(xy ^ seeds[1], z ^ seeds[0])
+    }
+}
+
+/// Mixes two numbers: the two halves of their product.
+#[inline]
+fn mixed(first: u64, second: u64) -> u64 {
+    let product = u128::from(first) * u128::from(second | 1);
+    (product as u64) ^ (product >> 64) as u64
+}
+
 /// Numbers points so that equal points have one number; −0 and 0 are equal.
 ///
 /// Points are numbered by first use. The table is an open hash table of numbers, at most half
 /// full: eight to sixteen bytes per distinct point.
-pub(crate) struct Welder {
-    points: Vec<Point>,
+pub(crate) struct Welder<P> {
+    points: Vec<P>,
     slots: Slots,
 }
 
-impl Welder {
+impl<P: Key> Welder<P> {
     /// Creates an empty table with room for `points` distinct points.
     pub(crate) fn with_capacity(points: usize) -> Self {
         Self {
@@ -30,7 +62,7 @@ impl Welder {
     /// # Panics
     ///
     /// Panics if there are more distinct points than row numbers.
-    pub(crate) fn number_all(&mut self, points: &[Point], numbers: &mut Vec<u32>) {
+    pub(crate) fn number_all(&mut self, points: &[P], numbers: &mut Vec<u32>) {
         for batch in points.chunks(BATCH) {
             while 2 * (self.points.len() + batch.len()) > self.slots.len() {
                 self.slots.grow(&self.points);
@@ -53,7 +85,7 @@ impl Welder {
     }
 
     /// Returns the number of `point`, or adds it; its slot is `slot` or a later one.
-    fn number(&mut self, point: Point, slot: usize) -> u32 {
+    fn number(&mut self, point: P, slot: usize) -> u32 {
         let next = row(self.points.len());
         let number = self.slots.find_or_insert(&self.points, point, slot, next);
         if number == next {
@@ -63,12 +95,12 @@ impl Welder {
     }
 
     /// Returns the distinct points in the order of their numbers.
-    pub(crate) fn points(&self) -> &[Point] {
+    pub(crate) fn points(&self) -> &[P] {
         &self.points
     }
 
     /// Returns the distinct points in the order of their numbers.
-    pub(crate) fn into_points(self) -> Vec<Point> {
+    pub(crate) fn into_points(self) -> Vec<P> {
         self.points
     }
 }
@@ -117,10 +149,10 @@ impl Slots {
 
     /// Returns the number of the stored point that equals `point`. If no stored point equals it,
     /// stores and returns `number`. The search begins at `slot`.
-    fn find_or_insert(
+    fn find_or_insert<P: Key>(
         &mut self,
-        points: &[Point],
-        point: Point,
+        points: &[P],
+        point: P,
         mut slot: usize,
         number: u32,
     ) -> u32 {
@@ -137,19 +169,13 @@ impl Slots {
     }
 
     /// Returns the first slot in which `point` may be.
-    fn slot(&self, point: Point) -> usize {
-        // −0 + 0 is 0.
-        let [x, y, z] = point.to_array().map(|x| u64::from((x + 0.0).to_bits()));
-        let first = ((x << 32) | y) ^ self.seeds[0];
-        let second = ((z << 32) | z) ^ self.seeds[1];
-        let product = u128::from(first) * u128::from(second | 1);
-        let folded = (product as u64) ^ (product >> 64) as u64;
-        let mixed = folded.wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    fn slot(&self, point: impl Key) -> usize {
+        let mixed = point.hash(self.seeds).wrapping_mul(0x9E37_79B9_7F4A_7C15);
         (mixed >> (64 - self.stored.len().trailing_zeros())) as usize
     }
 
     /// Doubles the table, which has all of `points`.
-    fn grow(&mut self, points: &[Point]) {
+    fn grow(&mut self, points: &[impl Key]) {
         let slots = 2 * self.stored.len();
         self.stored = Vec::new(); // freed before the new table is allocated
         self.stored = vec![0; slots];
@@ -184,6 +210,18 @@ mod tests {
             assert_eq!(*expected.entry(bits).or_insert(next), number);
         }
         assert_eq!(welder.into_points().len(), expected.len());
+    }
+
+    #[test]
+    fn points_of_64_bits_are_kept_apart() {
+        let mut welder = Welder::with_capacity(0);
+        let mut numbers = Vec::new();
+        let far = |i: u32| [5e5 + f64::from(i % 500) * 1e-3, 0.0, f64::from(i % 2)];
+        let points: Vec<[f64; 3]> = (0..2000).map(far).collect();
+        welder.number_all(&points, &mut numbers);
+        assert!(numbers.iter().copied().eq((0..2000).map(|i| i % 500)));
+        welder.number_all(&[[-0.0, 0.0, 1.0], [0.0, -0.0, 1.0]], &mut numbers);
+        assert_eq!(numbers[2000..], [500, 500]);
     }
 
     #[test]

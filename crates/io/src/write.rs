@@ -14,7 +14,7 @@ pub use obj::{write_obj, write_obj_with_normals};
 use std::fmt;
 use std::io::{self, BufWriter, Write};
 
-use sixfold_core::{Point, PolygonMesh, VertexId};
+use sixfold_core::{Creases, Point, PolygonMesh, VertexId};
 
 use crate::format::Format;
 
@@ -108,13 +108,17 @@ pub struct MeshWriter<'a> {
     polygons: &'a PolygonMesh,
     /// One entry for each vertex, or none at all.
     normals: &'a [Option<Point>],
+    creases: Option<&'a Creases>,
 }
 
 impl<'a> MeshWriter<'a> {
     /// Creates a writer of the positions and faces of `polygons`.
     pub fn new(polygons: &'a PolygonMesh) -> Self {
-        let normals = &[];
-        Self { polygons, normals }
+        Self {
+            polygons,
+            normals: &[],
+            creases: None,
+        }
     }
 
     /// Adds normals of unit length, one entry for each vertex. OBJ stores the normals that exist;
@@ -132,6 +136,28 @@ impl<'a> MeshWriter<'a> {
         Ok(Self { normals, ..self })
     }
 
+    /// Adds sharp edges and vertices, which must be those of the mesh. Only OBJ stores them, as the
+    /// tags `t crease` and `t corner`.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use sixfold_core::{Creases, Point, PolygonMesh};
+    /// use sixfold_io::{Format, MeshWriter, parse_obj};
+    ///
+    /// let triangle = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]])?;
+    /// let creases = Creases::new(&triangle, [([0, 1], 2.5)], [(2, f32::INFINITY)])?;
+    /// let mut text = Vec::new();
+    /// let writer = MeshWriter::new(&triangle).with_creases(&creases);
+    /// writer.write(Format::Obj, &mut text)?;
+    /// assert_eq!(parse_obj("triangle.obj", text.as_slice())?.creases().0, creases);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_creases(self, creases: &'a Creases) -> Self {
+        let creases = Some(creases);
+        Self { creases, ..self }
+    }
+
     /// Writes the mesh; see [`write`](crate::write()).
     ///
     /// # Errors
@@ -145,7 +171,12 @@ impl<'a> MeshWriter<'a> {
         }
         let mut out = BufWriter::with_capacity(1 << 16, out);
         match format {
-            Format::Obj => obj::write_text(self.polygons, self.normals, &mut out)?,
+            Format::Obj => {
+                obj::write_text(self.polygons, self.normals, &mut out)?;
+                if let Some(creases) = self.creases {
+                    obj::write_tags(creases, &mut out)?;
+                }
+            }
             Format::Stl => stl::write_binary(self.polygons, &mut out)?,
             Format::StlAscii => stl::write_ascii(self.polygons, &mut out)?,
             Format::Ply | Format::PlyBigEndian | Format::PlyAscii => {

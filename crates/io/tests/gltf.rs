@@ -1,6 +1,7 @@
 //! The rules of glTF, and its errors with their messages.
 
 use std::fs;
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use sixfold_core::{Point, PolygonMesh};
@@ -250,6 +251,138 @@ fn compression_is_refused_by_name() {
         "mesh 0: the mesh is compressed with KHR_draco_mesh_compression, which is not read: export \
          it without compression",
     );
+}
+
+#[test]
+fn draco_without_plain_data_is_refused_by_name() {
+    let draco = "KHR_draco_mesh_compression";
+    let message = "mesh 0: the mesh is compressed with KHR_draco_mesh_compression, which is not \
+                   read: export it without compression";
+    for accessors in [&[0, 1][..], &[0], &[1]] {
+        let mut parts = Parts::square();
+        parts.document["meshes"][0]["primitives"][0]["extensions"] = json!({draco: {}});
+        for &number in accessors {
+            let accessor = parts.document["accessors"][number].as_object_mut();
+            accessor.expect("an object").remove("bufferView");
+        }
+        parts.assert_refused(message);
+        parts.document["extensionsUsed"] = json!([draco]);
+        parts.assert_refused(message);
+    }
+}
+
+#[test]
+fn meshopt_without_plain_data_is_refused_by_name() {
+    for meshopt in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {
+        let message = format!(
+            "bufferView 1: the mesh is compressed with {meshopt}, which is not read: export it \
+             without compression"
+        );
+        let mut parts = Parts::square();
+        parts.document["extensionsUsed"] = json!([meshopt]);
+        parts.document["bufferViews"][1]["extensions"] = json!({meshopt: {"buffer": 0}});
+        assert_eq!(parts.read().faces.len(), 2, "the plain data is there, too");
+        let required = |parts: &mut Parts| parts.document["extensionsRequired"] = json!([meshopt]);
+        required(&mut parts);
+        parts.assert_refused(&message);
+        // Buffers for the decompressed data, which are empty in the file.
+        for fallback in [
+            json!({"byteLength": 6, "extensions": {meshopt: {"fallback": true}}}),
+            json!({"byteLength": 0}),
+            json!({"byteLength": 6, "uri": "data:;base64,"}),
+        ] {
+            let mut parts = Parts::square();
+            let buffers = parts.document["buffers"].as_array_mut().expect("a list");
+            buffers.push(fallback);
+            let view = &mut parts.document["bufferViews"][1];
+            *view = json!({"buffer": 1, "byteLength": 6, "extensions": {meshopt: {"buffer": 0}}});
+            parts.assert_refused(&message);
+            required(&mut parts);
+            parts.assert_refused(&message);
+        }
+    }
+}
+
+#[test]
+fn unknown_required_extensions_are_refused_by_name() {
+    let mut parts = Parts::square();
+    let harmless = [
+        "KHR_materials_unlit",
+        "KHR_mesh_quantization",
+        "KHR_draco_mesh_compression",
+    ];
+    parts.document["extensionsRequired"] = json!(harmless);
+    assert_eq!(parts.read().faces.len(), 2);
+    parts.document["extensionsRequired"] = json!([harmless[0], "EXT_mesh_gpu_instancing"]);
+    parts.assert_refused(
+        "required extension 1: the file requires the extension EXT_mesh_gpu_instancing, which is \
+         not read: export it without this extension",
+    );
+    let many = vec!["KHR_materials_unlit"; 100_000];
+    parts.document["extensionsRequired"] = json!(many);
+    parts.document["meshes"] = json!(vec![parts.document["meshes"][0].clone(); 2000]);
+    let start = Instant::now();
+    parts.read();
+    assert!(
+        start.elapsed() < Duration::from_secs(1),
+        "{:?}",
+        start.elapsed()
+    );
+}
+
+#[test]
+fn many_primitives_and_nodes_take_time_proportional_to_their_number() {
+    let mut parts = Parts::square();
+    let accessor = parts.document["accessors"][0].clone();
+    let accessors = parts.document["accessors"].as_array_mut().expect("a list");
+    accessors.extend(vec![accessor; 50_000]);
+    let primitive = |number: usize| json!({"attributes": {"POSITION": number + 2}, "mode": 0});
+    let primitives: Vec<Value> = (0..50_000).map(primitive).collect();
+    parts.document["meshes"][0]["primitives"] = json!(primitives);
+    let start = Instant::now();
+    assert_eq!(parts.read().positions.len(), 200_000);
+    assert!(
+        start.elapsed() < Duration::from_secs(2),
+        "{:?}",
+        start.elapsed()
+    );
+
+    // Every node repeats a mesh of primitives without vertices.
+    parts.document["meshes"][0]["primitives"] = json!(vec![json!({"attributes": {}}); 50_000]);
+    parts.document["nodes"] = json!(vec![json!({"mesh": 0}); 50_000]);
+    let bytes = parts.glb();
+    let start = Instant::now();
+    let error = read_from("a.glb", bytes.as_slice(), &ReadOptions::default()).expect_err("large");
+    assert!(
+        error
+            .to_string()
+            .contains("vertices, corners and primitives"),
+        "{error}"
+    );
+    assert!(
+        start.elapsed() < Duration::from_secs(10),
+        "{:?}",
+        start.elapsed()
+    );
+}
+
+#[test]
+fn buffers_in_one_file_share_its_data() {
+    let folder = std::env::temp_dir().join(format!("sixfold-io-shared-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("the temporary folder is writable");
+    let mut parts = Parts::square();
+    // The first buffer needs a part of the file, the second all of it.
+    let length = parts.data.len();
+    parts.document["buffers"] = json!([
+        {"uri": "a.bin", "byteLength": length - 6}, {"uri": "%61.bin", "byteLength": length},
+    ]);
+    parts.document["bufferViews"][1]["buffer"] = json!(1);
+    let path = folder.join("a.gltf");
+    fs::write(&path, parts.document.to_string()).expect("writable");
+    fs::write(folder.join("a.bin"), &parts.data).expect("writable");
+    let mesh = read(&path, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(faces(&mesh), [[0, 1, 2], [0, 2, 3]]);
+    fs::remove_dir_all(&folder).expect("removable");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::subsequence;
-use sixfold_core::{Point, PolygonMesh};
+use sixfold_core::{Creases, Point, PolygonMesh};
 use sixfold_io::{
     FileMesh, Format, Loss, MeshWriter, ReadOptions, Welding, WriteError, read_from, write,
 };
@@ -182,6 +182,10 @@ fn losses_are_counted() {
     assert_eq!(with_all.losses(Format::Ply), []);
     assert_eq!(with_all.losses(Format::Off), [Loss::Normals(5)]);
     assert_eq!(with_all.losses(Format::Glb), [Loss::Polygons(1)]);
+    let creases = Creases::new(&mesh, [([0, 1], 1.0)], [(4, 2.0)]).expect("valid");
+    let sharp = MeshWriter::new(&mesh).with_creases(&creases);
+    assert_eq!(sharp.losses(Format::Obj), []);
+    assert_eq!(sharp.losses(Format::Ply), [Loss::Creases(2)]);
 }
 
 #[test]

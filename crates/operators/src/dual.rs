@@ -23,7 +23,7 @@ use crate::error::DualError;
 /// The vertices of the dual have the order of `faces()`, and the faces of the dual have the order
 /// of `vertices()`. The dual of the dual has the same faces as the mesh, but a face may start at
 /// another corner. If two faces share several edges, the dual has several edges with the same two
-/// ends. Structures for manifolds then reject the dual.
+/// ends, and structures that hold only manifolds reject the dual.
 ///
 /// # Errors
 ///

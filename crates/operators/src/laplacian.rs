@@ -4,7 +4,7 @@ use glam::DVec3;
 use sixfold_core::{FaceId, Handle, HandleMap, MeshQuery, VertexMap, row};
 
 use crate::error::SmoothingError;
-use crate::smoothing::{Boundary, Weights};
+use crate::smoothing::{SmoothingBoundary, Weights};
 
 /// Minimum height of a triangle, relative to its longest side, for reliable angles. In flatter
 /// triangles, rounding errors dominate the angles.
@@ -46,7 +46,7 @@ impl<V: Handle> Laplacian<V> {
     pub(crate) fn new<M: MeshQuery<Vertex = V>>(
         mesh: &M,
         weights: Weights,
-        boundary: Boundary,
+        boundary: SmoothingBoundary,
     ) -> Result<Self, SmoothingError> {
         Ok(Self {
             elements: match weights {
@@ -173,7 +173,7 @@ struct BoundaryCurves<V> {
 }
 
 impl<V: Handle> BoundaryCurves<V> {
-    fn new<M: MeshQuery<Vertex = V>>(mesh: &M, boundary: Boundary) -> Self {
+    fn new<M: MeshQuery<Vertex = V>>(mesh: &M, boundary: SmoothingBoundary) -> Self {
         let open = mesh.boundary_edges().into_iter();
         let edges: Vec<[V; 2]> = open.map(|e| mesh.edge_vertices(e)).collect();
         let mut ends: VertexMap<M, usize> = HandleMap::filled(mesh.vertex_rows(), 0);
@@ -186,8 +186,8 @@ impl<V: Handle> BoundaryCurves<V> {
         }
         let irregular = vertices.iter().copied().filter(|&v| ends[v] != 2);
         let (irregular, edges) = match boundary {
-            Boundary::Fixed => (Vec::new(), Vec::new()),
-            Boundary::Curve => (irregular.collect(), edges),
+            SmoothingBoundary::Fixed => (Vec::new(), Vec::new()),
+            SmoothingBoundary::Curve => (irregular.collect(), edges),
         };
         Self {
             vertices,

@@ -9,14 +9,15 @@
 //! | [`triangulated`] | polygons | polygons | at most degree² per face | Meisters 1975 |
 //! | [`oriented`] | polygons | polygons | corners · log corners | |
 //!
-//! An operator queries each face or each edge at most once, and stores sums in maps by vertex, edge
-//! or face. So no structure scans the mesh for each vertex, and reading the mesh takes O(corners)
-//! time for every structure. New positions are returned as a [`VertexMap`] for [`set_positions`].
-//! Two operators, [`triangulated`] and [`oriented`], repair polygons that most structures reject.
-//! These two operators work on a [`PolygonMesh`], before a structure is built.
+//! An operator queries each face and each edge a fixed number of times, never the neighbours of a
+//! vertex, and stores sums in maps by vertex, edge or face. So no structure scans all faces for
+//! each vertex, and reading the mesh takes O(corners) time for every structure. New positions are
+//! returned as a [`VertexMap`] for [`set_positions`]. The operators [`triangulated`] and
+//! [`oriented`] work on a [`PolygonMesh`], before a structure is built, because some structures
+//! hold only triangles or only oriented meshes.
 //!
 //! Sums are computed in double precision, so a product of three coordinates neither overflows nor
-//! underflows. Two structures may add in different orders, so the results of two structures may
+//! underflows. Two structures may add the terms of a sum in different orders, so their results may
 //! differ in the last bits of a coordinate.
 //! ```
 //! use sixfold_half_edge::HalfEdgeMesh;
@@ -54,6 +55,6 @@ pub use orientation::{
     Components, Facing, NotOrientable, Oriented, OrientedComponents, Reversal, faces_to_reverse,
     oriented, oriented_components,
 };
-pub use smoothing::{Boundary, Smoothing, Weights, smoothed};
+pub use smoothing::{Smoothing, SmoothingBoundary, Weights, smoothed};
 pub use sphere::projected_to_sphere;
 pub use triangulation::{Triangulation, clipped_polygon, triangulated};

@@ -6,7 +6,8 @@ use sixfold_core::{FaceMap, MeshQuery, Point, VertexMap};
 /// The weight of a face in the normal of each of its vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NormalWeights {
-    /// The area of the face. This weight needs no extra computation.
+    /// The area of the face. This weight costs nothing, because the normal is computed from a
+    /// vector whose length is proportional to the area.
     #[default]
     Area,
     /// The angle of the face at the vertex (Thürmer & Wüthrich 1998). With this weight, the normal
@@ -24,8 +25,8 @@ pub enum NormalWeights {
 ///      └── p0             of any shape; for bent polygons n is a mean.
 /// ```
 ///
-/// A face without area has the normal zero. The method is Newell's method, described by Sutherland,
-/// Sproull & Schumacker (1974).
+/// A face without area has the normal zero. Sutherland, Sproull & Schumacker (1974) describe
+/// Newell's method.
 pub fn face_normals<M: MeshQuery>(mesh: &M) -> FaceMap<M, Point> {
     let mut normals = mesh.face_map(Point::ZERO);
     mesh.faces().for_each(|f| {
@@ -37,16 +38,16 @@ pub fn face_normals<M: MeshQuery>(mesh: &M) -> FaceMap<M, Point> {
     normals
 }
 
-/// Returns the area vector of a polygon, by Newell's method: its direction is the normal, and its
-/// length is the area. The unit is that of the coordinates, squared. O(corners).
+/// Returns the area vector of a polygon, by Newell's method: the direction of the vector is the
+/// normal, and its length is the area in squared units of the coordinates. O(corners).
 pub fn area_vector(corners: impl IntoIterator<Item = DVec3>) -> DVec3 {
     let mut newell = Newell::default();
     corners.into_iter().for_each(|p| newell.add(p));
     newell.normal / 2.0
 }
 
-/// Returns the unit normal of every vertex, which is the mean of the normals of its faces, weighted
-/// by `weights`. Takes O(corners) time.
+/// Returns the unit normal of every vertex: the direction of the mean of the normals of its faces,
+/// weighted by `weights`. Takes O(corners) time.
 ///
 /// ```text
 ///           n                 area    n ∝ Σ A(f) n(f)

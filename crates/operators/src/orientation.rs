@@ -1,11 +1,13 @@
-//! Orientation repair: reverses faces until all adjacent faces have the same orientation.
+//! Orientation repair: reverses faces until adjacent faces run along their shared edges in opposite
+//! directions.
 
 use glam::DVec3;
 use sixfold_core::{Classes, FaceId, FaceList, Incidence, PolygonMesh, VertexId, row};
 
 use crate::error::OrientationError;
 
-/// The rule that chooses one of the two possible orientations of each component.
+/// The rule that chooses one of the two possible orientations of each component (faces that are
+/// connected by edges with two faces).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Facing {
     /// The orientation that most faces of the component have. In a tie, the first face keeps its
@@ -23,8 +25,8 @@ pub enum Components {
     /// All orientable components.
     #[default]
     All,
-    /// Components with two faces that disagree. A component that is consistent remains as it is,
-    /// even if it faces inward.
+    /// Components in which two faces run along an edge in the same direction. All other components
+    /// remain unchanged, even if they face inward.
     Inconsistent,
 }
 
@@ -38,27 +40,29 @@ pub struct Oriented {
     pub reversed: Vec<FaceId>,
 }
 
-/// A mesh whose orientable components are consistent, the faces that were reversed for it, and the
-/// components that are not orientable.
+/// A mesh in which the chosen components have a consistent orientation, the list of reversed faces,
+/// and the list of components that are not orientable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrientedComponents {
-    /// The mesh. The vertices, the order of the faces and their first corners are unchanged.
+    /// The mesh after the faces were reversed. The vertices, the order of the faces and the first
+    /// corner of each face are unchanged.
     pub polygons: PolygonMesh,
-    /// The faces whose corners were reversed, ascending.
+    /// The reversed faces, in ascending order.
     pub reversed: Vec<FaceId>,
-    /// The components that are not orientable, in the order of their first faces. None of their
-    /// faces is reversed.
+    /// The components that are not orientable, in the order of their first faces. The faces of
+    /// these components are not reversed.
     pub not_orientable: Vec<NotOrientable>,
 }
 
-/// A component whose faces cannot agree.
+/// A component whose faces cannot have a consistent orientation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotOrientable {
-    /// Its first face.
+    /// The first face of the component.
     pub face: FaceId,
-    /// The number of its faces.
+    /// The number of faces of the component.
     pub faces: usize,
-    /// The ends of an edge at which the faces cannot agree, the lower first.
+    /// The ends of an edge whose two faces would need conflicting orientations, the lower end
+    /// first.
     pub ends: [VertexId; 2],
 }
 
@@ -74,14 +78,14 @@ pub struct NotOrientable {
 ///                        ──←──
 /// ```
 ///
-/// Each component is oriented independently of the other components. With [`Facing::Outward`], the
-/// wall of a cavity inside a solid therefore faces away from the cavity.
+/// Each component is oriented independently of the other components. Therefore, with
+/// [`Facing::Outward`], the wall of a cavity inside a solid faces away from the cavity.
 ///
 /// # Errors
 ///
 /// Returns [`OrientationError::NotOrientable`] with an edge if the faces of a component cannot have
-/// a consistent orientation. [`oriented_components`] leaves such components
-/// unchanged.
+/// a consistent orientation. To leave these components unchanged instead, call
+/// [`oriented_components`].
 ///
 /// # Complexity
 ///
@@ -98,8 +102,9 @@ pub fn oriented(polygons: &PolygonMesh, facing: Facing) -> Result<Oriented, Orie
     }
 }
 
-/// Orients the orientable components of the kind `which` like [`oriented`]; the components that are
-/// not orientable remain unchanged and are named. O(n log n) for n corners.
+/// Reverses faces like [`oriented`], but only in the orientable components that `which` selects.
+/// Components that are not orientable remain unchanged, and the result lists them. O(n log n) time
+/// for n corners.
 pub fn oriented_components(
     polygons: &PolygonMesh,
     facing: Facing,
@@ -117,21 +122,23 @@ pub fn oriented_components(
     }
 }
 
-/// The faces that [`oriented_components`] reverses.
+/// The faces that [`oriented_components`] reverses, and the components that are not orientable.
+#[doc(hidden)]
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Reversal {
-    /// The faces, ascending.
+    /// The reversed faces, in ascending order.
     pub reversed: Vec<FaceId>,
     /// The components that are not orientable, in the order of their first faces.
     pub not_orientable: Vec<NotOrientable>,
 }
 
 /// Returns the faces that [`oriented_components`] reverses, without building the mesh. `incidence`
-/// has the sides of all faces of `polygons`. Takes O(corners) time.
+/// must contain the sides of all faces of `polygons`. Takes O(n log n) time for n corners.
 ///
 /// # Panics
 ///
 /// May panic if `incidence` belongs to another mesh.
+#[doc(hidden)]
 pub fn faces_to_reverse(
     polygons: &PolygonMesh,
     incidence: &Incidence<'_>,

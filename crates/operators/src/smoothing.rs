@@ -6,21 +6,21 @@ use sixfold_core::{MeshQuery, Point, VertexMap};
 use crate::error::SmoothingError;
 use crate::laplacian::{Laplacian, WeightedSum};
 
-/// The weight of each neighbour of a vertex.
+/// The weights of the neighbours of a vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Weights {
     /// Equal weights for all neighbours (Field 1988). Uniform weights also make the shapes of the
     /// faces more even.
     #[default]
     Uniform,
-    /// Weights from the two angles opposite to the edge (Pinkall & Polthier 1993). These weights
-    /// leave a plane unchanged. All faces must be triangles.
+    /// Weights from the two angles opposite to the edge (Pinkall & Polthier 1993). With cotangent
+    /// weights, the inner vertices of a flat mesh do not move. All faces must be triangles.
     Cotangent,
 }
 
 /// The treatment of vertices on boundary edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Boundary {
+pub enum SmoothingBoundary {
     /// Boundary vertices do not move.
     #[default]
     Fixed,
@@ -34,16 +34,17 @@ pub enum Boundary {
 /// The default is ten iterations with step 0.5, uniform weights and a fixed boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Smoothing {
-    /// The weight of each neighbour.
+    /// The weights of the neighbours.
     pub weights: Weights,
     /// The treatment of vertices on boundary edges.
-    pub boundary: Boundary,
-    /// The step λ, from 0 to 1. A vertex moves to the mean of its neighbours by the fraction λ of
-    /// the distance.
+    pub boundary: SmoothingBoundary,
+    /// The step λ, from 0 to 1. A vertex moves towards the mean of its neighbours, by the fraction
+    /// λ of the distance.
     pub step: f64,
-    /// The step back μ, with μ < −λ. After each step, a vertex moves away from the mean of its
-    /// neighbours, by the fraction −μ of the distance. The step back keeps the volume of the mesh
-    /// nearly constant (Taubin 1995). Taubin's values are λ = 0.33 and μ = −0.34.
+    /// The step back μ, with μ < −λ; `None` for no step back. After each step, a vertex moves away
+    /// from the mean of its neighbours, by the fraction −μ of the distance. The product (1 − 2λ)(1
+    /// − 2μ) must be between −1 and 1. The step back keeps the volume of the mesh nearly constant
+    /// (Taubin 1995). Taubin's values are λ = 0.33 and μ = −0.34.
     pub step_back: Option<f64>,
     /// The number of iterations.
     pub iterations: usize,
@@ -53,7 +54,7 @@ impl Default for Smoothing {
     fn default() -> Self {
         Self {
             weights: Weights::Uniform,
-            boundary: Boundary::Fixed,
+            boundary: SmoothingBoundary::Fixed,
             step: 0.5,
             step_back: None,
             iterations: 10,
@@ -79,7 +80,8 @@ impl Smoothing {
     }
 }
 
-/// Returns the positions of all vertices after the vertices are moved towards their neighbours.
+/// Returns the positions of all vertices after `smoothing.iterations` iterations. Each iteration
+/// moves every vertex towards the mean of its neighbours.
 ///
 /// ```text
 ///        p              p ← p + λ L(p)     L(p): from p to the mean of its neighbours,

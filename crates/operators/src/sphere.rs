@@ -4,8 +4,8 @@ use sixfold_core::{MeshQuery, Point, VertexId, VertexMap, row};
 
 use crate::error::SphereError;
 
-/// Returns the positions of all vertices, moved along rays from `centre` to the sphere around
-/// `centre` with the radius `radius`. Takes O(vertices) time.
+/// Returns the positions of all vertices after projection to a sphere: each vertex moves along a
+/// ray from `centre` until its distance from `centre` is `radius`. Takes O(vertices) time.
 ///
 /// ```text
 ///         ╭───●───╮          p' = c + r (p − c) / |p − c|

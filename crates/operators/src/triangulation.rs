@@ -16,7 +16,7 @@ pub enum Triangulation {
     EarClipping,
 }
 
-/// Returns the mesh with each polygon of `n` corners replaced by `n − 2` triangles.
+/// Returns the mesh in which each polygon of `n` corners is replaced by `n − 2` triangles.
 ///
 /// ```text
 ///    d ─────── c           d ─────── c
@@ -37,10 +37,10 @@ pub enum Triangulation {
 ///   be flat.
 /// - An ear is a triangle at a convex corner whose third side (the diagonal) runs inside the
 ///   polygon. The ear with the best shape is cut first.
-/// - Ear clipping avoids diagonals that are already edges of the mesh, because such an edge would
-///   get three or more faces. If the diagonal of every ear of a polygon is already an edge, one of
-///   the ears is cut anyway. Structures for manifolds then reject the mesh with an error that names
-///   the edge.
+/// - Ear clipping avoids diagonals that are already edges of the mesh, because these edges would
+///   then have three or more faces. If the diagonal of every ear of a polygon is already an edge,
+///   one of the ears is cut anyway. Structures that hold only manifolds then reject the mesh with
+///   an error that names the edge.
 ///
 /// # Errors
 ///
@@ -77,12 +77,12 @@ pub fn triangulated(
     }
 }
 
-/// Cuts one polygon into `n − 2` triangles by ear clipping; each triangle is three of its corner
-/// numbers 0 to `n − 1`, in the orientation of the polygon.
+/// Cuts one polygon of `n` corners into `n − 2` triangles by ear clipping. Each triangle consists
+/// of three corner numbers from 0 to `n − 1`, in the orientation of the polygon.
 ///
 /// `is_edge` returns whether a diagonal between two corner numbers is already an edge of the mesh.
 /// An ear with such a diagonal is cut only if the polygon has no other ear at that moment.
-/// [`triangulated`] describes the result and its time for each kind of polygon.
+/// [`triangulated`] describes the result and the time for each kind of polygon.
 pub fn clipped_polygon(
     corners: impl IntoIterator<Item = DVec3>,
     is_edge: impl Fn(usize, usize) -> bool,

@@ -68,14 +68,7 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         self.faces.add_face(corners, log)
     }
 
-    /// Takes O(degree) time, and one scan if the log records edits.
-    fn remove_face_logged(
-        &mut self,
-        f: FaceId,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<(), Refusal<Self>> {
-        self.faces.remove_face(f, log)
-    }
+    sixfold_core::scanned_edits!();
 
     /// Takes one scan, or two scans if the log records edits.
     fn remove_vertex_logged(
@@ -91,72 +84,8 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         0
     }
 
-    /// Takes one scan.
-    fn split_edge_logged(
-        &mut self,
-        e: Pair<SoupVertex>,
-        at: Point,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<SoupVertex, Refusal<Self>> {
-        let m = SoupVertex::at(at);
-        self.faces.split_edge(e, m, log)?;
-        Ok(m)
-    }
-
-    /// Takes one scan.
-    fn bisect_edge_logged(
-        &mut self,
-        e: Pair<SoupVertex>,
-        at: Point,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<SoupVertex, Refusal<Self>> {
-        let m = SoupVertex::at(at);
-        self.faces.bisect_edge(e, m, log)?;
-        Ok(m)
-    }
-
-    /// Takes one scan, to check that the position is free.
-    fn poke_face_logged(
-        &mut self,
-        f: FaceId,
-        at: Point,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<SoupVertex, Refusal<Self>> {
-        let m = SoupVertex::at(at);
-        self.faces.poke_face(f, m, log)?;
-        Ok(m)
-    }
-
-    /// Takes O(degree) time, and one scan if the log records edits.
-    fn split_face_logged(
-        &mut self,
-        f: FaceId,
-        ends: [SoupVertex; 2],
-        log: &mut impl EditLog<Self>,
-    ) -> Result<Pair<SoupVertex>, Refusal<Self>> {
-        self.faces.split_face(f, ends, log)
-    }
-
-    /// Takes one scan.
-    fn dissolve_edge_logged(
-        &mut self,
-        e: Pair<SoupVertex>,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<FaceId, Refusal<Self>> {
-        self.faces.dissolve_edge(e, log)
-    }
-
-    /// Takes two scans.
-    fn flip_edge_logged(
-        &mut self,
-        e: Pair<SoupVertex>,
-        log: &mut impl EditLog<Self>,
-    ) -> Result<Pair<SoupVertex>, Refusal<Self>> {
-        self.faces.flip_edge(e, log)
-    }
-
-    /// Takes one scan, or two scans if the removed triangles may be the last faces of a vertex.
-    /// `to` may be the position of the removed end.
+    /// Takes one scan, and one more scan for each vertex that may lose its last face. `to` may be
+    /// the position of the removed end.
     fn collapse_edge_logged(
         &mut self,
         e: Pair<SoupVertex>,
@@ -187,6 +116,22 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
     fn compact_logged(&mut self, log: &mut impl EditLog<Self>) {
         self.faces.compact(log);
     }
+}
+
+impl<P: Probe> PolygonSoup<Editable, P> {
+    /// Returns the handle of a new vertex. Each edit itself checks that the position is free.
+    #[expect(
+        clippy::unused_self,
+        clippy::unnecessary_wraps,
+        reason = "scanned_edits! calls it"
+    )]
+    fn next_vertex(&self, at: Point) -> Result<SoupVertex, Refusal<Self>> {
+        Ok(SoupVertex::at(at))
+    }
+
+    /// Does nothing, because the corners of faces are the only places of vertices.
+    #[expect(clippy::unused_self, reason = "scanned_edits! calls it")]
+    fn store_vertex(&mut self, _: Point) {}
 }
 
 #[cfg(test)]

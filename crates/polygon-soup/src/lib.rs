@@ -1,15 +1,15 @@
 //! Polygon soup: every face stores the coordinates of its own corners, and faces share no data.
 //!
 //! STL files have the form of a polygon soup, and a renderer can use this form unchanged. Use a
-//! polygon soup to transfer all faces at once. A query has two letters, for vertex (V), edge (E) or
-//! face (F): FV lists the vertices of a face. The queries FV, FE and EV take O(1) per item. The
-//! queries VV, VE, VF, EE, EF and FF scan all corners, because no table stores neighbours.
-//! [`generic::PolygonSoup`] documents the table and its four invariants.
+//! polygon soup to transfer all faces at once. The name of a query has two letters, for vertex (V),
+//! edge (E) or face (F): FV lists the vertices of a face. The queries FV, FE and EV take O(1) per
+//! item. The queries VV, VE, VF, EE, EF and FF scan all corners, because no table stores
+//! neighbours. [`generic::PolygonSoup`] documents the table and its four invariants.
 //!
-//! A vertex *is* its coordinates in a polygon soup ([`SoupVertex`]). So corners with the same
-//! coordinates are one vertex, and moving a vertex changes its handle. [`SoupVertex`] explains how
-//! to merge points that are nearly equal. A polygon soup cannot hold a face with two corners at one
-//! point, or a vertex without faces.
+//! In a polygon soup, a vertex is identified by its coordinates ([`SoupVertex`]). So corners with
+//! the same coordinates are one vertex, and moving a vertex changes its handle. [`SoupVertex`]
+//! explains how to merge points that are nearly equal. A polygon soup cannot hold a face with two
+//! corners at one point, or a vertex without faces.
 //!
 //! Adding and removing faces takes O(1) per corner. Nearly every edit of vertices and edges begins
 //! with a scan of all corners. For many edits, use a structure that stores neighbours.

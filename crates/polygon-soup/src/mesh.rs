@@ -21,18 +21,18 @@ use crate::vertex::SoupVertex;
 ///   corners can be between the ranges.
 /// - I2  No coordinate is −0; construction, [`set_positions`] and edits write 0 instead.
 /// - I3  The corners of one face are at different positions. [`set_positions`] returns an error if
-///   two corners of a face would coincide. Every edit returns an error if the position of a new
-///   vertex is already used.
+///   two corners of a face would coincide. Every edit that splits an edge, a face or a vertex
+///   returns an error if another vertex is at the position of the new vertex.
 /// - I4  The hole table lists the rows of deleted faces. Exactly two kinds of corners are blank:
 ///   the corners of deleted faces, and the unused corners between faces. A blank corner contains a
 ///   NaN that no [`SoupVertex`] contains.
 ///
-/// A large closed triangle mesh uses 18 words of 4 bytes per vertex: two faces of three points. If
-/// the faces have different degrees, the mesh uses one more word per face. After an edit that
-/// changes the degree of a face, the mesh uses two more words per face and one more word per corner
-/// than a mesh whose faces have the same degree. After a deletion, the mesh uses one more bit per
-/// face. [`compact`](sixfold_core::MeshEdit::compact) frees the additional memory of edits and
-/// deletions.
+/// A large closed triangle mesh uses 18 words of 4 bytes per vertex: two faces with three corners
+/// of three coordinates each. If the faces have different degrees, the mesh uses one more word per
+/// face. After an edit that changes the degree of a face, the mesh uses two more words per face and
+/// one more word per corner than a mesh whose faces have the same degree. After a deletion, the
+/// mesh uses up to one more bit per face. [`compact`](sixfold_core::MeshEdit::compact) frees the
+/// additional memory of edits and deletions.
 ///
 /// # Complexity
 ///
@@ -45,10 +45,11 @@ use crate::vertex::SoupVertex;
 /// | `vertices`, `edges` | all corners | O(corners) expected, with a hash set |
 /// | `vertex_count`, `edge_count` | all corners | O(corners) expected, with a hash set |
 ///
-/// A scan finds the face of each corner at the given vertex, in O(1) time, or in O(log faces) time
-/// if the faces have different degrees. A scan reads 12 bytes per corner, once and in order. If the
-/// table of corners fits in the cache, the three comparisons per corner limit the speed. In larger
-/// meshes, the memory bandwidth limits the speed.
+/// For each corner at the given vertex, a scan finds the face of the corner in O(1) time. If the
+/// faces have different degrees, finding the face takes O(log faces) time until the first edit that
+/// changes a degree. A scan reads 12 bytes per corner, once and in order. If the table of corners
+/// fits in the cache, the three comparisons per corner limit the speed. In larger meshes, the
+/// memory bandwidth limits the speed.
 ///
 /// # Edits
 ///
@@ -62,17 +63,17 @@ use crate::vertex::SoupVertex;
 /// | `split_edge`, `dissolve_edge` | all corners, in one scan | the faces at the edge, which may move to the end of the table |
 /// | `bisect_edge` | all corners, in one scan | a corner of each face at the edge, and a new face for each of these faces |
 /// | `flip_edge` | all corners, in two scans | one corner of each of the two faces |
-/// | `collapse_edge` | all corners, in one scan, rarely two | the corners at the removed vertex, and the corners at the kept end if the kept end moves |
-/// | `split_vertex` | all corners, in one scan | the corners that the new vertex gets, and two new faces |
+/// | `collapse_edge` | all corners, in one scan, rarely more | the corners at the removed vertex, and the corners at the kept end if the kept end moves |
+/// | `split_vertex` | all corners, in one scan | the corners that the new vertex gets, and one or two new faces |
 /// | `remove_vertex` | all corners, in one scan | the corners of the faces at the vertex |
 /// | `remove_isolated_vertices` | nothing | nothing: no vertex is isolated |
 /// | `compact` | everything | everything |
 ///
-/// If an edit of an edge adds a vertex, the scan also checks that no vertex has the new position.
-/// If a log records the edits, `add_face`, `remove_face`, `remove_vertex` and `split_face` need one
-/// more scan, to find the vertices and edges that other faces have. An edit is refused if the edit
-/// itself is not possible (for example the flip of a boundary edge), if two vertices would
-/// coincide, or if the tables are full.
+/// If an edit adds or moves a vertex, the scan also checks that no other vertex has the new
+/// position. If a log records the edits, `add_face`, `remove_face`, `remove_vertex` and
+/// `split_face` need one more scan, to find the vertices and edges that other faces have. An edit
+/// is refused if the edit itself is not possible (for example the flip of a boundary edge), if a
+/// handle is not valid, if two vertices would coincide, or if the tables are full.
 ///
 /// [`set_positions`]: sixfold_core::Representation::set_positions
 ///

@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    #[should_panic(expected = "no face f1: there are 1")]
+    #[should_panic(expected = "no face f1: every face has a row below 1")]
     fn a_missing_face_panics_with_its_handle() {
         let triangle = PolygonMesh::new([Point::X, Point::Y, Point::Z], [[0, 1, 2]]);
         let soup = PolygonSoup::from_polygons(&triangle.expect("valid")).expect("a valid soup");

@@ -7,17 +7,18 @@ use std::hash::{Hash, Hasher};
 use rustc_hash::FxHashSet;
 use sixfold_core::{Handle, HashHandleMap, Point, ScannedVertex};
 
-/// A vertex of a polygon soup: the bits of its coordinates. A coordinate −0 is stored as 0.
+/// The handle of a vertex of a polygon soup: the bits of its coordinates. A coordinate −0 is stored
+/// as 0.
 ///
 /// Two corners are at one vertex if and only if the bits of their coordinates are equal. The order
 /// of vertices has no geometric meaning.
 ///
 /// # Points that are nearly equal
 ///
-/// Vertices that differ only by rounding errors are different vertices. Handles are keys of maps,
-/// so handles need [`Eq`] and [`Hash`]. A comparison with a tolerance is not transitive, so [`Eq`]
-/// cannot allow a tolerance. For example, with a tolerance of 1, the points 0 and 0.8 are equal and
-/// the points 0.8 and 1.6 are equal, but the points 0 and 1.6 are not equal.
+/// Two vertices whose coordinates differ only by rounding errors are different vertices. Handles
+/// are keys of maps, so handles need [`Eq`] and [`Hash`]. A comparison with a tolerance is not
+/// transitive, so [`Eq`] cannot allow a tolerance. For example, with a tolerance of 1, the points 0
+/// and 0.8 are equal and the points 0.8 and 1.6 are equal, but the points 0 and 1.6 are not equal.
 ///
 /// Merge points that are nearly equal before you build the soup. For example, round the positions
 /// to a grid: points with the same rounded position are one vertex. Two close points on different

@@ -1,10 +1,10 @@
-//! Relation tables: the relations of a mesh that a program queries often, stored as flat tables.
+//! Relation tables: relations of a mesh, stored as flat tables.
 //!
-//! Use relation tables for many sweeps over a mesh that does not change. Each row of a table is a
-//! slice, and consecutive rows are adjacent in memory. A table is built in one sweep over the
-//! structure. A later edit of the mesh does not change the tables. Start at [`Numbering`], which
-//! numbers the elements of a mesh and builds the tables. The row indices and the items of a table
-//! are numbers of elements.
+//! Use relation tables if a program queries the same relations many times, and the mesh does not
+//! change. Each row of a table is a slice, and consecutive rows are adjacent in memory. A table is
+//! built in one sweep over the structure. A later edit of the mesh does not change the tables.
+//! Start at [`Numbering`], which numbers the elements of a mesh and builds the tables. The row
+//! indices and the items of a table are numbers of elements.
 //!
 //! ```text
 //!   offsets   0     3        7  …        row v of `vertex_faces` is items[offsets[v]..offsets[v + 1]];

@@ -10,7 +10,7 @@ use crate::table::{RelationTable, TabulationError};
 ///
 /// If handles are rows and no element was removed, the number of an element is its row. Vertices,
 /// edges and faces are numbered separately. Each kind of element (vertex, edge or face) is numbered
-/// when a number of this kind is first needed.
+/// when a number of this kind is first needed, and the numbers are stored.
 pub struct Numbering<'m, M: MeshQuery> {
     mesh: &'m M,
     vertices: OnceCell<Numbers<M::Vertex>>,
@@ -23,7 +23,7 @@ macro_rules! tabulate {
     ($(#[$doc:meta])+ $name:ident, $relation:ident, $all:ident, $from:ty => $number:ident, $to:ty) => {
         $(#[$doc])+
         ///
-        /// O(rows + items), plus the cost of querying every element once.
+        /// Takes O(rows + items) time, plus the time to query every element once.
         ///
         /// # Errors
         ///
@@ -39,7 +39,7 @@ macro_rules! tabulate {
 }
 
 impl<'m, M: MeshQuery> Numbering<'m, M> {
-    /// Creates the numbering of `mesh`. Elements are numbered when their numbers are first needed.
+    /// Returns the numbering of `mesh`. Elements are numbered when their numbers are first needed.
     pub fn new(mesh: &'m M) -> Self {
         Self {
             mesh,
@@ -49,20 +49,22 @@ impl<'m, M: MeshQuery> Numbering<'m, M> {
         }
     }
 
-    /// Returns the numbers of all vertices. The first call takes O(vertices) time, later calls
-    /// O(1).
+    /// Returns the numbers of all vertices. The first call lists and numbers all vertices; later
+    /// calls take O(1) time.
     #[inline]
     pub fn vertices(&self) -> &Numbers<M::Vertex> {
         self.vertices.get_or_init(|| self.mesh.vertex_numbers())
     }
 
-    /// Returns the numbers of all edges. The first call takes O(edges) time, later calls O(1).
+    /// Returns the numbers of all edges. The first call lists and numbers all edges; later calls
+    /// take O(1) time.
     #[inline]
     pub fn edges(&self) -> &Numbers<M::Edge> {
         self.edges.get_or_init(|| self.mesh.edge_numbers())
     }
 
-    /// Returns the numbers of all faces. The first call takes O(faces) time, later calls O(1).
+    /// Returns the numbers of all faces. The first call lists and numbers all faces; later calls
+    /// take O(1) time.
     #[inline]
     pub fn faces(&self) -> &Numbers<M::Face> {
         self.faces.get_or_init(|| self.mesh.face_numbers())

@@ -1,4 +1,4 @@
-//! One relation as rows of items.
+//! The table of one relation: a row of items for each element.
 
 use std::marker::PhantomData;
 use std::ops::Range;

@@ -47,7 +47,7 @@ impl Target {
 
 /// The treatment of vertices on boundary edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Boundary {
+pub enum DecimationBoundary {
     /// The boundary is simplified like the surface. Planes perpendicular to the surface preserve
     /// the shape of the boundary.
     #[default]
@@ -63,14 +63,14 @@ pub struct Decimation {
     /// The number of faces to keep.
     pub target: Target,
     /// The treatment of vertices on boundary edges.
-    pub boundary: Boundary,
+    pub boundary: DecimationBoundary,
 }
 
 impl Default for Decimation {
     fn default() -> Self {
         Self {
             target: Target::Ratio(0.5),
-            boundary: Boundary::Follow,
+            boundary: DecimationBoundary::Follow,
         }
     }
 }
@@ -86,6 +86,9 @@ pub struct Decimated {
     /// The number of refused collapses. A collapse is refused if the collapse is illegal or would
     /// turn a face over.
     pub refused: usize,
+    /// A hash of the ends of the refused collapses, in order; 0 if no collapse was refused. Two
+    /// decimations of one mesh that refuse different collapses have different hashes.
+    pub refused_hash: u64,
     /// The largest error of a collapse. The error is a sum of squared distances to the planes of
     /// faces. Each squared distance is multiplied by the area of its face.
     pub max_error: f64,
@@ -143,6 +146,7 @@ pub fn decimate_watched<M: MeshEdit>(
         faces: mesh.face_count(),
         collapses: 0,
         refused: 0,
+        refused_hash: 0,
         max_error: 0.0,
         stop: Stop::Done,
     };
@@ -159,6 +163,10 @@ pub fn decimate_watched<M: MeshEdit>(
         }
         let Some(error) = work.collapse(mesh, &entry) else {
             report.refused += 1;
+            // A polynomial of the ends, modulo 2⁶⁴. The odd factor mixes the order in.
+            let [a, b] = entry.ends.map(u64::from);
+            let hash = report.refused_hash.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            report.refused_hash = hash.wrapping_add((a << 32 | b) + 1);
             continue;
         };
         report.max_error = report.max_error.max(error);
@@ -197,7 +205,7 @@ struct Work<M: MeshEdit> {
 }
 
 impl<M: MeshEdit> Work<M> {
-    fn new(mesh: &M, boundary: Boundary) -> Result<Self, RemeshError> {
+    fn new(mesh: &M, boundary: DecimationBoundary) -> Result<Self, RemeshError> {
         let numbering = Numbering::new(mesh)?;
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let mut vertices = Vec::with_capacity(numbering.len());
@@ -223,7 +231,7 @@ impl<M: MeshEdit> Work<M> {
 
     /// Adds the planes of the faces and the planes at the boundary to the quadrics of their
     /// vertices. The origin of each quadric is its vertex.
-    fn add_planes(&mut self, mesh: &M, boundary: Boundary) {
+    fn add_planes(&mut self, mesh: &M, boundary: DecimationBoundary) {
         let face_counts = mesh.edge_face_counts();
         let mut quadrics = vec![Quadric::default(); self.vertices.len()];
         let mut boundary_planes: Vec<([u32; 2], Quadric)> = Vec::new();
@@ -249,7 +257,7 @@ impl<M: MeshEdit> Work<M> {
                         let weight = BOUNDARY_WEIGHT * along.length_squared();
                         boundary_planes.push(([i, j], Quadric::plane(normal, weight)));
                     }
-                    if boundary == Boundary::Fixed {
+                    if boundary == DecimationBoundary::Fixed {
                         self.vertices[i as usize].fixed = true;
                         self.vertices[j as usize].fixed = true;
                     }

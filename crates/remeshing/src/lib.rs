@@ -79,7 +79,9 @@ mod quadric;
 mod queue;
 mod rules;
 
-pub use decimation::{Boundary, Decimated, Decimation, Target, decimate, decimate_watched};
+pub use decimation::{
+    Decimated, Decimation, DecimationBoundary, Target, decimate, decimate_watched,
+};
 pub use delaunay::{Flipped, flip_to_delaunay};
 pub use error::RemeshError;
 pub use isotropic::{Remeshed, Remeshing, remesh, remesh_watched};

@@ -51,6 +51,7 @@
 //!
 //! [`PolygonMesh`]: sixfold_core::PolygonMesh
 
+mod carry;
 mod cut;
 mod diagnosis;
 mod duplicates;

@@ -165,11 +165,11 @@ fn text(run: &Run, rounds: usize, samples: &Samples) -> Result<String, std::fmt:
     text += &common::introduction(run, "editing_report", "reports/editing", rounds);
     writeln!(
         text,
-        " The meshes are tori of 1,058 to 1,036,800 triangles. Each edit is done at up to {PLACES} places of a fresh copy of the mesh ({PLACES_SCANNED} places if the structure scans all faces). The places are spread over the mesh, in no particular order. An untimed edit comes first, because the first edit reallocates full tables. Every edit checks whether it is legal. No edit writes a log of its changes.\n\n![Time per edit over the faces of the mesh](growth.svg)\n"
+        " The meshes are tori of 1,058 to 1,036,800 triangles. A place is a face with its edges and vertices. Each edit is done at up to {PLACES} places of a new copy of the mesh ({PLACES_SCANNED} places if the structure scans all faces). The places are spread over the mesh, in no particular order. One untimed edit comes before the timed edits, because the first edit reallocates full tables. Every edit checks whether it is legal. No edit writes a log of its changes.\n\n![Time per edit over the faces of the mesh](growth.svg)\n"
     )?;
     writeln!(
         text,
-        "\n## One edit\n\nEach cell has the time at 16,200 faces and two exponents of growth: from 1,058 to 16,200 faces (in the cache), and from 16,200 to 1,036,800 faces (larger than the cache). An exponent of about 0 means that the time is constant. An exponent of about 1 means that the edit scans the whole mesh.\n"
+        "\n## One edit\n\nEach cell has the time of one edit on a mesh of 16,200 faces, and two exponents of growth: from 1,058 to 16,200 faces (the structures fit into the cache), and from 16,200 to 1,036,800 faces (larger than the cache). The time of an edit is nearly proportional to the number of faces to the power of the exponent. An exponent of about 0 means that the time is constant. An exponent of about 1 means that the edit scans the whole mesh.\n"
     )?;
     table(&mut text, samples, Edit::ALL.map(Edit::name), |points| {
         let at = points
@@ -194,7 +194,7 @@ fn text(run: &Run, rounds: usize, samples: &Samples) -> Result<String, std::fmt:
     })?;
     writeln!(
         text,
-        "\n## Whole workloads\n\nEach cell has two times and an exponent. The two times are for 1,058 faces and for the largest mesh, per face of the mesh (`flip_all`: per edge to be flipped). The exponent is the growth of the total time from 16,200 faces on.\n"
+        "\n## Whole workloads\n\nEach cell has two times and an exponent. The two times are for 1,058 faces and for the largest mesh, per face of the mesh (`flip_all`: per edge to be flipped). The exponent is the exponent of growth of the total time, for meshes of 16,200 faces or more.\n"
     )?;
     table(
         &mut text,

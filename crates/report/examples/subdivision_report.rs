@@ -36,13 +36,14 @@ const MAX_RUN_NS: f64 = 4e8;
 const CONCLUSIONS: &str = "
 ## What it shows
 
-The method `gather` queries the relations EF and VV for every new point. A polygon soup and an indexed face set must search
-for the answers, so their time per face grows with the size of the mesh. The method `scatter` avoids the searches, because
-it uses only relations that every structure stores. The indexed face set takes little time to build. Therefore it is the
-fastest structure with `scatter`. Of the structures that store adjacent elements, only structures with expensive walks are
-faster with `scatter` than with `gather`. The method `native` does not build the structure again, which takes most of the
-time of the other methods. If `native` writes into the tables of the previous run, it also avoids the first access to new
-memory pages.
+The method `gather` queries the relations EF (faces of an edge) and VV (neighbours of a vertex) for every new point. A
+polygon soup and an indexed face set must search all faces for the answers, so their time per new face grows with the
+size of the mesh. The method `scatter` avoids the searches, because `scatter` uses only relations that every structure
+stores. The indexed face set takes little time to build. Therefore the indexed face set is the fastest structure with
+`scatter`. Of the structures that store adjacent elements, only structures with expensive walks are faster with
+`scatter` than with `gather`. With `gather` and `scatter`, most of the time is the time to build the structure again.
+The method `native` does not build the structure again. If `native` writes into the tables of the previous run, the run
+also needs no new memory pages.
 ";
 
 /// A scheme, a method and a structure.
@@ -132,8 +133,8 @@ fn measure(polygons: &PolygonMesh, rounds: usize) -> Result<Samples, Subdivision
 fn text(run: &Run, rounds: usize, samples: &Samples) -> Result<String, std::fmt::Error> {
     let mut text = String::from("# Cost of subdivision on each structure\n\n");
     text += &common::introduction(run, "subdivision_report", "reports/subdivision", rounds);
-    text += " The control mesh is a geodesic sphere of 5,120 triangles. Times are for all levels, in nanoseconds per face of the last level.\n\n";
-    text += "`gather` queries the neighbourhood of each new point, and `scatter` makes one pass over the faces. After `gather` and `scatter`, the structure is built again from polygons. `native_fresh` and `native` split the structure's own tables. `native_fresh` writes the result into newly allocated tables, and `native` writes the result into the tables of the previous run.\n\n![Nanoseconds per new face, by size](growth.svg)\n";
+    text += " The control mesh is a geodesic sphere of 5,120 triangles. A time is for all levels up to the level in the head of the column, in nanoseconds per face of this level.\n\n";
+    text += "`gather` queries the neighbourhood of each new point, and `scatter` makes one pass over the faces. After `gather` and `scatter`, the structure is built again from polygons. `native_fresh` and `native` split the structure's own tables: `native_fresh` writes the result into newly allocated tables, and `native` writes the result into the tables of the previous run. The sign – means that the level was not measured: the previous level took more than 0.4 s, or the structure cannot hold quads.\n\n![Nanoseconds per new face, by size](growth.svg)\n";
     for scheme in SCHEMES {
         writeln!(text, "\n## {scheme}\n")?;
         let mut head = String::from("| | structure |");
@@ -163,7 +164,6 @@ fn text(run: &Run, rounds: usize, samples: &Samples) -> Result<String, std::fmt:
         }
     }
     text += CONCLUSIONS;
-    text += "\nThe sign – means that the level was not measured: the previous level took more than 0.4 s, or the structure cannot hold quads.\n";
     Ok(text)
 }
 

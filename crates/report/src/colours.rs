@@ -3,23 +3,26 @@
 //! Figures are drawn once, in fixed colours. On dark pages, a style sheet replaces these colours,
 //! because style rules override the presentation attributes of SVG.
 
+use sixfold::structure_infos;
+
 pub(crate) const TEXT_COLOUR: &str = "#17181a";
 pub(crate) const BACKGROUND: &str = "#fdfdfc";
 pub(crate) const GRID_COLOUR: &str = "#dcdcda";
 pub(crate) const INTERVAL_COLOUR: &str = "#33353a";
 
-/// For each column, its name and its colours on light pages and on dark pages. The colours follow
-/// Okabe and Ito (2008).
-const COLUMNS: [(&str, &str, &str); 7] = [
-    ("polygon-soup", "#7f7f84", "#a3a3a8"),
-    ("indexed-face-set", "#d98e04", "#f0b13c"),
-    ("face-vertex", "#3f9fd4", "#6cc1f0"),
-    ("winged-edge", "#0a8f66", "#2fc796"),
-    ("half-edge", "#1f6fb0", "#5ba4e6"),
-    ("corner-table", "#c8511b", "#f08553"),
-    ("relation-tables", "#b0618f", "#dd93bd"),
+/// Colours of the structures on light pages and on dark pages, in the order of
+/// [`sixfold::structures!`]. The colours follow Okabe and Ito (2008).
+const STRUCTURES: [(&str, &str); 6] = [
+    ("#7f7f84", "#a3a3a8"),
+    ("#d98e04", "#f0b13c"),
+    ("#3f9fd4", "#6cc1f0"),
+    ("#0a8f66", "#2fc796"),
+    ("#1f6fb0", "#5ba4e6"),
+    ("#c8511b", "#f08553"),
 ];
-/// Colours of external programs on light pages and on dark pages.
+/// The name and the colours of relation tables.
+const RELATION_TABLES: (&str, (&str, &str)) = ("relation-tables", ("#b0618f", "#dd93bd"));
+/// Colours of all other columns on light pages and on dark pages.
 const OTHERS: [(&str, &str); 3] = [
     ("#6a5acd", "#a094f0"),
     ("#8c8a1e", "#c9c655"),
@@ -37,13 +40,15 @@ const TABLES: [(&str, &str); 8] = [
     ("#8f8f8f", "#bcbcbc"),
 ];
 
+/// Returns the colour of the column `name`. A structure beyond [`STRUCTURES`], and an external
+/// program, gets one of [`OTHERS`], chosen by its name.
 pub(crate) fn column_colour(name: &str) -> &'static str {
-    let ours = COLUMNS.iter().find(|(column, ..)| *column == name);
-    let other = || {
-        let turn = name.bytes().map(usize::from).sum::<usize>() % OTHERS.len();
-        OTHERS[turn].0
-    };
-    ours.map_or_else(other, |(_, light, _)| light)
+    let infos = structure_infos();
+    let structures = infos.iter().map(|info| info.name).zip(STRUCTURES);
+    let mut known = structures.chain([RELATION_TABLES]);
+    let known = known.find(|(column, _)| *column == name);
+    let turn = name.bytes().map(usize::from).sum::<usize>() % OTHERS.len();
+    known.map_or(OTHERS[turn], |(_, colours)| colours).0
 }
 
 pub(crate) fn table_colour(number: usize) -> &'static str {
@@ -57,7 +62,7 @@ pub(crate) fn dark_rules() -> String {
         (GRID_COLOUR, "#3a3b3e"),
         (INTERVAL_COLOUR, "#d0d0ce"),
     ];
-    let columns = COLUMNS.iter().map(|&(_, light, dark)| (light, dark));
+    let columns = STRUCTURES.into_iter().chain([RELATION_TABLES.1]);
     let pairs = page.into_iter().chain(columns).chain(OTHERS).chain(TABLES);
     let rule = |(light, dark): (&str, &str)| {
         format!("[fill=\"{light}\"]{{fill:{dark}}}[stroke=\"{light}\"]{{stroke:{dark}}}")
@@ -71,7 +76,8 @@ mod tests {
 
     #[test]
     fn all_colours_are_different() {
-        let mut all: Vec<&str> = COLUMNS.iter().map(|(_, light, _)| *light).collect();
+        let mut all: Vec<&str> = STRUCTURES.iter().map(|(light, _)| *light).collect();
+        all.push(RELATION_TABLES.1.0);
         all.extend(OTHERS.iter().map(|(light, _)| *light));
         all.extend([TEXT_COLOUR, BACKGROUND, GRID_COLOUR, INTERVAL_COLOUR]);
         all.extend(TABLES.iter().map(|(light, _)| *light));
@@ -81,5 +87,14 @@ mod tests {
         assert_eq!(all.len(), count);
         assert!(all.iter().all(|hex| hex.len() == 7 && hex.starts_with('#')));
         assert_ne!(column_colour("half-edge"), column_colour("lox"));
+        let infos = structure_infos();
+        assert_eq!(
+            infos.len(),
+            STRUCTURES.len(),
+            "add the colours of the structure"
+        );
+        for (info, (light, _)) in infos.iter().zip(STRUCTURES) {
+            assert_eq!(column_colour(info.name), light);
+        }
     }
 }

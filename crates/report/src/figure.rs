@@ -37,6 +37,17 @@ pub struct Table {
     pub rows: Vec<Vec<String>>,
 }
 
+/// A table that stands on the page without a figure.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TitledTable {
+    /// Title.
+    pub title: String,
+    /// Text that explains the columns.
+    pub caption: String,
+    /// The numbers.
+    pub table: Table,
+}
+
 impl Table {
     pub(crate) fn new(header: impl IntoIterator<Item = impl Into<String>>) -> Self {
         Self {

@@ -1,11 +1,14 @@
 //! Selects the figures for each kind of results.
 
+mod audit;
 mod break_even;
+mod groups;
 mod growth;
 mod heat_map;
 mod memory;
 mod orders;
 mod ranking;
+mod reads;
 mod roofline;
 
 use sixfold_study::numbers::{counted, grouped};
@@ -51,23 +54,17 @@ pub(crate) fn page(results: &Results, command: &str) -> ReportPage {
         true => first,
         false => command,
     };
-    let mut machines: Vec<String> = Vec::new();
-    for run in runs(results) {
-        let machine = machine(&run.environment);
-        if !machines.contains(&machine) {
-            machines.push(machine);
-        }
-    }
     let section = |(place, study): (usize, &&Report)| Section {
         title: study.mesh.name.clone(),
         facts: facts(&study.mesh),
         sentences: study.sentences.clone(),
         figures: section_figures(study, place + 1, command),
+        tables: Vec::new(),
     };
     ReportPage {
         title,
         command: command.into(),
-        machines,
+        machines: machines(results),
         sentences: match single {
             Some(study) => [vec![facts(&study.mesh)], study.sentences.clone()].concat(),
             None => pool.sentences.clone(),
@@ -81,6 +78,10 @@ pub(crate) fn page(results: &Results, command: &str) -> ReportPage {
         figures: match single {
             Some(study) => study_figures(study, command),
             None => pooled_figures(&pool, command),
+        },
+        tables: match single {
+            Some(_) => Vec::new(),
+            None => groups::tables(&pool),
         },
         meshes: match single {
             Some(_) => Vec::new(),
@@ -120,6 +121,7 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
                 &numbered_id("orders", i),
                 recorded_command(&orders.run, command),
             ),
+            tables: Vec::new(),
         });
     }
     for (i, growth) in results.growth().enumerate() {
@@ -138,17 +140,35 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
                 &numbered_id("growth", i),
                 recorded_command(&growth.run, command),
             ),
+            tables: Vec::new(),
         });
     }
     for (i, why) in results.why().enumerate() {
         let command = recorded_command(&why.run, command);
         let figure = roofline::from_why(why, &numbered_id("roofline", i), command);
-        sections.extend(figure.map(|figure| Section {
-            title: format!("Limiting factors of the queries on {}", why.mesh.name),
+        let title = match figure {
+            Some(_) => "Limiting factors of the queries",
+            None => "Reads of the queries",
+        };
+        sections.push(Section {
+            title: format!("{title} on {}", why.mesh.name),
             facts: facts(&why.mesh),
             sentences: why.warnings.clone(),
-            figures: vec![figure],
-        }));
+            tables: match figure {
+                Some(_) => Vec::new(),
+                None => vec![reads::table(why)],
+            },
+            figures: figure.into_iter().collect(),
+        });
+    }
+    for audit in results.memory() {
+        sections.push(Section {
+            title: format!("Memory: {}", audit.mesh.name),
+            facts: facts(&audit.mesh),
+            sentences: audit.faults(),
+            figures: Vec::new(),
+            tables: audit::tables(audit),
+        });
     }
     for (i, neighbours) in results.neighbours().enumerate() {
         let command = recorded_command(&neighbours.run, command);
@@ -158,6 +178,7 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
             facts: facts(&neighbours.mesh),
             sentences: [&neighbours.sentences[..], &neighbours.warnings].concat(),
             figures: ranking::from_neighbours(neighbours, &id, command).collect(),
+            tables: Vec::new(),
         });
     }
     for (i, pick) in results.picks().enumerate() {
@@ -171,6 +192,7 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
             facts: pick.workload.summary.trim().to_owned(),
             sentences: [&pick.sentences[..], &pick.warnings].concat(),
             figures: ranked.into_iter().chain(curves).collect(),
+            tables: Vec::new(),
         });
     }
     sections
@@ -249,6 +271,34 @@ fn facts(mesh: &MeshReport) -> String {
         "{vertices}, {} edges, {faces}; {closed}{genus}{changes}.",
         grouped(facts.edges)
     )
+}
+
+/// Describes the machines of the findings. If there are several, each one is preceded by the names
+/// of its findings, such as `study of ball.obj, orders`.
+fn machines(results: &Results) -> Vec<String> {
+    let mut machines: Vec<(String, Vec<String>)> = Vec::new();
+    for finding in &results.findings {
+        let machine = machine(&finding.run().environment);
+        // All meshes of a growth have the same name.
+        let meshes = finding.meshes().iter().map(|mesh| mesh.name.as_str());
+        let mut meshes: Vec<&str> = meshes.collect();
+        meshes.dedup();
+        let name = match meshes.is_empty() {
+            true => finding.kind().to_owned(),
+            false => format!("{} of {}", finding.kind(), meshes.join(", ")),
+        };
+        match machines.iter_mut().find(|(known, _)| *known == machine) {
+            Some((_, names)) if names.contains(&name) => {}
+            Some((_, names)) => names.push(name),
+            None => machines.push((machine, vec![name])),
+        }
+    }
+    let single = machines.len() == 1;
+    let described = machines.into_iter().map(|(machine, names)| match single {
+        true => machine,
+        false => format!("{}: {machine}", names.join("; ")),
+    });
+    described.collect()
 }
 
 fn machine(environment: &Environment) -> String {

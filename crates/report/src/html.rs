@@ -3,7 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::colours::dark_rules;
-use crate::figure::{Figure, Table};
+use crate::figure::{Figure, Table, TitledTable};
 use crate::{ReportPage, Section};
 
 /// Style sheet: fonts, light and dark mode, printing, small screens.
@@ -57,11 +57,13 @@ impl ReportPage {
                         ul { @for mesh in &self.missing { li { code { (mesh) } } } }
                     }
                     @for figure in &self.figures { (figure_section(figure, "h2", None)) }
+                    @for table in &self.tables { h2 { (table.title) } (table_section(table)) }
                     @for lab in &self.labs {
                         h2 { (lab.title) }
                         p { (lab.facts) }
                         (list(&lab.sentences))
                         @for figure in &lab.figures { (figure_section(figure, "h3", None)) }
+                        @for table in &lab.tables { h3 { (table.title) } (table_section(table)) }
                     }
                     @if !self.meshes.is_empty() {
                         h2 { "Mesh by mesh" }
@@ -109,6 +111,13 @@ fn figure_section(figure: &Figure, heading: &str, mesh: Option<&str>) -> Markup 
                 pre { code { (figure.command) } }
             }
         }
+    }
+}
+
+fn table_section(table: &TitledTable) -> Markup {
+    html! {
+        p { (table.caption) }
+        (table_markup(&table.table))
     }
 }
 

@@ -19,7 +19,7 @@ mod panels;
 
 use sixfold_study::Results;
 
-pub use figure::{Figure, Table};
+pub use figure::{Figure, Table, TitledTable};
 pub use panels::{Panel, panels};
 
 /// A report on studies and additional measurements.
@@ -38,7 +38,9 @@ pub struct ReportPage {
     /// Figures about all meshes together. If there is only one mesh, the figures are about this
     /// mesh.
     pub figures: Vec<Figure>,
-    /// Sections for additional measurements: orders of elements, growth, reads of queries,
+    /// Tables about groups of meshes; empty if there is only one mesh.
+    pub tables: Vec<TitledTable>,
+    /// Sections for additional measurements: orders of elements, growth, reads of queries, memory,
     /// workloads.
     pub labs: Vec<Section>,
     /// One section for each mesh; empty if there is only one mesh.
@@ -60,6 +62,8 @@ pub struct Section {
     pub sentences: Vec<String>,
     /// The figures of the section.
     pub figures: Vec<Figure>,
+    /// The tables of the section, which follow the figures.
+    pub tables: Vec<TitledTable>,
 }
 
 impl ReportPage {

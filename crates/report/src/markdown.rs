@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::ReportPage;
-use crate::figure::{Figure, Table};
+use crate::figure::{Figure, Table, TitledTable};
 
 impl ReportPage {
     /// Returns the page as Markdown. The page links to each figure as `figures/ID.svg`, where ID is
@@ -35,6 +35,9 @@ impl ReportPage {
         for figure in &self.figures {
             write_figure(&mut text, figure, "##");
         }
+        for table in &self.tables {
+            write_titled_table(&mut text, table, "##");
+        }
         for section in self.labs.iter().chain(&self.meshes) {
             let _ = writeln!(
                 text,
@@ -45,6 +48,9 @@ impl ReportPage {
             write_list(&mut text, &section.sentences);
             for figure in &section.figures {
                 write_figure(&mut text, figure, "###");
+            }
+            for table in &section.tables {
+                write_titled_table(&mut text, table, "###");
             }
         }
         text
@@ -66,6 +72,12 @@ fn write_figure(text: &mut String, figure: &Figure, heading: &str) {
     let _ = writeln!(text, "{}\n", escape(&figure.caption));
     write_table(text, &figure.table);
     let _ = writeln!(text, "```sh\n{}\n```\n", figure.command);
+}
+
+fn write_titled_table(text: &mut String, table: &TitledTable, heading: &str) {
+    let (title, caption) = (escape(&table.title), escape(&table.caption));
+    let _ = writeln!(text, "{heading} {title}\n\n{caption}\n");
+    write_table(text, &table.table);
 }
 
 fn write_table(text: &mut String, table: &Table) {

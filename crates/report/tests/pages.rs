@@ -151,3 +151,97 @@ fn pages_load_nothing_and_names_are_escaped() {
     }
     assert!(!page.markdown().replace("\\<", "").contains("<script"));
 }
+
+/// If the findings come from two machines, each line about a machine names its findings.
+#[test]
+fn each_machine_names_its_findings() {
+    let page = ReportPage::new(&results(&["a.obj", "b.obj"]), "sixfold merge");
+    assert_eq!(page.machines.len(), 1);
+    assert!(!page.machines[0].contains("a.obj"), "{:?}", page.machines);
+    let mut other = report("b.obj");
+    other.run.environment.cpu_model = Some("Another processor".into());
+    let mut both = results(&["a.obj"]);
+    both.add(other.into());
+    let machines = ReportPage::new(&both, "sixfold merge").machines;
+    assert_eq!(machines.len(), 2);
+    assert!(machines[0].starts_with("study of a.obj: "), "{machines:?}");
+    assert!(
+        machines[1].starts_with("study of b.obj: Another processor"),
+        "{machines:?}"
+    );
+}
+
+/// A page shows the counts of documents without times.
+#[test]
+fn counts_without_times_are_tables() {
+    let mesh = StudyMesh::new("ball.obj", shapes::icosahedron());
+    let backends = sixfold_study::Backend::structures();
+    let settings = sixfold_study::WhySettings::default();
+    let why = sixfold_study::why(&mesh, &settings, &AtomicBool::new(false), &mut |_| ());
+    let memory = sixfold_study::audit(&mesh, &backends, &NoHeap, &mut |_| ());
+    let mut all = results(&["ball.obj"]);
+    all.add(why.expect("six hold it").into());
+    all.add(memory.into());
+    let page = ReportPage::new(&all, "sixfold merge");
+    let titles: Vec<&str> = page.labs.iter().map(|lab| lab.title.as_str()).collect();
+    assert_eq!(
+        titles,
+        ["Reads of the queries on ball.obj", "Memory: ball.obj"]
+    );
+    let rows = |lab: usize| page.labs[lab].tables[0].table.rows.len();
+    assert_eq!([rows(0), rows(1)], [9 * 6, 6]);
+    for text in [page.html(), page.markdown()] {
+        for part in ["Reads of each query", "Bytes by formula", "polygon-soup"] {
+            assert!(text.contains(part), "{part}");
+        }
+    }
+}
+
+/// An allocator that counts nothing.
+struct NoHeap;
+
+impl sixfold_study::Heap for NoHeap {
+    fn live(&self) -> usize {
+        0
+    }
+
+    fn restart_peak(&self) {}
+
+    fn peak(&self) -> usize {
+        0
+    }
+}
+
+/// The page of several meshes has the means of each group.
+#[test]
+fn groups_of_meshes_have_a_table() {
+    let mut all = results(&["a.obj"]);
+    let settings = Settings {
+        operations: operations(),
+        budget: Duration::from_millis(80),
+        ..Settings::default()
+    };
+    let grid = StudyMesh::new("b.obj", shapes::triangle_grid(12, 12).expect("small"));
+    let grid = study(&grid, &settings, &AtomicBool::new(false), &mut |_| ());
+    all.add(grid.expect("a study").into());
+    let page = ReportPage::new(&all, "sixfold study");
+    let [groups] = &page.tables[..] else {
+        panic!("one table: {:?}", page.tables);
+    };
+    let names: Vec<&str> = groups
+        .table
+        .rows
+        .iter()
+        .map(|row| row[0].as_str())
+        .collect();
+    for name in ["all meshes", "100 to 999 faces", "closed meshes"] {
+        assert!(names.contains(&name), "{names:?}");
+    }
+    assert!(page.html().contains("Groups of meshes"));
+    assert!(page.markdown().contains("## Groups of meshes"));
+    let single = ReportPage::new(&results(&["a.obj"]), "sixfold study");
+    assert!(single.tables.is_empty());
+    // A mean over meshes is not a ratio of times of the same rounds.
+    let ranking = figure_by_id(&page, "ranking-boundary");
+    assert!(ranking.caption.contains("geometric mean over the meshes"));
+}

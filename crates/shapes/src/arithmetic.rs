@@ -1,8 +1,7 @@
 //! Sine, cosine and exponential function, computed with + − × ÷ only.
 //!
-//! The trigonometric functions of different platforms differ in the last bits. IEEE arithmetic and
-//! square roots are the same on every platform. So a shape has the same coordinates on every
-//! machine.
+//! The trigonometric functions of different platforms differ in the last bits, but IEEE arithmetic
+//! is the same on every platform. So a shape has the same coordinates on every machine.
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, LN_2, LOG2_E};
 

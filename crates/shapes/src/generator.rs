@@ -15,7 +15,7 @@ use crate::{b_spline_patch, bezier_patch};
 pub struct Generator {
     /// The name of the shape on the command line, for example `triangle-torus`.
     pub name: &'static str,
-    /// Description in one line.
+    /// The description of the shape, in one line.
     pub summary: &'static str,
     /// The parameters, in the order of the help text.
     pub parameters: &'static [Parameter],
@@ -27,14 +27,14 @@ pub struct Generator {
 pub struct Parameter {
     /// The name of the parameter on the command line.
     pub name: &'static str,
-    /// Description in a few words.
+    /// The description of the parameter, in a few words.
     pub meaning: &'static str,
-    /// Default value.
+    /// The default value.
     pub default: f64,
-    /// Minimum value.
+    /// The minimum value.
     pub min: f64,
-    /// Maximum value. If other parameters of the shape are large, the shape may accept only smaller
-    /// values.
+    /// The maximum value. If other parameters of the shape are large, the shape may accept only
+    /// smaller values.
     pub max: f64,
     /// True if the value must be an integer.
     pub is_integer: bool,
@@ -120,7 +120,7 @@ impl Generator {
     }
 }
 
-/// Returns the generator with this name, or `None` if the name is unknown.
+/// Returns the generator called `name`, or `None` if there is no such generator.
 pub fn generator(name: &str) -> Option<&'static Generator> {
     GENERATORS.iter().find(|generator| generator.name == name)
 }

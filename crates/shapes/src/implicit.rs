@@ -43,14 +43,15 @@ const MIN_VALUE: f64 = 1e-6;
 /// in pairs, then join the pairs in pairs.
 const MAX_DEPTH: usize = 500;
 
-/// A Gaussian bell. Its value at the point p is `strength` · exp(−`sharpness` · |p − `centre`|²).
+/// A Gaussian bell. At the point p, the bell has the value `strength` · exp(−`sharpness` · |p −
+/// `centre`|²).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blob {
-    /// Centre of the bell.
+    /// The centre of the bell.
     pub centre: [f64; 3],
-    /// Value at the centre. A negative value makes a dent in the solid.
+    /// The value at the centre. A negative value makes a dent in the solid.
     pub strength: f64,
-    /// Factor of the squared distance from the centre. A large factor makes a narrow bell.
+    /// The factor of the squared distance from the centre. A large factor makes a narrow bell.
     pub sharpness: f64,
 }
 
@@ -63,7 +64,8 @@ pub struct Field {
 }
 
 impl Field {
-    /// Builds the ball around `centre`. The field is the signed distance from the surface.
+    /// Builds the ball of radius `radius` around `centre`. The field is the signed distance from
+    /// the surface.
     ///
     /// # Errors
     ///
@@ -173,8 +175,8 @@ impl Field {
         self.combined(other, |parts| Node::SmoothUnion { parts, alpha })
     }
 
-    /// Moves the surface to the points where the field has the value `by`. The solid grows if `by`
-    /// is positive, and shrinks if `by` is negative.
+    /// Returns the solid whose surface is at the points where the field has the value `by`. The
+    /// solid grows if `by` is positive, and shrinks if `by` is negative.
     ///
     /// # Errors
     ///

@@ -1,5 +1,5 @@
-//! Meshes that are built by formula. The table has the numbers V of vertices, E of edges and F of
-//! faces. The other letters are parameters of the shape, and χ = V − E + F.
+//! Meshes that are built by formula. The table shows the numbers V of vertices, E of edges and F of
+//! faces, and χ = V − E + F. The letters m, n, f, g and h are parameters of the shape.
 //!
 //! | shape | V | E | F | χ |
 //! |---|---|---|---|---|
@@ -25,8 +25,8 @@
 //! | [`implicit`] surfaces, [`default_study`] | F/2 + χ | 3F/2 | F | by topology |
 //!
 //! Faces of closed shapes are oriented outward. Faces of flat shapes run counter-clockwise as seen
-//! from above. No two vertices have the same position, except possibly in patches. A shape is the
-//! same on every machine, because the code calls no trigonometric function of the platform. If a
+//! from above. No two vertices have the same position, except in some patches. A shape is the same
+//! on every machine, because the code calls no trigonometric function of the platform. If a
 //! parameter is outside its documented range, the function of the shape returns a [`ShapeError`]
 //! without allocating memory. [`Order`] changes the order of the elements of any mesh.
 //! [`GENERATORS`] lists all shapes by name.

@@ -49,7 +49,7 @@ impl Order {
         self.apply_with_handles(mesh, seed).mesh
     }
 
-    /// Returns the mesh in this order, and the new handle of each element.
+    /// Returns the mesh in this order, and the new handle of each vertex and each face.
     pub fn apply_with_handles(self, mesh: &PolygonMesh, seed: u64) -> Reordered {
         match self {
             Self::Given => Reordered {
@@ -64,7 +64,7 @@ impl Order {
     }
 }
 
-/// A mesh in another order, with the new handles of its elements.
+/// A reordered mesh, with the new handles of its elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reordered {
     /// The reordered mesh.
@@ -81,7 +81,7 @@ impl fmt::Display for Order {
     }
 }
 
-/// The error for a name that is not the name of an order.
+/// The error for a name that no order has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("unknown order {given:?}: choose from {}", Order::ALL.map(Order::name).join(", "))]
 pub struct UnknownOrder {
@@ -119,9 +119,10 @@ fn shuffle(mesh: &PolygonMesh, seed: u64) -> Reordered {
 /// Returns the mesh in the order of the space-filling curve of Morton (1966). Elements that are
 /// near each other in space are then mostly near each other in memory.
 ///
-/// Positions are rounded to a grid of 2²¹ steps per side. The code of a position interleaves the
-/// bits of its three coordinates. Vertices are sorted by their codes, and faces by the codes of
-/// their centres. Elements with equal codes keep their order. Time: O(n log n) for n elements.
+/// Positions are rounded down to a grid with 2²¹ values along the longest side of the mesh. The
+/// code of a position interleaves the bits of its three grid coordinates. Vertices are sorted by
+/// their codes, and faces by the codes of their centres. Elements with equal codes keep their
+/// order. Time: O(n log n) for n elements.
 pub fn morton(mesh: &PolygonMesh) -> PolygonMesh {
     sort_by_morton_code(mesh).mesh
 }
@@ -159,9 +160,10 @@ fn sort_by_morton_code(mesh: &PolygonMesh) -> Reordered {
 /// Returns the mesh in the order of a breadth-first walk over its faces from vertex 0. Time:
 /// O(corners).
 ///
-/// For each vertex in turn, the walk visits the faces around this vertex and appends the new
-/// vertices of these faces. When all found vertices are processed, the walk continues at the
-/// unvisited vertex with the lowest number.
+/// The walk processes the vertices in the order in which it reaches them. At each vertex, the walk
+/// appends the unvisited faces around the vertex, and the unreached vertices of these faces. When
+/// all reached vertices are processed, the walk continues at the unreached vertex with the lowest
+/// number.
 pub fn breadth_first(mesh: &PolygonMesh) -> PolygonMesh {
     sort_breadth_first(mesh).mesh
 }

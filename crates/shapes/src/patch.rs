@@ -15,7 +15,7 @@ pub(crate) const MAX_CONTROL_POINTS: usize = 1024;
 ///
 /// # Invariants
 ///
-/// - N1  All rows have the same number of points. There are 2 to 1024 rows and columns.
+/// - N1  All rows have the same number of points. There are 2 to 1024 rows, and 2 to 1024 columns.
 /// - N2  Every coordinate is finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ControlNet {
@@ -65,8 +65,8 @@ impl ControlNet {
         Self::over_square(columns, rows, |_, _, x, y| x * x - y * y)
     }
 
-    /// Builds waves, for x and y from −1 to 1. Along each row, the heights of the control points
-    /// alternate between 0 and ±0.5.
+    /// Builds waves, for x and y from −1 to 1. Along the first row, the heights of the control
+    /// points repeat 0, 0.5, 0, −0.5. In every second row, the signs are reversed.
     ///
     /// # Errors
     ///
@@ -130,12 +130,13 @@ pub fn bezier_patch(net: &ControlNet, m: usize, n: usize) -> Result<PolygonMesh,
     })
 }
 
-/// Builds the uniform B-spline patch of a net as `m` × `n` quads. The `degree` is the same in both
-/// directions.
+/// Builds the uniform B-spline patch of a net as `m` × `n` quads. The patch has the degree `degree`
+/// in both directions.
 ///
 /// The mesh has (m + 1)(n + 1) vertices, m(n + 1) + n(m + 1) edges and mn faces. The patch has
-/// (columns − degree) × (rows − degree) pieces. Most patches pass through no control point. For
-/// some nets, vertices of the patch coincide. Time: O(degree²) per vertex (de Boor).
+/// (columns − degree) × (rows − degree) pieces. A patch of degree 2 or more usually passes through
+/// none of its control points. For some nets, vertices of the patch coincide. Time: O(degree²) per
+/// vertex (de Boor).
 ///
 /// # Errors
 ///

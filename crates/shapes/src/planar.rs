@@ -95,7 +95,7 @@ pub fn triangle_tiling(m: usize, n: usize) -> Result<PolygonMesh, ShapeError> {
     grid_of_cells("triangle-tiling", [m, n], corners, position, cell)
 }
 
-/// Builds a frame: `m` × `n` unit squares without the a × b squares in the middle. Here a = ⌊m/3⌋
+/// Builds a frame: `m` × `n` unit squares without the a × b squares in the middle, for a = ⌊m/3⌋
 /// and b = ⌊n/3⌋.
 ///
 /// The mesh has (m + 1)(n + 1) − (a − 1)(b − 1) vertices, m(n + 1) + n(m + 1) − a(b − 1) − b(a − 1)

@@ -6,7 +6,9 @@ mod files;
 mod inspect;
 mod memory;
 mod neighbours;
+mod new;
 mod picking;
+mod programs;
 mod remeshing;
 mod render;
 mod repair;
@@ -25,11 +27,13 @@ use sixfold_study::{CacheState, External, Operation, Policy};
 
 pub(crate) use comparing::{Compare, GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders};
 pub(crate) use distance::Distance;
-pub(crate) use files::{FileOptions, file_options, with_file_options};
+pub(crate) use files::{FileOptions, ReadFiles, file_options, with_file_options};
 pub(crate) use inspect::Inspect;
 pub(crate) use memory::Memory;
 pub(crate) use neighbours::Neighbours;
+pub(crate) use new::New;
 pub(crate) use picking::{Pick, Workloads};
+pub(crate) use programs::Programs;
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
 pub(crate) use render::Render;
 pub(crate) use repair::{Repair, repair_options};
@@ -137,6 +141,8 @@ pub(crate) enum Command {
     Pick(Pick),
     /// List the built-in workloads and the programs they model
     Workloads(Workloads),
+    /// Write a package that measures your own program on every data structure
+    New(New),
     /// Explain the time of queries by the memory that the queries read
     Why(Why),
     /// Measure how the order of vertices and faces in memory affects the times
@@ -234,8 +240,8 @@ pub(crate) struct Study {
     #[arg(long = "external", value_name = "NAME=COMMAND")]
     pub(crate) externals: Vec<External>,
     /// Time limit for one answer of an external program
-    #[arg(long, value_name = "TIME", default_value = "60s", value_parser = duration, allow_hyphen_values = true)]
-    pub(crate) patience: Duration,
+    #[arg(long = "patience", value_name = "TIME", default_value = "60s", value_parser = duration, allow_hyphen_values = true)]
+    pub(crate) external_timeout: Duration,
     /// First cut every polygon into a fan of triangles
     #[arg(long)]
     pub(crate) triangulate: bool,
@@ -318,7 +324,7 @@ impl Default for Study {
             seed: settings.seed,
             memory: MemoryState::default(),
             externals: Vec::new(),
-            patience: settings.external_timeout,
+            external_timeout: settings.external_timeout,
             triangulate: false,
             strict: false,
             files: ResultFiles::default(),

@@ -1,6 +1,5 @@
 //! `sixfold distance`: the distance between the surfaces of two meshes.
 
-use std::path::Path;
 use std::process::ExitCode;
 
 use comfy_table::{Cell, CellAlignment};
@@ -11,6 +10,7 @@ use sixfold::spatial::{MeshDistance, OneSidedDistance, Sampling, mesh_distance};
 use crate::arguments::Distance;
 use crate::failure::Failure;
 use crate::load;
+use crate::mesh_files::shown;
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::exit_on_interrupt;
 use crate::tables::table;
@@ -36,9 +36,13 @@ pub(crate) fn run(arguments: &Distance) -> Result<ExitCode, Failure> {
     let outputs = [("--json", arguments.json.as_ref())];
     check_outputs(Some(&arguments.first), &outputs)?;
     check_outputs(Some(&arguments.second), &outputs)?;
+    if is_stdout(&arguments.first) && is_stdout(&arguments.second) {
+        return Err(Failure::usage(
+            "both meshes are standard input, which can be read only once: name a file for one of them",
+        ));
+    }
     let json = Output::open_if(arguments.json.as_ref())?;
-    let first = load::with_creases(&arguments.first)?.0;
-    let second = load::with_creases(&arguments.second)?.0;
+    let [first, second] = load::pair(&arguments.first, &arguments.second)?;
     let sampling = Sampling {
         samples: arguments.samples,
         seed: arguments.seed,
@@ -59,8 +63,7 @@ pub(crate) fn run(arguments: &Distance) -> Result<ExitCode, Failure> {
 }
 
 fn rows(arguments: &Distance, distance: &MeshDistance, diagonal: f64) -> [Row; 3] {
-    let name = |path: &Path| path.display().to_string();
-    let (first, second) = (name(&arguments.first), name(&arguments.second));
+    let (first, second) = (shown(&arguments.first), shown(&arguments.second));
     let percent = |largest: f64| 100.0 * largest / diagonal;
     let one_sided = |from: &str, to: &str, side: &OneSidedDistance| Row {
         from: from.to_owned(),

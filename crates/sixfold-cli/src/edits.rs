@@ -75,7 +75,7 @@ fn legend() -> String {
 fn row(edit: Edit) -> Value {
     let backends = structure_infos().into_iter().map(|backend| {
         let cost = backend.edits[edit as usize];
-        json!({ "backend": backend.name, "looks_at": cost })
+        json!({ "backend": backend.name, "cost": cost })
     });
     json!({ "edit": edit, "backends": backends.collect::<Vec<_>>() })
 }

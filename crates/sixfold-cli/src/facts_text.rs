@@ -164,9 +164,9 @@ pub(crate) fn verdicts_text(mesh: &MeshReport, backends: &[BackendReport]) -> St
             true => "",
             false => ", f0 the first face that is left",
         };
-        lines.push(format!(
-            "{:<13}(counting from 0: v0 is the first vertex of the file{changed})",
-            ""
+        lines.push(hanging_indent(
+            &format!("{:<13}", ""),
+            &format!("(counting from 0: v0 is the first vertex of the file{changed})"),
         ));
     }
     lines.join("\n")

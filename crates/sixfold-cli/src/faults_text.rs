@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::path::Path;
 
-use sixfold::io::{self, PolygonPlaces};
+use sixfold::io::{self, LeftOut, PolygonPlaces};
 use sixfold::repair::{Diagnosis, Fault, FaultKind, Place};
 use sixfold::{Capabilities, FaceId, PolygonMesh, structure_infos};
 use sixfold_study::numbers::grouped;
@@ -11,7 +11,7 @@ use sixfold_study::numbers::grouped;
 use serde::Serialize;
 
 use crate::arguments::repair_options;
-use crate::text::{hanging_indent, sanitize};
+use crate::text::{hanging_indent, shell_word, width};
 
 /// Maximum number of places that are listed for a kind of fault.
 pub(crate) const SHOWN_PLACES: usize = 3;
@@ -22,9 +22,11 @@ const LABEL: usize = 13;
 /// A diagnosed mesh.
 pub(crate) struct Diagnosed<'a> {
     pub(crate) polygons: &'a PolygonMesh,
-    /// Where the faces are in the file; `None` if they are not the faces of the file.
+    /// Where the vertices and faces are in the file; `None` if they are not those of the file.
     pub(crate) places: Option<&'a PolygonPlaces>,
     pub(crate) diagnosis: &'a Diagnosis,
+    /// The degenerate faces of the file, which the mesh does not have.
+    pub(crate) left_out: &'a [LeftOut],
     /// The file, for commands.
     pub(crate) file: &'a Path,
 }
@@ -38,6 +40,24 @@ pub(crate) struct DiagnosisRecord {
     positions: usize,
     boundary_edges: usize,
     seam_edges: usize,
+    left_out: LeftOutRecord,
+}
+
+/// The degenerate faces of the file, which the mesh does not have.
+#[derive(Serialize)]
+struct LeftOutRecord {
+    count: usize,
+    places: Vec<LeftOutPlace>,
+    /// The command; `None` if there are no such faces.
+    repair: Option<String>,
+}
+
+/// A degenerate face: its vertices as the file numbers them, and its place in the file.
+#[derive(Serialize)]
+struct LeftOutPlace {
+    vertices: Vec<u32>,
+    #[serde(flatten)]
+    place: FilePlace,
 }
 
 #[derive(Serialize)]
@@ -50,7 +70,7 @@ struct FaultRecord {
     repair: Option<String>,
 }
 
-/// An element, and where its first face is in the file.
+/// An element, and where the vertex or the first face there is in the file.
 #[derive(Serialize)]
 struct PlaceRecord {
     #[serde(flatten)]
@@ -108,15 +128,41 @@ impl Diagnosed<'_> {
             positions,
             boundary_edges,
             seam_edges,
+            left_out: self.left_out_record(),
+        }
+    }
+
+    fn left_out_record(&self) -> LeftOutRecord {
+        let places = self.left_out.iter().take(SHOWN_PLACES);
+        LeftOutRecord {
+            count: self.left_out.len(),
+            places: places
+                .map(|face| LeftOutPlace {
+                    vertices: face.vertices.clone(),
+                    place: face.place.into(),
+                })
+                .collect(),
+            repair: (!self.left_out.is_empty()).then(|| self.command(self.left_out_options())),
+        }
+    }
+
+    /// Returns the option of the command that writes the mesh without the degenerate faces of the
+    /// file. Reading leaves them out, so that every command does.
+    fn left_out_options(&self) -> &'static str {
+        match self.diagnosis.looks_unwelded() {
+            true => "--weld",
+            false => "--flat",
         }
     }
 
     /// Returns the list of faults: each with its first places, the structures that refuse the mesh
     /// for it, and the command that repairs it. The last lines are the command that repairs the mesh
-    /// for a structure.
+    /// for a structure. If the faces do not share vertices, the only command is the one that joins
+    /// them, because the other faults can follow from this one.
     pub(crate) fn text(&self) -> String {
         let mut lines = Vec::new();
-        if self.diagnosis.looks_unwelded() {
+        let is_unwelded = self.diagnosis.looks_unwelded();
+        if is_unwelded {
             let text = format!(
                 "the faces do not share vertices ({} vertices at {} positions)",
                 grouped(self.diagnosis.vertices),
@@ -124,6 +170,14 @@ impl Diagnosed<'_> {
             );
             lines.push(hanging_indent(&label(&lines), &text));
             lines.push(self.command_line("--weld"));
+            let text = "inspect the result for the other faults";
+            lines.push(format!("{:LABEL$}  {text}", ""));
+        }
+        if !self.left_out.is_empty() {
+            lines.push(hanging_indent(&label(&lines), &self.left_out_title()));
+            if !is_unwelded {
+                lines.push(self.command_line(self.left_out_options()));
+            }
         }
         let faces = self.first_faces();
         for fault in &self.diagnosis.faults {
@@ -136,13 +190,16 @@ impl Diagnosed<'_> {
             let options = self.options(fault);
             match options.is_empty() {
                 true => lines.push(format!("{:LABEL$}  correct the coordinates", "")),
+                false if is_unwelded => {}
                 false => lines.push(self.command_line(&options)),
             }
         }
         if lines.is_empty() {
             lines.push(format!("{:LABEL$}none", "faults"));
         }
-        lines.extend(self.repair_for_structure());
+        if !is_unwelded {
+            lines.extend(self.repair_for_structure());
+        }
         lines.join("\n")
     }
 
@@ -168,30 +225,71 @@ impl Diagnosed<'_> {
         vec![first_line, self.command_line(&format!("--for {first}"))]
     }
 
-    /// Returns the options of the command that repairs `fault`; empty if no command does.
+    /// Returns the options of the command that repairs `fault`; empty if no command does. If the
+    /// faces do not share vertices, this must be repaired first.
     fn options(&self, fault: &Fault) -> String {
-        repair_options(&self.diagnosis.repairs(fault.kind))
+        let steps = self.diagnosis.repairs(fault.kind);
+        match self.diagnosis.looks_unwelded() && !steps.is_empty() {
+            true => "--weld".to_owned(),
+            false => repair_options(&steps),
+        }
+    }
+
+    /// Describes the degenerate faces of the file: their number and the first ones.
+    fn left_out_title(&self) -> String {
+        let title = match self.left_out.len() {
+            1 => "1 degenerate face of the file, left out".to_owned(),
+            n => format!("{} degenerate faces of the file, left out", grouped(n)),
+        };
+        let shown = self.left_out.iter().take(SHOWN_PLACES);
+        let shown: Vec<String> = shown.map(ToString::to_string).collect();
+        let more = match self.left_out.len() > SHOWN_PLACES {
+            true => ", …",
+            false => "",
+        };
+        format!("{title}: {}{more}", shown.join(", "))
     }
 
     /// Returns a line with the command that repairs the file with `options`.
     fn command_line(&self, options: &str) -> String {
-        format!("{:LABEL$}  {}", "", self.command(options))
+        command_line(&self.words(options))
     }
 
     /// Returns the command that repairs the file with `options`.
     fn command(&self, options: &str) -> String {
-        let file = self.file.display().to_string();
-        let file = match shlex::try_quote(&file) {
-            Ok(quoted) => sanitize(&quoted),
-            Err(_) => sanitize(&file),
-        };
-        format!("sixfold repair {file} {options} -o repaired.obj")
+        self.words(options).join(" ")
     }
 
-    /// Returns where the first face at `place` is in the file, if `faces` has this face.
+    /// Returns the words of the command that repairs the file with `options`.
+    fn words(&self, options: &str) -> Vec<String> {
+        // The command must not overwrite its input.
+        let output = match self.file.file_name() {
+            Some(name) if name == "repaired.obj" => "repaired-again.obj",
+            _ => "repaired.obj",
+        };
+        let options = options.split(' ').map(str::to_owned);
+        [
+            "sixfold".to_owned(),
+            "repair".to_owned(),
+            shell_word(self.file),
+        ]
+        .into_iter()
+        .chain(options)
+        .chain(["-o".to_owned(), output.to_owned()])
+        .collect()
+    }
+
+    /// Returns where the element at `place` is in the file: the place of a vertex, or that of the
+    /// first face there, if `faces` has this face.
     fn file_place(&self, place: &Place, faces: &[(Place, FaceId)]) -> Option<io::Place> {
+        let places = self.places?;
+        if let Place::Vertex(v) = *place
+            && let Some(place) = places.vertex_place(v)
+        {
+            return Some(place);
+        }
         let (_, face) = faces.iter().find(|(other, _)| other == place)?;
-        Some(self.places?.place(*face, self.polygons))
+        Some(places.place(*face, self.polygons))
     }
 
     /// Describes a fault: its number, kind and first places.
@@ -271,4 +369,27 @@ fn may_be_intended(kind: FaultKind) -> bool {
             | FaultKind::OppositeFace
             | FaultKind::BoundaryEdge
     )
+}
+
+/// Returns an indented line with a command. A command that is wider than the terminal continues on
+/// the next lines, as a shell reads it.
+fn command_line(words: &[String]) -> String {
+    let indent = " ".repeat(LABEL + 2);
+    let mut lines = vec![format!("{indent}{}", words.join(" "))];
+    let is_wide = |line: &String| line.chars().count() > width();
+    if is_wide(&lines[0]) {
+        lines = vec![format!("{indent}{}", words[0])];
+        for word in &words[1..] {
+            let last = lines.len() - 1;
+            // Two more columns for the character that continues the line.
+            match lines[last].chars().count() + 1 + word.chars().count() + 2 <= width() {
+                true => lines[last] += &format!(" {word}"),
+                false => {
+                    lines[last] += " \\";
+                    lines.push(format!("{indent}  {word}"));
+                }
+            }
+        }
+    }
+    lines.join("\n")
 }

@@ -1,4 +1,4 @@
-//! Checks the free memory before large results are made.
+//! Free memory, and the memory of this process.
 
 use crate::failure::Failure;
 use sixfold_study::free_memory;
@@ -14,5 +14,31 @@ pub(crate) fn check_free_memory(what: &str, needed: u64, instead: &str) -> Resul
             bytes(free as usize)
         ))),
         _ => Ok(()),
+    }
+}
+
+/// Returns the resident memory of this process in bytes; `None` if the platform does not tell it.
+pub(crate) fn used_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let kilobytes: u64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(kilobytes * 1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn touched_memory_is_used() {
+        const BYTES: usize = 64 << 20;
+        let before = used_memory().expect("Linux tells it");
+        let block = std::hint::black_box(vec![1_u8; BYTES]);
+        let used = used_memory().expect("Linux tells it") - before;
+        assert!(used > BYTES as u64 / 2, "{used}");
+        drop(block);
     }
 }

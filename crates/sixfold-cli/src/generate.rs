@@ -6,8 +6,8 @@ use sixfold::shapes::{GENERATORS, Generator, Parameter, generator};
 
 use crate::arguments::Generate;
 use crate::failure::Failure;
-use crate::mesh_files::write_mesh;
-use crate::output::{Output, is_stdout};
+use crate::mesh_files::{open_mesh, write_mesh};
+use crate::output::is_stdout;
 use crate::progress::exit_on_interrupt;
 use crate::text::{TextOutput, hanging_indent, sanitize};
 use sixfold_study::numbers::counted;
@@ -26,7 +26,7 @@ pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
         .collect();
     let made = generator.build(&settings).map_err(Failure::usage)?;
     let mesh = arguments.order.apply(&made, arguments.seed);
-    let output = Output::open(&arguments.output)?;
+    let output = open_mesh(&arguments.output)?;
     write_mesh(output, &arguments.output, &mesh, &[])?;
     let vertices = counted(mesh.vertex_count(), "vertex", "vertices");
     let faces = counted(mesh.face_count(), "face", "faces");

@@ -12,11 +12,12 @@ use sixfold_study::{
 use crate::arguments::{GROWTH_EXAMPLES, Growth};
 use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
+use crate::left_out::refusal_notes;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::orders::{default_operations, short_figure};
 use crate::progress::Bar;
 use crate::study::{describe_run, name_lists};
-use crate::tables::styled;
+use crate::tables::{stacked, styled, unbroken};
 use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::{counted, grouped};
 
@@ -39,9 +40,42 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
         steps: arguments.steps,
     };
     warn_of_debug_build();
+    check_memory(&settings)?;
+    print_before_measuring(&settings, &mut session.text);
     let report = measure(&settings, &session.stop, &Bar::new())?;
     print(&report, &mut session.text);
     session.finish(&with_command(report, false).into())
+}
+
+/// Prints what is known before the measurement: the shape, its sizes, and the backends that cannot
+/// hold it. Prints nothing if an error follows.
+fn print_before_measuring(settings: &GrowthSettings, text: &mut TextOutput) {
+    let Ok((sizes, refused_by)) = sixfold_study::growth_plan(settings) else {
+        return; // the measurement returns this error
+    };
+    let shape = format!("{}, in the order {}", settings.shape, settings.order);
+    text.print_line(&hanging_indent("shape        ", &shape));
+    let [first, last] = [sizes.first(), sizes.last()].map(|size| grouped(*size.unwrap_or(&0)));
+    let steps = counted(sizes.len(), "size", "sizes");
+    text.print_line(&hanging_indent(
+        "sizes        ",
+        &format!("{steps} from about {first} to {last} faces"),
+    ));
+    for refusal in &refused_by {
+        let first = format!("{:<13}{} refuses: ", "", refusal.backend);
+        text.print_line(&hanging_indent(&first, &refusal.reason));
+    }
+}
+
+/// Returns an error if there is too little free memory for the largest size.
+fn check_memory(settings: &GrowthSettings) -> Result<(), Failure> {
+    let needed = sixfold_study::growth_bytes(settings).map_err(Failure::usage)?;
+    let largest = counted(settings.to, "face", "faces");
+    check_free_memory(
+        &format!("a mesh of {largest} on each backend"),
+        needed,
+        "choose a smaller --to, or fewer --backends",
+    )
 }
 
 /// Measures all sizes, if there is enough free memory for the largest size.
@@ -50,13 +84,7 @@ pub(crate) fn measure(
     stop: &AtomicBool,
     bar: &Bar,
 ) -> Result<GrowthReport, Failure> {
-    let needed = sixfold_study::growth_bytes(settings).map_err(Failure::usage)?;
-    let largest = counted(settings.to, "face", "faces");
-    check_free_memory(
-        &format!("a mesh of {largest} on each backend"),
-        needed,
-        "choose a smaller --to, or fewer --backends",
-    )?;
+    check_memory(settings)?;
     let report = sixfold_study::growth(settings, stop, &mut |at| bar.show(at));
     bar.clear();
     report.map_err(|error| match error {
@@ -80,13 +108,8 @@ pub(crate) fn help() -> String {
     )
 }
 
+/// Prints the results, which follow [`print_before_measuring`].
 fn print(report: &GrowthReport, text: &mut TextOutput) {
-    let (shape, order) = (&report.shape, report.order);
-    text.print_line(&format!("shape        {shape}, in the order {order}"));
-    for refusal in &report.refused_by {
-        let first = format!("{:<13}{} refuses: ", "", refusal.backend);
-        text.print_line(&hanging_indent(&first, &refusal.reason));
-    }
     let operations = report.sizes.first().map_or(&[][..], |size| &size.results);
     for rows in operations.chunk_by(|a, b| a.operation == b.operation) {
         text.print_line("");
@@ -100,21 +123,15 @@ fn print(report: &GrowthReport, text: &mut TextOutput) {
         text.print_line("");
         text.print_line(&cache_table(report, text.bold()));
     }
-    let mut refusals: Vec<String> = Vec::new();
-    for refusal in report.sizes.iter().flat_map(|size| &size.refusals) {
-        let (operation, backend) = (refusal.operation, &refusal.backend);
-        let line = format!("{operation} on {backend}: {}", refusal.reason);
-        if !refusals.contains(&line) {
-            text.print_line(&hanging_indent("– ", &line));
-            refusals.push(line);
-        }
-    }
     text.print_line("");
     for sentence in &report.sentences {
         text.print_line(&hanging_indent("- ", sentence));
     }
     for warning in &report.warnings {
         text.print_line(&hanging_indent("! ", warning));
+    }
+    for note in refusal_notes(report.sizes.iter().flat_map(|size| &size.refusals)) {
+        text.print_line(&hanging_indent("", &note));
     }
     text.print_line("");
     let rows = report.sizes.iter().flat_map(|size| &size.results);
@@ -131,21 +148,28 @@ const LEGEND: &str = "Each cell has the ns per element, and the smallest cache t
 
 /// Returns the table with a row per size and fitted line, and a column per backend.
 fn table(report: &GrowthReport, operation: Operation, bold: bool) -> String {
+    stacked(&report.backends, |backends| {
+        table_of_backends(report, operation, backends, bold)
+    })
+}
+
+/// Returns the table of some of the backends.
+fn table_of_backends(
+    report: &GrowthReport,
+    operation: Operation,
+    backends: &[String],
+    bold: bool,
+) -> String {
     let mut header = vec![Cell::new(format!(
         "{operation}\nns per {}",
         operation.unit()
     ))];
-    header.extend(
-        report
-            .backends
-            .iter()
-            .map(|name| right(name.replace('-', "\n"))),
-    );
-    let mut table = styled(header, bold);
+    header.extend(backends.iter().map(|name| right(name.replace('-', "\n"))));
+    let mut table = unbroken(header, bold);
     for size in &report.sizes {
         let faces = counted(size.faces, "face", "faces");
         let mut line = vec![right(faces)];
-        line.extend(report.backends.iter().map(|name| {
+        line.extend(backends.iter().map(|name| {
             let mut rows = size.results.iter();
             let row = rows.find(|r| r.backend == *name && r.operation == operation);
             row.map_or_else(|| right("–".into()), |row| cell(size, row, bold))
@@ -162,7 +186,7 @@ fn table(report: &GrowthReport, operation: Operation, bold: bool) -> String {
             "in cache" => fit.in_cache,
             _ => fit.beyond,
         };
-        let slopes = report.backends.iter().map(|name| slope(fit(name)?));
+        let slopes = backends.iter().map(|name| slope(fit(name)?));
         let slopes: Vec<Option<Slope>> = slopes.collect();
         if slopes.iter().all(Option::is_none) {
             continue;

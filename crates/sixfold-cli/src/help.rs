@@ -4,19 +4,20 @@ use std::fs;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
+use clap::builder::StyledStr;
 use clap::{Command as Definition, CommandFactory};
 
 use crate::arguments::{Arguments, Completions, Manual, with_file_options};
 use crate::failure::Failure;
 use crate::output::cannot_write;
-use crate::text::ignore_closed_pipe;
+use crate::text::{hanging_indent, ignore_closed_pipe, reflow, width};
 use crate::{generate, growth, orders, study};
 
 /// The commands of each group, in the order of the list.
 const GROUPS: [(&str, &[&str]); 5] = [
     (
         "Choose a structure",
-        &["pick", "workloads", "study", "inspect"],
+        &["pick", "new", "workloads", "study", "inspect"],
     ),
     (
         "Explain the costs",
@@ -56,7 +57,9 @@ pub(crate) fn definition() -> Definition {
         .mut_subcommand("orders", |orders| orders.after_help(orders::help()))
         .mut_subcommand("growth", |growth| growth.after_help(growth::help()))
         .mut_subcommand("generate", |generate| generate.after_help(generate::help()))
-        .mut_subcommands(with_file_options);
+        .mut_subcommands(with_file_options)
+        .mut_subcommands(fit_to_width);
+    let definition = fit_to_width(definition).term_width(width());
     let template = format!(
         "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{}\n\nOptions:\n{{options}}\
          {{after-help}}",
@@ -65,16 +68,31 @@ pub(crate) fn definition() -> Definition {
     definition.help_template(template)
 }
 
+/// Breaks the long texts of a command at the width of the terminal.
+fn fit_to_width(command: Definition) -> Definition {
+    let fitted = |text: Option<&StyledStr>| text.map(|text| reflow(&text.to_string(), width()));
+    let about = fitted(command.get_long_about());
+    let after = fitted(command.get_after_help());
+    let mut command = command;
+    if let Some(about) = about {
+        command = command.long_about(about);
+    }
+    match after {
+        Some(after) => command.after_help(after),
+        None => command,
+    }
+}
+
 /// Returns the commands with their summaries, one group after the other.
 fn grouped_commands(definition: &Definition) -> String {
     let names = || GROUPS.iter().flat_map(|(_, names)| names.iter());
-    let width = names().map(|name| name.len()).max().unwrap_or(0);
+    let longest = names().map(|name| name.len()).max().unwrap_or(0);
     let line = |name: &&str| {
         let about = match definition.find_subcommand(name) {
             Some(command) => command.get_about().map(ToString::to_string),
             None => Some("Print this text, or the help of a command".into()),
         };
-        format!("  {name:<width$}  {}", about.unwrap_or_default())
+        hanging_indent(&format!("  {name:<longest$}  "), &about.unwrap_or_default())
     };
     let groups = GROUPS.map(|(title, names)| {
         let lines: Vec<String> = names.iter().map(line).collect();

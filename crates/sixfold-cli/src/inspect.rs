@@ -10,7 +10,7 @@ use crate::arguments::Inspect;
 use crate::facts_text::{facts_text, verdicts_text};
 use crate::failure::Failure;
 use crate::faults_text::{Diagnosed, DiagnosisRecord};
-use crate::load;
+use crate::load::{self, InspectedMesh};
 use crate::many::find_meshes;
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::exit_on_interrupt;
@@ -22,6 +22,14 @@ struct Inspected {
     #[serde(flatten)]
     inspection: Inspection,
     diagnosis: DiagnosisRecord,
+    narrowing: NarrowingRecord,
+}
+
+/// What rounding to 32 bits did to the coordinates.
+#[derive(Serialize)]
+struct NarrowingRecord {
+    merged_vertices: usize,
+    largest_shift: f64,
 }
 
 /// Inspects the meshes. If there are several, continues after a mesh that cannot be read.
@@ -79,12 +87,19 @@ pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
 
 /// Inspects one mesh and prints the text.
 fn inspect(path: &Path, triangulate: bool, text: &mut TextOutput) -> Result<Inspected, Failure> {
-    let (study_mesh, diagnosis, places) = load::for_inspection(path, triangulate)?;
+    let InspectedMesh {
+        study_mesh,
+        diagnosis,
+        places,
+        left_out,
+        narrowing,
+    } = load::for_inspection(path, triangulate)?;
     let inspection = inspect_diagnosed(&study_mesh, &diagnosis, &Backend::structures());
     let diagnosed = Diagnosed {
         polygons: &study_mesh.polygons,
         places: places.as_ref(),
         diagnosis: &diagnosis,
+        left_out: &left_out,
         file: path,
     };
     text.print_line(&facts_text(&inspection.mesh));
@@ -96,5 +111,9 @@ fn inspect(path: &Path, triangulate: bool, text: &mut TextOutput) -> Result<Insp
     Ok(Inspected {
         inspection,
         diagnosis,
+        narrowing: NarrowingRecord {
+            merged_vertices: narrowing.merged_vertices,
+            largest_shift: narrowing.largest_shift,
+        },
     })
 }

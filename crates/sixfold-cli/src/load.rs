@@ -3,14 +3,14 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use sixfold::io::{FileMesh, LeftOut, PolygonPlaces};
+use sixfold::io::{FileMesh, LeftOut, Narrowing, Notice, PolygonPlaces};
 use sixfold::repair::{Diagnosis, diagnose, facts_and_diagnosis};
 use sixfold::{Creases, PolygonMesh, shapes};
 use sixfold_study::{Results, StudyMesh, sha256_of};
 
 use crate::failure::Failure;
 use crate::faults_text::SHOWN_PLACES;
-use crate::mesh_files::{cut_polygons, read_mesh};
+use crate::mesh_files::{cut_polygons, read_mesh, read_mesh_at, shown};
 use crate::text::print_stderr;
 use crate::triangulate::triangulated;
 use sixfold_study::numbers::counted;
@@ -18,13 +18,22 @@ use sixfold_study::numbers::counted;
 /// Maximum number of listed faces that were left out.
 const SHOWN: usize = 5;
 
+/// A mesh for `sixfold inspect`, without its degenerate faces.
+pub(crate) struct InspectedMesh {
+    pub(crate) study_mesh: StudyMesh,
+    pub(crate) diagnosis: Diagnosis,
+    /// The places of the vertices and faces; `None` if polygons were cut.
+    pub(crate) places: Option<PolygonPlaces>,
+    /// The degenerate faces of the file.
+    pub(crate) left_out: Vec<LeftOut>,
+    pub(crate) narrowing: Narrowing,
+}
+
 /// Reads a mesh without its degenerate faces, lists the degenerate faces, and diagnoses the mesh.
-/// `triangulate` cuts polygons first. Also returns the places of the faces, unless they were cut.
-pub(crate) fn for_inspection(
-    path: &Path,
-    triangulate: bool,
-) -> Result<(StudyMesh, Diagnosis, Option<PolygonPlaces>), Failure> {
+/// `triangulate` cuts polygons first.
+pub(crate) fn for_inspection(path: &Path, triangulate: bool) -> Result<InspectedMesh, Failure> {
     let mesh = read_mesh(path)?;
+    let narrowing = mesh.narrowing;
     if triangulate || mesh.has_degenerate_faces() {
         let (mut study_mesh, left_out, places) = into_study_mesh(path, mesh);
         print_left_out(path, &left_out);
@@ -32,13 +41,25 @@ pub(crate) fn for_inspection(
             study_mesh = triangulated(study_mesh)?;
         }
         let diagnosis = diagnose(&study_mesh.polygons, SHOWN_PLACES);
-        return Ok((study_mesh, diagnosis, (!triangulate).then_some(places)));
+        return Ok(InspectedMesh {
+            study_mesh,
+            diagnosis,
+            places: (!triangulate).then_some(places),
+            left_out,
+            narrowing,
+        });
     }
     // The facts of the file are those of the polygons.
     let (polygons, _, places) = mesh.into_polygons_with_places();
     let (facts, diagnosis) = facts_and_diagnosis(&polygons, SHOWN_PLACES);
-    let study_mesh = StudyMesh::with_facts(path.display().to_string(), polygons, facts);
-    Ok((study_mesh, diagnosis, Some(places)))
+    let study_mesh = StudyMesh::with_facts(shown(path), polygons, facts);
+    Ok(InspectedMesh {
+        study_mesh,
+        diagnosis,
+        places: Some(places),
+        left_out: Vec::new(),
+        narrowing,
+    })
 }
 
 /// Reads a mesh for a study. `strict` refuses degenerate faces. `triangulate` cuts polygons.
@@ -48,7 +69,7 @@ pub(crate) fn for_study(
     triangulate: bool,
 ) -> Result<StudyMesh, Failure> {
     let (mut study_mesh, left_out, _) = into_study_mesh(path, read_mesh(path)?);
-    let file = path.display();
+    let file = shown(path);
     if !left_out.is_empty() && strict {
         let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
         let first = &left_out[0];
@@ -79,21 +100,66 @@ pub(crate) fn for_study(
 
 /// Reads a mesh without its degenerate faces. Also returns the creases in the file.
 pub(crate) fn with_creases(path: &Path) -> Result<(PolygonMesh, Creases), Failure> {
-    let mesh = read_mesh(path)?;
+    let read = for_repair(path)?;
+    Ok((read.polygons, read.creases))
+}
+
+/// A mesh without its degenerate faces, and what reading changed.
+pub(crate) struct ReadMesh {
+    pub(crate) polygons: PolygonMesh,
+    pub(crate) creases: Creases,
+    /// Number of degenerate faces that were left out.
+    pub(crate) left_out: usize,
+    /// Number of vertices that were joined to others at equal positions.
+    pub(crate) joined: usize,
+    /// The contents that were ignored.
+    pub(crate) ignored: Vec<Notice>,
+}
+
+/// Reads a mesh without its degenerate faces, and returns what reading changed.
+pub(crate) fn for_repair(path: &Path) -> Result<ReadMesh, Failure> {
+    let mut mesh = read_mesh(path)?;
+    let (joined, ignored) = (mesh.welded_vertices, std::mem::take(&mut mesh.notices));
+    let (polygons, creases, left_out) = without_degenerate(path, mesh)?;
+    Ok(ReadMesh {
+        polygons,
+        creases,
+        left_out,
+        joined,
+        ignored,
+    })
+}
+
+/// Reads two meshes without their degenerate faces. If the option --recentre is set, both are moved
+/// by the centre of the first one, so that their distance stays.
+pub(crate) fn pair(first: &Path, second: &Path) -> Result<[PolygonMesh; 2], Failure> {
+    let mesh = read_mesh(first)?;
+    let origin = mesh.origin;
+    let (first, ..) = without_degenerate(first, mesh)?;
+    let mesh = read_mesh_at(second, Some(origin))?;
+    let (second, ..) = without_degenerate(second, mesh)?;
+    Ok([first, second])
+}
+
+/// Returns the mesh without its degenerate faces, its creases, and the number of degenerate faces.
+fn without_degenerate(
+    path: &Path,
+    mesh: FileMesh,
+) -> Result<(PolygonMesh, Creases, usize), Failure> {
     let (creases, unused) = mesh.creases();
     for crease in &unused {
-        print_stderr(&format!("note: {}: {crease}", path.display()));
+        print_stderr(&format!("note: {}: {crease}", shown(path)));
     }
     let (polygons, left_out) = mesh.into_polygons();
     print_left_out(path, &left_out);
-    Ok((cut_polygons(path, polygons)?, creases))
+    Ok((cut_polygons(path, polygons)?, creases, left_out.len()))
 }
 
 /// Reads a mesh for a command that drops creases. Prints a note if there are creases.
 pub(crate) fn without_creases(path: &Path) -> Result<PolygonMesh, Failure> {
     let (polygons, creases) = with_creases(path)?;
     if !creases.is_empty() {
-        let file = path.display();
+        let file = shown(path);
         print_stderr(&format!(
             "note: {file}: the result does not keep sharp edges and vertices"
         ));
@@ -141,7 +207,7 @@ fn print_left_out(path: &Path, left_out: &[LeftOut]) {
         return;
     }
     let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
-    print_stderr(&format!("note: {}: left out {faces}:", path.display()));
+    print_stderr(&format!("note: {}: left out {faces}:", shown(path)));
     for left_out in left_out.iter().take(SHOWN) {
         print_stderr(&format!("note:   {left_out}"));
     }
@@ -161,7 +227,7 @@ fn into_study_mesh(path: &Path, mesh: FileMesh) -> (StudyMesh, Vec<LeftOut>, Pol
     let study_mesh = StudyMesh {
         changes,
         left_out_faces: left_out.len(),
-        ..StudyMesh::with_facts(path.display().to_string(), polygons, facts)
+        ..StudyMesh::with_facts(shown(path), polygons, facts)
     };
     (study_mesh, left_out, places)
 }

@@ -22,6 +22,7 @@ use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
 use crate::load;
 use crate::measure::{Session, command_line, exit_code, warn_of_debug_build};
+use crate::mesh_files::shown;
 use crate::progress::Bar;
 use crate::study::finding;
 use crate::text::{TextOutput, hanging_indent, print_stderr, sanitize};
@@ -85,7 +86,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         folder: folder.as_ref(),
         stop: &stop,
     };
-    run.study(&selected, &mut results, &mut session.text)?;
+    let mut saved = run.study(&selected, &mut results, &mut session.text);
     let none_studied = results.studies().next().is_none();
     if let (false, Some(Ok(study_mesh)), Some(folder)) = (none_studied, &loaded, &folder) {
         let runner = labs::LabRunner {
@@ -96,16 +97,17 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
             resumed: selected.is_empty(),
             stop: &stop,
         };
-        runner.run(&selected_labs, &mut results)?;
+        saved = saved.and(runner.run(&selected_labs, &mut results));
     }
     let interrupted = stop.load(Ordering::Relaxed);
     print(&results, single, &mut session.text);
-    let mut written = session.write(&results);
+    let mut written = session.write(&results).and(saved);
+    // A report on nothing would look like a result.
+    let is_empty = results.findings.is_empty() && arguments.shard.is_none();
     let none_studied = none_studied && !interrupted && arguments.shard.is_none();
     let not_measured = |failed: &Failed| failed.kind == FailureKind::NotMeasured;
     if let Some(folder) = &folder {
-        // A report on nothing would look like a result.
-        match none_studied && results.failures.iter().all(not_measured) {
+        match is_empty && results.failures.iter().all(not_measured) {
             true => folder.remove_if_empty(),
             false => written = written.and(folder.write_report(&results, &command_line())),
         }
@@ -154,20 +156,22 @@ struct Run<'a> {
 
 impl Run<'_> {
     /// Studies `meshes` one after the other and adds the studies to `results`. Stops if
-    /// interrupted.
+    /// interrupted, and keeps the finished part of the interrupted study. A study that cannot be
+    /// saved is still added; the first error of saving is returned at the end.
     fn study(
         &self,
         meshes: &[&Mesh],
         results: &mut Results,
         text: &mut TextOutput,
     ) -> Result<(), Failure> {
+        let mut saved = Ok(());
         for (done, mesh) in meshes.iter().enumerate() {
             if self.stop.load(Ordering::Relaxed) {
                 break;
             }
             let position = format!("{} of {}", done + 1, meshes.len() + self.labs);
             let Some(result) = self.measure_mesh(mesh, &position) else {
-                break; // interrupted during this mesh
+                break; // interrupted before the first result of this mesh
             };
             if !self.single {
                 text.print_line(&progress_line(&position, mesh, &result));
@@ -175,10 +179,11 @@ impl Run<'_> {
             match result {
                 Ok(report) => {
                     let study = Results::from(finding(report, self.arguments));
-                    if let Some(folder) = self.folder {
-                        // Save between two studies, so that writing does not disturb the
-                        // measurements.
-                        folder.save_study(&mesh.name, &study)?;
+                    // An interrupted study is not saved, so that `--resume` measures the mesh
+                    // again. Save between two studies, so that writing does not disturb the
+                    // measurements.
+                    if let (Some(folder), false) = (self.folder, study.is_interrupted()) {
+                        saved = saved.and(folder.save_study(&mesh.name, &study));
                     }
                     study
                         .findings
@@ -188,10 +193,10 @@ impl Run<'_> {
                 Err(failed) => results.add_failure(failed),
             }
         }
-        Ok(())
+        saved
     }
 
-    /// Studies one mesh. Returns `None` if interrupted.
+    /// Studies one mesh. Returns `None` if interrupted before the first result.
     fn measure_mesh(&self, mesh: &Mesh, position: &str) -> Option<Result<Report, Failed>> {
         let failed = |kind, reason| {
             let mesh = mesh.name.clone();
@@ -228,7 +233,7 @@ impl Run<'_> {
         });
         bar.clear();
         match report {
-            Ok(report) if report.interrupted => None,
+            Ok(report) if report.interrupted && report.results.is_empty() => None,
             Ok(report) => Some(Ok(report)),
             Err(StudyError::NoneHolds { .. }) => failed(FailureKind::NoneHolds, NONE_HOLDS.into()),
             Err(error) => failed(FailureKind::NotMeasured, error.to_string()),
@@ -245,7 +250,7 @@ fn load_mesh(mesh: &Mesh, arguments: &Study) -> Result<StudyMesh, Failure> {
 
 /// Removes the path from a message, because the list already shows the path.
 fn without_path(message: &str, path: &Path) -> String {
-    let Some(rest) = message.strip_prefix(&path.display().to_string()) else {
+    let Some(rest) = message.strip_prefix(&shown(path)) else {
         return message.to_owned();
     };
     match rest.strip_prefix(": ") {
@@ -262,7 +267,12 @@ fn progress_line(position: &str, mesh: &Mesh, result: &Result<Report, Failed>) -
             let columns = report.backends.iter().filter(|column| column.holds).count();
             let columns = counted(columns, "backend", "backends");
             let rows = counted(report.results.len(), "figure", "figures");
-            format!("{position}: {name}, {faces}, {columns}, {rows}")
+            let end = if report.interrupted {
+                ", interrupted"
+            } else {
+                ""
+            };
+            format!("{position}: {name}, {faces}, {columns}, {rows}{end}")
         }
         Err(failed) => hanging_indent(&format!("{position}: {name}: "), &sanitize(&failed.reason)),
     }
@@ -304,6 +314,10 @@ fn print_all(results: &Results, text: &mut TextOutput) {
         text.print_line("");
         text.print_line(&pooled_table::pooled_table(&pool, text.bold()));
         text.print_line("");
+        if let Some(groups) = pooled_table::groups_table(&pool, text.bold()) {
+            text.print_line(&groups);
+            text.print_line("");
+        }
         for sentence in &pool.sentences {
             text.print_line(&hanging_indent("- ", sentence));
         }

@@ -1,7 +1,7 @@
 //! The common steps of all commands that write results: open the files before the measurement,
 //! print the text before the files are written, and derive the exit code from the results.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -113,8 +113,15 @@ pub(crate) fn warn_of_debug_build() {
 pub(crate) fn command_line() -> String {
     let words = std::env::args_os().skip(1);
     let words = words.map(|word| word.to_string_lossy().into_owned());
-    let words: Vec<String> = ["sixfold".to_owned()].into_iter().chain(words).collect();
+    let words: Vec<String> = [executable()].into_iter().chain(words).collect();
     shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
+}
+
+/// Returns the name of the running program, such as `sixfold`.
+fn executable() -> String {
+    let path = std::env::args_os().next().map(PathBuf::from);
+    let stem = path.and_then(|path| Some(path.file_stem()?.to_string_lossy().into_owned()));
+    stem.unwrap_or_else(|| "sixfold".into())
 }
 
 /// Prints the final messages of a command and returns its exit code. An error of writing
@@ -132,24 +139,38 @@ pub(crate) fn exit_code(
             print_different_work(study, row);
         }
     }
-    let code = code_of(written, results.mismatches(), interrupted)?;
+    let of_programs = results.picks().any(|pick| pick.program.is_some());
+    let cause = match of_programs {
+        true => {
+            "The result of a program must not depend on the order in which a query lists the neighbours"
+        }
+        false => "This is a fault in Sixfold: please report it",
+    };
+    let code = code_of(written, results.mismatches(), cause, interrupted)?;
+    if interrupted {
+        print_stderr(match results.findings.is_empty() {
+            true => "interrupted: no result was finished",
+            false => "interrupted: finished results are kept",
+        });
+    }
     Ok(match others {
         0 => code,
         _ => ExitCode::from(MISMATCH),
     })
 }
 
-/// Returns the exit code without regard to external programs, and prints its message.
+/// Returns the exit code without regard to external programs, and prints the message about different
+/// results.
 fn code_of(
     written: Result<(), Failure>,
     mismatches: usize,
+    cause: &str,
     interrupted: bool,
 ) -> Result<ExitCode, Failure> {
     if mismatches > 0 {
         let results = counted(mismatches, "result differs", "results differ");
         print_stderr(&format!(
-            "error: {results} from the results of other backends for the same work. This is a \
-             fault in Sixfold: please report it"
+            "error: {results} from the results of other backends for the same work. {cause}"
         ));
     }
     written?;
@@ -157,7 +178,6 @@ fn code_of(
         return Ok(ExitCode::from(MISMATCH));
     }
     if interrupted {
-        print_stderr("interrupted: finished results are kept");
         return Ok(ExitCode::from(INTERRUPTED));
     }
     Ok(ExitCode::SUCCESS)
@@ -187,13 +207,13 @@ mod tests {
     #[test]
     fn mismatches_take_precedence_over_an_interruption() {
         let code = |mismatches, interrupted| {
-            let result = code_of(Ok(()), mismatches, interrupted).expect("all is written");
+            let result = code_of(Ok(()), mismatches, "", interrupted).expect("all is written");
             format!("{result:?}")
         };
         let known = |code: u8| format!("{:?}", ExitCode::from(code));
         assert_eq!(code(0, false), known(0));
         assert_eq!(code(0, true), known(INTERRUPTED));
         assert_eq!(code(2, true), known(MISMATCH));
-        assert!(code_of(Err(Failure::usage("full disk")), 1, true).is_err());
+        assert!(code_of(Err(Failure::usage("full disk")), 1, "", true).is_err());
     }
 }

@@ -4,14 +4,14 @@ use std::process::ExitCode;
 
 use comfy_table::{Cell, CellAlignment, Table};
 use sixfold_study::{
-    Audit, Backend, BackendAudit, BackendReport, MAX_SCANNED_FACES, OperationBytes, Policy,
-    Settings, audit, count_allocations,
+    Audit, Backend, BackendAudit, MAX_SCANNED_FACES, OperationBytes, Policy, Settings, audit,
+    count_allocations,
 };
 
+use crate::AllocatorCounters;
 use crate::arguments::Memory;
-use crate::facts_text::{facts_text, verdicts_text};
+use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
-use crate::heap::Counters;
 use crate::load;
 use crate::measure::{Session, with_command};
 use crate::progress::{StatusLine, exit_on_interrupt};
@@ -22,7 +22,10 @@ use sixfold_study::numbers::{counted, grouped};
 /// The exit code if two of the three counts differ.
 const COUNTS_DIFFER: u8 = 1;
 
-pub(crate) fn run(arguments: &Memory) -> Result<ExitCode, Failure> {
+pub(crate) fn run(
+    arguments: &Memory,
+    counters: &dyn AllocatorCounters,
+) -> Result<ExitCode, Failure> {
     let mesh = arguments.mesh.as_deref();
     let mut session = Session::open(mesh, &arguments.files, Policy::System)?;
     // Counting cannot be resumed, so Ctrl-C ends it at once.
@@ -36,8 +39,9 @@ pub(crate) fn run(arguments: &Memory) -> Result<ExitCode, Failure> {
         ..Settings::default()
     };
     let backends = settings.chosen_backends().map_err(Failure::usage)?;
+    print_before_measuring(&study_mesh, &settings, &mut session.text);
     let status = StatusLine::new();
-    let mut audit = audit(&study_mesh, &backends, &Counters, &mut |backend| {
+    let mut audit = audit(&study_mesh, &backends, counters, &mut |backend| {
         status.show(format!("building {} and counting", backend.name()));
     });
     let mut counting = |backend: &Backend, operation| {
@@ -46,7 +50,7 @@ pub(crate) fn run(arguments: &Memory) -> Result<ExitCode, Failure> {
             backend.name()
         ));
     };
-    count_allocations(&mut audit, &study_mesh, &backends, &Counters, &mut counting);
+    count_allocations(&mut audit, &study_mesh, &backends, counters, &mut counting);
     status.clear();
 
     // If every backend refuses the mesh, the list of reasons is the result.
@@ -77,11 +81,8 @@ fn report_faults(faults: &[String]) -> ExitCode {
     }
 }
 
+/// Prints the counts, which follow [`print_before_measuring`].
 fn print(audit: &Audit, text: &mut TextOutput) {
-    let reports: Vec<BackendReport> = audit.backends.iter().map(|b| b.backend.clone()).collect();
-    text.print_line(&facts_text(&audit.mesh));
-    text.print_line("");
-    text.print_line(&verdicts_text(&audit.mesh, &reports));
     text.print_line("");
     text.print_line(&bytes_table(audit));
     text.print_line("");

@@ -15,8 +15,10 @@ use crate::triangulate::triangulated;
 use sixfold_study::StudyMesh;
 use sixfold_study::numbers::counted;
 
-/// Rounding is reported if it moves a vertex by more than this part of the size of the mesh.
-const REPORTED_SHIFT: f64 = 1e-5;
+/// Rounding is reported if it moves a vertex by more than this part of the size of the mesh. If the
+/// origin is inside the mesh or near it, rounding moves a vertex by at most 0.6e-7 of the size. So a
+/// larger part means that the mesh is far from the origin.
+const REPORTED_SHIFT: f64 = 1e-7;
 
 /// The options, which are the same for all files of a run.
 static OPTIONS: OnceLock<FileOptions> = OnceLock::new();
@@ -33,23 +35,41 @@ fn options() -> FileOptions {
 /// Reads a mesh file of any format, or standard input for `-`, and prints a note for each part that
 /// is ignored or changed.
 pub(crate) fn read_mesh(path: &Path) -> Result<FileMesh, Failure> {
+    read_mesh_at(path, None)
+}
+
+/// Reads a mesh like [`read_mesh`]. The option --recentre moves the mesh so that `origin` is the
+/// origin; if `origin` is `None`, the centre of the mesh.
+pub(crate) fn read_mesh_at(path: &Path, origin: Option<[f64; 3]>) -> Result<FileMesh, Failure> {
     let mut settings = ReadOptions::default();
     let chosen = options().read;
     if chosen.as_stored {
         settings = settings.with_welding(Welding::Nothing);
     }
     if chosen.recentre {
-        settings = settings.recentred();
+        settings = match origin {
+            Some(origin) => settings.with_origin(origin),
+            None => settings.recentred(),
+        };
     }
+    let name = shown(path);
     let mesh = match is_stdout(path) {
-        true => read_from("standard input", io::stdin().lock(), &settings),
+        true => read_from(&name, io::stdin().lock(), &settings),
         false => read(path, &settings),
     };
     let mesh = mesh.map_err(Failure::usage)?;
     for note in notes(&mesh) {
-        print_stderr(&format!("note: {}: {note}", path.display()));
+        print_stderr(&format!("note: {name}: {note}"));
     }
     Ok(mesh)
+}
+
+/// Returns the name of a file to read, for messages: `standard input` for `-`.
+pub(crate) fn shown(path: &Path) -> String {
+    match is_stdout(path) {
+        true => "standard input".to_owned(),
+        false => path.display().to_string(),
+    }
 }
 
 /// Describes what was ignored or changed.
@@ -63,27 +83,7 @@ fn notes(mesh: &FileMesh) -> Vec<String> {
             "joined {corners} at equal positions to {vertices}: --as-stored keeps them apart"
         ));
     }
-    let low = mesh
-        .positions
-        .iter()
-        .copied()
-        .reduce(Point::min)
-        .unwrap_or_default();
-    let high = mesh
-        .positions
-        .iter()
-        .copied()
-        .reduce(Point::max)
-        .unwrap_or_default();
-    let size = (high.as_dvec3() - low.as_dvec3()).length();
-    let narrowing = mesh.narrowing;
-    if narrowing.merged_vertices > 0 || narrowing.largest_shift > REPORTED_SHIFT * size {
-        let way_out = match options().read.recentre {
-            true => "",
-            false => ": --recentre moves the mesh to the origin first",
-        };
-        notes.push(format!("{narrowing}{way_out}"));
-    }
+    notes.extend(rounding_note(mesh));
     if mesh.origin != [0.0; 3] {
         let [x, y, z] = mesh.origin.map(|coordinate| 0.0 - coordinate);
         notes.push(format!("moved by {x}, {y}, {z} to the origin"));
@@ -91,17 +91,66 @@ fn notes(mesh: &FileMesh) -> Vec<String> {
     notes
 }
 
+/// Describes what rounding to 32 bits did, if it merged vertices or if the mesh is far from the
+/// origin.
+fn rounding_note(mesh: &FileMesh) -> Option<String> {
+    let narrowing = mesh.narrowing;
+    let positions = || mesh.positions.iter().copied();
+    let low = positions().reduce(Point::min).unwrap_or_default();
+    let high = positions().reduce(Point::max).unwrap_or_default();
+    let size = (high.as_dvec3() - low.as_dvec3()).length();
+    if narrowing.merged_vertices == 0 && narrowing.largest_shift <= REPORTED_SHIFT * size {
+        return None;
+    }
+    let part = match size > 0.0 {
+        true => format!(
+            " ({:.0e} of the size of the mesh)",
+            narrowing.largest_shift / size
+        ),
+        false => String::new(),
+    };
+    let way_out = match options().read.recentre {
+        true => "",
+        false => ": --recentre moves the mesh to the origin first",
+    };
+    Some(format!("{narrowing}{part}{way_out}"))
+}
+
 /// Cuts the polygons of the mesh in the file at `path`, if the option --triangulate is set.
 pub(crate) fn cut_polygons(path: &Path, polygons: PolygonMesh) -> Result<PolygonMesh, Failure> {
     if !options().cut.triangulate || polygons.first_polygon().is_none() {
         return Ok(polygons);
     }
-    let study_mesh = StudyMesh::new(path.display().to_string(), polygons);
+    let study_mesh = StudyMesh::new(shown(path), polygons);
     triangulated(study_mesh).map(|study_mesh| study_mesh.polygons)
 }
 
-/// Writes a mesh to `output`, which was opened at `path`. The format is that of --format, or of the
-/// ending of `path`; otherwise it is OBJ. Prints a note for everything that the format cannot keep.
+/// Opens a mesh file for writing. An ending that is not that of a format is an error, unless
+/// --format chooses the format.
+pub(crate) fn open_mesh(path: &Path) -> Result<Output, Failure> {
+    let ending = path.extension();
+    if let (None, None, Some(ending)) = (options().write.format, Format::from_path(path), ending) {
+        let endings = Format::EXTENSIONS.map(|ending| format!(".{ending}"));
+        return Err(Failure::usage(format!(
+            "{}: .{} is not the ending of a format that can be written: use one of {}, or choose \
+             the format with --format",
+            path.display(),
+            ending.display(),
+            endings.join(", ")
+        )));
+    }
+    Output::open(path)
+}
+
+/// Returns the format of a mesh that is written to `path`: that of --format, or of the ending of
+/// `path`; otherwise it is OBJ.
+pub(crate) fn written_format(path: &Path) -> Format {
+    let by_name = || Format::from_path(path).unwrap_or(Format::Obj);
+    options().write.format.unwrap_or_else(by_name)
+}
+
+/// Writes a mesh to `output`, which was opened at `path` by [`open_mesh`], in the
+/// [`written_format`]. Prints a note for everything that the format cannot keep.
 /// `normals` is empty, or has an entry for each vertex.
 pub(crate) fn write_mesh(
     output: Output,
@@ -109,12 +158,20 @@ pub(crate) fn write_mesh(
     polygons: &PolygonMesh,
     normals: &[Option<Point>],
 ) -> Result<(), Failure> {
-    let by_name = || Format::from_path(path).unwrap_or(Format::Obj);
-    let format = options().write.format.unwrap_or_else(by_name);
     let mut writer = MeshWriter::new(polygons);
     if !normals.is_empty() {
         writer = writer.with_normals(normals).map_err(Failure::usage)?;
     }
+    write_with(output, path, &writer)
+}
+
+/// Writes a mesh with its data like [`write_mesh`].
+pub(crate) fn write_with(
+    output: Output,
+    path: &Path,
+    writer: &MeshWriter<'_>,
+) -> Result<(), Failure> {
+    let format = written_format(path);
     output.finish(|to| Ok(writer.write(format, to)?))?;
     for loss in writer.losses(format) {
         print_stderr(&format!(

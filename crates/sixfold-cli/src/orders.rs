@@ -14,6 +14,7 @@ use crate::arguments::{ORDERS_EXAMPLES, Orders};
 use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
+use crate::left_out::refusal_notes;
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::progress::Bar;
@@ -89,19 +90,15 @@ fn print(report: &OrdersReport, text: &mut TextOutput) {
     }
     text.print_line("");
     text.print_line(&hanging_indent("", LEGEND));
-    for refusal in &report.refusals {
-        let line = format!(
-            "{} on {}: {}",
-            refusal.operation, refusal.backend, refusal.reason
-        );
-        text.print_line(&hanging_indent("– ", &line));
-    }
     text.print_line("");
     for sentence in &report.sentences {
         text.print_line(&hanging_indent("- ", sentence));
     }
     for warning in &report.warnings {
         text.print_line(&hanging_indent("! ", warning));
+    }
+    for note in refusal_notes(&report.refusals) {
+        text.print_line(&hanging_indent("", &note));
     }
     text.print_line("");
     let most = report.results.iter().map(|row| row.row.samples).max();

@@ -1,11 +1,13 @@
 //! `sixfold pick`: finds the backend that fits a mesh and a workload.
 
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
 use comfy_table::{Cell, CellAlignment};
 use sixfold_study::{
-    BreakEven, Part, PickReport, PickSettings, Prediction, Ranked, StudyMesh, Workload,
+    BreakEven, ElementKind, OwnBytes, OwnData, Part, PickReport, PickSettings, Prediction,
+    ProgramSettings, Ranked, StudyMesh, Suite, Trace, Workload,
 };
 
 use crate::arguments::Pick;
@@ -13,6 +15,7 @@ use crate::failure::Failure;
 use crate::load;
 use crate::many::{Mesh, find_meshes};
 use crate::measure::{Session, warn_of_debug_build, with_command};
+use crate::programs::{self, Limits, default_memory_limit};
 use crate::progress::Bar;
 use crate::tables::table;
 use crate::text::{TextOutput, hanging_indent, print_stderr, sanitize};
@@ -23,11 +26,14 @@ use sixfold_study::numbers::{counted, duration, figure, grouped};
 const NONE_QUALIFIES: u8 = 1;
 
 pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
+    if let Some(path) = &arguments.trace {
+        return run_trace(path, arguments);
+    }
     let workload = workload(&arguments.workload)?;
     let meshes = find_meshes(&arguments.meshes, &mut |note| print_stderr(note))?;
     let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
     let mut session = Session::open(paths, &arguments.files, arguments.heap)?;
-    let study_meshes = study_meshes(&meshes, arguments)?;
+    let study_meshes = study_meshes(&meshes, arguments.triangulate)?;
     let settings = PickSettings {
         workload,
         backends: arguments.backends.clone(),
@@ -58,13 +64,76 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     Ok(code)
 }
 
-fn study_meshes(meshes: &[Mesh], arguments: &Pick) -> Result<Vec<StudyMesh>, Failure> {
+/// Ranks the structures for the calls of a trace.
+fn run_trace(path: &Path, arguments: &Pick) -> Result<ExitCode, Failure> {
+    let shown = path.display().to_string();
+    let cannot_read = |error: std::io::Error| Failure::usage(format!("{shown}: {error}"));
+    let file = std::fs::File::open(path).map_err(cannot_read)?;
+    let trace = Trace::read(&shown, std::io::BufReader::new(file));
+    let mut trace = trace.map_err(Failure::usage)?;
+    if trace.program.is_empty() {
+        let stem = path.file_stem().unwrap_or(path.as_os_str());
+        trace.program = stem.to_string_lossy().into_owned();
+    }
+    let settings = ProgramSettings {
+        backends: arguments.backends.clone(),
+        runs: 1,
+        max_memory: arguments.max_memory,
+        budget: arguments.budget,
+        seed: arguments.seed,
+        heap: arguments.heap,
+        isolation: None,
+    };
+    programs::measure(
+        &Suite::new().trace(trace),
+        &settings,
+        &arguments.meshes,
+        arguments.triangulate,
+        &arguments.files,
+        Limits::new(arguments.budget, default_memory_limit()),
+    )
+}
+
+/// Reads the meshes. Without a path, a mesh is the built-in mesh. If one of several cannot be read,
+/// prints a note and continues.
+///
+/// # Errors
+///
+/// Fails if no mesh can be read.
+pub(crate) fn study_meshes(meshes: &[Mesh], triangulate: bool) -> Result<Vec<StudyMesh>, Failure> {
     let read = |mesh: &Mesh| match (&mesh.path, &mesh.problem) {
-        (Some(path), _) => load::for_study(path, false, arguments.triangulate),
+        (Some(path), _) => load::for_study(path, false, triangulate),
         (None, Some(problem)) => Err(Failure::usage(format!("{}: {problem}", mesh.name))),
         (None, None) => Ok(load::built_in()),
     };
-    meshes.iter().map(read).collect()
+    if let [only] = meshes {
+        return Ok(vec![read(only)?]);
+    }
+    let mut loaded = Vec::new();
+    for mesh in meshes {
+        match read(mesh) {
+            Ok(study_mesh) => loaded.push(study_mesh),
+            Err(failure) => print_stderr(&format!("note: not measured: {}", failure.message)),
+        }
+    }
+    match loaded.is_empty() {
+        true => Err(Failure::usage(
+            "none of the meshes can be measured: correct the files that the notes above name",
+        )),
+        false => Ok(loaded),
+    }
+}
+
+/// Describes the program's own data. Returns an empty text if the program has no data of its own.
+fn own_data(data: &OwnData) -> String {
+    let kinds = ElementKind::ALL.map(|kind| (kind.name(), data.of(kind)));
+    let described = kinds
+        .iter()
+        .filter(|(_, bytes)| *bytes != OwnBytes::default());
+    let described = described.map(|(kind, OwnBytes { read, written })| {
+        format!("; {read} bytes read and {written} written of own data at each {kind}")
+    });
+    described.collect()
 }
 
 /// Prints the facts that are known before the measurement: the meshes, the mix, and the backends
@@ -92,15 +161,28 @@ fn print_before_measuring(
         0 => String::new(),
         times => format!(", rebuilt {}", counted(times as usize, "time", "times")),
     };
+    let own = match workload.own_ns {
+        0.0 => String::new(),
+        ns => format!(
+            "; {} ns of the program's own work per operation",
+            figure(ns)
+        ),
+    };
+    let own_data = own_data(&workload.own_data);
     let mix = format!(
-        "{}; {}; {operations}{rebuilt}",
+        "{}; {}; {operations}{rebuilt}{own}{own_data}",
         mix.join(", "),
         workload.access
     );
     text.print_line(&hanging_indent("Mix:      ", &mix));
     let first = study_meshes.first();
     if let Some(Ok(prediction)) = first.map(|mesh| sixfold_study::predict(mesh, settings, stop)) {
-        for (name, line) in predicted_lines(&prediction) {
+        // Several meshes share one mix, so one prediction is enough.
+        let of = match study_meshes {
+            [first, _, ..] => format!(", on {} only", sanitize(&first.name)),
+            _ => String::new(),
+        };
+        for (name, line) in predicted_lines(&prediction, &of) {
             text.print_line(&hanging_indent(name, &line));
         }
     }
@@ -118,15 +200,19 @@ fn operations(study_meshes: &[StudyMesh], workload: &Workload) -> String {
     counted(mean.round() as usize, "operation", "operations")
 }
 
-/// Returns the prediction in a few lines, each with its title.
-fn predicted_lines(prediction: &Prediction) -> Vec<(&'static str, String)> {
+/// Returns the prediction in a few lines, each with its title. `of` names the mesh if there are
+/// several.
+fn predicted_lines(prediction: &Prediction, of: &str) -> Vec<(&'static str, String)> {
     let mut lines = Vec::new();
     let local = || prediction.candidates.iter().filter(|p| p.scans.is_empty());
     let counted = local().map(|p| Some(format!("{} {}", p.backend, figure(p.lines?))));
     let counted: Option<Vec<String>> = counted.collect();
     if let Some(counted) = counted.filter(|counted| !counted.is_empty()) {
+        let patch = prediction.patch_faces.map_or(String::new(), |faces| {
+            format!(" on a patch of {} faces", grouped(faces))
+        });
         let text = format!(
-            "{} cache lines per operation (counted, not timed)",
+            "{} cache lines per operation (counted{patch}{of}, not timed)",
             counted.join(", ")
         );
         lines.push(("Reads:    ", text));
@@ -148,7 +234,7 @@ fn predicted_lines(prediction: &Prediction) -> Vec<(&'static str, String)> {
 }
 
 /// Prints the results, which follow [`print_before_measuring`].
-fn print(report: &PickReport, text: &mut TextOutput) {
+pub(crate) fn print(report: &PickReport, text: &mut TextOutput) {
     if !report.ranking.is_empty() {
         text.print_line(&ranking(report));
         text.print_line("");
@@ -170,7 +256,7 @@ fn ranking(report: &PickReport) -> String {
     let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
     let header = [
         "",
-        "operation",
+        report.unit(),
         "ratio",
         "interval",
         "1st build",
@@ -220,23 +306,46 @@ fn ranking(report: &PickReport) -> String {
     ];
     for (line, _) in legend.into_iter().zip(notes).filter(|(_, note)| *note) {
         text += "\n";
-        text += line;
+        text += &hanging_indent("", line);
     }
     let tables = report
         .ranking
         .iter()
         .find_map(|ranked| ranked.made_from.as_deref());
     if let Some(over) = tables {
-        text += &format!(
-            "\nrelation-tables: flat tables of only the relations in the mix, made from {over}"
+        text += "\n";
+        text += &hanging_indent(
+            "relation-tables: ",
+            &format!("flat tables of only the relations in the mix, made from {over}"),
         );
     }
-    text + "\noperation: mean time of an operation of the mix\n\
-            ratio: to the time of the fastest, with its 95 % confidence interval\n\
-            1st build: time to build on new memory pages\n\
-            rebuild: time to build on memory pages that were used before\n\
-            pays after: number of operations after which the 1st build and the operations take\n\
-            less time than the operations on an indexed face set that is already built"
+    let unit = match report.program {
+        None => "operation: mean time of an operation of the mix",
+        Some(_) => "run: median time of a run of the program",
+    };
+    let units = format!("{}s", report.unit());
+    let pays_after = format!(
+        "number of {units} after which the 1st build and the {units} take less time than the \
+         {units} on an indexed face set that is already built"
+    );
+    let columns = [
+        ("", unit),
+        (
+            "ratio: ",
+            "to the time of the fastest, with its 95 % confidence interval",
+        ),
+        ("1st build: ", "time to build on new memory pages"),
+        (
+            "rebuild: ",
+            "time to build on memory pages that were used before",
+        ),
+        ("pays after: ", &pays_after),
+    ];
+    for (column, meaning) in columns {
+        text += "\n";
+        text += &hanging_indent("", &format!("{column}{meaning}"));
+    }
+    text
 }
 
 /// Formats a ratio as `1.04`, `12.3` or `1,230`.

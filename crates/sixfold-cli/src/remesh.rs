@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use sixfold::remeshing::{
-    Boundary, Decimation, RemeshError, Remeshing, Stop, decimate_watched, remesh_watched,
+    Decimation, DecimationBoundary, RemeshError, Remeshing, Stop, decimate_watched, remesh_watched,
 };
 use sixfold::{
     Edit, EditVisitor, MeshEdit, PolygonMesh, QueryCost, Representation, structure_infos,
@@ -15,8 +15,8 @@ use sixfold::{
 use crate::arguments::{Decimate, Remesh};
 use crate::failure::Failure;
 use crate::load;
-use crate::mesh_files::write_mesh;
-use crate::output::{Output, check_outputs, is_stdout};
+use crate::mesh_files::{open_mesh, write_mesh};
+use crate::output::{check_outputs, is_stdout};
 use crate::progress::{StepBar, exit_on_interrupt};
 use crate::text::{TextOutput, print_stderr, sanitize};
 use sixfold_study::numbers::{counted, grouped};
@@ -50,7 +50,7 @@ fn edit_file([from, to]: [&Path; 2], backend: &str, work: &impl Work) -> Result<
     // Check here, because the error of a structure would not name the command that helps.
     check_triangles(&polygons)?;
     // Open the output before the work, so that an unusable path gives an error at once.
-    let output = Output::open(to)?;
+    let output = open_mesh(to)?;
     let mut job = EditJob {
         polygons: &polygons,
         work,
@@ -162,8 +162,8 @@ impl Work for Decimation {
         let report = report?;
         let shortfall = (report.stop != Stop::Done).then(|| {
             let fixed = match self.boundary {
-                Boundary::Fixed => "move the boundary, ",
-                Boundary::Follow => "",
+                DecimationBoundary::Fixed => "move the boundary, ",
+                DecimationBoundary::Follow => "",
             };
             format!(
                 "the target of {} was not reached, because any further collapse would {fixed}flip \

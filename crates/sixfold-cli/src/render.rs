@@ -13,7 +13,8 @@ use sixfold_render::{
 use crate::arguments::Render;
 use crate::failure::Failure;
 use crate::load;
-use crate::output::{Output, check_not_overwritten};
+use crate::mesh_files::shown;
+use crate::output::{Output, check_not_overwritten, is_stdout};
 use crate::progress::{Spinner, exit_on_interrupt};
 use crate::text::{TextOutput, sanitize};
 use sixfold_study::numbers::counted;
@@ -137,6 +138,11 @@ fn load_meshes(arguments: &Render) -> Result<Vec<(PolygonMesh, Creases)>, Failur
             "{files} for {meshes}: give at most one --creases per mesh, in the order of the meshes"
         )));
     }
+    if meshes.iter().filter(|path| is_stdout(path)).count() > 1 {
+        return Err(Failure::usage(
+            "several meshes are standard input, which can be read only once: name files for the others",
+        ));
+    }
     let mut loaded = Vec::with_capacity(meshes.len());
     for (i, path) in meshes.iter().enumerate() {
         let (polygons, mut creases) = load::with_creases(path)?;
@@ -153,7 +159,7 @@ fn load_meshes(arguments: &Render) -> Result<Vec<(PolygonMesh, Creases)>, Failur
 fn failure(arguments: &Render, error: &RenderError) -> Failure {
     match error {
         RenderError::Mesh { mesh, fault } => {
-            let file = arguments.meshes[*mesh].display();
+            let file = shown(&arguments.meshes[*mesh]);
             let message = format!("{file}: {fault}");
             match fault {
                 MeshFault::TooManyFaces { .. } | MeshFault::TooManyLabels { .. } => {

@@ -3,17 +3,21 @@
 use std::process::ExitCode;
 
 use serde::Serialize;
-use sixfold::repair::{RepairError, Repaired, StepReport, repair, repair_for};
-use sixfold::{PolygonMesh, structure_infos};
+use sixfold::io::{Format, Loss, MeshWriter};
+use sixfold::repair::{RepairError, Repaired, Step, StepReport, Weld, repair, repair_for};
+use sixfold::{Creases, PolygonMesh, StructureInfo, structure_infos};
 
 use crate::arguments::Repair;
 use crate::failure::Failure;
-use crate::load;
-use crate::mesh_files::write_mesh;
+use crate::load::{self, ReadMesh};
+use crate::mesh_files::{open_mesh, shown, write_with, written_format};
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{Spinner, exit_on_interrupt};
-use crate::text::{TextOutput, sanitize};
+use crate::text::{TextOutput, print_stderr, sanitize};
 use sixfold_study::numbers::{counted, grouped};
+
+/// The exit code if the written file does not keep the repair.
+const NOT_KEPT: u8 = 1;
 
 /// Maximum number of places that a step left and that are listed.
 const SHOWN: usize = 5;
@@ -32,21 +36,38 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
         ));
     }
     exit_on_interrupt();
-    let polygons = load::without_creases(&arguments.mesh)?;
+    let read = load::for_repair(&arguments.mesh)?;
+    let polygons = &read.polygons;
     // The outputs are opened before the work, so that an unusable place gives an error at once.
-    let output = Output::open(&arguments.output)?;
+    let output = open_mesh(&arguments.output)?;
     let json = Output::open_if(arguments.json.as_ref())?;
     let faces = counted(polygons.face_count(), "face", "faces");
     let spinner = Spinner::start(format!("repairing {faces}"));
-    let done = repair(&polygons, &steps).and_then(|chosen| match &arguments.structure {
-        Some(name) => for_structure(chosen, name),
-        None => Ok(chosen),
+    let done = repair(polygons, &steps).and_then(|chosen| {
+        let sharp = chosen.carried_creases(&read.creases);
+        match &arguments.structure {
+            Some(name) => for_structure(chosen, name, sharp),
+            None => Ok((chosen, sharp)),
+        }
     });
     spinner.clear();
-    let repaired = done.map_err(|error| failure(&error))?;
-    write_mesh(output, &arguments.output, &repaired.polygons, &[])?;
+    let (repaired, (creases, lost)) = done.map_err(|error| failure(&error))?;
+    if lost > 0 {
+        let elements = counted(
+            lost,
+            "sharp edge or vertex is",
+            "sharp edges and vertices are",
+        );
+        let file = shown(&arguments.mesh);
+        print_stderr(&format!(
+            "note: {file}: {elements} not in the repaired mesh"
+        ));
+    }
+    let writer = MeshWriter::new(&repaired.polygons).with_creases(&creases);
+    write_with(output, &arguments.output, &writer)?;
     if let Some(json) = json {
-        let report = Report::new(&polygons, &repaired);
+        let losses = writer.losses(written_format(&arguments.output));
+        let report = Report::new(&read, &repaired, lost, &losses);
         json.finish(|writer| {
             serde_json::to_writer_pretty(&mut *writer, &report)?;
             writeln!(writer)
@@ -55,26 +76,62 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
     let data_on_stdout =
         is_stdout(&arguments.output) || arguments.json.as_deref().is_some_and(is_stdout);
     let mut text = TextOutput::new(!data_on_stdout);
+    print_reading(&read, &mut text);
     print_steps(&repaired.steps, &mut text);
     let place = sanitize(&arguments.output.display().to_string());
     text.print_line(&format!("{place}: {}", repaired.polygons));
     text.finish()?;
+    let refusing = arguments.structure.as_deref();
+    if let Some(name) = refusing.filter(|name| undoes_repair(arguments, &repaired.polygons, name)) {
+        print_stderr(&format!(
+            "warning: {}: readers of STL join vertices at equal positions, and {name} refuses the \
+             mesh that results: write PLY or OBJ, which keep the cut",
+            arguments.output.display()
+        ));
+        return Ok(ExitCode::from(NOT_KEPT));
+    }
     Ok(ExitCode::SUCCESS)
 }
 
-/// Repairs the mesh further for the structure called `name`.
-fn for_structure(chosen: Repaired, name: &str) -> Result<Repaired, RepairError> {
-    let infos = structure_infos();
-    let info = infos.iter().find(|info| info.name == name);
-    let info = info.expect("the arguments accept only names of structures");
+/// Returns whether the written file is STL, and the structure called `name` refuses the mesh that
+/// readers make of it: `polygons` with equal positions joined.
+fn undoes_repair(arguments: &Repair, polygons: &PolygonMesh, name: &str) -> bool {
+    if !matches!(
+        written_format(&arguments.output),
+        Format::Stl | Format::StlAscii
+    ) {
+        return false;
+    }
+    // A facet whose corners are joined is left out by readers; welding removes it, too.
+    let joined = repair(polygons, &[Step::Weld(Weld::default())]);
+    let capabilities = structure_info(name).capabilities;
+    joined.is_ok_and(|joined| capabilities.check(&joined.polygons).is_err())
+}
+
+/// Returns the structure called `name`.
+fn structure_info(name: &str) -> StructureInfo {
+    let mut infos = structure_infos().into_iter();
+    let info = infos.find(|info| info.name == name);
+    info.expect("the arguments accept only names of structures")
+}
+
+/// Repairs the mesh further for the structure called `name`. `sharp` has the creases of the mesh and
+/// the number of lost ones; these of the result are returned.
+fn for_structure(
+    chosen: Repaired,
+    name: &str,
+    sharp: (Creases, usize),
+) -> Result<(Repaired, (Creases, usize)), RepairError> {
+    let info = structure_info(name);
     let Repaired {
         polygons,
         mut steps,
         ..
     } = chosen;
-    let repaired = repair_for(&polygons, &info.capabilities)?;
-    steps.extend(repaired.steps);
-    Ok(Repaired { steps, ..repaired })
+    let mut repaired = repair_for(&polygons, &info.capabilities)?;
+    let (creases, lost) = repaired.carried_creases(&sharp.0);
+    steps.extend(std::mem::take(&mut repaired.steps));
+    Ok((Repaired { steps, ..repaired }, (creases, sharp.1 + lost)))
 }
 
 fn failure(error: &RepairError) -> Failure {
@@ -83,6 +140,21 @@ fn failure(error: &RepairError) -> Failure {
             Failure::usage(error)
         }
         _ => Failure::unsupported(error),
+    }
+}
+
+/// Prints a line with what reading changed, unless it is nothing.
+fn print_reading(read: &ReadMesh, text: &mut TextOutput) {
+    let parts = [
+        (read.joined, "vertices joined"),
+        (read.left_out, "faces left out"),
+    ];
+    let present = parts.into_iter().filter(|&(count, _)| count > 0);
+    let parts: Vec<String> = present
+        .map(|(count, what)| format!("{what}: {}", grouped(count)))
+        .collect();
+    if !parts.is_empty() {
+        text.print_line(&format!("read the file: {}", parts.join(", ")));
     }
 }
 
@@ -132,9 +204,13 @@ fn summary(report: &StepReport) -> String {
 /// The report as JSON.
 #[derive(Serialize)]
 struct Report<'a> {
+    /// The file.
     before: Size,
+    /// What changed before the first step.
+    reading: Reading,
     after: Size,
     steps: &'a [StepReport],
+    lost: Vec<Lost>,
 }
 
 #[derive(Serialize)]
@@ -143,16 +219,56 @@ struct Size {
     faces: usize,
 }
 
+#[derive(Serialize)]
+struct Reading {
+    vertices_joined: usize,
+    faces_left_out: usize,
+}
+
+/// Contents of the file that are not in the output, one entry for each kind.
+#[derive(Serialize)]
+struct Lost {
+    what: &'static str,
+    /// `None` if all are lost.
+    count: Option<u64>,
+}
+
 impl<'a> Report<'a> {
-    fn new(before: &PolygonMesh, repaired: &'a Repaired) -> Self {
-        let size = |mesh: &PolygonMesh| Size {
-            vertices: mesh.vertex_count(),
-            faces: mesh.face_count(),
-        };
+    /// Builds the report. `creases` is the number of sharp edges and vertices that the repair lost.
+    fn new(read: &ReadMesh, repaired: &'a Repaired, creases: usize, losses: &[Loss]) -> Self {
+        let ignored = read.ignored.iter();
+        let mut lost: Vec<Lost> = ignored
+            .map(|notice| Lost {
+                what: notice.kind.title(),
+                count: Some(notice.count),
+            })
+            .collect();
+        let creases = (creases > 0).then_some(Loss::Creases(creases));
+        for loss in creases.iter().chain(losses) {
+            let count = loss.count().map(|count| count as u64);
+            match lost.iter_mut().find(|lost| lost.what == loss.title()) {
+                Some(lost) => lost.count = lost.count.zip(count).map(|(a, b)| a + b),
+                None => lost.push(Lost {
+                    what: loss.title(),
+                    count,
+                }),
+            }
+        }
         Self {
-            before: size(before),
-            after: size(&repaired.polygons),
+            before: Size {
+                vertices: read.polygons.vertex_count() + read.joined,
+                faces: read.polygons.face_count() + read.left_out,
+            },
+            reading: Reading {
+                vertices_joined: read.joined,
+                faces_left_out: read.left_out,
+            },
+            after: Size {
+                vertices: repaired.polygons.vertex_count(),
+                faces: repaired.polygons.face_count(),
+            },
             steps: &repaired.steps,
+            lost,
         }
     }
 }

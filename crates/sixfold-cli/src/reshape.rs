@@ -9,8 +9,8 @@ use sixfold::{PolygonMesh, Representation, Visitor, visit};
 use crate::arguments::{Dual, Smooth, Triangulate};
 use crate::failure::Failure;
 use crate::load;
-use crate::mesh_files::write_mesh;
-use crate::output::{Output, check_outputs, is_stdout};
+use crate::mesh_files::{open_mesh, write_mesh};
+use crate::output::{check_outputs, is_stdout};
 use crate::progress::{Spinner, exit_on_interrupt};
 use crate::text::{TextOutput, sanitize};
 use sixfold_study::numbers::counted;
@@ -60,7 +60,7 @@ fn reshape_file(
     exit_on_interrupt();
     let polygons = load::without_creases(from)?;
     // Open the output before the work, so that an unusable path gives an error at once.
-    let output = Output::open(to)?;
+    let output = open_mesh(to)?;
     let faces = counted(polygons.face_count(), "face", "faces");
     let spinner = Spinner::start(format!("working on {faces}"));
     let changed = change(&polygons);

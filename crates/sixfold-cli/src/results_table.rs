@@ -4,21 +4,48 @@ use comfy_table::{
     Attribute, Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle,
 };
 use sixfold_study::{
-    Agreement, BackendReport, ControlRow, FIRST_TIME_SHOWN, Operation, Refusal, Report, ResultRow,
-    Standing,
+    Agreement, BackendReport, ControlRow, FIRST_TIME_SHOWN, Operation, Report, ResultRow, Standing,
 };
 
+use crate::tables::stacked;
 use crate::text::{hanging_indent, width};
-use sixfold_study::numbers::{duration, figure};
+use sixfold_study::numbers::figure;
 
 /// The style of tables: two spaces between columns, and a line under the header.
 pub(crate) const STYLE: TableStyle =
     TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
+/// Returns the table and its legend. In a narrow terminal, the backends are divided into several
+/// tables below one another.
 pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     let columns: Vec<&BackendReport> = report.backends.iter().filter(|b| b.holds).collect();
     // Intervals fit into the table only if there are few columns.
     let intervals = columns.len() <= 4;
+    let mut signs = Signs::default();
+    let least = columns.iter().filter_map(|backend| backend.bytes).min();
+    let least = least.filter(|_| columns.len() > 1);
+    let smallest = columns.iter().filter(|b| b.bytes == least).count();
+    let smallest = (least, smallest);
+    let mut text = stacked(&columns, |part| {
+        table_of_backends(report, part, intervals, smallest, bold, &mut signs)
+    });
+    for line in signs.legend() {
+        text += "\n";
+        text += &line;
+    }
+    text
+}
+
+/// Returns the table of some of the backends. `smallest` has the least bytes of all backends, and
+/// the number of backends with these bytes.
+fn table_of_backends(
+    report: &Report,
+    columns: &[&BackendReport],
+    intervals: bool,
+    smallest: (Option<usize>, usize),
+    bold: bool,
+    signs: &mut Signs,
+) -> String {
     let mut table = Table::new();
     table
         .load_style(STYLE)
@@ -28,7 +55,10 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     } else {
         table.force_no_tty();
     }
-    let mut signs = Signs::default();
+    let is_first = {
+        let first = report.backends.iter().find(|backend| backend.holds);
+        first.map(|b| &b.name) == columns.first().map(|b| &b.name)
+    };
     // Warnings and the table rows below which they are printed.
     let mut warnings: Vec<(usize, String)> = Vec::new();
     let mut header = vec![Cell::new("nanoseconds"), Cell::new("per")];
@@ -54,22 +84,23 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
             continue; // left_out_notes has the reasons
         }
         let mut line = vec![Cell::new(operation.name()), Cell::new(operation.unit())];
-        for backend in &columns {
+        for backend in columns {
             let row = rows.iter().find(|row| row.backend == backend.name);
             line.push(match row {
-                Some(row) => cell(row, intervals, bold, &mut signs),
+                Some(row) => cell(row, intervals, bold, signs),
                 None => Cell::new("–  ").set_alignment(CellAlignment::Right),
             });
         }
         table.add_row(line);
-        if let Some(line) = first_times(&rows, &columns, intervals) {
+        if let Some(line) = first_times(&rows, columns, intervals) {
             signs.first_times = true;
             table.add_row(line);
         }
         let row = table.row_count() - 1;
-        warnings.extend(noise_warning(report, operation).map(|warning| (row, warning)));
+        let warning = noise_warning(report, operation).filter(|_| is_first);
+        warnings.extend(warning.map(|warning| (row, warning)));
     }
-    add_bytes(&mut table, &columns, intervals, bold, &mut signs);
+    add_bytes(&mut table, columns, smallest, intervals, bold, signs);
     // With this padding, six backends fit into 100 columns of text.
     if let Some(names) = table.column_mut(0) {
         names.set_padding((0, 1));
@@ -83,12 +114,7 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
         let below = warnings.iter().filter(|(row, _)| header + row == number);
         lines.extend(below.map(|(_, warning)| hanging_indent("  ↑ ", warning)));
     }
-    let mut text = lines.join("\n");
-    for line in signs.legend() {
-        text += "\n";
-        text += &line;
-    }
-    text
+    lines.join("\n")
 }
 
 /// Returns the row of first times below an operation. Returns `None` if no first time differs from
@@ -134,16 +160,11 @@ fn noise_warning(report: &Report, operation: Operation) -> Option<String> {
 fn add_bytes(
     table: &mut Table,
     columns: &[&BackendReport],
+    (min_bytes, best_count): (Option<usize>, usize),
     intervals: bool,
     bold: bool,
     signs: &mut Signs,
 ) {
-    let min_bytes = columns
-        .iter()
-        .filter_map(|backend| backend.bytes)
-        .min()
-        .filter(|_| columns.len() > 1);
-    let best_count = columns.iter().filter(|b| b.bytes == min_bytes).count();
     let figure = |bytes: Option<f64>| {
         let figure = bytes.map_or("–".into(), |bytes| format!("{bytes:.1}"));
         with_interval(figure, "", intervals)
@@ -287,65 +308,9 @@ impl Signs {
                 _ => lines.push(part),
             }
         }
-        lines
+        // A part can be wider than a narrow terminal.
+        lines.iter().map(|line| hanging_indent("", line)).collect()
     }
-}
-
-/// Explains why figures are missing or only estimated, one paragraph for each reason.
-pub(crate) fn left_out_notes(report: &Report) -> Vec<String> {
-    let mut notes = refusal_notes(report);
-    notes.extend(report.results.iter().filter_map(not_run_note));
-    notes
-}
-
-/// Explains why an operation is only estimated.
-fn not_run_note(row: &ResultRow) -> Option<String> {
-    let time = duration(row.estimated_ns?);
-    let ResultRow {
-        backend, operation, ..
-    } = row;
-    Some(match row.by_name_only {
-        true => format!(
-            "? {operation} on {backend} was not run: one run would take about {time}. To run this \
-             operation, name it in --operations."
-        ),
-        false => format!(
-            "? {operation} on {backend} was not run: one run would take about {time}. To run this \
-             operation, increase --budget."
-        ),
-    })
-}
-
-/// Lists the reasons for missing figures, one line per reason.
-fn refusal_notes(report: &Report) -> Vec<String> {
-    let mut lines: Vec<(&str, Vec<&str>, Vec<&str>)> = Vec::new();
-    for backend in &report.backends {
-        let backend_refusals = || {
-            let refusals = report.refusals.iter();
-            refusals.filter(|refusal| refusal.backend == backend.name)
-        };
-        let mut seen: Vec<&str> = Vec::new();
-        for Refusal { reason, .. } in backend_refusals() {
-            if seen.contains(&reason.as_str()) {
-                continue;
-            }
-            seen.push(reason);
-            let same_reason = backend_refusals().filter(|refusal| refusal.reason == *reason);
-            let operations: Vec<&str> = same_reason
-                .map(|refusal| refusal.operation.name())
-                .collect();
-            let mut lines_so_far = lines.iter_mut();
-            match lines_so_far.find(|(r, o, _)| *r == reason && *o == operations) {
-                Some((.., backends)) => backends.push(&backend.name),
-                None => lines.push((reason, operations, vec![&backend.name])),
-            }
-        }
-    }
-    let lines = lines.into_iter().map(|(reason, operations, backends)| {
-        let (operations, backends) = (operations.join(", "), backends.join(", "));
-        format!("– {operations} on {backends}: {reason}")
-    });
-    lines.collect()
 }
 
 #[cfg(test)]

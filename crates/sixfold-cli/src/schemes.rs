@@ -4,14 +4,14 @@ use std::process::ExitCode;
 
 use comfy_table::Cell;
 use serde_json::json;
-use sixfold::subdivision::{Kind, Method, Primitive, Scheme};
+use sixfold::subdivision::{Method, Primitive, Scheme, SchemeProperties};
 use sixfold::{Support, support};
 
 use crate::arguments::Schemes;
 use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
 use crate::tables::{table, table_of_backends};
-use crate::text::TextOutput;
+use crate::text::{TextOutput, hanging_indent};
 
 pub(crate) fn run(arguments: &Schemes) -> Result<ExitCode, Failure> {
     let json = Output::open_if(arguments.json.as_ref())?;
@@ -22,7 +22,7 @@ pub(crate) fn run(arguments: &Schemes) -> Result<ExitCode, Failure> {
     let mut done = text.finish();
     if let Some(output) = json {
         let rows = Scheme::ALL.map(|scheme| {
-            json!({ "scheme": scheme, "kind": scheme.kind(), "backends": support(scheme) })
+            json!({ "scheme": scheme, "kind": scheme.properties(), "backends": support(scheme) })
         });
         done = done.and(output.finish(|writer| {
             serde_json::to_writer_pretty(&mut *writer, &rows)?;
@@ -46,7 +46,7 @@ fn classification() -> String {
     let mut kinds = table(heads.map(Cell::new).to_vec());
     let mut notes = Vec::new();
     for scheme in Scheme::ALL {
-        let Kind {
+        let SchemeProperties {
             primitive,
             takes,
             makes,
@@ -56,13 +56,13 @@ fn classification() -> String {
             boundary,
             source,
             ..
-        } = scheme.kind();
+        } = scheme.properties();
         let primitive = match primitive {
             Primitive::FaceSplit => "faces",
             Primitive::VertexSplit => "vertices",
         };
         let faces = match takes == makes {
-            true => takes.to_owned(),
+            true => takes.to_string(),
             false => format!("{takes} to {makes}"),
         };
         let stay = match interpolating {
@@ -100,13 +100,16 @@ fn matrix() -> String {
         }
         methods.add_row(row);
     }
-    let mut text = methods.trim_fmt();
-    text += "\n\nG gather: each new point queries its neighbours. S scatter: one pass over the \
-        faces.";
-    text += "\nN native: the structure refines its own tables, on all threads. G and S build \
-        the structure again.";
-    if once {
-        text += "\n1  only one step is possible, because the structure cannot hold the result.";
+    let legend = [
+        "G gather: each new point queries its neighbours. S scatter: one pass over the faces.",
+        "N native: the structure refines its own tables, on all threads. G and S build the \
+         structure again.",
+        "1  only one step is possible, because the structure cannot hold the result.",
+    ];
+    let mut text = methods.trim_fmt() + "\n";
+    for line in &legend[..if once { 3 } else { 2 }] {
+        text += "\n";
+        text += &hanging_indent("", line);
     }
     text
 }

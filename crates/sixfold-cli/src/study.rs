@@ -11,11 +11,12 @@ use sixfold_study::{
 use crate::arguments::{STUDY_EXAMPLES, Study};
 use crate::facts_text::{print_before_measuring, verdicts_text};
 use crate::failure::Failure;
+use crate::left_out::left_out_notes;
 use crate::load;
 use crate::many;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::progress::Bar;
-use crate::results_table::{left_out_notes, results_table};
+use crate::results_table::results_table;
 use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::counted;
 
@@ -23,7 +24,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     let settings = Settings {
         backends: arguments.backends.clone(),
         externals: arguments.externals.clone(),
-        external_timeout: arguments.patience,
+        external_timeout: arguments.external_timeout,
         operations: arguments.operations.clone(),
         budget: arguments.budget.unwrap_or(Settings::default().budget),
         seed: arguments.seed,

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use rayon::ThreadPoolBuilder;
 use sixfold::io::{read_creases, write_creases};
 use sixfold::subdivision::{
-    Boundary, Method, Scheme, Step, Subdivision, SubdivisionError, subdivide, subdivide_native,
+    BoundaryRule, Method, Scheme, Step, Subdivision, SubdivisionError, subdivide, subdivide_native,
 };
 use sixfold::{
     Creases, PolygonMesh, Refine, RefineVisitor, Representation, Visitor, support, visit,
@@ -20,7 +20,7 @@ use sixfold::{
 use crate::arguments::Subdivide;
 use crate::failure::Failure;
 use crate::load;
-use crate::mesh_files::write_mesh;
+use crate::mesh_files::{open_mesh, shown, write_mesh};
 use crate::output::{Output, check_not_overwritten, check_outputs, is_stdout};
 use crate::progress::{FaceBar, exit_on_interrupt};
 use crate::text::{TextOutput, sanitize};
@@ -62,8 +62,8 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     )?;
     forecast.check(arguments.force)?;
     // Open the output before the work, so that an unusable path gives an error at once.
-    let output = Output::open(&arguments.output)?;
-    let limit = Output::open_if(arguments.limit.as_ref())?;
+    let output = open_mesh(&arguments.output)?;
+    let limit = arguments.limit.as_deref().map(open_mesh).transpose()?;
     let left = Output::open_if(arguments.creases_left.as_ref())?;
     text.print_line(&forecast.describe());
     let mut job = Job {
@@ -109,29 +109,29 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
 /// Returns the scheme with its options. Refuses options that the scheme does not have.
 fn options(arguments: &Subdivide) -> Result<Subdivision, Failure> {
     let scheme = arguments.scheme;
-    let kind = scheme.kind();
+    let properties = scheme.properties();
     let unsupported_option = |option: &str, schemes: &str| {
         Failure::unsupported(format!(
             "{scheme} has no option {option}: remove the option, or choose {schemes}"
         ))
     };
     let creases = "catmull-clark or loop";
-    if arguments.boundary.is_some() && !kind.creases {
+    if arguments.boundary.is_some() && !properties.creases {
         return Err(unsupported_option("--boundary", creases));
     }
-    if arguments.creasing.is_some() && !kind.creases {
+    if arguments.creasing.is_some() && !properties.creases {
         return Err(unsupported_option("--creasing", creases));
     }
-    if arguments.creases.is_some() && !kind.creases {
+    if arguments.creases.is_some() && !properties.creases {
         return Err(unsupported_option("--creases", creases));
     }
     if arguments.loop_weights.is_some() && scheme != Scheme::Loop {
         return Err(unsupported_option("--loop-weights", "loop"));
     }
-    if arguments.limit.is_some() && !kind.creases {
+    if arguments.limit.is_some() && !properties.creases {
         return Err(unsupported_option("--limit", creases));
     }
-    if arguments.limit.is_some() && arguments.boundary == Some(Boundary::None) {
+    if arguments.limit.is_some() && arguments.boundary == Some(BoundaryRule::None) {
         return Err(Failure::unsupported(
             "--limit needs the faces that --boundary none leaves out: remove one of the two options",
         ));
@@ -148,13 +148,13 @@ fn options(arguments: &Subdivide) -> Result<Subdivision, Failure> {
 /// Refuses creases in the mesh file if the scheme has no rules for creases.
 fn check_tags(arguments: &Subdivide, creases: &Creases) -> Result<(), Failure> {
     let scheme = arguments.scheme;
-    if creases.is_empty() || scheme.kind().creases {
+    if creases.is_empty() || scheme.properties().creases {
         return Ok(());
     }
     Err(Failure::unsupported(format!(
         "{}: the file has sharp edges or vertices, but {scheme} has no rule for sharpness: remove \
          the lines `t crease` and `t corner`, or choose catmull-clark or loop",
-        arguments.mesh.display()
+        shown(&arguments.mesh)
     )))
 }
 
@@ -169,7 +169,7 @@ fn method(arguments: &Subdivide) -> Result<Method, Failure> {
     let names: Vec<&str> = row.methods.iter().map(|method| method.name()).collect();
     let names = names.join(" or ");
     if arguments.levels > 1 && !row.holds_result {
-        let makes = scheme.kind().makes;
+        let makes = scheme.properties().makes;
         return Err(Failure::unsupported(format!(
             "{scheme} makes {makes}, but {backend} holds only triangles: choose another backend for level 2"
         )));

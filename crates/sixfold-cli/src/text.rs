@@ -1,6 +1,7 @@
 //! Text for users. The text is suppressed if data is written to standard output.
 
 use std::io::{self, IsTerminal, Write};
+use std::path::Path;
 
 use crate::failure::Failure;
 use crate::output::cannot_write;
@@ -12,11 +13,14 @@ pub(crate) const WIDTH: usize = 100;
 /// Minimum width of text. In a narrower terminal, the terminal breaks lines.
 const MIN_WIDTH: usize = 40;
 
-/// Returns the width of text, in columns: the width of the terminal, or [`WIDTH`] if this is less
-/// or if standard output is not a terminal.
+/// Returns the width of text, in columns: the width of the terminal, but at most [`WIDTH`]. If
+/// standard output is not a terminal, the variable `COLUMNS` has the width; without it, the width is
+/// [`WIDTH`].
 pub(crate) fn width() -> usize {
     let terminal = terminal_size::terminal_size_of(io::stdout());
-    let width = terminal.map_or(WIDTH, |(width, _)| usize::from(width.0));
+    let terminal = terminal.map(|(width, _)| usize::from(width.0));
+    let given = || std::env::var("COLUMNS").ok()?.parse().ok();
+    let width = terminal.or_else(given).unwrap_or(WIDTH);
     width.clamp(MIN_WIDTH, WIDTH)
 }
 
@@ -76,6 +80,20 @@ pub(crate) fn print_stderr(line: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", sanitize(line));
 }
 
+/// Returns a path as a word of a command that users can copy into a shell: with quotes if it needs
+/// them, and with `./` if it begins like an option.
+pub(crate) fn shell_word(path: &Path) -> String {
+    let shown = path.display().to_string();
+    let word = match shown.starts_with('-') && shown != "-" {
+        true => format!("./{shown}"),
+        false => shown,
+    };
+    match shlex::try_quote(&word) {
+        Ok(quoted) => sanitize(&quoted),
+        Err(_) => sanitize(&word),
+    }
+}
+
 /// Breaks `text` at spaces into lines of at most `width` columns. A longer word gets its own line.
 pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
@@ -100,9 +118,66 @@ pub(crate) fn hanging_indent(first: &str, text: &str) -> String {
     format!("{first}{}", lines.join(&gap))
 }
 
+/// Breaks the lines of a help text that are wider than `width`. Lines of a paragraph are joined
+/// first. A line with an example breaks before its description, which follows at least two spaces.
+pub(crate) fn reflow(text: &str, width: usize) -> String {
+    let is_wide = |line: &str| line.chars().count() > width;
+    let mut lines: Vec<String> = Vec::new();
+    let all: Vec<&str> = text.lines().collect();
+    for paragraph in all.chunk_by(|a, b| is_prose(a) && is_prose(b)) {
+        if is_prose(paragraph[0]) && paragraph.iter().any(|line| is_wide(line)) {
+            lines.extend(wrap(&paragraph.join(" "), width));
+            continue;
+        }
+        for line in paragraph {
+            match is_wide(line) {
+                true => lines.extend(broken(line, width)),
+                false => lines.push((*line).to_owned()),
+            }
+        }
+    }
+    lines.join("\n")
+}
+
+/// Returns whether a line belongs to a paragraph: it is neither empty nor indented.
+fn is_prose(line: &str) -> bool {
+    !line.is_empty() && !line.starts_with(' ')
+}
+
+/// Breaks an indented line. The following lines are indented by four more columns.
+fn broken(line: &str, width: usize) -> Vec<String> {
+    let text = line.trim_start();
+    let indent = " ".repeat(line.len() - text.len());
+    let (example, description) = text.split_once("  ").unwrap_or((text, ""));
+    let room = width.saturating_sub(indent.len() + 4);
+    let mut lines = wrap(example, room);
+    if !description.is_empty() {
+        lines.extend(wrap(description.trim_start(), room));
+    }
+    let lines = lines.into_iter().enumerate();
+    let indented = lines.map(|(i, line)| match i {
+        0 => format!("{indent}{line}"),
+        _ => format!("{indent}    {line}"),
+    });
+    indented.collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn paths_are_words_of_a_shell() {
+        for (path, word) in [
+            ("a.obj", "a.obj"),
+            ("-", "-"),
+            ("-dash.obj", "./-dash.obj"),
+            ("my part.obj", "'my part.obj'"),
+            ("- a.obj", "'./- a.obj'"),
+        ] {
+            assert_eq!(shell_word(Path::new(path)), word);
+        }
+    }
 
     #[test]
     fn lines_break_at_spaces() {
@@ -111,5 +186,15 @@ mod tests {
         assert_eq!(hanging_indent("name  ", "reason"), "name  reason");
         let long_name = "n".repeat(2 * WIDTH);
         assert!(hanging_indent(&long_name, "a reason").starts_with(&format!("{long_name}a\n")));
+    }
+
+    #[test]
+    fn help_texts_break_at_the_width() {
+        let text = "Examples:\n  run a b c        what it does\n\nOne two\nthree four\nfive.";
+        assert_eq!(reflow(text, 80), text);
+        let expected =
+            "Examples:\n  run a b c\n      what it\n      does\n\nOne two\nthree four\nfive.";
+        assert_eq!(reflow(text, 16), expected);
+        assert_eq!(reflow("One two\nthree four", 9), "One two\nthree\nfour");
     }
 }

@@ -60,14 +60,14 @@ pub(crate) fn measure(
     })
 }
 
-/// Measures the speed of memory. Returns `None` if interrupted.
+/// Measures the speed of memory, in at most half of the budget. Returns `None` if interrupted.
 fn timing(budget: Duration, stop: &AtomicBool) -> Option<Timing> {
     let budget = Budget::start(budget);
     let spinner = Spinner::start("measuring the speed of memory".into());
-    let memory = MemorySpeed::measure(&MachineClock::start(), stop);
+    let memory = MemorySpeed::measure(budget.total() / 2, &MachineClock::start(), stop);
     spinner.clear();
     Some(Timing {
-        budget: budget.left(),
+        budget,
         memory: memory?,
     })
 }

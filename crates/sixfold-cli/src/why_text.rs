@@ -196,6 +196,31 @@ fn describe_times(timed: &Timed) -> String {
     )
 }
 
+/// The columns of a table with times, and their meaning.
+const TIMED: [(&str, &str); 4] = [
+    (
+        "floor",
+        "ns per element to read the bytes of `moved` sequentially. The speed is that of the \
+         largest measured buffer that is not larger than the memory that the sweep touches.",
+    ),
+    (
+        "waits",
+        "ns per element for the jumps, if each jump waits for the previous jump. The latency \
+         is that of the buffer that is used for `floor`.",
+    ),
+    (
+        "measured",
+        "time of the sweep in ns per element, median; ~ if measured on a sample",
+    ),
+    (
+        "bound by",
+        "bandwidth: `floor` is at least half of the measured time. latency: `floor` is less, \
+         but `waits` is at least half of the measured time. work: `floor` and `waits` are both \
+         less than half; most of the time is spent on reading nearby data, comparing and \
+         branching.",
+    ),
+];
+
 pub(crate) fn legend(why: &Why) -> String {
     let Model {
         line_bytes,
@@ -239,29 +264,6 @@ pub(crate) fn legend(why: &Why) -> String {
              sweep counts once. In a row with ~, the lines of each query are counted separately.",
         ),
     ];
-    let timed = [
-        (
-            "floor",
-            "ns per element to read the bytes of `moved` sequentially. The speed is that of the \
-             largest measured buffer that is not larger than the memory that the sweep touches.",
-        ),
-        (
-            "waits",
-            "ns per element for the jumps, if each jump waits for the previous jump. The latency \
-             is that of the buffer that is used for `floor`.",
-        ),
-        (
-            "measured",
-            "time of the sweep in ns per element, median; ~ if measured on a sample",
-        ),
-        (
-            "bound by",
-            "bandwidth: `floor` is at least half of the measured time. latency: `floor` is less, \
-             but `waits` is at least half of the measured time. work: `floor` and `waits` are both \
-             less than half; most of the time is spent on reading nearby data, comparing and \
-             branching.",
-        ),
-    ];
     let counted = [("by table", "number of reads of a query in each table")];
     let listing = match why.memory.is_some() {
         true => {
@@ -279,7 +281,7 @@ pub(crate) fn legend(why: &Why) -> String {
         ("", listing),
     ];
     let second: &[(&str, &str)] = if why.memory.is_some() {
-        &timed
+        &TIMED
     } else {
         &counted
     };

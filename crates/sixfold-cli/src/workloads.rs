@@ -115,7 +115,7 @@ fn operations() -> String {
         String::new(),
         hanging_indent(
             "",
-            "A weight is a number, or a text such as \"2 per face\". `access` is sequential, random or patches.",
+            "A weight is a number, or a text such as \"2 per face\". `access` is sequential, random, patches, front, by_face or by_edge.",
         ),
     ]
     .join("\n")

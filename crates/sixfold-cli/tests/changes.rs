@@ -167,7 +167,7 @@ fn results_of_any_command_are_merged_and_compared() {
     );
     let left_out = run_ok(&sixfold, &["compare", "all.json", "p.json"]).stdout;
     assert!(
-        left_out.contains("Only in the first file: build on polygon-soup, "),
+        left_out.contains("Only in the first file: structure on polygon-soup, "),
         "{left_out}"
     );
     assert!(left_out.contains("more."), "{left_out}");

@@ -140,6 +140,7 @@ fn growth_writes_json() {
         "interrupted",
         "kind",
         "left_out",
+        "mesh",
         "meshes",
         "order",
         "refused_by",
@@ -161,7 +162,18 @@ fn growth_writes_json() {
         names(&list(&report, "refused_by")[0]),
         ["backend", "reason"]
     );
-    let sizes = list(&report, "sizes");
+    check_sizes(list(&report, "sizes"));
+    check_fits(list(&report, "fits"));
+    for cache in list(&report, "caches") {
+        assert_eq!(names(cache), ["bytes", "kind", "level", "shared_by"]);
+    }
+    for end in list(&report, "cache_limits") {
+        assert_eq!(names(end), ["backend", "cache_bytes", "faces", "level"]);
+    }
+}
+
+/// Checks the three sizes of a growth in JSON.
+fn check_sizes(sizes: &[Value]) {
     assert_eq!(sizes.len(), 3);
     for size in sizes {
         let fields = [
@@ -185,7 +197,10 @@ fn growth_writes_json() {
             ["backend", "bytes", "fits_in"]
         );
     }
-    let fits = list(&report, "fits");
+}
+
+/// Checks the fitted powers of five backends over three sizes.
+fn check_fits(fits: &[Value]) {
     assert_eq!(fits.len(), 5);
     for fit in fits {
         let fields = [
@@ -200,12 +215,6 @@ fn growth_writes_json() {
         assert_eq!(names(fit), fields);
         assert_eq!(names(&fit["all"]), ["exponent", "sizes", "standard_error"]);
         assert_eq!(fit["all"]["sizes"], 3);
-    }
-    for cache in list(&report, "caches") {
-        assert_eq!(names(cache), ["bytes", "kind", "level", "shared_by"]);
-    }
-    for end in list(&report, "cache_limits") {
-        assert_eq!(names(end), ["backend", "cache_bytes", "faces", "level"]);
     }
 }
 
@@ -271,4 +280,33 @@ fn an_interrupted_sweep_keeps_the_sizes_that_are_finished() {
     let sizes = list(&report, "sizes").len();
     assert!((1..13).contains(&sizes), "{sizes} sizes");
     assert_eq!(sixfold.names(), ["kept.json"]);
+}
+
+/// Facts are printed before the measurement.
+#[test]
+fn growth_and_memory_print_what_is_known_before_they_measure() {
+    use std::io::{BufRead, BufReader, Read};
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 60);
+    let growth = ["growth", "--to", "20000", "--steps", "3", "--budget", "2s"];
+    for (arguments, first) in [
+        (&growth[..], "shape        "),
+        (&["memory", "grid.obj"], "mesh         grid.obj"),
+    ] {
+        let mut command = sixfold.command(arguments);
+        let command = command.stdout(std::process::Stdio::piped());
+        let mut child = command.spawn().expect("it starts");
+        let mut lines = BufReader::new(child.stdout.take().expect("piped"));
+        let mut line = String::new();
+        lines.read_line(&mut line).expect("a line");
+        assert!(line.starts_with(first), "{line}");
+        // Without the early text, the command would end now.
+        std::thread::sleep(std::time::Duration::from_millis(100));
+        let ended = child.try_wait().expect("our child");
+        assert!(ended.is_none(), "{arguments:?} ended with its first line");
+        let mut rest = String::new();
+        lines.read_to_string(&mut rest).expect("UTF-8");
+        assert!(child.wait().expect("it ends").success(), "{rest}");
+        assert_eq!(rest.matches(first).count(), 0, "printed twice: {rest}");
+    }
 }

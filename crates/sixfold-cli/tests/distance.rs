@@ -51,3 +51,34 @@ fn meshes_without_faces_and_bad_counts_are_refused() {
         assert_refused(&sixfold, &arguments, 2, "from 1 to 4294967295");
     }
 }
+
+#[test]
+fn both_meshes_are_moved_in_the_same_way() {
+    let sixfold = Sixfold::new();
+    let far = |mesh: &str, east: &str| {
+        mesh.replace("v 0", &format!("v {east}"))
+            .replace("v 1", "v 500001")
+    };
+    sixfold.file("low.obj", &far(LOW, "500000"));
+    sixfold.file("high.obj", &far(HIGH, "500000.01"));
+    let arguments = [
+        "distance",
+        "low.obj",
+        "high.obj",
+        "--recentre",
+        "--json",
+        "-",
+    ];
+    let run = run_ok(&sixfold, &arguments);
+    let rows: Value = serde_json::from_str(&run.stdout).expect("JSON");
+    let (mean, largest) = (rows[1]["mean"].as_f64(), rows[0]["largest"].as_f64());
+    assert!(mean.is_some_and(|mean| (mean - 0.5).abs() < 1e-6), "{rows}");
+    // The low square is 1 cm wider.
+    let expected = (0.25_f64 + 1e-4).sqrt();
+    assert!(
+        largest.is_some_and(|largest| (largest - expected).abs() < 1e-6),
+        "{rows}"
+    );
+    let moved = "moved by -500000.5, -0.5, 0 to the origin";
+    assert_eq!(run.stderr.matches(moved).count(), 2, "{run:?}");
+}

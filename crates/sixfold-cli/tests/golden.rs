@@ -40,6 +40,7 @@ fn help() {
         ("help_orders.txt", &["orders", "--help"]),
         ("help_growth.txt", &["growth", "--help"]),
         ("help_pick.txt", &["pick", "--help"]),
+        ("help_new.txt", &["new", "--help"]),
         ("help_workloads.txt", &["workloads", "--help"]),
         ("help_inspect.txt", &["inspect", "--help"]),
         ("help_distance.txt", &["distance", "--help"]),

@@ -37,6 +37,39 @@ fn an_interrupted_study_keeps_what_is_finished() {
 }
 
 #[test]
+fn an_interrupted_report_has_the_finished_results() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 40);
+    let arguments = ["study", "grid.obj", "--budget", "10m", "--report", "R"];
+    sixfold.run_interrupted(&arguments, "INT", Duration::from_secs(4));
+    let document = text(&sixfold, "R/results.json");
+    let study: Value = crate::json_csv::finding(&document);
+    assert_eq!(study["interrupted"], true);
+    let page = text(&sixfold, "R/report.md");
+    assert!(
+        page.contains("Interrupted: some results are incomplete"),
+        "{page}"
+    );
+    assert!(!page.contains("on 0 meshes"), "{page}");
+    // `--resume` measures the mesh again.
+    let studies = std::fs::read_dir(sixfold.folder().join("R/studies"));
+    assert_eq!(studies.expect("the folder").count(), 0);
+}
+
+#[test]
+fn an_interrupted_report_on_nothing_is_not_written() {
+    let sixfold = Sixfold::new();
+    // The first operation on this mesh takes longer than the time until the signal.
+    sixfold.grid("grid.obj", 400);
+    let arguments = ["study", "grid.obj", "--budget", "10m", "--report", "R"];
+    let run = sixfold.run_interrupted(&arguments, "INT", Duration::from_millis(1));
+    match run.stderr.contains("no result was finished") {
+        true => assert_eq!(sixfold.names(), ["grid.obj"]),
+        false => assert!(!text(&sixfold, "R/report.md").contains("on 0 meshes")),
+    }
+}
+
+#[test]
 fn an_interrupted_explanation_keeps_what_is_finished() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 40);

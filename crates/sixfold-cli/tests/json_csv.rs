@@ -286,3 +286,65 @@ fn merged_vertices_are_reported_and_are_not_a_failure() {
         }
     }
 }
+
+/// Returns the rows of a table as lists of cells by column. No cell may contain a comma.
+fn csv_rows(csv: &str) -> Vec<BTreeMap<String, String>> {
+    let mut lines = csv.lines().map(|line| line.split(',').map(str::to_owned));
+    let header: Vec<String> = lines.next().expect("a header").collect();
+    lines
+        .map(|line| header.iter().cloned().zip(line).collect())
+        .collect()
+}
+
+#[test]
+fn counts_have_rows_in_csv() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    let run = crate::run::run_ok(
+        &sixfold,
+        &["why", "grid.obj", "--counts-only", "--csv", "-"],
+    );
+    let rows = csv_rows(&run.stdout);
+    assert_eq!(rows.len(), 9 * 6);
+    for row in &rows {
+        assert_eq!(row["status"], "counted", "{row:?}");
+        assert!(
+            !row["reads"].is_empty() && !row["lines"].is_empty(),
+            "{row:?}"
+        );
+        assert!(row["ns"].is_empty(), "{row:?}");
+    }
+    let run = crate::run::run_ok(&sixfold, &["memory", "grid.obj", "--csv", "-"]);
+    let rows = csv_rows(&run.stdout);
+    let structures = rows.iter().filter(|row| row["operation"] == "structure");
+    let structures: Vec<_> = structures.collect();
+    assert_eq!(structures.len(), 6);
+    for row in structures {
+        assert_eq!(row["layout_bytes"], row["counted_bytes"], "{row:?}");
+        let bytes = |column: &str| row[column].parse::<u64>().expect("a number");
+        assert!(bytes("peak_bytes") >= bytes("counted_bytes"), "{row:?}");
+    }
+}
+
+#[test]
+fn growth_records_its_meshes_and_the_features_of_the_build() {
+    let sixfold = Sixfold::new();
+    let arguments = [
+        "growth", "--to", "2000", "--steps", "2", "--budget", "300ms",
+    ];
+    let run = crate::run::run_ok(&sixfold, &[&arguments[..], &["--json", "-"]].concat());
+    let document = parsed(&run.stdout);
+    let growth = &document["findings"][0];
+    let sizes = growth["sizes"].as_array().expect("a list").len();
+    let meshes = document["meshes"].as_array().expect("a list");
+    assert_eq!(meshes.len(), sizes);
+    for (mesh, size) in meshes
+        .iter()
+        .zip(growth["sizes"].as_array().expect("a list"))
+    {
+        assert_eq!(mesh["sha256"].as_str().map(str::len), Some(64));
+        assert_eq!(mesh["faces"], size["faces"]);
+    }
+    let environment = &document["runs"][0]["environment"];
+    assert_eq!(environment["features"], serde_json::json!([]));
+}

@@ -16,6 +16,7 @@ mod neighbours;
 mod obj;
 mod outputs;
 mod picking;
+mod programs;
 mod remeshing;
 mod render;
 mod repair;

@@ -318,14 +318,14 @@ fn places_without_meshes_do_not_stop_the_others() {
     assert_eq!(run.code, Some(0), "{run:?}");
     for message in [
         "empty: not studied: no mesh file in this directory or its subdirectories\n",
-        "prints: not studied: no mesh file in this directory or its subdirectories, but 1 .fbx: convert",
+        "prints: not studied: no mesh file in this directory or its subdirectories, but 1 .fbx; convert .fbx to",
     ] {
         assert!(run.stderr.contains(message), "{message}: {run:?}");
     }
     let run = sixfold.run(&["study", "scans", "--budget", "50ms"]);
     assert!(
         run.stderr
-            .contains("note: scans: files of other formats are left out (1 .x3d)"),
+            .contains("note: scans: other files are left out: 1 .txt, 1 .x3d, 1 hidden; convert"),
         "{run:?}"
     );
 }

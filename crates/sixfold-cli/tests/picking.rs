@@ -115,8 +115,26 @@ fn no_qualifying_backend_has_its_own_exit_code() {
 }
 
 #[test]
+fn meshes_that_cannot_be_read_are_left_out() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    sixfold.file("broken.obj", "v 0 0 0\nf 1 2 3\n");
+    std::fs::create_dir(sixfold.folder().join("empty")).expect("a folder");
+    sixfold.file("mine.toml", MINE);
+    let arguments = ["pick", "empty", "missing.obj", "broken.obj", "grid.obj"];
+    let options = ["--workload", "mine.toml", "--budget", "1s"];
+    let run = run_ok(&sixfold, &[&arguments[..], &options].concat());
+    for name in ["empty: no mesh file", "missing.obj", "broken.obj"] {
+        let note = format!("note: not measured: {name}");
+        assert!(run.stderr.contains(&note), "{note}: {}", run.stderr);
+    }
+    assert!(run.stdout.contains("For mine, "), "{}", run.stdout);
+}
+
+#[test]
 fn invalid_arguments_are_refused() {
     let sixfold = Sixfold::new();
+    std::fs::create_dir(sixfold.folder().join("empty")).expect("a folder");
     sixfold.grid("grid.obj", 12);
     sixfold.file(
         "quads.obj",
@@ -124,6 +142,7 @@ fn invalid_arguments_are_refused() {
     );
     sixfold.file("tiny.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     sixfold.file("name.toml", "operations = 5\n[mix]\nvertex_face = 1\n");
+    sixfold.file("name_only.toml", "[mix]\nvertex_face = 1\n");
     sixfold.file(
         "key.toml",
         "operations = 5\nspeed = 1\n[mix]\nposition = 1\n",
@@ -138,6 +157,11 @@ fn invalid_arguments_are_refused() {
         (
             "name.toml",
             "name.toml:3: no operation is called `vertex_face` (did you mean `vertex_faces`?)",
+        ),
+        // The missing field `operations` must not hide the unknown name.
+        (
+            "name_only.toml",
+            "name_only.toml:2: no operation is called `vertex_face` (did you mean `vertex_faces`?)",
         ),
         ("key.toml", "key.toml:2: unknown field `speed`"),
         ("broken.toml", "broken.toml:2: "),
@@ -155,7 +179,6 @@ fn invalid_arguments_are_refused() {
             &["pick", "tiny.obj", "--workload", "remeshing"],
             "too small for 3 kinds of edits",
         ),
-        (&["pick", "grid.obj", "missing.obj"], "missing.obj"),
         (
             &["pick", "grid.obj", "--needs", "wings"],
             "choose from edit, non-manifold",
@@ -193,5 +216,26 @@ fn a_workload_that_is_shown_can_be_run() {
     assert!(run.stdout.contains("For mine, "), "{}", run.stdout);
     let run = run_ok(&sixfold, &["workloads", "--json", "-"]);
     let all: Value = serde_json::from_str(&run.stdout).expect("JSON");
-    assert_eq!(all.as_array().map(Vec::len), Some(12));
+    assert_eq!(all.as_array().map(Vec::len), Some(14));
+}
+
+#[test]
+fn pick_continues_after_a_mesh_that_cannot_be_read() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("a.obj", 8);
+    sixfold.grid("c.obj", 9);
+    sixfold.file("b.obj", "v 0 0 0\nf 1 2 3\n");
+    let arguments = ["pick", "a.obj", "b.obj", "c.obj", "--budget", "300ms"];
+    let run = run_ok(&sixfold, &arguments);
+    let note = "note: not measured: b.obj:2: face names vertex 2";
+    assert!(run.stderr.contains(note), "{run:?}");
+    for mesh in ["a.obj", "c.obj"] {
+        assert!(
+            run.stdout.contains(&format!("Mesh:     {mesh}: ")),
+            "{run:?}"
+        );
+    }
+    assert_refused(&sixfold, &["pick", "b.obj"], 2, "b.obj:2");
+    let none = ["pick", "b.obj", "missing.obj"];
+    assert_refused(&sixfold, &none, 2, "none of the meshes can be measured");
 }

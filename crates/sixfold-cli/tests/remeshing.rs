@@ -375,10 +375,10 @@ fn edits_writes_json() {
         let names: Vec<_> = backends.iter().map(|b| b["backend"].as_str()).collect();
         assert_eq!(names, BACKENDS.map(Some), "{row}");
         let words = [None, Some("constant"), Some("local"), Some("scan")];
-        let known = |b: &Value| words.contains(&b["looks_at"].as_str());
+        let known = |b: &Value| words.contains(&b["cost"].as_str());
         assert!(backends.iter().all(known), "{row}");
     }
     let flip = rows.iter().find(|row| row["edit"] == "flip_edge");
     let half_edge = &flip.expect("a row")["backends"][4];
-    assert_ne!(half_edge["looks_at"], "scan");
+    assert_ne!(half_edge["cost"], "scan");
 }

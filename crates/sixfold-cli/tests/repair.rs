@@ -125,26 +125,36 @@ fn wrong_use_is_refused() {
     assert_eq!(sixfold.names(), ["book.obj"], "nothing is written");
 }
 
-/// Returns the commands of a text, as words.
+/// Returns the commands of a text, as words. A backslash continues a line, as in a shell.
 fn commands(text: &str) -> Vec<Vec<String>> {
+    let text = text.replace(" \\\n", " ");
     let lines = text.lines().map(str::trim);
     let commands = lines.filter_map(|line| line.strip_prefix("sixfold "));
-    commands
-        .map(|command| command.split(' ').map(ToOwned::to_owned).collect())
-        .collect()
+    let words = |command| shlex::split(command).expect("words of a shell");
+    commands.map(words).collect()
 }
 
 #[test]
 fn the_commands_that_inspect_prints_repair_the_mesh() {
     let sixfold = Sixfold::new();
-    for (name, text) in [("book.obj", BOOK), ("unwelded.obj", UNWELDED)] {
+    for (name, text) in [
+        ("book.obj", BOOK),
+        ("unwelded.obj", UNWELDED),
+        // These names need care in a shell, or would be overwritten.
+        ("-dash.obj", BOOK),
+        ("my 'best' part.obj", BOOK),
+        ("repaired.obj", BOOK),
+    ] {
         sixfold.file(name, text);
-        let commands = commands(&run_ok(&sixfold, &["inspect", name]).stdout);
-        assert!(commands.len() >= 2, "{name}: {commands:?}");
+        let inspected = run_ok(&sixfold, &["inspect", "--", name]).stdout;
+        let commands = commands(&inspected);
+        assert!(commands.len() >= 2, "{name}: {inspected}");
         for command in commands {
             let words: Vec<&str> = command.iter().map(String::as_str).collect();
             run_ok(&sixfold, &words);
-            let after = run_ok(&sixfold, &["inspect", "repaired.obj"]).stdout;
+            let output = words.last().expect("the output");
+            assert_ne!(*output, name, "{words:?}");
+            let after = run_ok(&sixfold, &["inspect", output]).stdout;
             if words.contains(&"--for") {
                 assert!(!after.contains("refuse"), "{words:?}: {after}");
             }
@@ -225,4 +235,245 @@ fn a_refusal_names_the_command_that_repairs() {
     sixfold.file("book.obj", BOOK);
     let command = ["smooth", "book.obj", "-o", "out.obj"];
     assert_refused(&sixfold, &command, 3, "`sixfold repair --for half-edge`");
+}
+
+#[test]
+fn sharp_edges_and_vertices_are_carried_or_listed() {
+    let sixfold = Sixfold::new();
+    // The sharp edge 0–1 gets two copies, the edge 0–4 moves to a copy of vertex 0.
+    let tags = "t crease 2/1/0 1 0 2.5\nt crease 2/1/0 0 4 1\nt corner 1/1/0 1 inf\n";
+    sixfold.file("book.obj", &format!("{BOOK}{tags}"));
+    let cut = ["repair", "book.obj", "--for", "half-edge", "-o", "cut.obj"];
+    let run = run_ok(&sixfold, &cut);
+    assert_eq!(run.stderr, "");
+    let written = text(&sixfold, "cut.obj");
+    let written: Vec<&str> = written
+        .lines()
+        .filter(|line| line.starts_with('t'))
+        .collect();
+    let count = |tag: &str| written.iter().filter(|line| line.ends_with(tag)).count();
+    assert_eq!(
+        [count(" 2.5"), count(" 1"), count(" inf")],
+        [2, 1, 2],
+        "{written:?}"
+    );
+    // The tags are read again: each names an edge of the mesh.
+    run_ok(&sixfold, &["inspect", "cut.obj"]);
+
+    let cut = ["repair", "book.obj", "--cut", "-o", "cut.ply"];
+    let run = run_ok(&sixfold, &cut);
+    let loss = "note: cut.ply: the sharpness of 5 edges and vertices is left out";
+    assert!(run.stderr.contains(loss), "{run:?}");
+
+    // Two components; the sharp edge of the smaller one is removed with it.
+    let two = format!("{TETRAHEDRON}v 5 0 0\nv 6 0 0\nv 5 1 0\nf 5 6 7\n");
+    sixfold.file(
+        "two.obj",
+        &format!("{two}t crease 2/1/0 4 5 3\nt crease 2/1/0 0 1 1\n"),
+    );
+    let one = ["repair", "two.obj", "--components", "3", "-o", "one.obj"];
+    let run = run_ok(&sixfold, &one);
+    let lost = "note: two.obj: 1 sharp edge or vertex is not in the repaired mesh\n";
+    assert_eq!(run.stderr, lost);
+    assert!(text(&sixfold, "one.obj").ends_with("t crease 2/1/0 0 1 1\n"));
+}
+
+#[test]
+fn an_unwelded_mesh_is_welded_first() {
+    let sixfold = Sixfold::new();
+    // 24 vertices at the 8 corners of a cube.
+    let corner = |i: usize| format!("v {} {} {}\n", i & 1, (i >> 1) & 1, i >> 2);
+    let faces = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let mut cube: String = faces.iter().flatten().map(|&i| corner(i)).collect();
+    for f in 0..6 {
+        cube += &format!(
+            "f {} {} {} {}\n",
+            4 * f + 1,
+            4 * f + 2,
+            4 * f + 3,
+            4 * f + 4
+        );
+    }
+    sixfold.file("cube.obj", &cube);
+    let run = run_ok(&sixfold, &["inspect", "cube.obj", "--json", "cube.json"]);
+    let weld = "sixfold repair cube.obj --weld -o repaired.obj";
+    assert!(run.stdout.contains("24 vertices at 8 positions"), "{run:?}");
+    assert_eq!(run.stdout.matches("sixfold repair").count(), 1, "{run:?}");
+    assert!(run.stdout.contains(weld), "{run:?}");
+    assert!(!run.stdout.contains("--fill-holes"), "{run:?}");
+    let json: Value = serde_json::from_str(&text(&sixfold, "cube.json")).expect("JSON");
+    let faults = json["diagnosis"]["faults"].as_array().expect("faults");
+    assert!(
+        faults.iter().all(|fault| fault["repair"] == weld),
+        "{faults:?}"
+    );
+}
+
+#[test]
+fn faces_that_reading_leaves_out_are_counted() {
+    let sixfold = Sixfold::new();
+    sixfold.file("a.obj", &format!("{BOOK}f 1 1 2\nf 3 4\n"));
+    let run = run_ok(&sixfold, &["inspect", "a.obj", "--json", "a.json"]);
+    let row = "2 degenerate faces of the file, left out: line 9: face 1 1 2 names vertex 1 twice";
+    assert!(run.stdout.contains(row), "{run:?}");
+    let json: Value = serde_json::from_str(&text(&sixfold, "a.json")).expect("JSON");
+    let left_out = serde_json::json!({
+        "count": 2,
+        "places": [{ "vertices": [1, 1, 2], "line": 9 }, { "vertices": [3, 4], "line": 10 }],
+        "repair": "sixfold repair a.obj --flat -o repaired.obj",
+    });
+    assert_eq!(json["diagnosis"]["left_out"], left_out);
+
+    let cut = [
+        "repair",
+        "a.obj",
+        "--for",
+        "half-edge",
+        "-o",
+        "cut.obj",
+        "--json",
+        "r.json",
+    ];
+    let run = run_ok(&sixfold, &cut);
+    assert!(
+        run.stdout.contains("read the file: faces left out: 2\n"),
+        "{run:?}"
+    );
+    let report: Value = serde_json::from_str(&text(&sixfold, "r.json")).expect("JSON");
+    assert_eq!(
+        report["before"],
+        serde_json::json!({ "vertices": 5, "faces": 5 })
+    );
+    assert_eq!(
+        report["reading"],
+        serde_json::json!({ "vertices_joined": 0, "faces_left_out": 2 })
+    );
+    assert_eq!(
+        report["after"],
+        serde_json::json!({ "vertices": 7, "faces": 3 })
+    );
+
+    run_ok(&sixfold, &["triangulate", "a.obj", "-o", "a.stl"]);
+    run_ok(
+        &sixfold,
+        &[
+            "repair", "a.stl", "--cut", "-o", "cut.obj", "--json", "r.json",
+        ],
+    );
+    let report: Value = serde_json::from_str(&text(&sixfold, "r.json")).expect("JSON");
+    assert_eq!(
+        report["before"],
+        serde_json::json!({ "vertices": 9, "faces": 3 })
+    );
+    assert_eq!(report["reading"]["vertices_joined"], 4);
+}
+
+#[test]
+fn an_stl_file_that_does_not_keep_the_cut_is_reported() {
+    let sixfold = Sixfold::new();
+    sixfold.file("book.obj", BOOK);
+    for name in ["cut.stl", "ascii.stl"] {
+        let mut cut = vec!["repair", "book.obj", "--for", "half-edge", "-o", name];
+        if name == "ascii.stl" {
+            cut.extend(["--format", "stl-ascii"]);
+        }
+        let run = sixfold.run(&cut);
+        assert_eq!(run.code, Some(1), "{run:?}");
+        let loss =
+            format!("note: {name}: 2 vertices have positions of others, and readers join them");
+        assert!(run.stderr.contains(&loss), "{run:?}");
+        let warning = format!(
+            "warning: {name}: readers of STL join vertices at equal positions, and half-edge refuses \
+             the mesh that results: write PLY or OBJ, which keep the cut\n"
+        );
+        assert!(run.stderr.ends_with(&warning), "{run:?}");
+    }
+    run_ok(
+        &sixfold,
+        &["repair", "book.obj", "--for", "half-edge", "-o", "cut.ply"],
+    );
+    run_ok(&sixfold, &["smooth", "cut.ply", "-o", "smooth.ply"]);
+    // Without a cut, STL keeps the mesh.
+    sixfold.file("a.obj", TETRAHEDRON);
+    let run = run_ok(
+        &sixfold,
+        &["repair", "a.obj", "--for", "half-edge", "-o", "a.stl"],
+    );
+    assert!(!run.stderr.contains("readers join them"), "{run:?}");
+}
+
+#[test]
+fn data_that_repairs_lose_is_listed_once_for_each_kind() {
+    let sixfold = Sixfold::new();
+    let ply = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n\
+               property float z\nproperty float nx\nproperty float ny\nproperty float nz\n\
+               property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float s\n\
+               property float t\nelement face 3\nproperty list uchar int vertex_indices\n\
+               end_header\n0 0 0 0 0 1 1 2 3 0 0\n0 0 1 0 0 1 1 2 3 0 0\n1 0 0 0 0 1 1 2 3 0 0\n\
+               0 1 0 0 0 1 1 2 3 0 0\n-1 0 0 0 0 1 1 2 3 0 0\n3 0 1 2\n3 1 0 3\n3 1 0 4\n";
+    sixfold.file("a.ply", ply);
+    let obj = BOOK.replace("\nf", "\nvt 0 0\nvn 0 0 1\nf");
+    sixfold.file("a.obj", &obj.replace("v 0 0 0\n", "v 0 0 0 1 0 0\n"));
+    let repairs: [&[&str]; 11] = [
+        &["--weld"],
+        &["--duplicates"],
+        &["--opposite"],
+        &["--flat"],
+        &["--components=1"],
+        &["--triangulate"],
+        &["--orient=majority"],
+        &["--cut"],
+        &["--cut", "--fill-holes"],
+        &["--isolated"],
+        &["--for", "half-edge"],
+    ];
+    for repair in repairs {
+        for (input, expected) in [
+            (
+                "a.ply",
+                &[("normals", 5), ("colours", 5), ("texture coordinates", 5)][..],
+            ),
+            (
+                "a.obj",
+                &[
+                    ("vertex weights or colours", 1),
+                    ("texture coordinates", 3),
+                    ("normals", 3),
+                ],
+            ),
+        ] {
+            let command = ["repair", input, "-o", "out.ply", "--json", "r.json"];
+            let run = run_ok(&sixfold, &[&command, repair].concat());
+            let report: Value = serde_json::from_str(&text(&sixfold, "r.json")).expect("JSON");
+            let lost = report["lost"].as_array().expect("a list");
+            assert_eq!(lost.len(), expected.len(), "{repair:?}: {lost:?}");
+            for (what, count) in expected {
+                let entry = serde_json::json!({ "what": what, "count": count });
+                assert!(lost.contains(&entry), "{repair:?}: no {entry} in {lost:?}");
+                let note = format!("note: {input}: ignored {count} ");
+                assert!(run.stderr.contains(&note), "{repair:?}: {run:?}");
+            }
+            let notes = run.stderr.matches(": ignored ").count();
+            assert_eq!(notes, expected.len(), "{repair:?}: {run:?}");
+        }
+    }
+    run_ok(
+        &sixfold,
+        &[
+            "repair", "a.ply", "--weld", "-o", "out.stl", "--json", "r.json",
+        ],
+    );
+    let report: Value = serde_json::from_str(&text(&sixfold, "r.json")).expect("JSON");
+    let shared = serde_json::json!({ "what": "shared vertices", "count": null });
+    assert!(
+        report["lost"].as_array().expect("a list").contains(&shared),
+        "{report}"
+    );
 }

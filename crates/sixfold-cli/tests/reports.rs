@@ -282,3 +282,28 @@ fn invalid_results_are_refused() {
         "nothing was written"
     );
 }
+
+/// The page of every document has its results, also if they are counts without times.
+#[test]
+fn memory_and_counts_have_pages() {
+    let sixfold = grid();
+    let counts = ["why", "grid.obj", "--counts-only", "--json", "counts.json"];
+    run_ok(&sixfold, &counts);
+    run_ok(&sixfold, &["memory", "grid.obj", "--json", "memory.json"]);
+    for (files, parts) in [
+        (&["counts.json"][..], &["Reads of each query"][..]),
+        (&["memory.json"], &["Bytes by formula", "Allocated bytes"]),
+        (
+            &["counts.json", "memory.json"],
+            &["Reads of each query", "Bytes by formula"],
+        ),
+    ] {
+        let arguments = [&["report"], files, &["--to", "page"]].concat();
+        run_ok(&sixfold, &arguments);
+        let pages = ["page/report.html", "page/report.md"].map(|name| text(&sixfold, name));
+        for part in parts {
+            assert!(pages.iter().all(|page| page.contains(part)), "{part}");
+        }
+        assert!(pages[0].contains("half-edge"));
+    }
+}

@@ -19,7 +19,7 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    fn from_output(output: Output) -> Self {
+    pub(crate) fn from_output(output: Output) -> Self {
         let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
         Self {
             code: output.status.code(),
@@ -71,11 +71,35 @@ impl Sixfold {
     pub(crate) fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_sixfold"));
         command.args(arguments).current_dir(self.folder.path());
+        // Without a terminal, text is 100 columns wide.
+        command.env_remove("COLUMNS");
         command
     }
 
     pub(crate) fn run(&self, arguments: &[&str]) -> Run {
         Run::from_output(self.command(arguments).output().expect("the binary runs"))
+    }
+
+    /// Runs the example `programs`, the command line of a user's programs. Cargo builds it together
+    /// with the tests.
+    pub(crate) fn run_programs(&self, arguments: &[&str]) -> Run {
+        self.run_example("programs", arguments)
+    }
+
+    /// Runs an example of this package.
+    pub(crate) fn run_example(&self, name: &str, arguments: &[&str]) -> Run {
+        let mut command = self.example(name);
+        command.args(arguments);
+        Run::from_output(command.output().expect("the example runs"))
+    }
+
+    /// Returns the command of an example of this package.
+    pub(crate) fn example(&self, name: &str) -> Command {
+        let folder = Path::new(env!("CARGO_BIN_EXE_sixfold")).parent();
+        let example = folder.expect("a folder").join("examples").join(name);
+        let mut command = Command::new(example);
+        command.current_dir(self.folder.path());
+        command
     }
 
     /// Starts the binary and waits until it has created `drafts` new files.

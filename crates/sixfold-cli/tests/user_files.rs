@@ -69,6 +69,38 @@ fn text_that_cannot_be_written_is_an_error() {
 }
 
 #[cfg(target_os = "linux")]
+/// Each file may have at most 4 blocks, as on a disk with little space. The results on standard
+/// output are not limited.
+#[test]
+fn a_full_disk_under_the_report_does_not_lose_the_study() {
+    let sixfold = Sixfold::new();
+    sixfold.file("t.obj", crate::run::TETRAHEDRON);
+    let run = |more: &[&str]| {
+        let command = sixfold.command(&[]);
+        let mut shell = std::process::Command::new("sh");
+        shell.args(["-c", "trap '' XFSZ; ulimit -f 4; exec \"$0\" \"$@\""]);
+        shell.arg(command.get_program());
+        shell.args(["study", "t.obj", "--budget", "400ms", "--labs", "orders"]);
+        shell
+            .args(["--operations", "boundary,edge_length"])
+            .args(more);
+        shell.current_dir(sixfold.folder());
+        let output = shell.output().expect("sh runs");
+        let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
+        let (stdout, stderr) = (text(output.stdout), text(output.stderr));
+        assert_eq!(output.status.code(), Some(2), "{stdout}\n{stderr}");
+        assert!(stderr.contains("cannot be written"), "{stderr}");
+        stdout
+    };
+    let table = run(&["--report", "out"]);
+    assert!(table.contains("edge_length"), "{table}");
+    let document = run(&["--report", "other", "--json", "-"]);
+    let document: serde_json::Value = serde_json::from_str(&document).expect("JSON");
+    let kinds = document["findings"].as_array().expect("a list").iter();
+    let kinds: Vec<_> = kinds.map(|finding| &finding["kind"]).collect();
+    assert_eq!(kinds, ["study", "orders"]);
+}
+
 #[test]
 fn a_full_disk_does_not_lose_the_study() {
     let sixfold = Sixfold::new();

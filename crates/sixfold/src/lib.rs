@@ -103,22 +103,22 @@
 //! | structure | holds | bytes per vertex | choose it to |
 //! |---|---|---|---|
 //! | [`HalfEdgeMesh`] | oriented manifolds | 96 | walk around vertices and edges; change connectivity |
-//! | [`CornerTable`] | oriented manifolds of triangles | 64 | walk over triangles in little memory |
+//! | [`CornerTable`] | oriented manifolds of triangles | 64 | walk over triangles with little memory |
 //! | [`FaceVertexMesh`] | any polygons | 68 | collect the faces at vertices: normals, matrix assembly |
 //! | [`WingedEdgeMesh`] | oriented manifolds | 120 | work on edges themselves |
 //! | [`IndexedFaceSet`] | any polygons | 36 | store, convert, visit all faces |
 //! | [`PolygonSoup`] | any polygons, vertices by coordinates | 72 | transfer faces, as STL does |
 //!
 //! Polygon soups and indexed face sets scan all faces to find neighbours. The column *bytes per
-//! vertex* is for large closed triangle meshes. If you do not know which structure to choose, use
-//! [`HalfEdgeMesh`] for manifolds and [`FaceVertexMesh`] for other meshes. The command `sixfold
-//! pick` measures a workload on your mesh. [`structures!`] lists all structures, and [`visit`]
-//! selects one structure at run time.
+//! vertex* applies to large closed triangle meshes. If you do not know which structure to choose,
+//! use [`HalfEdgeMesh`] for manifolds and [`FaceVertexMesh`] for other meshes. The command
+//! `sixfold pick` measures a workload on your mesh. [`structures!`] lists all structures, and
+//! [`visit`] selects one structure at run time.
 //!
 //! # Require local queries
 //!
-//! Polygon soups and indexed face sets answer most queries by a scan of all faces. The trait bound
-//! [`LocalQueries`] excludes polygon soups and indexed face sets:
+//! Polygon soups and indexed face sets scan all faces for most queries. The trait bound
+//! [`LocalQueries`] excludes these two structures:
 //!
 //! ```
 //! use sixfold::prelude::*;
@@ -147,7 +147,8 @@
 //!
 //! Most queries yield elements in no particular order. [`OrientedWalk`] steps from side to side; a
 //! side is an edge as one face runs along it. A walk can follow a face, turn around a vertex, or
-//! run straight across quads as in the example below. Four structures implement [`OrientedWalk`].
+//! run straight across quads as in the example below. All structures except polygon soups and
+//! indexed face sets implement [`OrientedWalk`].
 //!
 //! ```
 //! use sixfold::prelude::*;
@@ -173,8 +174,9 @@
 //!
 //! # Features
 //!
-//! - `rayon` (default): subdivision steps in a structure's own tables use all threads; so do builds of
-//!   spatial indices and batches of their queries. Facts and diagnoses use two threads.
+//! - `rayon` (default): subdivision steps in a structure's own tables use all threads. Spatial
+//!   indices are built on all threads, and all threads share batches of spatial queries. Facts and
+//!   diagnoses use several threads.
 //! - `serde`: [`Facts`], [`Capabilities`], [`MemoryFootprint`], diagnoses, reports of repairs,
 //!   subdivision schemes and mesh orders can be serialised.
 //! - `mint`: [`PolygonMesh::new`] takes points and vectors of the crate `mint`, and a [`Point`]
@@ -189,11 +191,11 @@ pub use sixfold_core::{
     Capabilities, Edit, LocalQueries, MeshEdit, MeshQuery, OrientedWalk, QueryCost, Refine,
     Relation, Representation, Split,
 };
-// Meshes as lists of faces; their topology, creases and memory.
+// Meshes as lists of faces; their topology, creases, sizes and memory.
 #[doc(inline)]
 pub use sixfold_core::{
-    BoundaryLoop, Creases, Distribution, EdgeUse, FaceList, Facts, MemoryFootprint, Point,
-    PolygonMesh, SHARPNESS_INFINITE, TableBytes,
+    BoundaryLoop, Counts, Creases, Distribution, EdgeUse, FaceList, FaceSpans, Facts,
+    MemoryFootprint, Point, PolygonMesh, SHARPNESS_INFINITE, TableBytes,
 };
 // The crate that defines `Point`.
 #[doc(no_inline)]
@@ -271,8 +273,3 @@ pub mod prelude {
     };
     pub use sixfold_core::prelude::*;
 }
-
-/// The examples of the README, which are compiled and run as tests.
-#[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-struct ReadmeExamples;

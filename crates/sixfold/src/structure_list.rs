@@ -7,24 +7,26 @@ use sixfold_core::{
 /// Calls a macro with the list of all structures: `structures!([callback] arguments…)`.
 ///
 /// This macro is the only list of structures. To add a structure, add one line to the list. Each
-/// line of the list starts with the type for queries. Two more types may follow: `edit` is the type
-/// that can be edited, and `refine` is the type that splits its own tables. All types of a line
-/// have the same name ([`Representation::NAME`](sixfold_core::Representation::NAME)).
+/// line of the list starts with the type for queries. Three more types may follow: `edit` is the
+/// type that can be edited, `refine` is the type that splits its own tables, and `walk` is the type
+/// that has sides ([`OrientedWalk`](sixfold_core::OrientedWalk)). All types of a line have the same
+/// name ([`Representation::NAME`](sixfold_core::Representation::NAME)).
 ///
 /// The callback gets the arguments, followed by all lines of the list. If you need only one type of
 /// each structure, use [`for_each_representation!`](crate::for_each_representation),
-/// [`for_each_editable!`](crate::for_each_editable) or
-/// [`for_each_refinable!`](crate::for_each_refinable) instead.
+/// [`for_each_editable!`](crate::for_each_editable),
+/// [`for_each_refinable!`](crate::for_each_refinable) or
+/// [`for_each_walkable!`](crate::for_each_walkable) instead.
 #[macro_export]
 macro_rules! structures {
     ([$($callback:tt)+] $($arguments:tt)*) => {
         $($callback)+! { $($arguments)*
             { query: $crate::PolygonSoup, edit: $crate::EditablePolygonSoup }
             { query: $crate::IndexedFaceSet, edit: $crate::EditableIndexedFaceSet }
-            { query: $crate::FaceVertexMesh, edit: $crate::EditableFaceVertexMesh, refine: $crate::FaceVertexMesh }
-            { query: $crate::WingedEdgeMesh, edit: $crate::EditableWingedEdgeMesh, refine: $crate::WingedEdgeMesh }
-            { query: $crate::HalfEdgeMesh, edit: $crate::EditableHalfEdgeMesh, refine: $crate::HalfEdgeMesh }
-            { query: $crate::CornerTable, edit: $crate::EditableCornerTable, refine: $crate::CornerTable }
+            { query: $crate::FaceVertexMesh, edit: $crate::EditableFaceVertexMesh, refine: $crate::FaceVertexMesh, walk: $crate::FaceVertexMesh }
+            { query: $crate::WingedEdgeMesh, edit: $crate::EditableWingedEdgeMesh, refine: $crate::WingedEdgeMesh, walk: $crate::WingedEdgeMesh }
+            { query: $crate::HalfEdgeMesh, edit: $crate::EditableHalfEdgeMesh, refine: $crate::HalfEdgeMesh, walk: $crate::HalfEdgeMesh }
+            { query: $crate::CornerTable, edit: $crate::EditableCornerTable, refine: $crate::CornerTable, walk: $crate::CornerTable }
         }
     };
 }
@@ -34,23 +36,30 @@ macro_rules! structures {
 #[macro_export]
 macro_rules! repeat_for_structures {
     (query $mesh:ident $body:block
-        $({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? })+) => {
+        $({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? $(, walk: $walk:ty)? })+) => {
         $({
             type $mesh = $query;
             $body
         })+
     };
     (edit $mesh:ident $body:block
-        $({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? })+) => {
+        $({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? $(, walk: $walk:ty)? })+) => {
         $($({
             type $mesh = $edit;
             $body
         })?)+
     };
     (refine $mesh:ident $body:block
-        $({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? })+) => {
+        $({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? $(, walk: $walk:ty)? })+) => {
         $($({
             type $mesh = $refine;
+            $body
+        })?)+
+    };
+    (walk $mesh:ident $body:block
+        $({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? $(, walk: $walk:ty)? })+) => {
+        $($({
+            type $mesh = $walk;
             $body
         })?)+
     };
@@ -58,7 +67,8 @@ macro_rules! repeat_for_structures {
 
 /// Repeats a macro body for each structure: `for_each_representation!(M => { … })`.
 ///
-/// The body is compiled once for each structure, with `M` as an alias of its type.
+/// The body is compiled once for each structure. In the body, `M` is an alias of the type of the
+/// structure.
 #[macro_export]
 macro_rules! for_each_representation {
     ($mesh:ident => $body:block) => {
@@ -76,12 +86,22 @@ macro_rules! for_each_editable {
     };
 }
 
-/// Repeats a macro body for each structure that refines its own tables. The macro is called in the
-/// same way as [`for_each_representation!`](crate::for_each_representation).
+/// Repeats a macro body for each structure that can split its own tables. The macro is called in
+/// the same way as [`for_each_representation!`](crate::for_each_representation).
 #[macro_export]
 macro_rules! for_each_refinable {
     ($mesh:ident => $body:block) => {
         $crate::structures! { [$crate::repeat_for_structures] refine $mesh $body }
+    };
+}
+
+/// Repeats a macro body for each structure that implements
+/// [`OrientedWalk`](sixfold_core::OrientedWalk). The macro is called in the same way as
+/// [`for_each_representation!`](crate::for_each_representation).
+#[macro_export]
+macro_rules! for_each_walkable {
+    ($mesh:ident => $body:block) => {
+        $crate::structures! { [$crate::repeat_for_structures] walk $mesh $body }
     };
 }
 
@@ -106,7 +126,7 @@ pub trait EditVisitor {
 }
 
 /// A generic function that is called with a refinable structure selected at run time. A refinable
-/// structure can split all faces within its own tables.
+/// structure can split all faces in its own tables ([`Refine`]).
 pub trait RefineVisitor {
     /// The type that `visit` returns.
     type Output;
@@ -152,7 +172,7 @@ impl StructureInfo {
         }
     }
 
-    /// Adds the splits of `M`, the type of the same structure that refines its own tables.
+    /// Adds the splits of `M`, the type of the same structure that can split its own tables.
     #[must_use]
     pub const fn with_refinement<M: Refine>(self) -> Self {
         Self {
@@ -177,7 +197,7 @@ impl StructureInfo {
 }
 
 macro_rules! infos {
-    ($({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? })+) => {
+    ($({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? $(, walk: $walk:ty)? })+) => {
         vec![$(
             StructureInfo::new::<$query>()
                 $(.with_edits::<$edit>())?
@@ -186,7 +206,7 @@ macro_rules! infos {
     };
 }
 
-/// Returns the properties of all structures, in the order of the list of structures.
+/// Returns the properties of all structures, in the order of [`structures!`](crate::structures).
 pub fn structure_infos() -> Vec<StructureInfo> {
     structures!([infos])
 }
@@ -198,7 +218,7 @@ pub fn visit_all<V: Visitor>(visitor: &mut V) -> Vec<V::Output> {
     outputs
 }
 
-/// Calls `visitor` for the structure with this name. Returns `None` if the name is unknown.
+/// Calls `visitor` for the structure called `name`. Returns `None` if there is no such structure.
 pub fn visit<V: Visitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
     for_each_representation!(M => {
         if name == M::NAME {
@@ -208,8 +228,8 @@ pub fn visit<V: Visitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
     None
 }
 
-/// Calls `visitor` for the structure with this name. Returns `None` if the name is unknown or the
-/// structure does not refine its own tables.
+/// Calls `visitor` for the structure called `name`. Returns `None` if there is no such structure,
+/// or if the structure cannot split its own tables.
 pub fn visit_refinable<V: RefineVisitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
     for_each_refinable!(M => {
         if name == M::NAME {
@@ -219,8 +239,8 @@ pub fn visit_refinable<V: RefineVisitor>(name: &str, visitor: &mut V) -> Option<
     None
 }
 
-/// Calls `visitor` for the structure with this name. Returns `None` if the name is unknown or the
-/// structure cannot be edited.
+/// Calls `visitor` for the structure called `name`. Returns `None` if there is no such structure,
+/// or if the structure cannot be edited.
 pub fn visit_editable<V: EditVisitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
     for_each_editable!(M => {
         if name == M::NAME {

@@ -1,7 +1,7 @@
 //! The subdivision schemes that each structure supports.
 
 use sixfold_core::Split;
-use sixfold_subdivision::{Method, Scheme};
+use sixfold_subdivision::{FaceKind, Method, Scheme};
 
 use crate::structure_list::{StructureInfo, structure_infos};
 
@@ -9,15 +9,15 @@ use crate::structure_list::{StructureInfo, structure_infos};
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Support {
-    /// Name of the structure.
+    /// The name of the structure.
     pub backend: &'static str,
     /// The scheme.
     pub scheme: Scheme,
     /// The methods of subdivision that the structure supports. [`Method::Native`] is in the list if
     /// the structure can split its own tables as the scheme requires.
     pub methods: Vec<Method>,
-    /// True if the structure can hold the result of a subdivision step. If false, one step is
-    /// possible and returns polygons, but a second step is not possible.
+    /// True if the structure can hold the result of a step. If false, the first step is possible
+    /// and returns polygons, but a second step is not possible.
     pub holds_result: bool,
 }
 
@@ -31,20 +31,20 @@ impl Support {
 impl StructureInfo {
     /// Returns how this structure supports `scheme`.
     pub fn support(&self, scheme: Scheme) -> Support {
-        let kind = scheme.kind();
+        let properties = scheme.properties();
         let mut methods = vec![Method::Gather];
-        if kind.scatter {
+        if properties.scatter {
             methods.push(Method::Scatter);
         }
         let is_known = |wanted: Split| self.splits.iter().any(|s| s.name() == wanted.name());
-        if kind.split.is_some_and(is_known) {
+        if properties.split.is_some_and(is_known) {
             methods.push(Method::Native);
         }
         Support {
             backend: self.name,
             scheme,
             methods,
-            holds_result: self.capabilities.polygons || kind.makes == "triangles",
+            holds_result: self.capabilities.polygons || properties.makes == FaceKind::Triangles,
         }
     }
 }

@@ -17,7 +17,7 @@ use std::process::ExitCode;
 
 use serde_json::json;
 use sixfold::io::read_obj;
-use sixfold::subdivision::{Boundary, Scheme};
+use sixfold::subdivision::{BoundaryRule, Scheme};
 use sixfold::{Creases, PolygonMesh};
 use sixfold_study::{
     Backend, BackendRunner, MachineClock, Operation, Policy, SubdivisionJob, Time, Way, pages,
@@ -151,7 +151,7 @@ fn refined(
 ) -> Result<Row, String> {
     let mut job = SubdivisionJob::new(scheme, arguments.way, levels);
     // The other libraries use this boundary rule.
-    job.subdivision.boundary = Boundary::EdgeOnly;
+    job.subdivision.boundary = BoundaryRule::EdgeOnly;
     let backend = find(&arguments.backend)?;
     let refiner = job.prepare(&backend, polygons, &Creases::default());
     let refiner = refiner.ok_or(format!("{name} cannot run this way on this backend"))?;

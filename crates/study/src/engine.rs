@@ -4,6 +4,8 @@
 pub(crate) mod agreement;
 pub(crate) mod budget;
 pub(crate) mod control;
+#[cfg(test)]
+mod cost;
 pub(crate) mod disturbance;
 pub(crate) mod heap;
 pub(crate) mod measure;

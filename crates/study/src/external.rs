@@ -14,6 +14,7 @@
 //! measures the time of its own runs, so the times do not include the communication with Sixfold.
 //! `benches/external/README.md` describes the protocol.
 
+pub(crate) mod isolated;
 mod program;
 mod subject;
 
@@ -139,7 +140,7 @@ impl MeshFile {
         Ok(file)
     }
 
-    fn path(&self) -> PathBuf {
+    pub(crate) fn path(&self) -> PathBuf {
         self.folder.path().join("mesh.obj")
     }
 }

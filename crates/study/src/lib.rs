@@ -25,6 +25,7 @@ mod external;
 mod inspect;
 mod labs;
 pub mod numbers;
+pub mod packages;
 mod refusal;
 mod results;
 mod runner;
@@ -35,12 +36,13 @@ pub use engine::heap::{CacheState, CachesReport, free_memory};
 pub use engine::measure::Progress;
 pub use engine::statistics::UNSEEN_DRIFT;
 pub use engine::timer::Timer;
+pub use external::isolated::{ChildTask, Isolation, serve_program};
 pub use external::{EXTERNAL_TIMEOUT, External, ExternalError, ExternalReport};
 pub use inspect::{Inspection, StudyMesh, inspect, inspect_diagnosed, sha256_of};
 pub use labs::Slope;
 pub use labs::growth::{
     BackendBytes, BackendRefusal, CacheLimit, Fit, GrowthError, GrowthReport, GrowthSettings,
-    SCALABLE_SHAPES, ScalableShape, SizeReport, growth, growth_bytes,
+    SCALABLE_SHAPES, ScalableShape, SizeReport, growth, growth_bytes, growth_plan,
 };
 pub use labs::memory::{Audit, BackendAudit, OperationBytes, audit, count_allocations};
 pub use labs::neighbours::{
@@ -53,8 +55,10 @@ pub use labs::orders::{
     OrdersReport, SamplesInOrder, StructureEffect, orders, orders_bytes,
 };
 pub use labs::pick::{
-    BreakEven, Choice, EQUAL_UP_TO, Excluded, MeshRanking, Need, PartCost, PickError, PickReport,
-    PickSettings, Predicted, Prediction, Ranked, TurningPoint, UnknownNeed, pick, predict,
+    AskedCount, BreakEven, Choice, EQUAL_UP_TO, Excluded, MeshRanking, Need, PartCost, PickError,
+    PickReport, PickSettings, Predicted, Prediction, ProgramReport, ProgramSettings, Ranked,
+    RecordError, RecordedProgram, TurningPoint, UnknownNeed, pick, pick_for_programs, predict,
+    record_program,
 };
 pub use labs::study::{Report, Settings, StudyError, study};
 pub use labs::why::{Bound, Model, Timed, Timing, Why, WhyRow, WhySettings, why};
@@ -71,18 +75,23 @@ pub use results::pool::{Group, Holding, Overall, Pool, Pooled, Purpose};
 pub use results::read::ReadError;
 pub use results::rows::{
     Agreement, BackendReport, Control, ControlRow, FIRST_TIME_SHOWN, MeshReport, Refusal,
-    ResultRow, Samples, Standing,
+    RefusalKind, ResultRow, Samples, Standing,
 };
 pub use results::run::{Run, RunSettings, Start as RunStart};
 pub use runner::{BackendRun, BackendRunner};
 pub use sanitize::sanitize;
 pub use sixfold_workload::pages::{self, HeapReport, Policy, UnknownPolicy};
 pub use sixfold_workload::{
-    Access, Action, Amount, EditPlaceError, Part, Workload, WorkloadError, built_in, built_ins,
+    Access, Action, Amount, EditPlaceError, OwnBytes, OwnData, Part, Workload, WorkloadError,
+    built_in, built_ins,
 };
 pub use sixfold_workload::{
     Allocated, AllocationCounter, Backend, BufferSpeed, Cache, CacheFlusher, Clock, EditPass,
     Editor, Edits, ElementKind, Heap, MAX_SCANNED_FACES, MachineClock, MeasuredMemory, MemorySpeed,
     NotCounted, Operation, Reads, Refiner, Series, SingleEdit, Start, SubdivisionJob, TableReads,
     Time, UnknownOperation, Way, caches, timed, unknown,
+};
+pub use sixfold_workload::{
+    Asked, EditProgram, MovingProgram, Outcome, Program, ProgramRefusal, Recorded, Recording,
+    RefineProgram, Suite, SuiteProgram, Trace, TraceError, WalkProgram,
 };

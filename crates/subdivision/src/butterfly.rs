@@ -2,9 +2,9 @@
 //! do not move), and the limit surface is C¹.
 //!
 //! The scheme is that of Zorin, Schröder & Sweldens (1996). For an edge between two regular
-//! vertices, the stencil is that of Dyn, Levin & Gregory (1990) with the parameter w = 0. Old
-//! vertices keep their positions. A vertex is regular if it has six triangles, or three triangles
-//! on a boundary.
+//! vertices, the stencil is that of Dyn, Levin & Gregory (1990) with the parameter w = 0. A vertex
+//! is regular if it is an inner vertex with six triangles, or a boundary vertex with three
+//! triangles.
 //!
 //! ```text
 //!   both ends regular                    one end extraordinary, valence K: around this end v
@@ -34,10 +34,11 @@
 //!            c
 //! ```
 //!
-//! - An extraordinary boundary vertex (with k ≠ 3 triangles) has the masks of Zorin & Schröder
-//!   (2000); see [`boundary_weights`].
-//! - Zorin, Schröder & Sweldens (1996) give no mask for an inner vertex of valence 2. The new
-//!   points on the two edges of such a vertex are the midpoints of the edges.
+//! - At an extraordinary boundary vertex (with k ≠ 3 triangles), the masks are those of Zorin &
+//!   Schröder (2000); see [`boundary_weights`].
+//! - Zorin, Schröder & Sweldens (1996) give no mask for an inner vertex of valence 2. In Sixfold,
+//!   the new points on the two edges of an inner vertex of valence 2 are the midpoints of these
+//!   edges.
 
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};

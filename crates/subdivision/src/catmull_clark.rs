@@ -2,8 +2,8 @@
 //! is C² except at extraordinary vertices.
 //!
 //! The scheme is that of Catmull & Clark (1978). The input may have polygons of any degree. After
-//! one step, all faces are quads. The face point of a face of degree n is a vertex of valence n.
-//! Creases follow DeRose, Kass & Truong (1998).
+//! one step, all faces are quads. The face point of a face of degree n becomes a vertex of valence
+//! n. Creases follow DeRose, Kass & Truong (1998).
 //!
 //! ```text
 //!     face point            edge point              vertex point, valence n
@@ -56,7 +56,7 @@ mod tests {
 
     use super::*;
     use crate::test_support::assert_near;
-    use crate::{Boundary, Method, Scheme, Subdivision, subdivide, subdivide_native};
+    use crate::{BoundaryRule, Method, Scheme, Subdivision, subdivide, subdivide_native};
 
     fn cube() -> PolygonMesh {
         let corners: [Point; 8] = std::array::from_fn(|bits| {
@@ -121,8 +121,8 @@ mod tests {
         let crease = [([3, 4], f32::INFINITY), ([4, 5], f32::INFINITY)];
         let creases = Creases::new(&grid, crease, []).expect("inner edges");
         for (boundary, corner) in [
-            (Boundary::EdgeAndCorner, Point::ZERO),
-            (Boundary::EdgeOnly, Point::new(0.125, 0.125, 0.0)),
+            (BoundaryRule::EdgeAndCorner, Point::ZERO),
+            (BoundaryRule::EdgeOnly, Point::new(0.125, 0.125, 0.0)),
         ] {
             let scheme = Subdivision {
                 boundary,

@@ -1,7 +1,7 @@
 //! A mesh as tables of numbers: the corners of the faces, and the sides of each edge (a side is an
 //! edge as one face runs along it).
 //!
-//! These tables are for schemes that make new faces across old edges.
+//! Schemes that make new faces across old edges use these tables.
 //!
 //! ```text
 //!          b

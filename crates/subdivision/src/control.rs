@@ -5,7 +5,7 @@ use sixfold_core::{
 };
 
 use crate::error::SubdivisionError;
-use crate::options::Boundary;
+use crate::options::BoundaryRule;
 use crate::subdivision::Subdivision;
 
 impl Subdivision {
@@ -13,7 +13,7 @@ impl Subdivision {
     /// contains `creases`, with the vertex numbers of `mesh.to_polygons()`. In addition, the
     /// following elements get infinite sharpness:
     ///
-    /// - Vertices with exactly one face, if the boundary rule is [`Boundary::EdgeAndCorner`].
+    /// - Vertices with exactly one face, if the boundary rule is [`BoundaryRule::EdgeAndCorner`].
     /// - Irregular edges: edges with three or more faces, and edges with two faces that run along
     ///   the edge in the same direction. This list does not include boundary edges, because every
     ///   step finds boundary edges itself.
@@ -21,19 +21,19 @@ impl Subdivision {
     ///   with exactly two irregular edges, no boundary edge, and more faces than edges moves like a
     ///   vertex on a crease along the two irregular edges.
     ///
-    /// Takes O(corners) expected time.
+    /// Takes O(n log n) expected time for n corners.
     ///
     /// # Errors
     ///
-    /// Returns [`SubdivisionError::NoCreases`] if there are `creases` and the scheme has no rules
-    /// for creases.
+    /// Returns [`SubdivisionError::NoCreases`] if `creases` is not empty and the scheme has no
+    /// rules for creases.
     pub fn control_creases<M: Representation>(
         &self,
         mesh: &M,
         polygons: &PolygonMesh,
         creases: &Creases,
     ) -> Result<Creases, SubdivisionError> {
-        if !self.scheme.kind().creases {
+        if !self.scheme.properties().creases {
             return if creases.is_empty() {
                 Ok(Creases::default())
             } else {
@@ -79,7 +79,7 @@ impl Subdivision {
             let kept = non_manifold.filter(|v| !around[v.index()].is_on_non_manifold_curve());
             corners.extend(kept.map(infinite));
         }
-        if self.boundary == Boundary::EdgeAndCorner {
+        if self.boundary == BoundaryRule::EdgeAndCorner {
             let alone = polygons.vertices().filter(|v| around[v.index()].faces == 1);
             corners.extend(alone.map(infinite));
         }
@@ -87,12 +87,12 @@ impl Subdivision {
     }
 
     /// Returns one value for each face of the control mesh: true if the boundary rule removes the
-    /// face from the result. [`Boundary::None`] removes a face if one of its vertices has a
+    /// face from the result. [`BoundaryRule::None`] removes a face if one of its vertices has a
     /// boundary edge that is not infinitely sharp in `creases`. Returns `None` if the boundary rule
-    /// is not [`Boundary::None`], or if the scheme has no rules for creases. Takes O(corners)
-    /// expected time.
+    /// is not [`BoundaryRule::None`], or if the scheme has no rules for creases. Takes O(n log n) time
+    /// for n corners.
     pub fn left_out(&self, polygons: &PolygonMesh, creases: &Creases) -> Option<Vec<bool>> {
-        if self.boundary != Boundary::None || !self.scheme.kind().creases {
+        if self.boundary != BoundaryRule::None || !self.scheme.properties().creases {
             return None;
         }
         let mut open = vec![false; polygons.vertex_count()];
@@ -208,7 +208,7 @@ mod tests {
         let edges = boundary.iter().map(|&ends| (ends, sharp(ends)));
         let creases = Creases::new(&mesh, edges, corners).expect("edges of the boundary");
         let scheme = Subdivision {
-            boundary: Boundary::None,
+            boundary: BoundaryRule::None,
             ..Subdivision::new(Scheme::CatmullClark)
         };
         let out = scheme.left_out(&mesh, &creases).expect("boundary none");
@@ -233,7 +233,7 @@ mod tests {
 
     #[test]
     fn only_boundary_none_leaves_faces_out() {
-        for boundary in [Boundary::EdgeAndCorner, Boundary::EdgeOnly] {
+        for boundary in [BoundaryRule::EdgeAndCorner, BoundaryRule::EdgeOnly] {
             let scheme = Subdivision {
                 boundary,
                 ..Subdivision::new(Scheme::CatmullClark)
@@ -243,7 +243,11 @@ mod tests {
     }
 
     /// Returns the edges and vertices that are sharp in a mesh without creases.
-    fn sharp(points: u32, faces: &[&[u32]], boundary: Boundary) -> (Vec<[usize; 2]>, Vec<usize>) {
+    fn sharp(
+        points: u32,
+        faces: &[&[u32]],
+        boundary: BoundaryRule,
+    ) -> (Vec<[usize; 2]>, Vec<usize>) {
         let points: Vec<Point> = (0..points).map(|i| Point::splat(i as f32)).collect();
         let polygons = PolygonMesh::new(points, faces).expect("faces");
         let mesh = IndexedFaceSet::from_polygons(&polygons).expect("it accepts any mesh");
@@ -263,10 +267,10 @@ mod tests {
     fn vertices_of_one_face_are_corners_with_edge_and_corner_only() {
         let two: [&[u32]; 2] = [&[0, 1, 2], &[2, 1, 3]];
         assert_eq!(
-            sharp(4, &two, Boundary::EdgeAndCorner),
+            sharp(4, &two, BoundaryRule::EdgeAndCorner),
             (vec![], vec![0, 3])
         );
-        assert_eq!(sharp(4, &two, Boundary::EdgeOnly), (vec![], vec![]));
+        assert_eq!(sharp(4, &two, BoundaryRule::EdgeOnly), (vec![], vec![]));
     }
 
     #[test]
@@ -274,10 +278,13 @@ mod tests {
         // Both faces run from 1 to 2.
         let same_way: [&[u32]; 2] = [&[0, 1, 2, 3], &[1, 2, 5, 4]];
         let expected = (vec![[1, 2]], vec![1, 2]);
-        assert_eq!(sharp(6, &same_way, Boundary::EdgeOnly), expected);
+        assert_eq!(sharp(6, &same_way, BoundaryRule::EdgeOnly), expected);
         // There are two fans at vertex 0.
         let bow_tie: [&[u32]; 2] = [&[0, 1, 2], &[0, 3, 4]];
-        assert_eq!(sharp(5, &bow_tie, Boundary::EdgeOnly), (vec![], vec![0]));
+        assert_eq!(
+            sharp(5, &bow_tie, BoundaryRule::EdgeOnly),
+            (vec![], vec![0])
+        );
         // Three pages meet along vertices 0, 1 and 2. Vertex 1 is not a corner.
         let book: [&[u32]; 6] = [
             &[0, 3, 4, 1],
@@ -289,13 +296,13 @@ mod tests {
         ];
         let spine = vec![[0, 1], [1, 2]];
         assert_eq!(
-            sharp(12, &book, Boundary::EdgeOnly),
+            sharp(12, &book, BoundaryRule::EdgeOnly),
             (spine.clone(), vec![0, 2])
         );
         // Without the last page, vertex 1 has a boundary edge and is a corner. Edge 1–2 has only
         // two faces.
         assert_eq!(
-            sharp(12, &book[..5], Boundary::EdgeOnly),
+            sharp(12, &book[..5], BoundaryRule::EdgeOnly),
             (vec![[0, 1]], vec![0, 1])
         );
     }

@@ -13,9 +13,9 @@
 //!   more, or a sharp vertex       corner       unchanged
 //! ```
 //!
-//! Sharpness decreases by one per level. If the kind of a vertex changes at the next level, the new
-//! position of the vertex is w · (position of the current kind) + (1 − w) · (position of the next
-//! kind), where w is the mean of the sharpness values that become zero.
+//! A finite sharpness decreases by one per level, to at least 0. If the kind of a vertex changes at
+//! the next level, the new position of the vertex is w · (position of the current kind) + (1 − w) ·
+//! (position of the next kind), where w is the mean of the sharpness values that become zero.
 
 use sixfold_core::{Creases, Pair, Point, SHARPNESS_INFINITE, VertexId};
 
@@ -265,7 +265,7 @@ mod tests {
     use sixfold_indexed_face_set::IndexedFaceSet;
 
     use super::*;
-    use crate::{Boundary, Scheme, Step, Subdivision};
+    use crate::{BoundaryRule, Scheme, Step, Subdivision};
 
     const INF: f32 = f32::INFINITY;
 
@@ -293,7 +293,7 @@ mod tests {
         let creases = Creases::new(&hill, edges, [(4, own)]).expect("edges at 4");
         let subdivision = Subdivision {
             creasing,
-            boundary: Boundary::EdgeOnly,
+            boundary: BoundaryRule::EdgeOnly,
             ..Subdivision::new(Scheme::CatmullClark)
         };
         let creases = subdivision.control_creases(&mesh, &hill, &creases);

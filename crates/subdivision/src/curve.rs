@@ -12,8 +12,8 @@
 //! ```
 //!
 //! The limit of "add edge midpoints, add struts" is the uniform cubic B-spline, which is C² (Lane &
-//! Riesenfeld 1980). The limit of "cut corners" is the quadratic B-spline, which is C¹ (Riesenfeld
-//! 1975). Both limits lie in the convex hull of the polygon.
+//! Riesenfeld 1980). The limit of "cut corners" is the uniform quadratic B-spline, which is C¹
+//! (Riesenfeld 1975). Both limits lie in the convex hull of the polygon.
 
 use sixfold_core::{MAX_ROWS, Point};
 
@@ -36,8 +36,8 @@ pub enum Ends {
     Dropped,
 }
 
-/// Refines a polygon with `levels` steps of "add midpoints, add struts", and returns the points.
-/// The points converge to the uniform cubic B-spline. Takes O(points of the result) time.
+/// Refines a polygon with `levels` steps of "add edge midpoints, add struts", and returns the
+/// points. The points converge to the uniform cubic B-spline. Takes O(points of the result) time.
 ///
 /// A step on n points returns:
 ///

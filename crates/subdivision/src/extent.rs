@@ -5,24 +5,24 @@ use sixfold_core::{Counts, PolygonMesh, Split};
 use crate::scheme::Scheme;
 use crate::subdivision::Subdivision;
 
-/// The numbers of elements of a mesh, and the counts from which the numbers of elements after a
-/// step are computed.
+/// The size of a mesh: the numbers of its elements, and the other counts that determine the size
+/// after a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Extent {
     /// The numbers of vertices, edges, faces and corners.
     pub counts: Counts,
-    /// Number of edges with one face.
+    /// The number of edges with exactly one face.
     pub boundary_edges: usize,
-    /// Number of corners at vertices with boundary edges.
+    /// The number of corners at vertices with boundary edges.
     pub boundary_corners: usize,
-    /// Number of vertices without a face.
+    /// The number of vertices without a face.
     pub isolated_vertices: usize,
-    /// Number of inner vertices with exactly two faces.
+    /// The number of inner vertices with exactly two faces.
     pub valence_two_vertices: usize,
 }
 
 impl Extent {
-    /// Returns the size of `polygons`. Takes O(corners) expected time.
+    /// Returns the size of `polygons`. Takes O(n log n) time for n corners.
     pub fn from_polygons(polygons: &PolygonMesh) -> Self {
         let mut corners = vec![0_usize; polygons.vertex_count()];
         for v in polygons.faces().corners() {
@@ -108,8 +108,8 @@ impl Subdivision {
     /// The sizes are exact for manifolds. The sizes include faces that the boundary rule removes
     /// from the result. For Catmull–Clark, Loop, bilinear and midpoint, the numbers of vertices,
     /// edges and faces are also exact if an edge has three or more faces. A size above `usize::MAX`
-    /// is reported as `usize::MAX`. After a Doo–Sabin step, the faces are reported as faces of
-    /// different degrees.
+    /// is reported as `usize::MAX`. After a Doo–Sabin step, the size always states that the degrees
+    /// of the faces differ.
     pub fn refined_extent(&self, extent: &Extent, level: u32) -> Extent {
         match self.split(level) {
             Some(split) => extent.face_split(split),

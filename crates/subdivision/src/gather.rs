@@ -1,4 +1,4 @@
-//! The method gather: computes every new point from queries of its neighbourhood.
+//! The method gather: computes every new point with queries of the neighbourhood of the point.
 //!
 //! ```text
 //!   face point    FV                 Each query is made when its point is computed. A structure

@@ -9,8 +9,9 @@ use crate::step::Step;
 use crate::subdivision::Subdivision;
 
 /// Runs `levels` steps of a scheme. A structure of type `M` is built for each step. After each
-/// step, calls `watch` with the level and the number of faces of the refined mesh. If `levels` is
-/// 0, returns the input mesh.
+/// step, calls `watch` with the level and the number of faces of the refined mesh; the level after
+/// the first step is 1. The faces that the boundary rule [`BoundaryRule::None`](crate::BoundaryRule::None)
+/// removes are removed after the last step. If `levels` is 0, returns the input mesh.
 ///
 /// # Errors
 ///
@@ -61,7 +62,7 @@ pub fn subdivide<M: Representation>(
 /// Builds a structure of type `M` once, and runs `levels` steps that split the tables of the
 /// structure. With the feature `rayon`, steps use the threads of the current rayon pool. The result
 /// equals the result of [`subdivide`], but faces and edge points are in the order of the tables of
-/// the structure.
+/// the structure. `watch` is called as in [`subdivide`].
 ///
 /// # Errors
 ///

@@ -1,7 +1,7 @@
 //! Subdivision schemes. The code of each scheme runs on any mesh structure, by up to three methods
 //! (gather, scatter, native).
 //!
-//! - [`Scheme`]: the list of schemes. [`Kind`]: the properties of a scheme.
+//! - [`Scheme`]: the list of schemes. [`SchemeProperties`]: the properties of a scheme.
 //! - [`Subdivision`]: a scheme with its options. [`gather`](Subdivision::gather),
 //!   [`scatter`](Subdivision::scatter) and [`refine_into`](Subdivision::refine_into) run one step.
 //! - [`subdivide`] and [`subdivide_native`] run several steps. The input and the result are polygon
@@ -9,13 +9,13 @@
 //! - [`Extent`]: the size of the result, computed in advance.
 //! - [`limit`](Subdivision::limit): the limit positions and normals of the vertices, as
 //!   [`LimitPoint`]s.
-//! - [`cubic_b_spline`], [`chaikin`]: subdivision of curves. [`ControlGrid`]: subdivision of
+//! - [`cubic_b_spline`] and [`chaikin`]: subdivision of curves. [`ControlGrid`]: subdivision of
 //!   tensor-product patches.
 //! - [`refine_locally`]: splits the triangles of a [`Selection`] and keeps the mesh conforming,
 //!   which means that no vertex lies inside an edge.
 //!
-//! Each scheme has its weights in its own file. The file `crease.rs` computes the points at sharp
-//! edges and vertices for every scheme with creases.
+//! The weights of each scheme are in the file of the scheme. The file `crease.rs` computes the
+//! points at sharp edges and vertices for every scheme with creases.
 
 mod bilinear;
 mod butterfly;
@@ -55,9 +55,9 @@ pub use extent::Extent;
 pub use levels::{build_level, subdivide, subdivide_native};
 pub use limit::{LimitNormal, LimitPoint, NoLimit};
 pub use local::{LocalMesh, refine_locally};
-pub use options::{Boundary, Creasing, LoopWeights};
+pub use options::{BoundaryRule, Creasing, LoopWeights};
 pub use patch::ControlGrid;
-pub use scheme::{Kind, Method, Primitive, Scheme};
+pub use scheme::{FaceKind, Method, Primitive, Scheme, SchemeProperties};
 pub use select::Selection;
 pub use step::Step;
 pub use subdivision::Subdivision;

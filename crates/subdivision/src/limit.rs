@@ -32,33 +32,33 @@ use crate::tangent::{Fan, Surface, far_corner, normal, rounding};
 /// why the crate cannot compute them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitPoint {
-    /// The crate can compute the limit position of the vertex.
+    /// The limit position of the vertex, and its limit normal.
     Defined {
         /// The position on the limit surface.
         position: Point,
         /// The normal of the limit surface.
         normal: LimitNormal,
     },
-    /// The crate has no limit mask for the vertex at this level.
+    /// The crate cannot compute the limit of the vertex at this level.
     Undefined(NoLimit),
 }
 
-/// The normal of the limit surface at a vertex. Normals have length 1. Seen from the side to which
-/// the normal points, faces run counter-clockwise.
+/// The normal of the limit surface at a vertex. A normal has length 1 and points to the side from
+/// which the faces run counter-clockwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitNormal {
     /// The vertex has one normal.
     One(Point),
     /// A crease passes through the vertex, and each side of the crease has its own normal. The
-    /// first normal is for the faces that follow counter-clockwise after one crease edge: the
-    /// crease edge to the neighbour with the lower number.
+    /// first normal is for the faces that follow counter-clockwise after the crease edge to the
+    /// neighbour with the lower number. The second normal is for the other faces.
     TwoSides([Point; 2]),
     /// The crate cannot compute a normal for the vertex. The possible reasons are:
     ///
     /// - The vertex is a corner with several faces.
     /// - An adjacent face is not a quad (Catmull–Clark only).
     /// - The vertex is an inner vertex of valence 2.
-    /// - The faces at the vertex are not one oriented fan.
+    /// - The faces at the vertex do not form one oriented fan.
     /// - The faces at the vertex have no area.
     Undefined,
 }
@@ -78,7 +78,7 @@ pub enum NoLimit {
 }
 
 impl LimitPoint {
-    /// Returns the limit position, or `None` if the limit is undefined.
+    /// Returns the limit position, or `None` if the limit is [`Undefined`](Self::Undefined).
     pub fn position(self) -> Option<Point> {
         match self {
             Self::Defined { position, .. } => Some(position),
@@ -86,8 +86,8 @@ impl LimitPoint {
         }
     }
 
-    /// Returns the normal, or `None` if the normal is undefined. On a crease, returns the mean of
-    /// the normals of both sides.
+    /// Returns the limit normal, or `None` if the normal is undefined. On a crease with two
+    /// normals, returns a normal with the direction of their mean.
     pub fn normal(self) -> Option<Point> {
         match self {
             Self::Defined { normal, .. } => match normal {

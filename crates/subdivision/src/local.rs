@@ -94,12 +94,12 @@ pub fn refine_locally<M: Representation>(
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocalMesh {
     polygons: PolygonMesh,
-    kinds: Vec<Kind>,
+    records: Vec<FaceRecord>,
 }
 
-/// The origin of a face.
+/// The origin of a face, and its part in the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Kind {
+struct FaceRecord {
     /// The face of the first mesh that contains this face.
     origin: FaceId,
     half: Option<Half>,
@@ -125,13 +125,13 @@ impl LocalMesh {
         if let Some((face, degree)) = polygons.first_polygon() {
             return Err(LocalError::NotATriangle { face, degree });
         }
-        let kind = |(origin, _)| Kind {
+        let record = |(origin, _)| FaceRecord {
             origin,
             half: None,
             chosen: false,
         };
-        let kinds = faces.iter().map(kind).collect();
-        Ok(Self { polygons, kinds })
+        let records = faces.iter().map(record).collect();
+        Ok(Self { polygons, records })
     }
 
     /// Returns the polygons of the refined mesh. The vertices of the mesh before the last step come
@@ -140,9 +140,10 @@ impl LocalMesh {
         &self.polygons
     }
 
-    /// Returns, for each face, the face of the unrefined mesh that contains the face.
+    /// Returns, for each face of the refined mesh, the face of the unrefined mesh that contains the
+    /// refined face.
     pub fn origins(&self) -> impl ExactSizeIterator<Item = FaceId> {
-        self.kinds.iter().map(|kind| kind.origin)
+        self.records.iter().map(|record| record.origin)
     }
 
     /// Returns true if `f` is green, which means that `f` is half of a split face. A later step
@@ -153,20 +154,21 @@ impl LocalMesh {
     ///
     /// Panics if `f` does not exist.
     pub fn is_green(&self, f: FaceId) -> bool {
-        self.kinds[f.index()].half.is_some()
+        self.records[f.index()].half.is_some()
     }
 
-    /// Returns the new faces that are parts of the faces chosen in the last step.
+    /// Returns the faces that are parts of the faces chosen in the last step.
     pub fn chosen_parts(&self) -> Vec<FaceId> {
-        let kinds = (0..).map(FaceId::new).zip(&self.kinds);
-        let chosen = kinds.filter(|(_, kind)| kind.chosen);
+        let records = (0..).map(FaceId::new).zip(&self.records);
+        let chosen = records.filter(|(_, record)| record.chosen);
         chosen.map(|(f, _)| f).collect()
     }
 
-    /// Runs one step: splits the faces `chosen`, and other faces to keep the mesh conforming.
-    /// `mesh` is any structure that was built from [`polygons`](Self::polygons). `chosen` contains
-    /// face numbers: face i is item i of `mesh.faces()`, counted from 0. If an edge has more than
-    /// two faces, the rules apply to all faces of the edge.
+    /// Runs one step: splits the faces in `chosen`, and the other faces that must be split to keep
+    /// the mesh conforming. `mesh` is any structure that was built from
+    /// [`polygons`](Self::polygons). `chosen` contains face numbers: face i is item i of
+    /// `mesh.faces()`, counted from 0. If an edge has more than two faces, the rules apply to all
+    /// faces of the edge.
     ///
     /// # Errors
     ///
@@ -177,7 +179,7 @@ impl LocalMesh {
     ///
     /// Panics if `mesh` and `self` have different numbers of faces.
     pub fn refined<M: MeshQuery>(&self, mesh: &M, chosen: &[FaceId]) -> Result<Self, LocalError> {
-        let faces = self.kinds.len();
+        let faces = self.records.len();
         assert_eq!(mesh.face_count(), faces, "the mesh has other polygons");
         Selection::check_faces(chosen, faces)?;
         let mut step = Step::new(self, mesh)?;
@@ -192,7 +194,7 @@ impl LocalMesh {
 
 /// A step in progress.
 struct Step<'a, M: MeshQuery> {
-    before: &'a [Kind],
+    before: &'a [FaceRecord],
     mesh: &'a M,
     numbers: Numbers<M::Face>,
     /// Each green face starts at the corner that its other half does not have: (a, m, c) and (b, c,
@@ -210,7 +212,7 @@ struct Step<'a, M: MeshQuery> {
 
 impl<'a, M: MeshQuery> Step<'a, M> {
     fn new(before: &'a LocalMesh, mesh: &'a M) -> Result<Self, LocalError> {
-        let count = before.kinds.len();
+        let count = before.records.len();
         let numbers = mesh.face_numbers();
         let mut faces = Vec::with_capacity(count);
         for (number, &f) in (0..).zip(numbers.handles()) {
@@ -220,14 +222,14 @@ impl<'a, M: MeshQuery> Step<'a, M> {
             faces.push(Triangle { corners, sides });
         }
         for first in 0..count {
-            if before.kinds[first].half == Some(Half::First) {
+            if before.records[first].half == Some(Half::First) {
                 let [f, g] = [first, first + 1].map(|half| faces[half]);
                 faces[first] = f.rotated_to_apex(g);
                 faces[first + 1] = g.rotated_to_apex(f);
             }
         }
         Ok(Self {
-            before: &before.kinds,
+            before: &before.records,
             mesh,
             numbers,
             faces,
@@ -305,33 +307,33 @@ impl<'a, M: MeshQuery> Step<'a, M> {
         for (f, &Triangle { corners, sides }) in self.faces.iter().enumerate() {
             let corners = corners.map(|v| new_ids[v]);
             let middles_of = |sides: [M::Edge; 3]| sides.map(|side| middles[side]);
-            let kind = Kind {
+            let record = FaceRecord {
                 half: None,
                 chosen: self.chosen[f],
                 ..self.before[f]
             };
             match self.before[f].half {
-                None => parts.split(kind, corners, middles_of(sides))?,
+                None => parts.split(record, corners, middles_of(sides))?,
                 Some(half) if !self.red[f] => {
                     let half = Some(half);
-                    parts.push(Kind { half, ..kind }, corners)?;
+                    parts.push(FaceRecord { half, ..record }, corners)?;
                 }
                 Some(Half::First) => {
-                    let kind = Kind {
-                        chosen: kind.chosen || self.chosen[f + 1],
-                        ..kind
+                    let record = FaceRecord {
+                        chosen: record.chosen || self.chosen[f + 1],
+                        ..record
                     };
                     let other = self.faces[f + 1];
                     let halves = [corners, other.corners.map(|v| new_ids[v])];
-                    parts.split_pair(kind, halves, [sides, other.sides].map(middles_of))?;
+                    parts.split_pair(record, halves, [sides, other.sides].map(middles_of))?;
                 }
                 // Handled with the first half.
                 Some(Half::Second) => {}
             }
         }
         let polygons = PolygonMesh::from_faces(points, parts.faces)?;
-        let kinds = parts.kinds;
-        Ok(LocalMesh { polygons, kinds })
+        let records = parts.records;
+        Ok(LocalMesh { polygons, records })
     }
 
     /// Returns the number of new faces in the area of face `f`.
@@ -371,12 +373,12 @@ impl<V: Copy + Eq, E: Copy> Triangle<V, E> {
 #[derive(Default)]
 struct Parts {
     faces: FaceList,
-    kinds: Vec<Kind>,
+    records: Vec<FaceRecord>,
 }
 
 impl Parts {
-    fn push(&mut self, kind: Kind, corners: [VertexId; 3]) -> Result<(), PolygonError> {
-        self.kinds.push(kind);
+    fn push(&mut self, record: FaceRecord, corners: [VertexId; 3]) -> Result<(), PolygonError> {
+        self.records.push(record);
         self.faces.push(corners)
     }
 
@@ -384,7 +386,7 @@ impl Parts {
     /// side or all three sides are split.
     fn split(
         &mut self,
-        kind: Kind,
+        record: FaceRecord,
         corners: [VertexId; 3],
         middles: [Option<VertexId>; 3],
     ) -> Result<(), PolygonError> {
@@ -392,16 +394,16 @@ impl Parts {
         match middles {
             [Some(m), Some(p), Some(q)] => {
                 for part in [[a, m, q], [m, b, p], [q, p, c], [m, p, q]] {
-                    self.push(kind, part)?;
+                    self.push(record, part)?;
                 }
                 Ok(())
             }
-            [Some(m), None, None] => self.halve(kind, [a, b, c], m),
-            [None, Some(m), None] => self.halve(kind, [b, c, a], m),
-            [None, None, Some(m)] => self.halve(kind, [c, a, b], m),
+            [Some(m), None, None] => self.halve(record, [a, b, c], m),
+            [None, Some(m), None] => self.halve(record, [b, c, a], m),
+            [None, None, Some(m)] => self.halve(record, [c, a, b], m),
             _ => {
                 debug_assert_eq!(middles, [None; 3], "two split sides make a face red");
-                self.push(kind, corners)
+                self.push(record, corners)
             }
         }
     }
@@ -409,13 +411,13 @@ impl Parts {
     /// Adds the two halves of a face whose first side has the middle `m`.
     fn halve(
         &mut self,
-        kind: Kind,
+        record: FaceRecord,
         [a, b, c]: [VertexId; 3],
         m: VertexId,
     ) -> Result<(), PolygonError> {
-        let half = |half| Kind {
+        let half = |half| FaceRecord {
             half: Some(half),
-            ..kind
+            ..record
         };
         self.push(half(Half::First), [a, m, c])?;
         self.push(half(Half::Second), [m, b, c])
@@ -425,16 +427,16 @@ impl Parts {
     /// a is halved if a–m is split. The part at b is halved if m–b is split.
     fn split_pair(
         &mut self,
-        kind: Kind,
+        record: FaceRecord,
         [[a, m, c], [b, ..]]: [[VertexId; 3]; 2],
         [[near, _, q], [p, _, far]]: [[Option<VertexId>; 3]; 2],
     ) -> Result<(), PolygonError> {
         let (Some(p), Some(q)) = (p, q) else {
             unreachable!("a red face has all its sides split");
         };
-        self.split(kind, [a, m, q], [near, None, None])?;
-        self.split(kind, [m, b, p], [far, None, None])?;
-        self.push(kind, [q, p, c])?;
-        self.push(kind, [m, p, q])
+        self.split(record, [a, m, q], [near, None, None])?;
+        self.split(record, [m, b, p], [far, None, None])?;
+        self.push(record, [q, p, c])?;
+        self.push(record, [m, p, q])
     }
 }

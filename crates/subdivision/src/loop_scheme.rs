@@ -2,8 +2,7 @@
 //! except at extraordinary vertices.
 //!
 //! The scheme is that of Loop (1987), with the weights of Loop or of Warren (1995). Warren's
-//! weights are 3/16 for valence 3 and 3/(8n) for any other valence n. The file is not called
-//! `loop.rs` because `loop` is a keyword.
+//! weights are 3/16 for valence 3 and 3/(8n) for any other valence n.
 //!
 //! ```text
 //!     edge point                  vertex point, valence n

@@ -1,7 +1,7 @@
 //! The method native: the structure splits its own tables, and the new points are computed with
 //! queries.
 //!
-//! The structure is not built again: [`Refine`] defines the row of each new element. Points are
+//! No structure is built from polygons: [`Refine`] defines the row of each new element. Points are
 //! computed independently of each other, with the same queries and rules as in the method gather.
 //! So the points are the same on any number of threads.
 

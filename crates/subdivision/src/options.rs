@@ -8,8 +8,8 @@
     serde(rename_all = "kebab-case")
 )]
 #[non_exhaustive]
-pub enum Boundary {
-    /// Boundary edges and vertices with exactly one face are infinitely sharp.
+pub enum BoundaryRule {
+    /// Boundary edges are infinitely sharp, and so are vertices with exactly one face.
     #[default]
     EdgeAndCorner,
     /// Boundary edges are infinitely sharp. The boundary becomes a B-spline curve, which rounds the
@@ -20,7 +20,7 @@ pub enum Boundary {
     None,
 }
 
-impl Boundary {
+impl BoundaryRule {
     /// All boundary rules.
     pub const ALL: [Self; 3] = [Self::EdgeAndCorner, Self::EdgeOnly, Self::None];
 
@@ -43,12 +43,15 @@ impl Boundary {
 )]
 #[non_exhaustive]
 pub enum Creasing {
-    /// Each half gets the sharpness of the edge minus 1.
+    /// Each half gets the sharpness of the edge minus 1, but at least 0. An infinite sharpness
+    /// stays infinite.
     #[default]
     Uniform,
-    /// The half at an end gets 3/4 of the sharpness of the edge, plus 1/4 of the mean sharpness of
-    /// the other semi-sharp edges at this end, minus 1. Sharpness then varies along a crease like
-    /// the points of Chaikin's curve.
+    /// The half at one end of the edge gets 3/4 of the sharpness of the edge, plus 1/4 of the mean
+    /// sharpness of the other semi-sharp edges at this end, minus 1. Sharpness then varies along a
+    /// crease like the points of Chaikin's curve. A semi-sharp edge has a finite sharpness above 0.
+    /// The rule [`Uniform`](Self::Uniform) applies to edges that are not semi-sharp, and at ends
+    /// without another semi-sharp edge.
     Chaikin,
 }
 

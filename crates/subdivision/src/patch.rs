@@ -25,15 +25,15 @@ use crate::error::CurveError;
 /// With [`Ends::Dropped`] in both directions, m × n control points define (m − 3) × (n − 3) bicubic
 /// pieces, and each step shrinks the grid towards these pieces. With [`Ends::Kept`] in both
 /// directions, the four corners do not move, and the boundary consists of B-spline curves between
-/// the corners. Catmull–Clark with the boundary rule `edge-and-corner` has the same boundary. With
-/// [`Ends::Closed`] in one direction, the patch is a tube; with [`Ends::Closed`] in both
-/// directions, the patch is a torus.
+/// the corners. Catmull–Clark with the boundary rule `edge-and-corner` gives the same boundary
+/// curves. With [`Ends::Closed`] in one direction, the patch is a tube; with [`Ends::Closed`] in
+/// both directions, the patch is a torus.
 ///
 /// # Invariants
 ///
 /// - G1  Every row has the same number of points.
-/// - G2  A row or column has at least 2 points if its ends are kept, 3 points if its ends are
-///   closed, and 4 points if its ends are dropped.
+/// - G2  A row or column has at least 2 points if its ends are kept, 3 points if the row or column
+///   is closed, and 4 points if its ends are dropped.
 ///
 /// # Examples
 ///
@@ -159,15 +159,15 @@ impl ControlGrid {
     }
 
     /// Returns the point of the patch at the parameters (`u`, `v`). The patch is the limit of
-    /// [`refined`](Self::refined) for many levels. The control point in column i of row j has the
-    /// parameters (i, j). Takes O(rows) time.
+    /// [`refined`](Self::refined) after infinitely many levels. The control point in column i of
+    /// row j has the parameters (i, j). Takes O(rows) time.
     ///
     /// Returns `None` if a parameter is outside its domain. The domain of a parameter along n
     /// control points is:
     ///
     /// - ends kept: from 0 to n − 1
     /// - ends dropped: from 1 to n − 2
-    /// - ends closed: every parameter, because the patch is periodic
+    /// - closed: every parameter, because the patch is periodic
     pub fn evaluate(&self, u: f64, v: f64) -> Option<Point> {
         let [of_rows, of_columns] = self.ends;
         let rows = self.points.chunks(self.columns);

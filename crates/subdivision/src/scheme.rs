@@ -38,29 +38,63 @@ pub enum Primitive {
     VertexSplit,
 }
 
+/// The faces that a scheme accepts or makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize),
+    serde(rename_all = "kebab-case")
+)]
+pub enum FaceKind {
+    /// All faces are triangles.
+    Triangles,
+    /// All faces have four corners.
+    Quads,
+    /// Faces can have any number of corners.
+    Polygons,
+}
+
+impl FaceKind {
+    /// Returns the name in text and in files, for example `triangles`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Triangles => "triangles",
+            Self::Quads => "quads",
+            Self::Polygons => "polygons",
+        }
+    }
+}
+
+impl fmt::Display for FaceKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
 /// The properties of a scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Kind {
+pub struct SchemeProperties {
     /// The kind of elements that a step splits: faces or vertices.
     pub primitive: Primitive,
-    /// The faces of the input: `triangles` or `polygons`.
-    pub takes: &'static str,
-    /// The faces of the output: `triangles`, `quads` or `polygons`.
-    pub makes: &'static str,
+    /// The faces of the input: triangles or polygons.
+    pub takes: FaceKind,
+    /// The faces of the output.
+    pub makes: FaceKind,
     /// True if the vertices of the input keep their positions.
     pub interpolating: bool,
-    /// The smoothness of the limit surface at regular vertices and at extraordinary vertices.
+    /// The smoothness of the limit surface. If the smoothness at extraordinary vertices is
+    /// different, the text names both.
     pub continuity: &'static str,
-    /// The factor by which a step multiplies the number of faces. For the first steps, the factor
+    /// The factor by which a step multiplies the number of faces. In the first steps, the factor
     /// can be different.
     pub growth: &'static str,
     /// The behaviour of the scheme at boundaries.
     pub boundary: &'static str,
     /// True if the scheme has rules for creases.
     pub creases: bool,
-    /// How the faces are split in the tables of a structure; `None` if the scheme does not split
-    /// faces.
+    /// The split with which a structure can run the scheme in its own tables; `None` if the scheme
+    /// does not split faces.
     pub split: Option<Split>,
     /// True if the scheme can run as one pass over the faces.
     pub scatter: bool,
@@ -94,17 +128,17 @@ impl Scheme {
         }
     }
 
-    /// Returns the scheme with this [`name`](Self::name).
+    /// Returns the scheme with this [`name`](Self::name), or `None` if the name is unknown.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|scheme| scheme.name() == name)
     }
 
     /// Returns the properties of the scheme.
-    pub const fn kind(self) -> Kind {
-        const BASE: Kind = Kind {
+    pub const fn properties(self) -> SchemeProperties {
+        const BASE: SchemeProperties = SchemeProperties {
             primitive: Primitive::FaceSplit,
-            takes: "triangles",
-            makes: "triangles",
+            takes: FaceKind::Triangles,
+            makes: FaceKind::Triangles,
             interpolating: false,
             continuity: "C0",
             growth: "4",
@@ -115,9 +149,9 @@ impl Scheme {
             source: "linear",
         };
         match self {
-            Self::CatmullClark => Kind {
-                takes: "polygons",
-                makes: "quads",
+            Self::CatmullClark => SchemeProperties {
+                takes: FaceKind::Polygons,
+                makes: FaceKind::Quads,
                 continuity: "C2, extraordinary C1",
                 boundary: "B-spline curve; corners may stay",
                 creases: true,
@@ -125,14 +159,14 @@ impl Scheme {
                 source: "Catmull & Clark 1978; DeRose et al. 1998",
                 ..BASE
             },
-            Self::Loop => Kind {
+            Self::Loop => SchemeProperties {
                 continuity: "C2, extraordinary C1",
                 boundary: "B-spline curve; corners may stay",
                 creases: true,
                 source: "Loop 1987; Warren 1995",
                 ..BASE
             },
-            Self::Sqrt3 => Kind {
+            Self::Sqrt3 => SchemeProperties {
                 continuity: "C2, extraordinary C1",
                 growth: "3",
                 boundary: "B-spline curve, every second step",
@@ -140,7 +174,7 @@ impl Scheme {
                 source: "Kobbelt 2000",
                 ..BASE
             },
-            Self::Butterfly => Kind {
+            Self::Butterfly => SchemeProperties {
                 interpolating: true,
                 continuity: "C1",
                 boundary: "four-point curve",
@@ -148,23 +182,23 @@ impl Scheme {
                 source: "Zorin, Schroeder & Sweldens 1996",
                 ..BASE
             },
-            Self::DooSabin => Kind {
+            Self::DooSabin => SchemeProperties {
                 primitive: Primitive::VertexSplit,
-                takes: "polygons",
-                makes: "polygons",
+                takes: FaceKind::Polygons,
+                makes: FaceKind::Polygons,
                 continuity: "C1",
                 boundary: "shrinks: its edges make no faces",
                 split: None,
                 source: "Doo & Sabin 1978",
                 ..BASE
             },
-            Self::Midpoint => Kind {
+            Self::Midpoint => SchemeProperties {
                 interpolating: true,
                 ..BASE
             },
-            Self::Bilinear => Kind {
-                takes: "polygons",
-                makes: "quads",
+            Self::Bilinear => SchemeProperties {
+                takes: FaceKind::Polygons,
+                makes: FaceKind::Quads,
                 interpolating: true,
                 split: Some(Split::Quads),
                 source: "bilinear",

@@ -11,8 +11,8 @@ pub enum Selection {
     /// The faces with these numbers. At later levels, the parts of these faces are selected.
     Faces(Vec<FaceId>),
     /// The faces that share at least one point with a box. The surface of the box belongs to the
-    /// box. A box that lies inside a face selects the face. The bounds may be infinite. At each
-    /// level, the faces of this level are selected.
+    /// box. A box that meets only the inner part of a face also selects the face. The bounds may be
+    /// infinite. At each level, the faces of this level are selected.
     Box {
         /// The minimum coordinates of the box.
         min: Point,
@@ -20,10 +20,10 @@ pub enum Selection {
         max: Point,
     },
     /// The faces at folds. A fold is a pair of adjacent faces whose normals form an angle greater
-    /// than the value of `Angle`. The angle is in degrees, from 0 to 180. Faces at an edge with
-    /// three or more faces are also selected. Two adjacent faces are not a fold if one of them has
-    /// no area. At each level, the faces of this level at the same folds are selected, because new
-    /// points lie on the old faces.
+    /// than the given value in degrees, which must be from 0 to 180. Faces at an edge with three or
+    /// more faces are also selected. Two adjacent faces are not a fold if one of them has no area.
+    /// At each level, the faces of this level along the same folds are selected, because new points
+    /// lie on the old faces.
     Angle(f32),
 }
 
@@ -52,13 +52,14 @@ impl Selection {
         }
     }
 
-    /// Returns the numbers of the selected faces, in the order of [`MeshQuery::faces`]. Takes
-    /// O(faces) time, or O(edges) time for an angle, plus the costs of the queries FV and EF.
+    /// Returns the numbers of the selected faces. A list of faces is returned unchanged; the faces
+    /// at a box or at folds are in the order of [`MeshQuery::faces`]. Takes O(faces) time, or
+    /// O(edges) time for an angle, plus the costs of the queries FV and EF.
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`check`](Self::check). Also returns an error for a face that is not a
-    /// triangle.
+    /// Returns the errors of [`check`](Self::check). For a box or an angle, also returns an error
+    /// for the first face that is not a triangle.
     pub fn faces<M: MeshQuery>(&self, mesh: &M) -> Result<Vec<FaceId>, LocalError> {
         self.check(mesh.face_count())?;
         match self {

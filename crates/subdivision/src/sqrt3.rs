@@ -23,8 +23,8 @@
 //!        •  •  •  •               before it (10 p₀ + 16 p₁ + p₂)/27, after it (p₀ + 16 p₁ + 10 p₂)/27
 //! ```
 //!
-//! A boundary vertex with more than two boundary edges does not move. A new point next to such a
-//! vertex lies at a third of its edge. An isolated vertex does not move.
+//! A boundary vertex with more than two boundary edges does not move, and the new points next to
+//! this vertex lie at a third of their edges. An isolated vertex does not move.
 
 use std::f64::consts::TAU;
 

@@ -7,13 +7,15 @@ use crate::SubdivisionError;
 /// The result of one step: the refined mesh, and the creases of the refined mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// The refined mesh. The new faces that are made from one old face are consecutive.
+    /// The refined mesh. With the methods gather and scatter, the new faces that are made from one
+    /// old face are consecutive.
     ///
-    /// After a face split, the vertices are the old vertices, then the face points, then the edge
-    /// points. Each of the three groups is in the order of the old structure. After a vertex split
-    /// (Doo–Sabin), each vertex comes from one corner of an old face. The faces are sorted by their
-    /// origin: first the faces from old faces, then the faces from old edges, then the faces from
-    /// old vertices.
+    /// After a face split, the vertices are the old vertices, then the face points, then the points
+    /// on edges. Old vertices and face points are in the order of the old structure. Points on
+    /// edges have the order of the method: the order of `edges()` (gather, native), or the order in
+    /// which the faces list the edges (scatter). After a vertex split (Doo–Sabin), each vertex
+    /// comes from one corner of an old face. The faces are sorted by their origin: first the faces
+    /// from old faces, then the faces from old edges, then the faces from old vertices.
     pub polygons: PolygonMesh,
     /// The creases of [`polygons`](Self::polygons).
     pub creases: Creases,

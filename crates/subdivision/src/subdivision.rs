@@ -7,8 +7,8 @@ use crate::catmull_clark::CatmullClark;
 use crate::error::SubdivisionError;
 use crate::loop_scheme::Loop;
 use crate::midpoint::Midpoint;
-use crate::options::{Boundary, Creasing, LoopWeights};
-use crate::scheme::{Method, Scheme};
+use crate::options::{BoundaryRule, Creasing, LoopWeights};
+use crate::scheme::{FaceKind, Method, Scheme};
 use crate::step::Step;
 use crate::{butterfly, doo_sabin, gather, native, scatter, sqrt3};
 
@@ -31,7 +31,7 @@ pub struct Subdivision {
     /// The scheme.
     pub scheme: Scheme,
     /// The boundary rule. Only Catmull–Clark and Loop use this option.
-    pub boundary: Boundary,
+    pub boundary: BoundaryRule,
     /// The rule for the sharpness of the two halves of an edge. Only Catmull–Clark and Loop use
     /// this option.
     pub creasing: Creasing,
@@ -44,13 +44,13 @@ impl Subdivision {
     pub fn new(scheme: Scheme) -> Self {
         Self {
             scheme,
-            boundary: Boundary::default(),
+            boundary: BoundaryRule::default(),
             creasing: Creasing::default(),
             loop_weights: LoopWeights::default(),
         }
     }
 
-    /// Runs one step that computes each new point with queries.
+    /// Runs one step with the method gather: computes each new point with queries.
     ///
     /// `creases` are the creases of `mesh.to_polygons()`, from
     /// [`control_creases`](Self::control_creases) or from the previous step. `level` is the number
@@ -73,8 +73,9 @@ impl Subdivision {
         })
     }
 
-    /// Runs one step as one pass over the faces. The result equals the result of
-    /// [`gather`](Self::gather), except for the order of the edge points. The edge points have the
+    /// Runs one step with the method scatter: one pass over the faces. `creases` and `level` have
+    /// the same meaning as in [`gather`](Self::gather). The result also equals the result of
+    /// [`gather`](Self::gather), except for the order of the edge points: the edge points have the
     /// order in which the faces list the edges.
     ///
     /// # Errors
@@ -97,10 +98,11 @@ impl Subdivision {
 
     /// Runs one step with the method native: splits the tables of the structure, and stores the
     /// result in `child`. Returns the creases of `child`. The tables of `child` are reused if the
-    /// tables are large enough. The step runs on the threads of the current rayon pool. The result
-    /// has the same bytes for any number of threads.
+    /// tables are large enough. With the feature `rayon`, the step runs on the threads of the
+    /// current rayon pool. The result has the same bytes for any number of threads.
     ///
-    /// The step overwrites `numbers`, so `numbers` may come from another mesh.
+    /// `creases` and `level` have the same meaning as in [`gather`](Self::gather). The step
+    /// overwrites `numbers`, so `numbers` may come from another mesh.
     ///
     /// # Errors
     ///
@@ -122,10 +124,10 @@ impl Subdivision {
         })
     }
 
-    /// Returns how the step `level` splits faces; `None` if the step does not split faces. The
-    /// first step has level 0.
+    /// Returns the split that step `level` applies to the faces, or `None` if the step does not
+    /// split faces. The first step has level 0.
     pub fn split(&self, level: u32) -> Option<Split> {
-        match self.scheme.kind().split? {
+        match self.scheme.properties().split? {
             Split::Sqrt3 { .. } => Some(Split::Sqrt3 {
                 trisect: trisects(level),
             }),
@@ -135,7 +137,7 @@ impl Subdivision {
 
     /// Returns the number of parts of a face with `degree` corners.
     pub(crate) fn parts_of(&self, degree: usize) -> usize {
-        match self.scheme.kind().split {
+        match self.scheme.properties().split {
             Some(Split::Triangles) => 4,
             _ => degree,
         }
@@ -157,12 +159,12 @@ impl Subdivision {
     /// Checks that the scheme can split the faces of `mesh`, and that 32-bit handles can number the
     /// result. Returns the total number of corners of the faces. O(faces).
     fn check<M: MeshQuery>(&self, mesh: &M) -> Result<usize, SubdivisionError> {
-        let kind = self.scheme.kind();
+        let properties = self.scheme.properties();
         let (mut corners, mut non_triangle) = (0, None);
         for (number, f) in (0..).zip(mesh.faces()) {
             let degree = mesh.face_vertices(f).count();
             corners += degree;
-            if degree != 3 && kind.takes == "triangles" && non_triangle.is_none() {
+            if degree != 3 && properties.takes == FaceKind::Triangles && non_triangle.is_none() {
                 non_triangle = Some((FaceId::new(number), degree));
             }
         }

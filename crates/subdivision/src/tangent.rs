@@ -1,7 +1,7 @@
 //! Two tangents of the limit surface of Catmull–Clark and Loop at a vertex.
 //!
 //! At smooth vertices, the tangents are sums of the neighbours, weighted with cosines and with
-//! sines (Halstead, Kass & DeRose 1993; Loop 1987). Next to a crease, the tangents were derived for
+//! sines (Halstead, Kass & DeRose 1993; Loop 1987). Next to a crease, the tangents are derived from
 //! the step rules of this crate; see [`Sector`]. The tangents of Biermann, Levin & Zorin (2000) do
 //! not apply, because those tangents need other step rules.
 

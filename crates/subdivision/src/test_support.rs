@@ -44,12 +44,12 @@ pub(crate) fn all_methods(
         subdivision.gather(&list, &none, level)?,
         subdivision.gather(&halves, &none, level)?,
     ];
-    if scheme.kind().scatter {
+    if scheme.properties().scatter {
         steps.push(subdivision.scatter(&list, &none, level)?);
         steps.push(subdivision.scatter(&halves, &none, level)?);
     }
     let mut meshes: Vec<_> = steps.into_iter().map(|step: Step| step.polygons).collect();
-    if scheme.kind().split.is_some() {
+    if scheme.properties().split.is_some() {
         meshes.push(native::<HalfEdgeMesh>(scheme, polygons, level)?);
         meshes.push(native::<CornerTable>(scheme, polygons, level)?);
     }

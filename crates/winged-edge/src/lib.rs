@@ -2,10 +2,10 @@
 //! edges (wings).
 //!
 //! Use a winged-edge mesh if most queries are about edges, or if an edge must be one object with
-//! one record. A winged-edge mesh cannot hold edges with three faces: building a mesh with such
-//! edges returns an error. The winged-edge mesh is the oldest structure that finds a neighbour in
-//! constant time. Start at [`generic::WingedEdgeMesh`], whose numbered invariants define the
-//! tables. The structure follows Baumgart (1972, 1975).
+//! one record. A winged-edge mesh cannot hold edges with three faces: if the input has an edge with
+//! three faces, building returns an error. Of the six structures, the winged-edge mesh is the
+//! oldest that finds a neighbour in constant time. [`generic::WingedEdgeMesh`] documents the tables
+//! and their numbered invariants. The structure follows Baumgart (1972, 1975).
 //!
 //! | holds | |
 //! |---|---|
@@ -21,7 +21,7 @@
 //! | refining (quads, triangles) | O(edges + vertices) | each edge and its four wings |
 //!
 //! The handles of vertices, edges and faces are row numbers. A loop over all handles reads no
-//! table, except the bits that mark deleted elements.
+//! table; in an editable mesh, the loop reads the bits that mark deleted elements.
 //!
 //! | edit ([`MeshEdit`](sixfold_core::MeshEdit)) | cost | rows that change |
 //! |---|---|---|
@@ -49,13 +49,13 @@
 //! Therefore every step must test on which side of the edge the walk is. A walk around a vertex
 //! tests whether the edge starts at this vertex. A walk along a face tests whether the face is on
 //! the left of the edge. The side test is one comparison with the record that the step has just
-//! read. On a mesh in random order, a branch on the result of the test would be mispredicted every
-//! second time. Therefore the code has no branch: the result of the test selects between two loaded
-//! values.
+//! read. On a mesh in random order, the processor would mispredict a branch on the result of the
+//! test every second time. Therefore the code has no branch: the result of the test selects between
+//! two loaded values.
 //!
-//! The half-edge mesh of Sixfold needs no side test. A mesh is in a good order if neighbours are
-//! close in memory. The table shows the time of the winged-edge mesh divided by the time of the
-//! half-edge mesh, for 82,000 triangles in a good order and in random order:
+//! The half-edge mesh of Sixfold needs no side test. The table shows the time of the winged-edge
+//! mesh divided by the time of the half-edge mesh, for 82,000 triangles in a good order and in
+//! random order. A mesh is in a good order if neighbours are close in memory:
 //!
 //! | operation | good order | random order |
 //! |---|---|---|
@@ -73,10 +73,10 @@
 //! If the mesh is in the cache, latency limits the speed of VV, VE, VF, FV, FE and FF. Each step
 //! waits for the record of the previous step, for the comparison and for the selection. A step
 //! takes about 8 cycles, compared with 6 cycles in the half-edge mesh. If the mesh is not in the
-//! cache, each step waits for one cache line. Memory bandwidth limits the speed of EV and EF: both
-//! queries read the records in order, and use 8 of the 32 bytes of each record. Building has two
-//! expensive parts: the counting sort that pairs the sides, which takes half of the time, and
-//! writing one record per side.
+//! cache, each step waits for one cache line. Memory bandwidth limits the speed of sweeps with EV
+//! and EF: both queries read the records in order, and use 8 of the 32 bytes of each record.
+//! Building has two expensive parts: the counting sort that pairs the sides, which takes half of
+//! the time, and writing one record per side.
 //!
 //! # Examples
 //!

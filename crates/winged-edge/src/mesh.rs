@@ -40,12 +40,12 @@ use crate::edge::{Edge, NO_EDGE, Run};
 /// - I4  `prev` is the inverse of `next`: for every run, the previous run of the next run is the
 ///   run itself.
 /// - I5  `spoke(v)` is an edge with the end `v`, or empty if `v` is isolated. If `v` is on a
-///   boundary, `spoke(v)` has no face on the right, in the direction away from `v`.
+///   boundary, the run of `spoke(v)` that ends at `v` has no face.
 /// - I6  The steps around `v` visit all edges at `v` in one cycle: every vertex is manifold.
 /// - I7  `side(f)` is an edge with face `f`. The cycle of runs along `f` has at least three
 ///   vertices, each once.
 /// - I8  No two edges have the same ends.
-/// - I9  The bits in the tables of holes are set exactly for deleted vertices, edges and faces. The
+/// - I9  In the tables of holes, a bit is set exactly if its vertex, edge or face was deleted. The
 ///   spoke of a deleted vertex is empty. The ends of a deleted edge, and the side of a deleted
 ///   face, hold values that no row has. Elements that are not deleted never refer to deleted
 ///   elements.
@@ -84,8 +84,8 @@ impl<P: Probe> From<WingedEdgeMesh<Compact, P>> for WingedEdgeMesh<Editable, P> 
     }
 }
 
-/// The fields of edges. Each function is O(1), reads one row of a table, and panics if the row does
-/// not exist or its element was deleted.
+/// Access to the fields of edges, vertices and faces. Each function takes O(1) time, and panics if
+/// its argument does not exist or was deleted.
 impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
     /// Returns the record of `e`.
     #[inline]
@@ -155,7 +155,7 @@ impl<P: Probe, E: Editing> WingedEdgeMesh<E, P> {
         self.edge(e).prev()[1]
     }
 
-    /// Returns whether `e` has only one face.
+    /// Returns whether `e` has exactly one face.
     #[inline]
     pub fn is_boundary(&self, e: EdgeId) -> bool {
         self.edge(e).faces().contains(&None)

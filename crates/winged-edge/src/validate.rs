@@ -57,11 +57,17 @@ fn check_holes<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantErro
     }
     let edge_differs = |&e: &usize| mesh.edge_holes.has(e) != mesh.edge_records()[e].is_deleted();
     if let Some(e) = (0..edges).find(edge_differs) {
-        return fails("I9", format!("the deletion marks of e{e} disagree"));
+        return fails(
+            "I9",
+            format!("edge holes and `edges` disagree on whether e{e} was deleted"),
+        );
     }
     let face_differs = |&f: &usize| mesh.face_holes.has(f) != (mesh.side_rows()[f] == NO_EDGE);
     match (0..faces).find(face_differs) {
-        Some(f) => fails("I9", format!("the deletion marks of f{f} disagree")),
+        Some(f) => fails(
+            "I9",
+            format!("face holes and `sides` disagree on whether f{f} was deleted"),
+        ),
         None => Ok(()),
     }
 }
@@ -170,7 +176,9 @@ fn check_spokes<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantErr
         };
         let first = Run::from(mesh.edge(spoke), v);
         if run.across() == Slot::NONE && first.across() != Slot::NONE {
-            let detail = format!("{v} is on a boundary, but its spoke {spoke} is not first");
+            let detail = format!(
+                "{v} is on a boundary, but its spoke {spoke} does not start at the boundary"
+            );
             return fails("I5", detail);
         }
     }

@@ -26,7 +26,7 @@ use crate::timed_structure::TimedStructure;
 
 /// Makes a vector of [`Backend`] from the lines of [`structures!`].
 macro_rules! backends {
-    ($({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? })+) => {
+    ($({ query: $query:ty $(, edit: $edit:ty)? $(, refine: $refine:ty)? $(, walk: $walk:ty)? })+) => {
         vec![$(
             Backend::new::<$query>()
                 $(.with_edits::<$edit>())?
@@ -93,6 +93,9 @@ pub(crate) struct EditFunctions {
 pub(crate) struct TypeFunctions {
     prepare_rebuilt: PrepareRefiner,
     prepare_native: Option<PrepareRefiner>,
+    /// Whether the read-only form of the structure has a native method, but this type, the editable
+    /// form, has none.
+    pub(crate) only_read_only_is_native: bool,
     /// Sets up a pass of edits; `None` if the structure cannot be edited.
     pub(crate) prepare_pass: Option<fn(EditPass, &PolygonMesh) -> PreparedEditor>,
 }
@@ -202,6 +205,7 @@ impl Backend {
         TypeFunctions {
             prepare_rebuilt: self.queries.prepare_rebuilt,
             prepare_native: self.prepare_native,
+            only_read_only_is_native: false,
             prepare_pass: self.edits.map(|edits| edits.prepare_pass),
         }
     }
@@ -213,6 +217,7 @@ impl Backend {
         Some(TypeFunctions {
             prepare_rebuilt: edits.prepare_rebuilt,
             prepare_native: None,
+            only_read_only_is_native: self.prepare_native.is_some(),
             prepare_pass: Some(edits.prepare_pass),
         })
     }

@@ -3,10 +3,14 @@
 use crate::workload::Workload;
 
 /// The names and the texts of the files.
-const FILES: [(&str, &str); 12] = [
+const FILES: [(&str, &str); 14] = [
     (
         "rendering-upload",
         include_str!("../workloads/rendering-upload.toml"),
+    ),
+    (
+        "vertex-normals",
+        include_str!("../workloads/vertex-normals.toml"),
     ),
     (
         "ray-casting-setup",
@@ -31,6 +35,10 @@ const FILES: [(&str, &str); 12] = [
     (
         "sculpting-brush",
         include_str!("../workloads/sculpting-brush.toml"),
+    ),
+    (
+        "feature-detection",
+        include_str!("../workloads/feature-detection.toml"),
     ),
     (
         "boundary-repair",

@@ -53,6 +53,15 @@ impl Time {
         }
     }
 
+    /// Adds `ns` nanoseconds of work to both times. Times stay positive if `ns` is negative.
+    pub fn plus_ns(self, ns: f64) -> Self {
+        Self {
+            cpu_ns: self.cpu_ns.map(|cpu_ns| (cpu_ns + ns).max(1.0)),
+            wall_ns: (self.wall_ns + ns).max(1.0),
+            ..self
+        }
+    }
+
     /// Returns a time of zero. The result contains a processor time if `like` contains a processor
     /// time.
     pub fn zero_like(like: Self) -> Self {

@@ -66,7 +66,7 @@ pub(crate) fn prepare_pass<M: Representation + MeshEdit + 'static>(
 ) -> PreparedEditor {
     if let Some((f, degree)) = polygons.first_polygon() {
         return Err(format!(
-            "face {f} has {degree} corners, and {pass} needs triangles: triangulate the mesh"
+            "face {f} has {degree} corners, and passes of edits need triangles: triangulate the mesh"
         ));
     }
     let mesh = M::from_polygons(polygons).map_err(|refusal| refusal.to_string())?;
@@ -106,8 +106,25 @@ pub struct Edits {
     pub done: u64,
     /// Number of edits that the structure refused.
     pub refused: u64,
+    /// A hash of the places of the refused edits, in the order of the edits; 0 if no edit was
+    /// refused. Two structures that refuse equally many edits at different places have different
+    /// hashes.
+    pub refused_hash: u64,
     /// Sum of all edge lengths after the edits.
     pub checksum: f64,
+}
+
+impl Edits {
+    /// Records that the edit at `place` was refused. The place is a number that is the same on all
+    /// structures. Never inlined, because the loops over edits would keep the hash in a register.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn refuse(&mut self, place: usize) {
+        self.refused += 1;
+        // A polynomial of the places, modulo 2⁶⁴. The odd factor mixes the order of the places in.
+        let hash = self.refused_hash.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        self.refused_hash = hash.wrapping_add(place as u64 + 1);
+    }
 }
 
 struct EditPassRun<M: MeshEdit> {
@@ -180,16 +197,17 @@ fn split_collapse<M: MeshEdit>(mesh: &mut M) -> Edits {
     let mut edits = Edits::default();
     let faces: Vec<M::Face> = mesh.faces().collect();
     let mut middles = Vec::with_capacity(faces.len());
-    for f in faces {
+    let face_count = faces.len();
+    for (place, f) in faces.into_iter().enumerate() {
         edits.elements += 1;
         let mut sum = sixfold::Point::ZERO;
         mesh.face_vertices(f).for_each(|v| sum += mesh.position(v));
         match mesh.poke_face(f, sum * (1.0 / 3.0)) {
             Ok(middle) => middles.push(middle),
-            Err(_) => edits.refused += 1,
+            Err(_) => edits.refuse(place),
         }
     }
-    for middle in middles {
+    for (place, middle) in middles.into_iter().enumerate() {
         let Some(spoke) = mesh.vertex_edges(middle).next() else {
             continue;
         };
@@ -198,7 +216,7 @@ fn split_collapse<M: MeshEdit>(mesh: &mut M) -> Edits {
         let at = mesh.position(corner);
         match mesh.collapse_edge(spoke, corner, at) {
             Ok(_) => edits.done += 1,
-            Err(_) => edits.refused += 1,
+            Err(_) => edits.refuse(face_count + place),
         }
     }
     mesh.compact();
@@ -208,7 +226,7 @@ fn split_collapse<M: MeshEdit>(mesh: &mut M) -> Edits {
 #[inline(never)]
 fn flip_all<M: MeshEdit>(mesh: &mut M, tracked: &mut TrackedEdges<M>) -> Edits {
     let mut edits = Edits::default();
-    for _ in 0..2 {
+    for round in 0..2 {
         for i in 0..tracked.edges.len() {
             edits.elements += 1;
             tracked.flipping = i;
@@ -218,7 +236,7 @@ fn flip_all<M: MeshEdit>(mesh: &mut M, tracked: &mut TrackedEdges<M>) -> Edits {
                     tracked.apply_renames();
                     edits.done += 1;
                 }
-                Err(_) => edits.refused += 1,
+                Err(_) => edits.refuse(round * tracked.edges.len() + i),
             }
         }
     }
@@ -237,6 +255,7 @@ fn decimate_to<M: Representation + MeshEdit>(mesh: &mut M, ratio: f64) -> Edits 
         elements,
         done: done.as_ref().map_or(0, |done| done.collapses as u64),
         refused: done.as_ref().map_or(elements, |done| done.refused as u64),
+        refused_hash: done.as_ref().map_or(0, |done| done.refused_hash),
         checksum: 0.0,
     }
 }
@@ -367,6 +386,39 @@ mod tests {
                 assert!(
                     error < 1e-6 * first.checksum,
                     "{pass} on {name}: {result:?}"
+                );
+            }
+        }
+    }
+
+    /// The structures list faces and edges in the same order, so that equal refusals have equal
+    /// hashes.
+    #[test]
+    fn structures_that_refuse_the_same_edits_have_the_same_hash() {
+        // Boundary edges and the edges at vertices of valence 3 cannot be flipped.
+        let meshes = [
+            shapes::tetrahedron(),
+            shapes::triangle_grid(5, 4).expect("small"),
+        ];
+        let manifold = ["corner-table", "half-edge", "winged-edge", "face-vertex"];
+        for pass in EditPass::ALL {
+            for polygons in &meshes {
+                let hashes = manifold.map(|name| {
+                    let backend = Backend::find(name).expect("one of six");
+                    let editor = pass.prepare(&backend, polygons).expect("has edits");
+                    let mut editor = editor.expect("triangles");
+                    editor.time(&Series::once(&MachineClock::start()));
+                    let Edits {
+                        refused,
+                        refused_hash,
+                        ..
+                    } = editor.result();
+                    assert_eq!(refused == 0, refused_hash == 0, "{pass} on {name}");
+                    refused_hash
+                });
+                assert!(
+                    hashes.iter().all(|hash| *hash == hashes[0]),
+                    "{pass}: {hashes:?}"
                 );
             }
         }

@@ -18,14 +18,16 @@ pub enum Task {
     /// Runs one operation of one part of the mix. A part is a kind of operation. The field is the
     /// index of the part in the mix.
     Part(usize),
+    /// Runs a program of a user once.
+    Program,
 }
 
 impl Task {
-    /// Returns the operation; `None` for a mix or a part of a mix.
+    /// Returns the operation; `None` for a mix, a part of a mix, or a program.
     pub const fn operation(self) -> Option<Operation> {
         match self {
             Self::Operation(operation) => Some(operation),
-            Self::Mix | Self::Part(_) => None,
+            Self::Mix | Self::Part(_) | Self::Program => None,
         }
     }
 
@@ -133,8 +135,21 @@ pub struct Outcome {
     /// in one run. If an operation ran on a sample, the number is scaled to all elements, except
     /// for subdivisions and edit passes.
     pub elements: u64,
-    /// The number of edits that the backend refuses in one run of an edit pass; 0 for other tasks.
+    /// A hash of the edits that the backend refuses in one run of an edit pass; 0 if it refuses no
+    /// edit, and for other tasks.
     pub refused: u64,
+}
+
+impl Outcome {
+    /// Makes the result of a program: a number computed from all results, and the number of elements
+    /// that the program visits.
+    pub const fn new(checksum: f64, elements: u64) -> Self {
+        Self {
+            checksum,
+            elements,
+            refused: 0,
+        }
+    }
 }
 
 /// A backend that is ready to be timed: a structure built from a mesh, relation tables, or an

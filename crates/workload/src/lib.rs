@@ -18,6 +18,7 @@ mod memory_speed;
 mod mix;
 mod operation;
 pub mod pages;
+mod program;
 mod read_probe;
 mod reads;
 mod series;
@@ -25,7 +26,9 @@ mod single_edit;
 mod subdivide;
 mod subdivision_job;
 mod sweeps;
+mod tables;
 mod timed_structure;
+mod trace;
 mod unknown;
 mod workload;
 mod workload_file;
@@ -44,12 +47,20 @@ pub use mix::{
     EditPlaceError, MixBackend, MixRefusal, PreparedMix, Route, Schedule, prepare_mix, tabulate,
 };
 pub use operation::{ElementKind, Operation, UnknownOperation};
+pub use program::{
+    Asked, Contestant, EditProgram, MovingProgram, Program, ProgramRefusal, Recorded, Recording,
+    RefineProgram, Suite, SuiteProgram, Visits, WalkProgram,
+};
 pub use read_probe::{CACHE_LINES, LINE_BYTES, REACH};
 pub use reads::{MAX_READS, Reads, ReadsObserver, SCAN_SAMPLE, TableReads};
 pub use series::{CacheFlusher, MIN_TIMED_NS, Series, Start, exceeds_second_level};
 pub use single_edit::SingleEdit;
+pub use subdivide::patch;
 pub use subdivision_job::{PreparedRefiner, Refiner, SubdivisionJob, Way};
 pub use sweeps::field_sum;
+pub use trace::{Trace, TraceError};
 pub use unknown::unknown;
-pub use workload::{Access, Action, Amount, ParseAmountError, Part, UnknownAction, Workload};
+pub use workload::{
+    Access, Action, Amount, OwnBytes, OwnData, ParseAmountError, Part, UnknownAction, Workload,
+};
 pub use workload_file::WorkloadError;

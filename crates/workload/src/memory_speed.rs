@@ -12,6 +12,7 @@
 
 use std::hint::black_box;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
@@ -60,18 +61,36 @@ pub struct MemorySpeed {
     /// The speed of each buffer, ordered by the size of the buffer. The list is never empty.
     #[serde(rename = "rungs")]
     speeds: Vec<BufferSpeed>,
+    /// The size of the smallest buffer that was left out because there was too little time; `None`
+    /// if all buffers were measured.
+    left_out_from: Option<usize>,
 }
 
 impl MemorySpeed {
-    /// Measures the speed of memory. The measurement takes one or two seconds and 256 MiB of
-    /// memory. Returns `None` if `stop` becomes true during the measurement.
-    pub fn measure(clock: &dyn Clock, stop: &AtomicBool) -> Option<Self> {
-        Self::measure_sizes(&SIZES, clock, stop)
+    /// Measures the speed of memory. The measurement of all buffers takes one or two seconds and
+    /// 256 MiB of memory. A buffer that would take the measurement beyond `limit`, and all larger
+    /// buffers, are left out; the smallest buffer is always measured. Returns `None` if `stop`
+    /// becomes true during the measurement.
+    pub fn measure(limit: Duration, clock: &dyn Clock, stop: &AtomicBool) -> Option<Self> {
+        Self::measure_sizes(&SIZES, limit, clock, stop)
     }
 
-    fn measure_sizes(sizes: &[usize], clock: &dyn Clock, stop: &AtomicBool) -> Option<Self> {
+    fn measure_sizes(
+        sizes: &[usize],
+        limit: Duration,
+        clock: &dyn Clock,
+        stop: &AtomicBool,
+    ) -> Option<Self> {
+        let start = Instant::now();
         let mut speeds = Vec::new();
+        let mut left_out_from = None;
+        let mut expected = Duration::ZERO;
         for &bytes in sizes {
+            let before = start.elapsed();
+            if !speeds.is_empty() && before + expected > limit {
+                left_out_from = Some(bytes);
+                break;
+            }
             let words = cycle(bytes / LINE_BYTES);
             if stop.load(Ordering::Relaxed) {
                 return None;
@@ -81,8 +100,19 @@ impl MemorySpeed {
                 gb_per_s: bandwidth(&words, clock),
                 latency_ns: latency(&words, clock),
             });
+            // The next buffer is four times as large.
+            expected = (start.elapsed() - before) * 4;
         }
-        Some(Self { speeds })
+        Some(Self {
+            speeds,
+            left_out_from,
+        })
+    }
+
+    /// Returns the size in bytes of the smallest buffer that was left out because there was too
+    /// little time; `None` if all buffers were measured.
+    pub const fn left_out_from(&self) -> Option<usize> {
+        self.left_out_from
     }
 
     /// Returns the speed of each buffer, starting with the smallest buffer.
@@ -187,6 +217,7 @@ mod tests {
         };
         let speed = MemorySpeed {
             speeds: vec![buffer(100, 1.0), buffer(400, 4.0), buffer(1600, 16.0)],
+            left_out_from: None,
         };
         let latencies = [0, 99, 100, 399, 400, 1600, usize::MAX].map(|at| speed.at(at).latency_ns);
         assert_eq!(latencies, [1.0, 1.0, 1.0, 1.0, 4.0, 16.0, 16.0]);
@@ -205,7 +236,10 @@ mod tests {
     fn speeds_are_bytes_and_reads_divided_by_time() {
         let clock = TickingClock(0.into());
         let stop = AtomicBool::new(false);
-        let speed = MemorySpeed::measure_sizes(&[1 << 14], &clock, &stop).expect("not stopped");
+        let limit = Duration::MAX;
+        let speed = MemorySpeed::measure_sizes(&[1 << 14], limit, &clock, &stop);
+        let speed = speed.expect("not stopped");
+        assert_eq!(speed.left_out_from(), None);
         let BufferSpeed {
             gb_per_s,
             latency_ns,
@@ -217,6 +251,20 @@ mod tests {
         );
         assert_eq!(latency_ns, 1.0 / DEPENDENT_READS as f64);
         stop.store(true, Ordering::Relaxed);
-        assert_eq!(MemorySpeed::measure_sizes(&[1 << 14], &clock, &stop), None);
+        assert_eq!(
+            MemorySpeed::measure_sizes(&[1 << 14], limit, &clock, &stop),
+            None
+        );
+    }
+
+    #[test]
+    fn buffers_beyond_the_time_limit_are_left_out() {
+        let clock = TickingClock(0.into());
+        let stop = AtomicBool::new(false);
+        let sizes = [1 << 14, 1 << 16, 1 << 18];
+        let speed = MemorySpeed::measure_sizes(&sizes, Duration::ZERO, &clock, &stop);
+        let speed = speed.expect("not stopped");
+        assert_eq!(speed.speeds().len(), 1, "the smallest buffer");
+        assert_eq!(speed.left_out_from(), Some(1 << 16));
     }
 }

@@ -3,9 +3,11 @@
 //! The operations on single elements run in groups, which are called turns. A turn has 256
 //! operations, or 64 operations if the mix contains edits. The number of operations of each kind in
 //! a turn is in proportion to the weight of the kind. All structures visit the same elements. The
-//! operations share the processor caches, as they do in a program. Passes over the whole mesh run
+//! operations share the processor caches with one another and with the program's own data, as they do
+//! in a program. Passes over the whole mesh run
 //! between turns.
 
+mod own_data;
 mod passes;
 mod places;
 mod route;
@@ -24,6 +26,9 @@ pub(crate) use structure_mix::{MixInput, prepare_edit_mix, prepare_query_mix};
 pub use structure_mix::{MixRefusal, PreparedMix, prepare_mix};
 pub use table_mix::tabulate;
 pub(crate) use table_mix::tabulate_structure;
+
+/// Why a backend of a mix refuses [`Task::Program`](crate::Task::Program).
+const NO_PROGRAM: &str = "the backend was prepared for a workload, not for a program";
 
 /// A backend on which a mix can be run: a structure, or relation tables. A `MixBackend` also runs
 /// the tasks [`Mix`](crate::Task::Mix) and [`Part`](crate::Task::Part) of its schedule. All tasks

@@ -214,7 +214,7 @@ impl Operation {
         }
     }
 
-    /// Returns the unit in which the operation counts elements: `vertex`, `edge`, `face`, `visit`
+    /// Returns the unit of work by which the time of the operation is divided: `vertex`, `edge`, `face`, `visit`
     /// or `new face`.
     pub const fn unit(self) -> &'static str {
         match self {

@@ -120,10 +120,10 @@ fn apply_at_all_places<M: MeshEdit + Representation>(
             edits.done = 1;
         }
         edit => {
-            for place in places {
+            for (i, place) in places.iter().enumerate() {
                 match apply_edit(mesh, edit, place) {
                     Ok(()) => edits.done += 1,
-                    Err(_) => edits.refused += 1,
+                    Err(_) => edits.refuse(i),
                 }
             }
         }

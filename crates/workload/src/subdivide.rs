@@ -5,7 +5,7 @@ use std::hint::black_box;
 use std::sync::OnceLock;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use sixfold::subdivision::SubdivisionError;
+use sixfold::subdivision::{FaceKind, SubdivisionError};
 use sixfold::{Creases, Point, PolygonMesh, VertexId};
 
 use crate::backend::TypeFunctions;
@@ -50,7 +50,13 @@ fn set_up_and_run(
 ) -> Result<Run, String> {
     check_degrees(job, polygons).map_err(|error| error.to_string())?;
     let refiner = functions.prepare_refiner(job, polygons, &Creases::default());
-    let refiner = refiner.ok_or("it has no native method: it cannot split its own tables")?;
+    let refiner = refiner.ok_or(match functions.only_read_only_is_native {
+        true => {
+            "its editable form has no native method: only its read-only form can split its own \
+             tables"
+        }
+        false => "it has no native method: it cannot split its own tables",
+    })?;
     let mut refiner = refiner.map_err(|error| error.to_string())?;
     let mut done = Ok(());
     let time = series.time_together(|| {
@@ -74,7 +80,7 @@ fn set_up_and_run(
 /// structures. O(faces) at most.
 fn check_degrees(job: SubdivisionJob, polygons: &PolygonMesh) -> Result<(), SubdivisionError> {
     let scheme = job.subdivision.scheme;
-    if scheme.kind().takes != "triangles" {
+    if scheme.properties().takes != FaceKind::Triangles {
         return Ok(());
     }
     match polygons.first_polygon() {
@@ -90,7 +96,7 @@ fn check_degrees(job: SubdivisionJob, polygons: &PolygonMesh) -> Result<(), Subd
 /// Returns a mesh of about the first `size` faces of `polygons`. Faces that touch other faces only
 /// at a vertex are left out, so that every structure that holds `polygons` also holds the patch.
 /// O(size · log size) for each of a few passes.
-pub(crate) fn patch(polygons: &PolygonMesh, size: usize) -> PolygonMesh {
+pub fn patch(polygons: &PolygonMesh, size: usize) -> PolygonMesh {
     let faces = polygons.faces().iter().take(size.max(1));
     let mut faces: Vec<&[VertexId]> = faces.map(|(_, corners)| corners).collect();
     loop {

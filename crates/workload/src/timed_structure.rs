@@ -371,7 +371,7 @@ fn run_edit_pass(
         Outcome {
             checksum: edits.checksum,
             elements: edits.elements,
-            refused: edits.refused,
+            refused: edits.refused_hash,
         }
     });
     let scale = polygons.face_count() as f64 / input.face_count().max(1) as f64;

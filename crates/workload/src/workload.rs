@@ -26,8 +26,59 @@ pub struct Workload {
     /// The number of times that the program rebuilds the structure while it uses one mesh. The
     /// first build does not count.
     pub rebuilds: u64,
+    /// The time of the program's own work for each operation, in nanoseconds. It is added to the
+    /// time of every backend.
+    #[serde(default)]
+    pub own_ns: f64,
+    /// The program's own data that each visit of an element reads and writes.
+    #[serde(default, skip_serializing_if = "OwnData::is_empty")]
+    pub own_data: OwnData,
     /// The operations with their weights. At least one weight is greater than 0.
     pub mix: Vec<Part>,
+}
+
+/// The data that a program keeps for each vertex, edge and face. They are read and written in the
+/// access order of the workload, so that they share the caches with the structure.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct OwnData {
+    /// The data of a vertex.
+    #[serde(default)]
+    pub vertex: OwnBytes,
+    /// The data of an edge.
+    #[serde(default)]
+    pub edge: OwnBytes,
+    /// The data of a face.
+    #[serde(default)]
+    pub face: OwnBytes,
+}
+
+/// The number of bytes that one visit of an element reads and writes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct OwnBytes {
+    /// Bytes that a visit reads.
+    #[serde(default)]
+    pub read: u32,
+    /// Bytes that a visit writes.
+    #[serde(default)]
+    pub written: u32,
+}
+
+impl OwnData {
+    /// Returns the data of the elements of one kind.
+    pub const fn of(&self, kind: ElementKind) -> OwnBytes {
+        match kind {
+            ElementKind::Vertex => self.vertex,
+            ElementKind::Edge => self.edge,
+            ElementKind::Face => self.face,
+        }
+    }
+
+    /// Returns true if there are no data.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// One operation of a mix, with its weight.
@@ -76,6 +127,16 @@ pub enum Access {
     /// Patch by patch. A patch contains the faces around a random face, and the vertices and edges
     /// of these faces.
     Patches,
+    /// A front that grows: breadth first from face to face, as in region growing and in the
+    /// computation of distances. The vertices and edges follow in the order in which the front
+    /// reaches them.
+    Front,
+    /// Face by face: the faces in their order in the mesh file, the vertices and edges in the order
+    /// in which the faces name them. A vertex is visited once for each of its faces.
+    ByFace,
+    /// Edge by edge: the edges in the order in which the faces name them first, the ends of each
+    /// edge, and the faces of each edge. A vertex is visited once for each of its edges.
+    ByEdge,
 }
 
 /// A fixed number, or a number for each vertex, edge or face of a mesh.
@@ -168,15 +229,25 @@ impl FromStr for Amount {
 }
 
 impl Access {
-    /// All three access orders.
-    pub const ALL: [Self; 3] = [Self::Sequential, Self::Random, Self::Patches];
+    /// All access orders.
+    pub const ALL: [Self; 6] = [
+        Self::Sequential,
+        Self::Random,
+        Self::Patches,
+        Self::Front,
+        Self::ByFace,
+        Self::ByEdge,
+    ];
 
-    /// Returns the name that users write for the order: `sequential`, `random` or `patches`.
+    /// Returns the name that users write for the order, such as `sequential` or `by_face`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Sequential => "sequential",
             Self::Random => "random",
             Self::Patches => "patches",
+            Self::Front => "front",
+            Self::ByFace => "by_face",
+            Self::ByEdge => "by_edge",
         }
     }
 }

@@ -3,11 +3,12 @@
 use std::fmt;
 use std::ops::Range;
 
-use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+use serde::de::{self, Deserialize, Deserializer, MapAccess, Visitor};
 use toml::Spanned;
 
+use crate::operation::ElementKind;
 use crate::unknown::unknown;
-use crate::workload::{Access, Action, Amount, Part, Workload};
+use crate::workload::{Access, Action, Amount, OwnData, Part, Workload};
 
 /// An error in a workload file, with the number of the line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -30,15 +31,47 @@ struct WorkloadFile {
     access: Option<Spanned<String>>,
     operations: Option<Spanned<NumberOrText>>,
     rebuilds: Option<Spanned<i64>>,
+    own_ns: Option<Spanned<f64>>,
+    own_data: Option<Spanned<OwnData>>,
     mix: Option<Spanned<Mix>>,
 }
 
-#[derive(serde::Deserialize)]
-#[serde(untagged)]
+/// An amount or a weight before the checks.
 enum NumberOrText {
-    Integer(i64),
     Number(f64),
     Text(String),
+}
+
+impl<'de> Deserialize<'de> for NumberOrText {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Value;
+
+        impl Visitor<'_> for Value {
+            type Value = NumberOrText;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number such as `20`, or a text such as `\"2 per face\"`")
+            }
+
+            fn visit_i64<E: de::Error>(self, number: i64) -> Result<NumberOrText, E> {
+                Ok(NumberOrText::Number(number as f64))
+            }
+
+            fn visit_u64<E: de::Error>(self, number: u64) -> Result<NumberOrText, E> {
+                Ok(NumberOrText::Number(number as f64))
+            }
+
+            fn visit_f64<E: de::Error>(self, number: f64) -> Result<NumberOrText, E> {
+                Ok(NumberOrText::Number(number))
+            }
+
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<NumberOrText, E> {
+                Ok(NumberOrText::Text(text.into()))
+            }
+        }
+
+        deserializer.deserialize_any(Value)
+    }
 }
 
 /// The table of the mix, in file order.
@@ -90,12 +123,8 @@ impl Workload {
             line: 1 + text[..span.start.min(text.len())].matches('\n').count(),
             message,
         };
-        let parsed: WorkloadFile = toml::from_str(text).map_err(|error| {
-            at(
-                error.span().unwrap_or(0..0),
-                readable_message(error.message()),
-            )
-        })?;
+        let parsed: WorkloadFile = toml::from_str(text)
+            .map_err(|error| at(error.span().unwrap_or(0..0), one_line(error.message())))?;
 
         // The mix comes first: a wrong name in it says more than another key that is missing.
         let mix = match &parsed.mix {
@@ -137,7 +166,21 @@ impl Workload {
                 at(number.span(), message)
             })?,
         };
+        let own_ns = match &parsed.own_ns {
+            None => 0.0,
+            Some(number) if number.get_ref().abs() <= MAX_AMOUNT => *number.get_ref(),
+            Some(number) => {
+                let message = format!("own_ns must be finite, not {}", number.get_ref());
+                return Err(at(number.span(), message));
+            }
+        };
+        let own_data = match &parsed.own_data {
+            None => OwnData::default(),
+            Some(data) => checked_data(data, &at)?,
+        };
         Ok(Self {
+            own_ns,
+            own_data,
             name: name.into(),
             summary: parsed.summary.unwrap_or_default(),
             access,
@@ -146,6 +189,28 @@ impl Workload {
             mix,
         })
     }
+}
+
+/// Maximum number of bytes of the program's own data of one element.
+const MAX_OWN_BYTES: u32 = 4096;
+
+/// Checks the size of the program's own data.
+fn checked_data(
+    data: &Spanned<OwnData>,
+    at: &dyn Fn(Range<usize>, String) -> WorkloadError,
+) -> Result<OwnData, WorkloadError> {
+    let own_data = *data.get_ref();
+    for kind in ElementKind::ALL {
+        let bytes = own_data.of(kind);
+        let most = bytes.read.max(bytes.written);
+        if most > MAX_OWN_BYTES {
+            let kind = kind.name();
+            let message =
+                format!("own_data: at most {MAX_OWN_BYTES} bytes for each {kind}, not {most}");
+            return Err(at(data.span(), message));
+        }
+    }
+    Ok(own_data)
 }
 
 /// Maximum amount. It is small enough for exact `f64` arithmetic.
@@ -185,19 +250,14 @@ fn is_positive(amount: Amount) -> bool {
 
 fn amount(loose: &NumberOrText) -> Result<Amount, String> {
     match loose {
-        NumberOrText::Integer(number) => Ok(Amount::Number(*number as f64)),
         NumberOrText::Number(number) => Ok(Amount::Number(*number)),
         NumberOrText::Text(text) => text.parse().map_err(|error| format!("{error}")),
     }
 }
 
-/// Returns the message of the parser, reworded if it mentions Rust types.
-fn readable_message(message: &str) -> String {
-    let message = message.lines().collect::<Vec<_>>().join("; ");
-    match message.contains("untagged enum") {
-        true => "an amount is a number such as `20`, or a text such as `\"2 per face\"`".into(),
-        false => message,
-    }
+/// Returns the message of the parser on one line.
+fn one_line(message: &str) -> String {
+    message.lines().collect::<Vec<_>>().join("; ")
 }
 
 #[cfg(test)]
@@ -207,7 +267,7 @@ mod tests {
 
     use super::*;
     use crate::built_in::{built_in, built_ins};
-    use crate::operation::ElementKind;
+    use crate::workload::OwnBytes;
 
     fn parse(text: &str) -> Result<Workload, WorkloadError> {
         Workload::parse("mine", "mine.toml", text)
@@ -215,7 +275,8 @@ mod tests {
 
     #[test]
     fn a_file_with_all_keys_is_parsed() {
-        let text = "summary = 'who'\naccess = 'patches'\noperations = '20 per face'\nrebuilds = 3\n\
+        let text = "summary = 'who'\naccess = 'patches'\noperations = '20 per face'\nrebuilds = 3\nown_ns = -2.5\n\
+            own_data = { face = { read = 4, written = 12 }, vertex.read = 8 }\n\
             [mix]\nflip_edge = 1\nvertex_faces = '2 per edge'\nboundary = 0.5\nposition = 0";
         let workload = parse(text).expect("fine");
         let part = |action, weight| Part { action, weight };
@@ -225,6 +286,18 @@ mod tests {
             access: Access::Patches,
             operations: Amount::Per(20.0, ElementKind::Face),
             rebuilds: 3,
+            own_ns: -2.5,
+            own_data: OwnData {
+                vertex: OwnBytes {
+                    read: 8,
+                    written: 0,
+                },
+                edge: OwnBytes::default(),
+                face: OwnBytes {
+                    read: 4,
+                    written: 12,
+                },
+            },
             mix: vec![
                 part(Action::Edit(Edit::FlipEdge), Amount::Number(1.0)),
                 part(
@@ -264,7 +337,27 @@ mod tests {
             (
                 "operations = 5\naccess = 'zigzag'\n[mix]\nposition = 1",
                 2,
-                "sequential, random, patches",
+                "sequential, random, patches, front, by_face, by_edge",
+            ),
+            (
+                "operations = 5\nown_ns = nan\n[mix]\nposition = 1",
+                2,
+                "own_ns must be finite",
+            ),
+            (
+                "operations = 5\nown_data = { edge.written = 4097 }\n[mix]\nposition = 1",
+                2,
+                "at most 4096 bytes for each edge, not 4097",
+            ),
+            (
+                "operations = 5\nown_data = { halfedge.written = 4 }\n[mix]\nposition = 1",
+                2,
+                "unknown field `halfedge`",
+            ),
+            (
+                "operations = 5\nown_data = { edge.read = -1 }\n[mix]\nposition = 1",
+                2,
+                "u32",
             ),
             ("operations = 0\n[mix]\nposition = 1", 1, "more than 0"),
             ("operations = 'nan'\n[mix]\nposition = 1", 1, "more than 0"),
@@ -276,7 +369,12 @@ mod tests {
             (
                 "operations = true\n[mix]\nposition = 1",
                 1,
-                "an amount is a number",
+                "expected a number such as `20`, or a text such as `\"2 per face\"`",
+            ),
+            (
+                "operations = 5\n[mix]\nposition = [1]",
+                3,
+                "expected a number such as `20`, or a text",
             ),
             (
                 "operations = 5\nrebuilds = -1\n[mix]\nposition = 1",

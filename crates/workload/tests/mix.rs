@@ -119,6 +119,31 @@ fn all_structures_yield_the_same_along_a_route() {
 }
 
 #[test]
+fn the_own_data_of_a_program_take_time_and_change_no_result() {
+    let without = parsed("operations = 5\n[mix]\nface_vertices = 1\nedge_vertices = 1\n");
+    let with = parsed(
+        "operations = 5\n[own_data]\nface = { read = 4096, written = 4096 }\n\
+         [mix]\nface_vertices = 1\nedge_vertices = 1\n",
+    );
+    let [without, with] = [without, with]
+        .map(|workload| Fixture::new(&workload, shapes::triangle_torus(30, 20).expect("small")));
+    let clock = MachineClock::start();
+    let series = Series::with_runs(20, &clock).with_untimed(5).with_result();
+    for (mut a, mut b) in without.backends().into_iter().zip(with.backends()) {
+        let run = |backend: &mut Box<dyn MixBackend + '_>| {
+            let runs = (0..5).map(|_| backend.run(&Job::new(Task::Mix), &series));
+            let runs: Vec<_> = runs.collect();
+            let least = runs.iter().map(|run| run.time.ns());
+            (runs[0].outcome, least.fold(f64::INFINITY, f64::min))
+        };
+        let ((result, fast), (same, slow)) = (run(&mut a), run(&mut b));
+        assert!(result.is_some() && result == same, "{}", a.name());
+        // 128 visits of faces, each with 1,024 words.
+        assert!(slow > fast + 10_000.0, "{}: {slow} {fast}", a.name());
+    }
+}
+
+#[test]
 fn all_structures_yield_the_same_on_all_elements_in_their_own_order() {
     let workload = Workload {
         access: Access::Sequential,

@@ -1,4 +1,4 @@
-//! Edits whose elements are given by their numbers in the model.
+//! Edits of elements that are identified by their numbers in the model.
 
 use sixfold_core::{Edit, Point};
 

@@ -1,4 +1,5 @@
-//! Applies an edit that is given by numbers of the model to a structure.
+//! Applies an edit to a structure. The elements of the edit are identified by their numbers in the
+//! model.
 
 use std::collections::BTreeMap;
 

@@ -12,7 +12,7 @@ use crate::weld::position_key;
 /// The meshes that a structure can hold, and the edits that it supports.
 #[derive(Clone, Copy, Debug)]
 pub struct Rules {
-    /// Meshes that the structure can hold.
+    /// The meshes that the structure can hold.
     pub capabilities: Capabilities,
     /// For each edit in the order of [`Edit::ALL`]: true if the structure supports the edit.
     pub supported: [bool; Edit::ALL.len()],
@@ -114,7 +114,7 @@ impl Model {
             .expect("faces of the model use existing, distinct vertices")
     }
 
-    /// Returns the model after `action`, or `None` if the action is illegal.
+    /// Returns the model after `action`, or `None` if the action is not legal under `rules`.
     pub fn after(&self, action: &Action, rules: &Rules) -> Option<Self> {
         if !rules.supported[action.edit() as usize] {
             return None;

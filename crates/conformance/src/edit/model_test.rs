@@ -79,9 +79,9 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
     ///
     /// # Panics
     ///
-    /// Panics if only one of the mesh and the model accepts the action. Panics if, after the
-    /// action, the faces, the positions, the handles or the recorded changes differ from the model.
-    /// Panics if the action broke an invariant of the mesh.
+    /// Panics in these cases: only one of the mesh and the model accepts the action; after the
+    /// action, the faces, the positions, the handles or the recorded changes differ from the model;
+    /// the action broke an invariant of the mesh; a refused action changed the mesh.
     pub fn apply(&mut self, action: &Action) -> bool {
         let name = M::NAME;
         let expected = self.model.after(action, &self.rules);
@@ -155,7 +155,7 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
     ///
     /// # Panics
     ///
-    /// Panics if the model has no such vertex.
+    /// Panics if the model has no vertex `v`.
     pub fn vertex(&self, v: usize) -> M::Vertex {
         self.vertices[&v]
     }
@@ -164,12 +164,12 @@ impl<M: Representation + MeshEdit + Debug> ModelTest<M> {
     ///
     /// # Panics
     ///
-    /// Panics if the model has no such face.
+    /// Panics if the model has no face `f`.
     pub fn face(&self, f: usize) -> M::Face {
         self.faces[&f]
     }
 
-    /// Returns true if the meshes of both tests have equal positions and equal faces.
+    /// Returns true if the meshes of `self` and `other` have equal positions and equal faces.
     pub fn is_same_mesh(&self, other: &Self) -> bool {
         let [first, second] = [self, other].map(|test| test.mesh.to_polygons());
         sorted_faces(&first) == sorted_faces(&second)

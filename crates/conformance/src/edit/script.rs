@@ -15,13 +15,13 @@ const MANY_FACES: usize = 48;
 /// edit.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
-    /// Kind of the edit.
+    /// The kind of the edit.
     pub edit: Edit,
-    /// Numbers that select the elements.
+    /// The numbers that select the elements.
     pub picks: [u16; 4],
 }
 
-/// Generates a random sequence of up to `max_steps` edits, whose kinds are from `edits`. Removals,
+/// Generates a random sequence of up to `max_steps` edits of the kinds in `edits`. Removals,
 /// `Compact`, `AddVertex` and `SetPosition` are less frequent than other edits.
 pub fn script(edits: &[Edit], max_steps: usize) -> impl Strategy<Value = Vec<Step>> + use<> {
     let weight = |edit: &Edit| match edit {

@@ -14,11 +14,12 @@ use crate::oracle::Oracle;
 ///
 /// - Constant: the number of reads per item is bounded, for any size of mesh and any valence.
 /// - Local: if the valence is bounded, the number of reads is bounded for any size of mesh.
-/// - Scan: the number of reads grows with the mesh. Declaring a scan for a cheaper query is wrong.
+/// - Scan: the number of reads grows with the mesh. The law fails if a cheaper query is declared as
+///   a scan.
 ///
 /// The meshes are two tori of valence six and two double cones. The large torus has nine times as
-/// many faces as the small torus. The apexes have valence 24 in one double cone and 240 in the
-/// other.
+/// many faces as the small torus. The two apexes of a double cone have valence 24 in the first
+/// double cone and valence 240 in the second.
 pub fn costs<M: Measured>() {
     let scans = M::COSTS.contains(&QueryCost::Scan);
     assert_eq!(M::is_local(), !scans, "{}: is_local", M::NAME);

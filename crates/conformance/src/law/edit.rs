@@ -15,7 +15,7 @@ const MAX_STEPS_PER_ACCEPTED: usize = 12;
 
 /// Random sequences of edits have the same effect on the structure and on the model. After every
 /// edit, the mesh equals the model, the handles agree with the reported changes, and the invariants
-/// hold. A refused edit does not change the mesh. All relations are checked after every 16 edits.
+/// hold. A refused edit does not change the mesh. After every 16 edits, all relations are checked.
 ///
 /// The environment variable `PROPTEST_CASES` sets the number of random edit sequences.
 pub fn edits<M: Representation + MeshEdit + Debug>() {
@@ -96,8 +96,8 @@ fn check_acceptance<M: MeshEdit + Representation>(counts_by_edit: &[[usize; 2]; 
 /// The declared costs `EDITS` agree with the measured accesses to table rows.
 ///
 /// - Constant and Local: the number of accesses does not depend on the size of the mesh.
-/// - Scan: the number of accesses grows with the mesh. Declaring a scan for a cheaper edit is
-///   wrong.
+/// - Scan: the number of accesses grows with the mesh. The law fails if a cheaper edit is declared
+///   as a scan.
 ///
 /// The meshes are two tori of valence six. The large torus has sixteen times as many faces as the
 /// small torus. Only accesses to table rows are counted, not the cost of growing a table.

@@ -11,15 +11,15 @@ use sixfold_core::{
 use super::scripts::{Executed, on_random_scripts};
 use crate::edit::{Action, ModelTest, Step};
 
-/// A number for every vertex, edge and face; new elements get the number 0.
+/// Data with a number for every vertex, edge and face. New elements get the number 0.
 pub trait ElementNumbers<M: MeshQuery>: FollowEdits<M> {
-    /// Returns the number 0 for all elements of `mesh`.
+    /// Returns data with the number 0 for all elements of `mesh`.
     fn new(mesh: &M) -> Self;
-    /// Returns the number of a vertex.
+    /// Returns the number of a vertex, for writing.
     fn vertex(&mut self, v: M::Vertex) -> &mut u32;
-    /// Returns the number of an edge.
+    /// Returns the number of an edge, for writing.
     fn edge(&mut self, e: M::Edge) -> &mut u32;
-    /// Returns the number of a face.
+    /// Returns the number of a face, for writing.
     fn face(&mut self, f: M::Face) -> &mut u32;
 }
 

@@ -13,9 +13,9 @@ use crate::subject::{Subject, stored_mesh};
 use crate::weld::position_key;
 
 /// `vertices`, `edges` and `faces` yield each element once, and `vertex_count`, `edge_count` and
-/// `face_count` agree with them. Faces are in the order of the input. Vertices are in the order of
-/// the input, or in the order in which the faces list them if the structure merges vertices with
-/// equal coordinates.
+/// `face_count` return the numbers of these elements. Faces are in the order of the input. Vertices
+/// are in the order of the input, or in the order in which the faces list them if the structure
+/// merges vertices with equal coordinates.
 pub fn elements<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -112,8 +112,8 @@ pub fn positions<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// A new map contains the initial value for every handle. After a write, the map contains the new
-/// value.
+/// A new map contains the initial value for every handle. After a write to a handle, the map
+/// contains the new value for this handle.
 pub fn maps<M: Representation>(polygons: &PolygonMesh) {
     let Some(Subject { mesh, .. }) = Subject::<M>::from_polygons(polygons) else {
         return;

@@ -14,7 +14,7 @@ const FAR: Point = Point::new(50.0, 60.0, 70.0);
 /// unchanged.
 type Undo<M, At> = (&'static [Edit], fn(&ModelTest<M>, At) -> bool);
 
-/// If an edit is followed by the inverse edit, the result is the original mesh.
+/// An edit and then its inverse edit restore the original mesh.
 pub fn inverse_edits<M: Representation + MeshEdit + Debug>() {
     let at_edges: [Undo<M, [usize; 2]>; 4] = [
         (&[Edit::SplitEdge], |test, ends| {

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use sixfold_core::{FaceId, Facts, PolygonMesh, Relation, Representation};
+use sixfold_core::{FaceId, Facts, PolygonMesh, Relation, Representation, VertexId};
 
 use crate::boundary::check_boundary;
 use crate::element::Element;
 use crate::folds::check_folds;
-use crate::subject::Subject;
+use crate::oracle::Oracle;
+use crate::subject::{HandleMap, Subject};
 
 /// VV(v) contains the other end of each edge at `v` once, and not `v` itself.
 pub fn vertex_vertices<M: Representation>(polygons: &PolygonMesh) {
@@ -34,7 +35,7 @@ pub fn edge_edges<M: Representation>(polygons: &PolygonMesh) {
     check_sets::<M>(polygons, Relation::EdgeEdges);
 }
 
-/// EF(e) contains each face on `e` once.
+/// EF(e) contains each face along `e` once.
 pub fn edge_faces<M: Representation>(polygons: &PolygonMesh) {
     check_sets::<M>(polygons, Relation::EdgeFaces);
 }
@@ -44,7 +45,7 @@ pub fn face_faces<M: Representation>(polygons: &PolygonMesh) {
     check_sets::<M>(polygons, Relation::FaceFaces);
 }
 
-/// FV(f) contains the corners of `f` in the cyclic order of the input, from any start.
+/// FV(f) contains the corners of `f` in the cyclic order of the input, starting at any corner.
 pub fn face_vertices<M: Representation>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -146,7 +147,9 @@ pub fn one_ring<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// Valence, degree, boundary tests, membership tests and shared elements agree with the relations.
+/// The results of `valence`, `degree`, the boundary tests, the `contains_…` methods, and the
+/// searches for shared elements agree with the relations.
+/// Searches for elements that do not exist return `None`.
 pub fn predicates<M: Representation>(polygons: &PolygonMesh) {
     let Some(Subject {
         mesh,
@@ -210,6 +213,40 @@ pub fn predicates<M: Representation>(polygons: &PolygonMesh) {
                 opposite, expected,
                 "{name}: opposite_vertex of {f} and {a}–{b}"
             );
+        }
+    }
+    absent_elements(&mesh, &oracle, &handles);
+}
+
+/// `edge_between` and `common_face` return `None` for vertices that share no edge or no face, and
+/// `opposite_vertex` returns `None` for an edge that is not a side of the face.
+fn absent_elements<M: Representation>(mesh: &M, oracle: &Oracle, handles: &HandleMap<M>) {
+    let name = M::NAME;
+    for a in oracle.vertices() {
+        let at = |relation| oracle.answer(relation, Element::Vertex(a));
+        let va = handles.vertex(a);
+        let adjacent = at(Relation::VertexVertices);
+        let apart = |b: &VertexId| *b != a && !adjacent.contains(&Element::Vertex(*b));
+        for b in oracle.vertices().find(apart).into_iter().chain([a]) {
+            let edge = mesh.edge_between(va, handles.vertex(b));
+            let edge = edge.map(|e| handles.edge_id(e));
+            assert_eq!(edge, None, "{name}: edge_between of {a} and {b}");
+        }
+        let faces = || oracle.faces().filter(|&f| oracle.corners(f).contains(&a));
+        let shares = |b: &VertexId| faces().any(|f| oracle.corners(f).contains(b));
+        if let Some(b) = oracle.vertices().find(|b| *b != a && !shares(b)) {
+            let face = mesh.common_face(va, handles.vertex(b));
+            let face = face.map(|f| handles.face_id(f));
+            assert_eq!(face, None, "{name}: common_face of {a} and {b}");
+        }
+        for f in faces() {
+            let sides = oracle.answer(Relation::FaceEdges, Element::Face(f));
+            for edge in at(Relation::VertexEdges) {
+                if !sides.contains(edge) {
+                    let vertex = mesh.opposite_vertex(handles.face(f), handles.edge(*edge));
+                    assert_eq!(vertex, None, "{name}: opposite_vertex of {f} and {edge}");
+                }
+            }
         }
     }
 }

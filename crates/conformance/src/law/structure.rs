@@ -45,7 +45,8 @@ pub fn round_trip<M: Representation>(polygons: &PolygonMesh) {
     }
 }
 
-/// `set_positions` moves every vertex, and does not change the connectivity or any answer.
+/// `set_positions` moves every vertex, and does not change the connectivity or the answer of a
+/// query.
 ///
 /// If vertices are identified by their coordinates, vertices with equal new positions are merged.
 pub fn set_positions<M: Representation>(polygons: &PolygonMesh) {

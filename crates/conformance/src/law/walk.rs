@@ -10,10 +10,12 @@ use super::relations::is_rotation;
 use super::scripts::{Executed, on_random_scripts};
 use crate::catch_panic::catch_panic;
 use crate::edit::{ModelTest, Step};
+use crate::folds::check_walk_folds;
 use crate::subject::Subject;
 
 /// The face, the edge, the ends and the neighbours of every side agree with the lists of corners.
-/// The sides of each edge and of each vertex are complete. For a side that does not exist, every
+/// The sides of each edge and of each vertex are complete. Each walk yields the same sides by `next`
+/// and by `fold`. For a side that does not exist, every
 /// method panics or returns an element that does not exist.
 pub fn oriented_walk<M: Representation + OrientedWalk>(polygons: &PolygonMesh) {
     let Some(subject) = Subject::<M>::from_polygons(polygons) else {
@@ -135,6 +137,7 @@ impl<'a, M: OrientedWalk> ExpectedWalk<'a, M> {
     }
 
     fn check(&self) {
+        check_walk_folds(self.mesh, self.name);
         self.check_lists();
         for expected in &self.sides {
             self.check_side(expected);

@@ -5,9 +5,9 @@ use super::builder::MeshBuilder;
 /// A fault of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// One face is oriented in the opposite way to its adjacent faces.
+    /// One face has the opposite orientation of its adjacent faces.
     TurnedFace,
-    /// An edge has three faces or more.
+    /// An edge has three or more faces.
     ThirdFace,
     /// The faces at a vertex form two fans.
     BowTie,

@@ -6,9 +6,9 @@ use std::panic::catch_unwind;
 use sixfold_conformance::{check_law, law};
 
 use crate::face_and_edge_lists::FaceAndEdgeLists;
-use crate::flawed::{Flaw, Flawed, Kind};
+use crate::flawed::{Flaw, FlawKind, Flawed};
 
-/// `Kind => law, "words of the message"` makes a test: the law must fail for the structure with
+/// `FlawKind => law, "words of the message"` makes a test: the law must fail for the structure with
 /// this flaw, with a message that contains these words.
 macro_rules! detects {
     (meshes { $($flaw:ident => $law:ident, $words:literal;)+ }
@@ -47,7 +47,7 @@ macro_rules! detects {
                 pub(super) struct $flaw;
 
                 impl super::Flaw for $flaw {
-                    const KIND: super::Kind = super::Kind::$flaw;
+                    const KIND: super::FlawKind = super::FlawKind::$flaw;
                 }
             )+
         }
@@ -87,6 +87,7 @@ detects! {
         EdgeOfTheNextSide => oriented_walk, "side_edge of";
         TurnsReversed => oriented_walk, "cw_side of";
         SideCountOff => oriented_walk, "side_count()";
+        SideFoldEndsEarly => oriented_walk, "outgoing_sides of v0 by fold after 0 times next";
         MissingSideStartsAtV0 => oriented_walk, "side_origin of the missing";
         ValenceOff => predicates, "valence of v0";
         DegreeOff => predicates, "degree of f0";
@@ -97,6 +98,10 @@ detects! {
         LastFaceNotContained => predicates, "contains_face of f";
         NoCommonFace => predicates, "common_face of v0 and v";
         OppositeVertexOfAnyFace => predicates, "opposite_vertex of f";
+        EdgeBetweenAnyVertices => predicates, "edge_between of v0 and v";
+        EdgeToTheVertexItself => predicates, "edge_between of v0 and v0";
+        CommonFaceOfAnyVertices => predicates, "common_face of v0 and v";
+        OppositeVertexOfAnyEdge => predicates, "opposite_vertex of f";
         BoundaryEdgeLeftOut => boundary_loops, "boundary_edges";
         LoopReversed => boundary_loops, "boundary_loops";
         FaceCountOff => boundary_loops, "edge_face_counts of v";

@@ -13,7 +13,7 @@ use crate::face_and_edge_lists::FaceAndEdgeLists;
 
 /// The kind of flaw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum FlawKind {
     NeighbourTwice,
     VertexAdjacentToItself,
     EdgeLeftOut,
@@ -46,6 +46,7 @@ pub(crate) enum Kind {
     EdgeOfTheNextSide,
     TurnsReversed,
     SideCountOff,
+    SideFoldEndsEarly,
     MissingSideStartsAtV0,
     ValenceOff,
     DegreeOff,
@@ -59,6 +60,10 @@ pub(crate) enum Kind {
     ContainsMissingFace,
     NoCommonFace,
     OppositeVertexOfAnyFace,
+    EdgeBetweenAnyVertices,
+    EdgeToTheVertexItself,
+    CommonFaceOfAnyVertices,
+    OppositeVertexOfAnyEdge,
     BoundaryEdgeLeftOut,
     LoopReversed,
     FaceCountOff,
@@ -90,9 +95,9 @@ pub(crate) enum Kind {
     MemoryTooLarge,
 }
 
-/// A type for each [`Kind`].
+/// A type for each [`FlawKind`].
 pub(crate) trait Flaw: Copy + std::fmt::Debug + Send + Sync + 'static {
-    const KIND: Kind;
+    const KIND: FlawKind;
 }
 
 /// [`FaceAndEdgeLists`] with flaw `F`.
@@ -105,12 +110,12 @@ pub(crate) struct Flawed<F: Flaw, P: Probe = Untraced> {
 }
 
 impl<F: Flaw, P: Probe> Flawed<F, P> {
-    fn is(&self, kind: Kind) -> bool {
+    fn is(&self, kind: FlawKind) -> bool {
         F::KIND == kind
     }
 
     /// Repeats the first item if the flaw is `kind`.
-    fn with_duplicate<T: Copy>(&self, kind: Kind, mut items: Vec<T>) -> std::vec::IntoIter<T> {
+    fn with_duplicate<T: Copy>(&self, kind: FlawKind, mut items: Vec<T>) -> std::vec::IntoIter<T> {
         if self.is(kind) {
             items.extend(items.first().copied());
         }
@@ -118,7 +123,7 @@ impl<F: Flaw, P: Probe> Flawed<F, P> {
     }
 
     /// Drops the last item if the flaw is `kind`.
-    fn without_last<T>(&self, kind: Kind, mut items: Vec<T>) -> Vec<T> {
+    fn without_last<T>(&self, kind: FlawKind, mut items: Vec<T>) -> Vec<T> {
         if self.is(kind) {
             items.pop();
         }

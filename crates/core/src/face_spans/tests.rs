@@ -4,13 +4,13 @@ use crate::face_list::faces_of_degrees as list;
 use crate::holes::Holes;
 
 #[test]
-#[should_panic(expected = "no face f2: there are 2")]
+#[should_panic(expected = "no face f2: every face has a row below 2")]
 fn a_missing_face_panics_with_its_handle() {
     list(&[3, 3]).spans().range(FaceId::new(2));
 }
 
 #[test]
-#[should_panic(expected = "no face f2: there are 2")]
+#[should_panic(expected = "no face f2: every face has a row below 2")]
 fn a_missing_face_panics_with_its_handle_if_degrees_are_mixed() {
     list(&[3, 4]).spans().range(FaceId::new(2));
 }

@@ -89,7 +89,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     /// - the mesh has no edge `e`, or `keep` is not an end of `e`;
     /// - both ends of `e` are corners of a face, but are not adjacent in that face;
     /// - a vertex would lose its last face;
-    /// - another vertex has the position `to`.
+    /// - a vertex that is not an end of `e` has the position `to`, and vertices are identified by
+    ///   coordinates.
     pub fn collapse_edge<M: ScannedMesh<V>>(
         &mut self,
         e: Pair<V>,
@@ -210,7 +211,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Refuses a missing vertex, and a position that another vertex has.
+    /// Returns an error if the mesh has no vertex `v`, or if another vertex is at `to`.
     pub fn rename_vertex<M: ScannedMesh<V>>(
         &mut self,
         v: V,

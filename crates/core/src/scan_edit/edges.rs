@@ -100,7 +100,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Refuses a missing edge, and a position that another vertex has.
+    /// Returns an error if the mesh has no edge `e`, or if vertices are identified by coordinates
+    /// and another vertex is at `m`.
     pub fn split_edge<M: ScannedMesh<V>>(
         &mut self,
         e: Pair<V>,
@@ -129,8 +130,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Refuses a missing edge, an edge with a face that is not a triangle, and a position that
-    /// another vertex has.
+    /// Returns an error if the mesh has no edge `e`, if a face of `e` is not a triangle, or if
+    /// vertices are identified by coordinates and another vertex is at `m`.
     pub fn bisect_edge<M: ScannedMesh<V>>(
         &mut self,
         e: Pair<V>,
@@ -163,8 +164,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Refuses a missing edge, and the same cases as
-    /// [`MeshEdit::dissolve_edge`](crate::MeshEdit::dissolve_edge).
+    /// Returns the errors of [`MeshEdit::dissolve_edge`](crate::MeshEdit::dissolve_edge).
     pub fn dissolve_edge<M: ScannedMesh<V>>(
         &mut self,
         e: Pair<V>,
@@ -205,8 +205,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Refuses a missing edge, and the same cases as
-    /// [`MeshEdit::flip_edge`](crate::MeshEdit::flip_edge).
+    /// Returns the errors of [`MeshEdit::flip_edge`](crate::MeshEdit::flip_edge).
     pub fn flip_edge<M: ScannedMesh<V>>(
         &mut self,
         e: Pair<V>,

@@ -18,7 +18,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Refuses fewer than three corners, and a repeated corner.
+    /// Returns an error if there are fewer than three corners, or if a corner occurs twice.
     pub fn add_face<M: ScannedMesh<V>>(
         &mut self,
         corners: &[V],
@@ -46,7 +46,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Refuses a missing face.
+    /// Returns an error if the mesh has no face `f`.
     pub fn remove_face<M: ScannedMesh<V>>(
         &mut self,
         f: FaceId,
@@ -62,7 +62,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Refuses a vertex without faces if vertices are identified by coordinates.
+    /// Returns an error if vertices are identified by coordinates and no face has a corner at `v`.
     pub fn remove_faces_at<M: ScannedMesh<V>>(
         &mut self,
         v: V,
@@ -130,7 +130,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Refuses a missing face, and a position that another vertex has.
+    /// Returns an error if the mesh has no face `f`, or if vertices are identified by coordinates
+    /// and another vertex is at `m`.
     pub fn poke_face<M: ScannedMesh<V>>(
         &mut self,
         f: FaceId,
@@ -167,8 +168,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Refuses a missing face. Also refuses `ends` that are not corners of `f`, are equal, or are
-    /// adjacent in `f`.
+    /// Returns an error if the mesh has no face `f`, or if the `ends` are not corners of `f`, are
+    /// equal, or are adjacent in `f`.
     pub fn split_face<M: ScannedMesh<V>>(
         &mut self,
         f: FaceId,

@@ -25,7 +25,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Refuses the same cases as [`MeshEdit::split_vertex`](crate::MeshEdit::split_vertex).
+    /// Returns the errors of [`MeshEdit::split_vertex`](crate::MeshEdit::split_vertex).
     pub fn split_vertex<M: ScannedMesh<V>>(
         &mut self,
         v: V,

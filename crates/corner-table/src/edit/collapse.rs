@@ -92,11 +92,51 @@ impl<P: Probe> CornerTable<Editable, P> {
         } else {
             (va, fan_a, fan_b)
         };
+        let mut moved = ShortVec::new();
+        let closed = self.check_fans(e, [vc, vd], [gone_fan, kept_fan], &mut moved)?;
+        if !closed && across.is_some() && self.is_on_boundary(keep) {
+            return Err(EditError::AcrossBoundary { edge: e });
+        }
 
-        let (mut moved, mut others) = (ShortVec::new(), ShortVec::new());
+        // The merged fan begins at the boundary, if there is one.
+        let start_vertex = match across {
+            None => vb,
+            Some(_) if !closed => gone,
+            Some(_) => keep,
+        };
+        let across_side = if start_vertex == vb { op } else { or };
+        let first = self.start_without(start_vertex, [n, p, q, r], across_side);
+        for &corner in moved.as_slice() {
+            *self.vertex.write(corner.index()) = keep;
+        }
+        *self.positions.write(keep.index()) = to;
+        *self.corner.write(keep.index()) = Slot::some(first);
+        self.delete_vertex(gone);
+        log.removed_vertex(gone);
+        log.removed_edge(e);
+        let kept_first = |[a, b]: [_; 2]| if keeps_a { [a, b] } else { [b, a] };
+        self.collapse_triangle(c, vc, kept_first([(p, op), (n, on)]), log);
+        if let Some(o) = across {
+            self.collapse_triangle(o, vd, kept_first([(q, oq), (r, or)]), log);
+        }
+        Ok(keep)
+    }
+
+    /// Checks that only the apexes of `e` are adjacent to both ends, and that no triangle of one end
+    /// would coincide with a triangle of the other end. Adds to `moved` the corners at the removed
+    /// end, without those of the triangles at `e`. Returns whether the fan of this end is closed.
+    #[inline(always)]
+    fn check_fans(
+        &self,
+        e: EdgeCorner,
+        apexes: [VertexId; 2],
+        [gone_fan, kept_fan]: [RemainingFan; 2],
+        moved: &mut ShortVec<CornerId>,
+    ) -> Result<bool, Refusal> {
+        let mut others = ShortVec::new();
         let closed = self.visit(gone_fan, |corner, v| {
             moved.push(corner);
-            if v != vc && v != vd {
+            if v != apexes[0] && v != apexes[1] {
                 others.push(v);
             }
             true
@@ -109,41 +149,27 @@ impl<P: Probe> CornerTable<Editable, P> {
         } else if let Some(vertex) = self.common_vertex(kept_fan, others) {
             return Err(EditError::CommonNeighbour { edge: e, vertex });
         }
-        if !closed && across.is_some() && self.is_on_boundary(keep) {
-            return Err(EditError::AcrossBoundary { edge: e });
-        }
+        Ok(closed)
+    }
 
-        // The merged fan begins at the boundary, if there is one.
-        let start_vertex = match across {
-            None => vb,
-            Some(_) if !closed => gone,
-            Some(_) => keep,
-        };
-        let mut first = self.corner.read(start_vertex.index()).get().expect("I4");
-        if first == n || first == p || (across.is_some() && (first == q || first == r)) {
-            let across_side = if start_vertex == vb { op } else { or };
-            first = across_side
-                .get()
-                .expect("a fan with no further triangle was refused")
-                .next();
+    /// Returns the corner at which the fan of `v` starts without the triangles of the corners
+    /// `deleted`. If the fan starts in one of these triangles, it then starts after the corner
+    /// `across`.
+    #[inline(always)]
+    fn start_without(
+        &self,
+        v: VertexId,
+        deleted: [CornerId; 4],
+        across: Slot<CornerId>,
+    ) -> CornerId {
+        let first = self.corner.read(v.index()).get().expect("I4");
+        if !deleted.contains(&first) {
+            return first;
         }
-        for &corner in moved.as_slice() {
-            *self.vertex.write(corner.index()) = keep;
-        }
-        *self.positions.write(keep.index()) = to;
-        *self.corner.write(keep.index()) = Slot::some(first);
-        self.delete_vertex(gone);
-        log.removed_vertex(gone);
-        log.removed_edge(e);
-        let sides = [(p, op), (n, on)];
-        let sides = if keeps_a { sides } else { [sides[1], sides[0]] };
-        self.collapse_triangle(c, vc, sides, log);
-        if let Some(o) = across {
-            let sides = [(q, oq), (r, or)];
-            let sides = if keeps_a { sides } else { [sides[1], sides[0]] };
-            self.collapse_triangle(o, vd, sides, log);
-        }
-        Ok(keep)
+        let across = across.get();
+        across
+            .expect("a fan with no further triangle was refused")
+            .next()
     }
 
     /// Calls `visitor` with each corner of `fan` and a neighbour in its triangle. In a

@@ -1,9 +1,51 @@
 //! Bisecting an edge, poking a face, splitting a vertex.
 
-use sixfold_core::{EditError, EditLog, Editable, FaceId, Point, Probe, Slot, VertexId};
+use sixfold_core::{EditError, EditLog, Editable, FaceId, Point, Probe, ShortVec, Slot, VertexId};
 
 use super::{Refusal, faced_by, report_renamed};
 use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between};
+
+/// The corners at a vertex that is split, and the range of corners that the new vertex gets: from
+/// `from` to `to`, or around the end of the list if `from` is larger.
+struct FanCut {
+    star: ShortVec<CornerId>,
+    closed: bool,
+    from: usize,
+    to: usize,
+}
+
+impl FanCut {
+    #[inline]
+    fn wraps(&self) -> bool {
+        self.from > self.to
+    }
+
+    /// Returns whether the new vertex gets corner `i`.
+    #[inline]
+    fn moves(&self, i: usize) -> bool {
+        match self.wraps() {
+            true => i >= self.from || i < self.to,
+            false => i >= self.from && i < self.to,
+        }
+    }
+
+    /// Returns the corner of the previous triangle that faces the edge to neighbour `i`.
+    #[inline]
+    fn in_previous(&self, i: usize) -> Slot<CornerId> {
+        let star = self.star.as_slice();
+        match i {
+            0 if self.closed => Slot::some(star[star.len() - 1].next()),
+            0 => Slot::NONE,
+            _ => Slot::some(star[i - 1].next()),
+        }
+    }
+
+    /// Returns the corner of the next triangle that faces the edge to neighbour `i`.
+    #[inline]
+    fn in_next(&self, i: usize) -> Slot<CornerId> {
+        Slot::from(self.star.as_slice().get(i).map(|c| c.prev()))
+    }
+}
 
 impl<P: Probe> CornerTable<Editable, P> {
     /// Puts m into `e`. T and R keep A; the two new triangles have B.
@@ -132,6 +174,65 @@ impl<P: Probe> CornerTable<Editable, P> {
         at: Point,
         log: &mut impl EditLog<Self>,
     ) -> Result<VertexId, Refusal> {
+        let cut = self.find_cut(v, [left, right])?;
+        self.check_room(1, 2)?;
+
+        let both = left.is_some() && right.is_some();
+        let [lower, upper] = [
+            self.new_corners(0),
+            self.new_corners(u32::from(right.is_some())),
+        ];
+        let n = self.push_vertex(at, Slot::NONE);
+        let star = cut.star.as_slice();
+        for (_, &c) in star.iter().enumerate().filter(|&(i, _)| cut.moves(i)) {
+            *self.vertex.write(c.index()) = n;
+        }
+        let across_new_edge = |corner| match both {
+            true => Slot::some(corner),
+            false => Slot::NONE,
+        };
+        if let Some(right) = right {
+            let [u, w, z] = lower;
+            let [before, after] = [cut.in_previous(cut.from), cut.in_next(cut.from)];
+            self.push_triangle([v, right, n], [after, across_new_edge(upper[2]), before]);
+            self.link_new_triangle(after, before, u, z, log);
+            if after == Slot::NONE {
+                *self.corner.write(right.index()) = Slot::some(w);
+            }
+            log.created_face(u.triangle());
+        }
+        if let Some(left) = left {
+            let [x, x1, y] = upper;
+            let [before, after] = [cut.in_previous(cut.to), cut.in_next(cut.to)];
+            self.push_triangle([v, n, left], [before, after, across_new_edge(lower[1])]);
+            self.link_new_triangle(after, before, x1, x, log);
+            if after == Slot::NONE {
+                *self.corner.write(left.index()) = Slot::some(y);
+            }
+            log.created_face(x.triangle());
+        }
+        let start_of_open = if cut.to > 0 { star[0] } else { upper[1] };
+        let (first_of_v, first_of_n) = match (left, right) {
+            // One of the two vertices keeps the gap of an open fan, and the start of the fan.
+            (Some(_), Some(_)) if cut.closed => (upper[0], lower[2]),
+            (Some(_), Some(_)) if cut.wraps() => (upper[0], start_of_open),
+            (_, Some(_)) => (if cut.from > 0 { star[0] } else { lower[0] }, lower[2]),
+            _ => (upper[0], start_of_open),
+        };
+        *self.corner.write(v.index()) = Slot::some(first_of_v);
+        *self.corner.write(n.index()) = Slot::some(first_of_n);
+        log.created_vertex(n);
+        log.created_edge(faced_by(if right.is_some() { lower[1] } else { upper[2] }));
+        Ok(n)
+    }
+
+    /// Checks the vertices of a split, and finds the corners that the new vertex gets.
+    #[inline]
+    fn find_cut(
+        &self,
+        v: VertexId,
+        [left, right]: [Option<VertexId>; 2],
+    ) -> Result<FanCut, Refusal> {
         let Some(_) = self.check_vertex(v)?.get() else {
             return Err(EditError::NoFan { vertex: v });
         };
@@ -142,95 +243,27 @@ impl<P: Probe> CornerTable<Editable, P> {
             return Err(EditError::BadNeighbours { vertex: v });
         }
         let (star, closed) = self.star(v);
-        let star = star.as_slice();
-        let count = star.len();
+        let corners = star.as_slice();
+        let count = corners.len();
         if closed && (left.is_none() || right.is_none()) {
             return Err(EditError::NotOnBoundary { vertex: v });
         }
         // Each neighbour has the index of the corner after it. An open fan has one more neighbour.
         let place = |side: VertexId| {
-            let mut before = star.iter().map(|c| *self.vertex.read(c.next().index()));
+            let mut before = corners.iter().map(|c| *self.vertex.read(c.next().index()));
             let place = before.position(|u| u == side);
-            let is_end = || !closed && *self.vertex.read(star[count - 1].prev().index()) == side;
+            let is_end = || !closed && *self.vertex.read(corners[count - 1].prev().index()) == side;
             let place = place.or_else(|| is_end().then_some(count));
             place.ok_or(EditError::NotANeighbour { vertex: v, side })
         };
         let from = right.map_or(Ok(0), place)?;
         let to = left.map_or(Ok(count), place)?;
-        self.check_room(1, 2)?;
-
-        // n gets the corners from `from` to `to`, or around the end of the list.
-        let wraps = from > to;
-        let moves = |i: usize| {
-            if wraps {
-                i >= from || i < to
-            } else {
-                i >= from && i < to
-            }
-        };
-        let both = left.is_some() && right.is_some();
-        let [lower, upper] = [
-            self.new_corners(0),
-            self.new_corners(u32::from(right.is_some())),
-        ];
-        let n = self.push_vertex(at, Slot::NONE);
-        for (_, &c) in star.iter().enumerate().filter(|&(i, _)| moves(i)) {
-            *self.vertex.write(c.index()) = n;
-        }
-        // The corners that face the edge to neighbour `i`, in the previous and in the next
-        // triangle.
-        let in_previous = |i: usize| match i {
-            0 if closed => Slot::some(star[count - 1].next()),
-            0 => Slot::NONE,
-            _ => Slot::some(star[i - 1].next()),
-        };
-        let in_next = |i: usize| Slot::from(star.get(i).map(|c| c.prev()));
-        if let Some(right) = right {
-            let [u, w, z] = lower;
-            let across_new_edge = if both {
-                Slot::some(upper[2])
-            } else {
-                Slot::NONE
-            };
-            self.push_triangle(
-                [v, right, n],
-                [in_next(from), across_new_edge, in_previous(from)],
-            );
-            self.link_new_triangle(in_next(from), in_previous(from), u, z, log);
-            if in_next(from) == Slot::NONE {
-                *self.corner.write(right.index()) = Slot::some(w);
-            }
-            log.created_face(u.triangle());
-        }
-        if let Some(left) = left {
-            let [x, x1, y] = upper;
-            let across_new_edge = if both {
-                Slot::some(lower[1])
-            } else {
-                Slot::NONE
-            };
-            self.push_triangle(
-                [v, n, left],
-                [in_previous(to), in_next(to), across_new_edge],
-            );
-            self.link_new_triangle(in_next(to), in_previous(to), x1, x, log);
-            if in_next(to) == Slot::NONE {
-                *self.corner.write(left.index()) = Slot::some(y);
-            }
-            log.created_face(x.triangle());
-        }
-        let (first_of_v, first_of_n) = match (left, right) {
-            // One of the two vertices keeps the gap of an open fan, and the start of the fan.
-            (Some(_), Some(_)) if closed => (upper[0], lower[2]),
-            (Some(_), Some(_)) if wraps => (upper[0], if to > 0 { star[0] } else { upper[1] }),
-            (_, Some(_)) => (if from > 0 { star[0] } else { lower[0] }, lower[2]),
-            _ => (upper[0], if to > 0 { star[0] } else { upper[1] }),
-        };
-        *self.corner.write(v.index()) = Slot::some(first_of_v);
-        *self.corner.write(n.index()) = Slot::some(first_of_n);
-        log.created_vertex(n);
-        log.created_edge(faced_by(if right.is_some() { lower[1] } else { upper[2] }));
-        Ok(n)
+        Ok(FanCut {
+            star,
+            closed,
+            from,
+            to,
+        })
     }
 
     /// Links a new triangle between the two corners that faced an edge. After this, `in_next` faces

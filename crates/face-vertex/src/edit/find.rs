@@ -207,7 +207,7 @@ impl<P: Probe> FaceVertexMesh<Editable, P> {
         check_rows("faces", self.spans.len() + faces, MAX_ROWS)?;
         check_rows("corners", self.corners.len() + corners, MAX_ROWS)?;
         check_rows(
-            "places in the fan pool",
+            "entries of the fan pool",
             self.pool.len() + corners,
             MAX_PLACES,
         )

@@ -40,34 +40,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         if left == right {
             return Err(EditError::BadNeighbours { vertex: v });
         }
-        let [mut to_left, mut to_right] = [None; 2];
-        let mut h = first;
-        // The walk finds the half-edge before the first spoke last.
-        let mut before = first;
-        loop {
-            let arriving = self.record(h.twin());
-            let spoke = Some(Spoke { h, before });
-            if left == Some(arriving.origin) {
-                to_left = spoke;
-            } else if right == Some(arriving.origin) {
-                to_right = spoke;
-            }
-            before = h.twin();
-            h = arriving.next;
-            if h == first {
-                break;
-            }
-        }
-        for spoke in [&mut to_left, &mut to_right].into_iter().flatten() {
-            if spoke.h == first {
-                spoke.before = before;
-            }
-        }
-        for (side, spoke) in [(left, to_left), (right, to_right)] {
-            if let (Some(side), None) = (side, spoke) {
-                return Err(EditError::NotANeighbour { vertex: v, side });
-            }
-        }
+        let ([to_left, to_right], before) = self.find_spokes(v, first, [left, right])?;
         let two = to_left.is_some() && to_right.is_some();
         if !two && self.has_face(first) {
             return Err(EditError::NotOnBoundary { vertex: v });
@@ -103,33 +76,67 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         });
         let (leaves_v, leaves_n) = match (left, right) {
             // At a boundary vertex, the first spoke is on the boundary.
-            (Some((hl, new_l)), Some((hr, new_r))) => {
-                if first_moves {
-                    (hr, first)
-                } else if first == hr {
-                    (hr, new_r)
-                } else if first == hl {
-                    (new_l, hl)
-                } else {
-                    (first, hl)
-                }
-            }
+            (Some((hl, new_l)), Some((hr, new_r))) => match first {
+                _ if first_moves => (hr, first),
+                _ if first == hr => (hr, new_r),
+                _ if first == hl => (new_l, hl),
+                _ => (first, hl),
+            },
             // With one triangle, the other half-edge of the new edge joins the boundary loop.
             (left, _) => {
                 let outer = if left.is_some() { x } else { y };
                 let after = self.follow(before);
                 self.link(before, outer);
                 self.link(outer, after);
-                if left.is_some() {
-                    (after, outer)
-                } else {
-                    (outer, after)
+                match left {
+                    Some(_) => (after, outer),
+                    None => (outer, after),
                 }
             }
         };
         self.set_leaving(v, leaves_v);
         self.set_leaving(n, leaves_n);
         Ok(n)
+    }
+
+    /// Finds the spokes of `v` to `left` and `right`, and the half-edge before `first`. `first` is
+    /// the first spoke of `v`.
+    #[inline]
+    fn find_spokes(
+        &self,
+        v: VertexId,
+        first: HalfEdgeId,
+        [left, right]: [Option<VertexId>; 2],
+    ) -> Result<([Option<Spoke>; 2], HalfEdgeId), Refusal> {
+        let [mut to_left, mut to_right] = [None; 2];
+        let mut h = first;
+        // The walk finds the half-edge before the first spoke last.
+        let mut before = first;
+        loop {
+            let arriving = self.record(h.twin());
+            let spoke = Some(Spoke { h, before });
+            if left == Some(arriving.origin) {
+                to_left = spoke;
+            } else if right == Some(arriving.origin) {
+                to_right = spoke;
+            }
+            before = h.twin();
+            h = arriving.next;
+            if h == first {
+                break;
+            }
+        }
+        for spoke in [&mut to_left, &mut to_right].into_iter().flatten() {
+            if spoke.h == first {
+                spoke.before = before;
+            }
+        }
+        for (side, spoke) in [(left, to_left), (right, to_right)] {
+            if let (Some(side), None) = (side, spoke) {
+                return Err(EditError::NotANeighbour { vertex: v, side });
+            }
+        }
+        Ok(([to_left, to_right], before))
     }
 
     /// Doubles a spoke: a new half-edge from `origin` replaces the spoke. The sides of the new

@@ -192,6 +192,17 @@ fn split<const CLOSED: bool>(
             *along = [one[0], other[1], other[0], one[1]];
         }
     });
+    fill_leaving(mesh, corners, sizes, child);
+}
+
+/// Writes a half-edge that leaves each old vertex and each midpoint.
+#[inline(always)]
+fn fill_leaving<const CLOSED: bool>(
+    mesh: &HalfEdgeMesh,
+    corners: &Corners<CLOSED>,
+    sizes: Sizes,
+    child: &mut HalfEdgeMesh,
+) {
     let (old, points) = child
         .leaving
         .rows_mut()

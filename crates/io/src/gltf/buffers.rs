@@ -1,17 +1,21 @@
 //! The data of the buffers of a glTF file.
 
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
+use std::rc::Rc;
 
-use super::document::{Accessor, Document, Uri};
+use super::document::{Document, Uri};
 use super::{GltfFault, fault, item};
 use crate::error::{ReadError, shortened};
 
 /// The data of each buffer that contains positions or indices.
 pub(super) struct Buffers<'a> {
     pub(super) name: &'a str,
-    buffers: Vec<Option<Vec<u8>>>,
+    /// Buffers in one file share its data.
+    buffers: Vec<Option<Rc<Vec<u8>>>>,
+    bytes: u64,
 }
 
 impl<'a> Buffers<'a> {
@@ -24,6 +28,8 @@ impl<'a> Buffers<'a> {
         folder: Option<&Path>,
     ) -> Result<Self, ReadError> {
         let used = used_buffers(name, document)?;
+        let mut files = Files::new(document, &used);
+        let mut bytes = 0;
         let mut buffers = Vec::new();
         for (number, buffer) in document.buffers.iter_mut().enumerate() {
             if !used[number] {
@@ -35,27 +41,28 @@ impl<'a> Buffers<'a> {
                 None => binary.take().filter(|_| number == 0).unwrap_or_default(),
                 Some(Uri::Embedded(data)) => data.ok_or_else(|| failed(GltfFault::Base64))?,
                 Some(Uri::File(uri)) => {
-                    load_file(&uri, folder, buffer.byte_length).map_err(failed)?
+                    let (data, new_bytes) = files.load(&uri, folder).map_err(failed)?;
+                    check_length(&data, buffer.byte_length).map_err(failed)?;
+                    bytes += new_bytes;
+                    buffers.push(Some(data));
+                    continue;
                 }
             };
-            if (data.len() as u64) < buffer.byte_length {
-                return Err(failed(GltfFault::ShortBuffer {
-                    found: data.len() as u64,
-                    expected: buffer.byte_length,
-                }));
-            }
-            buffers.push(Some(data));
+            check_length(&data, buffer.byte_length).map_err(failed)?;
+            bytes += data.len() as u64;
+            buffers.push(Some(Rc::new(data)));
         }
-        Ok(Self { name, buffers })
+        Ok(Self {
+            name,
+            buffers,
+            bytes,
+        })
     }
 
-    /// Returns the number of bytes of all buffers that were read.
+    /// Returns the number of bytes of all buffers that were read. Data that several buffers share
+    /// counts once.
     pub(super) fn bytes(&self) -> u64 {
-        self.buffers
-            .iter()
-            .flatten()
-            .map(|data| data.len() as u64)
-            .sum()
+        self.bytes
     }
 
     /// Returns the bytes of `view`; `accessor` uses it.
@@ -70,7 +77,8 @@ impl<'a> Buffers<'a> {
         let data = self
             .buffers
             .get(described.buffer)
-            .and_then(Option::as_deref);
+            .and_then(Option::as_deref)
+            .map(Vec::as_slice);
         let data = data.unwrap_or_default();
         let start = usize::try_from(described.byte_offset).ok();
         let length = usize::try_from(described.byte_length).ok();
@@ -89,6 +97,52 @@ impl<'a> Buffers<'a> {
     }
 }
 
+/// Checks that a buffer has all its bytes.
+fn check_length(data: &[u8], expected: u64) -> Result<(), GltfFault> {
+    let found = data.len() as u64;
+    match found < expected {
+        true => Err(GltfFault::ShortBuffer { found, expected }),
+        false => Ok(()),
+    }
+}
+
+/// The files of buffers. A file is read once, however many buffers it contains.
+struct Files {
+    /// The bytes of each file that are needed.
+    lengths: HashMap<String, u64>,
+    loaded: HashMap<String, Rc<Vec<u8>>>,
+}
+
+impl Files {
+    /// Prepares for the files of the `used` buffers.
+    fn new(document: &Document, used: &[bool]) -> Self {
+        let mut lengths: HashMap<String, u64> = HashMap::new();
+        for (buffer, _) in document.buffers.iter().zip(used).filter(|(_, used)| **used) {
+            if let Some(Uri::File(uri)) = &buffer.uri {
+                let length = lengths.entry(percent_decoded(uri)).or_default();
+                *length = buffer.byte_length.max(*length);
+            }
+        }
+        Self {
+            lengths,
+            loaded: HashMap::new(),
+        }
+    }
+
+    /// Returns the data of a file, and the number of bytes that were read for it now.
+    fn load(&mut self, uri: &str, folder: Option<&Path>) -> Result<(Rc<Vec<u8>>, u64), GltfFault> {
+        let name = percent_decoded(uri);
+        if let Some(data) = self.loaded.get(&name) {
+            return Ok((Rc::clone(data), 0));
+        }
+        let length = self.lengths.get(&name).copied().unwrap_or_default();
+        let data = Rc::new(load_file(uri, folder, length)?);
+        let bytes = data.len() as u64;
+        self.loaded.insert(name, Rc::clone(&data));
+        Ok((data, bytes))
+    }
+}
+
 /// Returns for each buffer whether it contains positions or indices.
 fn used_buffers(name: &str, document: &Document) -> Result<Vec<bool>, ReadError> {
     let mut used = vec![false; document.buffers.len()];
@@ -102,7 +156,7 @@ fn used_buffers(name: &str, document: &Document) -> Result<Vec<bool>, ReadError>
         let Some(accessor) = document.accessors.get(number) else {
             continue;
         };
-        for view in views(accessor) {
+        for view in accessor.views() {
             let by = ("accessor", number);
             let view_item = item(&document.buffer_views, "bufferView", view, by, name)?;
             let by = ("bufferView", view);
@@ -111,15 +165,6 @@ fn used_buffers(name: &str, document: &Document) -> Result<Vec<bool>, ReadError>
         }
     }
     Ok(used)
-}
-
-fn views(accessor: &Accessor) -> impl Iterator<Item = usize> {
-    let sparse = accessor.sparse.as_ref();
-    let sparse = sparse.map(|sparse| [sparse.indices.buffer_view, sparse.values.buffer_view]);
-    accessor
-        .buffer_view
-        .into_iter()
-        .chain(sparse.into_iter().flatten())
 }
 
 /// Returns the first `length` bytes of the file at `uri`, relative to `folder`.

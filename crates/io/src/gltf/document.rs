@@ -115,6 +115,17 @@ pub(super) struct Accessor {
     pub(super) sparse: Option<Sparse>,
 }
 
+impl Accessor {
+    /// Returns the buffer views of all data of the accessor.
+    pub(super) fn views(&self) -> impl Iterator<Item = usize> {
+        let sparse = self.sparse.as_ref();
+        let sparse = sparse.map(|sparse| [sparse.indices.buffer_view, sparse.values.buffer_view]);
+        self.buffer_view
+            .into_iter()
+            .chain(sparse.into_iter().flatten())
+    }
+}
+
 /// Replacements of some elements of an accessor.
 #[derive(Deserialize)]
 pub(super) struct Sparse {

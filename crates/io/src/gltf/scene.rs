@@ -2,6 +2,8 @@
 
 mod triangles;
 
+use std::collections::HashMap;
+
 use sixfold_core::glam::{DMat4, DQuat, DVec3};
 
 use super::accessor::elements;
@@ -14,17 +16,20 @@ use crate::notice::IgnoredKind;
 use crate::number::Coordinate;
 use crate::place::Place;
 
-/// How many times larger than the file a scene may be that repeats its meshes, in vertices and
-/// corners per byte; and the size that is always allowed.
+/// How many times larger than the file a scene may be that repeats its meshes, in vertices, corners
+/// and primitives per byte; and the size that is always allowed.
 const MAX_GROWTH: u64 = 256;
 const MAX_SMALL: u64 = 1 << 20;
+
+/// How many vertices a primitive, and each of its attributes, counts as.
+const PRIMITIVE_COST: u64 = 16;
 
 /// Adds the meshes of a scene to a builder.
 pub(super) struct SceneReader<'a, 'b> {
     document: &'a Document,
     buffers: &'a Buffers<'a>,
     builder: &'a mut MeshBuilder<'b>,
-    /// Number of vertices and corners that may be added.
+    /// Number of vertices, corners and primitives that may be added.
     limit: u64,
     left: u64,
     /// The meshes that the scene uses.
@@ -32,54 +37,23 @@ pub(super) struct SceneReader<'a, 'b> {
 }
 
 impl<'a, 'b> SceneReader<'a, 'b> {
-    /// Creates a reader of a document of `bytes` bytes, and checks that no part of it is compressed.
+    /// Creates a reader of a document of `bytes` bytes.
     pub(super) fn new(
         document: &'a Document,
         buffers: &'a Buffers<'a>,
         builder: &'a mut MeshBuilder<'b>,
         bytes: u64,
-    ) -> Result<Self, ReadError> {
+    ) -> Self {
         let bytes = bytes.saturating_add(buffers.bytes());
         let limit = bytes.saturating_mul(MAX_GROWTH).max(MAX_SMALL);
-        let reader = Self {
+        Self {
             document,
             buffers,
             builder,
             limit,
             left: limit,
             used: vec![false; document.meshes.len()],
-        };
-        reader.check_compression()?;
-        Ok(reader)
-    }
-
-    /// Refuses Draco and meshopt by name, unless the file has the data in plain form, too.
-    fn check_compression(&self) -> Result<(), ReadError> {
-        let unsupported = |extension: &str, kind, number| ReadError::Unsupported {
-            at: self.builder.at(Place::Item { kind, number }),
-            feature: format!("the mesh is compressed with {extension}"),
-            way_out: "export it without compression",
-        };
-        let required = |extension: &str| {
-            let mut names = self.document.extensions_required.iter();
-            names.any(|name| name == extension)
-        };
-        let draco = "KHR_draco_mesh_compression";
-        for (number, mesh) in self.document.meshes.iter().enumerate() {
-            let mut primitives = mesh.primitives.iter();
-            let is_draco = |primitive: &Primitive| primitive.extensions.contains_key(draco);
-            if required(draco) && primitives.any(is_draco) {
-                return Err(unsupported(draco, "mesh", number));
-            }
         }
-        for meshopt in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {
-            let mut views = self.document.buffer_views.iter();
-            let found = views.position(|view| view.extensions.contains_key(meshopt));
-            if let Some(number) = found.filter(|_| required(meshopt)) {
-                return Err(unsupported(meshopt, "bufferView", number));
-            }
-        }
-        Ok(())
     }
 
     /// Reads the scene, or all meshes if there is no scene.
@@ -163,21 +137,21 @@ impl<'a, 'b> SceneReader<'a, 'b> {
         let mesh = item(&self.document.meshes, "mesh", number, by, self.buffers.name)?;
         self.used[number] = true;
         // Primitives that share positions share vertices.
-        let mut first_vertices: Vec<(usize, usize)> = Vec::new();
+        let mut first_vertices: HashMap<usize, usize> = HashMap::new();
         for primitive in &mesh.primitives {
+            // A scene can repeat a mesh whose primitives are empty.
+            let parts = 1 + primitive.attributes.len() as u64;
+            self.spend(PRIMITIVE_COST.saturating_mul(parts))?;
             self.note_ignored(primitive, number);
             let Some(&positions) = primitive.attributes.get("POSITION") else {
                 continue;
             };
-            let known = first_vertices
-                .iter()
-                .find(|(accessor, _)| *accessor == positions);
-            let first = match known {
-                Some(&(_, first)) => first,
+            let first = match first_vertices.get(&positions) {
+                Some(&first) => first,
                 None => {
                     let first = self.builder.vertex_count();
                     self.read_positions(positions, place, ("mesh", number))?;
-                    first_vertices.push((positions, first));
+                    first_vertices.insert(positions, first);
                     first
                 }
             };
@@ -233,7 +207,7 @@ impl<'a, 'b> SceneReader<'a, 'b> {
         }
     }
 
-    /// Subtracts `count` vertices or corners from those that may be added.
+    /// Subtracts `count` vertices, corners or primitives from those that may be added.
     fn spend(&mut self, count: u64) -> Result<(), ReadError> {
         let limit = self.limit;
         self.left = self.left.checked_sub(count).ok_or_else(|| {
@@ -270,7 +244,7 @@ impl<'a, 'b> SceneReader<'a, 'b> {
                 position = moved.to_array().map(Coordinate::from);
             }
             self.builder
-                .push_vertex(position, || Place::Item { kind, number })?;
+                .push_vertex(position, Place::Item { kind, number })?;
         }
         Ok(())
     }

@@ -24,7 +24,7 @@ const BLOCK: usize = 1 << 14;
 ///   through all vertices of the block, with indices from 1.
 /// - N2  `fill_buf` returns one vertex at a time, so the parser always stops at the last vertex
 ///   that was returned.
-/// - N3  `wide` has one entry for each vertex of the block.
+/// - N3  `block` has the vertices of the block.
 /// - N4  There are at most `limit` lines, vertices, and corners of faces.
 pub(crate) struct Normaliser<'a, R> {
     lines: Lines<R>,
@@ -41,14 +41,21 @@ pub(crate) struct Normaliser<'a, R> {
     corners: usize,
     /// Vertices of the current face, as rows.
     face: Vec<u32>,
-    /// Positions of the block in 64 bits.
-    wide: Vec<[f64; 3]>,
+    /// The vertices of the block.
+    block: Vec<Vertex>,
     /// Maximum number of vertices, corners and lines.
     limit: usize,
     /// The fault at which reading stopped.
     pub(super) fault: Option<ReadError>,
     pub(super) tags: Tags,
     pub(super) builder: MeshBuilder<'a>,
+}
+
+/// A vertex before the parser has read it.
+struct Vertex {
+    line: u32,
+    /// Position in 64 bits.
+    wide: [f64; 3],
 }
 
 #[derive(PartialEq, Eq)]
@@ -75,7 +82,7 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
             vertices: 0,
             corners: 0,
             face: Vec::new(),
-            wide: Vec::with_capacity(BLOCK),
+            block: Vec::with_capacity(BLOCK),
             limit: MAX_ROWS,
             fault: None,
             tags: Tags::default(),
@@ -87,16 +94,15 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
     /// Returns whether there is one.
     pub(super) fn finish_block(&mut self, coordinates: &[f32]) -> Result<bool, ReadError> {
         let narrow = coordinates.as_chunks::<3>().0.iter();
-        for (narrow, wide) in narrow.zip(&self.wide) {
+        for (narrow, &Vertex { line, wide }) in narrow.zip(&self.block) {
             let coordinate = |i: usize| Coordinate {
                 wide: wide[i],
                 narrow: narrow[i],
             };
-            let line = self.line;
-            let vertex = [0, 1, 2].map(coordinate);
-            self.builder.push_vertex(vertex, || Place::Line(line))?;
+            let position = [0, 1, 2].map(coordinate);
+            self.builder.push_vertex(position, Place::Line(line))?;
         }
-        self.wide.clear();
+        self.block.clear();
         if self.progress == Progress::AtEnd {
             return Ok(false);
         }
@@ -242,8 +248,9 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
                 .builder
                 .infinite(wide.map(Coordinate::from), place, self.vertices));
         }
-        self.wide.push(wide);
-        if self.wide.len() == BLOCK {
+        let line = self.line;
+        self.block.push(Vertex { line, wide });
+        if self.block.len() == BLOCK {
             self.progress = Progress::BlockIsFull;
         }
         Ok(())
@@ -294,9 +301,9 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
     /// Passes on the polygon through all vertices of the block. It keeps `tobj` from removing
     /// vertices, and from numbering them in another order.
     fn write_polygon(&mut self) {
-        if !self.wide.is_empty() {
+        if !self.block.is_empty() {
             self.text.push(b'f');
-            for number in 1..=self.wide.len() {
+            for number in 1..=self.block.len() {
                 write!(self.text, " {number}").expect("writing to memory does not fail");
             }
             self.text.push(b'\n');

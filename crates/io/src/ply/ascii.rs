@@ -83,7 +83,7 @@ fn read_record(reading: &mut Reading, text: &[u8], place: Place) -> Result<(), R
         reading.builder.notices.add(IgnoredKind::ExtraValues, place);
     }
     match reading.role {
-        Role::Vertices(_) => reading.builder.push_vertex(position, || place),
+        Role::Vertices(_) => reading.builder.push_vertex(position, place),
         Role::Faces | Role::Strips => reading.add_corners(place),
         Role::Other => Ok(()),
     }

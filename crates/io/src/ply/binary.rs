@@ -128,7 +128,7 @@ fn read_record(
         return Ok(None);
     }
     match reading.role {
-        Role::Vertices(_) => reading.builder.push_vertex(position, || place)?,
+        Role::Vertices(_) => reading.builder.push_vertex(position, place)?,
         Role::Faces | Role::Strips => reading.add_corners(place)?,
         Role::Other => {}
     }

@@ -1,5 +1,6 @@
 //! Reads the header of a PLY file.
 
+use std::collections::HashSet;
 use std::io::Read;
 
 use super::Scalar;
@@ -99,19 +100,15 @@ impl Header {
         builder: &mut MeshBuilder,
         source: &mut ByteSource<impl Read>,
     ) -> Result<Self, ReadError> {
-        let mut format = None;
-        let mut header = Self {
-            format: Format::PlyAscii,
-            elements: Vec::new(),
-            lines: 0,
-        };
+        let mut parser = Parser::default();
+        let mut lines;
         loop {
             let place = Place::Line(source.line_count().saturating_add(1));
             let line = source.line().map_err(|e| builder.read_error(place, e))?;
             let Some(line) = line else {
                 return Err(builder.truncated(place, "`end_header`".to_owned()));
             };
-            header.lines = line.number;
+            lines = line.number;
             let ends_in_cr = line.ends_in_cr;
             if line.number == 1 {
                 let text = line.text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(line.text);
@@ -123,7 +120,7 @@ impl Header {
                 }
                 continue;
             }
-            match header.read_line(line.text, line.number, &mut format) {
+            match parser.read_line(line.text, line.number) {
                 Ok(true) => {}
                 Ok(false) => break,
                 Err(fault) => {
@@ -132,19 +129,31 @@ impl Header {
                 }
             }
         }
-        let at = builder.at(Place::Line(header.lines));
+        let at = builder.at(Place::Line(lines));
         let fault = PlyHeaderFault::NoFormat;
-        header.format = format.ok_or(ReadError::PlyHeader { at, fault })?;
-        Ok(header)
+        let format = parser.format.ok_or(ReadError::PlyHeader { at, fault })?;
+        Ok(Self {
+            format,
+            elements: parser.elements,
+            lines,
+        })
     }
+}
 
+/// A header while it is parsed.
+#[derive(Default)]
+struct Parser {
+    format: Option<Format>,
+    elements: Vec<Element>,
+    /// The names of the elements.
+    names: HashSet<String>,
+    /// The names of the properties of the last element.
+    property_names: HashSet<String>,
+}
+
+impl Parser {
     /// Parses a line; returns whether the header continues.
-    fn read_line(
-        &mut self,
-        text: &[u8],
-        number: u32,
-        format: &mut Option<Format>,
-    ) -> Result<bool, PlyHeaderFault> {
+    fn read_line(&mut self, text: &[u8], number: u32) -> Result<bool, PlyHeaderFault> {
         let mut words = words(text);
         let keyword = words.next().unwrap_or_default();
         let words: Vec<&[u8]> = match keyword {
@@ -154,8 +163,10 @@ impl Header {
         match keyword {
             b"" | b"comment" | b"obj_info" => {}
             b"end_header" => return Ok(false),
-            b"format" => *format = Some(parse_form(&words)?),
-            b"element" | b"property" if format.is_none() => return Err(PlyHeaderFault::NoFormat),
+            b"format" => self.format = Some(parse_form(&words)?),
+            b"element" | b"property" if self.format.is_none() => {
+                return Err(PlyHeaderFault::NoFormat);
+            }
             b"element" => self.add_element(parse_element(&words, text, number)?)?,
             b"property" => self.add_property(parse_property(&words, text, number)?)?,
             _ => {
@@ -167,25 +178,23 @@ impl Header {
     }
 
     fn add_element(&mut self, element: Element) -> Result<(), PlyHeaderFault> {
-        if self.elements.iter().any(|other| other.name == element.name) {
+        if !self.names.insert(element.name.clone()) {
             let name = shortened(&element.name);
             return Err(PlyHeaderFault::Repeated { name });
         }
+        // Clearing a set takes time for its capacity, which an earlier element may have enlarged.
+        self.property_names = HashSet::new();
         self.elements.push(element);
         Ok(())
     }
 
     fn add_property(&mut self, property: Property) -> Result<(), PlyHeaderFault> {
-        let name = shortened(&property.name);
+        let name = || shortened(&property.name);
         let Some(element) = self.elements.last_mut() else {
-            return Err(PlyHeaderFault::PropertyWithoutElement { name });
+            return Err(PlyHeaderFault::PropertyWithoutElement { name: name() });
         };
-        if element
-            .properties
-            .iter()
-            .any(|other| other.name == property.name)
-        {
-            return Err(PlyHeaderFault::Repeated { name });
+        if !self.property_names.insert(property.name.clone()) {
+            return Err(PlyHeaderFault::Repeated { name: name() });
         }
         element.properties.push(property);
         Ok(())

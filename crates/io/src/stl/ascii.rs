@@ -32,6 +32,8 @@ struct Parser<'a> {
     corners: [[Coordinate; 3]; 3],
     corner_count: usize,
     solids: u32,
+    /// Whether the numbers of a colour may follow.
+    in_colour: bool,
 }
 
 /// Reads all solids.
@@ -47,6 +49,7 @@ pub(super) fn read<'a>(
         corners: [[Coordinate::from(0.0_f32); 3]; 3],
         corner_count: 0,
         solids: 0,
+        in_colour: false,
     };
     loop {
         let next = Place::Line(source.line_count().saturating_add(1));
@@ -71,6 +74,9 @@ pub(super) fn read<'a>(
 impl<'a> Parser<'a> {
     /// Parses the next word; returns whether the rest of the line is a name.
     fn read(&mut self, word: &[u8], line: u32) -> Result<bool, ReadError> {
+        if self.skips_colour(word, line) {
+            return Ok(false);
+        }
         let is = |keyword: &str| word.eq_ignore_ascii_case(keyword.as_bytes());
         self.expect = match self.expect {
             Expect::Coordinate(number) => self.read_coordinate(word, number, line)?,
@@ -109,6 +115,22 @@ impl<'a> Parser<'a> {
             Expect::Solid => return Err(self.unexpected(line, "solid", word)),
         };
         Ok(false)
+    }
+
+    /// Returns whether `word` is part of a colour, which some programs write between other words:
+    /// `color` and its numbers.
+    fn skips_colour(&mut self, word: &[u8], line: u32) -> bool {
+        let starts = ["color", "colour"]
+            .iter()
+            .any(|keyword| word.eq_ignore_ascii_case(keyword.as_bytes()));
+        if starts && !matches!(self.expect, Expect::Coordinate(_)) {
+            self.in_colour = true;
+            let notices = &mut self.facets.builder.notices;
+            notices.add(IgnoredKind::Colours, Place::Line(line));
+            return true;
+        }
+        self.in_colour = self.in_colour && parse_coordinate(word).is_some();
+        self.in_colour
     }
 
     fn start_solid(&mut self, line: u32) {

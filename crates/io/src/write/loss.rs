@@ -2,8 +2,11 @@
 
 use std::fmt;
 
+use sixfold_core::Point;
+
 use super::MeshWriter;
 use crate::format::Format;
+use crate::welder::for_each_equal;
 
 /// Something of a mesh that a format cannot keep; printed as `1 polygon is cut into triangles`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,12 +15,17 @@ pub enum Loss {
     /// Which faces share a vertex. A reader can join equal positions, but then vertices that were
     /// different become one, and their numbers change.
     SharedVertices,
+    /// This many vertices that have the position of another vertex. A reader that joins equal
+    /// positions makes one vertex of them.
+    EqualPositions(usize),
     /// This many faces with more than three corners, which are cut into triangles.
     Polygons(usize),
     /// This many vertices without a face.
     IsolatedVertices(usize),
     /// The normals of this many vertices.
     Normals(usize),
+    /// The sharpness of this many edges and vertices.
+    Creases(usize),
 }
 
 impl fmt::Display for Loss {
@@ -25,6 +33,15 @@ impl fmt::Display for Loss {
         match self {
             Self::SharedVertices => {
                 f.write_str("vertices are not shared: a reader has to join equal positions")
+            }
+            Self::EqualPositions(1) => {
+                f.write_str("1 vertex has the position of another one, and readers join them")
+            }
+            Self::EqualPositions(count) => {
+                write!(
+                    f,
+                    "{count} vertices have positions of others, and readers join them"
+                )
             }
             Self::Polygons(1) => f.write_str("1 polygon is cut into triangles"),
             Self::Polygons(count) => write!(f, "{count} polygons are cut into triangles"),
@@ -34,17 +51,50 @@ impl fmt::Display for Loss {
             }
             Self::Normals(1) => f.write_str("1 normal is left out"),
             Self::Normals(count) => write!(f, "{count} normals are left out"),
+            Self::Creases(1) => f.write_str("the sharpness of 1 edge or vertex is left out"),
+            Self::Creases(count) => {
+                write!(f, "the sharpness of {count} edges and vertices is left out")
+            }
+        }
+    }
+}
+
+impl Loss {
+    /// Returns what is lost, in the plural: `polygons`.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::SharedVertices => "shared vertices",
+            Self::EqualPositions(_) => "vertices at positions of other vertices",
+            Self::Polygons(_) => "polygons",
+            Self::IsolatedVertices(_) => "vertices without a face",
+            Self::Normals(_) => "normals",
+            Self::Creases(_) => "sharp edges and vertices",
+        }
+    }
+
+    /// Returns how many are lost; `None` if the format keeps none of them at all.
+    pub const fn count(self) -> Option<usize> {
+        match self {
+            Self::SharedVertices => None,
+            Self::EqualPositions(count)
+            | Self::Polygons(count)
+            | Self::IsolatedVertices(count)
+            | Self::Normals(count)
+            | Self::Creases(count) => Some(count),
         }
     }
 }
 
 impl MeshWriter<'_> {
-    /// Returns what `format` cannot keep of this mesh; O(corners).
+    /// Returns what `format` cannot keep of this mesh; O(corners) expected.
     pub fn losses(&self, format: Format) -> Vec<Loss> {
         let mut losses = Vec::new();
         let is_stl = format.is_stl();
+        let mut used = Vec::new();
         if is_stl {
             losses.push(Loss::SharedVertices);
+            used = self.used_vertices();
+            losses.push(Loss::EqualPositions(self.repeated_positions(&used)));
         }
         if is_stl || matches!(format, Format::Gltf | Format::Glb) {
             let faces = self.polygons.faces().iter();
@@ -53,10 +103,6 @@ impl MeshWriter<'_> {
             ));
         }
         if is_stl {
-            let mut used = vec![false; self.polygons.vertex_count()];
-            for v in self.polygons.faces().corners() {
-                used[v.index()] = true;
-            }
             losses.push(Loss::IsolatedVertices(
                 used.iter().filter(|used| !**used).count(),
             ));
@@ -70,13 +116,41 @@ impl MeshWriter<'_> {
         if !keeps_normals {
             losses.push(Loss::Normals(normals));
         }
+        if let (false, Some(creases)) = (format == Format::Obj, self.creases) {
+            let count = creases.edges().len() + creases.corners().len();
+            losses.push(Loss::Creases(count));
+        }
         let is_empty = |loss: &Loss| {
             matches!(
                 loss,
-                Loss::Polygons(0) | Loss::IsolatedVertices(0) | Loss::Normals(0)
+                Loss::EqualPositions(0)
+                    | Loss::Polygons(0)
+                    | Loss::IsolatedVertices(0)
+                    | Loss::Normals(0)
+                    | Loss::Creases(0)
             )
         };
         losses.retain(|loss| !is_empty(loss));
         losses
+    }
+
+    /// Returns for each vertex whether it has a face.
+    fn used_vertices(&self) -> Vec<bool> {
+        let mut used = vec![false; self.polygons.vertex_count()];
+        for v in self.polygons.faces().corners() {
+            used[v.index()] = true;
+        }
+        used
+    }
+
+    /// Returns the number of `used` vertices minus the number of their different positions.
+    fn repeated_positions(&self, used: &[bool]) -> usize {
+        let positions = self.polygons.positions().iter().zip(used);
+        let positions: Vec<Point> = positions
+            .filter_map(|(&position, &used)| used.then_some(position))
+            .collect();
+        let mut repeated = 0;
+        for_each_equal(&positions, |_, _| repeated += 1);
+        repeated
     }
 }

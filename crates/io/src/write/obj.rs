@@ -3,7 +3,7 @@
 use std::fmt;
 use std::io::{self, Write};
 
-use sixfold_core::{Point, PolygonMesh, VertexId};
+use sixfold_core::{Creases, Point, PolygonMesh, VertexId};
 
 use super::{MeshWriter, Numbers};
 use crate::format::Format;
@@ -82,6 +82,19 @@ pub(super) fn write_text(
             }
         }
         writeln!(out)?;
+    }
+    Ok(())
+}
+
+/// Writes a tag for each sharp edge and vertex. The vertices of tags count from 0.
+pub(super) fn write_tags(creases: &Creases, out: &mut impl Write) -> io::Result<()> {
+    for &(edge, sharpness) in creases.edges() {
+        let [a, b] = edge.ends().map(VertexId::index);
+        writeln!(out, "t crease 2/1/0 {a} {b} {}", ShortestDecimal(sharpness))?;
+    }
+    for &(vertex, sharpness) in creases.corners() {
+        let (v, sharpness) = (vertex.index(), ShortestDecimal(sharpness));
+        writeln!(out, "t corner 1/1/0 {v} {sharpness}")?;
     }
     Ok(())
 }

@@ -7,10 +7,11 @@ use crate::{assert_refused, faces, notices, read, read_as};
 #[test]
 fn off_has_comments_colours_and_prefixes() {
     let text = "\u{feff}# a\n\nSTCN4OFF # b\n\n3 # c\n";
+    let end = "copy the file again, or correct its counts";
     assert_refused(
         "a",
         text,
-        "a:5: expected OFF, or the numbers of vertices, faces and edges, found \"3\": correct the line",
+        &format!("a:5: the file ends before the number of faces: {end}"),
     );
     let text = "COFF 3 2\r\n0 0 0 255 0 0 255 # a\r\n\r\n1 0 0 0.5\r\n# b\r\n0 1 0\r\n3 0 1 2 1 0 0\r\n\
                 2 0 1\r\n";
@@ -35,8 +36,22 @@ fn off_has_comments_colours_and_prefixes() {
 fn faults_of_off_are_named_with_their_lines() {
     let binary = "a.off:1: the file is binary OFF, which is not read: save it as text, or as PLY";
     assert_refused("a.off", "OFF BINARY\n", binary);
-    let dimensions = "a.off:1: points of n dimensions, which is not read: write three coordinates";
+    let dimensions =
+        "a.off:1: points have 4 coordinates, which is not read: write three coordinates";
     assert_refused("a.off", "nOFF 4\n", dimensions);
+    assert_refused(
+        "a.off",
+        "4nOFF # a\n\n4\n",
+        &dimensions.replace(":1:", ":3:"),
+    );
+    let counts = "a.off:1: expected OFF, or the numbers of vertices, faces and edges, found ";
+    for text in ["3 1 0 0", "3 -1 0", "CCOFF 3 1 0"] {
+        assert_refused(
+            "a.off",
+            text,
+            &format!("{counts}{text:?}: correct the line"),
+        );
+    }
     let refused = |text: &str, message: &str| {
         assert_refused(
             "a.off",
@@ -77,4 +92,50 @@ fn faults_of_off_are_named_with_their_lines() {
         notices(&mesh),
         ["ignored 4 bytes after the mesh (first at line 3)"]
     );
+}
+
+#[test]
+fn prefixes_of_off_have_any_order_and_case() {
+    let vertex = "2 4 6 2 0 0 1 1 0 0 1 0.5 0.5";
+    for prefixes in ["STCN4", "NCST4", "CSTN4", "4NCST", "4CNST", "stCN4"] {
+        for off in ["OFF", "off"] {
+            let mesh = read(format!("{prefixes}{off} 1 0 0\n{vertex}\n"));
+            assert_eq!(
+                mesh.positions,
+                [Point::new(1.0, 2.0, 3.0)],
+                "{prefixes}{off}"
+            );
+            let expected = [
+                "ignored 1 normal (line 2)",
+                "ignored 1 colour (line 2)",
+                "ignored 1 texture coordinate (line 2)",
+            ];
+            assert_eq!(notices(&mesh), expected, "{prefixes}{off}");
+        }
+    }
+    for keyword in ["NCOFF", "CNOFF"] {
+        let mesh = read(format!("{keyword}\n1 0 0\n1 2 3 0 0 1 255 0 0\n"));
+        assert_eq!(mesh.positions, [Point::new(1.0, 2.0, 3.0)], "{keyword}");
+    }
+    let mesh = read("nOFF\n3\n1 0 0\n1 2 3\n");
+    assert_eq!(mesh.positions, [Point::new(1.0, 2.0, 3.0)]);
+}
+
+#[test]
+fn counts_of_off_may_have_lines_of_their_own() {
+    let body = "0 0 0\n1 0 0 # a\n\n# b\n0 1 0\n\n3 0 1 2\n";
+    for counts in [
+        "OFF\n3\n1\n0\n",
+        "OFF # a\n\n3 # b\n\n1 # c\n# d\n0\n",
+        "OFF 3\n1 3\n",
+        "off 3 1\n3\n",
+        "OFF\n3 1\n",
+        "OFF 3\n1\n",
+        "3\n1\n3\n",
+    ] {
+        let mesh = read_as("a.off", format!("{counts}{body}"));
+        assert_eq!(mesh.positions.len(), 3, "{counts:?}");
+        assert_eq!(faces(&mesh), [[0, 1, 2]], "{counts:?}");
+        assert!(mesh.notices.is_empty(), "{counts:?}");
+    }
 }

@@ -1,5 +1,7 @@
 //! The rules of PLY.
 
+use std::time::{Duration, Instant};
+
 use sixfold_core::Point;
 use sixfold_io::{Format, Place, ReadOptions, read_from};
 
@@ -267,5 +269,45 @@ fn elements_without_content_need_no_time() {
             error.to_string().starts_with("a: no vertex and no face"),
             "{error}"
         );
+    }
+}
+
+/// Returns the shortest of three times of reading `text`, so that other programs disturb less.
+fn time_to_read(text: &str) -> Duration {
+    let time = |_| {
+        let start = Instant::now();
+        read(text);
+        start.elapsed()
+    };
+    (0..3).map(time).min().expect("three times")
+}
+
+#[test]
+fn headers_take_time_proportional_to_their_lines() {
+    const MANY: usize = 200_000;
+    let properties = (0..MANY).map(|i| format!("property uchar p{i}\n"));
+    let properties: String = properties.collect();
+    let elements = (0..MANY / 4).map(|i| format!("element e{i} 0\nproperty uchar p\n"));
+    let elements: String = elements.collect();
+    let unused = format!("element other 0\n{properties}");
+    for (what, text) in [
+        (
+            "properties",
+            PLY.replace("end_header", &format!("{unused}end_header")),
+        ),
+        (
+            "elements",
+            PLY.replace("end_header", &format!("{elements}end_header")),
+        ),
+        // The second list may not cost time for the size of the first.
+        (
+            "both",
+            PLY.replace("end_header", &format!("{unused}{elements}end_header")),
+        ),
+    ] {
+        // This takes 0.2 s on a machine without other work; with time proportional to the square of
+        // the lines it would take a minute.
+        let took = time_to_read(&text);
+        assert!(took < Duration::from_secs(5), "{what}: {took:?}");
     }
 }

@@ -1,7 +1,7 @@
 //! The rules of STL.
 
 use sixfold_core::Point;
-use sixfold_io::{Format, Place, ReadOptions, Welding, read_from};
+use sixfold_io::{Format, Place, ReadError, ReadOptions, Welding, read_from};
 
 use crate::{assert_refused, faces, notices, places, read, read_as};
 
@@ -58,7 +58,77 @@ fn the_count_of_a_binary_stl_is_checked() {
     assert_refused("a.stl", stl(&[], 0), message);
     let message = "a.stl: byte 3: the file ends before the number of facets: copy the file again, \
                    or correct its counts";
-    assert_refused("a.stl", "abc", message);
+    assert_refused("a.stl", "abc\0", &message.replace("byte 3", "byte 4"));
+}
+
+#[test]
+fn other_texts_with_the_name_of_stl_are_refused() {
+    let message = "a.stl: neither ASCII STL, which begins with `solid`, nor binary STL, whose size \
+                   follows from its number of facets: export the file again, or rename it if it \
+                   has another format";
+    let facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n";
+    for text in ["abc", "<html>\n", facet, &facet.repeat(1000)] {
+        assert_refused("a.stl", text, message);
+    }
+    let options = ReadOptions::default().with_format(Format::Stl);
+    let error = read_from("a.obj", "v 1 2 3\n".as_bytes(), &options).expect_err("not STL");
+    assert_eq!(error.to_string(), message.replace("a.stl", "a.obj"));
+}
+
+#[test]
+fn colour_lines_of_ascii_stl_are_passed_over() {
+    let text = "solid a\ncolor 1 0 0\nfacet normal 0 0 1\n color 0.5 0.5 1e0 1\nouter loop\nvertex \
+                0 0 0\nvertex 1 0 0\nColor 1 1 1 vertex 0 1 0\nendloop\nendfacet\ncolour 1\n\
+                endsolid a\n";
+    let mesh = read(text);
+    assert_eq!(faces(&mesh), [[0, 1, 2]]);
+    assert_eq!(notices(&mesh), ["ignored 4 colours (first at line 2)"]);
+    let message = "a.stl:1: coordinate \"color\" of vertex 1 is not a number: write it like 0.5 or \
+                   -2e-3";
+    let text = "solid\rfacet outer loop vertex 0 color".replace('\r', "\n");
+    assert_refused("a.stl", text, &message.replace(":1:", ":2:"));
+}
+
+/// A source that has no size, as a pipe.
+struct Pipe<'a>(&'a [u8]);
+
+impl std::io::Read for Pipe<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        self.0.read(buffer)
+    }
+}
+
+#[test]
+fn a_binary_stl_on_a_pipe_is_recognised_by_its_count() {
+    let facets: Vec<[[f32; 3]; 3]> = (0..1000)
+        .map(|i| FACET.map(|[x, y, z]| [x + i as f32, y, z]))
+        .collect();
+    let with_normals = |normal: f32, count: u32| {
+        let mut bytes = stl(&facets, count);
+        for facet in bytes[84..].as_chunks_mut::<50>().0 {
+            facet[..4].copy_from_slice(&normal.to_le_bytes());
+        }
+        bytes
+    };
+    for normal in [0.0, 250.0, f32::NAN] {
+        let bytes = with_normals(normal, 1000);
+        let mesh = read_from("a", Pipe(&bytes), &ReadOptions::default());
+        let mesh = mesh.unwrap_or_else(|error| panic!("{normal}: {error}"));
+        assert_eq!((mesh.format, mesh.faces.len()), (Format::Stl, 1000));
+    }
+    for count in [1, 999, 1001, u32::MAX] {
+        let bytes = with_normals(250.0, count);
+        let error = read_from("a", Pipe(&bytes), &ReadOptions::default()).expect_err("not STL");
+        assert!(
+            matches!(error, ReadError::UnknownFormat { .. }),
+            "{count}: {error}"
+        );
+    }
+    let noise: Vec<u8> = (0..60_000_u32)
+        .map(|i| (i.wrapping_mul(i) >> 7) as u8)
+        .collect();
+    let error = read_from("a", Pipe(&noise), &ReadOptions::default()).expect_err("not STL");
+    assert!(matches!(error, ReadError::UnknownFormat { .. }), "{error}");
 }
 
 #[test]

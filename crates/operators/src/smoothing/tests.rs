@@ -119,7 +119,7 @@ fn a_plane_stays_a_plane() {
         p + 0.3 * Point::new(noise(i), noise(3 * i + 1), 0.0)
     });
     for weights in BOTH {
-        for boundary in [Boundary::Fixed, Boundary::Curve] {
+        for boundary in [SmoothingBoundary::Fixed, SmoothingBoundary::Curve] {
             let moved = moved(
                 &perturbed,
                 &Smoothing {
@@ -205,7 +205,7 @@ fn a_boundary_curve_shrinks_by_itself() {
     for weights in BOTH {
         let smoothing = Smoothing {
             weights,
-            boundary: Boundary::Curve,
+            boundary: SmoothingBoundary::Curve,
             step: 0.5,
             iterations: 1,
             ..Smoothing::default()
@@ -237,7 +237,7 @@ fn a_vertex_where_the_boundary_crosses_itself_stays() {
     ];
     let bow_tie = PolygonMesh::new(points, [[0, 1, 2], [0, 3, 4]]).expect("valid");
     let smoothing = Smoothing {
-        boundary: Boundary::Curve,
+        boundary: SmoothingBoundary::Curve,
         step: 1.0,
         iterations: 1,
         ..Smoothing::default()
@@ -381,7 +381,7 @@ proptest! {
     ) {
         let [x, y, z, shift] = map.map(Point::from_array);
         let mapped = |p: Point| p.x * x + p.y * y + p.z * z + shift;
-        let boundary = if curve { Boundary::Curve } else { Boundary::Fixed };
+        let boundary = if curve { SmoothingBoundary::Curve } else { SmoothingBoundary::Fixed };
         let smoothing = Smoothing { boundary, iterations: 3, ..Smoothing::default() };
         let after: Vec<Point> = moved(&polygons, &smoothing).into_iter().map(mapped).collect();
         let before = moved(&with_positions(&polygons, |_, p| mapped(p)), &smoothing);

@@ -6,7 +6,7 @@ use sixfold_indexed_face_set::EditableIndexedFaceSet;
 
 use super::*;
 
-fn decimation(target: Target, boundary: Boundary) -> Decimation {
+fn decimation(target: Target, boundary: DecimationBoundary) -> Decimation {
     Decimation { target, boundary }
 }
 
@@ -34,7 +34,10 @@ fn euler(mesh: &EditableHalfEdgeMesh) -> isize {
 #[test]
 fn a_sphere_stays_a_sphere() {
     let sphere = sixfold_shapes::geodesic(8).expect("small");
-    let (mesh, report) = decimated(&sphere, &decimation(Target::Ratio(0.1), Boundary::Follow));
+    let (mesh, report) = decimated(
+        &sphere,
+        &decimation(Target::Ratio(0.1), DecimationBoundary::Follow),
+    );
     assert_eq!((report.faces, report.stop), (128, Stop::Done));
     assert_eq!(euler(&mesh), 2);
     for v in mesh.vertices() {
@@ -50,7 +53,10 @@ fn a_sphere_stays_a_sphere() {
 #[test]
 fn a_flat_square_is_decimated_to_two_triangles() {
     let grid = sixfold_shapes::triangle_grid(12, 12).expect("small");
-    let (mesh, report) = decimated(&grid, &decimation(Target::Faces(2), Boundary::Follow));
+    let (mesh, report) = decimated(
+        &grid,
+        &decimation(Target::Faces(2), DecimationBoundary::Follow),
+    );
     assert_eq!(report.faces, 2);
     assert!(
         report.max_error < 1e-6,
@@ -74,7 +80,10 @@ fn a_fixed_boundary_keeps_its_exact_positions() {
         ends.map(|v| mesh.position(v).to_array().map(f32::to_bits))
             .collect()
     };
-    let (mesh, report) = decimated(&grid, &decimation(Target::Faces(0), Boundary::Fixed));
+    let (mesh, report) = decimated(
+        &grid,
+        &decimation(Target::Faces(0), DecimationBoundary::Fixed),
+    );
     assert_eq!(outline(&mesh), outline(&original));
     assert_eq!(report.stop, Stop::NoLegalEdit);
     assert!(
@@ -88,7 +97,7 @@ fn a_fixed_boundary_keeps_its_exact_positions() {
 fn an_unreachable_target_is_reported() {
     let (mesh, report) = decimated(
         &sixfold_shapes::icosahedron(),
-        &decimation(Target::Faces(0), Boundary::Follow),
+        &decimation(Target::Faces(0), DecimationBoundary::Follow),
     );
     assert_eq!(report.stop, Stop::NoLegalEdit);
     assert_eq!(
@@ -98,7 +107,7 @@ fn an_unreachable_target_is_reported() {
     );
     let (_, report) = decimated(
         &sixfold_shapes::icosahedron(),
-        &decimation(Target::Faces(99), Boundary::Follow),
+        &decimation(Target::Faces(99), DecimationBoundary::Follow),
     );
     assert_eq!(
         (report.faces, report.collapses, report.stop),
@@ -117,7 +126,7 @@ fn bad_input_is_refused() {
     let mut mesh =
         EditableHalfEdgeMesh::from_polygons(&sixfold_shapes::icosahedron()).expect("closed");
     for ratio in [f64::NAN, -0.1, 1.1, f64::INFINITY] {
-        let options = decimation(Target::Ratio(ratio), Boundary::Follow);
+        let options = decimation(Target::Ratio(ratio), DecimationBoundary::Follow);
         let error = decimate(&mut mesh, &options).expect_err("invalid ratio");
         assert!(matches!(error, RemeshError::BadRatio { .. }), "{error}");
     }
@@ -135,7 +144,7 @@ fn a_structure_that_scans_makes_the_same_mesh() {
         sixfold_shapes::triangle_grid(9, 7).expect("small"),
         sixfold_shapes::triangle_torus(9, 8).expect("small"),
     ] {
-        let options = decimation(Target::Ratio(0.3), Boundary::Follow);
+        let options = decimation(Target::Ratio(0.3), DecimationBoundary::Follow);
         let (walked, report) = decimated(&polygons, &options);
         let mut scanned = EditableIndexedFaceSet::from_polygons(&polygons).expect("holds all");
         assert_eq!(decimate(&mut scanned, &options), Ok(report));
@@ -152,7 +161,7 @@ fn watch_can_end_the_decimation() {
     let mut mesh = EditableHalfEdgeMesh::from_polygons(&sphere).expect("closed");
     let report = decimate_watched(
         &mut mesh,
-        &decimation(Target::Faces(4), Boundary::Follow),
+        &decimation(Target::Faces(4), DecimationBoundary::Follow),
         &mut |_| ControlFlow::Break(()),
     );
     let report = report.expect("triangles");

@@ -20,8 +20,8 @@ pub(crate) fn introduction(run: &Run, example: &str, folder: &str, rounds: usize
     };
     format!(
         "```sh\n{flags}cargo run --release -p sixfold-report --example {example} -- {folder} {rounds}\n```\n\n\
-         {cpu}, {} cores, load {load:.1} at the start; {} {} {}; one thread, thread-CPU time, medians of \
-         {rounds} interleaved rounds.",
+         {cpu}, {} cores, load {load:.1} at the start; {} {} {}; one thread, processor time of the thread, \
+         medians of {rounds} rounds (each round runs every line of the tables once).",
         machine.cores.unwrap_or(0),
         machine.rustc,
         machine.profile,

@@ -63,7 +63,15 @@ pub(super) fn pooled(pool: &Pool, command: &str) -> Vec<Figure> {
                 row.estimated
             ),
         });
-        operation_figure(operation, rows.collect(), operation.unit(), command)
+        let figure = operation_figure(operation, rows.collect(), operation.unit(), command)?;
+        Some(Figure {
+            caption: "The scale is logarithmic and begins at 1, the time of the fastest. Each \
+                      ratio is the geometric mean over the meshes of the time divided by the time \
+                      of the fastest backend of the mesh. The thin lines are the 95 % intervals of \
+                      the means."
+                .into(),
+            ..figure
+        })
     });
     figures.collect()
 }
@@ -126,6 +134,36 @@ fn operation_figure(
     figure(title, id, rows, per, command)
 }
 
+/// Returns the cells of a row of the table. If `firsts` is true, the table has a column for the first
+/// run.
+fn cells(row: &Row<'_>, firsts: bool) -> Vec<String> {
+    let missing = || "–".into();
+    let mut cells = vec![
+        row.backend.to_owned(),
+        format!("{:.3}", row.ratio),
+        row.interval.map_or_else(missing, interval_text),
+        row.ns.map_or_else(missing, duration),
+    ];
+    cells.extend(firsts.then(|| row.first_ns.map_or_else(missing, duration)));
+    cells.push(row.note.clone());
+    cells
+}
+
+/// Returns the text that a browser shows for a bar.
+fn bar_title(row: &Row<'_>, per: &str) -> String {
+    let interval = row
+        .interval
+        .map(|ends| format!(" ({})", interval_text(ends)));
+    let interval = interval.unwrap_or_default();
+    let time = row.ns.map_or_else(|| "–".into(), duration);
+    let (backend, ratio, unit) = (row.backend, row.ratio, per_unit(per));
+    format!("{backend}: {ratio:.3}{interval} × the time of the fastest, {time} {unit}")
+}
+
+fn interval_text([low, high]: [f64; 2]) -> String {
+    format!("{low:.3} to {high:.3}")
+}
+
 fn figure(
     title: String,
     id: String,
@@ -149,35 +187,18 @@ fn figure(
     let mut table = Table::new(header);
     let (mut bars, mut whiskers, mut titles) = (Vec::new(), Vec::new(), Vec::new());
     for row in &rows {
-        let interval = row
-            .interval
-            .map(|[low, high]| format!("{low:.3} to {high:.3}"));
-        let time = row.ns.map_or_else(|| "–".into(), duration);
-        let ratio = format!("{:.3}", row.ratio);
-        let shown = interval.clone().unwrap_or_else(|| "–".into());
-        let mut cells = [row.backend, &ratio, &shown, &time]
-            .map(str::to_owned)
-            .to_vec();
-        cells.extend(firsts.then(|| row.first_ns.map_or_else(|| "–".into(), duration)));
-        cells.push(row.note.clone());
-        table.row(cells);
+        table.row(cells(row, firsts));
+    }
+    // The plot draws categories upwards, but the fastest backend belongs at the top.
+    for row in rows.iter().rev() {
         let length = row.ratio.log10();
-        bars.push((row.backend.to_owned(), length, column_colour(row.backend)));
         let ends = row
             .interval
             .map_or([length; 2], |ends| ends.map(f64::log10));
+        bars.push((row.backend.to_owned(), length, column_colour(row.backend)));
         whiskers.push(((length - ends[0]).max(0.0), (ends[1] - length).max(0.0)));
-        let between = interval.map_or_else(String::new, |interval| format!(" ({interval})"));
-        titles.push(format!(
-            "{}: {ratio}{between} × the time of the fastest, {time} {}",
-            row.backend,
-            per_unit(per)
-        ));
+        titles.push(bar_title(row, per));
     }
-    // The plot draws categories upwards, but the fastest backend belongs at the top.
-    bars.reverse();
-    whiskers.reverse();
-    titles.reverse();
     let max_log = bars
         .iter()
         .map(|(_, length, _)| *length)

@@ -70,7 +70,9 @@ The ratio of a measurement is the median time in the second file, divided by the
 first file. A measurement counts as slower if three conditions hold:
   - The 95 % interval of the ratio lies above 1.
   - The ratio is above --noise.
-  - The ratio is above the noise of this operation in both files.
+  - The ratio is above the noise that the first file states for this operation, and above the
+    noise that the second file states. The noise is the ratio of the two times of the backend that
+    was measured twice.
 A measurement counts as faster if the same conditions hold for the inverse of the ratio. If a file
 has fewer than three samples of a measurement, the first condition is that the ratio is above 2.
 

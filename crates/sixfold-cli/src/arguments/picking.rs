@@ -13,6 +13,7 @@ const PICK_EXAMPLES: &str = "Examples:
   sixfold pick --workload geodesic-dijkstra --max-memory 2GiB bunny.obj
   sixfold pick --workload mine.toml --needs edit,non-manifold scans/*.obj --json -
   sixfold workloads --show smoothing > mine.toml
+  sixfold pick --trace mine.trace bunny.obj          the calls of a program, in their order
 
 The mix of a workload is the list of its operations with their weights. Each round runs the whole
 mix on every backend that has the required abilities. All operations of the mix run in one loop,
@@ -49,6 +50,9 @@ pub(crate) struct Pick {
     /// A built-in workload, or your own file
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "smoothing")]
     pub(crate) workload: String,
+    /// Instead of a workload, repeat the recorded calls of a program; FILE is the trace
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["workload", "needs"])]
+    pub(crate) trace: Option<PathBuf>,
     /// Memory limit for the structure, such as 2GiB or 500MB
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     pub(crate) max_memory: Option<u64>,
@@ -95,7 +99,7 @@ fn need(name: &str) -> Result<Need, String> {
 }
 
 /// Parses `2GiB`, `500MB` or `1000000`: at least 1 byte.
-fn bytes(text: &str) -> Result<u64, String> {
+pub(super) fn bytes(text: &str) -> Result<u64, String> {
     let units = [
         ("GiB", 1 << 30),
         ("MiB", 1 << 20),

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use sixfold::remeshing::{Boundary, Target};
+use sixfold::remeshing::{DecimationBoundary, Target};
 
 use super::backend;
 use super::reshaping::iterations;
@@ -31,7 +31,11 @@ written.";
 /// order of vertices and faces. The result of polygon-soup differs if two vertices move to the same
 /// position.
 #[derive(Debug, Args)]
-#[command(after_help = DECIMATE_EXAMPLES, verbatim_doc_comment)]
+#[command(
+    after_help = DECIMATE_EXAMPLES,
+    verbatim_doc_comment,
+    override_usage = "sixfold decimate [OPTIONS] -o <OUT> <--faces <N>|--ratio <PART>> <MESH>"
+)]
 pub(crate) struct Decimate {
     /// The mesh, with triangles only (- for standard input)
     #[arg(value_name = "MESH")]
@@ -43,7 +47,7 @@ pub(crate) struct Decimate {
     pub(crate) goal: Goal,
     /// Boundary: follow (simplify the boundary too) or fixed
     #[arg(long, value_name = "RULE", default_value = "follow", value_parser = boundary)]
-    pub(crate) boundary: Boundary,
+    pub(crate) boundary: DecimationBoundary,
     /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "corner-table", value_parser = backend)]
     pub(crate) backend: String,
@@ -159,12 +163,16 @@ fn edge_length(text: &str) -> Result<f64, String> {
     }
 }
 
-fn boundary(text: &str) -> Result<Boundary, String> {
+fn boundary(text: &str) -> Result<DecimationBoundary, String> {
     let name = |boundary| match boundary {
-        Boundary::Follow => "follow",
-        Boundary::Fixed => "fixed",
+        DecimationBoundary::Follow => "follow",
+        DecimationBoundary::Fixed => "fixed",
     };
-    parse_name(&[Boundary::Follow, Boundary::Fixed], name, text)
+    parse_name(
+        &[DecimationBoundary::Follow, DecimationBoundary::Fixed],
+        name,
+        text,
+    )
 }
 
 #[cfg(test)]

@@ -21,8 +21,10 @@ const EXAMPLES: &str = "Examples:
 Steps run in the order of the options above, --for last. Each changes only what it must: a mesh
 without faults stays as it is.
 
-Exit codes: 0 success; 2 wrong usage or unusable input; 3 the mesh cannot be repaired in this way;
-4 interrupted, nothing written.";
+STL does not keep cuts: readers join vertices at equal positions. Write PLY or OBJ.
+
+Exit codes: 0 success; 1 the STL file that was written does not keep the repair of --for; 2 wrong
+usage or unusable input; 3 the mesh cannot be repaired in this way; 4 interrupted, nothing written.";
 
 /// Repair a mesh: weld, orient, cut, fill holes.
 ///
@@ -150,7 +152,7 @@ fn tolerance(text: &str) -> Result<Tolerance, String> {
         Ok(0.0) => Ok(Tolerance::Exact),
         Ok(value) if is_relative => Ok(Tolerance::Relative(value / 100.0)),
         Ok(value) => Ok(Tolerance::Absolute(value)),
-        Err(_) => Err("write a distance as 0.01, or a part of the diagonal as 0.01%".into()),
+        Err(_) => Err("write a distance, such as 0.01, or a percentage of the diagonal of the bounding box, such as 0.01%".into()),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use sixfold::operators::{Boundary, Facing, Triangulation, Weights};
+use sixfold::operators::{Facing, SmoothingBoundary, Triangulation, Weights};
 
 use super::backend;
 use super::subdivision::parse_name;
@@ -33,7 +33,7 @@ pub(crate) struct Smooth {
     pub(crate) weights: Weights,
     /// Boundary: fixed, or curve (smoothed as a curve)
     #[arg(long, value_name = "RULE", default_value = "fixed", value_parser = boundary)]
-    pub(crate) boundary: Boundary,
+    pub(crate) boundary: SmoothingBoundary,
     /// Number of iterations
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = iterations, allow_hyphen_values = true)]
     pub(crate) iterations: usize,
@@ -117,12 +117,16 @@ fn weights(text: &str) -> Result<Weights, String> {
     parse_name(&[Weights::Uniform, Weights::Cotangent], name, text)
 }
 
-fn boundary(text: &str) -> Result<Boundary, String> {
+fn boundary(text: &str) -> Result<SmoothingBoundary, String> {
     let name = |boundary| match boundary {
-        Boundary::Fixed => "fixed",
-        Boundary::Curve => "curve",
+        SmoothingBoundary::Fixed => "fixed",
+        SmoothingBoundary::Curve => "curve",
     };
-    parse_name(&[Boundary::Fixed, Boundary::Curve], name, text)
+    parse_name(
+        &[SmoothingBoundary::Fixed, SmoothingBoundary::Curve],
+        name,
+        text,
+    )
 }
 
 fn triangulation(text: &str) -> Result<Triangulation, String> {

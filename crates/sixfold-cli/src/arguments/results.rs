@@ -10,10 +10,10 @@ pub(crate) struct ResultFiles {
     /// Write all results as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
-    /// Write the times as CSV, one per row (- for standard output)
+    /// Write the figures as CSV, one per row (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) csv: Option<PathBuf>,
-    /// Write all samples as CSV, one per row (- for standard output)
+    /// Write the time of each sample as CSV, one per row (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) samples_csv: Option<PathBuf>,
 }

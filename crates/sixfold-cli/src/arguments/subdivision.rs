@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use sixfold::subdivision::{Boundary, Creasing, LoopWeights, Method, Scheme};
+use sixfold::subdivision::{BoundaryRule, Creasing, LoopWeights, Method, Scheme};
 
 use super::backend;
 
@@ -80,7 +80,7 @@ pub(crate) struct Subdivide {
     pub(crate) creases: Option<PathBuf>,
     /// Rule for the boundary: edge-and-corner, edge-only or none
     #[arg(long, value_name = "RULE", value_parser = boundary)]
-    pub(crate) boundary: Option<Boundary>,
+    pub(crate) boundary: Option<BoundaryRule>,
     /// How sharpness decreases: uniform or chaikin
     #[arg(long, value_name = "RULE", value_parser = creasing)]
     pub(crate) creasing: Option<Creasing>,
@@ -159,8 +159,8 @@ fn method(text: &str) -> Result<Method, String> {
     parse_name(&Method::ALL, Method::name, text)
 }
 
-fn boundary(text: &str) -> Result<Boundary, String> {
-    parse_name(&Boundary::ALL, Boundary::name, text)
+fn boundary(text: &str) -> Result<BoundaryRule, String> {
+    parse_name(&BoundaryRule::ALL, BoundaryRule::name, text)
 }
 
 fn creasing(text: &str) -> Result<Creasing, String> {

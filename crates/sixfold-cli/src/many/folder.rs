@@ -48,7 +48,7 @@ impl Folder {
             let existing = folder.path.join("results.json");
             return match files.len() {
                 0 if existing.exists() => Err(Failure::usage(format!(
-                    "{} exists already, but does not belong to a study in this folder: name another folder, or use --resume to overwrite it",
+                    "{} exists already, but does not belong to a study in this folder: name another folder. With --resume, a new study starts in this folder and replaces the file",
                     existing.display()
                 ))),
                 0 => Ok(folder),
@@ -155,13 +155,16 @@ impl Folder {
         self.path.join("labs").join(format!("{name}.json"))
     }
 
-    /// Writes all results and the page. `command` reproduces them.
+    /// Writes all results and the page. `command` reproduces them. If one file cannot be written,
+    /// writes the others anyway, and returns the first error.
     pub(super) fn write_report(&self, results: &Results, command: &str) -> Result<(), Failure> {
         let output = |name: &str| Output::open(&self.path.join(name));
-        output("results.json")?.finish(|writer| results.write_json(writer))?;
-        output("results.csv")?.finish(|writer| results.write_csv(writer))?;
-        output("samples.csv")?.finish(|writer| results.write_samples_csv(writer))?;
-        self.write_page(results, command)
+        let json = output("results.json").and_then(|o| o.finish(|w| results.write_json(w)));
+        let csv = output("results.csv").and_then(|o| o.finish(|w| results.write_csv(w)));
+        let samples = output("samples.csv");
+        let samples = samples.and_then(|o| o.finish(|w| results.write_samples_csv(w)));
+        let page = self.write_page(results, command);
+        json.and(csv).and(samples).and(page)
     }
 
     /// Writes only the page and the figures.

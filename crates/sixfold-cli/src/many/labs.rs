@@ -88,8 +88,10 @@ pub(super) struct LabRunner<'a> {
 
 impl LabRunner<'_> {
     /// Measures the labs that are not in the folder, and adds their findings. A lab that fails is
-    /// reported and left out.
+    /// reported and left out. A lab that cannot be saved is still added; the first error of saving
+    /// is returned at the end.
     pub(super) fn run(&self, selected: &[Lab], results: &mut Results) -> Result<(), Failure> {
+        let mut written = Ok(());
         for (i, &lab) in selected.iter().enumerate() {
             let saved = match self.resumed {
                 true => self.folder.load_lab(lab.name()),
@@ -109,7 +111,7 @@ impl LabRunner<'_> {
                 Ok(Some(finding)) => {
                     let document = Results::from(with_command(finding, self.triangulate));
                     if !self.stop.load(Ordering::Relaxed) {
-                        self.folder.save_lab(lab.name(), &document)?;
+                        written = written.and(self.folder.save_lab(lab.name(), &document));
                     }
                     document
                         .findings
@@ -127,7 +129,7 @@ impl LabRunner<'_> {
                 )),
             }
         }
-        Ok(())
+        written
     }
 
     /// Measures a lab. `position` is shown before the progress.

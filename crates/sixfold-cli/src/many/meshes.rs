@@ -9,6 +9,9 @@ use std::str::FromStr;
 use sixfold::io::Format;
 
 use crate::failure::Failure;
+use crate::mesh_files::shown;
+use crate::text::sanitize;
+use sixfold_study::numbers::counted;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Mesh {
@@ -20,7 +23,7 @@ pub(crate) struct Mesh {
     pub(crate) problem: Option<String>,
 }
 
-/// Endings of mesh files that folders can contain and that are not read.
+/// Endings of mesh files that are not read, but that other programs can convert.
 const OTHER_FORMATS: [&str; 7] = ["3ds", "3mf", "blend", "dae", "fbx", "usd", "x3d"];
 
 /// A shard: every n-th mesh, starting with the i-th mesh. One of n jobs studies the shard.
@@ -56,7 +59,7 @@ impl FromStr for Shard {
 
 /// Returns the meshes in `places`: files, and all meshes in folders and their subfolders, sorted
 /// by name. Each file occurs once. Without any place, returns the built-in mesh. Calls `note` with a
-/// message on mesh files of other formats.
+/// message on the other files in folders.
 ///
 /// # Errors
 ///
@@ -116,25 +119,20 @@ fn files_in_folder(folder: &Path, note: &mut dyn FnMut(&str)) -> Result<Vec<Path
         true => format!("cannot be listed: {cause}"),
         false => format!("{} cannot be listed: {cause}", at.display()),
     })?;
-    let others: Vec<String> = found
-        .others
-        .iter()
-        .map(|(ending, count)| format!("{count} .{ending}"))
-        .collect();
-    let others = others.join(", ");
     if found.files.is_empty() {
-        let but = match others.is_empty() {
+        let but = match found.has_all() {
             true => String::new(),
-            false => format!(", but {others}: convert them to OBJ or PLY"),
+            false => format!(", but {}", found.skipped_text()),
         };
         return Err(format!(
             "no mesh file in this directory or its subdirectories{but}"
         ));
     }
-    if !others.is_empty() {
+    if !found.has_all() {
         note(&format!(
-            "note: {}: files of other formats are left out ({others}): convert them to OBJ or PLY",
-            folder.display()
+            "note: {}: other files are left out: {}",
+            folder.display(),
+            found.skipped_text()
         ));
     }
     Ok(found.files)
@@ -145,20 +143,61 @@ fn files_in_folder(folder: &Path, note: &mut dyn FnMut(&str)) -> Result<Vec<Path
 struct Found {
     /// The mesh files.
     files: Vec<PathBuf>,
-    /// Number of mesh files of other formats, by ending.
-    others: BTreeMap<String, usize>,
+    /// Number of other files, by ending.
+    skipped: BTreeMap<String, usize>,
+    /// Number of hidden files and folders.
+    hidden: usize,
+    /// Number of links to folders, of broken links, and of pipes and devices.
+    not_files: usize,
 }
 
-/// Returns a path as text. Bytes that are not UTF-8 are escaped, so that different paths have
-/// different names.
+impl Found {
+    /// Returns whether every entry is a mesh file or a folder.
+    fn has_all(&self) -> bool {
+        self.skipped.is_empty() && self.hidden + self.not_files == 0
+    }
+
+    /// Describes the skipped files by their endings, and says which of them can be converted.
+    fn skipped_text(&self) -> String {
+        let counts = self.skipped.iter().map(|(ending, count)| {
+            let ending = sanitize(ending);
+            match ending.is_empty() {
+                true => format!("{count} without an ending"),
+                false => format!("{count} .{ending}"),
+            }
+        });
+        let mut counts: Vec<String> = counts.collect();
+        if self.hidden > 0 {
+            counts.push(format!("{} hidden", self.hidden));
+        }
+        if self.not_files > 0 {
+            let entries = counted(self.not_files, "link or device", "links or devices");
+            counts.push(entries);
+        }
+        let mut text = counts.join(", ");
+        let convertible = OTHER_FORMATS
+            .iter()
+            .filter(|ending| self.skipped.contains_key(**ending));
+        let convertible: Vec<String> = convertible.map(|ending| format!(".{ending}")).collect();
+        if !convertible.is_empty() {
+            text += &format!("; convert {} to OBJ or PLY", convertible.join(" and "));
+        }
+        text
+    }
+}
+
+/// Returns a path as text; `standard input` for `-`. Bytes that are not UTF-8 are escaped, so that
+/// different paths have different names.
 fn name_of(path: &Path) -> String {
-    path.to_str()
-        .map_or_else(|| format!("{path:?}"), ToOwned::to_owned)
+    match path.to_str() {
+        Some(_) => shown(path),
+        None => format!("{path:?}"),
+    }
 }
 
-/// Lists all mesh files in `folder` and its subfolders, sorted by name, and counts those of other
-/// formats. Skips hidden files, which other programs leave behind. Does not follow links to folders,
-/// because they may form a cycle.
+/// Lists all mesh files in `folder` and its subfolders, sorted by name, and counts all other
+/// entries. Skips hidden files and folders, which other programs leave behind. Does not follow links
+/// to folders, because they may form a cycle.
 fn list_files(folder: &Path, found: &mut Found) -> Result<(), (PathBuf, io::Error)> {
     let failed = |cause| (folder.to_owned(), cause);
     let entries = fs::read_dir(folder).map_err(failed)?;
@@ -166,6 +205,7 @@ fn list_files(folder: &Path, found: &mut Found) -> Result<(), (PathBuf, io::Erro
     for entry in entries {
         let entry = entry.map_err(failed)?;
         if entry.file_name().to_string_lossy().starts_with('.') {
+            found.hidden += 1;
             continue;
         }
         let path = entry.path();
@@ -173,6 +213,8 @@ fn list_files(folder: &Path, found: &mut Found) -> Result<(), (PathBuf, io::Erro
         // List only files and links to files. Opening a pipe may block.
         if is_folder || fs::metadata(&path).is_ok_and(|metadata| metadata.is_file()) {
             paths.push((path, is_folder));
+        } else {
+            found.not_files += 1;
         }
     }
     paths.sort();
@@ -185,8 +227,8 @@ fn list_files(folder: &Path, found: &mut Found) -> Result<(), (PathBuf, io::Erro
         let ending = ending.unwrap_or_default().to_ascii_lowercase();
         if Format::from_path(&path).is_some() {
             found.files.push(path);
-        } else if OTHER_FORMATS.contains(&&*ending) {
-            *found.others.entry(ending).or_default() += 1;
+        } else {
+            *found.skipped.entry(ending).or_default() += 1;
         }
     }
     Ok(())

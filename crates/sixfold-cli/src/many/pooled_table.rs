@@ -1,52 +1,122 @@
 //! The table of the results of many meshes.
 
 use comfy_table::{Attribute, Cell, CellAlignment};
-use sixfold_study::{Pool, Pooled};
+use sixfold_study::numbers::counted;
+use sixfold_study::{Overall, Pool, Pooled, Purpose};
 
-use crate::tables::styled;
+use crate::tables::{stacked, unbroken};
+use crate::text::hanging_indent;
 
 /// Returns the table of mean ratios, with a row per operation and a column per backend. A mean
 /// ratio is the geometric mean of the ratios to the best backend of each mesh.
 pub(super) fn pooled_table(pool: &Pool, bold: bool) -> String {
-    let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
     let mut columns: Vec<&str> = Vec::new();
     for row in pool.all() {
         if !columns.contains(&row.backend.as_str()) {
             columns.push(&row.backend);
         }
     }
-    let mut header = vec![Cell::new("× the best\non average")];
-    header.extend(columns.iter().map(|name| right(name.replace('-', "\n"))));
-    let mut table = styled(header, bold);
     let meshes = pool.groups.first().map_or(0, |all| all.meshes.len());
-    for rows in pool.all().chunk_by(|a, b| a.operation == b.operation) {
-        let name = rows[0].operation.name();
-        let fewer = rows[0].meshes < meshes;
-        let mut line = vec![Cell::new(match fewer {
-            true => format!("{name} ({})", rows[0].meshes),
-            false => name.to_owned(),
-        })];
-        for column in &columns {
-            let row = rows.iter().find(|row| row.backend == *column);
-            line.push(row.map_or_else(|| right("–".into()), |row| cell(row, bold)));
+    let table = |columns: &[&str]| {
+        let mut table = unbroken(header("× the best\non average", columns), bold);
+        for rows in pool.all().chunk_by(|a, b| a.operation == b.operation) {
+            let name = rows[0].operation.name();
+            let fewer = rows[0].meshes < meshes;
+            let mut line = vec![Cell::new(match fewer {
+                true => format!("{name} ({})", rows[0].meshes),
+                false => name.to_owned(),
+            })];
+            for column in columns {
+                let row = rows.iter().find(|row| row.backend == *column);
+                line.push(row.map_or_else(|| right("–".into()), |row| cell(row, bold)));
+            }
+            table.add_row(line);
         }
-        table.add_row(line);
-    }
-    format!("{}\n{LEGEND}", table.trim_fmt())
+        table.trim_fmt()
+    };
+    let legend = LEGEND.map(|line| hanging_indent("", line)).join("\n");
+    format!("{}\n{legend}", stacked(&columns, table))
 }
 
-const LEGEND: &str = "* fastest or tied with the fastest on most meshes\n\
-    ? estimated on some meshes, because a run would exceed the budget\n\
-    (n) mean over n meshes only: on the other meshes, a backend has no time\n\
-    – no time on these meshes";
+/// Returns the table of groups of meshes, with a row per group and kind of work, and a column per
+/// backend. Returns `None` if there are no groups besides the pooled meshes together.
+pub(super) fn groups_table(pool: &Pool, bold: bool) -> Option<String> {
+    if pool.groups.len() < 2 {
+        return None;
+    }
+    let columns: Vec<&str> = pool.compared.iter().map(String::as_str).collect();
+    let table = |columns: &[&str]| {
+        let mut table = unbroken(header("× the best on average,\nby group", columns), bold);
+        for (i, group) in pool.groups.iter().enumerate() {
+            let meshes = counted(group.meshes.len(), "mesh", "meshes");
+            // The name of the first group is too long for the first column.
+            let name = if i == 0 {
+                "all pooled meshes"
+            } else {
+                &group.name
+            };
+            let mut title = vec![Cell::new(format!("{name} ({meshes})"))];
+            title.extend(columns.iter().map(|_| Cell::new("")));
+            table.add_row(title);
+            for purpose in Purpose::ALL {
+                let rows = group.overall.iter().filter(|row| row.purpose == purpose);
+                let rows: Vec<&Overall> = rows.collect();
+                // The backends of a purpose are sorted from the fastest to the slowest.
+                let Some(best) = rows.first() else { continue };
+                let mut line = vec![Cell::new(format!("  {}", purpose.name().to_lowercase()))];
+                line.extend(columns.iter().map(|column| {
+                    let row = rows.iter().find(|row| row.backend == **column);
+                    let Some(row) = row else {
+                        return right("– ".into());
+                    };
+                    let is_best = row.backend == best.backend;
+                    let mark = if is_best { "*" } else { " " };
+                    let cell = right(format!("{}{mark}", ratio(row.ratio_to_best)));
+                    match bold && is_best {
+                        true => cell.add_attribute(Attribute::Bold),
+                        false => cell,
+                    }
+                }));
+                table.add_row(line);
+            }
+        }
+        table.trim_fmt()
+    };
+    let legend = hanging_indent("", GROUPS_LEGEND);
+    Some(format!("{}\n{legend}", stacked(&columns, table)))
+}
 
-/// Formats a cell such as `1.04*` or `?18.2`.
-fn cell(row: &Pooled, bold: bool) -> Cell {
-    let ratio = match row.ratio_to_best {
+const GROUPS_LEGEND: &str = "* smallest mean of the group. In the mean over all pooled meshes, each power of ten of \
+    the number of faces has equal weight.";
+
+fn right(text: String) -> Cell {
+    Cell::new(text).set_alignment(CellAlignment::Right)
+}
+
+/// Returns the header of a table with a column per backend.
+fn header(title: &str, columns: &[&str]) -> Vec<Cell> {
+    let names = columns.iter().map(|name| right(name.replace('-', "\n")));
+    std::iter::once(Cell::new(title)).chain(names).collect()
+}
+
+const LEGEND: [&str; 4] = [
+    "* fastest or tied with the fastest on most meshes",
+    "? estimated on some meshes, because a run would exceed the budget",
+    "(n) mean over n meshes only: on the other meshes, a backend has no time",
+    "– no time on these meshes",
+];
+
+fn ratio(ratio: f64) -> String {
+    match ratio {
         ratio if ratio < 9.995 => format!("{ratio:.2}"),
         ratio if ratio < 99.95 => format!("{ratio:.1}"),
         ratio => format!("{ratio:.0}"),
-    };
+    }
+}
+
+/// Formats a cell such as `1.04*` or `?18.2`.
+fn cell(row: &Pooled, bold: bool) -> Cell {
+    let ratio = ratio(row.ratio_to_best);
     let ahead = 2 * (row.best + row.tied) > row.meshes;
     let mark = if ahead { "*" } else { " " };
     let estimated = if row.estimated > 0 { "?" } else { "" };

@@ -1,7 +1,8 @@
 use sixfold::{Facts, PolygonMesh, structure_infos};
-use sixfold_study::{Control, MeshReport, Run};
+use sixfold_study::{Control, MeshReport, Refusal, RefusalKind, Run};
 
 use super::*;
+use crate::left_out::left_out_notes;
 use crate::text::WIDTH;
 
 fn backend(name: &str, bytes: usize) -> BackendReport {
@@ -71,6 +72,7 @@ fn report() -> Report {
     let refusal = |operation: &str, reason: &str| Refusal {
         backend: "polygon-soup".into(),
         operation: operation.parse().expect("a name"),
+        kind: RefusalKind::Impossible,
         reason: reason.into(),
     };
     let mesh = PolygonMesh::default();

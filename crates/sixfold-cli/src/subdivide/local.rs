@@ -10,8 +10,8 @@ use sixfold::{FaceId, Point, PolygonMesh, Representation, Visitor, visit};
 use crate::arguments::{Select, Subdivide};
 use crate::failure::Failure;
 use crate::load;
-use crate::mesh_files::write_mesh;
-use crate::output::{Output, check_not_overwritten, is_stdout};
+use crate::mesh_files::{open_mesh, shown, write_mesh};
+use crate::output::{check_not_overwritten, is_stdout};
 use crate::progress::Spinner;
 use crate::text::{TextOutput, sanitize};
 use sixfold_study::numbers::{counted, grouped};
@@ -34,8 +34,8 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
             Select::Faces(path) => Failure::usage(format!("{}: {error}", path.display())),
             _ => Failure::usage(error),
         })?;
-    let output = Output::open(&arguments.output)?;
-    let spinner = Spinner::start(format!("refining {}", arguments.mesh.display()));
+    let output = open_mesh(&arguments.output)?;
+    let spinner = Spinner::start(format!("refining {}", shown(&arguments.mesh)));
     let mut work = LocalRefinement {
         polygons: &polygons,
         selection: &selection,

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 /// A time limit for all work of a measurement: building, timing and checking.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
     start: Instant,
     total: Duration,
@@ -16,6 +16,11 @@ impl Budget {
             start: Instant::now(),
             total,
         }
+    }
+
+    /// Returns the whole time from the start to the end.
+    pub const fn total(&self) -> Duration {
+        self.total
     }
 
     /// Returns the remaining time; zero if the time limit has passed.

@@ -20,6 +20,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::engine::disturbance::{DisturbanceDetector, Verdict, undisturbed};
 use crate::engine::statistics::Median;
 use crate::engine::trial::Trial;
+use crate::results::rows::RefusalKind;
 use sixfold_workload::Operation;
 use sixfold_workload::Time;
 use sixfold_workload::pages;
@@ -74,8 +75,10 @@ pub(crate) struct Entry {
     pub(crate) estimate: Option<Time>,
     /// Whether the time is an estimate because the user did not name the operation.
     pub(crate) by_name_only: bool,
-    /// Why the operation cannot be done on this structure or mesh.
+    /// Why the operation has no result on this structure and mesh.
     pub(crate) refusal: Option<String>,
+    /// The kind of `refusal`. It has no meaning without a refusal.
+    pub(crate) refusal_kind: RefusalKind,
     /// For each sample, its round and the time of one run.
     pub(crate) samples: Vec<(u32, Time)>,
     /// For each sample, the larger of the slowdowns before and after the sample, as measured by
@@ -116,6 +119,7 @@ impl Entry {
             estimate: None,
             by_name_only: false,
             refusal: None,
+            refusal_kind: RefusalKind::Impossible,
             samples: Vec::new(),
             slowdowns: Vec::new(),
             repeat_next: false,

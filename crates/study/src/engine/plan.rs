@@ -1,6 +1,7 @@
 //! Runs every operation once, and plans samples that fit the budget.
 
 use crate::engine::measure::{Entry, MAX_RUNS, Measurement, untimed_runs};
+use crate::results::rows::RefusalKind;
 use sixfold_workload::Time;
 use sixfold_workload::{ElementKind, Operation};
 use sixfold_workload::{ElementSample, Job, Run, Task, exceeds_second_level};
@@ -32,7 +33,7 @@ const LONGEST_ONCE: f64 = 0.5;
 /// left.
 const LONGEST_UNNAMED: f64 = 0.02;
 /// Why an operation that was not requested by name has no result.
-pub(crate) const BUDGET_ENDED: &str = "not run, because the budget ended: use a longer --budget";
+const BUDGET_ENDED: &str = "not run, because the budget ended: use a longer --budget";
 /// Number of faces of the first patch on which an operation is timed.
 const FIRST_PATCH: usize = 1024;
 
@@ -77,6 +78,7 @@ impl Measurement<'_, '_, '_> {
                 last_task = Some(entry.job.task);
                 if over {
                     entry.refusal = Some(BUDGET_ENDED.into());
+                    entry.refusal_kind = RefusalKind::BudgetEnded;
                     continue;
                 }
                 let slot_ns = left / (f64::from(ROUNDS) * others);

@@ -13,10 +13,11 @@ use serde::{Deserialize, Serialize};
 
 use sixfold_workload::pages::Policy;
 
+use crate::labs::pick::AskedCount;
 use crate::sanitize::sanitize;
 
 /// Version of the protocol.
-const PROTOCOL: u32 = 1;
+pub(super) const PROTOCOL: u32 = 1;
 /// Maximum length of a line in bytes.
 const LONGEST_LINE: u64 = 1 << 16;
 /// Number of bytes of standard error that are kept.
@@ -41,6 +42,9 @@ pub(super) struct Handshake {
     /// The allocator, if an environment variable can make it keep pages. The only value is `glibc`.
     #[serde(default)]
     pub(super) heap: Option<String>,
+    /// The number of input vertices that were merged with other vertices.
+    #[serde(default)]
+    pub(super) merged_vertices: usize,
 }
 
 /// An environment variable that makes the GNU C library keep freed pages, and its value.
@@ -58,6 +62,7 @@ impl Handshake {
             bytes: None,
             library: None,
             heap: None,
+            merged_vertices: 0,
         }
     }
 
@@ -88,6 +93,9 @@ pub(super) struct Response {
     pub(super) checksum: Option<f64>,
     /// Number of elements that one run visits.
     pub(super) elements: Option<u64>,
+    /// What a program of a user asks in one run.
+    #[serde(default)]
+    pub(super) asked: Option<Vec<AskedCount>>,
 }
 
 pub(super) struct Program<'a> {
@@ -119,6 +127,8 @@ impl<'a> Program<'a> {
             let [tunables, kept] = TUNABLES;
             command.env(tunables, kept);
         }
+        // The last line of standard error must be the reason of a crash, not the end of a backtrace.
+        command.env("RUST_BACKTRACE", "0");
         command.stdin(Stdio::piped());
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         // Ctrl-C must reach only Sixfold. The program ends when its input is closed.
@@ -240,7 +250,10 @@ impl<'a> Program<'a> {
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
         let tail = String::from_utf8_lossy(&tail);
-        match tail.trim().lines().last().map(sanitize) {
+        // Rust programs end with a note on backtraces.
+        let mut lines = tail.trim().lines().rev();
+        let message = lines.find(|line| !line.starts_with("note: "));
+        match message.map(sanitize) {
             Some(message) => format!("{how}: {message}"),
             None => how,
         }

@@ -26,6 +26,13 @@ impl<'a> ExternalSubject<'a> {
         }
     }
 
+    /// Sends a request that is not timed. After an error, the program is not used again.
+    pub(super) fn request(&mut self, run: &'static str, times: u32) -> Result<Response, String> {
+        let program = self.program.as_mut().map_err(|why| why.clone())?;
+        let answer = program.ask(&Request { run, times });
+        self.keep_failure(answer)
+    }
+
     /// Sends `request` and checks the reported time. The time is `None` if the program refuses.
     /// After an error or an impossible time, the program is not used again.
     fn ask(
@@ -35,7 +42,7 @@ impl<'a> ExternalSubject<'a> {
     ) -> Result<(Response, Option<Time>), String> {
         let program = self.program.as_mut().map_err(|why| why.clone())?;
         let before = clock.now();
-        let result = program.ask(request).and_then(|response| {
+        let answer = program.ask(request).and_then(|response| {
             let waited = clock.now().wall_ns - before.wall_ns;
             let time = match response.refused {
                 Some(_) => None,
@@ -43,10 +50,40 @@ impl<'a> ExternalSubject<'a> {
             };
             Ok((response, time))
         });
-        if let Err(why) = &result {
+        self.keep_failure(answer)
+    }
+
+    fn keep_failure<T>(&mut self, answer: Result<T, String>) -> Result<T, String> {
+        if let Err(why) = &answer {
             self.program = Err(format!("it failed earlier: {why}"));
         }
-        result
+        answer
+    }
+
+    /// Runs what the program calls `name`, as `series` describes.
+    pub(super) fn run_named(&mut self, name: &'static str, series: &Series<'_>) -> Run {
+        let clock = series.clock;
+        let refused = |refusal: String| Run::refused(refusal, series);
+        let request = |times: u32| Request { run: name, times };
+        if series.untimed > 0
+            && let Err(why) = self.ask(&request(series.untimed), clock)
+        {
+            return refused(why);
+        }
+        series.begin();
+        match self.ask(&request(series.runs), clock) {
+            Ok((response, Some(time))) => {
+                let found = response.checksum.zip(response.elements);
+                let outcome = found.map(|(checksum, elements)| Outcome {
+                    checksum,
+                    elements,
+                    refused: 0,
+                });
+                Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
+            }
+            Ok((response, None)) => refused(sanitize(&response.refused.unwrap_or_default())),
+            Err(why) => refused(why),
+        }
     }
 }
 
@@ -73,41 +110,13 @@ impl TimedBackend for ExternalSubject<'_> {
     }
 
     fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
-        let clock = series.clock;
-        let none = Time::zero_like(clock.now());
-        let refused = |refusal: String| Run {
-            time: none,
-            outcome: None,
-            refusal: Some(refusal),
-        };
         if job.sample.is_some() {
-            return refused("an external program cannot time a sample of the elements".into());
+            let reason = "an external program cannot time a sample of the elements";
+            return Run::refused(reason.into(), series);
         }
-        let Some(operation) = job.task.operation() else {
-            return refused("it cannot run workloads".into());
-        };
-        let request = |times: u32| Request {
-            run: operation.name(),
-            times,
-        };
-        if series.untimed > 0
-            && let Err(why) = self.ask(&request(series.untimed), clock)
-        {
-            return refused(why);
-        }
-        series.begin();
-        match self.ask(&request(series.runs), clock) {
-            Ok((response, Some(time))) => {
-                let found = response.checksum.zip(response.elements);
-                let outcome = found.map(|(checksum, elements)| Outcome {
-                    checksum,
-                    elements,
-                    refused: 0,
-                });
-                Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome)
-            }
-            Ok((response, None)) => refused(sanitize(&response.refused.unwrap_or_default())),
-            Err(why) => refused(why),
+        match job.task.operation() {
+            Some(operation) => self.run_named(operation.name(), series),
+            None => Run::refused("it cannot run workloads".into(), series),
         }
     }
 }

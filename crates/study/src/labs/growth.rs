@@ -22,11 +22,10 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 use sixfold::shapes::Order;
-use sixfold::{Facts, PolygonMesh};
 use sixfold_core::Counts;
 
 pub use fits::{CacheLimit, Fit};
-pub use settings::{GrowthError, GrowthSettings, growth_bytes};
+pub use settings::{GrowthError, GrowthSettings, growth_bytes, growth_plan};
 pub use shapes::{SCALABLE_SHAPES, ScalableShape};
 
 use crate::engine::agreement::compare_checksums;
@@ -36,6 +35,7 @@ use crate::engine::measure::{Entry, Progress};
 use crate::engine::timer::Timer;
 use crate::engine::trial::{Columns, Measured, Trial};
 use crate::engine::warnings::warnings;
+use crate::inspect::StudyMesh;
 use crate::labs::study::{StudyError, is_skewed, prepare, refusals, results, scans};
 use crate::refusal::Candidate;
 use crate::results::figure::{Figure, FigureRow, samples_of};
@@ -58,6 +58,11 @@ pub struct GrowthReport {
     /// How the finding was measured. In JSON, the finding has the place of the run in `runs`.
     #[serde(skip)]
     pub run: Run,
+    /// The name, facts and hash of the mesh of each size, in the order of `sizes`. Empty if an older
+    /// version of Sixfold wrote the document. In JSON, the finding has the places of the meshes in
+    /// `meshes`.
+    #[serde(skip)]
+    pub meshes: Vec<MeshReport>,
     /// Name of the shape.
     pub shape: String,
     /// Order of the elements in memory.
@@ -135,7 +140,7 @@ impl LabFinding for GrowthReport {
     fn common(&self) -> Common<'_> {
         Common {
             run: &self.run,
-            meshes: &[],
+            meshes: &self.meshes,
             sentences: &self.sentences,
             warnings: &self.warnings,
             interrupted: self.interrupted,
@@ -147,12 +152,14 @@ impl LabFinding for GrowthReport {
     }
 
     fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
-        match meshes.is_empty() {
-            true => Ok(()),
-            false => Err(ReadError::Malformed {
-                cause: "a finding of the kind `growth` has a mesh".into(),
-            }),
+        let [count, sizes] = [meshes.len(), self.sizes.len()];
+        if count != 0 && count != sizes {
+            return Err(ReadError::Malformed {
+                cause: format!("a finding of the kind `growth` has {count} meshes, not {sizes}"),
+            });
         }
+        self.meshes = meshes;
+        Ok(())
     }
 
     fn mismatches(&self) -> usize {
@@ -162,12 +169,12 @@ impl LabFinding for GrowthReport {
     }
 
     fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
-        let figures = self.sizes.iter().flat_map(|size| {
+        let figures = self.sizes.iter().enumerate().flat_map(|(i, size)| {
             let figure = |row: FigureRow<'s>| {
                 let mut bytes = size.backend_bytes.iter();
                 let bytes = bytes.find(|bytes| bytes.backend == row.backend);
                 Figure {
-                    mesh: None,
+                    mesh: self.meshes.get(i),
                     elements_of_mesh: [size.vertices, size.edges, size.faces],
                     case: format!("{}, {}, {} faces", self.shape, self.order, size.faces),
                     backend_bytes: bytes.map(|bytes| bytes.bytes),
@@ -230,6 +237,7 @@ pub fn growth(
     let mut memory = Memory::start(study.heap, study.caches, growth_bytes(settings)?);
     let time = SizeBudgets::new(&plan.sizes, budget);
     let mut sizes: Vec<SizeReport> = Vec::new();
+    let mut meshes = Vec::new();
     let mut left_out = Vec::new();
     // Time per face for building everything at the previous size, in seconds.
     let mut building = 0.0;
@@ -243,13 +251,14 @@ pub fn growth(
         let made = plan.shape.make(faces)?;
         let mesh = settings.order.apply(&made, settings.study.seed);
         drop(made);
+        let mesh = StudyMesh::new(settings.shape.clone(), mesh);
         let range = time.range(step);
         let budget_left = || {
             built.set(start.elapsed());
             time.budget(step)
         };
         let mut report_progress = |at: Progress<'_>| {
-            let stage = format!("{} faces: {}", mesh.face_count(), at.stage);
+            let stage = format!("{} faces: {}", mesh.facts.faces, at.stage);
             progress(Progress {
                 done: range[0] + (range[1] - range[0]) * at.done,
                 stage: &stage,
@@ -257,7 +266,10 @@ pub fn growth(
             });
         };
         match sweep.size(&mesh, step, &budget_left, &mut memory, &mut report_progress)? {
-            Some(size) => sizes.push(size),
+            Some((size, mesh)) => {
+                sizes.push(size);
+                meshes.push(mesh);
+            }
             None => break,
         }
         building = built.get().as_secs_f64() / faces as f64;
@@ -292,6 +304,7 @@ pub fn growth(
     let warnings = warnings(&run, &timer, &rows, noisiest);
     Ok(GrowthReport {
         run,
+        meshes,
         shape: settings.shape.clone(),
         order: settings.order,
         backends: backends.iter().map(|b| b.name().to_owned()).collect(),
@@ -322,28 +335,28 @@ struct Sweep<'s> {
 }
 
 impl Sweep<'_> {
-    /// Measures one size. Returns `None` if interrupted.
+    /// Measures one size. Returns its results and its mesh; `None` if interrupted.
     fn size(
         &mut self,
-        mesh: &PolygonMesh,
+        study_mesh: &StudyMesh,
         step: usize,
         budget: &dyn Fn() -> Duration,
         memory: &mut Memory,
         progress: &mut dyn FnMut(Progress<'_>),
-    ) -> Result<Option<SizeReport>, GrowthError> {
+    ) -> Result<Option<(SizeReport, MeshReport)>, GrowthError> {
         let Plan {
             backends,
             operations,
             ..
         } = self.plan;
         let stopped = || self.stop.load(Ordering::Relaxed);
-        let facts = Facts::from_polygons(mesh);
+        let (mesh, facts) = (&study_mesh.polygons, &study_mesh.facts);
         let counts = mesh.counts(facts.edges);
-        let skewed = is_skewed(&facts);
+        let skewed = is_skewed(facts);
         let seed = self.settings.study.seed;
         let needs_draw = backends.iter().any(|b| skewed || scans(b, operations));
         let draw = needs_draw.then(|| Draw::new(mesh, seed));
-        let candidate = Candidate::with_facts(mesh, &facts);
+        let candidate = Candidate::with_facts(mesh, facts);
         let mut subjects: Vec<Box<dyn TimedBackend + '_>> = Vec::new();
         let (mut backend_bytes, mut refused_by) = (Vec::new(), Vec::new());
         for backend in backends {
@@ -402,7 +415,7 @@ impl Sweep<'_> {
         self.counts = Some(counts);
         let shortest = entries.iter().filter_map(Entry::shortest_sample_ns);
         self.shortest_ns = shortest.chain(self.shortest_ns).min_by(f64::total_cmp);
-        Ok(Some(SizeReport {
+        let size = SizeReport {
             vertices: counts.vertices,
             edges: counts.edges,
             faces: counts.faces,
@@ -411,7 +424,8 @@ impl Sweep<'_> {
             samples,
             refusals: refusals(&entries, subjects),
             control,
-        }))
+        };
+        Ok(Some((size, study_mesh.report())))
     }
 
     fn bytes_with_cache(&self, backend: String, bytes: usize) -> BackendBytes {

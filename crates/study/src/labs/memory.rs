@@ -15,7 +15,7 @@ use sixfold_workload::{
 use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::labs::study::StudyError;
 use crate::refusal::Candidate;
-use crate::results::figure::{Figure, FigureRow, Status};
+use crate::results::figure::{Figure, FigureRow, SizeBytes, Status};
 use crate::results::finding::{Common, LabFinding, only_mesh};
 use crate::results::read::ReadError;
 use crate::results::rows::{BackendReport, MeshReport};
@@ -23,6 +23,9 @@ use crate::results::run::{Run, RunSettings};
 
 /// Bytes of a word: an index or a coordinate.
 const WORD: f64 = 4.0;
+
+/// The name of the structure itself among the operations of the figures.
+const STRUCTURE: &str = "structure";
 
 /// Maximum number of counts per backend. Counting ends earlier if two counts in a row are equal.
 const MAX_COUNTS: usize = 8;
@@ -267,7 +270,33 @@ impl LabFinding for Audit {
                 samples: None,
                 noise: 1.0,
             };
-            audited.operations.iter().map(figure).collect::<Vec<_>>()
+            let structure = Figure {
+                mesh: Some(&self.mesh),
+                elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
+                case: String::new(),
+                backend_bytes: audited.counted_bytes,
+                row: FigureRow {
+                    size: audited.counted_bytes.map(|counted| SizeBytes {
+                        layout: backend.layout_bytes,
+                        counted: Some(counted),
+                        peak: audited.peak_bytes,
+                    }),
+                    ..FigureRow::new(
+                        STRUCTURE.into(),
+                        &backend.name,
+                        match backend.holds {
+                            true => Status::Counted,
+                            false => Status::Refused,
+                        },
+                    )
+                },
+                samples: None,
+                noise: 1.0,
+            };
+            let operations = audited.operations.iter().map(figure);
+            std::iter::once(structure)
+                .chain(operations)
+                .collect::<Vec<_>>()
         };
         self.backends.iter().flat_map(of_backend).collect()
     }

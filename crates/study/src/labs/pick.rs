@@ -14,7 +14,9 @@ mod measurement;
 mod needs;
 mod pooled;
 mod prediction;
+mod programs;
 mod reasons;
+mod recording;
 mod report;
 mod tasks;
 #[cfg(test)]
@@ -32,7 +34,12 @@ use sixfold_workload::{
 pub use choice::{Choice, EQUAL_UP_TO, TurningPoint};
 pub use needs::{Need, UnknownNeed};
 pub use prediction::{Predicted, Prediction, predict};
-pub use report::{BreakEven, Excluded, MeshRanking, PartCost, PickReport, Ranked};
+pub(crate) use programs::Qualification;
+pub use programs::{ProgramSettings, pick_for_programs};
+pub use recording::{RecordError, RecordedProgram, record_program};
+pub use report::{
+    AskedCount, BreakEven, Excluded, MeshRanking, PartCost, PickReport, ProgramReport, Ranked,
+};
 
 use crate::engine::budget::Budget;
 use crate::engine::heap::{CacheState, Memory};
@@ -43,6 +50,8 @@ use crate::refusal::Candidate;
 use crate::results::run::{Run, RunSettings};
 use backend::PickBackend;
 use measurement::PickMeasurement;
+use pooled::Question;
+use tasks::Tasks;
 
 /// The settings of [`pick`].
 #[derive(Clone, Debug, PartialEq)]
@@ -103,6 +112,11 @@ pub enum PickError {
     /// The list of meshes is empty.
     #[error("the list of meshes is empty: give at least one mesh")]
     NoMesh,
+    /// The mesh for child processes cannot be written.
+    #[error(
+        "the mesh for child processes cannot be written: {reason}: set TMPDIR to a folder with space"
+    )]
+    MeshFile { reason: String },
 }
 
 /// Runs the workload of `settings` on each of `study_meshes`, and ranks the backends.
@@ -152,7 +166,12 @@ pub fn pick(
     let interrupted = stop.load(Ordering::Relaxed);
     Ok(pooled::pooled(
         outcomes,
-        settings,
+        Question {
+            workload: settings.workload.clone(),
+            program: None,
+            needs: settings.needs.clone(),
+            max_memory: settings.max_memory,
+        },
         timer,
         run.with_memory(&memory),
         interrupted,
@@ -268,16 +287,18 @@ fn measure_mesh(
         backends.extend(backend::build_tables(&backends, clock, tabulate));
         backend::exclude_large(&mut backends, settings.max_memory, &mut excluded);
     }
+    let tasks = Tasks::new(workload, &schedule, polygons, &counts);
     let measurement = PickMeasurement {
         study_mesh,
-        settings,
+        plan: &tasks,
+        seed: settings.seed,
         counts,
-        schedule: &schedule,
         budget: budget.left(),
         clock,
         memory,
         stop,
         progress,
     };
-    Ok(measurement.run(backends, control, excluded))
+    let backends = backends.into_iter().map(PickBackend::split).collect();
+    Ok(measurement.run(backends, control.map(PickBackend::split), excluded))
 }

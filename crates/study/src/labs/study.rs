@@ -448,6 +448,7 @@ pub(crate) fn refusals(entries: &[Entry], subjects: &[Box<dyn TimedBackend + '_>
         Some(Refusal {
             backend: subjects[entry.subject].name().into(),
             operation: entry.operation()?,
+            kind: entry.refusal_kind,
             reason,
         })
     };

@@ -20,6 +20,7 @@ use crate::engine::measure::Progress;
 use crate::inspect::{StudyMesh, unbuilt};
 use crate::labs::study::report::{Report, bytes_of};
 use crate::labs::study::{Settings, StudyError, study};
+use crate::numbers::bytes;
 use crate::refusal::Candidate;
 use crate::results::figure::{Figure, FigureRow, Status, samples_of};
 use crate::results::finding::{Common, LabFinding, only_mesh};
@@ -44,8 +45,8 @@ pub struct WhySettings {
 /// The settings of the time measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timing {
-    /// Time limit for counting reads and measuring times.
-    pub budget: Duration,
+    /// Time limit for all work, including the measurement of the memory.
+    pub budget: Budget,
     /// The speed at which this machine reads memory.
     pub memory: MemorySpeed,
 }
@@ -210,32 +211,35 @@ impl LabFinding for Why {
     fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
         let facts = &self.mesh.facts;
         let figure = |row: &'s WhyRow| {
-            let timed = row.timed?;
             let operation = Operation::Relation(row.reads.relation).name();
-            let status = match timed.sampled {
-                true => Status::Sampled,
-                false => Status::Measured,
+            let status = match row.timed.map(|timed| timed.sampled) {
+                None => Status::Counted,
+                Some(true) => Status::Sampled,
+                Some(false) => Status::Measured,
             };
             let elements = row.reads.elements;
             let samples = samples_of(&self.samples, operation, &row.backend);
-            Some(Figure {
+            Figure {
                 mesh: Some(&self.mesh),
                 elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
                 case: String::new(),
                 backend_bytes: bytes_of(&self.backends, &row.backend),
                 row: FigureRow {
-                    ns: Some(timed.ns_per_element * elements as f64),
+                    ns: row
+                        .timed
+                        .map(|timed| timed.ns_per_element * elements as f64),
                     elements: Some(elements),
                     unit: row.per.clone(),
-                    agreement: Some(timed.agreement),
+                    agreement: row.timed.map(|timed| timed.agreement),
+                    reads: Some(&row.reads),
                     samples: samples.map_or(0, |samples| samples.rounds.len()),
                     ..FigureRow::new(operation.into(), &row.backend, status)
                 },
                 samples,
                 noise: 1.0,
-            })
+            }
         };
-        self.rows.iter().filter_map(figure).collect()
+        self.rows.iter().map(figure).collect()
     }
 
     fn check(&self) -> Result<(), ReadError> {
@@ -258,10 +262,6 @@ pub fn why(
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<Why, StudyError> {
-    let budget = settings
-        .timing
-        .as_ref()
-        .map(|timing| Budget::start(timing.budget));
     let requested = |relation: &Relation| {
         settings.relations.is_empty() || settings.relations.contains(relation)
     };
@@ -277,13 +277,13 @@ pub fn why(
     }
     // Counting has no time limit.
     let timing = settings.timing.as_ref();
-    study_settings.budget = timing.map_or(Duration::ZERO, |timing| timing.budget);
+    study_settings.budget = timing.map_or(Duration::ZERO, |timing| timing.budget.total());
     let mut run = Run::start(RunSettings::of_study(&study_settings));
     let (backends, mut rows) = count_all(study_mesh, &study_settings, &relations, stop, progress)?;
     // The sort is stable: the rows of one relation stay in the order of the backends.
     rows.sort_by_key(|row| row.reads.relation);
     let (mut samples, mut warnings) = (Vec::new(), Vec::new());
-    if let (Some(Timing { memory, .. }), Some(budget)) = (&settings.timing, budget)
+    if let Some(Timing { memory, budget }) = &settings.timing
         && !stop.load(Ordering::Relaxed)
     {
         study_settings.budget = budget.left();
@@ -293,6 +293,7 @@ pub fn why(
         }
         run.environment = report.run.environment;
         (samples, warnings) = (report.samples, report.warnings);
+        warnings.extend(left_out_buffers(memory));
     }
     let memory = settings.timing.as_ref().map(|timing| &timing.memory);
     Ok(Why {
@@ -368,6 +369,16 @@ impl ReadsObserver for RowCollector<'_> {
             timed: None,
         });
     }
+}
+
+/// Describes the buffers that were left out because the budget was too short.
+fn left_out_buffers(memory: &MemorySpeed) -> Option<String> {
+    let [from, largest] = [memory.left_out_from()?, memory.memory().bytes].map(bytes);
+    Some(format!(
+        "The budget was too short to measure the speed of buffers of {from} and more. Queries that \
+         read more than {largest} are compared with the speed of {largest}, which is too fast for \
+         them: use a longer --budget."
+    ))
 }
 
 /// Returns the time from the report, compared with the speed of memory.
@@ -451,6 +462,7 @@ mod tests {
     #[test]
     fn a_time_is_compared_with_memory_of_the_size_of_the_sweep() {
         let memory = MemorySpeed::measure(
+            Duration::from_millis(20),
             &sixfold_workload::MachineClock::start(),
             &AtomicBool::new(false),
         );
@@ -459,7 +471,7 @@ mod tests {
             backends: vec!["half-edge".into()],
             relations: vec![Relation::VertexFaces],
             timing: Some(Timing {
-                budget: Duration::from_millis(20),
+                budget: Budget::start(Duration::from_millis(20)),
                 memory: memory.clone(),
             }),
             ..WhySettings::default()
@@ -475,6 +487,10 @@ mod tests {
         assert_eq!(timed.waits_ns, row.reads.jumps * timed.speed.latency_ns);
         assert!(timed.ns_per_element > 0.0 && why.mismatches() == 0);
         assert_eq!(why.memory.as_deref(), Some(memory.speeds()));
+        assert_eq!(why.run.settings.budget_s, 0.02, "the whole budget");
+        let missing = memory.left_out_from().is_some();
+        let warned = why.warnings.iter().any(|w| w.contains("speed of buffers"));
+        assert_eq!(warned, missing, "{:?}", why.warnings);
     }
 
     #[test]

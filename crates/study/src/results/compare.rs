@@ -332,7 +332,7 @@ fn differences(before: &Run, after: &Run) -> Vec<SettingChange> {
             .unwrap_or("not known");
         Some(format!("{}, huge pages: {pages}", heap.allocator))
     };
-    let facts = |run: &Run| -> [(&'static str, String); 15] {
+    let facts = |run: &Run| -> [(&'static str, String); 16] {
         let e = &run.environment;
         [
             ("processor", shown(e.cpu_model.as_ref())),
@@ -344,6 +344,7 @@ fn differences(before: &Run, after: &Run) -> Vec<SettingChange> {
             ("compiler", e.rustc.clone()),
             ("profile", format!("{} -O{}", e.profile, e.opt_level)),
             ("flags", e.rustflags.clone()),
+            ("features", e.features.join(", ")),
             ("sixfold", e.sixfold.clone()),
             ("commit", shown(e.commit.as_ref())),
             ("clock", e.clock.clone()),
@@ -402,7 +403,7 @@ fn bytes<'r>(
 fn winners(before: &AllMeasured<'_>, after: &AllMeasured<'_>) -> Vec<NewWinner> {
     let best = |all: &AllMeasured<'_>| {
         let best = all.in_order.iter().filter(|measured| {
-            measured.finding.kind() == "study"
+            matches!(measured.finding, Finding::Study(_))
                 && measured.figure.row.standing == Some(Standing::Best)
         });
         let best: Vec<Measurement> = best.map(|measured| measured.key.clone()).collect();

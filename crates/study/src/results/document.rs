@@ -8,6 +8,7 @@ use std::io;
 use serde::{Deserialize, Serialize};
 
 use crate::labs::growth::GrowthReport;
+use crate::labs::memory::Audit;
 use crate::labs::neighbours::NeighboursReport;
 use crate::labs::orders::OrdersReport;
 use crate::labs::pick::PickReport;
@@ -197,6 +198,14 @@ impl Results {
     pub fn why(&self) -> impl Iterator<Item = &Why> {
         self.findings.iter().filter_map(|finding| match finding {
             Finding::Why(why) => Some(&**why),
+            _ => None,
+        })
+    }
+
+    /// Iterates over the counts of the bytes of each backend.
+    pub fn memory(&self) -> impl Iterator<Item = &Audit> {
+        self.findings.iter().filter_map(|finding| match finding {
+            Finding::Memory(audit) => Some(&**audit),
             _ => None,
         })
     }

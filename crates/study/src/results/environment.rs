@@ -27,6 +27,9 @@ pub struct Environment {
     pub opt_level: String,
     /// Additional flags of the Rust compiler.
     pub rustflags: String,
+    /// The cargo features with which `sixfold-study` was built. Empty if it was built without features.
+    #[serde(default)]
+    pub features: Vec<String>,
     /// Target triple of the build.
     pub target: String,
     /// Operating system.
@@ -74,6 +77,10 @@ impl Environment {
             profile: env!("STUDY_PROFILE").into(),
             opt_level: env!("STUDY_OPT_LEVEL").into(),
             rustflags: env!("STUDY_RUSTFLAGS").into(),
+            features: env!("STUDY_FEATURES")
+                .split_terminator(',')
+                .map(str::to_owned)
+                .collect(),
             target: env!("STUDY_TARGET").into(),
             os: std::env::consts::OS.into(),
             kernel: System::kernel_version(),

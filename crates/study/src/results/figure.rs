@@ -1,9 +1,11 @@
 //! Single times and counts of bytes of findings, in one form for all labs.
 
 use serde::Serialize;
+use sixfold_workload::Reads;
 
-use crate::engine::plan::BUDGET_ENDED;
-use crate::results::rows::{Agreement, MeshReport, Refusal, ResultRow, Samples, Standing};
+use crate::results::rows::{
+    Agreement, MeshReport, Refusal, RefusalKind, ResultRow, Samples, Standing,
+};
 
 /// One time or count of bytes in a finding: an operation on a backend, on a mesh and in a case.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,6 +67,21 @@ pub struct FigureRow<'r> {
     pub checksum: Option<f64>,
     /// The number of elements on which the operation was run; `None` if it was run on all elements.
     pub sample_size: Option<usize>,
+    /// The bytes of the backend in `memory`; `None` in other labs, and for an operation.
+    pub size: Option<SizeBytes>,
+    /// The reads of the queries in `why`; `None` in other labs.
+    pub reads: Option<&'r Reads>,
+}
+
+/// The bytes of a backend, by formula and by allocator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SizeBytes {
+    /// The bytes by the layout formula; `None` if the backend has no formula.
+    pub layout: Option<usize>,
+    /// The bytes that the allocator counted.
+    pub counted: Option<usize>,
+    /// The peak of the bytes while the backend is built.
+    pub peak: Option<usize>,
 }
 
 /// How a time or a count of bytes was obtained.
@@ -77,7 +94,7 @@ pub enum Status {
     Sampled,
     /// The time is an estimate, because a whole run would exceed the time limit.
     Estimated,
-    /// Bytes were counted. There is no time.
+    /// Bytes or reads were counted. There is no time.
     Counted,
     /// There is no value, because the backend cannot do the operation on this mesh.
     Refused,
@@ -105,14 +122,16 @@ impl<'r> FigureRow<'r> {
             samples: 0,
             checksum: None,
             sample_size: None,
+            size: None,
+            reads: None,
         }
     }
 
     /// Returns the row of an operation that was refused or not run.
     pub(crate) fn of_refusal(refusal: &'r Refusal) -> Self {
-        let status = match refusal.reason == BUDGET_ENDED {
-            true => Status::NotRun,
-            false => Status::Refused,
+        let status = match refusal.kind {
+            RefusalKind::BudgetEnded => Status::NotRun,
+            RefusalKind::Impossible => Status::Refused,
         };
         Self::new(refusal.operation.name().into(), &refusal.backend, status)
     }
@@ -142,7 +161,7 @@ impl<'r> FigureRow<'r> {
         }
     }
 
-    /// Returns true if the time was measured or the bytes were counted.
+    /// Returns true if the time was measured, or if bytes or reads were counted.
     pub const fn is_measured(&self) -> bool {
         matches!(
             self.status,

@@ -35,6 +35,17 @@ pub enum Finding {
     Pick(Box<PickReport>),
 }
 
+/// The names of the commands that measure findings, in the order of [`Finding`].
+pub(crate) const KINDS: [&str; 7] = [
+    "study",
+    "orders",
+    "growth",
+    "why",
+    "memory",
+    "neighbours",
+    "pick",
+];
+
 /// The parts that the findings of all labs have.
 pub(crate) struct Common<'f> {
     pub(crate) run: &'f Run,
@@ -92,15 +103,15 @@ impl Finding {
 
     /// Returns the name of the command that measured this finding, such as `study`.
     pub const fn kind(&self) -> &'static str {
-        match self {
-            Self::Study(_) => "study",
-            Self::Orders(_) => "orders",
-            Self::Growth(_) => "growth",
-            Self::Why(_) => "why",
-            Self::Memory(_) => "memory",
-            Self::Neighbours(_) => "neighbours",
-            Self::Pick(_) => "pick",
-        }
+        KINDS[match self {
+            Self::Study(_) => 0,
+            Self::Orders(_) => 1,
+            Self::Growth(_) => 2,
+            Self::Why(_) => 3,
+            Self::Memory(_) => 4,
+            Self::Neighbours(_) => 5,
+            Self::Pick(_) => 6,
+        }]
     }
 
     /// Returns how the finding was measured.

@@ -112,8 +112,8 @@ pub struct Pooled {
     /// The time of this backend divided by the time of the fastest backend, as the geometric mean
     /// over the meshes.
     pub ratio_to_best: f64,
-    /// Lower end of the 95 % confidence interval of `ratio_to_best`; `None` with fewer than three
-    /// meshes.
+    /// Lower end of the 95 % confidence interval of `ratio_to_best`, at least 1; `None` with fewer
+    /// than three meshes.
     pub ci_low: Option<f64>,
     /// Upper end of the 95 % confidence interval of `ratio_to_best`.
     pub ci_high: Option<f64>,
@@ -121,9 +121,17 @@ pub struct Pooled {
     pub ns_per_element: Option<f64>,
 }
 
+#[cfg(test)]
+thread_local! {
+    /// The number of times that results were pooled in this thread.
+    pub(crate) static POOLED: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
+}
+
 impl Pool {
     /// Computes the results over several studies. Each study must be of a different mesh.
     pub(crate) fn new(studies: &[&Report]) -> Self {
+        #[cfg(test)]
+        POOLED.with(|pooled| pooled.set(pooled.get() + 1));
         let holding = holding(studies);
         let compared: Vec<&str> = holding
             .iter()
@@ -138,7 +146,12 @@ impl Pool {
             holds(studies[mesh], name)
         });
         let common: Vec<&Report> = common.into_iter().map(|mesh| studies[mesh]).collect();
-        let groups: Vec<Group> = groups(&common)
+        // The name of the group of the pooled meshes must not promise the other meshes.
+        let all = match common.len() == studies.len() {
+            true => "all meshes",
+            false => "meshes that all compared backends can hold",
+        };
+        let groups: Vec<Group> = groups(&common, all)
             .into_iter()
             .map(|(name, studies)| Group {
                 name,
@@ -257,13 +270,13 @@ fn common<'b>(
     }
 }
 
-/// Returns the groups of meshes with their names: all, by the number of faces, and by kind. A
+/// Returns the groups of meshes with their names: all meshes under the name `all`, by the number of faces, and by kind. A
 /// division into one group is left out.
-fn groups<'s>(studies: &[&'s Report]) -> Vec<(String, Vec<&'s Report>)> {
+fn groups<'s>(studies: &[&'s Report], all: &str) -> Vec<(String, Vec<&'s Report>)> {
     if studies.is_empty() {
         return Vec::new();
     }
-    let mut groups = vec![("all meshes".to_owned(), studies.to_vec())];
+    let mut groups = vec![(all.to_owned(), studies.to_vec())];
     let mut add = |by: &dyn Fn(&Report) -> (u32, String)| {
         let mut parts: BTreeMap<(u32, String), Vec<&Report>> = BTreeMap::new();
         for study in studies {
@@ -342,6 +355,7 @@ fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
             let Some((ratio_to_best, interval)) = geometric_mean(&ratios) else {
                 continue;
             };
+            let interval = interval.map(|ends| above_best(ends, ratio_to_best));
             pooled.push(Pooled {
                 backend: (*backend).to_owned(),
                 operation,
@@ -461,10 +475,14 @@ fn mean_over_sizes(values: &[(u32, f64)]) -> Option<(f64, Option<[f64; 2]>)> {
     let (mean, _) = geometric_mean(&means)?;
     let all: Vec<f64> = values.iter().map(|(_, value)| *value).collect();
     let (centre, interval) = geometric_mean(&all)?;
-    Some((
-        mean,
-        interval.map(|ends| ends.map(|end| end * mean / centre)),
-    ))
+    let interval = interval.map(|ends| ends.map(|end| end * mean / centre));
+    Some((mean, interval.map(|ends| above_best(ends, mean))))
+}
+
+/// Moves the lower end of the interval of a mean ratio to 1 if it is below 1, because no backend is
+/// faster than the best on average. The interval still contains `mean`.
+fn above_best([low, high]: [f64; 2], mean: f64) -> [f64; 2] {
+    [low.max(mean.min(1.0)), high]
 }
 
 /// Describes the fastest backends of one purpose. `compared` is the number of all compared backends.

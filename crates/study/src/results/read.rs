@@ -8,6 +8,7 @@ use serde::de::{DeserializeOwned, IgnoredAny};
 use serde_json::error::Category;
 
 use crate::results::document::SCHEMA;
+use crate::results::finding::KINDS;
 
 /// The reason why a file cannot be read as results.
 #[derive(Debug, thiserror::Error)]
@@ -35,14 +36,18 @@ pub enum ReadError {
     )]
     OtherSchema { found: u64 },
     /// The file contains no measurement. For example, `sixfold inspect` or `compare` wrote it.
-    #[error(
-        "has no findings: choose a file that `sixfold study`, `orders`, `growth`, `why`, `memory` \
-         or `pick` wrote"
-    )]
+    #[error("has no findings: choose a file that {} wrote", commands())]
     NoFindings,
     /// A field of the JSON is missing or has an impossible value.
     #[error("is not in the format that sixfold writes: {cause}")]
     Malformed { cause: String },
+}
+
+/// Returns the commands that write documents, as in `sixfold study, orders or pick`.
+fn commands() -> String {
+    let [first, between @ .., last] = KINDS;
+    let between: String = between.iter().map(|kind| format!(", `{kind}`")).collect();
+    format!("`sixfold {first}`{between} or `{last}`")
 }
 
 /// Returns an error if the text is not a document of the current schema.

@@ -298,15 +298,56 @@ impl ControlRow {
     }
 }
 
-/// An operation that a backend cannot do on this mesh.
+/// An operation without a result on a backend: the backend cannot do it, or it was not run.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(from = "WrittenRefusal")]
 pub struct Refusal {
     /// The name of the backend, such as `half-edge`.
     pub backend: String,
-    /// The operation that the backend cannot do, such as `loop_native`.
+    /// The operation without a result, such as `loop_native`.
     pub operation: Operation,
-    /// Why the backend cannot do the operation.
+    /// Whether the backend cannot do the operation, or the budget ended.
+    pub kind: RefusalKind,
+    /// Why there is no result.
     pub reason: String,
+}
+
+/// The kind of reason why an operation has no result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum RefusalKind {
+    /// The backend cannot do the operation on this mesh.
+    Impossible,
+    /// The operation was not run, because the budget ended.
+    BudgetEnded,
+}
+
+/// A refusal in a document. Older versions wrote no kind.
+#[derive(Deserialize)]
+struct WrittenRefusal {
+    backend: String,
+    operation: Operation,
+    kind: Option<RefusalKind>,
+    reason: String,
+}
+
+/// The reason that older versions wrote when the budget ended.
+const OLD_BUDGET_ENDED: &str = "not run, because the budget ended: use a longer --budget";
+
+impl From<WrittenRefusal> for Refusal {
+    fn from(written: WrittenRefusal) -> Self {
+        let old_kind = || match written.reason == OLD_BUDGET_ENDED {
+            true => RefusalKind::BudgetEnded,
+            false => RefusalKind::Impossible,
+        };
+        Self {
+            kind: written.kind.unwrap_or_else(old_kind),
+            backend: written.backend,
+            operation: written.operation,
+            reason: written.reason,
+        }
+    }
 }
 
 /// The result of comparing the checksums of one operation.
@@ -391,4 +432,31 @@ fn is_time(ns: &f64) -> bool {
 
 fn malformed(cause: String) -> Result<(), ReadError> {
     Err(ReadError::Malformed { cause })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::figure::{FigureRow, Status};
+
+    #[test]
+    fn a_refusal_is_not_run_by_its_kind_and_without_a_kind_by_the_reason_of_older_versions() {
+        let status = |kind: &str, reason: &str| {
+            let json =
+                format!(r#"{{"backend": "b", "operation": "build", {kind} "reason": "{reason}"}}"#);
+            let refusal: Refusal = serde_json::from_str(&json).expect("a refusal");
+            let written = serde_json::to_string(&refusal).expect("JSON");
+            assert_eq!(
+                serde_json::from_str::<Refusal>(&written).ok(),
+                Some(refusal.clone())
+            );
+            FigureRow::of_refusal(&refusal).status
+        };
+        let ended = r#""kind": "budget_ended","#;
+        assert_eq!(status(ended, "any words"), Status::NotRun);
+        let impossible = r#""kind": "impossible","#;
+        assert_eq!(status(impossible, OLD_BUDGET_ENDED), Status::Refused);
+        assert_eq!(status("", OLD_BUDGET_ENDED), Status::NotRun);
+        assert_eq!(status("", "no table"), Status::Refused);
+    }
 }

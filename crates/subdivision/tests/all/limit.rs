@@ -6,7 +6,7 @@ use sixfold_core::{Creases, MeshQuery, Point, PolygonMesh, Representation, Verte
 use sixfold_half_edge::HalfEdgeMesh;
 use sixfold_indexed_face_set::IndexedFaceSet;
 use sixfold_subdivision::{
-    Boundary, ControlGrid, Ends, LimitNormal, LimitPoint, LoopWeights, NoLimit, Scheme, Step,
+    BoundaryRule, ControlGrid, Ends, LimitNormal, LimitPoint, LoopWeights, NoLimit, Scheme, Step,
     Subdivision, SubdivisionError,
 };
 
@@ -226,7 +226,7 @@ fn a_smooth_vertex_converges_to_its_limit() {
 fn a_boundary_vertex_converges_to_its_limit() {
     for scheme in SCHEMES.into_iter().flat_map(all_options) {
         let scheme = Subdivision {
-            boundary: Boundary::EdgeOnly,
+            boundary: BoundaryRule::EdgeOnly,
             ..scheme
         };
         for (k, seed) in (1..13).flat_map(|k| (0..4).map(move |seed| (k, seed))) {
@@ -378,7 +378,7 @@ fn undefined_limits_have_the_expected_reason() {
     );
     assert!(corner.normal().is_some());
     let rounded = Subdivision {
-        boundary: Boundary::EdgeOnly,
+        boundary: BoundaryRule::EdgeOnly,
         ..scheme
     };
     let (_, at) = limits::<IndexedFaceSet>(&rounded, &single, &Creases::default());
@@ -422,7 +422,7 @@ proptest! {
         polygons in manifold_mesh(),
         picks in prop::collection::vec((any::<prop::sample::Index>(), 0..5_usize), 0..12),
         scheme in prop::sample::select(SCHEMES.to_vec()),
-        boundary in prop::sample::select(vec![Boundary::EdgeOnly, Boundary::EdgeAndCorner]),
+        boundary in prop::sample::select(vec![BoundaryRule::EdgeOnly, BoundaryRule::EdgeAndCorner]),
     ) {
         let scheme = Subdivision { boundary, ..Subdivision::new(scheme) };
         let polygons = match scheme.scheme {

@@ -12,7 +12,7 @@ use crate::wings::Side;
 /// Maximum number of edges, so that every corner also has a number.
 const MAX_EDGES: usize = MAX_ROWS / 4;
 
-/// Checks that elements exist and that there is room for more.
+/// Checks that elements exist and that there is room for new elements.
 impl<P: Probe> WingedEdgeMesh<Editable, P> {
     #[inline(always)]
     pub(super) fn check_vertex(&self, vertex: VertexId) -> Result<(), Refusal<Self>> {

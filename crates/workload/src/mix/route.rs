@@ -1,5 +1,7 @@
 //! The order in which a mix visits the elements. In sequential access, each structure uses its own
-//! order of the elements. In random access and in patches, all structures use the same order.
+//! order of the elements. In all other access orders, all structures use the same order.
+
+use std::collections::{HashMap, HashSet};
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -43,11 +45,136 @@ impl Route {
                     faces: draw.faces,
                 }
             }
-            Access::Patches => match FaceVertexMesh::from_polygons(polygons) {
-                Ok(mesh) => patches(&mesh, polygons, seed),
-                Err(_) => empty, // refused only if the mesh has too many elements
-            },
+            // Refused only if the mesh has too many elements.
+            Access::Patches => FaceVertexMesh::from_polygons(polygons)
+                .map_or(empty, |mesh| patches(&mesh, polygons, seed)),
+            Access::Front => {
+                FaceVertexMesh::from_polygons(polygons).map_or(empty, |mesh| front(&mesh, polygons))
+            }
+            Access::ByFace => by_face(polygons),
+            Access::ByEdge => by_edge(polygons),
         }
+    }
+}
+
+impl Route {
+    /// Returns the numbers of the visited vertices, edges and faces. The number of an edge is that
+    /// of its first end. In sequential access, edges have the order in which faces name them.
+    pub(crate) fn numbers(&self, polygons: &PolygonMesh) -> [Vec<u32>; 3] {
+        if self.structure_order {
+            let route = by_edge(polygons);
+            return [
+                (0..polygons.vertex_count() as u32).collect(),
+                route.numbers(polygons)[1].clone(),
+                (0..polygons.face_count() as u32).collect(),
+            ];
+        }
+        [
+            self.vertices.iter().map(|v| v.index() as u32).collect(),
+            self.edges
+                .iter()
+                .map(|side| side.ends[0].index() as u32)
+                .collect(),
+            self.faces.iter().map(|f| f.index() as u32).collect(),
+        ]
+    }
+
+    /// Returns the numbers of the visited vertices, edges and faces. Edges are numbered in the order
+    /// of their first visit. The lists are empty if each structure uses its own order.
+    pub(crate) fn record_numbers(&self) -> [Vec<u32>; 3] {
+        let mut known = HashMap::new();
+        let edges = self.edges.iter().map(|side| {
+            let next = known.len() as u32;
+            *known.entry(side.ends).or_insert(next)
+        });
+        let edges = edges.collect();
+        [
+            self.vertices.iter().map(|v| v.index() as u32).collect(),
+            edges,
+            self.faces.iter().map(|f| f.index() as u32).collect(),
+        ]
+    }
+}
+
+/// Returns the sides of `face`, in the order of its corners.
+fn sides(polygons: &PolygonMesh, face: FaceId) -> impl Iterator<Item = Side> {
+    let corners = polygons.faces().face(face);
+    let next = corners.iter().cycle().skip(1);
+    corners.iter().zip(next).map(move |(&v, &next)| Side {
+        face,
+        ends: [v.min(next), v.max(next)],
+    })
+}
+
+/// Grows a front from the first face, breadth first. Starts again in each component.
+fn front(mesh: &FaceVertexMesh, polygons: &PolygonMesh) -> Route {
+    let mut route = Route {
+        structure_order: false,
+        vertices: Vec::new(),
+        edges: Vec::new(),
+        faces: Vec::new(),
+    };
+    let mut face_seen = vec![false; polygons.face_count()];
+    let mut vertex_seen = vec![false; polygons.vertex_count()];
+    let mut edge_seen = HashSet::new();
+    let mut head = 0;
+    for (start, _) in polygons.faces().iter() {
+        if !std::mem::replace(&mut face_seen[start.index()], true) {
+            route.faces.push(start);
+        }
+        while let Some(&face) = route.faces.get(head) {
+            head += 1;
+            for side in sides(polygons, face) {
+                if edge_seen.insert(side.ends) {
+                    route.edges.push(side);
+                }
+            }
+            for &v in polygons.faces().face(face) {
+                if !std::mem::replace(&mut vertex_seen[v.index()], true) {
+                    route.vertices.push(v);
+                }
+            }
+            for next in mesh.face_faces(face) {
+                if !std::mem::replace(&mut face_seen[next.index()], true) {
+                    route.faces.push(next);
+                }
+            }
+        }
+    }
+    route
+}
+
+/// Visits the faces, and at each face its vertices and edges.
+fn by_face(polygons: &PolygonMesh) -> Route {
+    let faces = || polygons.faces().iter();
+    Route {
+        structure_order: false,
+        vertices: faces().flat_map(|(_, corners)| corners.to_vec()).collect(),
+        edges: faces().flat_map(|(f, _)| sides(polygons, f)).collect(),
+        faces: faces().map(|(f, _)| f).collect(),
+    }
+}
+
+/// Visits the edges, and at each edge its ends and its faces.
+fn by_edge(polygons: &PolygonMesh) -> Route {
+    let mut edges: Vec<Side> = Vec::new();
+    let mut places: HashMap<[VertexId; 2], usize> = HashMap::new();
+    let mut faces: Vec<Vec<FaceId>> = Vec::new();
+    for (f, _) in polygons.faces().iter() {
+        for side in sides(polygons, f) {
+            let place = *places.entry(side.ends).or_insert_with(|| {
+                edges.push(side);
+                faces.push(Vec::new());
+                edges.len() - 1
+            });
+            faces[place].push(f);
+        }
+    }
+    Route {
+        structure_order: false,
+        vertices: edges.iter().flat_map(|side| side.ends).collect(),
+        edges,
+        faces: faces.concat(),
     }
 }
 
@@ -149,6 +276,53 @@ mod tests {
         assert_eq!(ends.len(), edges);
         assert_eq!(route, Route::new(Access::Patches, &mesh, 3));
         assert_ne!(route, Route::new(Access::Patches, &mesh, 4));
+    }
+
+    #[test]
+    fn a_front_reaches_every_element_once_from_an_earlier_face() {
+        let mesh = shapes::triangle_torus(12, 9).expect("small");
+        let route = Route::new(Access::Front, &mesh, 3);
+        assert_eq!(route.faces.len(), mesh.face_count());
+        assert_eq!(route.vertices.len(), mesh.vertex_count());
+        assert_eq!(route.edges.len() * 2, mesh.corner_count());
+        let built = FaceVertexMesh::from_polygons(&mesh).expect("closed");
+        let mut reached = BTreeSet::from([route.faces[0]]);
+        for &face in &route.faces[1..] {
+            assert!(built.face_faces(face).any(|f| reached.contains(&f)));
+            assert!(reached.insert(face));
+        }
+        let distinct: BTreeSet<_> = route.edges.iter().map(|side| side.ends).collect();
+        assert_eq!(distinct.len(), route.edges.len());
+        // The front grows in all directions, so it leaves the order of the file.
+        assert!(!route.faces.is_sorted());
+        let positions: Vec<[f32; 3]> = (0..6_u8).map(|i| [f32::from(i), 0.0, 1.0]).collect();
+        let two = PolygonMesh::new(positions, [[0, 1, 2], [3, 4, 5]]).expect("two faces");
+        let route = Route::new(Access::Front, &two, 3);
+        assert_eq!([route.faces.len(), route.vertices.len()], [2, 6]);
+    }
+
+    #[test]
+    fn by_face_and_by_edge_visit_the_elements_of_each() {
+        let mesh = shapes::tetrahedron();
+        let route = Route::new(Access::ByFace, &mesh, 3);
+        let corners = mesh
+            .faces()
+            .iter()
+            .flat_map(|(_, corners)| corners.to_vec());
+        assert!(route.vertices.iter().copied().eq(corners));
+        assert_eq!([route.edges.len(), route.faces.len()], [12, 4]);
+        let route = Route::new(Access::ByEdge, &mesh, 3);
+        assert_eq!(
+            [route.vertices.len(), route.edges.len(), route.faces.len()],
+            [12, 6, 12]
+        );
+        for (i, side) in route.edges.iter().enumerate() {
+            assert_eq!(route.vertices[2 * i..][..2], side.ends);
+            for &f in &route.faces[2 * i..][..2] {
+                let corners = mesh.faces().face(f);
+                assert!(side.ends.iter().all(|v| corners.contains(v)));
+            }
+        }
     }
 
     #[test]

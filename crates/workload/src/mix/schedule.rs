@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use sixfold_core::Counts;
 
-use crate::workload::{Action, Part, Workload};
+use crate::workload::{Action, OwnData, Part, Workload};
 
 /// Number of element operations in a turn.
 const TURN_OPERATIONS: f64 = 256.0;
@@ -26,6 +26,10 @@ pub struct Schedule {
     pub turn_operations: f64,
     /// True if the mix edits the mesh or sets positions. The mix then needs an editable mesh.
     pub editable: bool,
+    /// The program's own data that the visits read and write.
+    pub own_data: OwnData,
+    /// The number of edges of the mesh.
+    pub(crate) edges: usize,
 }
 
 impl Schedule {
@@ -43,11 +47,14 @@ impl Schedule {
             editable: workload.mix.iter().any(|part| writes(part.action)),
             parts: workload.mix.clone(),
             shares,
+            own_data: workload.own_data,
+            edges: counts.edges,
         }
     }
 
-    /// Returns the operations that the part with index `part` runs in turn `turn`, as a range of
-    /// numbers. The operations of each part are numbered from 0, starting in turn 0.
+    /// Returns the numbers of the operations of the part `part` that belong to the turn with the number
+    /// `turn`. A turn is a group of 256 operations (64 if the mix has edits). The range is empty if the
+    /// part is a pass over the whole mesh. The operations of each part are numbered from 0, starting in turn 0.
     pub fn turn_range(&self, part: usize, turn: u64) -> Range<u64> {
         if self.parts[part].action.is_pass() {
             return 0..0;

@@ -12,12 +12,13 @@ use crate::backend::{Backend, TypeFunctions};
 use crate::draw::Draw;
 use crate::edit_place::{EditPlace, apply_edit, prepare_place};
 use crate::job::{Job, Outcome, Run, Task, TimedBackend};
-use crate::mix::MixBackend;
+use crate::mix::own_data::OwnMemory;
 use crate::mix::places::{EditPlaceError, EditPlaces};
 use crate::mix::route::Route;
 use crate::mix::route_handles::RouteHandles;
 use crate::mix::runs::{Counts, run_turns, time_part, time_turns};
 use crate::mix::schedule::Schedule;
+use crate::mix::{MixBackend, NO_PROGRAM};
 use crate::series::{ReusedCopies, Series};
 use crate::timed_structure::TimedStructure;
 use crate::workload::{Action, Part};
@@ -154,6 +155,7 @@ impl<M: Representation + MeshEdit> WriteAccess<M> for ReadWrite {
 struct Work<'a, M: Representation, W> {
     schedule: &'a Schedule,
     handles: RouteHandles<M>,
+    own_memory: OwnMemory,
     faces: EditPlaces,
     /// For each edit of the schedule, its places on a mesh prepared for the edits.
     places: Vec<Vec<EditPlace<M>>>,
@@ -203,6 +205,15 @@ impl<M: Representation, W: WriteAccess<M>> Work<'_, M, W> {
         }
     }
 
+    /// Runs the operations `range` of one part, and visits the program's own data of the same
+    /// elements. Returns the same counts as [`run_range`](Self::run_range).
+    #[inline]
+    fn run_with_data(&self, mesh: &mut M, part: usize, range: Range<u64>) -> Counts {
+        let kind = self.schedule.parts[part].action.kind();
+        self.own_memory.visit(kind, range.clone());
+        self.run_range(mesh, part, range)
+    }
+
     /// Runs the element operations of some turns. Returns the same counts as
     /// [`run_range`](Self::run_range). Edits start at their first place.
     #[inline]
@@ -216,7 +227,7 @@ impl<M: Representation, W: WriteAccess<M>> Work<'_, M, W> {
             schedule.parts.len(),
             turns.clone(),
             range_of,
-            |part, range| self.run_range(mesh, part, range),
+            |part, range| self.run_with_data(mesh, part, range),
         )
     }
 
@@ -268,6 +279,12 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
         let work = Work {
             schedule: input.schedule,
             handles: RouteHandles::from_route(input.route, &mesh, input.polygons, &faces.occupied),
+            own_memory: OwnMemory::new(
+                &input.schedule.own_data,
+                input.route,
+                input.polygons,
+                input.schedule.edges,
+            ),
             faces,
             places: Vec::new(),
             write_access: PhantomData,
@@ -325,7 +342,7 @@ impl<'a, M: Representation + 'static, W: WriteAccess<M>> StructureMix<'a, M, W> 
         if self.prepared.is_none() {
             let mesh = black_box(&mut timed.mesh);
             return time_turns(work.schedule, first, series, |part, range| {
-                work.run_range(mesh, part, range)
+                work.run_with_data(mesh, part, range)
             });
         }
         let turns = work.turns_per_copy();
@@ -447,6 +464,7 @@ impl<M: Representation + 'static, W: WriteAccess<M>> TimedBackend for StructureM
             Task::Operation(_) => self.timed.run(job, series),
             Task::Mix => self.run_mix(job.first, series),
             Task::Part(part) => self.run_part(part, job.first, series),
+            Task::Program => Run::refused(NO_PROGRAM.into(), series),
         }
     }
 }

@@ -7,7 +7,8 @@ use sixfold_core::Point;
 use super::{Model, Rules, position_of_side, sides, sorted};
 use crate::edit::action::Action;
 
-/// An edit returns `None` if its own rules forbid it. The model may then be partly edited.
+/// A method returns `None` if the rules of its edit forbid the edit. The model may then be partly
+/// edited.
 impl Model {
     pub(super) fn apply(&mut self, action: &Action, rules: &Rules) -> Option<()> {
         match *action {

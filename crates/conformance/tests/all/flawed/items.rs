@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use super::{Flaw, Kind};
+use super::{Flaw, FlawKind};
 
 /// The items of a query, with an optional flaw of `fold`.
 pub(super) struct Items<F, T> {
@@ -33,8 +33,8 @@ impl<F: Flaw, T: Copy> Iterator for Items<F, T> {
     fn fold<B, G: FnMut(B, T) -> B>(self, init: B, f: G) -> B {
         let rest = &self.items[self.taken..];
         let items = match (F::KIND, rest) {
-            (Kind::FoldEndsEarly, [but_last @ .., _]) => but_last,
-            (Kind::FoldStartsAgain, _) => &self.items,
+            (FlawKind::FoldEndsEarly | FlawKind::SideFoldEndsEarly, [but_last @ .., _]) => but_last,
+            (FlawKind::FoldStartsAgain, _) => &self.items,
             _ => rest,
         };
         items.iter().copied().fold(init, f)

@@ -7,41 +7,41 @@ use sixfold_core::{
     MoveError, Point, PolygonMesh, Probe, QueryCost, Relation, Representation, VertexId, VertexMap,
 };
 
-use super::{Flaw, Flawed, Kind};
+use super::{Flaw, FlawKind, Flawed};
 use crate::face_and_edge_lists::FaceAndEdgeLists;
 
 impl<F: Flaw> Representation for Flawed<F> {
     const NAME: &'static str = "flawed";
 
     const COSTS: [QueryCost; 9] = match F::KIND {
-        Kind::AllConstant => [QueryCost::Constant; 9],
-        Kind::AllLocal => [QueryCost::Local; 9],
-        Kind::AllScan => [QueryCost::Scan; 9],
+        FlawKind::AllConstant => [QueryCost::Constant; 9],
+        FlawKind::AllLocal => [QueryCost::Local; 9],
+        FlawKind::AllScan => [QueryCost::Scan; 9],
         _ => FaceAndEdgeLists::COSTS,
     };
 
     fn cost(relation: Relation) -> QueryCost {
         match F::KIND {
-            Kind::CostOfAnotherRelation => Self::COSTS[8 - relation as usize],
+            FlawKind::CostOfAnotherRelation => Self::COSTS[8 - relation as usize],
             _ => Self::COSTS[relation as usize],
         }
     }
 
     fn is_local() -> bool {
-        F::KIND == Kind::LocalByName || QueryCost::are_local(&Self::COSTS)
+        F::KIND == FlawKind::LocalByName || QueryCost::are_local(&Self::COSTS)
     }
 
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         match F::KIND {
-            Kind::AcceptsEverything => {}
-            Kind::RejectsIsolated => {
+            FlawKind::AcceptsEverything => {}
+            FlawKind::RejectsIsolated => {
                 let strict = Capabilities {
                     isolated_vertices: false,
                     ..Capabilities::ALL
                 };
                 strict.check(polygons)?;
             }
-            Kind::WrongError => {
+            FlawKind::WrongError => {
                 let vertices = Capabilities {
                     non_manifold_vertices: false,
                     ..Capabilities::ALL
@@ -61,7 +61,7 @@ impl<F: Flaw> Representation for Flawed<F> {
 
     fn to_polygons(&self) -> PolygonMesh {
         let polygons = self.inner.to_polygons();
-        if !self.is(Kind::FaceReversedOnExport) {
+        if !self.is(FlawKind::FaceReversedOnExport) {
             return polygons;
         }
         let mut faces: Vec<Vec<u32>> = Vec::new();
@@ -78,7 +78,7 @@ impl<F: Flaw> Representation for Flawed<F> {
     fn vertex_handle(polygons: &PolygonMesh, v: VertexId) -> VertexId {
         let last = polygons.vertex_count() as u32 - 1;
         match F::KIND {
-            Kind::VertexNameOff => VertexId::new(last - v.index() as u32),
+            FlawKind::VertexNameOff => VertexId::new(last - v.index() as u32),
             _ => v,
         }
     }
@@ -86,7 +86,7 @@ impl<F: Flaw> Representation for Flawed<F> {
     fn face_handle(polygons: &PolygonMesh, f: FaceId) -> FaceId {
         let last = polygons.face_count() as u32 - 1;
         match F::KIND {
-            Kind::FaceNameOff => FaceId::new(last - f.index() as u32),
+            FlawKind::FaceNameOff => FaceId::new(last - f.index() as u32),
             _ => f,
         }
     }
@@ -94,11 +94,11 @@ impl<F: Flaw> Representation for Flawed<F> {
     fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError> {
         self.moves += 1;
         let mut positions = positions.clone();
-        if self.is(Kind::SecondMoveIgnored) && self.moves > 1 {
+        if self.is(FlawKind::SecondMoveIgnored) && self.moves > 1 {
             return Ok(());
         }
         if let Some(last) = self.inner.vertices().last()
-            && self.is(Kind::LastVertexNotMoved)
+            && self.is(FlawKind::LastVertexNotMoved)
         {
             positions[last] = self.inner.position(last);
         }
@@ -107,14 +107,14 @@ impl<F: Flaw> Representation for Flawed<F> {
 
     fn memory(&self) -> MemoryFootprint {
         let mut memory = self.inner.memory();
-        if self.is(Kind::MemoryTooLarge) {
+        if self.is(FlawKind::MemoryTooLarge) {
             memory.tables[0].bytes += memory.tables[0].bytes / 4;
         }
         memory
     }
 
     fn validate(&self) -> Result<(), InvariantError> {
-        if self.is(Kind::ValidateFails) {
+        if self.is(FlawKind::ValidateFails) {
             return Err(InvariantError::new("I9", "always fails"));
         }
         self.inner.validate()

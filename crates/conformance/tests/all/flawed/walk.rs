@@ -2,7 +2,8 @@
 
 use sixfold_core::{EdgeId, FaceId, MeshQuery, OrientedWalk, Probe, SideMap, Untraced, VertexId};
 
-use super::{Flaw, Flawed, Kind};
+use super::items::Items;
+use super::{Flaw, FlawKind, Flawed};
 use crate::face_and_edge_lists::FaceAndEdgeLists;
 
 type Side = <FaceAndEdgeLists<Untraced> as OrientedWalk>::Side;
@@ -12,30 +13,30 @@ impl<F: Flaw, P: Probe> OrientedWalk for Flawed<F, P> {
 
     fn face_sides(&self, f: FaceId) -> impl Iterator<Item = Side> {
         let mut sides: Vec<_> = self.inner.face_sides(f).collect();
-        if self.is(Kind::SidesReversed) {
+        if self.is(FlawKind::SidesReversed) {
             sides.reverse();
         }
-        self.with_duplicate(Kind::SideTwiceInItsFace, sides)
+        self.with_duplicate(FlawKind::SideTwiceInItsFace, sides)
     }
 
     fn edge_sides(&self, e: EdgeId) -> impl Iterator<Item = Side> {
         let sides = self.inner.edge_sides(e).collect();
-        self.without_last(Kind::SideOfAnEdgeLeftOut, sides)
+        self.without_last(FlawKind::SideOfAnEdgeLeftOut, sides)
             .into_iter()
     }
 
     fn outgoing_sides(&self, v: VertexId) -> impl Iterator<Item = Side> {
         let mut sides: Vec<_> = self.inner.outgoing_sides(v).collect();
-        if self.is(Kind::IncomingSides) {
+        if self.is(FlawKind::IncomingSides) {
             sides = sides.into_iter().map(|s| self.prev_side(s)).collect();
         }
-        self.without_last(Kind::OutgoingSideLeftOut, sides)
-            .into_iter()
+        let sides = self.without_last(FlawKind::OutgoingSideLeftOut, sides);
+        Items::<F, _>::new(sides.into_iter())
     }
 
     fn next_side(&self, s: Side) -> Side {
         let next = self.inner.next_side(s);
-        if self.is(Kind::NextSideSkipsOne) {
+        if self.is(FlawKind::NextSideSkipsOne) {
             self.inner.next_side(next)
         } else {
             next
@@ -43,7 +44,7 @@ impl<F: Flaw, P: Probe> OrientedWalk for Flawed<F, P> {
     }
 
     fn prev_side(&self, s: Side) -> Side {
-        if self.is(Kind::PrevSideIsNext) {
+        if self.is(FlawKind::PrevSideIsNext) {
             self.inner.next_side(s)
         } else {
             self.inner.prev_side(s)
@@ -55,27 +56,29 @@ impl<F: Flaw, P: Probe> OrientedWalk for Flawed<F, P> {
         let mut others = self.inner.edge_sides(self.inner.side_edge(s));
         let target = self.inner.side_target(s);
         match F::KIND {
-            Kind::TwinOfABoundarySide => twin.or(Some(s)),
-            Kind::TwinAmongSeveral => others.find(|&other| self.inner.side_origin(other) == target),
-            Kind::TwinOfTheSameDirection => {
+            FlawKind::TwinOfABoundarySide => twin.or(Some(s)),
+            FlawKind::TwinAmongSeveral => {
+                others.find(|&other| self.inner.side_origin(other) == target)
+            }
+            FlawKind::TwinOfTheSameDirection => {
                 let two = self.inner.edge_sides(self.inner.side_edge(s)).count() == 2;
                 others.find(|&other| two && other != s)
             }
-            Kind::NoTwin => None,
+            FlawKind::NoTwin => None,
             _ => twin,
         }
     }
 
     fn side_origin(&self, s: Side) -> VertexId {
         let exists = self.inner.contains_face(self.inner.side_face(s));
-        if self.is(Kind::MissingSideStartsAtV0) && !exists {
+        if self.is(FlawKind::MissingSideStartsAtV0) && !exists {
             return VertexId::new(0);
         }
         self.inner.side_origin(s)
     }
 
     fn side_target(&self, s: Side) -> VertexId {
-        if self.is(Kind::TargetIsTheOrigin) {
+        if self.is(FlawKind::TargetIsTheOrigin) {
             self.inner.side_origin(s)
         } else {
             self.inner.side_target(s)
@@ -83,7 +86,7 @@ impl<F: Flaw, P: Probe> OrientedWalk for Flawed<F, P> {
     }
 
     fn side_face(&self, s: Side) -> FaceId {
-        if self.is(Kind::FaceOfTheTwin) {
+        if self.is(FlawKind::FaceOfTheTwin) {
             let twin = self.inner.twin_side(s).unwrap_or(s);
             return self.inner.side_face(twin);
         }
@@ -91,7 +94,7 @@ impl<F: Flaw, P: Probe> OrientedWalk for Flawed<F, P> {
     }
 
     fn side_edge(&self, s: Side) -> EdgeId {
-        if self.is(Kind::EdgeOfTheNextSide) {
+        if self.is(FlawKind::EdgeOfTheNextSide) {
             return self.inner.side_edge(self.inner.next_side(s));
         }
         self.inner.side_edge(s)
@@ -99,20 +102,20 @@ impl<F: Flaw, P: Probe> OrientedWalk for Flawed<F, P> {
 
     fn ccw_side(&self, s: Side) -> Option<Side> {
         match F::KIND {
-            Kind::TurnsReversed => self.inner.cw_side(s),
+            FlawKind::TurnsReversed => self.inner.cw_side(s),
             _ => self.inner.ccw_side(s),
         }
     }
 
     fn cw_side(&self, s: Side) -> Option<Side> {
         match F::KIND {
-            Kind::TurnsReversed => self.inner.ccw_side(s),
+            FlawKind::TurnsReversed => self.inner.ccw_side(s),
             _ => self.inner.cw_side(s),
         }
     }
 
     fn side_count(&self) -> usize {
-        self.inner.side_count() + usize::from(self.is(Kind::SideCountOff))
+        self.inner.side_count() + usize::from(self.is(FlawKind::SideCountOff))
     }
 
     fn side_map<T: Clone>(&self, value: T) -> SideMap<Self, T> {

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
 use sixfold_workload::Time;
 
 use super::*;
@@ -353,15 +355,46 @@ fn intervals_do_not_depend_on_the_unit_and_ignore_the_distance_of_outliers() {
 
 /// The expected values come from tables of Student's distribution and the normal distribution.
 #[test]
-fn few_resampled_values_have_smaller_tails() {
-    for (n, percent) in [
-        (6, 0.243),
-        (10, 0.855),
-        (25, 1.758),
-        (100, 2.307),
-        (100_000, 2.5),
-    ] {
-        let out = 100.0 * tail_probability(n);
-        assert!((out - percent).abs() < 0.02, "{n}: {out} %");
+fn quantiles_of_student_are_correct() {
+    // From a table of Student's distribution.
+    let known = [
+        (3, 4.3027),
+        (6, 2.5706),
+        (7, 2.4469),
+        (10, 2.2622),
+        (21, 2.0860),
+        (101, 1.9840),
+    ];
+    for (count, quantile) in known {
+        let error = student(count) / quantile - 1.0;
+        assert!(error.abs() < 1e-3, "{count}: {}", student(count));
     }
+}
+
+/// The intervals of means over few meshes contain the mean of all meshes in 95 % of the cases if the
+/// logarithms are normal, and in nearly as many cases if a few meshes are much slower.
+#[test]
+fn intervals_of_geometric_means_contain_the_mean_of_all_meshes() {
+    let mut random = ChaCha8Rng::seed_from_u64(4);
+    // The logarithm of an exponential value is skewed. Its mean is minus Euler's constant.
+    let exponential = |random: &mut ChaCha8Rng| -(1.0 - uniform(random)).ln();
+    let euler = 0.577_215_664_901_532_9_f64;
+    for count in [3, 4, 5, 6, 8, 12, 30] {
+        let mut means = |value: &mut dyn FnMut(&mut ChaCha8Rng) -> f64, truth: f64| {
+            let studies = 4000;
+            let intervals: Vec<[f64; 2]> = (0..studies)
+                .filter_map(|_| {
+                    let values: Vec<f64> = (0..count).map(|_| value(&mut random)).collect();
+                    geometric_mean(&values)?.1
+                })
+                .collect();
+            assert_eq!(intervals.len(), studies);
+            coverage(&intervals, truth).0
+        };
+        let covered = means(&mut |random| normal(random, 0.5).exp(), 1.0);
+        assert!((93.5..96.5).contains(&covered), "{count}: {covered} %");
+        let covered = means(&mut |random| exponential(random), (-euler).exp());
+        assert!(covered > 90.0, "{count} skewed: {covered} %");
+    }
+    assert_eq!(geometric_mean(&[2.0, 8.0]), Some((4.0, None)));
 }

@@ -2,9 +2,9 @@
 
 use super::{CacheLimit, Fit, SizeReport};
 use crate::labs::slope::Slope;
-use crate::numbers::{grouped, times};
-use crate::results::rows::{Agreement, Standing};
-use sixfold_workload::{Cache, last_level_bytes};
+use crate::numbers::{grouped, list, times};
+use crate::results::rows::{Agreement, ResultRow, Standing};
+use sixfold_workload::{Cache, Operation, last_level_bytes};
 
 pub(super) fn sentences(
     sizes: &[SizeReport],
@@ -124,43 +124,79 @@ fn per_element_changes(sizes: &[SizeReport], fits: &[Fit]) -> Option<String> {
     })
 }
 
-/// Lists the clearly fastest backend of each operation, and the range of sizes.
+/// The answer to the question which backend is fastest at one operation and one size.
+#[derive(Clone, Debug, PartialEq)]
+enum Leader<'s> {
+    /// One backend is fastest.
+    Best(&'s str),
+    /// Several backends are equally fast.
+    Tie,
+    /// Only these backends have times, but other backends have times at other sizes.
+    Only(Vec<&'s str>),
+    /// No backend has a time.
+    NotMeasured,
+}
+
+impl Leader<'_> {
+    fn describe(&self) -> String {
+        match self {
+            Self::Best(name) => format!("{name} is fastest"),
+            Self::Tie => "a tie for the fastest".into(),
+            Self::Only(names) if names.len() == 1 => format!("only {} has times", names[0]),
+            Self::Only(names) => format!("only {} have times", list(names)),
+            Self::NotMeasured => "no times".into(),
+        }
+    }
+}
+
+/// Lists the clearly fastest backend of each operation, and the range of sizes. At a size at which
+/// some backends have no time, no backend is called the fastest.
 fn fastest(sizes: &[SizeReport]) -> Vec<String> {
+    let has_time = |row: &&ResultRow| row.median_ns.or(row.estimated_ns).is_some();
     let mut sentences = Vec::new();
-    let operations = sizes.first().map_or(&[][..], |size| &size.results);
-    for row in operations.chunk_by(|a, b| a.operation == b.operation) {
-        let operation = row[0].operation;
-        let best = sizes.iter().map(|size| {
-            let mut rows = size.results.iter();
-            let best =
-                rows.find(|r| r.operation == operation && r.standing == Some(Standing::Best));
-            (size.faces, best.map(|r| r.backend.as_str()))
-        });
-        let best: Vec<(usize, Option<&str>)> = best.collect();
-        let runs = best.chunk_by(|(_, a), (_, b)| a == b).map(|run| {
-            let name = run[0].1.map_or_else(
-                || "a tie for the fastest".to_owned(),
-                |name| format!("{name} is fastest"),
-            );
-            match (run.first(), run.last()) {
-                (Some((first, _)), Some((last, _))) if first < last => {
-                    format!(
-                        "{name} from {} to {} faces",
-                        grouped(*first),
-                        grouped(*last)
-                    )
-                }
-                _ => format!("{name} at {} faces", grouped(run[0].0)),
+    for operation in Operation::ALL {
+        let rows = |size| rows_of(size, operation).filter(has_time);
+        let mut all: Vec<&str> = Vec::new();
+        for row in sizes.iter().flat_map(rows) {
+            if !all.contains(&row.backend.as_str()) {
+                all.push(&row.backend);
+            }
+        }
+        if all.is_empty() {
+            continue;
+        }
+        let leader = |size| {
+            let names: Vec<&str> = rows(size).map(|row| row.backend.as_str()).collect();
+            let mut best = rows(size).filter(|row| row.standing == Some(Standing::Best));
+            match best.next() {
+                _ if names.is_empty() => Leader::NotMeasured,
+                _ if names.len() < all.len() || all.len() == 1 => Leader::Only(names),
+                Some(best) => Leader::Best(&best.backend),
+                None => Leader::Tie,
+            }
+        };
+        let leaders: Vec<(usize, Leader<'_>)> = sizes
+            .iter()
+            .map(|size| (size.faces, leader(size)))
+            .collect();
+        let runs = leaders.chunk_by(|(_, a), (_, b)| a == b).map(|run| {
+            let what = run[0].1.describe();
+            let [first, last] = [run[0].0, run[run.len() - 1].0];
+            match run.len() {
+                _ if run.len() == leaders.len() => format!("{what} at every size"),
+                1 => format!("{what} at {} faces", grouped(first)),
+                _ => format!("{what} from {} to {} faces", grouped(first), grouped(last)),
             }
         });
         let runs: Vec<String> = runs.collect();
-        sentences.push(match (&best[..], runs.len()) {
-            ([(_, None), ..], 1) => format!("{operation}: a tie for the fastest at every size."),
-            ([(_, Some(name)), ..], 1) => format!("{operation}: {name} is fastest at every size."),
-            _ => format!("{operation}: {}.", runs.join("; ")),
-        });
+        sentences.push(format!("{operation}: {}.", runs.join("; ")));
     }
     sentences
+}
+
+fn rows_of(size: &SizeReport, operation: Operation) -> impl Iterator<Item = &ResultRow> {
+    let rows = size.results.iter();
+    rows.filter(move |row| row.operation == operation)
 }
 
 /// Lists the sizes at which structures outgrow the last cache.
@@ -210,9 +246,67 @@ fn uncertain_figures(sizes: &[SizeReport], fits: &[Fit]) -> Vec<String> {
     let estimated: usize = fits.iter().map(|fit| fit.estimated).sum();
     if estimated > 0 {
         sentences.push(format!(
-            "{} of the fitted times are estimates, because real runs would exceed the budget.",
+            "{} of the times to which the lines are fitted are estimates, because real runs would exceed \
+             the budget.",
             grouped(estimated)
         ));
     }
     sentences
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each backend has a time if it is in `timed`; the first one is the best if `best` is set.
+    fn size(faces: usize, timed: &[&str], best: bool) -> SizeReport {
+        let row = |(i, backend): (usize, &&str)| ResultRow {
+            median_ns: Some(1.0),
+            standing: Some(match (i, best) {
+                (0, true) => Standing::Best,
+                (_, true) => Standing::Slower,
+                (_, false) => Standing::Tied,
+            }),
+            ..ResultRow::new(backend, Operation::Boundary)
+        };
+        SizeReport {
+            vertices: faces,
+            edges: faces,
+            faces,
+            backend_bytes: Vec::new(),
+            results: timed.iter().enumerate().map(row).collect(),
+            samples: Vec::new(),
+            refusals: Vec::new(),
+            control: None,
+        }
+    }
+
+    #[test]
+    fn no_backend_is_fastest_at_a_size_without_the_other_backends() {
+        let both = ["half-edge", "indexed-face-set"];
+        let sizes = [
+            size(100, &both, true),
+            size(1000, &both, true),
+            size(3380, &["indexed-face-set"], true),
+            size(10_000, &both, false),
+            size(317_520, &[], false),
+        ];
+        assert_eq!(
+            fastest(&sizes),
+            [
+                "boundary: half-edge is fastest from 100 to 1,000 faces; only indexed-face-set has \
+                 times at 3,380 faces; a tie for the fastest at 10,000 faces; no times at 317,520 \
+                 faces."
+            ]
+        );
+        assert_eq!(
+            fastest(&sizes[..2]),
+            ["boundary: half-edge is fastest at every size."]
+        );
+        assert_eq!(
+            fastest(&[size(10, &both[..1], false)]),
+            ["boundary: only half-edge has times at every size."]
+        );
+        assert!(fastest(&sizes[4..]).is_empty());
+    }
 }

@@ -5,9 +5,12 @@ use std::time::Duration;
 use sixfold::Facts;
 use sixfold::shapes::{Order, ShapeError};
 
+use super::BackendRefusal;
 use super::shapes::{SCALABLE_SHAPES, ScalableShape};
+use crate::inspect::{StudyMesh, inspect};
 use crate::labs::orders::{chosen_operations, draw_bytes, prepared_bytes};
 use crate::labs::study::{Settings, StudyError};
+use crate::results::rows::BackendReport;
 use sixfold_workload::{Backend, Operation, unknown};
 
 /// Minimum number of faces. Smaller meshes are too short to time.
@@ -153,6 +156,37 @@ fn sizes(from: usize, to: usize, steps: usize) -> Vec<usize> {
     let mut sizes: Vec<usize> = (0..steps).map(|s| size(s).round() as usize).collect();
     sizes.dedup();
     sizes
+}
+
+/// Returns the approximate numbers of faces of all sizes, and the backends that cannot hold the
+/// smallest size of the shape, each with the reason.
+///
+/// # Errors
+///
+/// Returns an error if the settings are invalid, or if no requested backend can hold the shape.
+pub fn growth_plan(
+    settings: &GrowthSettings,
+) -> Result<(Vec<usize>, Vec<BackendRefusal>), GrowthError> {
+    let plan = settings.plan()?;
+    let small = plan.shape.make(plan.sizes[0])?;
+    let inspection = inspect(
+        &StudyMesh::new(settings.shape.clone(), small),
+        &plan.backends,
+    );
+    let refusal = |backend: BackendReport| {
+        Some(BackendRefusal {
+            backend: backend.name,
+            reason: backend.reason?,
+        })
+    };
+    let refused = inspection.backends.into_iter().filter_map(refusal);
+    let refused: Vec<BackendRefusal> = refused.collect();
+    if refused.len() == plan.backends.len() {
+        let refusals = refused.into_iter().map(|r| (r.backend, r.reason));
+        let refusals = refusals.collect();
+        return Err(StudyError::NoneHolds { refusals }.into());
+    }
+    Ok((plan.sizes, refused))
 }
 
 /// Estimates the peak memory of [`growth`](super::growth) with these settings, in bytes.

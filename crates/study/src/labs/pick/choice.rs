@@ -24,8 +24,8 @@ const ORDER: [&str; 6] = [
 
 /// The backend that is recommended for the workload.
 ///
-/// Backends are equally fast if their times are not measurably different, or if the times differ by
-/// at most 5 %. Among the backends that are as fast as the fastest backend, the choice is the
+/// Backends are equally fast if the interval of the ratio of their times contains 1, or if the times
+/// differ by at most 5 %. Among the backends that are as fast as the fastest backend, the choice is the
 /// backend with the fewest bytes. If the bytes are equal, the choice is the first backend in this
 /// order: polygon-soup, indexed-face-set, face-vertex, corner-table, half-edge, winged-edge,
 /// others.
@@ -54,7 +54,9 @@ pub struct TurningPoint {
 
 /// Chooses a backend from a ranking, the fastest first; `None` if the ranking is empty.
 pub(crate) fn choose(ranking: &[Ranked]) -> Option<Choice> {
-    let equal = |r: &&Ranked| r.tied_with_best || r.ratio_to_best <= EQUAL_UP_TO;
+    // Without an interval, only the ratio counts: too few samples cannot show a difference.
+    let equal =
+        |r: &&Ranked| r.ratio_to_best <= EQUAL_UP_TO || (r.tied_with_best && r.ci_low.is_some());
     let chosen = ranking.iter().filter(equal).min_by_key(|r| size_order(r))?;
     let others = ranking.iter().filter(equal);
     let others = others.filter(|r| r.backend != chosen.backend);
@@ -165,8 +167,8 @@ mod tests {
             ns_ci_low: None,
             ns_ci_high: None,
             ratio_to_best: ratio,
-            ci_low: None,
-            ci_high: None,
+            ci_low: tied.then_some(0.9 * ratio),
+            ci_high: tied.then_some(1.1 * ratio),
             tied_with_best: tied,
             build_ns: 1.0,
             first_build_ns: None,
@@ -199,6 +201,11 @@ mod tests {
         let rule = choice.rule(&ranking).expect("two others");
         assert!(rule.contains("simplest of the backends"), "{rule}");
         assert_eq!(choose(&[]), None);
+        // Too few samples for an interval: only the ratio counts.
+        let mut few = ranking.clone();
+        few[2].ci_low = None;
+        let choice = choose(&few).expect("not empty");
+        assert_eq!(choice.backend, "winged-edge");
         let alone = choose(&ranking[..1]).expect("one");
         assert_eq!(alone.rule(&ranking[..1]), None);
     }

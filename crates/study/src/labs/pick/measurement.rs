@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use sixfold_core::Counts;
-use sixfold_workload::{Clock, Operation, Schedule, Task, Time, TimedBackend};
+use sixfold_workload::{Clock, Operation, Task, Time, TimedBackend};
 
 use crate::engine::agreement::compare_checksums;
 use crate::engine::heap::Memory;
@@ -14,19 +14,22 @@ use crate::engine::ranking::{NO_DIFFERENCE, rank, ratio};
 use crate::engine::statistics::Median;
 use crate::engine::trial::{Columns, Measured, Trial};
 use crate::inspect::StudyMesh;
-use crate::labs::pick::PickSettings;
-use crate::labs::pick::backend::{Candidate, PickBackend};
+use crate::labs::pick::backend::Candidate;
 use crate::labs::pick::break_even::{MeasuredMix, break_even};
-use crate::labs::pick::report::{BreakEven, Excluded, PartCost, Ranked};
-use crate::labs::pick::tasks::Tasks;
+use crate::labs::pick::report::{BreakEven, Excluded, Ranked};
+use crate::labs::pick::tasks::TaskPlan;
 use crate::labs::study::is_skewed;
 use crate::results::rows::{Agreement, MeshReport, Samples, Standing};
 
+/// The properties of a backend, and the backend.
+pub(crate) type Contestant<'b> = (Candidate, Box<dyn TimedBackend + 'b>);
+
+/// The measurement of the backends of a pick on one mesh.
 pub(crate) struct PickMeasurement<'c> {
     pub(crate) study_mesh: &'c StudyMesh,
-    pub(crate) settings: &'c PickSettings,
+    pub(crate) plan: &'c dyn TaskPlan,
+    pub(crate) seed: u64,
     pub(crate) counts: Counts,
-    pub(crate) schedule: &'c Schedule,
     pub(crate) budget: Duration,
     pub(crate) clock: &'c dyn Clock,
     pub(crate) memory: &'c mut Memory,
@@ -51,19 +54,17 @@ pub(crate) struct Outcome {
 
 impl PickMeasurement<'_> {
     /// Measures `backends` and ranks them. `control` is a second copy of one of them.
-    pub(crate) fn run(
+    pub(crate) fn run<'b>(
         self,
-        backends: Vec<PickBackend<'_>>,
-        control: Option<PickBackend<'_>>,
+        backends: Vec<Contestant<'b>>,
+        control: Option<Contestant<'b>>,
         mut excluded: Vec<Excluded>,
     ) -> Outcome {
         let polygons = &self.study_mesh.polygons;
-        let workload = &self.settings.workload;
-        let tasks = Tasks::new(workload, self.schedule, polygons, &self.counts);
+        let plan = self.plan;
         let ranked = backends.len();
-        let split = backends.into_iter().chain(control).map(PickBackend::split);
-        let (candidates, mut subjects): (Vec<Candidate>, Vec<Box<dyn TimedBackend + '_>>) =
-            split.unzip();
+        let (candidates, mut subjects): (Vec<Candidate>, Vec<Box<dyn TimedBackend + 'b>>) =
+            backends.into_iter().chain(control).unzip();
         let again = subjects.pop_if(|_| candidates.len() > ranked);
         let mut columns = Columns::new(subjects, Vec::new(), |_| again);
         let progress = self.progress;
@@ -74,7 +75,7 @@ impl PickMeasurement<'_> {
             memory: self.memory,
             budget: self.budget,
             named: true,
-            seed: self.settings.seed,
+            seed: self.seed,
             stop: self.stop,
             progress: &mut |at: Progress<'_>| {
                 let Progress {
@@ -86,7 +87,7 @@ impl PickMeasurement<'_> {
                 progress(0.1 + 0.9 * at.done, &format!("{stage} {task} on {backend}"));
             },
         };
-        let measured = trial.run(&mut columns, tasks.entries(&candidates));
+        let measured = trial.run(&mut columns, plan.entries(&candidates));
         let samples = measured.samples(&columns);
         let Measured {
             entries, second, ..
@@ -100,7 +101,7 @@ impl PickMeasurement<'_> {
                 .chain(&second)
                 .filter(|e| e.subject == column)
                 .collect();
-            let samples = tasks.mix_times(candidate, &own);
+            let samples = plan.mix_times(candidate, &own);
             samples
                 .map(|samples| MeasuredMix {
                     candidate,
@@ -118,13 +119,13 @@ impl PickMeasurement<'_> {
         }
         let control = (ranked..candidates.len()).find_map(|column| evaluate(column).ok());
         let evaluation = Evaluation {
-            tasks: &tasks,
+            plan,
             counts: &self.counts,
             measured: &measured,
         };
         let noise = control.and_then(|control| evaluation.noise(&control));
         let ranking = evaluation.ranking(noise.unwrap_or(1.0).max(NO_DIFFERENCE));
-        let operations = workload.operations_on(&self.counts);
+        let operations = plan.operations();
         let wrong = entries.iter().zip(agreements);
         let wrong = wrong.filter(|(_, agreement)| *agreement == Agreement::Mismatch);
         let wrong: BTreeSet<usize> = wrong.map(|(entry, _)| entry.subject).collect();
@@ -150,7 +151,7 @@ impl PickMeasurement<'_> {
 
 /// The evaluation of what was measured.
 struct Evaluation<'e> {
-    tasks: &'e Tasks<'e>,
+    plan: &'e dyn TaskPlan,
     counts: &'e Counts,
     measured: &'e [MeasuredMix<'e>],
 }
@@ -198,7 +199,7 @@ impl Evaluation<'_> {
                 bytes_per_vertex: *bytes as f64 / self.counts.vertices.max(1) as f64,
                 sampled: m.candidate.scans() || m.entries.iter().any(|e| e.job.sample.is_some()),
                 estimated: m.entries.iter().any(|entry| entry.estimate.is_some()),
-                parts: self.parts(m),
+                parts: self.plan.parts(m),
                 samples: m.samples.len(),
                 faults: m.most_faults(),
                 crates: type_paths.iter().map(|path| package_of(path)).collect(),
@@ -208,24 +209,6 @@ impl Evaluation<'_> {
         let mut ranking: Vec<Ranked> = rows.collect();
         ranking.sort_by(|a, b| a.ratio_to_best.total_cmp(&b.ratio_to_best));
         ranking
-    }
-
-    /// Returns the cost of each part of the mix, timed alone.
-    fn parts(&self, measured: &MeasuredMix<'_>) -> Vec<PartCost> {
-        let schedule = self.tasks.schedule;
-        let cost = |part: usize| {
-            let entry = measured.entry(self.tasks.task(measured.candidate, part));
-            PartCost {
-                operation: schedule.parts[part].action,
-                share: schedule.shares[part],
-                ns: entry.and_then(|entry| {
-                    let times = entry.times();
-                    let median = Median::from_samples(times.iter().map(|(_, time)| time.ns()));
-                    median.map(|m| m.value).or(entry.estimate.map(Time::ns))
-                }),
-            }
-        };
-        (0..schedule.parts.len()).map(cost).collect()
     }
 }
 

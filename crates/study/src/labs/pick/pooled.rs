@@ -2,21 +2,34 @@
 
 use std::collections::BTreeMap;
 
+use sixfold_workload::Workload;
+
 use crate::engine::ranking::NO_DIFFERENCE;
 use crate::engine::statistics::MIN_SAMPLES;
 use crate::engine::timer::Timer;
-use crate::labs::pick::PickSettings;
 use crate::labs::pick::choice::choose;
 use crate::labs::pick::measurement::Outcome;
+use crate::labs::pick::needs::Need;
 use crate::labs::pick::reasons;
-use crate::labs::pick::report::{BreakEven, Excluded, MeshRanking, PartCost, PickReport, Ranked};
+use crate::labs::pick::report::{
+    BreakEven, Excluded, MeshRanking, PartCost, PickReport, ProgramReport, Ranked,
+};
 use crate::results::run::Run;
+
+/// What is asked of the backends.
+pub(crate) struct Question {
+    pub(crate) workload: Workload,
+    /// The program that was run in place of the workload.
+    pub(crate) program: Option<ProgramReport>,
+    pub(crate) needs: Vec<Need>,
+    pub(crate) max_memory: Option<u64>,
+}
 
 /// Combines the results of the meshes. A backend must qualify on every mesh to be ranked. Backends
 /// are compared by geometric means over the meshes.
 pub(crate) fn pooled(
     mut outcomes: Vec<Outcome>,
-    settings: &PickSettings,
+    question: Question,
     timer: Timer,
     run: Run,
     interrupted: bool,
@@ -61,10 +74,11 @@ pub(crate) fn pooled(
     let mut report = PickReport {
         run,
         meshes: outcomes.iter().map(|o| o.mesh.clone()).collect(),
-        workload: settings.workload.clone(),
+        workload: question.workload,
+        program: question.program,
         operations,
-        needs: settings.needs.clone(),
-        max_memory: settings.max_memory,
+        needs: question.needs,
+        max_memory: question.max_memory,
         choice: choose(&ranking),
         preliminary: ranking.iter().any(|ranked| ranked.samples < MIN_SAMPLES),
         ranking,

@@ -4,15 +4,15 @@ use std::sync::atomic::AtomicBool;
 
 use sixfold::{QueryCost, Relation};
 use sixfold_core::Counts;
-use sixfold_workload::{Action, Backend, ElementKind, Schedule, Workload};
+use sixfold_workload::{Action, Backend, ElementKind, Schedule, Workload, patch};
 
 use crate::inspect::StudyMesh;
 use crate::labs::pick::report::Excluded;
 use crate::labs::pick::{PickError, PickSettings, qualified};
 use crate::labs::why::{WhySettings, why};
 
-/// Maximum number of faces for which reads are counted. Counting takes less than a second up to
-/// this size.
+/// Maximum number of faces on which reads are counted. Counting takes less than a second up to this
+/// size. On a larger mesh, reads are counted on a patch of about this many faces.
 const MOST_FACES: usize = 100_000;
 
 /// The predicted costs of the backends for a workload on one mesh.
@@ -23,6 +23,9 @@ pub struct Prediction {
     pub candidates: Vec<Predicted>,
     /// The backends that do not meet the requirements, each with the reason.
     pub excluded: Vec<Excluded>,
+    /// The number of faces of the patch on which reads were counted; `None` if they were counted on
+    /// the whole mesh.
+    pub patch_faces: Option<usize>,
 }
 
 /// The predicted cost of one backend.
@@ -34,15 +37,14 @@ pub struct Predicted {
     /// backend.
     pub scans: Vec<Action>,
     /// The mean number of cache lines that the queries of one operation of the workload read.
-    /// `None` if the workload has no queries, if some operation scans all faces, or if the mesh has
-    /// more than 100,000 faces.
+    /// `None` if the workload has no queries, or if some operation scans all faces.
     pub lines: Option<f64>,
 }
 
 /// Predicts which backends are fast for a workload, without measuring time.
 ///
 /// The prediction uses two properties of each backend: which queries scan all faces, and how many
-/// cache lines the queries read on this mesh. Edits and subdivision are not predicted.
+/// cache lines the queries read on this mesh, or on its first 100,000 faces. Edits and subdivision are not predicted.
 ///
 /// # Errors
 ///
@@ -50,6 +52,16 @@ pub struct Predicted {
 pub fn predict(
     study_mesh: &StudyMesh,
     settings: &PickSettings,
+    stop: &AtomicBool,
+) -> Result<Prediction, PickError> {
+    predict_from(study_mesh, settings, MOST_FACES, stop)
+}
+
+/// Predicts from reads on at most about `most_faces` faces.
+fn predict_from(
+    study_mesh: &StudyMesh,
+    settings: &PickSettings,
+    most_faces: usize,
     stop: &AtomicBool,
 ) -> Result<Prediction, PickError> {
     let (qualifying, excluded) = qualified(study_mesh, settings)?;
@@ -61,10 +73,12 @@ pub fn predict(
         .filter(|backend| scanning_actions(workload, &backend.info.costs).is_empty())
         .copied()
         .collect();
-    let lines = match polygons.face_count() <= MOST_FACES {
-        true => lines_by_backend(study_mesh, &local, workload, &counts, stop),
-        false => Vec::new(),
-    };
+    // The queries of a patch read as many lines as the queries of the mesh. The weights are those of
+    // the whole mesh.
+    let piece = (polygons.face_count() > most_faces)
+        .then(|| StudyMesh::new(study_mesh.name.clone(), patch(polygons, most_faces)));
+    let counted_mesh = piece.as_ref().unwrap_or(study_mesh);
+    let lines = lines_by_backend(counted_mesh, &local, workload, &counts, stop);
     let mut candidates: Vec<Predicted> = qualifying
         .iter()
         .map(|backend| {
@@ -84,6 +98,7 @@ pub fn predict(
     Ok(Prediction {
         candidates,
         excluded,
+        patch_faces: piece.map(|piece| piece.polygons.face_count()),
     })
 }
 
@@ -211,6 +226,24 @@ mod tests {
         assert!(lines.is_sorted(), "{lines:?}");
         // A pass over 400 vertices reads at least a line for each vertex.
         assert!(lines[0] > 400.0, "{lines:?}");
+    }
+
+    #[test]
+    fn a_large_mesh_is_predicted_from_a_patch() {
+        let mesh = StudyMesh::new("torus", shapes::triangle_torus(30, 30).expect("small"));
+        let settings = settings("smoothing");
+        let stop = AtomicBool::new(false);
+        let predict = |most| predict_from(&mesh, &settings, most, &stop).expect("it has faces");
+        let (whole, patch) = (predict(1800), predict(600));
+        assert_eq!(whole.patch_faces, None);
+        assert_eq!(patch.patch_faces, Some(600));
+        for (a, b) in whole.candidates.iter().zip(&patch.candidates) {
+            let [a_lines, b_lines] = [a.lines, b.lines];
+            assert_eq!(a_lines.is_some(), b_lines.is_some(), "{a:?} {b:?}");
+            // Vertices on the boundary of the patch have fewer neighbours.
+            let ratio = b_lines.unwrap_or(1.0) / a_lines.unwrap_or(1.0);
+            assert!((0.6..1.5).contains(&ratio), "{a:?} {b:?}");
+        }
     }
 
     #[test]

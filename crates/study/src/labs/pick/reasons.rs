@@ -2,8 +2,9 @@
 
 use crate::engine::statistics::MIN_SAMPLES;
 use crate::labs::pick::choice::Choice;
-use crate::labs::pick::report::{PartCost, PickReport, Ranked};
+use crate::labs::pick::report::{PartCost, PickReport, ProgramReport, Ranked};
 use crate::numbers::{counted, duration, grouped, list, times};
+use crate::packages;
 
 /// Returns sentences about the fastest backend, the reasons, the break-even and the packages.
 pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
@@ -17,8 +18,9 @@ pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
     sentences.extend(
         chosen
             .map(Choice::what_would_change)
-            .filter(|_| report.ranking.len() > 1),
+            .filter(|_| report.ranking.len() > 1 && report.program.is_none()),
     );
+    sentences.extend(report.program.as_ref().and_then(asked));
     sentences.extend(dominant_part(report, best));
     sentences.extend(largest_loss(report, best));
     sentences.extend(tables(report, best));
@@ -45,10 +47,17 @@ pub(crate) fn warnings(report: &PickReport) -> Vec<String> {
         ));
     }
     for backend in &report.mismatches {
-        warnings.push(format!(
-            "{backend} gives different results from the other backends. This is a fault in \
-             Sixfold: please report it."
-        ));
+        warnings.push(match report.program {
+            None => format!(
+                "{backend} gives different results from the other backends. This is a fault in \
+                 Sixfold: please report it."
+            ),
+            Some(_) => format!(
+                "{backend} gives a different result from the other backends, by more than rounding. \
+                 The result of a program must not depend on the order in which a query lists the \
+                 neighbours."
+            ),
+        });
     }
     warnings
 }
@@ -68,6 +77,7 @@ fn fastest(report: &PickReport, best: &Ranked) -> String {
         .collect();
     let each = duration(best.ns_per_operation);
     let workload = &report.workload.name;
+    let unit = report.unit();
     let next = report.ranking[1..]
         .iter()
         .find(|ranked| !ranked.tied_with_best);
@@ -90,11 +100,11 @@ fn fastest(report: &PickReport, best: &Ranked) -> String {
     };
     match &tied[..] {
         [] => format!(
-            "{answer} {workload}, {} is fastest: {each} per operation{next}.",
+            "{answer} {workload}, {} is fastest: {each} per {unit}{next}.",
             name(best)
         ),
         tied => format!(
-            "{answer} {workload}, {} are tied: {each} per operation{next}.",
+            "{answer} {workload}, {} are tied: {each} per {unit}{next}.",
             list(std::iter::once(&name(best)).chain(tied))
         ),
     }
@@ -107,6 +117,15 @@ fn precise(ratio: f64) -> String {
         r if r < 100.0 => format!("{r:.1}"),
         r => grouped(r.round() as usize),
     }
+}
+
+/// Describes what one run of a program asks.
+fn asked(program: &ProgramReport) -> Option<String> {
+    let counts = program.asked.as_ref().filter(|counts| !counts.is_empty())?;
+    let names = counts
+        .iter()
+        .map(|asked| format!("{} {}", grouped(asked.count as usize), asked.operation));
+    Some(format!("One run asks for {}.", list(names)))
 }
 
 fn dominant_part(report: &PickReport, best: &Ranked) -> Option<String> {
@@ -157,9 +176,10 @@ fn tables(report: &PickReport, best: &Ranked) -> Option<String> {
         .find(|ranked| ranked.made_from.is_none())?;
     if best.made_from.is_some() {
         return Some(format!(
-            "Without relation tables, {} is fastest: {} per operation.",
+            "Without relation tables, {} is fastest: {} per {}.",
             structure.backend,
-            duration(structure.ns_per_operation)
+            duration(structure.ns_per_operation),
+            report.unit()
         ));
     }
     let tables = report
@@ -189,22 +209,18 @@ fn one_use_with_building(report: &PickReport, best: &Ranked) -> Option<String> {
         .ranking
         .iter()
         .min_by(|a, b| total(a).total_cmp(&total(b)))?;
-    let count = grouped(operations.round() as usize);
-    let used = if operations.round() == 1.0 {
-        "operation"
-    } else {
-        "operations"
-    };
+    let unit = report.unit();
+    let used = counted(operations.round() as usize, unit, &format!("{unit}s"));
     let cost = duration(total(least));
     Some(match least.backend == best.backend {
         true => format!(
             "If the time to build is included, {} is still fastest for one use of the mesh \
-             ({count} {used}): {cost} in total.",
+             ({used}): {cost} in total.",
             name(best)
         ),
         false => format!(
-            "If the time to build is included, {} is fastest for one use of the mesh ({count} \
-             {used}): {cost} in total, compared with {} on {}. The input is already an \
+            "If the time to build is included, {} is fastest for one use of the mesh \
+             ({used}): {cost} in total, compared with {} on {}. The input is already an \
              indexed face set, so the time to build this structure counts as 0.",
             name(least),
             duration(total(best)),
@@ -213,18 +229,7 @@ fn one_use_with_building(report: &PickReport, best: &Ranked) -> Option<String> {
     })
 }
 
-/// Describes the command that adds the packages, and the types to use. The packages of Sixfold come
-/// from a checkout.
+/// Describes the commands that add the packages, and the types to use.
 fn packages_to_add(best: &Ranked) -> String {
-    let command = |package: &String| match package.strip_prefix("sixfold-") {
-        Some(folder) => format!("`cargo add {package} --path CHECKOUT/crates/{folder}`"),
-        None => format!("`cargo add {package}`"),
-    };
-    let commands: Vec<String> = best.crates.iter().map(command).collect();
-    let types: Vec<String> = best.types.iter().map(|path| format!("`{path}`")).collect();
-    format!(
-        "To use {} in your package, run {}. CHECKOUT is the path of this repository.",
-        types.join(" and "),
-        commands.join(" and ")
-    )
+    packages::how_to_use(&best.types, &best.crates, packages::checkout().as_deref())
 }

@@ -1,7 +1,7 @@
 //! The report of a pick, in the format that `reports/SCHEMA.md` documents.
 
 use serde::{Deserialize, Serialize};
-use sixfold_workload::{Action, Workload};
+use sixfold_workload::{Action, Asked, Workload};
 
 use crate::engine::timer::Timer;
 use crate::labs::pick::choice::Choice;
@@ -16,6 +16,9 @@ use crate::results::run::Run;
 /// The name of the whole mix in samples and figures.
 pub(crate) const MIX: &str = "mix";
 
+/// The name of a run of a program in samples and figures.
+pub(crate) const RUN: &str = "run";
+
 /// The result of a pick: the backends, ranked by their times for a workload.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct PickReport {
@@ -27,6 +30,9 @@ pub struct PickReport {
     pub meshes: Vec<MeshReport>,
     /// The workload that was run.
     pub workload: Workload,
+    /// The program of a user that was run in place of the workload; `None` for a workload. One
+    /// operation is then one run of the program.
+    pub program: Option<ProgramReport>,
     /// The number of operations that the program performs on one mesh, as a mean over the meshes.
     pub operations: f64,
     /// The capabilities that a backend must have.
@@ -63,6 +69,38 @@ pub struct PickReport {
     pub samples: Vec<Samples>,
     /// The results for each mesh; empty if there is only one mesh.
     pub by_mesh: Vec<MeshRanking>,
+}
+
+/// A program of a user that was measured.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct ProgramReport {
+    /// What the program does with the mesh: `queries`, `walks`, `moves`, `edits` or `refines`.
+    pub kind: String,
+    /// What one run asks of the first mesh, the most frequent first; `None` if no structure could
+    /// record this.
+    pub asked: Option<Vec<AskedCount>>,
+}
+
+/// How often a program asks one thing in one run.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct AskedCount {
+    /// A relation such as `vertex_vertices`, an edit such as `flip_edge`, `position` for reading the
+    /// position of a vertex, or `side_step` for a step from a side to another.
+    pub operation: String,
+    /// The number of times.
+    pub count: u64,
+}
+
+impl AskedCount {
+    /// Lists what a recorded run asked.
+    pub(crate) fn list(asked: &Asked) -> Vec<Self> {
+        let counts = asked.counts().into_iter();
+        let counts = counts.map(|(operation, count)| Self {
+            operation: operation.to_owned(),
+            count,
+        });
+        counts.collect()
+    }
 }
 
 /// The ranking on one of several meshes.
@@ -263,6 +301,14 @@ impl LabFinding for PickReport {
 }
 
 impl PickReport {
+    /// Returns the name of what is timed: an operation of a workload, or a run of a program.
+    pub fn unit(&self) -> &'static str {
+        match self.program {
+            Some(_) => "run",
+            None => "operation",
+        }
+    }
+
     /// Returns the times of the mix, of its parts, and of building.
     fn figures_of<'r>(
         &'r self,
@@ -300,12 +346,16 @@ impl PickReport {
             elements: Some(1),
             ..FigureRow::new(operation.into(), &ranked.backend, status)
         };
+        let (whole, unit) = match self.program {
+            Some(_) => (RUN, "run"),
+            None => (MIX, "operation"),
+        };
         let mut figures = vec![figure(FigureRow {
             interval_ns: ranked.ns_ci_low.zip(ranked.ns_ci_high).map(|(l, h)| [l, h]),
             ratio_to_best: Some(ranked.ratio_to_best),
             ratio_interval: ranked.ci_low.zip(ranked.ci_high).map(|(l, h)| [l, h]),
             samples: ranked.samples,
-            ..row(MIX, "operation", ranked.ns_per_operation)
+            ..row(whole, unit, ranked.ns_per_operation)
         })];
         for part in &ranked.parts {
             let name = part.operation.to_string();

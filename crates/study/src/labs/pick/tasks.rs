@@ -7,11 +7,33 @@ use sixfold_core::Counts;
 use sixfold_workload::{Action, Operation, Schedule, Task, Time, Workload};
 
 use crate::engine::measure::Entry;
+use crate::engine::statistics::Median;
 use crate::labs::pick::backend::Candidate;
-use crate::labs::pick::report::MIX;
+use crate::labs::pick::break_even::MeasuredMix;
+use crate::labs::pick::report::{MIX, PartCost};
 
 /// Parts that a mix contains are also timed alone, to explain the result: in every n-th round.
 const PARTS_EVERY: u32 = 3;
+
+/// What the backends of a pick run, and how the time of one operation follows from it.
+pub(crate) trait TaskPlan {
+    /// Returns the entries to measure: for each task, one for each candidate that has it.
+    fn entries(&self, candidates: &[Candidate]) -> Vec<Entry>;
+
+    /// Returns the time of one operation on a candidate, rebuilding included, by round; the reason
+    /// if the candidate refuses a task. `entries` are those of the candidate.
+    fn mix_times(
+        &self,
+        candidate: &Candidate,
+        entries: &[&Entry],
+    ) -> Result<Vec<(u32, Time)>, String>;
+
+    /// Returns the cost of each part of an operation, timed alone.
+    fn parts(&self, measured: &MeasuredMix<'_>) -> Vec<PartCost>;
+
+    /// Returns the number of operations in one use of the mesh.
+    fn operations(&self) -> f64;
+}
 
 /// The schedule of a workload on a mesh, with what is needed to weigh its parts.
 pub(crate) struct Tasks<'t> {
@@ -20,6 +42,10 @@ pub(crate) struct Tasks<'t> {
     pub(crate) rebuilds: f64,
     /// The scheme of `subdivide` on this mesh.
     scheme: Scheme,
+    /// The number of operations in one use of the mesh.
+    operations: f64,
+    /// The time of the program's own work for each operation.
+    own_ns: f64,
 }
 
 impl<'t> Tasks<'t> {
@@ -32,40 +58,13 @@ impl<'t> Tasks<'t> {
         Self {
             schedule,
             rebuilds: workload.rebuilds_per_operation(counts),
+            operations: workload.operations_on(counts),
+            own_ns: workload.own_ns,
             scheme: match polygons.first_polygon() {
                 None => Scheme::Loop,
                 Some(_) => Scheme::CatmullClark,
             },
         }
-    }
-
-    /// Returns the entries to measure: for each task, one for each candidate that has it.
-    pub(crate) fn entries(&self, candidates: &[Candidate]) -> Vec<Entry> {
-        let mut entries = Vec::new();
-        let columns = || candidates.iter().enumerate();
-        if self.schedule.on_elements > 0.0 {
-            let mixing = columns().filter(|(_, candidate)| !candidate.scans());
-            entries.extend(mixing.map(|(column, _)| Entry {
-                pauses_clock: self.schedule.edits().next().is_some(),
-                ..Entry::of_task(column, Task::Mix, MIX)
-            }));
-        }
-        for part in 0..self.schedule.parts.len() {
-            entries.extend(columns().map(|(i, candidate)| self.part_entry(i, candidate, part)));
-        }
-        let rebuilding = u32::from(self.rebuilds == 0.0) * PARTS_EVERY;
-        let builds = || {
-            entries
-                .iter()
-                .any(|e| e.operation() == Some(Operation::Build))
-        };
-        if !builds() {
-            entries.extend(columns().map(|(column, _)| Entry {
-                least_every: rebuilding.max(1),
-                ..Entry::new(column, Operation::Build)
-            }));
-        }
-        entries
     }
 
     fn part_entry(&self, column: usize, candidate: &Candidate, part: usize) -> Entry {
@@ -98,10 +97,38 @@ impl<'t> Tasks<'t> {
             _ => Task::Part(part),
         }
     }
+}
 
-    /// Returns the time of one operation of the mix on a candidate, rebuilding included, by round;
-    /// the reason if the candidate refuses a task. `entries` are those of the candidate.
-    pub(crate) fn mix_times(
+impl TaskPlan for Tasks<'_> {
+    fn entries(&self, candidates: &[Candidate]) -> Vec<Entry> {
+        let mut entries = Vec::new();
+        let columns = || candidates.iter().enumerate();
+        if self.schedule.on_elements > 0.0 {
+            let mixing = columns().filter(|(_, candidate)| !candidate.scans());
+            entries.extend(mixing.map(|(column, _)| Entry {
+                pauses_clock: self.schedule.edits().next().is_some(),
+                ..Entry::of_task(column, Task::Mix, MIX)
+            }));
+        }
+        for part in 0..self.schedule.parts.len() {
+            entries.extend(columns().map(|(i, candidate)| self.part_entry(i, candidate, part)));
+        }
+        let rebuilding = u32::from(self.rebuilds == 0.0) * PARTS_EVERY;
+        let builds = || {
+            entries
+                .iter()
+                .any(|e| e.operation() == Some(Operation::Build))
+        };
+        if !builds() {
+            entries.extend(columns().map(|(column, _)| Entry {
+                least_every: rebuilding.max(1),
+                ..Entry::new(column, Operation::Build)
+            }));
+        }
+        entries
+    }
+
+    fn mix_times(
         &self,
         candidate: &Candidate,
         entries: &[&Entry],
@@ -131,8 +158,40 @@ impl<'t> Tasks<'t> {
             }
         }
         add(Task::Operation(Operation::Build), self.rebuilds)?;
-        Ok(sum_by_round(&terms))
+        Ok(with_own_time(sum_by_round(&terms), self.own_ns))
     }
+
+    fn parts(&self, measured: &MeasuredMix<'_>) -> Vec<PartCost> {
+        let schedule = self.schedule;
+        let cost = |part: usize| {
+            let entry = measured.entry(self.task(measured.candidate, part));
+            PartCost {
+                operation: schedule.parts[part].action,
+                share: schedule.shares[part],
+                ns: entry.and_then(|entry| {
+                    let times = entry.times();
+                    let median = Median::from_samples(times.iter().map(|(_, time)| time.ns()));
+                    median.map(|m| m.value).or(entry.estimate.map(Time::ns))
+                }),
+            }
+        };
+        (0..schedule.parts.len()).map(cost).collect()
+    }
+
+    fn operations(&self) -> f64 {
+        self.operations
+    }
+}
+
+/// Adds the time of the program's own work to each sample.
+pub(crate) fn with_own_time(samples: Vec<(u32, Time)>, own_ns: f64) -> Vec<(u32, Time)> {
+    if own_ns == 0.0 {
+        return samples;
+    }
+    let samples = samples.into_iter();
+    samples
+        .map(|(round, time)| (round, time.plus_ns(own_ns)))
+        .collect()
 }
 
 /// Returns the weighted sum of several series of samples, in the rounds of the longest one. A

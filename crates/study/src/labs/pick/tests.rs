@@ -39,7 +39,7 @@ impl TimedBackend for KnownBackend {
             Task::Operation(Operation::Build) => (self.build_ns, 1),
             Task::Operation(_) => (1e6, 1),
             Task::Mix => (256.0 * operation_ns, 256),
-            Task::Part(_) => (operation_ns, 1),
+            Task::Part(_) | Task::Program => (operation_ns, 1),
         };
         self.machine.work(ns * f64::from(series.untimed));
         let start = series.clock.now();
@@ -120,18 +120,20 @@ fn measure_known(costs_ns: &[f64], seed: u64) -> Outcome {
     );
     let control = prepared("half-edge", costs_ns[0]);
     let stop = AtomicBool::new(false);
+    let tasks = Tasks::new(&settings.workload, &schedule, &study_mesh.polygons, &counts);
     let measurement = PickMeasurement {
         study_mesh: &study_mesh,
-        settings: &settings,
+        plan: &tasks,
+        seed: settings.seed,
         counts,
-        schedule: &schedule,
         budget,
         clock: &machine,
         memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0),
         stop: &stop,
         progress: &mut |_, _| (),
     };
-    measurement.run(backends, Some(control), Vec::new())
+    let backends = backends.into_iter().map(PickBackend::split).collect();
+    measurement.run(backends, Some(control.split()), Vec::new())
 }
 
 #[test]

@@ -204,8 +204,13 @@ fn written_documents_are_read_back_exactly() {
         assert!(before.is_interrupted() == after.is_interrupted());
     }
     let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    // Three equal icosahedra have three names. The settings of orders and growth are equal.
-    assert_eq!(value["meshes"].as_array().map(Vec::len), Some(3));
+    // Three equal icosahedra have three names. Growth has a mesh for each size. The settings of
+    // orders and growth are equal.
+    let sizes = all.growth().map(|growth| growth.sizes.len()).sum::<usize>();
+    assert!(sizes > 0);
+    assert_eq!(value["meshes"].as_array().map(Vec::len), Some(3 + sizes));
+    let growth = &value["findings"][3];
+    assert_eq!(growth["meshes"].as_array().map(Vec::len), Some(sizes));
     assert_eq!(value["runs"].as_array().map(Vec::len), Some(4));
     assert_eq!(value["findings"][2]["kind"], "orders");
 }
@@ -309,4 +314,24 @@ fn impossible_values_are_refused() {
         let error = Results::read_json(&written(&study.into())).expect_err(expected);
         assert!(error.to_string().contains(expected), "{error}");
     }
+}
+
+/// Pooling takes time for large collections, so results are pooled only when they are written.
+#[test]
+fn results_are_pooled_once_when_they_are_written() {
+    let pooled = || crate::results::pool::POOLED.with(std::cell::Cell::take);
+    pooled();
+    let mut all = Results::default();
+    for mesh in ["a", "b", "c", "d"] {
+        let mut one = Results::default();
+        one.add(report(mesh, 2.0).into());
+        all.merge(Results::read_json(&written(&one)).expect("as written"))
+            .expect("the same settings");
+        all.add(report(mesh, 3.0).into());
+    }
+    assert_eq!(pooled(), 0, "adding, merging and reading");
+    let text = written(&all);
+    assert_eq!(pooled(), 1, "writing");
+    Results::read_json(&text).expect("as written");
+    assert_eq!(pooled(), 0, "reading");
 }

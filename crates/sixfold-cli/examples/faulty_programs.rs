@@ -1,0 +1,77 @@
+//! Programs with a fault on the half-edge structure only. They show how the command line ends such
+//! programs, with and without `--isolate`.
+//!
+//! ```sh
+//! cargo run --release --example faulty_programs -- --programs endless --isolate
+//! ```
+
+use std::hint::black_box;
+use std::process::ExitCode;
+
+use sixfold::prelude::*;
+use sixfold_study::{Outcome, Program, Suite};
+
+fn main() -> ExitCode {
+    let suite = Suite::new()
+        .program(Faulty {
+            name: "sound",
+            fault: || (),
+        })
+        .program(Faulty {
+            name: "endless",
+            fault: || {
+                let mut turns = 0_u64;
+                while black_box(true) {
+                    turns = black_box(turns.wrapping_add(1));
+                }
+            },
+        })
+        .program(Faulty {
+            name: "crashing",
+            fault: || std::process::abort(),
+        })
+        .program(Faulty {
+            name: "hoarding",
+            fault: || {
+                let mut hoard = Vec::new();
+                loop {
+                    hoard.push(vec![1_u8; 1 << 20]);
+                    black_box(&hoard);
+                }
+            },
+        })
+        .program(Faulty {
+            name: "panicking",
+            fault: || panic!("half-edges are not welcome"),
+        });
+    sixfold_cli::main(suite)
+}
+
+/// Adds up the lengths of all edges, after a fault on the half-edge structure.
+struct Faulty {
+    name: &'static str,
+    fault: fn(),
+}
+
+impl Program for Faulty {
+    type Scratch<M: MeshQuery> = ();
+
+    fn name(&self) -> &str {
+        self.name
+    }
+
+    fn set_up<M: MeshQuery>(&self, _: &M) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn run<M: MeshQuery>(&self, mesh: &M, (): &mut ()) -> Outcome {
+        if std::any::type_name::<M>().contains("HalfEdge") {
+            (self.fault)();
+        }
+        let length = |e| {
+            let [a, b] = mesh.edge_vertices(e).map(|v| mesh.position(v));
+            f64::from(a.distance(b))
+        };
+        Outcome::new(mesh.edges().map(length).sum(), mesh.edge_count() as u64)
+    }
+}

@@ -1,0 +1,107 @@
+//! Notes on missing and estimated figures, below the conclusions: one paragraph for each reason.
+
+use sixfold_study::numbers::duration;
+use sixfold_study::{Refusal, Report, ResultRow};
+
+/// Explains why figures of a study are missing or only estimated.
+pub(crate) fn left_out_notes(report: &Report) -> Vec<String> {
+    let mut notes = refusal_notes(&report.refusals);
+    notes.extend(report.results.iter().filter_map(not_run_note));
+    notes
+}
+
+/// Explains why an operation is only estimated.
+fn not_run_note(row: &ResultRow) -> Option<String> {
+    let time = duration(row.estimated_ns?);
+    let ResultRow {
+        backend, operation, ..
+    } = row;
+    let remedy = match row.by_name_only {
+        true => "name it in --operations",
+        false => "increase --budget",
+    };
+    Some(format!(
+        "? {operation} on {backend} was not run: one run would take about {time}. To run this \
+         operation, {remedy}."
+    ))
+}
+
+/// Lists the reasons for missing figures, one line per reason. Reasons that differ only in numbers
+/// count as one reason; the line has the first of them.
+pub(crate) fn refusal_notes<'r>(refusals: impl IntoIterator<Item = &'r Refusal>) -> Vec<String> {
+    let mut reasons: Vec<(String, Vec<&Refusal>)> = Vec::new();
+    for refusal in refusals {
+        let pattern: String = refusal
+            .reason
+            .chars()
+            .filter(|c| !c.is_ascii_digit())
+            .collect();
+        match reasons.iter_mut().find(|(known, _)| *known == pattern) {
+            Some((_, same)) => same.push(refusal),
+            None => reasons.push((pattern, vec![refusal])),
+        }
+    }
+    let line = |(_, same): (String, Vec<&Refusal>)| {
+        format!("– {}: {}", left_out_operations(&same), same[0].reason)
+    };
+    reasons.into_iter().map(line).collect()
+}
+
+/// Lists the operations of one reason, such as `loop_native, loop_gather on half-edge; flip_all on
+/// polygon-soup`.
+fn left_out_operations(refusals: &[&Refusal]) -> String {
+    let mut backends: Vec<(&str, Vec<&str>)> = Vec::new();
+    for refusal in refusals {
+        let operation = refusal.operation.name();
+        match backends.iter_mut().find(|(b, _)| *b == refusal.backend) {
+            Some((_, operations)) if operations.contains(&operation) => {}
+            Some((_, operations)) => operations.push(operation),
+            None => backends.push((&refusal.backend, vec![operation])),
+        }
+    }
+    let mut groups: Vec<(Vec<&str>, Vec<&str>)> = Vec::new();
+    for (backend, operations) in backends {
+        match groups.iter_mut().find(|(known, _)| *known == operations) {
+            Some((_, backends)) => backends.push(backend),
+            None => groups.push((operations, vec![backend])),
+        }
+    }
+    let group = |(operations, backends): &(Vec<&str>, Vec<&str>)| {
+        format!("{} on {}", operations.join(", "), backends.join(", "))
+    };
+    groups.iter().map(group).collect::<Vec<_>>().join("; ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_reason_has_one_line() {
+        let refusal = |backend: &str, operation: &str, reason: &str| Refusal {
+            backend: backend.into(),
+            operation: operation.parse().expect("an operation"),
+            kind: sixfold_study::RefusalKind::Impossible,
+            reason: reason.into(),
+        };
+        let triangles = "face f0 has 4 corners, and edits need triangles";
+        let others = "face f12 has 5 corners, and edits need triangles";
+        let refusals = [
+            refusal("half-edge", "flip_all", triangles),
+            refusal("half-edge", "decimate_half", triangles),
+            refusal("half-edge", "flip_all", others),
+            refusal("winged-edge", "flip_all", triangles),
+            refusal("winged-edge", "decimate_half", others),
+            refusal("polygon-soup", "flip_all", triangles),
+            refusal("polygon-soup", "loop_native", "no native method"),
+        ];
+        assert_eq!(
+            refusal_notes(&refusals),
+            [
+                "– flip_all, decimate_half on half-edge, winged-edge; flip_all on polygon-soup: \
+                 face f0 has 4 corners, and edits need triangles",
+                "– loop_native on polygon-soup: no native method",
+            ]
+        );
+    }
+}

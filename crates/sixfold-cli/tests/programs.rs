@@ -1,0 +1,376 @@
+//! The command line of a user's programs, by the example `programs`.
+
+use std::process::Stdio;
+use std::time::Duration;
+
+use serde_json::Value;
+
+use crate::run::{Run, Sixfold, TETRAHEDRON, send, text};
+
+#[test]
+fn programs_are_measured_and_written() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    let run = sixfold.run_programs(&[
+        "grid.obj",
+        "--programs",
+        "geodesics,regions",
+        "--backends",
+        "half-edge,corner-table",
+        "--budget",
+        "1s",
+        "--json",
+        "r.json",
+    ]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    for part in ["grid", "144 vertices", "geodesics", "regions", "sixfold-"] {
+        assert!(run.stdout.contains(part), "`{part}` in {run:?}");
+    }
+    let results: Value = serde_json::from_str(&text(&sixfold, "r.json")).expect("JSON");
+    let findings = results["findings"].as_array().expect("a list");
+    let names: Vec<&Value> = findings
+        .iter()
+        .map(|finding| &finding["workload"]["name"])
+        .collect();
+    assert_eq!(names, ["geodesics", "regions"]);
+    for finding in findings {
+        assert_eq!(finding["kind"], "pick");
+        let ranking = finding["ranking"].as_array().expect("a list");
+        assert_eq!(ranking.len(), 2, "{finding}");
+        assert_eq!(finding["workload"]["own_ns"], 0.0, "{finding}");
+        let asked = finding["program"]["asked"].as_array().expect("recorded");
+        assert!(!asked.is_empty(), "{finding}");
+    }
+}
+
+#[test]
+fn the_commands_for_results_accept_results_of_programs() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    for file in ["a.json", "b.json"] {
+        let run = sixfold.run_programs(&[
+            "grid.obj",
+            "--programs",
+            "regions",
+            "--backends",
+            "half-edge,corner-table",
+            "--budget",
+            "1s",
+            "--json",
+            file,
+        ]);
+        assert_eq!(run.code, Some(0), "{run:?}");
+    }
+    let merged = sixfold.run(&["merge", "a.json", "b.json", "--json", "both.json"]);
+    assert_eq!(merged.code, Some(0), "{merged:?}");
+    let compared = sixfold.run(&["compare", "a.json", "b.json"]);
+    // Building and the program, on two structures.
+    assert!(
+        compared.stdout.contains("Of 4 measurements"),
+        "{compared:?}"
+    );
+    let report = sixfold.run(&["report", "a.json", "--to", "out"]);
+    assert_eq!(report.code, Some(0), "{report:?}");
+    let page = text(&sixfold, "out/report.html");
+    assert!(page.contains("regions"), "the page names the program");
+}
+
+#[test]
+fn bad_arguments_and_meshes_are_refused() {
+    let sixfold = Sixfold::new();
+    sixfold.file("no-mesh.obj", "v 0 0 0\n");
+    sixfold.file("tetrahedron.obj", TETRAHEDRON);
+    let cases: [(&[&str], &str); 4] = [
+        (
+            &["--programs", "dijkstra"],
+            "unknown program `dijkstra`; known: geodesics, feature-lines",
+        ),
+        (&["missing.obj"], "missing.obj"),
+        (&["no-mesh.obj"], "no face"),
+        (
+            &["tetrahedron.obj", "--backends", "half-edges"],
+            "half-edges",
+        ),
+    ];
+    for (arguments, message) in cases {
+        let run = sixfold.run_programs(arguments);
+        assert_eq!(run.code, Some(2), "{arguments:?}: {run:?}");
+        assert!(run.stderr.contains(message), "{arguments:?}: {run:?}");
+    }
+    let help = sixfold.run_programs(&["--help"]);
+    assert_eq!(help.code, Some(0));
+    assert!(help.stdout.contains("scattered-normals"), "{help:?}");
+}
+
+#[test]
+fn recorded_programs_run_again_on_every_structure() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    sixfold.grid("other.obj", 13);
+    let programs = "geodesics,remesh,taubin";
+    let run = sixfold.run_programs(&[
+        "grid.obj",
+        "--triangulate",
+        "--programs",
+        programs,
+        "--record",
+        "r",
+        "--traces",
+        "--budget",
+        "600ms",
+    ]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert_eq!(run.stdout.matches("Recorded: ").count(), 3, "{run:?}");
+    for program in programs.split(',') {
+        let workload = text(&sixfold, &format!("r/{program}.toml"));
+        assert!(workload.contains("[mix]"), "{workload}");
+        for option in ["--workload", "--trace"] {
+            let ending = if option == "--trace" { "trace" } else { "toml" };
+            let file = format!("r/{program}.{ending}");
+            let run = sixfold.run(&[
+                "pick",
+                "grid.obj",
+                "--triangulate",
+                option,
+                &file,
+                "--budget",
+                "500ms",
+                "--json",
+                "p.json",
+            ]);
+            assert_eq!(run.code, Some(0), "{run:?}");
+            let results: Value = serde_json::from_str(&text(&sixfold, "p.json")).expect("JSON");
+            let finding = &results["findings"][0];
+            assert_eq!(finding["workload"]["name"], program);
+            let ranking = finding["ranking"].as_array().expect("a list");
+            assert!(ranking.len() >= 3, "{finding}");
+            assert!(run.stdout.contains("own work"), "{run:?}");
+            assert_ne!(finding["workload"]["own_ns"], 0.0, "{finding}");
+        }
+    }
+
+    let run = sixfold.run(&[
+        "pick",
+        "other.obj",
+        "--triangulate",
+        "--trace",
+        "r/geodesics.trace",
+        "--budget",
+        "500ms",
+    ]);
+    assert_eq!(run.code, Some(1), "{run:?}");
+    assert!(
+        run.stdout.contains("the trace was recorded on a mesh with"),
+        "{run:?}"
+    );
+    let trace = text(&sixfold, "r/geodesics.trace");
+    let (cut, _) = trace.split_at(trace.len() / 2);
+    let (cut, _) = cut.rsplit_once('\n').expect("several lines");
+    sixfold.file("cut.trace", cut);
+    for (file, message) in [
+        ("cut.trace", "cut off"),
+        ("grid.obj", "this is not a trace"),
+        ("missing.trace", "missing.trace"),
+    ] {
+        let run = sixfold.run(&["pick", "grid.obj", "--trace", file]);
+        assert_eq!(run.code, Some(2), "{run:?}");
+        assert!(run.stderr.contains(message), "{run:?}");
+    }
+    let run = sixfold.run_programs(&["grid.obj", "other.obj", "--record", "r"]);
+    assert_eq!(run.code, Some(2), "{run:?}");
+    assert!(run.stderr.contains("single mesh"), "{run:?}");
+    // The Laplacian needs triangles.
+    assert_eq!(
+        sixfold.run(&["generate", "cube", "-o", "cube.obj"]).code,
+        Some(0)
+    );
+    let run = sixfold.run_programs(&["cube.obj", "--programs", "laplacian", "--record", "r"]);
+    assert_eq!(run.code, Some(1), "{run:?}");
+    assert!(run.stderr.contains("is not a triangle"), "{run:?}");
+}
+
+#[test]
+fn queries_also_run_on_relation_tables() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    let run = sixfold.run_programs(&[
+        "grid.obj",
+        "--triangulate",
+        "--programs",
+        "laplacian,feature-lines",
+        "--backends",
+        "half-edge,relation-tables",
+        "--budget",
+        "1s",
+        "--json",
+        "r.json",
+    ]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let results: Value = serde_json::from_str(&text(&sixfold, "r.json")).expect("JSON");
+    for finding in results["findings"].as_array().expect("a list") {
+        let ranking = finding["ranking"].as_array().expect("a list");
+        let tables = ranking.iter().find(|r| r["backend"] == "relation-tables");
+        assert_eq!(tables.expect("measured")["made_from"], "face-vertex");
+        assert_eq!(finding["mismatches"], Value::Array(Vec::new()), "{finding}");
+    }
+}
+
+#[test]
+fn a_new_package_is_written_once() {
+    let sixfold = Sixfold::new();
+    let run = sixfold.run(&["new", "my-program"]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let manifest = text(&sixfold, "my-program/Cargo.toml");
+    assert!(manifest.contains("name = \"my-program\""), "{manifest}");
+    let (_, path) = manifest
+        .split_once("sixfold-cli = { path = \"")
+        .expect("a dependency");
+    let (path, _) = path.split_once('"').expect("a path");
+    assert!(std::path::Path::new(path).join("Cargo.toml").is_file());
+    assert!(text(&sixfold, "my-program/src/main.rs").contains("sixfold_cli::main"));
+    for (arguments, message) in [
+        (&["new", "my-program"][..], "not empty"),
+        (&["new", "1st"], "package name"),
+        (
+            &["new", "another", "--checkout", "my-program"],
+            "no Sixfold repository",
+        ),
+    ] {
+        let run = sixfold.run(arguments);
+        assert_eq!(run.code, Some(2), "{run:?}");
+        assert!(run.stderr.contains(message), "{run:?}");
+    }
+}
+
+/// Runs faulty programs on four structures. Returns the finding of each.
+fn run_faulty(sixfold: &Sixfold, programs: &str, more: &[&str], code: i32) -> (String, Vec<Value>) {
+    let mut arguments = vec![
+        "grid.obj",
+        "--programs",
+        programs,
+        "--backends",
+        "face-vertex,half-edge,corner-table,relation-tables",
+        "--triangulate",
+        "--budget",
+        "4s",
+        "--json",
+        "r.json",
+    ];
+    arguments.extend(more);
+    let run = sixfold.run_example("faulty_programs", &arguments);
+    assert_eq!(run.code, Some(code), "{run:?}");
+    let results: Value = serde_json::from_str(&text(sixfold, "r.json")).expect("JSON");
+    let findings = results["findings"].as_array().expect("a list").clone();
+    (run.stderr, findings)
+}
+
+fn ranked(finding: &Value) -> Vec<&str> {
+    let ranking = finding["ranking"].as_array().expect("a list").iter();
+    let mut names: Vec<&str> = ranking.filter_map(|row| row["backend"].as_str()).collect();
+    names.sort_unstable();
+    names
+}
+
+#[test]
+#[cfg(unix)]
+fn isolated_programs_exclude_only_the_structures_on_which_they_fail() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    let limits = ["--isolate", "--time-limit", "2s", "--memory-limit", "250MB"];
+    let (_, findings) = run_faulty(
+        &sixfold,
+        "sound,endless,crashing,hoarding,panicking",
+        &limits,
+        0,
+    );
+    let reasons = [
+        None,
+        Some("no answer to run within 2 s"),
+        Some("SIGABRT"),
+        Some("memory allocation of"),
+        Some("half-edges are not welcome"),
+    ];
+    assert_eq!(findings.len(), reasons.len());
+    for (finding, expected) in findings.iter().zip(reasons) {
+        let excluded = finding["excluded"].as_array().expect("a list");
+        let mut names = vec!["corner-table", "face-vertex", "relation-tables"];
+        match expected {
+            None => names.insert(2, "half-edge"),
+            Some(expected) => {
+                assert_eq!(excluded.len(), 1, "{finding}");
+                assert_eq!(excluded[0]["backend"], "half-edge");
+                let reason = excluded[0]["reason"].as_str().expect("a text");
+                assert!(reason.contains(expected), "{reason}");
+            }
+        }
+        assert_eq!(ranked(finding), names);
+        assert_eq!(finding["mismatches"], Value::Array(Vec::new()), "{finding}");
+        let asked = &finding["program"]["asked"];
+        assert_eq!(asked[0]["operation"], "position", "{asked}");
+        for row in finding["ranking"].as_array().expect("a list") {
+            assert!(row["bytes"].as_u64().expect("a number") > 1000, "{row}");
+            assert!(row["build_ns"].as_f64().expect("a number") > 0.0, "{row}");
+        }
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_program_beyond_a_limit_ends_the_command_and_keeps_the_others() {
+    for (fault, option, limit, message) in [
+        ("endless", "--time-limit", "1s", "did not end within 1.0 s"),
+        (
+            "hoarding",
+            "--memory-limit",
+            "250MB",
+            "uses more memory than 250 MB",
+        ),
+    ] {
+        let sixfold = Sixfold::new();
+        sixfold.grid("grid.obj", 12);
+        let programs = format!("sound,{fault}");
+        let (stderr, findings) = run_faulty(&sixfold, &programs, &[option, limit], 4);
+        assert!(stderr.contains(message), "{stderr}");
+        assert!(stderr.contains("on half-edge"), "{stderr}");
+        assert_eq!(findings.len(), 1, "{findings:?}");
+        assert_eq!(findings[0]["workload"]["name"], "sound");
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn an_interrupt_ends_an_endless_program_and_keeps_the_others() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 12);
+    let mut command = sixfold.example("faulty_programs");
+    command.args(["grid.obj", "--programs", "sound,endless", "--budget", "2s"]);
+    command.args(["--backends", "half-edge", "--json", "r.json"]);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let child = command.spawn().expect("the example runs");
+    // The sound program takes one second.
+    std::thread::sleep(Duration::from_millis(2500));
+    send("INT", &child);
+    let run = Run::from_output(child.wait_with_output().expect("it ends"));
+    assert_eq!(run.code, Some(4), "{run:?}");
+    assert!(
+        run.stderr.contains("did not end after the interrupt"),
+        "{run:?}"
+    );
+    let results: Value = serde_json::from_str(&text(&sixfold, "r.json")).expect("JSON");
+    let findings = results["findings"].as_array().expect("a list");
+    assert_eq!(findings.len(), 1, "{findings:?}");
+    assert_eq!(findings[0]["workload"]["name"], "sound");
+}
+
+#[test]
+fn a_mesh_that_cannot_be_read_is_not_left_out_of_a_recording() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("a.obj", 5);
+    let run = sixfold.run_programs(&["a.obj", "missing.obj", "--record", "out"]);
+    assert_eq!(run.code, Some(2), "{run:?}");
+    assert!(
+        run.stderr.contains("--record needs a single mesh"),
+        "{run:?}"
+    );
+    assert!(!sixfold.folder().join("out").exists());
+}

@@ -1,0 +1,118 @@
+//! A program on flat tables of the relations that it queries.
+
+use std::hint::black_box;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+
+use sixfold::{FaceVertexMesh, PolygonMesh, QueryCost, Relation, Representation};
+
+use super::Program;
+use super::forms::Queries;
+use super::recorded::Recorded;
+use super::subject::{ProgramRefusal, checked, guarded, message, record};
+use crate::clock::Time;
+use crate::job::{Job, Outcome, Run, Task, TimedBackend};
+use crate::operation::Operation;
+use crate::series::Series;
+use crate::tables::{TABLES, Tables, time_building};
+
+/// The structure from which the tables are made. It holds every mesh.
+pub(super) type MadeFrom = FaceVertexMesh;
+
+/// A program that only queries, on tables.
+pub(super) struct OnTables<'p, P: Program> {
+    program: Arc<P>,
+    polygons: &'p PolygonMesh,
+    relations: Vec<Relation>,
+    tables: Tables,
+    scratch: P::Scratch<Tables>,
+    merged: usize,
+}
+
+impl<'p, P: Program> OnTables<'p, P> {
+    /// Finds the relations by a recorded run, and builds the tables and the scratch data.
+    pub(super) fn new(program: Arc<P>, polygons: &'p PolygonMesh) -> Result<Self, ProgramRefusal> {
+        let run =
+            record::<Queries<P, Recorded<MadeFrom>>, MadeFrom>(&program, "", polygons, false)?;
+        let is_asked = |relation: &Relation| {
+            [run.asked, run.at_set_up]
+                .iter()
+                .any(|asked| asked.relations[*relation as usize] > 0)
+        };
+        let relations: Vec<Relation> = Relation::ALL.into_iter().filter(is_asked).collect();
+        let mesh = MadeFrom::from_polygons(polygons)?;
+        let tables = Tables::new(&mesh, &relations)
+            .map_err(|reason| ProgramRefusal::Refused(reason.to_string()))?;
+        let set_up = || program.set_up(&tables).map_err(ProgramRefusal::Refused);
+        let scratch = catch_unwind(AssertUnwindSafe(set_up))
+            .map_err(|panic| ProgramRefusal::Panicked(message(panic.as_ref())))??;
+        Ok(Self {
+            merged: polygons.vertex_count() - tables.positions.len(),
+            program,
+            polygons,
+            relations,
+            tables,
+            scratch,
+        })
+    }
+
+    fn run_program(&mut self, series: &Series<'_>) -> (Time, Option<Outcome>) {
+        let Self {
+            program,
+            tables,
+            scratch,
+            ..
+        } = self;
+        let time = series.time_together(|| {
+            _ = black_box(program.run(black_box(&*tables), scratch));
+        });
+        let outcome = series.check.then(|| program.run(tables, scratch));
+        (time, outcome)
+    }
+
+    fn build(&self, series: &Series<'_>) -> (Time, Option<Outcome>) {
+        let bytes = self.tables.bytes();
+        let time = time_building::<MadeFrom>(self.polygons, &self.relations, bytes, series);
+        let faces = self.tables.faces;
+        let outcome = series
+            .check
+            .then(|| Outcome::new(faces as f64, faces as u64));
+        (time, outcome)
+    }
+}
+
+impl<P: Program> TimedBackend for OnTables<'_, P> {
+    fn name(&self) -> &str {
+        TABLES
+    }
+
+    fn costs(&self) -> [QueryCost; 9] {
+        [QueryCost::Local; 9]
+    }
+
+    fn merged_vertices(&self) -> usize {
+        self.merged
+    }
+
+    fn bytes(&self) -> usize {
+        self.tables.bytes()
+    }
+
+    fn rebuild(&mut self) {
+        if let Ok(again) = Self::new(Arc::clone(&self.program), self.polygons) {
+            *self = again;
+        }
+    }
+
+    fn run(&mut self, job: &Job, series: &Series<'_>) -> Run {
+        let run = match job.task {
+            Task::Operation(Operation::Build) => Ok(self.build(series)),
+            Task::Program => guarded(|| self.run_program(series)),
+            _ => Err("a program runs only as a whole".into()),
+        };
+        match run.and_then(checked) {
+            Ok((time, outcome)) => Run::done(time.scaled(1.0 / f64::from(series.runs)), outcome),
+            Err(reason) => Run::refused(reason, series),
+        }
+    }
+}

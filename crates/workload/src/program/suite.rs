@@ -1,0 +1,538 @@
+//! Programs with the structures on which they run.
+
+use std::sync::Arc;
+
+use sixfold::{
+    MeshEdit, OrientedWalk, PolygonMesh, QueryCost, Refine, Representation, StructureInfo,
+    for_each_editable, for_each_refinable, for_each_representation, for_each_walkable,
+};
+
+use super::forms::{Edits, Form, Moves, Queries, Refinements, Walks};
+use super::on_tables::{MadeFrom, OnTables};
+use super::recorded::{Asked, Recorded};
+use super::recording::Recording;
+use super::subject::{ProgramRefusal, RecordedRun, Subject, record};
+use super::{EditProgram, MovingProgram, Program, RefineProgram, WalkProgram};
+use crate::job::TimedBackend;
+use crate::tables::{TABLE_TYPE, TABLES};
+use crate::trace::{EditReplay, MoveReplay, QueryReplay, Trace, TraceKind};
+
+/// Programs that are measured one after the other.
+///
+/// A [`Program`] can be used in place of a suite of one program.
+#[derive(Default)]
+pub struct Suite {
+    programs: Vec<SuiteProgram>,
+}
+
+/// A program with the structures on which it runs.
+pub struct SuiteProgram {
+    name: String,
+    kind: ProgramKind,
+    contestants: Vec<Contestant>,
+    own_ns: f64,
+}
+
+/// What a program needs of a structure.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum ProgramKind {
+    /// The program is a [`Program`].
+    Queries,
+    /// The program is a [`WalkProgram`].
+    Walks,
+    /// The program is a [`MovingProgram`].
+    Moves,
+    /// The program is an [`EditProgram`].
+    Edits,
+    /// The program is a [`RefineProgram`].
+    Refines,
+}
+
+impl ProgramKind {
+    /// Returns the verb that describes the program in text and in results.
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Queries => "queries",
+            Self::Walks => "walks",
+            Self::Moves => "moves",
+            Self::Edits => "edits",
+            Self::Refines => "refines",
+        }
+    }
+}
+
+/// A structure on which a program runs.
+pub struct Contestant {
+    info: StructureInfo,
+    type_path: &'static str,
+    /// The structure from which relation tables are made; `None` for a structure.
+    made_from: Option<StructureInfo>,
+    prepare: Box<Prepare>,
+    record: Option<Box<Record>>,
+}
+
+/// Builds the structure and the scratch data of the program.
+type Prepare =
+    dyn for<'p> Fn(&'p PolygonMesh) -> Result<Box<dyn TimedBackend + 'p>, ProgramRefusal>;
+
+/// Runs the program once on the recorded structure.
+type Record = dyn Fn(&PolygonMesh, bool) -> Result<RecordedRun, ProgramRefusal>;
+
+impl Suite {
+    /// Makes an empty suite.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Returns the programs.
+    pub fn programs(&self) -> &[SuiteProgram] {
+        &self.programs
+    }
+
+    /// Keeps only the programs with one of `names`.
+    #[must_use]
+    pub fn only<N: AsRef<str>>(mut self, names: &[N]) -> Self {
+        let is_named = |p: &SuiteProgram| names.iter().any(|name| name.as_ref() == p.name);
+        self.programs.retain(is_named);
+        self
+    }
+
+    /// Adds a program that only queries the mesh. It also runs on flat tables of the relations that
+    /// it queries.
+    #[must_use]
+    pub fn program<P: Program + 'static>(self, program: P) -> Self {
+        let name = program.name().to_owned();
+        let program = Arc::new(program);
+        let mut contestants = Vec::new();
+        for_each_representation!(M => {
+            contestants.push(Contestant::new::<Queries<P, M>>(&program).recorded::<Queries<P, Recorded<M>>, M>(&name, &program));
+        });
+        contestants.push(Contestant::on_tables(&program));
+        self.with(name, ProgramKind::Queries, contestants)
+    }
+
+    /// Lets a program that only queries the mesh also run on `M`, a structure of another crate. If
+    /// the suite has no program of the same name, the program is added, and runs only on `M`. The
+    /// other kinds of programs have methods of the same form:
+    /// [`walk_program_on`](Self::walk_program_on), [`moving_program_on`](Self::moving_program_on),
+    /// [`edit_program_on`](Self::edit_program_on) and
+    /// [`refine_program_on`](Self::refine_program_on).
+    #[must_use]
+    pub fn on_structure<P, M>(self, program: P) -> Self
+    where
+        P: Program + 'static,
+        M: Representation + 'static,
+    {
+        let name = program.name().to_owned();
+        let program = Arc::new(program);
+        let contestant = Contestant::new::<Queries<P, M>>(&program)
+            .recorded::<Queries<P, Recorded<M>>, M>(&name, &program);
+        self.with(name, ProgramKind::Queries, vec![contestant])
+    }
+
+    /// Lets a program that walks along the sides of faces also run on `M`, a structure of another
+    /// crate, like [`on_structure`](Self::on_structure).
+    #[must_use]
+    pub fn walk_program_on<P, M>(self, program: P) -> Self
+    where
+        P: WalkProgram + 'static,
+        M: Representation + OrientedWalk + 'static,
+    {
+        let name = program.name().to_owned();
+        let program = Arc::new(program);
+        let contestant = Contestant::new::<Walks<P, M>>(&program)
+            .recorded::<Walks<P, Recorded<M>>, M>(&name, &program);
+        self.with(name, ProgramKind::Walks, vec![contestant])
+    }
+
+    /// Lets a program that moves the vertices also run on `M`, a structure of another crate, like
+    /// [`on_structure`](Self::on_structure).
+    #[must_use]
+    pub fn moving_program_on<P, M>(self, program: P) -> Self
+    where
+        P: MovingProgram + 'static,
+        M: Representation + 'static,
+    {
+        let name = program.name().to_owned();
+        let program = Arc::new(program);
+        let contestant = Contestant::new::<Moves<P, M>>(&program)
+            .recorded::<Moves<P, Recorded<M>>, M>(&name, &program);
+        self.with(name, ProgramKind::Moves, vec![contestant])
+    }
+
+    /// Lets a program that edits the mesh also run on `M`, the editable type of a structure of
+    /// another crate, like [`on_structure`](Self::on_structure).
+    #[must_use]
+    pub fn edit_program_on<P, M>(self, program: P) -> Self
+    where
+        P: EditProgram + 'static,
+        M: Representation + MeshEdit + 'static,
+    {
+        let name = program.name().to_owned();
+        let program = Arc::new(program);
+        let contestant = Contestant::new::<Edits<P, M>>(&program)
+            .recorded::<Edits<P, Recorded<M>>, M>(&name, &program);
+        self.with(name, ProgramKind::Edits, vec![contestant])
+    }
+
+    /// Lets a program that splits all faces also run on `M`, a structure of another crate, like
+    /// [`on_structure`](Self::on_structure).
+    #[must_use]
+    pub fn refine_program_on<P, M>(self, program: P) -> Self
+    where
+        P: RefineProgram + 'static,
+        M: Refine + 'static,
+    {
+        let name = program.name().to_owned();
+        let contestant = Contestant::new::<Refinements<P, M>>(&Arc::new(program));
+        self.with(name, ProgramKind::Refines, vec![contestant])
+    }
+
+    /// Adds a program that walks along the sides of faces.
+    #[must_use]
+    pub fn walk_program<P: WalkProgram + 'static>(self, program: P) -> Self {
+        let name = program.name().to_owned();
+        let program = Arc::new(program);
+        let mut contestants = Vec::new();
+        for_each_walkable!(M => {
+            contestants.push(Contestant::new::<Walks<P, M>>(&program).recorded::<Walks<P, Recorded<M>>, M>(&name, &program));
+        });
+        self.with(name, ProgramKind::Walks, contestants)
+    }
+
+    /// Adds a program that moves the vertices.
+    #[must_use]
+    pub fn moving_program<P: MovingProgram + 'static>(self, program: P) -> Self {
+        let name = program.name().to_owned();
+        let program = Arc::new(program);
+        let mut contestants = Vec::new();
+        for_each_representation!(M => {
+            contestants.push(Contestant::new::<Moves<P, M>>(&program).recorded::<Moves<P, Recorded<M>>, M>(&name, &program));
+        });
+        self.with(name, ProgramKind::Moves, contestants)
+    }
+
+    /// Adds a program that edits the mesh.
+    #[must_use]
+    pub fn edit_program<P: EditProgram + 'static>(self, program: P) -> Self {
+        let name = program.name().to_owned();
+        let program = Arc::new(program);
+        let mut contestants = Vec::new();
+        for_each_editable!(M => {
+            contestants.push(Contestant::new::<Edits<P, M>>(&program).recorded::<Edits<P, Recorded<M>>, M>(&name, &program));
+        });
+        self.with(name, ProgramKind::Edits, contestants)
+    }
+
+    /// Adds a program that splits all faces.
+    #[must_use]
+    pub fn refine_program<P: RefineProgram + 'static>(self, program: P) -> Self {
+        let name = program.name().to_owned();
+        let program = Arc::new(program);
+        let mut contestants = Vec::new();
+        for_each_refinable!(M => {
+            contestants.push(Contestant::new::<Refinements<P, M>>(&program));
+        });
+        self.with(name, ProgramKind::Refines, contestants)
+    }
+
+    /// Adds a trace, which runs on every structure that supports its calls.
+    #[must_use]
+    pub fn trace(self, trace: Trace) -> Self {
+        let (name, kind) = (trace.program.clone(), trace.kind());
+        let own_ns = trace.own_ns;
+        let trace = Arc::new(trace);
+        let mut contestants = Vec::new();
+        match kind {
+            TraceKind::Queries => {
+                for_each_representation!(M => {
+                    contestants.push(Contestant::new::<QueryReplay<M>>(&trace));
+                });
+            }
+            TraceKind::Moves => {
+                for_each_representation!(M => {
+                    contestants.push(Contestant::new::<MoveReplay<M>>(&trace));
+                });
+            }
+            TraceKind::Edits => {
+                for_each_editable!(M => {
+                    contestants.push(Contestant::new::<EditReplay<M>>(&trace));
+                });
+            }
+        }
+        let kind = match kind {
+            TraceKind::Queries => ProgramKind::Queries,
+            TraceKind::Moves => ProgramKind::Moves,
+            TraceKind::Edits => ProgramKind::Edits,
+        };
+        let mut suite = self.with(name, kind, contestants);
+        if let Some(program) = suite.programs.last_mut() {
+            program.own_ns = own_ns;
+        }
+        suite
+    }
+
+    /// Adds the contestants to the program called `name`.
+    fn with(mut self, name: String, kind: ProgramKind, contestants: Vec<Contestant>) -> Self {
+        let mut same = self.programs.iter_mut();
+        match same.find(|p| p.name == name && p.kind == kind) {
+            Some(program) => program.contestants.extend(contestants),
+            None => self.programs.push(SuiteProgram {
+                name,
+                kind,
+                contestants,
+                own_ns: 0.0,
+            }),
+        }
+        self
+    }
+}
+
+impl<P: Program + 'static> From<P> for Suite {
+    fn from(program: P) -> Self {
+        Self::new().program(program)
+    }
+}
+
+impl SuiteProgram {
+    /// Returns the name of the program.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Returns what the program needs: `queries`, `walks`, `moves`, `edits` or `refines`.
+    pub fn kind(&self) -> &'static str {
+        self.kind.name()
+    }
+
+    /// Returns true if a run changes the mesh, so that each run needs a fresh copy.
+    pub fn changes_mesh(&self) -> bool {
+        matches!(self.kind, ProgramKind::Moves | ProgramKind::Edits)
+    }
+
+    /// Returns the time of one run that is added to the measured time, in nanoseconds. It is 0 unless
+    /// the program is a trace, see [`Trace::own_ns`].
+    pub fn own_ns(&self) -> f64 {
+        self.own_ns
+    }
+
+    /// Returns the structures on which the program runs.
+    pub fn contestants(&self) -> &[Contestant] {
+        &self.contestants
+    }
+}
+
+impl Contestant {
+    fn new<F>(program: &Arc<F::Program>) -> Self
+    where
+        F: Form + 'static,
+        F::Program: 'static,
+    {
+        let program = Arc::clone(program);
+        Self {
+            info: StructureInfo::new::<F::Mesh>(),
+            type_path: F::Mesh::type_path(),
+            made_from: None,
+            prepare: Box::new(move |polygons| {
+                Ok(Box::new(Subject::<F>::new(Arc::clone(&program), polygons)?))
+            }),
+            record: None,
+        }
+    }
+
+    /// Returns relation tables on which `program` runs.
+    fn on_tables<P: Program + 'static>(program: &Arc<P>) -> Self {
+        let program = Arc::clone(program);
+        let made_from = StructureInfo::new::<MadeFrom>();
+        Self {
+            info: StructureInfo {
+                name: TABLES,
+                costs: [QueryCost::Local; 9],
+                ..made_from
+            },
+            type_path: TABLE_TYPE,
+            made_from: Some(made_from),
+            prepare: Box::new(move |polygons| {
+                Ok(Box::new(OnTables::new(Arc::clone(&program), polygons)?))
+            }),
+            record: None,
+        }
+    }
+
+    /// Adds the recording. `F` is the same kind of program on the recorded structure.
+    fn recorded<F, M>(self, name: &str, program: &Arc<F::Program>) -> Self
+    where
+        F: Form<Mesh = Recorded<M>> + 'static,
+        F::Program: 'static,
+        M: Representation,
+    {
+        let (name, program) = (name.to_owned(), Arc::clone(program));
+        Self {
+            record: Some(Box::new(move |polygons, traced| {
+                record::<F, M>(&program, &name, polygons, traced)
+            })),
+            ..self
+        }
+    }
+
+    /// Returns the name of the structure, such as `half-edge`.
+    pub fn name(&self) -> &'static str {
+        self.info.name
+    }
+
+    /// Returns the properties of the structure that do not depend on a mesh.
+    pub fn info(&self) -> &StructureInfo {
+        &self.info
+    }
+
+    /// Runs the program once, and counts what it asks. Returns `None` if the kind of program cannot
+    /// be recorded.
+    ///
+    /// # Errors
+    ///
+    /// Returns the same errors as [`prepare`](Self::prepare).
+    pub fn record(&self, polygons: &PolygonMesh) -> Option<Result<Asked, ProgramRefusal>> {
+        Some(self.record.as_ref()?(polygons, false).map(|run| run.asked))
+    }
+
+    /// Runs the program once, and keeps what it asks. Returns `None` if the kind of program cannot be
+    /// recorded, or if it has more than 16 million calls. Steps along sides are counted, but are not
+    /// part of the trace.
+    ///
+    /// # Errors
+    ///
+    /// Returns the same errors as [`prepare`](Self::prepare).
+    pub fn record_calls(
+        &self,
+        polygons: &PolygonMesh,
+    ) -> Option<Result<Recording, ProgramRefusal>> {
+        match self.record.as_ref()?(polygons, true) {
+            Ok(run) => Some(Ok(Recording::new(run.taped?, run.asked, polygons))),
+            Err(refusal) => Some(Err(refusal)),
+        }
+    }
+
+    /// Returns the structure from which relation tables are made; `None` for a structure.
+    pub fn made_from(&self) -> Option<&StructureInfo> {
+        self.made_from.as_ref()
+    }
+
+    /// Returns the Rust path of the type of the structure.
+    pub fn type_path(&self) -> &'static str {
+        self.type_path
+    }
+
+    /// Builds the structure and the scratch data of the program.
+    ///
+    /// # Errors
+    ///
+    /// Returns the reason if the structure cannot hold the mesh, or if the program refuses the mesh
+    /// or panics.
+    pub fn prepare<'p>(
+        &self,
+        polygons: &'p PolygonMesh,
+    ) -> Result<Box<dyn TimedBackend + 'p>, ProgramRefusal> {
+        (self.prepare)(polygons)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold::{EditableHalfEdgeMesh, HalfEdgeMesh, MeshQuery, Point, Split, shapes};
+
+    use super::*;
+    use crate::job::Outcome;
+
+    /// Implements each kind of program with the same methods.
+    macro_rules! programs {
+        ($($name:ident: $kind:ident on $bound:path, $run:expr, $mesh:ty;)+) => {
+            $(
+                struct $name;
+
+                impl $kind for $name {
+                    type Scratch<M: $bound> = ();
+
+                    fn name(&self) -> &str {
+                        "of-the-test"
+                    }
+
+                    fn set_up<M: $bound>(&self, _: &M) -> Result<(), String> {
+                        Ok(())
+                    }
+
+                    fn run<M: $bound>(&self, mesh: $mesh, (): &mut ()) -> Outcome {
+                        Outcome::new($run(mesh) as f64, 1)
+                    }
+                }
+            )+
+        };
+    }
+
+    programs! {
+        Count: Program on MeshQuery, |mesh: &M| mesh.face_count(), &M;
+        Walk: WalkProgram on OrientedWalk, |mesh: &M| mesh.sides().count(), &M;
+        Move: MovingProgram on Representation, |mesh: &mut M| {
+            let points = mesh.vertices().map(|_| Point::ZERO).collect::<Vec<_>>();
+            points.len()
+        }, &mut M;
+        Remove: EditProgram on MeshEdit, |mesh: &mut M| {
+            let first = mesh.faces().next().expect("a face");
+            usize::from(mesh.remove_face(first).is_ok())
+        }, &mut M;
+        Halve: RefineProgram on Refine, |mesh: &M| {
+            let split = M::SPLITS.contains(&Split::Triangles);
+            mesh.face_count() + usize::from(split)
+        }, &M;
+    }
+
+    #[test]
+    fn every_kind_of_program_runs_on_a_structure_of_another_crate() {
+        type Mesh = HalfEdgeMesh;
+        type Editable = EditableHalfEdgeMesh;
+        let cases = [
+            (
+                Suite::new().on_structure::<_, Mesh>(Count),
+                Suite::new().program(Count).on_structure::<_, Mesh>(Count),
+            ),
+            (
+                Suite::new().walk_program_on::<_, Mesh>(Walk),
+                Suite::new()
+                    .walk_program(Walk)
+                    .walk_program_on::<_, Mesh>(Walk),
+            ),
+            (
+                Suite::new().moving_program_on::<_, Mesh>(Move),
+                Suite::new()
+                    .moving_program(Move)
+                    .moving_program_on::<_, Mesh>(Move),
+            ),
+            (
+                Suite::new().edit_program_on::<_, Editable>(Remove),
+                Suite::new()
+                    .edit_program(Remove)
+                    .edit_program_on::<_, Editable>(Remove),
+            ),
+            (
+                Suite::new().refine_program_on::<_, Mesh>(Halve),
+                Suite::new()
+                    .refine_program(Halve)
+                    .refine_program_on::<_, Mesh>(Halve),
+            ),
+        ];
+        let polygons = shapes::icosahedron();
+        for (alone, added) in cases {
+            let ([alone], [added]) = (alone.programs(), added.programs()) else {
+                panic!("a program that is added twice has one entry");
+            };
+            assert_eq!(alone.kind(), added.kind());
+            let [contestant] = alone.contestants() else {
+                panic!("{}: only on the structure", alone.kind());
+            };
+            assert_eq!(contestant.name(), "half-edge");
+            assert!(contestant.prepare(&polygons).is_ok(), "{}", alone.kind());
+            let names: Vec<_> = added.contestants().iter().map(Contestant::name).collect();
+            let count = names.iter().filter(|name| **name == "half-edge").count();
+            assert_eq!((count, names.last()), (2, Some(&"half-edge")), "{names:?}");
+        }
+    }
+}

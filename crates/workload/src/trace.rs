@@ -1,0 +1,155 @@
+//! Traces: the calls of one run of a program, in order. A trace runs again on every structure.
+//!
+//! A trace names vertices and faces by their numbers in the mesh file, and edges by their two ends.
+//! Before the timing, each structure translates the names to its own handles.
+
+mod names;
+mod replay;
+#[cfg(test)]
+mod tests;
+mod text;
+
+use sixfold::{Edit, Point, Relation};
+
+use crate::operation::ElementKind;
+
+pub(crate) use names::Names;
+pub(crate) use replay::{EditReplay, MoveReplay, QueryReplay, affected_faces};
+pub use text::TraceError;
+
+/// The calls of one run of a program.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace {
+    /// The name of the program.
+    pub program: String,
+    /// The number of vertices of the mesh on which the trace was recorded.
+    pub vertices: usize,
+    /// The number of faces of this mesh.
+    pub faces: usize,
+    /// The time of one run outside the calls, in nanoseconds. It is added to the time of every
+    /// structure. It can be negative if the calls take longer when they are run from a trace.
+    pub own_ns: f64,
+    pub(crate) calls: Vec<Call>,
+    /// The edits, in order.
+    pub(crate) edits: Vec<EditCall>,
+}
+
+/// One call.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Call {
+    pub(crate) op: Op,
+    /// The number of results that the program reads; [`ALL`] if it reads all.
+    pub(crate) taken: u32,
+    /// A vertex and 0, a face and 0, the two ends of an edge, or the place of an edit and 0.
+    pub(crate) name: [u32; 2],
+}
+
+/// The number of results if a program reads all of them.
+pub(crate) const ALL: u32 = u32::MAX;
+
+/// The name of an element that does not exist.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// What a call does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Op {
+    /// Queries a relation of an element.
+    Query(Relation),
+    /// Reads the position of a vertex.
+    Position,
+    /// Starts to list all elements of one kind.
+    List(ElementKind),
+    /// Takes the next element of the innermost list. The calls that follow belong to it.
+    Item,
+    /// Ends the innermost list.
+    End,
+    /// Does the edit at the place `name[0]` of the list of edits.
+    Edit,
+    /// Writes the positions of all vertices.
+    SetPositions,
+}
+
+/// One edit, with the names of its arguments.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct EditCall {
+    pub(crate) edit: Edit,
+    /// The vertices among the arguments; the ends of an edge come first. [`NONE`] for an optional
+    /// vertex that is absent.
+    pub(crate) vertices: Vec<u32>,
+    /// The face among the arguments.
+    pub(crate) face: Option<u32>,
+    /// The position among the arguments.
+    pub(crate) at: Option<Point>,
+    /// Whether the structure refused the edit.
+    pub(crate) refused: bool,
+}
+
+impl EditCall {
+    pub(crate) fn new(edit: Edit) -> Self {
+        Self {
+            edit,
+            vertices: Vec::new(),
+            face: None,
+            at: None,
+            refused: false,
+        }
+    }
+}
+
+/// What a trace needs from a structure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum TraceKind {
+    Queries,
+    Moves,
+    Edits,
+}
+
+impl Trace {
+    /// Makes a trace without calls, of a mesh with the given numbers of elements.
+    pub(crate) fn new(program: &str, vertices: usize, faces: usize) -> Self {
+        Self {
+            program: program.to_owned(),
+            vertices,
+            faces,
+            own_ns: 0.0,
+            calls: Vec::new(),
+            edits: Vec::new(),
+        }
+    }
+
+    /// Returns the number of calls. The lists of elements count once, however many elements they
+    /// have.
+    pub fn len(&self) -> usize {
+        let calls = self.calls.iter();
+        calls
+            .filter(|c| !matches!(c.op, Op::Item | Op::End))
+            .count()
+    }
+
+    /// Returns whether the trace has no calls.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    pub(crate) fn kind(&self) -> TraceKind {
+        if !self.edits.is_empty() {
+            return TraceKind::Edits;
+        }
+        match self.calls.iter().any(|c| c.op == Op::SetPositions) {
+            true => TraceKind::Moves,
+            false => TraceKind::Queries,
+        }
+    }
+}
+
+/// Returns whether an edit is done at an edge.
+const fn is_at_edge(edit: Edit) -> bool {
+    matches!(
+        edit,
+        Edit::SplitEdge
+            | Edit::BisectEdge
+            | Edit::DissolveEdge
+            | Edit::FlipEdge
+            | Edit::CollapseEdge
+    )
+}

@@ -1,0 +1,618 @@
+//! Runs a trace on one structure.
+
+use std::collections::HashMap;
+use std::hint::black_box;
+use std::marker::PhantomData;
+use std::ops::Range;
+
+use sixfold::{
+    Edit, EditRecord, MeshEdit, MeshQuery, Point, PolygonMesh, QueryCost, Relation, Representation,
+    VertexMap,
+};
+
+use super::{ALL, Call, EditCall, NONE, Names, Op, Trace, is_at_edge};
+use crate::job::Outcome;
+use crate::operation::ElementKind;
+use crate::program::Form;
+use crate::sweeps::Sink;
+
+/// The greatest product of scanning calls and faces. A trace with more is not run on a structure
+/// that scans: one run would take more than about a second.
+const MAX_SCANNED: u64 = 200_000_000;
+
+/// Calls of the same kind that follow each other.
+struct Group {
+    op: Op,
+    taken: u32,
+    /// Their places in the list of handles.
+    range: Range<usize>,
+}
+
+/// A trace in the handles of one structure.
+pub(crate) struct Replay<M: MeshQuery> {
+    groups: Vec<Group>,
+    vertices: Vec<M::Vertex>,
+    edges: Vec<M::Edge>,
+    faces: Vec<M::Face>,
+    edits: Vec<EditHandles<M>>,
+    /// The positions that [`Op::SetPositions`] writes: those of the mesh.
+    positions: Option<VertexMap<M, Point>>,
+    calls: u64,
+}
+
+/// The arguments of an edit.
+struct EditHandles<M: MeshQuery> {
+    edit: Edit,
+    vertices: Vec<Option<M::Vertex>>,
+    edge: Option<M::Edge>,
+    face: Option<M::Face>,
+    at: Point,
+}
+
+/// The next position in a trace, for messages.
+fn at(call: usize) -> String {
+    format!("call {} of the trace", call + 1)
+}
+
+fn missing(call: usize, what: &str) -> String {
+    format!("{}: the mesh has no {what}", at(call))
+}
+
+impl Trace {
+    /// Checks that the trace belongs to `polygons`, and that `costs` allow to run it.
+    fn check(&self, polygons: &PolygonMesh, costs: &[QueryCost; 9]) -> Result<(), String> {
+        let [vertices, faces] = [polygons.vertex_count(), polygons.face_count()];
+        if [self.vertices, self.faces] != [vertices, faces] {
+            return Err(format!(
+                "the trace was recorded on a mesh with {} vertices and {} faces, but this mesh has \
+                 {vertices} vertices and {faces} faces",
+                self.vertices, self.faces
+            ));
+        }
+        let is_scan = |call: &&Call| match call.op {
+            Op::Query(relation) => costs[relation as usize] == QueryCost::Scan,
+            _ => false,
+        };
+        let scans = self.calls.iter().filter(is_scan).count() as u64;
+        if scans.saturating_mul(faces as u64) > MAX_SCANNED {
+            return Err(format!(
+                "{scans} calls of the trace scan all {faces} faces: a run would take too long"
+            ));
+        }
+        Ok(())
+    }
+}
+
+impl<M: MeshQuery> Replay<M> {
+    fn new() -> Self {
+        Self {
+            groups: Vec::new(),
+            vertices: Vec::new(),
+            edges: Vec::new(),
+            faces: Vec::new(),
+            edits: Vec::new(),
+            positions: None,
+            calls: 0,
+        }
+    }
+
+    /// Adds a call. `place` is its place in the list of handles.
+    fn push(&mut self, op: Op, taken: u32, place: usize) {
+        self.calls += 1;
+        if let Some(last) = self.groups.last_mut()
+            && (last.op, last.taken, last.range.end) == (op, taken, place)
+        {
+            last.range.end += 1;
+            return;
+        }
+        self.groups.push(Group {
+            op,
+            taken,
+            range: place..place + 1,
+        });
+    }
+
+    fn push_vertex(&mut self, call: Call, v: M::Vertex) {
+        self.vertices.push(v);
+        self.push(call.op, call.taken, self.vertices.len() - 1);
+    }
+
+    fn push_edge(&mut self, call: Call, e: M::Edge) {
+        self.edges.push(e);
+        self.push(call.op, call.taken, self.edges.len() - 1);
+    }
+
+    fn push_face(&mut self, call: Call, f: M::Face) {
+        self.faces.push(f);
+        self.push(call.op, call.taken, self.faces.len() - 1);
+    }
+
+    /// Adds a query or the reading of a position. `edge` finds the edge with the given ends.
+    fn push_query<V, F>(
+        &mut self,
+        nth: usize,
+        call: Call,
+        names: &Names<V, F>,
+        edge: impl FnOnce([u32; 2]) -> Option<M::Edge>,
+    ) -> Result<(), String>
+    where
+        M: MeshQuery<Vertex = V, Face = F>,
+        V: sixfold::Handle,
+        F: sixfold::Handle,
+    {
+        let [a, b] = call.name;
+        let kind = match call.op {
+            Op::Query(relation) => ElementKind::queried_by(relation),
+            _ => ElementKind::Vertex,
+        };
+        match kind {
+            ElementKind::Vertex => {
+                let v = names.vertex(a);
+                self.push_vertex(call, v.ok_or_else(|| missing(nth, &format!("vertex {a}")))?);
+            }
+            ElementKind::Edge => {
+                let e = edge(call.name);
+                self.push_edge(
+                    call,
+                    e.ok_or_else(|| missing(nth, &format!("edge {a}-{b}")))?,
+                );
+            }
+            ElementKind::Face => {
+                let f = names.face(a);
+                self.push_face(call, f.ok_or_else(|| missing(nth, &format!("face {a}")))?);
+            }
+        }
+        Ok(())
+    }
+
+    /// Runs all calls. `edit` does an edit; `set_positions` writes positions.
+    #[inline(always)]
+    fn run(
+        &self,
+        mesh: &mut M,
+        mut edit: impl FnMut(&mut M, &EditHandles<M>),
+        mut set_positions: impl FnMut(&mut M, &VertexMap<M, Point>),
+    ) -> Outcome {
+        let mut sink = Sink::default();
+        let mut sum = Point::ZERO;
+        let mut positions = 0;
+        macro_rules! query {
+            ($handles:ident, $query:ident, $group:expr) => {{
+                let handles = self.$handles[$group.range.clone()].iter();
+                match $group.taken {
+                    ALL => handles.for_each(|&h| sink.consume(mesh.$query(h))),
+                    n => handles.for_each(|&h| {
+                        sink.consume(mesh.$query(h).into_iter().take(n as usize));
+                    }),
+                }
+            }};
+        }
+        for group in &self.groups {
+            let taken = group.taken as usize;
+            match group.op {
+                Op::Query(relation) => match relation {
+                    Relation::VertexVertices => query!(vertices, vertex_vertices, group),
+                    Relation::VertexEdges => query!(vertices, vertex_edges, group),
+                    Relation::VertexFaces => query!(vertices, vertex_faces, group),
+                    Relation::EdgeVertices => query!(edges, edge_vertices, group),
+                    Relation::EdgeEdges => query!(edges, edge_edges, group),
+                    Relation::EdgeFaces => query!(edges, edge_faces, group),
+                    Relation::FaceVertices => query!(faces, face_vertices, group),
+                    Relation::FaceEdges => query!(faces, face_edges, group),
+                    Relation::FaceFaces => query!(faces, face_faces, group),
+                },
+                Op::Position => {
+                    for &v in &self.vertices[group.range.clone()] {
+                        sum += mesh.position(v);
+                    }
+                    positions += group.range.len() as u64;
+                }
+                Op::List(ElementKind::Vertex) => sink.consume(mesh.vertices().take(taken)),
+                Op::List(ElementKind::Edge) => sink.consume(mesh.edges().take(taken)),
+                Op::List(ElementKind::Face) => sink.consume(mesh.faces().take(taken)),
+                Op::Edit => {
+                    for handles in &self.edits[group.range.clone()] {
+                        edit(mesh, handles);
+                    }
+                }
+                Op::SetPositions => {
+                    if let Some(positions) = &self.positions {
+                        set_positions(mesh, positions);
+                    }
+                }
+                Op::Item | Op::End => {}
+            }
+        }
+        black_box(sum);
+        Outcome::new((sink.finish_count() + positions) as f64, self.calls)
+    }
+}
+
+/// Translates a trace without edits. Each structure visits the elements of a list in its own order,
+/// as a program does.
+fn translate<M: Representation>(
+    trace: &Trace,
+    mesh: &M,
+    polygons: &PolygonMesh,
+) -> Result<Replay<M>, String> {
+    trace.check(polygons, &M::COSTS)?;
+    let translation = Translation {
+        trace,
+        mesh,
+        names: &Names::new::<M>(polygons),
+        ends: ends_of_lists(&trace.calls),
+    };
+    let is_edge = |call: &Call| match call.op {
+        Op::Query(relation) => ElementKind::queried_by(relation) == ElementKind::Edge,
+        Op::List(kind) => kind == ElementKind::Edge,
+        _ => false,
+    };
+    let names_edges = trace.calls.iter().any(is_edge);
+    let edges = mesh.edges().filter(|_| names_edges);
+    let named = |e| (translation.names.edge_name(mesh.edge_vertices(e)), e);
+    let edges: HashMap<[u32; 2], M::Edge> = edges.map(named).collect();
+    let mut replay = Replay::new();
+    translation.add(&mut replay, &edges, 0..trace.calls.len())?;
+    if trace.calls.iter().any(|call| call.op == Op::SetPositions) {
+        let mut positions = mesh.vertex_map(Point::ZERO);
+        for v in mesh.vertices() {
+            positions[v] = mesh.position(v);
+        }
+        replay.positions = Some(positions);
+    }
+    Ok(replay)
+}
+
+/// Returns the handles of a trace without edits, by kind, as text.
+#[cfg(test)]
+pub(super) fn handles<M: Representation>(
+    trace: &Trace,
+    mesh: &M,
+    polygons: &PolygonMesh,
+) -> Result<[Vec<String>; 3], String> {
+    fn text<H: std::fmt::Debug>(handles: &[H]) -> Vec<String> {
+        handles.iter().map(|h| format!("{h:?}")).collect()
+    }
+    let replay = translate(trace, mesh, polygons)?;
+    Ok([
+        text(&replay.vertices),
+        text(&replay.edges),
+        text(&replay.faces),
+    ])
+}
+
+/// What the translation of a trace without edits reads.
+struct Translation<'t, M: MeshQuery> {
+    trace: &'t Trace,
+    mesh: &'t M,
+    names: &'t Names<M::Vertex, M::Face>,
+    /// For each call that starts a list, the call that ends it.
+    ends: HashMap<usize, usize>,
+}
+
+impl<M: MeshQuery> Translation<'_, M> {
+    /// Adds the calls `range`.
+    fn add(
+        &self,
+        replay: &mut Replay<M>,
+        edges: &HashMap<[u32; 2], M::Edge>,
+        range: Range<usize>,
+    ) -> Result<(), String> {
+        let mut nth = range.start;
+        while nth < range.end {
+            let call = self.trace.calls[nth];
+            match call.op {
+                Op::List(kind) => {
+                    replay.push(call.op, call.taken, 0);
+                    if call.taken == ALL {
+                        self.add_items(replay, edges, kind, nth)?;
+                        nth = self.ends[&nth];
+                    }
+                }
+                Op::Item | Op::End | Op::Edit => {}
+                Op::SetPositions => replay.push(call.op, ALL, 0),
+                Op::Query(_) | Op::Position => {
+                    replay.push_query(nth, call, self.names, |ends| edges.get(&ends).copied())?;
+                }
+            }
+            nth += 1;
+        }
+        Ok(())
+    }
+
+    /// Adds the calls of all items of the list that call `list` starts, in the order of the
+    /// structure.
+    fn add_items(
+        &self,
+        replay: &mut Replay<M>,
+        edges: &HashMap<[u32; 2], M::Edge>,
+        kind: ElementKind,
+        list: usize,
+    ) -> Result<(), String> {
+        let end = self.ends[&list];
+        let mut items: HashMap<[u32; 2], Range<usize>> = HashMap::new();
+        let mut nth = list + 1;
+        let mut current = None;
+        while nth < end {
+            let call = self.trace.calls[nth];
+            match call.op {
+                Op::Item => {
+                    current = Some(call.name);
+                    items.insert(call.name, nth + 1..nth + 1);
+                }
+                Op::List(_) => nth = self.ends[&nth],
+                _ => {}
+            }
+            nth += 1;
+            if let Some(name) = current
+                && let Some(calls) = items.get_mut(&name)
+            {
+                calls.end = nth;
+            }
+        }
+        items.retain(|_, calls| calls.start < calls.end);
+        if items.is_empty() {
+            return Ok(());
+        }
+        let names: Box<dyn Iterator<Item = [u32; 2]> + '_> = match kind {
+            ElementKind::Vertex => {
+                let names = self.mesh.vertices();
+                Box::new(names.map(|v| [self.names.vertex_number(v), 0]))
+            }
+            ElementKind::Edge => {
+                let ends = self.mesh.edges().map(|e| self.mesh.edge_vertices(e));
+                Box::new(ends.map(|ends| self.names.edge_name(ends)))
+            }
+            ElementKind::Face => {
+                let names = self.mesh.faces();
+                Box::new(names.map(|f| [self.names.face_number(f), 0]))
+            }
+        };
+        for name in names {
+            if let Some(calls) = items.remove(&name) {
+                self.add(replay, edges, calls)?;
+            }
+        }
+        match items
+            .into_iter()
+            .map(|(name, calls)| (calls.start, name))
+            .min()
+        {
+            // A structure that merges vertices lists fewer of them.
+            Some((start, name)) if kind == ElementKind::Face => {
+                Err(missing(start - 1, &format!("face {}", name[0])))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Returns for each call that starts a list the call that ends it. A list that never ends, ends with
+/// the trace.
+fn ends_of_lists(calls: &[Call]) -> HashMap<usize, usize> {
+    let mut open = Vec::new();
+    let mut ends = HashMap::new();
+    for (nth, call) in calls.iter().enumerate() {
+        match call.op {
+            Op::List(_) => open.push(nth),
+            Op::End => {
+                ends.extend(open.pop().map(|list| (list, nth)));
+            }
+            _ => {}
+        }
+    }
+    ends.extend(open.into_iter().map(|list| (list, calls.len())));
+    ends
+}
+
+/// Translates a trace with edits: runs it once on a copy of the mesh, because new elements get
+/// handles only then.
+fn translate_edits<M: Representation + MeshEdit>(
+    trace: &Trace,
+    mesh: &M,
+    polygons: &PolygonMesh,
+) -> Result<Replay<M>, String> {
+    trace.check(polygons, &M::COSTS)?;
+    let scans = trace.edits.iter().filter(|call| {
+        let cost = M::EDITS[call.edit as usize];
+        cost == Some(QueryCost::Scan) && call.edit != Edit::Compact
+    });
+    if scans.count() as u64 * polygons.face_count() as u64 > MAX_SCANNED {
+        return Err("the edits of the trace scan all faces: a run would take too long".into());
+    }
+    let mut mesh = mesh.clone();
+    let mut names = Names::new::<M>(polygons);
+    let mut replay = Replay::new();
+    for (nth, &call) in trace.calls.iter().enumerate() {
+        match call.op {
+            Op::List(_) => replay.push(call.op, call.taken, 0),
+            Op::Item | Op::End | Op::SetPositions => {}
+            Op::Query(_) | Op::Position => {
+                let [a, b] = call.name.map(|number| names.vertex(number));
+                let edge = |_| mesh.edge_between(a?, b?);
+                replay.push_query(nth, call, &names, edge)?;
+            }
+            Op::Edit => {
+                let edit = &trace.edits[call.name[0] as usize];
+                let handles = edit_handles(nth, edit, &mesh, &names)?;
+                let affected = affected_faces(&mesh, &names, handles.edge, handles.face);
+                let mut record = EditRecord::new();
+                let refusal = apply(&mut mesh, &handles, &mut record);
+                if refusal.is_some() != edit.refused {
+                    let done = |refused| if refused { "refused" } else { "done" };
+                    let because = refusal.map_or_else(String::new, |reason| format!(" ({reason})"));
+                    return Err(format!(
+                        "{}: {} was {} in the recorded run, but is {} here{because}",
+                        at(nth),
+                        edit.edit.name(),
+                        done(edit.refused),
+                        done(!edit.refused)
+                    ));
+                }
+                if !edit.refused {
+                    names.follow(&mesh, &record, &affected);
+                }
+                replay.edits.push(handles);
+                replay.push(Op::Edit, ALL, replay.edits.len() - 1);
+            }
+        }
+    }
+    Ok(replay)
+}
+
+/// Returns the numbers of the faces that an edit at an edge or at a face cuts or merges.
+pub(crate) fn affected_faces<M: MeshQuery>(
+    mesh: &M,
+    names: &Names<M::Vertex, M::Face>,
+    edge: Option<M::Edge>,
+    face: Option<M::Face>,
+) -> Vec<u32> {
+    let at_edge = edge.into_iter().flat_map(|e| mesh.edge_faces(e));
+    let faces = at_edge.chain(face);
+    faces.map(|f| names.face_number(f)).collect()
+}
+
+fn edit_handles<M: MeshEdit>(
+    nth: usize,
+    call: &EditCall,
+    mesh: &M,
+    names: &Names<M::Vertex, M::Face>,
+) -> Result<EditHandles<M>, String> {
+    let vertex = |&number: &u32| match number {
+        NONE => Ok(None),
+        number => {
+            let v = names.vertex(number);
+            let v = v.ok_or_else(|| missing(nth, &format!("vertex {number}")))?;
+            Ok(Some(v))
+        }
+    };
+    let vertices: Vec<Option<M::Vertex>> = call
+        .vertices
+        .iter()
+        .map(vertex)
+        .collect::<Result<_, String>>()?;
+    let face = match call.face {
+        None => None,
+        Some(number) => {
+            let f = names.face(number);
+            Some(f.ok_or_else(|| missing(nth, &format!("face {number}")))?)
+        }
+    };
+    let edge = match (is_at_edge(call.edit), &vertices[..]) {
+        (true, &[Some(a), Some(b), ..]) => {
+            let e = mesh.edge_between(a, b);
+            let [a, b] = [call.vertices[0], call.vertices[1]];
+            Some(e.ok_or_else(|| missing(nth, &format!("edge {a}-{b}")))?)
+        }
+        _ => None,
+    };
+    Ok(EditHandles {
+        edit: call.edit,
+        vertices,
+        edge,
+        face,
+        at: call.at.unwrap_or(Point::ZERO),
+    })
+}
+
+/// Does an edit. Returns the reason if the structure refuses it.
+fn apply<M: MeshEdit>(
+    mesh: &mut M,
+    handles: &EditHandles<M>,
+    log: &mut impl sixfold::EditLog<M>,
+) -> Option<String> {
+    let at = handles.at;
+    let vertex = |i: usize| handles.vertices.get(i).copied().flatten();
+    let refused = |refusal: sixfold::Refusal<M>| refusal.to_string();
+    let missing = || Some("an argument is missing".to_owned());
+    macro_rules! edit {
+        ($method:ident($($argument:expr),*)) => {
+            mesh.$method($($argument,)* log).err().map(refused)
+        };
+    }
+    match (handles.edit, vertex(0), handles.edge, handles.face) {
+        (Edit::SetPosition, Some(v), ..) => edit!(set_position_logged(v, at)),
+        (Edit::AddVertex, ..) => edit!(add_vertex_logged(at)),
+        (Edit::AddFace, ..) => {
+            let corners: Vec<M::Vertex> = handles.vertices.iter().flatten().copied().collect();
+            edit!(add_face_logged(&corners))
+        }
+        (Edit::RemoveFace, _, _, Some(f)) => edit!(remove_face_logged(f)),
+        (Edit::RemoveVertex, Some(v), ..) => edit!(remove_vertex_logged(v)),
+        (Edit::RemoveIsolatedVertices, ..) => {
+            mesh.remove_isolated_vertices_logged(log);
+            None
+        }
+        (Edit::SplitEdge, _, Some(e), _) => edit!(split_edge_logged(e, at)),
+        (Edit::BisectEdge, _, Some(e), _) => edit!(bisect_edge_logged(e, at)),
+        (Edit::PokeFace, _, _, Some(f)) => edit!(poke_face_logged(f, at)),
+        (Edit::SplitFace, Some(a), _, Some(f)) => match vertex(1) {
+            Some(b) => edit!(split_face_logged(f, [a, b])),
+            None => missing(),
+        },
+        (Edit::DissolveEdge, _, Some(e), _) => edit!(dissolve_edge_logged(e)),
+        (Edit::FlipEdge, _, Some(e), _) => edit!(flip_edge_logged(e)),
+        (Edit::CollapseEdge, _, Some(e), _) => match vertex(2) {
+            Some(keep) => edit!(collapse_edge_logged(e, keep, at)),
+            None => missing(),
+        },
+        (Edit::SplitVertex, Some(v), ..) => {
+            edit!(split_vertex_logged(v, vertex(1), vertex(2), at))
+        }
+        (Edit::Compact, ..) => {
+            mesh.compact_logged(log);
+            None
+        }
+        _ => missing(),
+    }
+}
+
+/// Defines a way to run traces on the structure `M` as a type that implements [`Form`].
+macro_rules! replay_form {
+    ($(#[$doc:meta])* $name:ident on $($bound:path),+; changes mesh: $changes:expr;
+     set up: $set_up:ident; edit: $edit:expr; set positions: $positions:expr) => {
+        $(#[$doc])*
+        pub(crate) struct $name<M>(PhantomData<M>);
+
+        impl<M: $($bound +)+> Form for $name<M> {
+            type Program = Trace;
+            type Mesh = M;
+            type Scratch = Replay<M>;
+
+            const CHANGES_MESH: bool = $changes;
+
+            fn set_up(
+                trace: &Trace,
+                mesh: &M,
+                polygons: &PolygonMesh,
+            ) -> Result<Replay<M>, String> {
+                $set_up(trace, mesh, polygons)
+            }
+
+            fn run(_: &Trace, mesh: &mut M, replay: &mut Replay<M>) -> Outcome {
+                replay.run(mesh, $edit, $positions)
+            }
+        }
+    };
+}
+
+replay_form! {
+    /// Runs a trace that only queries.
+    QueryReplay on Representation; changes mesh: false;
+    set up: translate; edit: |_, _| (); set positions: |_, _| ()
+}
+replay_form! {
+    /// Runs a trace that writes the positions of all vertices.
+    MoveReplay on Representation; changes mesh: true;
+    set up: translate; edit: |_, _| (); set positions: |mesh, positions| {
+        _ = black_box(mesh.set_positions(positions).is_ok());
+    }
+}
+replay_form! {
+    /// Runs a trace with edits.
+    EditReplay on Representation, MeshEdit; changes mesh: true;
+    set up: translate_edits; edit: |mesh, handles| {
+        black_box(apply(mesh, handles, &mut ()));
+    };
+    set positions: |_, _| ()
+}
