@@ -2,8 +2,8 @@
 //! gives the same results as the six structures. The seventh structure is in one test file and
 //! needs no change in any crate.
 
+use std::num::NonZeroU32;
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
 
 use sixfold::subdivision::{Method, Scheme};
 use sixfold::{
@@ -11,7 +11,7 @@ use sixfold::{
     repeat_for_structures, shapes,
 };
 use sixfold_study::{
-    Agreement, Backend, BackendRunner, EditPass, Editor, MachineClock, Need, Operation, PickReport,
+    Agreement, Backend, BackendRunner, EditPass, Editor, Effort, MachineClock, Need, Operation, PickReport,
     PickSettings, Policy, Refiner, Series, Settings, SingleEdit, Standing, StudyError, StudyMesh,
     SubdivisionJob, Way, built_in, inspect, pick, study,
 };
@@ -44,7 +44,7 @@ fn check_study(seventh: Backend, refused: usize) {
     let small = shapes::triangle_torus(6, 4).expect("a small torus");
     let settings = Settings {
         extra: vec![seventh],
-        budget: Duration::from_millis(500),
+        effort: Effort::Rounds(NonZeroU32::MIN),
         ..Settings::default()
     };
     let study_mesh = StudyMesh::new("torus", small);
@@ -121,7 +121,7 @@ fn pick_with(seventh: Backend, others: &[&str], workload: &str, needs: &[Need]) 
         extra: vec![seventh],
         needs: needs.to_vec(),
         max_memory: None,
-        budget: Duration::from_secs(3),
+        effort: Effort::Rounds(NonZeroU32::MIN),
         seed: 7,
         heap: Policy::Kept,
     };

@@ -17,13 +17,14 @@ mod results;
 mod subdivision;
 mod why;
 
+use std::num::NonZeroU32;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use sixfold::shapes::Order;
-use sixfold_study::{CacheState, External, Operation, Policy};
+use sixfold_study::{CacheState, Effort, External, Operation, Policy, Settings};
 
 pub(crate) use comparing::{Compare, GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders};
 pub(crate) use distance::Distance;
@@ -62,6 +63,7 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study bunny.obj
   sixfold study bunny.obj --backends half-edge,face-vertex --operations vv_smooth,build
   sixfold study quads.obj --triangulate --budget 2m
+  sixfold study bunny.obj --rounds 10               the same work on every machine
   sixfold study bunny.obj --json - --csv bunny.csv
   sixfold study bunny.obj --external mine='./mine {mesh}'
   sixfold study bunny.obj --report bunny            a page with figures
@@ -72,12 +74,18 @@ measures the processor time of the thread. The table shows the median over the r
 round, one backend is measured twice. The difference between the two times of this backend is the
 noise. Differences between backends that are smaller than the noise count as ties.
 
-Seed: The seed determines the random order of the runs. A slow operation may run on a random sample
-of the elements, which the seed also determines. The size of the sample depends on measured times,
-so two studies with the same seed can have samples of different sizes.
+Budget and rounds: With --budget, as many rounds are run as fit into the time. What takes too long is
+sampled, estimated or left out. With --rounds, exactly so many rounds of everything are run, however
+long they take. Two machines then do the same work: whether a slow operation runs on a sample of the
+elements depends on the number of elements, not on measured times.
+
+Seed: The seed determines the random order of the runs, and which elements are in a sample.
 
 Interruption: Ctrl-C stops after the current timed run and keeps the finished results. A second
 Ctrl-C stops at once, with exit code 130.
+
+Progress: A terminal shows a bar. With SIXFOLD_PROGRESS=lines in the environment, each step is a line
+on standard error, also without a terminal.
 
 Memory: With --heap kept, the process keeps freed memory pages, and timed runs use these pages
 again. The rows `first time` of the table show the time on new pages. With --heap system, the
@@ -231,6 +239,9 @@ pub(crate) struct Study {
     /// Total time of all meshes and labs [default: 20s each]
     #[arg(long, value_name = "TIME", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Option<Duration>,
+    /// Measure exactly N rounds of everything, without a time limit
+    #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
+    pub(crate) rounds: Option<NonZeroU32>,
     /// Seed of the random order and of random samples
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
@@ -313,14 +324,27 @@ pub(crate) struct Draw {
     pub(crate) to: PathBuf,
 }
 
+impl Study {
+    /// Returns how much to measure in one of `parts` equal parts: a mesh or a lab. A shard takes its
+    /// part of the meshes and of the time.
+    pub(crate) fn effort(&self, parts: usize) -> Effort {
+        match (self.rounds, self.budget) {
+            (Some(rounds), _) => Effort::Rounds(rounds),
+            (None, Some(total)) => Effort::Budget(total.div_f64(parts.max(1) as f64)),
+            (None, None) => Settings::default().effort,
+        }
+    }
+}
+
 impl Default for Study {
     fn default() -> Self {
-        let settings = sixfold_study::Settings::default();
+        let settings = Settings::default();
         Self {
             meshes: Vec::new(),
             backends: Vec::new(),
             operations: Vec::new(),
             budget: None,
+            rounds: None,
             seed: settings.seed,
             memory: MemoryState::default(),
             externals: Vec::new(),
@@ -385,6 +409,17 @@ fn duration(text: &str) -> Result<Duration, String> {
         Some(_) => Err("a time must be above 0 and at most a week".into()),
         None => Err("write a time as 20s, 500ms or 2m".into()),
     }
+}
+
+/// Parses a number of rounds.
+fn rounds(text: &str) -> Result<NonZeroU32, String> {
+    let parsed = text.trim().parse();
+    parsed.map_err(|_| format!("write a whole number of rounds from 1 to {}", u32::MAX))
+}
+
+/// Returns the number of rounds, or else the time.
+fn effort(budget: Duration, rounds: Option<NonZeroU32>) -> Effort {
+    rounds.map_or(Effort::Budget(budget), Effort::Rounds)
 }
 
 fn seed(text: &str) -> Result<u64, String> {

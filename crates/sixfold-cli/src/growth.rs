@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
         study: Settings {
             backends: arguments.backends.clone(),
             operations: arguments.operations.clone(),
-            budget: arguments.budget,
+            effort: arguments.effort(),
             seed: arguments.seed,
             heap: arguments.memory.heap,
             caches: arguments.memory.caches,

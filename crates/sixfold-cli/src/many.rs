@@ -11,7 +11,6 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
 
 use sixfold_study::{
     Failed, FailureKind, Finding, Report, Results, Settings, StudyError, StudyMesh,
@@ -51,7 +50,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         false => meshes.len(),
     };
     let settings = &Settings {
-        budget: part_of_budget(arguments, parts),
+        effort: arguments.effort(parts),
         ..settings.clone()
     };
     let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
@@ -117,15 +116,6 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         return Err(failure_of_all(&results.failures));
     }
     exit_code(written, &results, interrupted)
-}
-
-/// Returns the time of one of `parts` equal parts: a mesh or a lab. A shard takes its part of the
-/// meshes and of the time.
-fn part_of_budget(arguments: &Study, parts: usize) -> Duration {
-    match arguments.budget {
-        Some(total) => total.div_f64(parts.max(1) as f64),
-        None => Settings::default().budget,
-    }
 }
 
 /// Returns the meshes of the shard without a study.

@@ -23,7 +23,7 @@ pub(crate) fn run(arguments: &Neighbours) -> Result<ExitCode, Failure> {
     let settings = NeighboursSettings {
         indices: arguments.indices.clone(),
         points: arguments.points.into(),
-        budget: arguments.budget,
+        effort: arguments.effort(),
         seed: arguments.seed,
         heap: Policy::Kept,
     };

@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     let settings = Settings {
         backends: arguments.backends.clone(),
         operations: arguments.operations.clone(),
-        budget: arguments.budget,
+        effort: arguments.effort(),
         seed: arguments.seed,
         heap: arguments.memory.heap,
         caches: arguments.memory.caches,

@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
         extra: Vec::new(),
         needs: arguments.needs.clone(),
         max_memory: arguments.max_memory,
-        budget: arguments.budget,
+        effort: arguments.effort(),
         seed: arguments.seed,
         heap: arguments.heap,
     };
@@ -79,7 +79,7 @@ fn run_trace(path: &Path, arguments: &Pick) -> Result<ExitCode, Failure> {
         backends: arguments.backends.clone(),
         runs: 1,
         max_memory: arguments.max_memory,
-        budget: arguments.budget,
+        effort: arguments.effort(),
         seed: arguments.seed,
         heap: arguments.heap,
         isolation: None,
@@ -90,7 +90,7 @@ fn run_trace(path: &Path, arguments: &Pick) -> Result<ExitCode, Failure> {
         &arguments.meshes,
         arguments.triangulate,
         &arguments.files,
-        Limits::new(arguments.budget, default_memory_limit()),
+        Limits::new(settings.effort, default_memory_limit()),
     )
 }
 

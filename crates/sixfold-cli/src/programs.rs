@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use clap::{CommandFactory, FromArgMatches};
 use sixfold_study::numbers::{bytes, counted, figure};
 use sixfold_study::{
-    ChildTask, Finding, Isolation, PickReport, ProgramSettings, Results, StudyMesh, Suite,
+    ChildTask, Effort, Finding, Isolation, PickReport, ProgramSettings, Results, StudyMesh, Suite,
     SuiteProgram, free_memory, serve_program,
 };
 
@@ -41,6 +41,8 @@ const STOP_LIMIT: Duration = Duration::from_secs(3);
 const CHECK_INTERVAL: Duration = Duration::from_millis(50);
 /// The least default of the time limit of a sample in a child process.
 const LEAST_TIME_LIMIT: Duration = Duration::from_secs(1);
+/// A time that no program reaches. It can be added to the present time.
+const NO_TIME_LIMIT: Duration = Duration::from_secs(100 * 365 * 24 * 3600);
 /// The time that a command may take longer than [`OVERTIME_FACTOR`] times its budget.
 const MOST_OVERTIME: Duration = Duration::from_secs(30);
 
@@ -82,7 +84,7 @@ pub(crate) fn run(suite: Suite) -> Result<ExitCode, Failure> {
         backends: arguments.backends.clone(),
         runs: arguments.runs,
         max_memory: arguments.max_memory,
-        budget: arguments.budget,
+        effort: arguments.effort(),
         seed: arguments.seed,
         heap: arguments.heap,
     };
@@ -96,7 +98,7 @@ pub(crate) fn run(suite: Suite) -> Result<ExitCode, Failure> {
             &arguments.files,
             Limits {
                 sample: arguments.time_limit.filter(|_| !arguments.isolate),
-                ..Limits::new(arguments.budget, memory_limit)
+                ..Limits::new(arguments.effort(), memory_limit)
             },
         ),
     }
@@ -107,7 +109,10 @@ fn isolation(arguments: &Programs, memory_limit: Option<u64>) -> Result<Isolatio
     let executable = std::env::current_exe().map_err(|error| {
         Failure::usage(format!("--isolate: the executable is unknown: {error}"))
     })?;
-    let quarter = (arguments.budget / 4).max(LEAST_TIME_LIMIT);
+    let quarter = match arguments.effort().budget() {
+        Some(budget) => (budget / 4).max(LEAST_TIME_LIMIT),
+        None => NO_TIME_LIMIT,
+    };
     Ok(Isolation {
         executable,
         time_limit: arguments.time_limit.unwrap_or(quarter),
@@ -232,10 +237,13 @@ pub(crate) struct Limits {
 }
 
 impl Limits {
-    /// Returns the limits of a command with `budget` and without a limit for each sample.
-    pub(crate) fn new(budget: Duration, memory: Option<u64>) -> Self {
+    /// Returns the limits of a command that measures with `effort`, without a limit for each sample.
+    pub(crate) fn new(effort: Effort, memory: Option<u64>) -> Self {
         Self {
-            command: OVERTIME_FACTOR * budget + MOST_OVERTIME,
+            command: match effort.budget() {
+                Some(budget) => OVERTIME_FACTOR * budget + MOST_OVERTIME,
+                None => NO_TIME_LIMIT,
+            },
             sample: None,
             memory,
         }

@@ -1,4 +1,4 @@
-//! Progress bars on a terminal, and the handling of Ctrl-C.
+//! Progress bars on a terminal, progress as lines, and the handling of Ctrl-C.
 
 use std::io::{self, IsTerminal};
 use std::sync::Arc;
@@ -9,13 +9,27 @@ use indicatif::{ProgressBar, ProgressStyle};
 use sixfold_study::{Policy, Progress, pages};
 
 use crate::output::exit_without_drafts;
-use crate::text::print_stderr;
+use crate::text::{print_stderr, sanitize};
 
 /// Number of steps of a full bar.
 const STEPS: u64 = 1000;
 
-/// A progress bar on standard error. The bar is shown only on a terminal.
-pub(crate) struct Bar(Option<ProgressBar>);
+/// The environment variable that asks for progress as lines, if its value is `lines`.
+const PROGRESS: &str = "SIXFOLD_PROGRESS";
+
+/// Prints a step as a line, if the environment asks for lines.
+fn print_step(what: &str) {
+    if std::env::var_os(PROGRESS).is_some_and(|value| value == "lines") {
+        print_stderr(&format!("progress: {}", sanitize(what)));
+    }
+}
+
+/// A progress bar on standard error. Without a terminal, it is shown only if the environment asks for
+/// lines.
+pub(crate) struct Bar {
+    bar: Option<ProgressBar>,
+    prefix: String,
+}
 
 impl Bar {
     pub(crate) fn new() -> Self {
@@ -24,18 +38,24 @@ impl Bar {
 
     /// Returns a bar whose texts begin with `prefix`, such as `2 of 4: `.
     pub(crate) fn after(prefix: &str) -> Self {
-        if !io::stderr().is_terminal() {
-            return Self(None);
+        let bar = io::stderr().is_terminal().then(|| {
+            let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {prefix}{msg}");
+            let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+            let bar = ProgressBar::new(STEPS).with_style(style);
+            bar.with_prefix(prefix.to_owned())
+        });
+        Self {
+            bar,
+            prefix: prefix.to_owned(),
         }
-        let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {prefix}{msg}");
-        let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
-        let bar = ProgressBar::new(STEPS).with_style(style);
-        Self(Some(bar.with_prefix(prefix.to_owned())))
     }
 
     /// Shows the finished part, from 0 to 1, and the current step.
     pub(crate) fn set(&self, done: f64, what: &str) {
-        let Self(Some(bar)) = self else { return };
+        let Some(bar) = &self.bar else {
+            let percent = (100.0 * done) as u64;
+            return print_step(&format!("{percent} % {}{what}", self.prefix));
+        };
         bar.set_position((done * STEPS as f64) as u64);
         bar.set_message(what.to_owned());
     }
@@ -51,7 +71,7 @@ impl Bar {
     }
 
     pub(crate) fn clear(&self) {
-        if let Self(Some(bar)) = self {
+        if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
     }
@@ -86,31 +106,38 @@ impl FaceBar {
     }
 }
 
-/// A progress bar for steps. It is shown only on a terminal.
-pub(crate) struct StepBar(Option<ProgressBar>);
+/// A progress bar for steps. Without a terminal, it is shown only if the environment asks for lines.
+pub(crate) struct StepBar {
+    bar: Option<ProgressBar>,
+    what: String,
+}
 
 impl StepBar {
     /// Returns a bar for `steps` steps. `what` describes the steps.
     pub(crate) fn new(steps: usize, what: &str) -> Self {
-        if !io::stderr().is_terminal() {
-            return Self(None);
+        let bar = io::stderr().is_terminal().then(|| {
+            let style = ProgressStyle::with_template("{bar:30} {human_pos} of {human_len} {msg}");
+            let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+            let bar = ProgressBar::new(steps as u64).with_style(style);
+            bar.set_message(what.to_owned());
+            bar.enable_steady_tick(Duration::from_millis(100));
+            bar
+        });
+        Self {
+            bar,
+            what: what.to_owned(),
         }
-        let style = ProgressStyle::with_template("{bar:30} {human_pos} of {human_len} {msg}");
-        let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
-        let bar = ProgressBar::new(steps as u64).with_style(style);
-        bar.set_message(what.to_owned());
-        bar.enable_steady_tick(Duration::from_millis(100));
-        Self(Some(bar))
     }
 
     pub(crate) fn set_done(&self, steps: usize) {
-        if let Self(Some(bar)) = self {
-            bar.set_position(steps as u64);
+        match &self.bar {
+            Some(bar) => bar.set_position(steps as u64),
+            None => print_step(&format!("{steps} {}", self.what)),
         }
     }
 
     pub(crate) fn clear(&self) {
-        if let Self(Some(bar)) = self {
+        if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
     }
@@ -137,7 +164,8 @@ impl Spinner {
     }
 }
 
-/// A line that shows the current step, only on a terminal. It starts no thread, because the
+/// A line that shows the current step. Without a terminal, it is shown only if the environment asks
+/// for lines. It starts no thread, because the
 /// allocations of a thread would be counted.
 pub(crate) struct StatusLine(Option<ProgressBar>);
 
@@ -148,9 +176,12 @@ impl StatusLine {
     }
 
     pub(crate) fn show(&self, what: String) {
-        if let Self(Some(line)) = self {
-            line.set_message(what);
-            line.tick();
+        match self {
+            Self(Some(line)) => {
+                line.set_message(what);
+                line.tick();
+            }
+            Self(None) => print_step(&what),
         }
     }
 

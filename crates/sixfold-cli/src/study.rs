@@ -26,7 +26,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         externals: arguments.externals.clone(),
         external_timeout: arguments.external_timeout,
         operations: arguments.operations.clone(),
-        budget: arguments.budget.unwrap_or(Settings::default().budget),
+        effort: arguments.effort(1),
         seed: arguments.seed,
         heap: arguments.memory.heap,
         caches: arguments.memory.caches,

@@ -2,18 +2,15 @@
 
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
 
-use sixfold_study::{
-    Budget, MachineClock, MemorySpeed, Policy, Settings, StudyError, StudyMesh, Timing, WhySettings,
-};
+use sixfold_study::{Effort, Policy, Settings, StudyError, StudyMesh, Timing, WhySettings};
 
 use crate::arguments::Why;
 use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
-use crate::progress::{Bar, Spinner};
+use crate::progress::Bar;
 use crate::text::{TextOutput, hanging_indent};
 use crate::why_text::{legend, memory_text, relation_text, sentence};
 
@@ -24,8 +21,8 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
         Some(path) => load::for_study(path, false, arguments.triangulate)?,
         None => load::built_in(),
     };
-    let budget = (!arguments.counts_only).then_some(arguments.budget);
-    if budget.is_some() {
+    let effort = (!arguments.counts_only).then(|| arguments.effort());
+    if effort.is_some() {
         warn_of_debug_build();
     }
     let settings = WhySettings {
@@ -38,37 +35,25 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
         ..Settings::default()
     };
     print_before_measuring(&study_mesh, &chosen, &mut session.text);
-    let why = measure(&study_mesh, settings, budget, &session.stop, &Bar::new())?;
+    let why = measure(&study_mesh, settings, effort, &session.stop, &Bar::new())?;
     print(&why, !arguments.relations.is_empty(), &mut session.text);
     session.finish(&with_command(why, arguments.triangulate).into())
 }
 
-/// Counts reads. If there is a `budget`, also measures times.
+/// Counts reads. If there is an `effort`, also measures times.
 pub(crate) fn measure(
     study_mesh: &StudyMesh,
     mut settings: WhySettings,
-    budget: Option<Duration>,
+    effort: Option<Effort>,
     stop: &AtomicBool,
     bar: &Bar,
 ) -> Result<sixfold_study::Why, Failure> {
-    settings.timing = budget.and_then(|budget| timing(budget, stop));
+    settings.timing = effort.map(|effort| Timing { effort });
     let why = sixfold_study::why(study_mesh, &settings, stop, &mut |at| bar.show(at));
     bar.clear();
     why.map_err(|error| match error {
         StudyError::NoneHolds { .. } => Failure::unsupported(error),
         error => Failure::usage(error),
-    })
-}
-
-/// Measures the speed of memory, in at most half of the budget. Returns `None` if interrupted.
-fn timing(budget: Duration, stop: &AtomicBool) -> Option<Timing> {
-    let budget = Budget::start(budget);
-    let spinner = Spinner::start("measuring the speed of memory".into());
-    let memory = MemorySpeed::measure(budget.total() / 2, &MachineClock::start(), stop);
-    spinner.clear();
-    Some(Timing {
-        budget,
-        memory: memory?,
     })
 }
 

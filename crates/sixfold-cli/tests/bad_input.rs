@@ -70,7 +70,7 @@ fn degenerate_faces_are_left_out_with_a_note_or_refused() {
     let sixfold = Sixfold::new();
     let text = format!("{TETRAHEDRON}f 1 1 2\nf 1 2\n");
     sixfold.file("degenerate.obj", &text);
-    let run = sixfold.run(&["study", "degenerate.obj", "--budget", "50ms"]);
+    let run = sixfold.run(&["study", "degenerate.obj", "--rounds", "2"]);
     assert_eq!(run.code, Some(0), "{run:?}");
     for place in ["left out 2 degenerate faces", "line 9", "line 10"] {
         assert!(run.stderr.contains(place), "{run:?}");
@@ -143,7 +143,7 @@ fn a_mesh_that_no_selected_backend_can_hold_has_its_own_exit_code() {
     sixfold.file("book.obj", book);
     let arguments = ["study", "book.obj", "--backends", "half-edge"];
     assert_refused(&sixfold, &arguments, 3, "f0, f1, f2");
-    let run = sixfold.run(&["study", "book.obj", "--budget", "50ms"]);
+    let run = sixfold.run(&["study", "book.obj", "--rounds", "2"]);
     assert_eq!(run.code, Some(0), "{run:?}");
     let mut refusals = run.stdout.lines().filter(|line| line.contains("refuses"));
     assert!(refusals.any(|line| line.contains("half-edge")), "{run:?}");
@@ -156,7 +156,7 @@ fn different_refused_edits_on_a_pillow_are_not_a_fault() {
     let sixfold = Sixfold::new();
     sixfold.file("p.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n");
     for pass in ["split_collapse", "flip_all", "decimate_half"] {
-        let arguments = ["study", "p.obj", "--budget", "300ms", "--operations", pass];
+        let arguments = ["study", "p.obj", "--rounds", "2", "--operations", pass];
         let run = sixfold.run(&arguments);
         assert_eq!(run.code, Some(0), "{pass}: {run:?}");
     }

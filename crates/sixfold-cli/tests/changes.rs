@@ -13,8 +13,8 @@ fn two_studies() -> Sixfold {
     let arguments = [
         "study",
         "t.obj",
-        "--budget",
-        "500ms",
+        "--rounds",
+        "2",
         "--operations",
         "boundary,edge_length",
         "--json",
@@ -22,32 +22,33 @@ fn two_studies() -> Sixfold {
     ];
     run_ok(&sixfold, &arguments);
     let mut study: Value = serde_json::from_str(&text(&sixfold, "a.json")).expect("JSON");
-    let doubled = |number: &mut Value| {
-        if let Some(ns) = number.as_f64() {
-            *number = (2.0 * ns).into();
-        }
-    };
+    set_times(&mut study["findings"][0], |_| 1000.0);
+    sixfold.file("a.json", &study.to_string());
     let finding = &mut study["findings"][0];
-    for row in finding["results"].as_array_mut().expect("rows") {
-        if row["backend"] == "half-edge" {
-            doubled(&mut row["median_ns"]);
-        }
-    }
-    for raw in finding["samples"].as_array_mut().expect("samples") {
-        if raw["backend"] == "half-edge" {
-            for column in ["cpu_ns", "wall_ns"] {
-                raw[column]
-                    .as_array_mut()
-                    .into_iter()
-                    .flatten()
-                    .for_each(doubled);
-            }
-        }
-    }
-    finding["control"] = Value::Null;
+    set_times(finding, |backend| match backend {
+        "half-edge" => 2000.0,
+        _ => 1000.0,
+    });
     study["runs"][0]["environment"]["commit"] = "0123456".into();
     sixfold.file("b.json", &study.to_string());
     sixfold
+}
+
+/// Replaces all samples by nine known ones, from 2 % below to 2 % above the time of the backend.
+fn set_times(finding: &mut Value, ns_of: impl Fn(&str) -> f64) {
+    finding["control"] = Value::Null;
+    for row in finding["results"].as_array_mut().expect("rows") {
+        row["median_ns"] = ns_of(row["backend"].as_str().expect("a name")).into();
+    }
+    for raw in finding["samples"].as_array_mut().expect("samples") {
+        let ns = ns_of(raw["backend"].as_str().expect("a name"));
+        let times = (-4..=4).map(|i| ns * (1.0 + 0.005 * f64::from(i)));
+        let times: Vec<f64> = times.collect();
+        raw["rounds"] = (0..9).collect();
+        (raw["cpu_ns"], raw["wall_ns"]) = (times.clone().into(), times.into());
+        raw["slowdowns"] = vec![1.0; 9].into();
+        raw["faults"] = Value::Null;
+    }
 }
 
 #[test]
@@ -101,8 +102,8 @@ fn files_without_common_results_are_refused_in_one_message() {
     let pick = [
         "pick",
         "t.obj",
-        "--budget",
-        "200ms",
+        "--rounds",
+        "2",
         "--json",
         "pick.json",
         "--workload",
@@ -112,8 +113,8 @@ fn files_without_common_results_are_refused_in_one_message() {
     let fewer = [
         "study",
         "t.obj",
-        "--budget",
-        "100ms",
+        "--rounds",
+        "2",
         "--operations",
         "build",
         "--json",
@@ -142,7 +143,7 @@ fn results_of_any_command_are_merged_and_compared() {
     let sixfold = Sixfold::new();
     sixfold.file("t.obj", TETRAHEDRON);
     run_ok(&sixfold, &["memory", "t.obj", "--json", "m.json"]);
-    let quick = ["--budget", "200ms", "--json", "p.json"];
+    let quick = ["--rounds", "2", "--json", "p.json"];
     run_ok(&sixfold, &[&["pick", "t.obj"], &quick[..]].concat());
     let same = run_ok(&sixfold, &["compare", "m.json", "m.json"]);
     assert!(same.stdout.contains("the same counts of bytes"), "{same:?}");

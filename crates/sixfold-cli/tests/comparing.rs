@@ -27,8 +27,8 @@ fn orders_writes_json() {
     let arguments = [
         "orders",
         "grid.obj",
-        "--budget",
-        "300ms",
+        "--rounds",
+        "2",
         "--operations",
         "vertex_faces,ff_bfs",
         "--json",
@@ -120,8 +120,8 @@ fn growth_writes_json() {
         "3",
         "--order",
         "shuffled",
-        "--budget",
-        "600ms",
+        "--rounds",
+        "2",
         "--operations",
         "vertex_faces",
         "--json",
@@ -272,41 +272,42 @@ fn invalid_arguments_are_refused() {
 #[test]
 fn an_interrupted_sweep_keeps_the_sizes_that_are_finished() {
     let sixfold = Sixfold::new();
-    let arguments = ["growth", "--budget", "40s", "--json", "kept.json"];
-    // The first size takes half a second of the budget.
-    sixfold.run_interrupted(&arguments, "INT", std::time::Duration::from_secs(4));
+    let sizes = ["--from", "400", "--to", "100000", "--steps", "5"];
+    let arguments = ["growth", "--rounds", "200", "--json", "kept.json"];
+    let arguments = [&arguments[..], &sizes].concat();
+    let first_of_second = "1600 faces: measuring";
+    sixfold.run_interrupted(&arguments, "INT", first_of_second);
     let report = finding(&crate::run::text(&sixfold, "kept.json"));
     assert_eq!(report["interrupted"], true);
-    let sizes = list(&report, "sizes").len();
-    assert!((1..13).contains(&sizes), "{sizes} sizes");
+    assert_eq!(list(&report, "sizes").len(), 1);
     assert_eq!(sixfold.names(), ["kept.json"]);
 }
 
 /// Facts are printed before the measurement.
 #[test]
 fn growth_and_memory_print_what_is_known_before_they_measure() {
-    use std::io::{BufRead, BufReader, Read};
     let sixfold = Sixfold::new();
-    sixfold.grid("grid.obj", 60);
-    let growth = ["growth", "--to", "20000", "--steps", "3", "--budget", "2s"];
+    sixfold.grid("grid.obj", 20);
+    let growth = ["growth", "--to", "2000", "--steps", "2", "--rounds", "1"];
     for (arguments, first) in [
         (&growth[..], "shape        "),
         (&["memory", "grid.obj"], "mesh         grid.obj"),
     ] {
+        // Both outputs go to one pipe, in the order in which they are written.
+        let (mut reader, writer) = std::io::pipe().expect("a pipe");
         let mut command = sixfold.command(arguments);
-        let command = command.stdout(std::process::Stdio::piped());
+        command.env("SIXFOLD_PROGRESS", "lines");
+        command.stderr(writer.try_clone().expect("a pipe"));
+        command.stdout(writer);
         let mut child = command.spawn().expect("it starts");
-        let mut lines = BufReader::new(child.stdout.take().expect("piped"));
-        let mut line = String::new();
-        lines.read_line(&mut line).expect("a line");
-        assert!(line.starts_with(first), "{line}");
-        // Without the early text, the command would end now.
-        std::thread::sleep(std::time::Duration::from_millis(100));
-        let ended = child.try_wait().expect("our child");
-        assert!(ended.is_none(), "{arguments:?} ended with its first line");
-        let mut rest = String::new();
-        lines.read_to_string(&mut rest).expect("UTF-8");
-        assert!(child.wait().expect("it ends").success(), "{rest}");
-        assert_eq!(rest.matches(first).count(), 0, "printed twice: {rest}");
+        // The pipe ends when the program ends, if no other handle is left.
+        drop(command);
+        let mut text = String::new();
+        std::io::Read::read_to_string(&mut reader, &mut text).expect("UTF-8");
+        assert!(child.wait().expect("it ends").success(), "{text}");
+        let facts = text.find(first).expect("facts");
+        let progress = text.find("progress: ").expect("progress");
+        assert!(facts < progress, "{text}");
+        assert_eq!(text.matches(first).count(), 1, "printed twice: {text}");
     }
 }

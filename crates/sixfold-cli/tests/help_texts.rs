@@ -20,7 +20,7 @@ fn text_is_not_wider_than_the_terminal() {
     sixfold.grid("grid.obj", 12);
     let book = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
     sixfold.file("a book with a long name.obj", book);
-    let budget = ["--budget", "500ms"];
+    let budget = ["--rounds", "2"];
     let study = ["study", "grid.obj"];
     let growth = ["growth", "--to", "2000", "--steps", "2"];
     let pick = ["pick", "grid.obj", "grid.obj"];

@@ -1,47 +1,39 @@
-//! Tests of Ctrl-C.
+//! Tests of Ctrl-C. All wait for a step of the program, none for a time. The programs would not end in
+//! hours, because they have a million rounds.
 #![cfg(unix)]
-
-use std::thread::sleep;
-use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use crate::run::{Sixfold, send, text};
+use crate::run::{Sixfold, send, text, wait_for};
 
 #[test]
 fn an_interrupted_study_keeps_what_is_finished() {
     let sixfold = Sixfold::new();
-    sixfold.grid("grid.obj", 40);
+    sixfold.grid("grid.obj", 20);
     let arguments = [
         "study",
         "grid.obj",
-        "--budget",
-        "10m",
+        "--rounds",
+        "1000000",
         "--json",
         "kept.json",
     ];
-    let start = Instant::now();
-    sixfold.run_interrupted(&arguments, "INT", Duration::from_secs(2));
-    assert!(
-        start.elapsed() < Duration::from_secs(120),
-        "it did not wait for the budget"
-    );
+    sixfold.run_interrupted(&arguments, "INT", "measuring ");
     let report: Value = crate::json_csv::finding(&text(&sixfold, "kept.json"));
     assert_eq!(report["interrupted"], true);
-    assert!(
-        report["results"]
-            .as_array()
-            .is_some_and(|rows| !rows.is_empty())
-    );
+    // Every operation was run once before the rounds.
+    let rows = report["results"].as_array().expect("a list").len();
+    let refusals = report["refusals"].as_array().expect("a list").len();
+    assert_eq!(rows + refusals, 28 * 6);
     assert_eq!(sixfold.names(), ["grid.obj", "kept.json"]);
 }
 
 #[test]
 fn an_interrupted_report_has_the_finished_results() {
     let sixfold = Sixfold::new();
-    sixfold.grid("grid.obj", 40);
-    let arguments = ["study", "grid.obj", "--budget", "10m", "--report", "R"];
-    sixfold.run_interrupted(&arguments, "INT", Duration::from_secs(4));
+    sixfold.grid("grid.obj", 20);
+    let arguments = ["study", "grid.obj", "--rounds", "1000000", "--report", "R"];
+    sixfold.run_interrupted(&arguments, "INT", "measuring ");
     let document = text(&sixfold, "R/results.json");
     let study: Value = crate::json_csv::finding(&document);
     assert_eq!(study["interrupted"], true);
@@ -59,10 +51,10 @@ fn an_interrupted_report_has_the_finished_results() {
 #[test]
 fn an_interrupted_report_on_nothing_is_not_written() {
     let sixfold = Sixfold::new();
-    // The first operation on this mesh takes longer than the time until the signal.
-    sixfold.grid("grid.obj", 400);
-    let arguments = ["study", "grid.obj", "--budget", "10m", "--report", "R"];
-    let run = sixfold.run_interrupted(&arguments, "INT", Duration::from_millis(1));
+    sixfold.grid("grid.obj", 20);
+    let arguments = ["study", "grid.obj", "--rounds", "1000000", "--report", "R"];
+    // The first operation may be finished before the program sees the signal.
+    let run = sixfold.run_interrupted(&arguments, "INT", "0 % warming up");
     match run.stderr.contains("no result was finished") {
         true => assert_eq!(sixfold.names(), ["grid.obj"]),
         false => assert!(!text(&sixfold, "R/report.md").contains("on 0 meshes")),
@@ -72,25 +64,64 @@ fn an_interrupted_report_on_nothing_is_not_written() {
 #[test]
 fn an_interrupted_explanation_keeps_what_is_finished() {
     let sixfold = Sixfold::new();
-    sixfold.grid("grid.obj", 40);
-    let arguments = ["why", "grid.obj", "--budget", "10m", "--json", "kept.json"];
-    let start = Instant::now();
-    sixfold.run_interrupted(&arguments, "INT", Duration::from_secs(4));
-    assert!(
-        start.elapsed() < Duration::from_secs(120),
-        "it did not wait for the budget"
-    );
+    sixfold.grid("grid.obj", 20);
+    let arguments = [
+        "why",
+        "grid.obj",
+        "--rounds",
+        "1000000",
+        "--json",
+        "kept.json",
+    ];
+    sixfold.run_interrupted(&arguments, "INT", "measuring vertex_vertices");
     let report: Value = crate::json_csv::finding(&text(&sixfold, "kept.json"));
     assert_eq!(report["interrupted"], true);
+    assert_eq!(report["rows"].as_array().map(Vec::len), Some(6 * 9));
     assert_eq!(sixfold.names(), ["grid.obj", "kept.json"]);
+}
+
+/// Makes a file that nobody writes, so that a program waits for its end.
+fn endless_file(sixfold: &Sixfold, name: &str) {
+    let path = sixfold.folder().join(name);
+    let made = std::process::Command::new("mkfifo").arg(&path).status();
+    assert!(made.expect("mkfifo runs").success());
 }
 
 #[test]
 fn no_draft_is_left_after_an_interrupt() {
+    for signal in ["INT", "TERM"] {
+        let sixfold = Sixfold::new();
+        endless_file(&sixfold, "endless.obj");
+        let arguments = ["study", "endless.obj", "--json", "x.json", "--csv", "x.csv"];
+        let mut child = sixfold.start_with_draft(&arguments);
+        // The study waits for the mesh. The first signal asks it to stop, and the second ends it. Two
+        // signals may arrive as one, so signals are sent until the program ends.
+        let status = wait_for(|| {
+            let status = child.try_wait().expect("our child");
+            if status.is_none() {
+                send(signal, &child);
+            }
+            status
+        });
+        assert_eq!(status.code(), Some(130), "{status}");
+        assert_eq!(sixfold.names(), ["endless.obj"]);
+    }
+}
+
+#[test]
+fn no_draft_of_a_mesh_is_left_after_an_interrupt() {
     let sixfold = Sixfold::new();
     for signal in ["INT", "TERM"] {
+        // Writing this mesh takes seconds. If it is written before the signal arrives, there is no
+        // draft either.
         let arguments = ["generate", "grid", "m=1500", "n=1500", "-o", "big.obj"];
-        sixfold.run_interrupted(&arguments, signal, Duration::ZERO);
+        let child = sixfold.start_with_draft(&arguments);
+        send(signal, &child);
+        let status = child.wait_with_output().expect("it ends").status;
+        match status.code() {
+            Some(0) => std::fs::remove_file(sixfold.folder().join("big.obj")).expect("written"),
+            code => assert_eq!(code, Some(4), "{status}"),
+        }
         assert!(sixfold.names().is_empty(), "{:?}", sixfold.names());
     }
 }
@@ -111,35 +142,8 @@ fn an_interrupted_decimation_writes_nothing() {
         "-o",
         "out.obj",
     ];
-    let run = sixfold.run_interrupted(&arguments, "INT", Duration::from_millis(200));
+    let run = sixfold.run_interrupted(&arguments, "INT", "faces removed");
     assert_eq!(run.stdout, "");
     assert_eq!(sixfold.names(), ["grid.obj", "out.obj"]);
     assert_eq!(text(&sixfold, "out.obj"), "precious");
-}
-
-#[test]
-fn no_draft_is_left_after_two_interrupts_of_a_study() {
-    let sixfold = Sixfold::new();
-    sixfold.grid("grid.obj", 40);
-    let arguments = [
-        "study", "grid.obj", "--budget", "10m", "--json", "x.json", "--csv", "x.csv",
-    ];
-    let start = Instant::now();
-    let mut child = sixfold.start(&arguments, 2);
-    // Two signals may arrive as one signal, so signals are sent until the program ends.
-    let status = loop {
-        if let Some(status) = child.try_wait().expect("our child") {
-            break status;
-        }
-        send("INT", &child);
-        assert!(start.elapsed() < Duration::from_secs(120), "still runs");
-        sleep(Duration::from_millis(1));
-    };
-    // One signal may be enough.
-    assert!(matches!(status.code(), Some(4 | 130)), "{status}");
-    let names = sixfold.names();
-    assert!(
-        names.iter().all(|name| !name.ends_with(".draft")),
-        "{names:?}"
-    );
 }

@@ -128,7 +128,7 @@ fn a_study_follows_its_schema_and_all_backends_agree() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 12);
     let arguments = [
-        "study", "grid.obj", "--budget", "300ms", "--json", "-", "--csv", "out.csv",
+        "study", "grid.obj", "--rounds", "2", "--json", "-", "--csv", "out.csv",
     ];
     let run = sixfold.run(&arguments);
     assert_eq!(run.code, Some(0), "{run:?}");
@@ -164,13 +164,12 @@ fn a_study_follows_its_schema_and_all_backends_agree() {
     let mut checksums: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
     for row in results {
         assert_fields(row, &RESULT);
-        let expected = if row["median_ns"].is_null() {
-            "unchecked"
-        } else {
-            "same"
-        };
-        assert_eq!(row["agreement"], expected, "{row}");
-        if row["sampled"] == false && row["estimated_ns"].is_null() {
+        assert_eq!(row["agreement"], "same", "{row}");
+        assert!(
+            row["median_ns"].is_number() && row["estimated_ns"].is_null(),
+            "{row}"
+        );
+        if row["sampled"] == false {
             assert!(row["min_ns"].as_f64() <= row["median_ns"].as_f64(), "{row}");
             let operation = row["operation"].as_str().expect("a name");
             let checksum = row["checksum"].as_f64().expect("a number");
@@ -225,8 +224,8 @@ fn the_selected_rows_are_measured() {
     let run = sixfold.run(&[
         "study",
         "grid.obj",
-        "--budget",
-        "50ms",
+        "--rounds",
+        "2",
         "--json",
         "-",
         "--triangulate",
@@ -259,8 +258,10 @@ fn the_selected_rows_are_measured() {
     let run = &report["run"];
     assert_eq!(run["settings"]["seed"], 9);
     assert_eq!(run["settings"]["triangulate"], true);
+    assert_eq!(run["settings"]["rounds"], 2);
+    assert_eq!(run["settings"]["budget_s"], Value::Null);
     let command = run["command"].as_str().expect("a command");
-    assert!(command.starts_with("sixfold study grid.obj --budget 50ms"));
+    assert!(command.starts_with("sixfold study grid.obj --rounds 2"));
 }
 
 #[test]
@@ -269,7 +270,7 @@ fn merged_vertices_are_reported_and_are_not_a_failure() {
     // Two triangles touch along an edge in space, but share no vertex.
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 5 4 6\n";
     sixfold.file("seam.obj", text);
-    let run = sixfold.run(&["study", "seam.obj", "--budget", "100ms", "--json", "-"]);
+    let run = sixfold.run(&["study", "seam.obj", "--rounds", "2", "--json", "-"]);
     assert_eq!(run.code, Some(0), "{run:?}");
     let report = finding(&run.stdout);
     assert_eq!(report["backends"]["polygon-soup"]["merged_vertices"], 2);
@@ -284,6 +285,8 @@ fn merged_vertices_are_reported_and_are_not_a_failure() {
         if merged || row["backend"] != "polygon-soup" {
             assert_eq!(row["agreement"], expected, "{row}");
         }
+        let taken = row["samples"].as_u64().zip(row["disturbed"].as_u64());
+        assert_eq!(taken.map(|(counted, not)| counted + not), Some(2), "{row}");
     }
 }
 
@@ -329,9 +332,7 @@ fn counts_have_rows_in_csv() {
 #[test]
 fn growth_records_its_meshes_and_the_features_of_the_build() {
     let sixfold = Sixfold::new();
-    let arguments = [
-        "growth", "--to", "2000", "--steps", "2", "--budget", "300ms",
-    ];
+    let arguments = ["growth", "--to", "2000", "--steps", "2", "--rounds", "2"];
     let run = crate::run::run_ok(&sixfold, &[&arguments[..], &["--json", "-"]].concat());
     let document = parsed(&run.stdout);
     let growth = &document["findings"][0];

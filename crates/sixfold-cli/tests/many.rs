@@ -10,7 +10,7 @@ use crate::bad_input::assert_refused;
 use crate::json_csv::completed;
 use crate::run::{Run, Sixfold, TETRAHEDRON, run_ok, text};
 
-const QUICK_ARGUMENTS: [&str; 4] = ["--budget", "400ms", "--operations", "boundary,edge_length"];
+const QUICK_ARGUMENTS: [&str; 4] = ["--rounds", "2", "--operations", "boundary,edge_length"];
 
 /// Writes three valid meshes, one of them in a subfolder, and a broken mesh.
 fn scans() -> Sixfold {
@@ -237,6 +237,7 @@ fn shards_that_do_not_belong_together_are_not_merged() {
     assert_eq!(study(&sixfold, &["--report", "one"]).code, Some(0));
     let mut other: Value = results(&sixfold, "one");
     other["runs"][0]["settings"]["budget_s"] = 60.into();
+    other["runs"][0]["settings"]["rounds"] = Value::Null;
     sixfold.file("slow.json", &other.to_string());
     let mut other: Value = results(&sixfold, "one");
     other["meshes"][0]["sha256"] = "another".into();
@@ -289,7 +290,7 @@ fn invalid_places_are_refused_before_anything_is_measured() {
         assert_refused(&sixfold, arguments, 2, message);
     }
     sixfold.file("only.obj", "v 0 0 0\n");
-    let run = sixfold.run(&["study", "only.obj", "none.obj", "--budget", "50ms"]);
+    let run = sixfold.run(&["study", "only.obj", "none.obj", "--rounds", "2"]);
     assert_eq!(run.code, Some(2), "{run:?}");
     assert!(
         run.stderr.contains("none of the meshes could be studied"),
@@ -307,14 +308,7 @@ fn places_without_meshes_do_not_stop_the_others() {
     fs::create_dir(sixfold.folder().join("prints")).expect("a folder");
     sixfold.file("prints/part.FBX", "text");
     sixfold.file("scans/b.x3d", "text");
-    let run = sixfold.run(&[
-        "study",
-        "empty",
-        "prints",
-        "scans/a.OBJ",
-        "--budget",
-        "50ms",
-    ]);
+    let run = sixfold.run(&["study", "empty", "prints", "scans/a.OBJ", "--rounds", "2"]);
     assert_eq!(run.code, Some(0), "{run:?}");
     for message in [
         "empty: not studied: no mesh file in this directory or its subdirectories\n",
@@ -322,7 +316,7 @@ fn places_without_meshes_do_not_stop_the_others() {
     ] {
         assert!(run.stderr.contains(message), "{message}: {run:?}");
     }
-    let run = sixfold.run(&["study", "scans", "--budget", "50ms"]);
+    let run = sixfold.run(&["study", "scans", "--rounds", "2"]);
     assert!(
         run.stderr
             .contains("note: scans: other files are left out: 1 .txt, 1 .x3d, 1 hidden; convert"),
@@ -365,36 +359,21 @@ fn a_full_disk_does_not_suppress_the_text() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_study_can_be_resumed() {
-    use std::time::{Duration, Instant};
     let sixfold = scans();
+    // 500 rounds on each mesh are more steps than the pipe to this test holds, so the study cannot
+    // end before the signal.
     let arguments = [
         "study",
         "scans",
-        "--budget",
-        "2s",
+        "--rounds",
+        "500",
         "--operations",
         "boundary",
         "--report",
         "out",
     ];
-    let child = sixfold.start(&arguments, 1);
-    // When the first study is saved, the second study is running. The second study takes two
-    // seconds.
-    let start = Instant::now();
-    let kept = || {
-        let studies = fs::read_dir(sixfold.folder().join("out/studies"));
-        let names = studies.into_iter().flatten().flatten();
-        let names = names.map(|entry| entry.file_name().to_string_lossy().into_owned());
-        names.filter(|name| !name.starts_with('.')).count()
-    };
-    while kept() == 0 && start.elapsed() < Duration::from_secs(60) {
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    crate::run::send("INT", &child);
-    let output = child.wait_with_output().expect("it ends");
-    assert_eq!(output.status.code(), Some(4), "{output:?}");
-    let shown = String::from_utf8_lossy(&output.stdout);
-    assert!(shown.contains("not studied yet"), "{shown}");
+    let run = sixfold.run_interrupted(&arguments, "INT", "2 of 3");
+    assert!(run.stdout.contains("not studied yet"), "{run:?}");
     let kept = results(&sixfold, "out");
     let finished = names(&studies(&kept)).len();
     assert!((1..3).contains(&finished), "{finished}");

@@ -13,8 +13,8 @@ fn all_indices_are_measured_and_the_cheapest_is_named() {
         &[
             "neighbours",
             "grid.obj",
-            "--budget",
-            "300ms",
+            "--rounds",
+            "2",
             "--json",
             "n.json",
             "--csv",
@@ -52,7 +52,7 @@ fn all_indices_are_measured_and_the_cheapest_is_named() {
 fn some_indices_and_points_can_be_chosen() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 12);
-    let words = ["neighbours", "grid.obj", "--budget", "200ms", "--json", "-"];
+    let words = ["neighbours", "grid.obj", "--rounds", "2", "--json", "-"];
     let run = run_ok(
         &sixfold,
         &[&words[..], &["--points", "box", "--indices", "bvh,kd-tree"]].concat(),

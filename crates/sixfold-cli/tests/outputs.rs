@@ -13,8 +13,8 @@ fn data_on_standard_output_has_no_text_beside_it() {
     let study = [
         "study",
         "mesh.obj",
-        "--budget",
-        "50ms",
+        "--rounds",
+        "2",
         "--operations",
         "build",
     ];
@@ -86,7 +86,7 @@ fn a_closed_pipe_does_not_cause_a_panic() {
     let sixfold = Sixfold::new();
     for arguments in [
         &["generate", "grid", "m=200", "n=200", "-o", "-"][..],
-        &["study", "--budget", "10ms", "--operations", "build"],
+        &["study", "--rounds", "2", "--operations", "build"],
         &["generate", "--help"],
     ] {
         let mut command = sixfold.command(arguments);

@@ -19,8 +19,8 @@ fn the_answer_has_a_ranking_with_reasons() {
         "grid.obj",
         "--workload",
         "mine.toml",
-        "--budget",
-        "2s",
+        "--rounds",
+        "2",
         "--json",
         "answer.json",
     ];
@@ -73,8 +73,8 @@ fn json_on_standard_output_has_no_text_beside_it() {
             "geodesic-dijkstra",
             "--needs",
             "edit",
-            "--budget",
-            "2s",
+            "--rounds",
+            "2",
             "--json",
             "-",
         ],
@@ -122,7 +122,7 @@ fn meshes_that_cannot_be_read_are_left_out() {
     std::fs::create_dir(sixfold.folder().join("empty")).expect("a folder");
     sixfold.file("mine.toml", MINE);
     let arguments = ["pick", "empty", "missing.obj", "broken.obj", "grid.obj"];
-    let options = ["--workload", "mine.toml", "--budget", "1s"];
+    let options = ["--workload", "mine.toml", "--rounds", "2"];
     let run = run_ok(&sixfold, &[&arguments[..], &options].concat());
     for name in ["empty: no mesh file", "missing.obj", "broken.obj"] {
         let note = format!("note: not measured: {name}");
@@ -209,8 +209,8 @@ fn a_workload_that_is_shown_can_be_run() {
             "grid.obj",
             "--workload",
             "mine.toml",
-            "--budget",
-            "2s",
+            "--rounds",
+            "2",
         ],
     );
     assert!(run.stdout.contains("For mine, "), "{}", run.stdout);
@@ -225,7 +225,7 @@ fn pick_continues_after_a_mesh_that_cannot_be_read() {
     sixfold.grid("a.obj", 8);
     sixfold.grid("c.obj", 9);
     sixfold.file("b.obj", "v 0 0 0\nf 1 2 3\n");
-    let arguments = ["pick", "a.obj", "b.obj", "c.obj", "--budget", "300ms"];
+    let arguments = ["pick", "a.obj", "b.obj", "c.obj", "--rounds", "2"];
     let run = run_ok(&sixfold, &arguments);
     let note = "note: not measured: b.obj:2: face names vertex 2";
     assert!(run.stderr.contains(note), "{run:?}");

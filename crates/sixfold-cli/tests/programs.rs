@@ -1,11 +1,8 @@
 //! The command line of a user's programs, by the example `programs`.
 
-use std::process::Stdio;
-use std::time::Duration;
-
 use serde_json::Value;
 
-use crate::run::{Run, Sixfold, TETRAHEDRON, send, text};
+use crate::run::{Sixfold, TETRAHEDRON, interrupted, text};
 
 #[test]
 fn programs_are_measured_and_written() {
@@ -17,8 +14,8 @@ fn programs_are_measured_and_written() {
         "geodesics,regions",
         "--backends",
         "half-edge,corner-table",
-        "--budget",
-        "1s",
+        "--rounds",
+        "2",
         "--json",
         "r.json",
     ]);
@@ -54,8 +51,8 @@ fn the_commands_for_results_accept_results_of_programs() {
             "regions",
             "--backends",
             "half-edge,corner-table",
-            "--budget",
-            "1s",
+            "--rounds",
+            "2",
             "--json",
             file,
         ]);
@@ -116,8 +113,8 @@ fn recorded_programs_run_again_on_every_structure() {
         "--record",
         "r",
         "--traces",
-        "--budget",
-        "600ms",
+        "--rounds",
+        "2",
     ]);
     assert_eq!(run.code, Some(0), "{run:?}");
     assert_eq!(run.stdout.matches("Recorded: ").count(), 3, "{run:?}");
@@ -133,8 +130,8 @@ fn recorded_programs_run_again_on_every_structure() {
                 "--triangulate",
                 option,
                 &file,
-                "--budget",
-                "500ms",
+                "--rounds",
+                "2",
                 "--json",
                 "p.json",
             ]);
@@ -155,8 +152,8 @@ fn recorded_programs_run_again_on_every_structure() {
         "--triangulate",
         "--trace",
         "r/geodesics.trace",
-        "--budget",
-        "500ms",
+        "--rounds",
+        "2",
     ]);
     assert_eq!(run.code, Some(1), "{run:?}");
     assert!(
@@ -200,8 +197,8 @@ fn queries_also_run_on_relation_tables() {
         "laplacian,feature-lines",
         "--backends",
         "half-edge,relation-tables",
-        "--budget",
-        "1s",
+        "--rounds",
+        "2",
         "--json",
         "r.json",
     ]);
@@ -251,8 +248,8 @@ fn run_faulty(sixfold: &Sixfold, programs: &str, more: &[&str], code: i32) -> (S
         "--backends",
         "face-vertex,half-edge,corner-table,relation-tables",
         "--triangulate",
-        "--budget",
-        "4s",
+        "--rounds",
+        "2",
         "--json",
         "r.json",
     ];
@@ -276,7 +273,7 @@ fn ranked(finding: &Value) -> Vec<&str> {
 fn isolated_programs_exclude_only_the_structures_on_which_they_fail() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 12);
-    let limits = ["--isolate", "--time-limit", "2s", "--memory-limit", "250MB"];
+    let limits = ["--isolate", "--time-limit", "5s", "--memory-limit", "250MB"];
     let (_, findings) = run_faulty(
         &sixfold,
         "sound,endless,crashing,hoarding,panicking",
@@ -285,7 +282,7 @@ fn isolated_programs_exclude_only_the_structures_on_which_they_fail() {
     );
     let reasons = [
         None,
-        Some("no answer to run within 2 s"),
+        Some("no answer to run within 5 s"),
         Some("SIGABRT"),
         Some("memory allocation of"),
         Some("half-edges are not welcome"),
@@ -318,7 +315,7 @@ fn isolated_programs_exclude_only_the_structures_on_which_they_fail() {
 #[cfg(target_os = "linux")]
 fn a_program_beyond_a_limit_ends_the_command_and_keeps_the_others() {
     for (fault, option, limit, message) in [
-        ("endless", "--time-limit", "1s", "did not end within 1.0 s"),
+        ("endless", "--time-limit", "5s", "did not end within 5.0 s"),
         (
             "hoarding",
             "--memory-limit",
@@ -343,15 +340,9 @@ fn an_interrupt_ends_an_endless_program_and_keeps_the_others() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 12);
     let mut command = sixfold.example("faulty_programs");
-    command.args(["grid.obj", "--programs", "sound,endless", "--budget", "2s"]);
+    command.args(["grid.obj", "--programs", "sound,endless", "--rounds", "2"]);
     command.args(["--backends", "half-edge", "--json", "r.json"]);
-    command.stdout(Stdio::piped()).stderr(Stdio::piped());
-    let child = command.spawn().expect("the example runs");
-    // The sound program takes one second.
-    std::thread::sleep(Duration::from_millis(2500));
-    send("INT", &child);
-    let run = Run::from_output(child.wait_with_output().expect("it ends"));
-    assert_eq!(run.code, Some(4), "{run:?}");
+    let run = interrupted(command, "INT", "endless: ");
     assert!(
         run.stderr.contains("did not end after the interrupt"),
         "{run:?}"

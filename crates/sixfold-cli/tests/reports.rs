@@ -10,7 +10,7 @@ use crate::run::{Run, Sixfold, TETRAHEDRON, run_ok, text};
 
 /// Studies half-edge and corner table on one mesh. `more` are additional arguments.
 fn study(sixfold: &Sixfold, more: &[&str]) -> Run {
-    let mut arguments = vec!["study", "grid.obj", "--budget", "1200ms"];
+    let mut arguments = vec!["study", "grid.obj", "--rounds", "2"];
     arguments.extend(["--backends", "half-edge,corner-table"]);
     arguments.extend(["--operations", "vertex_vertices,boundary"]);
     arguments.extend(more);
@@ -77,7 +77,7 @@ fn the_report_of_one_mesh_has_orders_growth_and_a_roofline() {
         assert_eq!(opened, closed, "{id} is not XML");
     }
     // The page, the data and each figure have the command that reproduces them.
-    let command = "sixfold study grid.obj --budget 1200ms --backends 'half-edge,corner-table'";
+    let command = "sixfold study grid.obj --rounds 2 --backends 'half-edge,corner-table'";
     let markdown = text(&sixfold, "out/report.md");
     assert!(
         markdown.matches(command).count() > drawn.len(),
@@ -112,14 +112,7 @@ fn the_report_of_one_mesh_has_orders_growth_and_a_roofline() {
 #[test]
 fn a_lab_that_cannot_be_measured_is_reported_and_left_out() {
     let sixfold = grid();
-    let arguments = [
-        "--report",
-        "out",
-        "--budget",
-        "50ms",
-        "--labs",
-        "orders,why",
-    ];
+    let arguments = ["--report", "out", "--rounds", "2", "--labs", "orders,why"];
     let run = sixfold.run(
         &[
             &["study", "grid.obj", "--operations", "boundary"],
@@ -138,7 +131,7 @@ fn a_lab_that_cannot_be_measured_is_reported_and_left_out() {
 #[test]
 fn results_of_several_commands_are_drawn_on_one_page() {
     let sixfold = grid();
-    let quickly = ["--budget", "300ms", "--backends", "half-edge,corner-table"];
+    let quickly = ["--rounds", "2", "--backends", "half-edge,corner-table"];
     let run = |command: &[&str], file: &str| {
         run_ok(&sixfold, &[command, &quickly, &["--json", file]].concat());
     };
@@ -205,7 +198,7 @@ fn results_of_several_commands_are_drawn_on_one_page() {
     assert!(page.contains("sixfold why grid.obj --relations face_faces"));
 
     // `compare` accepts the report of one mesh as a study.
-    let quick = ["--budget", "60ms", "--operations", "boundary"];
+    let quick = ["--rounds", "2", "--operations", "boundary"];
     let report = ["--report", "again", "--labs", "none"];
     run_ok(
         &sixfold,
@@ -227,7 +220,7 @@ fn invalid_results_are_refused() {
     sixfold.file("mesh.obj", TETRAHEDRON);
     fs::create_dir(sixfold.folder().join("foreign")).expect("a folder");
     sixfold.file("foreign/results.json", "{\"mine\": true}");
-    let quick = ["--budget", "60ms", "--operations", "boundary", "--json"];
+    let quick = ["--rounds", "2", "--operations", "boundary", "--json"];
     run_ok(
         &sixfold,
         &[&["study", "grid.obj"], &quick[..], &["a.json"]].concat(),

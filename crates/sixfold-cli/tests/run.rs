@@ -1,6 +1,7 @@
 //! Runs the binary in a temporary folder.
 
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
@@ -102,26 +103,29 @@ impl Sixfold {
         command
     }
 
-    /// Starts the binary and waits until it has created `drafts` new files.
-    pub(crate) fn start(&self, arguments: &[&str], drafts: usize) -> Child {
-        let before = self.names().len();
+    /// Starts the binary, with each step of its progress as a line on standard error.
+    pub(crate) fn start(&self, arguments: &[&str]) -> Child {
         let mut command = self.command(arguments);
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        let child = command.spawn().expect("the binary runs");
-        let start = Instant::now();
-        while self.names().len() < before + drafts && start.elapsed() < Duration::from_secs(60) {
-            sleep(Duration::from_millis(5));
-        }
+        command.env("SIXFOLD_PROGRESS", "lines");
+        command.spawn().expect("the binary runs")
+    }
+
+    /// Starts the binary, and waits until it has created a file. An output file is created when a
+    /// command begins.
+    pub(crate) fn start_with_draft(&self, arguments: &[&str]) -> Child {
+        let before = self.names().len();
+        let child = self.start(arguments);
+        wait_for(|| (self.names().len() > before).then_some(()));
         child
     }
 
-    /// Runs the binary. Sends a signal when the time `after` has passed since its file was opened.
-    pub(crate) fn run_interrupted(&self, arguments: &[&str], signal: &str, after: Duration) -> Run {
-        let child = self.start(arguments, 1);
-        sleep(after);
-        send(signal, &child);
-        let run = Run::from_output(child.wait_with_output().expect("it ends"));
-        assert_eq!(run.code, Some(4), "{run:?}");
+    /// Runs the binary, and sends a signal when a step of its progress contains `step`.
+    ///
+    /// While the test does not read, the program cannot write more than the pipe holds. It can
+    /// therefore not be much further when the signal arrives.
+    pub(crate) fn run_interrupted(&self, arguments: &[&str], signal: &str, step: &str) -> Run {
+        let run = interrupted(self.command(arguments), signal, step);
         assert!(run.stderr.contains("interrupted"), "{run:?}");
         run
     }
@@ -133,6 +137,42 @@ impl Sixfold {
         let mut names: Vec<String> = entries.map(|e| name(e.expect("an entry"))).collect();
         names.sort();
         names
+    }
+}
+
+/// Runs a command with its progress as lines, and sends a signal when a step contains `step`.
+pub(crate) fn interrupted(mut command: Command, signal: &str, step: &str) -> Run {
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    command.env("SIXFOLD_PROGRESS", "lines");
+    let mut child = command.spawn().expect("it starts");
+    let errors = BufReader::new(child.stderr.take().expect("piped"));
+    let mut lines = errors.lines().map(|line| line.expect("UTF-8"));
+    let seen: Vec<String> = lines
+        .by_ref()
+        .take_while(|line| !line.contains(step))
+        .collect();
+    send(signal, &child);
+    let rest: Vec<String> = lines
+        .filter(|line| !line.starts_with("progress: "))
+        .collect();
+    let output = child.wait_with_output().expect("it ends");
+    let run = Run {
+        stderr: rest.join("\n"),
+        ..Run::from_output(output)
+    };
+    assert_eq!(run.code, Some(4), "{run:?} after {:?}", seen.last());
+    run
+}
+
+/// Waits until `event` returns a value. Fails after ten minutes, so that a fault does not hang.
+pub(crate) fn wait_for<T>(mut event: impl FnMut() -> Option<T>) -> T {
+    let start = Instant::now();
+    loop {
+        if let Some(value) = event() {
+            return value;
+        }
+        assert!(start.elapsed() < Duration::from_secs(600), "it hangs");
+        sleep(Duration::from_millis(5));
     }
 }
 

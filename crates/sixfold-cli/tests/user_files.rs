@@ -43,7 +43,7 @@ fn text_that_cannot_be_written_is_an_error() {
     let sixfold = Sixfold::new();
     sixfold.file("ok.obj", TETRAHEDRON);
     for arguments in [
-        &["study", "ok.obj", "--budget", "50ms", "--json", "x.json"][..],
+        &["study", "ok.obj", "--rounds", "2", "--json", "x.json"][..],
         &["inspect", "ok.obj"],
         &["generate", "cube", "-o", "cube.obj"],
         &["generate", "cube", "-o", "-"],
@@ -80,7 +80,7 @@ fn a_full_disk_under_the_report_does_not_lose_the_study() {
         let mut shell = std::process::Command::new("sh");
         shell.args(["-c", "trap '' XFSZ; ulimit -f 4; exec \"$0\" \"$@\""]);
         shell.arg(command.get_program());
-        shell.args(["study", "t.obj", "--budget", "400ms", "--labs", "orders"]);
+        shell.args(["study", "t.obj", "--rounds", "2", "--labs", "orders"]);
         shell
             .args(["--operations", "boundary,edge_length"])
             .args(more);
@@ -108,8 +108,8 @@ fn a_full_disk_does_not_lose_the_study() {
     let arguments = [
         "study",
         "ok.obj",
-        "--budget",
-        "50ms",
+        "--rounds",
+        "2",
         "--json",
         "/dev/full",
         "--csv",
@@ -152,7 +152,7 @@ fn file_names_cannot_control_the_terminal() {
     sixfold.file(name, &format!("{TETRAHEDRON}f 1 1 2\n"));
     for arguments in [
         &["inspect", name][..],
-        &["study", name, "--budget", "50ms"],
+        &["study", name, "--rounds", "2"],
         &["inspect", "none\u{1b}[2J.obj"],
         &["decimate", name, "--faces", "0", "-o", "x\u{1b}[2J.obj"],
         &["generate", "cube", "-o", name],
@@ -216,13 +216,13 @@ fn a_triangulation_that_changes_more_than_faces_is_reported() {
         ("shared.obj", "non-manifold edges: 0 before, 1 now"),
         ("fold.obj", "1 fan folds over"),
     ] {
-        let study = ["study", name, "--triangulate", "--budget", "50ms"];
+        let study = ["study", name, "--triangulate", "--rounds", "2"];
         let run = sixfold.run(&study);
         assert!(run.stderr.contains(expected), "{run:?}");
         let words = run.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(words.contains(expected), "{run:?}");
     }
-    let run = sixfold.run(&["study", "square.obj", "--triangulate", "--budget", "50ms"]);
+    let run = sixfold.run(&["study", "square.obj", "--triangulate", "--rounds", "2"]);
     assert!(
         run.stdout.contains("cut 1 face into 2 triangles"),
         "{run:?}"

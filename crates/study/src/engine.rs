@@ -2,14 +2,16 @@
 //! judged.
 
 pub(crate) mod agreement;
-pub(crate) mod budget;
 pub(crate) mod control;
 #[cfg(test)]
 mod cost;
 pub(crate) mod disturbance;
+pub(crate) mod effort;
 pub(crate) mod heap;
+pub(crate) mod machine;
 pub(crate) mod measure;
 pub(crate) mod plan;
+pub(crate) mod plan_by_count;
 pub(crate) mod ranking;
 #[cfg(test)]
 pub(crate) mod simulated_machine;

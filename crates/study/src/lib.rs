@@ -31,7 +31,7 @@ mod results;
 mod runner;
 mod sanitize;
 
-pub use engine::budget::Budget;
+pub use engine::effort::Effort;
 pub use engine::heap::{CacheState, CachesReport, free_memory};
 pub use engine::measure::Progress;
 pub use engine::statistics::UNSEEN_DRIFT;

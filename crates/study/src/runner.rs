@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use sixfold::{Facts, PolygonMesh};
 
-use crate::engine::disturbance::{DisturbanceDetector, Verdict};
+use crate::engine::disturbance::{DisturbanceDetector, Verdict, reference_work};
 use crate::engine::measure::{MAX_RUNS, untimed_runs};
 use crate::engine::plan::SHORTEST_SAMPLE_NS;
 use crate::labs::study::{StudyError, prepare};
@@ -23,7 +23,7 @@ pub struct BackendRunner<'a> {
     subject: Box<dyn TimedBackend + 'a>,
     /// The last operation, and the numbers of its untimed and timed runs per sample.
     last: Option<(Operation, [u32; 2])>,
-    detector: DisturbanceDetector,
+    detector: DisturbanceDetector<'static>,
     /// Whether freed pages stay with the process.
     kept: bool,
     /// The number of samples taken.
@@ -74,7 +74,7 @@ impl<'a> BackendRunner<'a> {
         Ok(Self {
             subject,
             last: None,
-            detector: DisturbanceDetector::new(BUDGET_NS),
+            detector: DisturbanceDetector::new(BUDGET_NS, reference_work()),
             kept,
             samples: 0,
         })

@@ -1,12 +1,12 @@
 //! Tests of programs of users on all structures.
 
+use std::num::NonZeroU32;
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
 
 use sixfold::prelude::*;
 use sixfold::{Split, shapes};
 use sixfold_study::{
-    EditProgram, MovingProgram, Outcome, PickError, PickReport, Program, ProgramSettings,
+    EditProgram, Effort, MovingProgram, Outcome, PickError, PickReport, Program, ProgramSettings,
     RefineProgram, Results, StudyMesh, Suite, WalkProgram, pick_for_programs,
 };
 
@@ -27,7 +27,7 @@ fn torus() -> StudyMesh {
 
 fn settings() -> ProgramSettings {
     ProgramSettings {
-        budget: Duration::from_millis(400),
+        effort: Effort::Rounds(NonZeroU32::MIN),
         ..ProgramSettings::default()
     }
 }
@@ -253,19 +253,6 @@ fn refusals_and_limits_are_reasons() {
     assert!(error.unwrap_err().to_string().contains("octree"));
     let error = pick_for_programs(&[], &suite, &settings(), &stop, &mut |_, _| (), &mut |_| ());
     assert_eq!(error.unwrap_err(), PickError::NoMesh);
-}
-
-#[test]
-fn a_scanning_structure_that_would_take_too_long_is_excluded() {
-    let large = shapes::triangle_torus(300, 300).expect("a torus");
-    let mesh = StudyMesh::new("large", large);
-    let report = measure_with(&Suite::from(RIGHT), mesh, &settings()).remove(0);
-    let excluded = names(report.excluded.iter().map(|e| &e.backend));
-    assert_eq!(excluded, ["indexed-face-set", "polygon-soup"]);
-    let reasons = report.excluded.iter().map(|e| &e.reason);
-    for reason in reasons {
-        assert!(reason.starts_with("a run would take about"), "{reason}");
-    }
 }
 
 /// Collapses the first edge that can be collapsed.

@@ -12,7 +12,7 @@
 
 use std::hint::black_box;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
@@ -81,13 +81,14 @@ impl MemorySpeed {
         clock: &dyn Clock,
         stop: &AtomicBool,
     ) -> Option<Self> {
-        let start = Instant::now();
+        let start = clock.now().wall_ns;
+        let elapsed = || Duration::from_nanos((clock.now().wall_ns - start).max(0.0) as u64);
         let mut speeds = Vec::new();
         let mut left_out_from = None;
         let mut expected = Duration::ZERO;
         for &bytes in sizes {
-            let before = start.elapsed();
-            if !speeds.is_empty() && before + expected > limit {
+            let before = elapsed();
+            if !speeds.is_empty() && before.saturating_add(expected) > limit {
                 left_out_from = Some(bytes);
                 break;
             }
@@ -101,7 +102,7 @@ impl MemorySpeed {
                 latency_ns: latency(&words, clock),
             });
             // The next buffer is four times as large.
-            expected = (start.elapsed() - before) * 4;
+            expected = elapsed().saturating_sub(before).saturating_mul(4);
         }
         Some(Self {
             speeds,

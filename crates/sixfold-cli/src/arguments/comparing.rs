@@ -1,13 +1,14 @@
 //! Arguments of `sixfold orders`, `growth` and `compare`.
 
+use std::num::NonZeroU32;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
 use sixfold::shapes::Order;
-use sixfold_study::{GrowthSettings, Operation};
+use sixfold_study::{Effort, GrowthSettings, Operation};
 
-use super::{MemoryState, ResultFiles, backend, duration, operation, seed};
+use super::{MemoryState, ResultFiles, backend, duration, effort, operation, rounds, seed};
 
 /// Text after the options in `orders --help`; the lists of names follow it.
 pub(crate) const ORDERS_EXAMPLES: &str = "Examples:
@@ -47,6 +48,9 @@ pub(crate) struct Orders {
     /// Total time to measure, such as 20s, 500ms or 2m
     #[arg(long, value_name = "TIME", default_value = "25s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Duration,
+    /// Measure exactly N rounds of everything, without a time limit
+    #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
+    pub(crate) rounds: Option<NonZeroU32>,
     /// Seed of the order `shuffled` and of random samples
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
@@ -57,6 +61,13 @@ pub(crate) struct Orders {
     pub(crate) triangulate: bool,
     #[command(flatten)]
     pub(crate) files: ResultFiles,
+}
+
+impl Orders {
+    /// Returns how much to measure.
+    pub(crate) fn effort(&self) -> Effort {
+        effort(self.budget, self.rounds)
+    }
 }
 
 const COMPARE_EXAMPLES: &str = "Examples:
@@ -166,6 +177,9 @@ pub(crate) struct Growth {
     /// Total time to measure, such as 60s, 500ms or 2m
     #[arg(long, value_name = "TIME", default_value = "60s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Duration,
+    /// Measure exactly N rounds of everything, without a time limit
+    #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
+    pub(crate) rounds: Option<NonZeroU32>,
     /// Seed of the order `shuffled` and of random samples
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
@@ -173,6 +187,13 @@ pub(crate) struct Growth {
     pub(crate) memory: MemoryState,
     #[command(flatten)]
     pub(crate) files: ResultFiles,
+}
+
+impl Growth {
+    /// Returns how much to measure.
+    pub(crate) fn effort(&self) -> Effort {
+        effort(self.budget, self.rounds)
+    }
 }
 
 fn count(text: &str) -> Result<usize, String> {

@@ -1,12 +1,13 @@
 //! Arguments of `sixfold neighbours`.
 
+use std::num::NonZeroU32;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
-use sixfold_study::{QueryPoints, neighbour_indices};
+use sixfold_study::{Effort, QueryPoints, neighbour_indices};
 
-use super::{ResultFiles, duration, seed};
+use super::{ResultFiles, duration, effort, rounds, seed};
 
 const EXAMPLES: &str = "Examples:
   sixfold neighbours                             the built-in mesh
@@ -51,11 +52,21 @@ pub(crate) struct Neighbours {
     /// Total time to measure, such as 20s, 500ms or 2m
     #[arg(long, value_name = "TIME", default_value = "10s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Duration,
+    /// Measure exactly N rounds of everything, without a time limit
+    #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
+    pub(crate) rounds: Option<NonZeroU32>,
     /// Seed of the query points and of the order of measurements
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) files: ResultFiles,
+}
+
+impl Neighbours {
+    /// Returns how much to measure.
+    pub(crate) fn effort(&self) -> Effort {
+        effort(self.budget, self.rounds)
+    }
 }
 
 /// The values of `--points`.

@@ -1,12 +1,13 @@
 //! Arguments of `sixfold pick` and `workloads`.
 
+use std::num::NonZeroU32;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
-use sixfold_study::{Need, Policy};
+use sixfold_study::{Effort, Need, Policy};
 
-use super::{ResultFiles, backend, duration, seed};
+use super::{ResultFiles, backend, duration, effort, rounds, seed};
 
 const PICK_EXAMPLES: &str = "Examples:
   sixfold pick bunny.obj
@@ -65,6 +66,9 @@ pub(crate) struct Pick {
     /// Total time to measure, such as 20s, 500ms or 2m
     #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Duration,
+    /// Measure exactly N rounds of everything, without a time limit
+    #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
+    pub(crate) rounds: Option<NonZeroU32>,
     /// Seed of all random orders
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
@@ -76,6 +80,13 @@ pub(crate) struct Pick {
     pub(crate) triangulate: bool,
     #[command(flatten)]
     pub(crate) files: ResultFiles,
+}
+
+impl Pick {
+    /// Returns how much to measure.
+    pub(crate) fn effort(&self) -> Effort {
+        effort(self.budget, self.rounds)
+    }
 }
 
 /// List the built-in workloads and the programs they model.

@@ -1,13 +1,15 @@
 //! Arguments of `sixfold why`.
 
+use std::num::NonZeroU32;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
 use sixfold::Relation;
+use sixfold_study::Effort;
 
 use super::subdivision::parse_name;
-use super::{ResultFiles, backend, duration};
+use super::{ResultFiles, backend, duration, effort, rounds};
 
 const WHY_EXAMPLES: &str = "Examples:
   sixfold why --counts-only                                counts on the built-in mesh, no times
@@ -57,8 +59,18 @@ pub(crate) struct Why {
     /// Total time to measure, such as 20s, 500ms or 2m
     #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration, allow_hyphen_values = true, conflicts_with = "counts_only")]
     pub(crate) budget: Duration,
+    /// Measure exactly N rounds of everything, without a time limit
+    #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
+    pub(crate) rounds: Option<NonZeroU32>,
     #[command(flatten)]
     pub(crate) files: ResultFiles,
+}
+
+impl Why {
+    /// Returns how much to measure.
+    pub(crate) fn effort(&self) -> Effort {
+        effort(self.budget, self.rounds)
+    }
 }
 
 fn relation(text: &str) -> Result<Relation, String> {

@@ -137,7 +137,7 @@ impl LabRunner<'_> {
         let Settings {
             backends,
             operations,
-            budget,
+            effort,
             seed,
             heap,
             caches,
@@ -146,7 +146,7 @@ impl LabRunner<'_> {
         let settings = || Settings {
             backends: backends.clone(),
             operations: operations.clone(),
-            budget: *budget,
+            effort: *effort,
             seed: *seed,
             heap: *heap,
             caches: *caches,
@@ -183,7 +183,7 @@ impl LabRunner<'_> {
                 let why = why::measure(
                     self.study_mesh,
                     settings,
-                    Some(*budget),
+                    Some(*effort),
                     self.stop,
                     &Bar::after(position),
                 )?;

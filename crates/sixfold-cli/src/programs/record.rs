@@ -51,7 +51,9 @@ pub(super) fn run(
     let stop = interrupt_flag(settings.heap);
     let bar = Bar::new();
     let each = ProgramSettings {
-        budget: settings.budget / suite.programs().len().max(1) as u32,
+        effort: settings
+            .effort
+            .part(1.0 / suite.programs().len().max(1) as f64),
         ..settings.clone()
     };
     let mut failed = false;

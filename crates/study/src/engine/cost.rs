@@ -96,9 +96,9 @@ fn engine_cost() {
     let mut trial = Trial {
         counts,
         skewed: false,
-        clock: &clock,
+        machine: &clock,
         memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0),
-        budget: Duration::from_secs(20),
+        effort: Duration::from_secs(20).into(),
         named: false,
         seed: 1,
         stop: &stop,

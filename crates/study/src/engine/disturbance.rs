@@ -35,8 +35,11 @@ const FOR_FAULTS: f64 = 0.1;
 /// medians less certain without making them more alike.
 const MIN_UNDISTURBED: f64 = 0.5;
 
-pub(crate) struct DisturbanceDetector {
-    words: Vec<u64>,
+/// Does a number of passes of the fixed work.
+pub(crate) type ReferenceWork<'w> = Box<dyn Fn(usize) + 'w>;
+
+pub(crate) struct DisturbanceDetector<'w> {
+    work: ReferenceWork<'w>,
     /// Times of the reference runs, ascending.
     reference_ns: Vec<f64>,
     /// Time left for waiting and for disturbed samples, in nanoseconds.
@@ -45,11 +48,12 @@ pub(crate) struct DisturbanceDetector {
     faults_left_ns: f64,
 }
 
-impl DisturbanceDetector {
-    pub(crate) fn new(budget_ns: f64) -> Self {
-        let word = |i: u64| i.wrapping_mul(0x9e37_79b9_7f4a_7c15) % WORDS as u64;
+impl<'w> DisturbanceDetector<'w> {
+    /// Creates a detector that times `work`. `budget_ns` is the time of the whole measurement, in
+    /// nanoseconds, of which a part is for waiting and for disturbed samples.
+    pub(crate) fn new(budget_ns: f64, work: ReferenceWork<'w>) -> Self {
         Self {
-            words: (0..WORDS as u64).map(word).collect(),
+            work,
             reference_ns: Vec::new(),
             disturbed_left_ns: FOR_DISTURBED * budget_ns,
             faults_left_ns: FOR_FAULTS * budget_ns,
@@ -120,13 +124,8 @@ impl DisturbanceDetector {
 
     fn time_reference(&self, clock: &dyn Clock) -> f64 {
         // The first pass brings the words into the cache.
-        black_box(self.pass());
-        let time = timed(clock, || {
-            for _ in 0..PASSES {
-                black_box(self.pass());
-            }
-        });
-        time.ns()
+        (self.work)(1);
+        timed(clock, || (self.work)(PASSES)).ns()
     }
 
     /// Records the time of a reference run and returns the slowdown.
@@ -144,19 +143,29 @@ impl DisturbanceDetector {
             _ => 1.0,
         }
     }
+}
 
-    /// Adds up four independent sums, which use the whole core. The work then takes longer if
-    /// another thread shares the core.
-    fn pass(&self) -> u64 {
-        let words = black_box(&self.words);
-        let mut sums = [0_u64; 4];
-        for four in words.chunks_exact(4) {
-            for (sum, &word) in sums.iter_mut().zip(four) {
-                *sum = sum.wrapping_add(words[word as usize % WORDS] ^ word);
-            }
+/// Returns the fixed work of this machine: it adds up words in the first-level cache.
+pub(crate) fn reference_work() -> ReferenceWork<'static> {
+    let word = |i: u64| i.wrapping_mul(0x9e37_79b9_7f4a_7c15) % WORDS as u64;
+    let words: Vec<u64> = (0..WORDS as u64).map(word).collect();
+    Box::new(move |passes| {
+        for _ in 0..passes {
+            black_box(sum(black_box(&words)));
         }
-        sums.iter().fold(0, |all, sum| all.wrapping_add(*sum))
+    })
+}
+
+/// Adds up four independent sums, which use the whole core. The work then takes longer if another
+/// thread shares the core.
+fn sum(words: &[u64]) -> u64 {
+    let mut sums = [0_u64; 4];
+    for four in words.chunks_exact(4) {
+        for (sum, &word) in sums.iter_mut().zip(four) {
+            *sum = sum.wrapping_add(words[word as usize % WORDS] ^ word);
+        }
     }
+    sums.iter().fold(0, |all, sum| all.wrapping_add(*sum))
 }
 
 /// The decision of [`DisturbanceDetector::take_sample`] about a sample.
@@ -226,6 +235,11 @@ mod tests {
         }
     }
 
+    /// The work takes the time that the clock of the test says.
+    fn no_work() -> ReferenceWork<'static> {
+        Box::new(|_| ())
+    }
+
     #[derive(Default)]
     struct Ticking(Mutex<f64>);
 
@@ -242,14 +256,14 @@ mod tests {
     #[test]
     fn disturbed_moments_are_detected_and_waited_for_while_time_is_left() {
         let clock_of = |script: &[f64]| Scripted(Mutex::new((0.0, script.to_vec(), false)));
-        let mut detector = DisturbanceDetector::new(1e9);
+        let mut detector = DisturbanceDetector::new(1e9, no_work());
         let clock = clock_of(&[100.0, 101.0, 160.0, 99.0, 106.0, 132.0]);
         let slowdowns: Vec<f64> = (0..6).map(|_| detector.slowdown(&clock)).collect();
         let disturbed: Vec<bool> = slowdowns.iter().map(|s| *s > DISTURBED).collect();
         assert_eq!(disturbed, [false, false, true, false, false, true]);
 
         assert_eq!(
-            DisturbanceDetector::new(1.0).slowdown(&clock_of(&[0.0])),
+            DisturbanceDetector::new(1.0, no_work()).slowdown(&clock_of(&[0.0])),
             1.0
         );
 
@@ -268,7 +282,7 @@ mod tests {
         let tries = |verdict: Verdict, reference_ns: &[f64], disturbed_left_ns: f64| {
             let mut detector = DisturbanceDetector {
                 reference_ns: reference_ns.to_vec(),
-                ..DisturbanceDetector::new(1.0)
+                ..DisturbanceDetector::new(1.0, no_work())
             };
             detector.disturbed_left_ns = disturbed_left_ns;
             detector.faults_left_ns = 1e9;

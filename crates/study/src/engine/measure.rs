@@ -1,4 +1,5 @@
-//! The measuring loop: a warm-up that plans the samples, then rounds until the budget is spent.
+//! The measuring loop: a warm-up that plans the samples, then rounds until the budget is spent, or
+//! until a fixed number of rounds is done.
 //!
 //! In each round, operations run on every structure, in random order. Slow operations take part
 //! only in some rounds. Slow changes of the machine (frequency, heat, other programs) then affect
@@ -11,6 +12,7 @@
 //! last round, operations that allocate are also measured on fresh memory pages.
 
 use std::hint::black_box;
+use std::num::NonZeroU32;
 use std::sync::atomic::Ordering;
 
 use rand::RngExt;
@@ -18,6 +20,7 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
 use crate::engine::disturbance::{DisturbanceDetector, Verdict, undisturbed};
+use crate::engine::effort::Effort;
 use crate::engine::statistics::Median;
 use crate::engine::trial::Trial;
 use crate::results::rows::RefusalKind;
@@ -36,6 +39,8 @@ const FIRST_TIMES_SHARE: f64 = 0.1;
 const MAX_FIRST_TIMES: u32 = 9;
 /// Part of the elapsed time for building the structures again.
 const REBUILDING_SHARE: f64 = 0.04;
+/// The structures are built again before every n-th round, if the number of rounds is fixed.
+const REBUILD_EVERY: u32 = 5;
 /// Maximum size of the gap allocated before a structure is built again, in bytes.
 const LARGEST_GAP: usize = 64 << 10;
 /// Maximum number of runs in one sample.
@@ -225,25 +230,30 @@ impl Measurement<'_, '_, '_> {
     /// Measures `entries`; those of the same task must be adjacent. Returns early, with the
     /// finished part, if `stop` is set.
     pub(crate) fn measure(&mut self, mut entries: Vec<Entry>) -> Vec<Entry> {
-        let start = self.trial.clock.now().wall_ns;
-        let deadline = start + self.trial.budget.as_nanos() as f64;
+        let start = self.trial.clock().now().wall_ns;
+        let limit_ns = self.trial.effort.limit_ns();
+        let deadline = start + limit_ns;
         // Reserve for the warm-up: its runs may be the only ones that fit the budget.
         let largest = self.subjects.iter().map(|subject| subject.bytes()).max();
         self.trial
             .memory
             .reserve_for(2 * largest.unwrap_or(0) as u64);
-        self.warm_up(&mut entries, deadline);
+        match self.trial.effort {
+            Effort::Budget(_) => self.warm_up(&mut entries, deadline),
+            Effort::Rounds(_) => self.plan_by_count(&mut entries),
+        }
         self.trial.memory.reserve();
         let allocates = entries.iter().any(|entry| entry.job.task.allocates());
         let fresh_pages = pages::can_release_pages() && !self.trial.memory.is_cold();
-        let for_first_times = match allocates && fresh_pages {
-            true => FIRST_TIMES_SHARE * self.trial.budget.as_nanos() as f64,
-            false => 0.0,
+        let first_times = allocates && fresh_pages;
+        let for_rounds = match first_times {
+            true => (1.0 - FIRST_TIMES_SHARE) * limit_ns,
+            false => limit_ns,
         };
-        self.rounds(&mut entries, start, deadline - for_first_times);
+        self.rounds(&mut entries, start, start + for_rounds);
         // First runs come last, because they return pages to the kernel. Other samples would reuse
         // these pages.
-        if for_first_times > 0.0 {
+        if first_times {
             self.first_times(&mut entries, deadline);
         }
         entries
@@ -266,33 +276,40 @@ impl Measurement<'_, '_, '_> {
             runs,
             start: self.trial.memory.start_of_runs(),
             check,
-            clock: self.trial.clock,
+            clock: self.trial.clock(),
         };
         self.subjects[subject].run(job, &series)
     }
 
     /// Runs rounds until the next round would exceed the time. The first round always starts, but
-    /// leaves out entries that would exceed the time.
+    /// leaves out entries that would exceed the time. If the number of rounds is fixed, runs all of
+    /// them, and takes no sample again.
     fn rounds(&mut self, entries: &mut [Entry], start: f64, deadline: f64) {
         let mut groups = groups(entries);
-        let mut detector = DisturbanceDetector::new(self.trial.budget.as_nanos() as f64);
+        let fixed = self.trial.effort.rounds();
+        let rounds = fixed.map_or(MAX_ROUNDS, NonZeroU32::get);
+        let limit_ns = self.trial.effort.budget().map_or(0, |b| b.as_nanos()) as f64;
+        let mut detector = DisturbanceDetector::new(limit_ns, self.trial.machine.reference_work());
         // First estimate: building and touching a structure takes 1 ns per byte.
         let mut rebuild_ns: f64 = self.subjects.iter().map(|s| s.bytes() as f64).sum();
         let mut rebuilding_ns = 0.0;
-        for round in 0..MAX_ROUNDS {
+        for round in 0..rounds {
             self.trial.memory.check_free_memory();
             let costs = entries.iter().filter(|e| takes_part(e, round));
             let cost: f64 = costs.map(|e| e.cost_ns).sum();
-            let now = self.trial.clock.now().wall_ns;
+            let now = self.trial.clock().now().wall_ns;
             let over = now >= deadline || (round > 0 && now + cost > deadline);
             if over || self.stopped() || !entries.iter().any(can_take_part) {
                 return;
             }
             let in_time = now + rebuild_ns + cost <= deadline;
-            let affordable = rebuilding_ns + rebuild_ns <= REBUILDING_SHARE * (now - start);
+            let affordable = match fixed {
+                None => rebuilding_ns + rebuild_ns <= REBUILDING_SHARE * (now - start),
+                Some(_) => round.is_multiple_of(REBUILD_EVERY),
+            };
             if round > 0 && in_time && affordable && self.has_room_to_rebuild() {
                 self.rebuild();
-                rebuild_ns = self.trial.clock.now().wall_ns - now;
+                rebuild_ns = self.trial.clock().now().wall_ns - now;
                 rebuilding_ns += rebuild_ns;
             }
             groups.shuffle(&mut self.random);
@@ -310,12 +327,12 @@ impl Measurement<'_, '_, '_> {
                     if self.stopped() {
                         return;
                     }
-                    let now = self.trial.clock.now().wall_ns;
+                    let now = self.trial.clock().now().wall_ns;
                     if now + entry.cost_ns > deadline {
                         continue; // a shorter one may still fit
                     }
                     let by_time = (now - start) / (deadline - start);
-                    let by_count = f64::from(round) / f64::from(MAX_ROUNDS);
+                    let by_count = f64::from(round) / f64::from(rounds);
                     self.report(by_time.max(by_count).clamp(0.1, 1.0), "measuring", entry);
                     self.sample(&mut detector, entry, round);
                 }
@@ -353,7 +370,7 @@ impl Measurement<'_, '_, '_> {
 
     /// Takes and records a sample, or records a refusal. An external program can refuse at any
     /// time.
-    fn sample(&mut self, detector: &mut DisturbanceDetector, entry: &mut Entry, round: u32) {
+    fn sample(&mut self, detector: &mut DisturbanceDetector<'_>, entry: &mut Entry, round: u32) {
         let (stop, kept) = (self.trial.stop, self.trial.memory.keeps_pages());
         let runs = [entry.untimed, entry.runs];
         // Each round continues a mix where the last round ended.
@@ -362,7 +379,7 @@ impl Measurement<'_, '_, '_> {
             ..entry.job
         };
         let taken = detector.take_sample(
-            self.trial.clock,
+            self.trial.clock(),
             || self.run(entry.subject, &job, runs, false),
             |run| match run.refusal.is_some() || stop.load(Ordering::Relaxed) {
                 true => Verdict::Final,
@@ -384,7 +401,7 @@ impl Measurement<'_, '_, '_> {
     }
 
     /// Measures the allocating operations on fresh pages: one run per sample, in rounds, while
-    /// there is time. A normal run follows each of these runs. The ratio of the two does not depend
+    /// there is time. If the number of rounds is fixed, there are at most as many of these rounds. A normal run follows each of these runs. The ratio of the two does not depend
     /// on the current speed of the machine.
     fn first_times(&mut self, entries: &mut [Entry], deadline: f64) {
         let control = self.control;
@@ -393,10 +410,11 @@ impl Measurement<'_, '_, '_> {
             .filter(|entry| entry.has_first_time() && Some(entry.subject) != control)
             .filter(|entry| !self.subjects[entry.subject].is_external())
             .collect();
-        for _ in 0..MAX_FIRST_TIMES {
+        let fixed = self.trial.effort.rounds();
+        for _ in 0..fixed.map_or(MAX_FIRST_TIMES, |rounds| rounds.get().min(MAX_FIRST_TIMES)) {
             entries.shuffle(&mut self.random);
             for entry in &mut entries {
-                let now = self.trial.clock.now().wall_ns;
+                let now = self.trial.clock().now().wall_ns;
                 if self.stopped() {
                     return;
                 }
@@ -406,7 +424,7 @@ impl Measurement<'_, '_, '_> {
                 self.report(1.0, "first times", entry);
                 let series = Series {
                     start: Start::FreshPages,
-                    ..Series::once(self.trial.clock)
+                    ..Series::once(self.trial.clock())
                 };
                 let first = self.subjects[entry.subject].run(&entry.job, &series);
                 let later = self.run(entry.subject, &entry.job, [1, 1], false);

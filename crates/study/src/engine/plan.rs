@@ -65,15 +65,15 @@ impl Measurement<'_, '_, '_> {
                     (true, true) => SCANS_PART,
                     (true, false) => 1.0 - SCANS_PART,
                 };
-                let left = (deadline - self.trial.clock.now().wall_ns).max(0.0) * part;
+                let left = (deadline - self.trial.clock().now().wall_ns).max(0.0) * part;
                 // All backends of a task are run, or none, so that they can be compared.
                 if last_task.is_some_and(|task| task != entry.job.task) && !self.trial.named {
                     // The first pass leaves a part of the time to the second pass.
                     let reserved = match scanning {
                         true => 0.0,
-                        false => (1.0 - part) * self.trial.budget.as_nanos() as f64,
+                        false => (1.0 - part) * self.trial.effort.limit_ns(),
                     };
-                    over = self.trial.clock.now().wall_ns + reserved >= deadline;
+                    over = self.trial.clock().now().wall_ns + reserved >= deadline;
                 }
                 last_task = Some(entry.job.task);
                 if over {
@@ -101,14 +101,14 @@ impl Measurement<'_, '_, '_> {
     /// Runs once each operation that was only estimated, if the run fits into the time left. The
     /// shortest operation comes first.
     fn run_estimated(&mut self, entries: &mut [Entry], deadline: f64) {
-        let budget = self.trial.budget.as_nanos() as f64;
+        let budget = self.trial.effort.limit_ns();
         let mut estimated: Vec<(f64, &mut Entry)> = entries
             .iter_mut()
             .filter_map(|entry| Some((entry.estimate?.wall_ns, entry)))
             .collect();
         estimated.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         for (wall_ns, entry) in estimated {
-            let left = deadline - self.trial.clock.now().wall_ns;
+            let left = deadline - self.trial.clock().now().wall_ns;
             if self.stopped() {
                 return;
             }
@@ -130,7 +130,7 @@ impl Measurement<'_, '_, '_> {
     }
 
     /// Returns the kinds of elements whose queries may scan.
-    fn scans(&self, entry: &Entry) -> [bool; 3] {
+    pub(crate) fn scans(&self, entry: &Entry) -> [bool; 3] {
         if self.subjects[entry.subject].is_external() {
             return [false; 3];
         }
@@ -179,11 +179,11 @@ impl Measurement<'_, '_, '_> {
 
     /// Returns the run, and the wall time that passed outside the timed part, in nanoseconds.
     fn run_with_overhead(&mut self, entry: &Entry, runs: [u32; 2], check: bool) -> (Run, f64) {
-        let start = self.trial.clock.now().wall_ns;
+        let start = self.trial.clock().now().wall_ns;
         let run = self.run(entry.subject, &entry.job, runs, check);
         let [untimed, runs] = runs;
         let inside = run.time.wall_ns * f64::from(untimed + runs);
-        let outside = self.trial.clock.now().wall_ns - start - inside;
+        let outside = self.trial.clock().now().wall_ns - start - inside;
         (run, outside.max(0.0))
     }
 
@@ -237,14 +237,14 @@ impl Measurement<'_, '_, '_> {
         let size = ((slot_ns / each) as usize).clamp(MIN_ELEMENTS, all.max(MIN_ELEMENTS));
         entry.job.sample = Some(ElementSample { scanned, size });
         entry.untimed = 0;
-        let start = self.trial.clock.now().wall_ns;
+        let start = self.trial.clock().now().wall_ns;
         let run = self.run(entry.subject, &entry.job, [0, 1], true);
         record_warm_up(entry, run);
-        let cost = self.trial.clock.now().wall_ns - start;
+        let cost = self.trial.clock().now().wall_ns - start;
         self.plan_rounds(entry, cost, slot_ns);
     }
 
-    fn max_elements(&self, scanned: [bool; 3]) -> usize {
+    pub(crate) fn max_elements(&self, scanned: [bool; 3]) -> usize {
         let counts = (0..3).filter(|&k| scanned[k]);
         counts
             .map(|k| self.trial.population()[k])
@@ -267,9 +267,9 @@ impl Measurement<'_, '_, '_> {
                 sample: Some(ElementSample { scanned, size }),
                 ..operation.into()
             };
-            let start = self.trial.clock.now().wall_ns;
+            let start = self.trial.clock().now().wall_ns;
             let whole = self.run(subject, &job, [0, 1], false).time;
-            let cost = self.trial.clock.now().wall_ns - start;
+            let cost = self.trial.clock().now().wall_ns - start;
             if cost > slot_ns.min(LONGEST_SAMPLE_NS) || size >= all || self.stopped() {
                 return Probe { whole, cost, size };
             }
@@ -322,7 +322,7 @@ impl Measurement<'_, '_, '_> {
     }
 
     fn search_time(&mut self, entry: &Entry, scanned: [bool; 3], slot_ns: f64) -> Time {
-        let mut total = Time::zero_like(self.trial.clock.now());
+        let mut total = Time::zero_like(self.trial.clock().now());
         for kind in ElementKind::ALL
             .into_iter()
             .filter(|kind| scanned[kind.index()])
@@ -345,10 +345,10 @@ impl Measurement<'_, '_, '_> {
         let all = self.trial.counts.faces;
         let mut size = FIRST_PATCH;
         while size < all {
-            let start = self.trial.clock.now().wall_ns;
+            let start = self.trial.clock().now().wall_ns;
             let run = self.run_patch(entry, size);
             entry.refusal = run.refusal;
-            let cost = self.trial.clock.now().wall_ns - start;
+            let cost = self.trial.clock().now().wall_ns - start;
             if cost > slot_ns || size.saturating_mul(4) >= all || self.stopped() {
                 return Some(run.time);
             }
@@ -403,7 +403,7 @@ fn patch_job(entry: &Entry, size: usize) -> Job {
 }
 
 /// Records the run as the warm-up. A refused run has no time.
-fn record_warm_up(entry: &mut Entry, run: Run) {
+pub(crate) fn record_warm_up(entry: &mut Entry, run: Run) {
     entry.warm_up = run.refusal.is_none().then_some(run.time);
     entry.outcome = run.outcome;
     entry.refusal = run.refusal;

@@ -2,7 +2,6 @@
 //! twice, which shows the noise.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -11,7 +10,9 @@ use sixfold_core::Counts;
 use sixfold_workload::{Clock, Operation, TimedBackend};
 
 use crate::engine::control::control;
+use crate::engine::effort::Effort;
 use crate::engine::heap::Memory;
+use crate::engine::machine::Machine;
 use crate::engine::measure::{Entry, Measurement, Progress, entries_of};
 use crate::results::rows::{Control, Samples};
 
@@ -20,11 +21,11 @@ pub(crate) struct Trial<'t> {
     pub(crate) counts: Counts,
     /// Whether some valence or degree is so large that walking around it is as slow as a scan.
     pub(crate) skewed: bool,
-    pub(crate) clock: &'t dyn Clock,
+    pub(crate) machine: &'t dyn Machine,
     /// The heap and the caches.
     pub(crate) memory: &'t mut Memory,
-    /// Time limit for measuring.
-    pub(crate) budget: Duration,
+    /// How much is measured.
+    pub(crate) effort: Effort,
     /// Whether the operations were requested by name.
     pub(crate) named: bool,
     pub(crate) seed: u64,
@@ -94,7 +95,12 @@ impl<'s> Columns<'s> {
     }
 }
 
-impl Trial<'_> {
+impl<'t> Trial<'t> {
+    /// Returns the clock of the machine.
+    pub(crate) fn clock(&self) -> &'t dyn Clock {
+        self.machine.clock()
+    }
+
     /// Returns the numbers of vertices, edges and faces.
     pub(crate) fn population(&self) -> [usize; 3] {
         let Counts {

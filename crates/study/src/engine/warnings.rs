@@ -222,7 +222,7 @@ mod tests {
     fn quiet() -> Run {
         let mut run = Run::default();
         run.start.load_average = Some(0.1);
-        run.settings.budget_s = 20.0;
+        run.settings.budget_s = Some(20.0);
         run.environment = Environment {
             cores: Some(2),
             governor: Some("performance".into()),

@@ -45,8 +45,9 @@ pub struct ChildTask {
     pub program: String,
     /// The name of the structure.
     pub backend: String,
-    /// The longest time of one run on a structure that scans the mesh, in nanoseconds.
-    pub longest_run_ns: u64,
+    /// The longest time of one run on a structure that scans the mesh, in nanoseconds; `None` for no
+    /// limit.
+    pub longest_run_ns: Option<u64>,
     /// What happens to freed memory pages.
     pub heap: Policy,
     /// The limit of the address space in bytes; `None` for no limit.
@@ -165,8 +166,8 @@ pub fn serve_program(
     let clock = MachineClock::start();
     let qualification = Qualification {
         refusals: refusal::Candidate::with_facts(polygons, &facts),
-        longest_run: Duration::from_nanos(task.longest_run_ns),
-        clock: &clock,
+        longest_run_ns: task.longest_run_ns.map_or(f64::INFINITY, |ns| ns as f64),
+        machine: &clock,
     };
     let mut backend = match qualification.prepare(contestant) {
         Ok(backend) => backend,

@@ -18,7 +18,6 @@ mod shapes;
 
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 use sixfold::shapes::Order;
@@ -30,7 +29,9 @@ pub use shapes::{SCALABLE_SHAPES, ScalableShape};
 
 use crate::engine::agreement::compare_checksums;
 use crate::engine::control::noise;
+use crate::engine::effort::Effort;
 use crate::engine::heap::Memory;
+use crate::engine::machine::Machine;
 use crate::engine::measure::{Entry, Progress};
 use crate::engine::timer::Timer;
 use crate::engine::trial::{Columns, Measured, Trial};
@@ -217,12 +218,21 @@ pub fn growth(
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<GrowthReport, GrowthError> {
+    growth_on(&MachineClock::start(), settings, stop, progress)
+}
+
+/// Does what [`growth`] does, on `machine`.
+pub(crate) fn growth_on(
+    machine: &dyn Machine,
+    settings: &GrowthSettings,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(Progress<'_>),
+) -> Result<GrowthReport, GrowthError> {
     let plan = settings.plan()?;
     let caches = caches();
-    let budget = settings.study.budget;
+    let clock = machine.clock();
     let run = Run::start(RunSettings::of_study(&settings.study));
-    let clock = MachineClock::start();
-    let mut timer = Timer::measure(&clock);
+    let mut timer = Timer::measure(clock);
     let mut sweep = Sweep {
         settings,
         plan: &plan,
@@ -230,32 +240,32 @@ pub fn growth(
         stop,
         refused_by: Vec::new(),
         counts: None,
-        clock: &clock,
+        machine,
         shortest_ns: None,
     };
     let study = &settings.study;
     let mut memory = Memory::start(study.heap, study.caches, growth_bytes(settings)?);
-    let time = SizeBudgets::new(&plan.sizes, budget);
+    let time = SizeBudgets::new(&plan.sizes, study.effort, clock);
     let mut sizes: Vec<SizeReport> = Vec::new();
     let mut meshes = Vec::new();
     let mut left_out = Vec::new();
-    // Time per face for building everything at the previous size, in seconds.
+    // Time per face for building everything at the previous size, in nanoseconds.
     let mut building = 0.0;
     for (step, &faces) in plan.sizes.iter().enumerate() {
-        if building * faces as f64 > time.left().as_secs_f64() {
+        if building * faces as f64 > time.left().limit_ns() {
             left_out = plan.sizes[step..].to_vec();
             break;
         }
-        let start = Instant::now();
-        let built = Cell::new(Duration::ZERO);
+        let start = clock.now().wall_ns;
+        let built = Cell::new(0.0);
         let made = plan.shape.make(faces)?;
         let mesh = settings.order.apply(&made, settings.study.seed);
         drop(made);
         let mesh = StudyMesh::new(settings.shape.clone(), mesh);
         let range = time.range(step);
-        let budget_left = || {
-            built.set(start.elapsed());
-            time.budget(step)
+        let effort = || {
+            built.set(clock.now().wall_ns - start);
+            time.effort(step)
         };
         let mut report_progress = |at: Progress<'_>| {
             let stage = format!("{} faces: {}", mesh.facts.faces, at.stage);
@@ -265,14 +275,14 @@ pub fn growth(
                 ..at
             });
         };
-        match sweep.size(&mesh, step, &budget_left, &mut memory, &mut report_progress)? {
+        match sweep.size(&mesh, step, &effort, &mut memory, &mut report_progress)? {
             Some((size, mesh)) => {
                 sizes.push(size);
                 meshes.push(mesh);
             }
             None => break,
         }
-        building = built.get().as_secs_f64() / faces as f64;
+        building = built.get() / faces as f64;
     }
     let interrupted = stop.load(Ordering::Relaxed);
     let backends: Vec<&Backend> = plan
@@ -329,7 +339,7 @@ struct Sweep<'s> {
     refused_by: Vec<BackendRefusal>,
     /// Counts of the largest finished size.
     counts: Option<Counts>,
-    clock: &'s MachineClock,
+    machine: &'s dyn Machine,
     /// The shortest timed sample, in nanoseconds.
     shortest_ns: Option<f64>,
 }
@@ -340,7 +350,7 @@ impl Sweep<'_> {
         &mut self,
         study_mesh: &StudyMesh,
         step: usize,
-        budget: &dyn Fn() -> Duration,
+        effort: &dyn Fn() -> Effort,
         memory: &mut Memory,
         progress: &mut dyn FnMut(Progress<'_>),
     ) -> Result<Option<(SizeReport, MeshReport)>, GrowthError> {
@@ -368,7 +378,7 @@ impl Sweep<'_> {
                 Some(subject) => {
                     backend_bytes
                         .push(self.bytes_with_cache(report.name, report.bytes.unwrap_or(0)));
-                    subjects.push(subject);
+                    subjects.push(self.machine.host(subject, &counts));
                 }
                 None => refused_by.push(BackendRefusal {
                     backend: report.name,
@@ -388,14 +398,14 @@ impl Sweep<'_> {
         let mut columns = Columns::new(subjects, Vec::new(), |first| {
             let backend = backends.iter().find(|b| b.name() == names[first])?;
             let (subject, _) = backend.prepare(mesh, draw.as_ref()).ok()?;
-            Some(subject)
+            Some(self.machine.host(subject, &counts))
         });
         let mut trial = Trial {
             counts,
             skewed,
-            clock: self.clock,
+            machine: self.machine,
             memory,
-            budget: budget(),
+            effort: effort(),
             named: !self.settings.study.operations.is_empty(),
             seed: seed.wrapping_add(step as u64),
             stop: self.stop,
@@ -408,7 +418,8 @@ impl Sweep<'_> {
             entries, control, ..
         } = measured;
         let subjects = &mut columns.subjects;
-        let agreements = compare_checksums(&entries, subjects, mesh, self.clock, self.stop);
+        let agreements =
+            compare_checksums(&entries, subjects, mesh, self.machine.clock(), self.stop);
         if self.stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
@@ -438,3 +449,6 @@ impl Sweep<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

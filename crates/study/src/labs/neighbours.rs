@@ -23,8 +23,9 @@ pub use queries::QueryPoints;
 pub use tasks::{SpatialTask, UnknownSpatialTask};
 
 use crate::engine::agreement::compare_checksums;
-use crate::engine::budget::Budget;
+use crate::engine::effort::{Budget, Effort};
 use crate::engine::heap::{CacheState, Memory};
+use crate::engine::machine::Machine;
 use crate::engine::measure::{Entry, Progress};
 use crate::engine::ranking::{NO_DIFFERENCE, rank, ratio};
 use crate::engine::statistics::Median;
@@ -52,8 +53,8 @@ pub struct NeighboursSettings {
     pub indices: Vec<String>,
     /// Where the query points are.
     pub points: QueryPoints,
-    /// Time limit of the whole measurement, including building.
-    pub budget: Duration,
+    /// How much is measured.
+    pub effort: Effort,
     /// Seed of the random numbers for the query points and the order of the measurements.
     pub seed: u64,
     /// What happens to freed memory pages.
@@ -65,7 +66,7 @@ impl Default for NeighboursSettings {
         Self {
             indices: Vec::new(),
             points: QueryPoints::Near,
-            budget: Duration::from_secs(10),
+            effort: Effort::Budget(Duration::from_secs(10)),
             seed: 1,
             heap: Policy::Kept,
         }
@@ -304,7 +305,19 @@ pub fn neighbours(
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<NeighboursReport, NeighboursError> {
-    let budget = Budget::start(settings.budget);
+    neighbours_on(&MachineClock::start(), study_mesh, settings, stop, progress)
+}
+
+/// Does what [`neighbours`] does, on `machine`.
+pub(crate) fn neighbours_on(
+    machine: &dyn Machine,
+    study_mesh: &StudyMesh,
+    settings: &NeighboursSettings,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(Progress<'_>),
+) -> Result<NeighboursReport, NeighboursError> {
+    let clock = machine.clock();
+    let budget = Budget::start(settings.effort, clock);
     let chosen = settings.chosen()?;
     let polygons = &study_mesh.polygons;
     if polygons.face_count() == 0 {
@@ -312,15 +325,17 @@ pub fn neighbours(
     }
     let run = Run::start(RunSettings {
         backends: settings.indices.clone(),
-        budget_s: settings.budget.as_secs_f64(),
         seed: settings.seed,
         heap: settings.heap,
-        ..RunSettings::default()
+        ..RunSettings::of_effort(settings.effort)
     });
     let input = Input::new(polygons, settings.points, settings.seed)?;
-    let build = |kind: &IndexKind| kind.build(&input);
-    let subjects: Vec<Box<dyn TimedBackend + '_>> =
-        chosen.iter().map(build).collect::<Result<_, _>>()?;
+    let counts = polygons.counts(study_mesh.facts.edges);
+    let build = |kind: &IndexKind| Ok(machine.host(kind.build(&input)?, &counts));
+    let subjects: Vec<Box<dyn TimedBackend + '_>> = chosen
+        .iter()
+        .map(build)
+        .collect::<Result<_, SpatialError>>()?;
     let backends = subjects.iter().map(|subject| IndexReport {
         name: subject.name().to_owned(),
         bytes: subject.bytes(),
@@ -334,15 +349,14 @@ pub fn neighbours(
             .filter(|_| chosen[first].name != LIST)
     };
     let mut columns = Columns::new(subjects, Vec::new(), again);
-    let clock = MachineClock::start();
-    let timer = Timer::measure(&clock);
+    let timer = Timer::measure(clock);
     let entries = entries(&columns, &input);
     let mut trial = Trial {
-        counts: polygons.counts(study_mesh.facts.edges),
+        counts,
         skewed: false,
-        clock: &clock,
+        machine,
         memory: &mut memory,
-        budget: budget.left(),
+        effort: budget.left(),
         named: true,
         seed: settings.seed,
         stop,
@@ -358,7 +372,7 @@ pub fn neighbours(
     } = measured;
     let control = columns.control;
     let subjects = &mut columns.subjects;
-    let agreements = compare_checksums(&entries, subjects, polygons, &clock, stop);
+    let agreements = compare_checksums(&entries, subjects, polygons, clock, stop);
     let noise = |task| difference(control?[0], &entries, &second, task);
     let results = results(&entries, &agreements, subjects, noise);
     let run = run.with_memory(&memory);
@@ -502,3 +516,6 @@ fn cheapest_indices(results: &[NeighbourRow]) -> Vec<CheapestIndices> {
     });
     ranges.collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -21,9 +21,10 @@ use sixfold_core::Counts;
 pub use effects::{Comparison, Factor, Larger, OrderEffect, StructureEffect};
 
 use crate::engine::agreement::compare_checksums;
-use crate::engine::budget::Budget;
 use crate::engine::control::noise;
+use crate::engine::effort::Budget;
 use crate::engine::heap::Memory;
+use crate::engine::machine::Machine;
 use crate::engine::measure::{Entry, Progress};
 use crate::engine::timer::Timer;
 use crate::engine::trial::{Columns, Measured, Trial};
@@ -214,7 +215,19 @@ pub fn orders(
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<OrdersReport, OrdersError> {
-    let budget = Budget::start(settings.budget);
+    orders_on(&MachineClock::start(), study_mesh, settings, stop, progress)
+}
+
+/// Does what [`orders`] does, on `machine`.
+pub(crate) fn orders_on(
+    machine: &dyn Machine,
+    study_mesh: &StudyMesh,
+    settings: &Settings,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(Progress<'_>),
+) -> Result<OrdersReport, OrdersError> {
+    let clock = machine.clock();
+    let budget = Budget::start(settings.effort, clock);
     let chosen = settings.chosen_backends()?;
     let operations = chosen_operations(settings);
     let polygons = &study_mesh.polygons;
@@ -243,7 +256,7 @@ pub fn orders(
                 backends.push(report);
             }
             let Some(subject) = subject else { break };
-            subjects.push(subject);
+            subjects.push(machine.host(subject, &counts));
             columns.push(Column {
                 backend: *backend,
                 order,
@@ -259,16 +272,15 @@ pub fn orders(
     let mut measured = Columns::new(subjects, Vec::new(), |first| {
         let (_, mesh, draw) = meshes.iter().next()?;
         let (subject, _) = columns[first].backend.prepare(mesh, draw).ok()?;
-        Some(subject)
+        Some(machine.host(subject, &counts))
     });
-    let clock = MachineClock::start();
-    let timer = Timer::measure(&clock);
+    let timer = Timer::measure(clock);
     let mut trial = Trial {
         counts,
         skewed,
-        clock: &clock,
+        machine,
         memory: &mut memory,
-        budget: budget.left(),
+        effort: budget.left(),
         named: !settings.operations.is_empty(),
         seed: settings.seed,
         stop,
@@ -283,7 +295,7 @@ pub fn orders(
     } = trial.run(&mut measured, entries);
     let subjects = &mut measured.subjects;
     let mut compare =
-        |entries: &[Entry]| compare_checksums(entries, subjects, polygons, &clock, stop);
+        |entries: &[Entry]| compare_checksums(entries, subjects, polygons, clock, stop);
     let agreements = agreements(&entries, &columns, &mut compare);
 
     let refusals = deduplicated(refusals(&entries, subjects));
@@ -448,3 +460,6 @@ pub(crate) fn draw_bytes(counts: &Counts) -> u64 {
     let draw = 4 * (counts.vertices + counts.faces) + 12 * counts.edges;
     (polygons + draw) as u64
 }
+
+#[cfg(test)]
+mod tests;

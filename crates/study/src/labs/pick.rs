@@ -23,8 +23,8 @@ mod tasks;
 mod tests;
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
 
+use sixfold_core::Counts;
 use sixfold_workload::pages::Policy;
 use sixfold_workload::{
     Backend, Draw, EditPlaceError, MachineClock, MixRefusal, Operation, Route, Schedule, Workload,
@@ -41,15 +41,16 @@ pub use report::{
     AskedCount, BreakEven, Excluded, MeshRanking, PartCost, PickReport, ProgramReport, Ranked,
 };
 
-use crate::engine::budget::Budget;
+use crate::engine::effort::{Budget, Effort};
 use crate::engine::heap::{CacheState, Memory};
+use crate::engine::machine::Machine;
 use crate::engine::timer::Timer;
 use crate::inspect::StudyMesh;
 use crate::labs::study::{Settings, StudyError, needed_bytes};
 use crate::refusal::Candidate;
 use crate::results::run::{Run, RunSettings};
 use backend::PickBackend;
-use measurement::PickMeasurement;
+use measurement::{Contestant, PickMeasurement};
 use pooled::Question;
 use tasks::Tasks;
 
@@ -66,8 +67,8 @@ pub struct PickSettings {
     pub needs: Vec<Need>,
     /// The maximum size of a backend, in bytes; `None` for no limit.
     pub max_memory: Option<u64>,
-    /// Time limit for all meshes together.
-    pub budget: Duration,
+    /// How much is measured. A time limit is for all meshes together.
+    pub effort: Effort,
     /// Seed of the random numbers that choose the elements and the order of the measurements.
     pub seed: u64,
     /// What happens to freed memory pages during the measurement.
@@ -87,10 +88,9 @@ impl PickSettings {
     fn run_settings(&self) -> RunSettings {
         RunSettings {
             backends: self.backends.clone(),
-            budget_s: self.budget.as_secs_f64(),
             seed: self.seed,
             heap: self.heap,
-            ..RunSettings::default()
+            ..RunSettings::of_effort(self.effort)
         }
     }
 }
@@ -135,17 +135,34 @@ pub fn pick(
     stop: &AtomicBool,
     progress: &mut dyn FnMut(f64, &str),
 ) -> Result<PickReport, PickError> {
+    pick_on(
+        &MachineClock::start(),
+        study_meshes,
+        settings,
+        stop,
+        progress,
+    )
+}
+
+/// Does what [`pick`] does, on `machine`.
+pub(crate) fn pick_on(
+    machine: &dyn Machine,
+    study_meshes: &[StudyMesh],
+    settings: &PickSettings,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(f64, &str),
+) -> Result<PickReport, PickError> {
     if study_meshes.is_empty() {
         return Err(PickError::NoMesh);
     }
-    let budget = Budget::start(settings.budget);
+    let clock = machine.clock();
+    let budget = Budget::start(settings.effort, clock);
     let run = Run::start(settings.run_settings());
     let needed = study_meshes
         .iter()
         .map(|study_mesh| needed(study_mesh, settings));
     let mut memory = Memory::start(settings.heap, CacheState::Warm, needed.max().unwrap_or(0));
-    let clock = MachineClock::start();
-    let timer = Timer::measure(&clock);
+    let timer = Timer::measure(clock);
     let mut outcomes = Vec::new();
     for (i, study_mesh) in study_meshes.iter().enumerate() {
         if stop.load(Ordering::Relaxed) && i > 0 {
@@ -155,8 +172,8 @@ pub fn pick(
         let mut progress = |done: f64, what: &str| progress(part(done), what);
         let rest = study_meshes.len() - i;
         let context = MeasureContext {
-            budget: Budget::start(budget.share(1.0, rest as f64)),
-            clock: &clock,
+            budget: Budget::start(budget.share(1.0, rest as f64), clock),
+            machine,
             memory: &mut memory,
             stop,
             progress: &mut progress,
@@ -187,8 +204,8 @@ fn needed(study_mesh: &StudyMesh, settings: &PickSettings) -> u64 {
 }
 
 pub(crate) struct MeasureContext<'m> {
-    budget: Budget,
-    clock: &'m MachineClock,
+    budget: Budget<'m>,
+    machine: &'m dyn Machine,
     memory: &'m mut Memory,
     stop: &'m AtomicBool,
     progress: &'m mut dyn FnMut(f64, &str),
@@ -229,6 +246,12 @@ fn qualified(
     Ok((qualified, excluded))
 }
 
+/// Splits the properties from the backend to measure, which runs on `machine`.
+fn hosted<'b>(backend: PickBackend<'b>, machine: &dyn Machine, counts: &Counts) -> Contestant<'b> {
+    let (candidate, built) = backend.split();
+    (candidate, machine.host(built, counts))
+}
+
 fn measure_mesh(
     study_mesh: &StudyMesh,
     settings: &PickSettings,
@@ -236,7 +259,7 @@ fn measure_mesh(
 ) -> Result<measurement::Outcome, PickError> {
     let MeasureContext {
         budget,
-        clock,
+        machine,
         memory,
         stop,
         progress,
@@ -284,7 +307,12 @@ fn measure_mesh(
     } else {
         progress(0.1, "tabulating");
         let tabulate = |backend: &Backend| tabulate(backend, polygons, &schedule, &route);
-        backends.extend(backend::build_tables(&backends, clock, tabulate));
+        backends.extend(backend::build_tables(
+            &backends,
+            machine.clock(),
+            settings.effort,
+            tabulate,
+        ));
         backend::exclude_large(&mut backends, settings.max_memory, &mut excluded);
     }
     let tasks = Tasks::new(workload, &schedule, polygons, &counts);
@@ -293,12 +321,13 @@ fn measure_mesh(
         plan: &tasks,
         seed: settings.seed,
         counts,
-        budget: budget.left(),
-        clock,
+        effort: budget.left(),
+        machine,
         memory,
         stop,
         progress,
     };
-    let backends = backends.into_iter().map(PickBackend::split).collect();
-    Ok(measurement.run(backends, control.map(PickBackend::split), excluded))
+    let backends = backends.into_iter().map(|b| hosted(b, machine, &counts));
+    let control = control.map(|control| hosted(control, machine, &counts));
+    Ok(measurement.run(backends.collect(), control, excluded))
 }

@@ -11,9 +11,10 @@ use sixfold::{Distribution, Facts, PolygonMesh, QueryCost, Relation};
 use sixfold_core::Counts;
 
 use crate::engine::agreement::compare_checksums;
-use crate::engine::budget::Budget;
 use crate::engine::control::noise;
+use crate::engine::effort::{Budget, Effort};
 use crate::engine::heap::{CacheState, Memory};
+use crate::engine::machine::Machine;
 use crate::engine::measure::{Entry, Progress};
 use crate::engine::ranking::rank;
 use crate::external::{self, EXTERNAL_TIMEOUT, External, MeshFile};
@@ -54,11 +55,11 @@ pub struct Settings {
     /// The operations. If the list is empty, all operations are measured, but the time of a
     /// subdivision that takes a large part of the budget is only estimated.
     pub operations: Vec<Operation>,
-    /// Time limit for the study. If the limit is too short for an operation, the operation is run
-    /// on only some of the elements, its time is estimated, or the operation is left out.
-    pub budget: Duration,
+    /// How much is measured. If a time limit is too short for an operation, the operation is run on
+    /// only some of the elements, its time is estimated, or the operation is left out.
+    pub effort: Effort,
     /// Seed of the random numbers that choose elements and the order of the measurements. The
-    /// number of chosen elements depends on the speed of the machine, not on the seed.
+    /// number of chosen elements does not depend on the seed.
     pub seed: u64,
     /// What happens to freed memory pages. Keeping the pages needs more memory. If there is too
     /// little memory, [`Policy::System`] is used.
@@ -75,7 +76,7 @@ impl Default for Settings {
             externals: Vec::new(),
             external_timeout: EXTERNAL_TIMEOUT,
             operations: Vec::new(),
-            budget: Duration::from_secs(20),
+            effort: Effort::Budget(Duration::from_secs(20)),
             seed: 1,
             heap: Policy::Kept,
             caches: CacheState::Warm,
@@ -197,7 +198,19 @@ pub fn study(
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Progress<'_>),
 ) -> Result<Report, StudyError> {
-    let budget = Budget::start(settings.budget);
+    study_on(&MachineClock::start(), study_mesh, settings, stop, progress)
+}
+
+/// Does what [`study()`] does, on `machine`.
+pub(crate) fn study_on(
+    machine: &dyn Machine,
+    study_mesh: &StudyMesh,
+    settings: &Settings,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(Progress<'_>),
+) -> Result<Report, StudyError> {
+    let clock = machine.clock();
+    let budget = Budget::start(settings.effort, clock);
     let chosen = settings.chosen_backends()?;
     settings.check_externals()?;
     let operations = settings.chosen_operations();
@@ -221,7 +234,7 @@ pub fn study(
     for backend in &chosen {
         let (report, subject) = prepare(backend, &candidate, draw.as_ref());
         backends.push(report);
-        subjects.extend(subject);
+        subjects.extend(subject.map(|built| machine.host(built, &counts)));
     }
     let mesh_file = match settings.externals.is_empty() {
         true => None,
@@ -252,16 +265,15 @@ pub fn study(
     let mut columns = Columns::new(subjects, programs, |first| {
         let backend = chosen.iter().find(|b| b.name() == names[first])?;
         let (subject, _) = backend.prepare(polygons, draw.as_ref()).ok()?;
-        Some(subject)
+        Some(machine.host(subject, &counts))
     });
-    let clock = MachineClock::start();
-    let timer = Timer::measure(&clock);
+    let timer = Timer::measure(clock);
     let mut trial = Trial {
         counts,
         skewed,
-        clock: &clock,
+        machine,
         memory: &mut memory,
-        budget: budget.left(),
+        effort: budget.left(),
         named: !settings.operations.is_empty(),
         seed: settings.seed,
         stop,
@@ -278,7 +290,7 @@ pub fn study(
     } = measured;
     let subjects = &mut columns.subjects;
     let timer = timer.with_entries(&entries);
-    let agreements = compare_checksums(&entries, subjects, polygons, &clock, stop);
+    let agreements = compare_checksums(&entries, subjects, polygons, clock, stop);
     let results = results(&entries, agreements, subjects, polygons, control.as_ref());
     let refusals = refusals(&entries, subjects);
     let scanning = |backend: &str, relation: Relation| {
@@ -454,3 +466,6 @@ pub(crate) fn refusals(entries: &[Entry], subjects: &[Box<dyn TimedBackend + '_>
     };
     entries.iter().filter_map(refusal).collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -11,15 +11,17 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 use sixfold::Relation;
 use sixfold_workload::{
-    Backend, CACHE_LINES, ElementKind, LINE_BYTES, MAX_READS, MemorySpeed, ReadsObserver,
+    Backend, CACHE_LINES, ElementKind, LINE_BYTES, MAX_READS, MachineClock, MemorySpeed,
+    ReadsObserver,
 };
 use sixfold_workload::{BufferSpeed, Operation, REACH, Reads, SCAN_SAMPLE};
 
-use crate::engine::budget::Budget;
+use crate::engine::effort::{Budget, Effort};
+use crate::engine::machine::Machine;
 use crate::engine::measure::Progress;
 use crate::inspect::{StudyMesh, unbuilt};
 use crate::labs::study::report::{Report, bytes_of};
-use crate::labs::study::{Settings, StudyError, study};
+use crate::labs::study::{Settings, StudyError, study_on};
 use crate::numbers::bytes;
 use crate::refusal::Candidate;
 use crate::results::figure::{Figure, FigureRow, Status, samples_of};
@@ -27,6 +29,14 @@ use crate::results::finding::{Common, LabFinding, only_mesh};
 use crate::results::read::ReadError;
 use crate::results::rows::{Agreement, BackendReport, MeshReport, Samples, check_samples};
 use crate::results::run::{Run, RunSettings};
+
+/// The stage before the times are measured.
+const MEASURING_MEMORY: Progress<'_> = Progress {
+    done: 0.0,
+    stage: "measuring",
+    task: "the speed of memory",
+    backend: "this machine",
+};
 
 /// The settings of [`why`].
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -43,12 +53,10 @@ pub struct WhySettings {
 }
 
 /// The settings of the time measurement.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
-    /// Time limit for all work, including the measurement of the memory.
-    pub budget: Budget,
-    /// The speed at which this machine reads memory.
-    pub memory: MemorySpeed,
+    /// How much is measured. Up to half of a time limit is for the measurement of the memory.
+    pub effort: Effort,
 }
 
 /// The memory that queries read on each structure, compared with the times of the queries.
@@ -255,8 +263,19 @@ impl LabFinding for Why {
 ///
 /// # Errors
 ///
-/// Returns the same errors as [`study`].
+/// Returns the same errors as [`study()`](crate::study()).
 pub fn why(
+    study_mesh: &StudyMesh,
+    settings: &WhySettings,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(Progress<'_>),
+) -> Result<Why, StudyError> {
+    why_on(&MachineClock::start(), study_mesh, settings, stop, progress)
+}
+
+/// Does what [`why`] does, on `machine`.
+pub(crate) fn why_on(
+    machine: &dyn Machine,
     study_mesh: &StudyMesh,
     settings: &WhySettings,
     stop: &AtomicBool,
@@ -276,18 +295,23 @@ pub fn why(
         return Err(StudyError::NoFaces);
     }
     // Counting has no time limit.
-    let timing = settings.timing.as_ref();
-    study_settings.budget = timing.map_or(Duration::ZERO, |timing| timing.budget.total());
+    let no_time = Effort::Budget(Duration::ZERO);
+    study_settings.effort = settings.timing.map_or(no_time, |timing| timing.effort);
     let mut run = Run::start(RunSettings::of_study(&study_settings));
     let (backends, mut rows) = count_all(study_mesh, &study_settings, &relations, stop, progress)?;
     // The sort is stable: the rows of one relation stay in the order of the backends.
     rows.sort_by_key(|row| row.reads.relation);
     let (mut samples, mut warnings) = (Vec::new(), Vec::new());
-    if let Some(Timing { memory, budget }) = &settings.timing
+    let budget = Budget::start(study_settings.effort, machine.clock());
+    let memory = settings.timing.and_then(|Timing { effort }| {
+        progress(MEASURING_MEMORY);
+        machine.memory_speed(effort.budget().map_or(Duration::MAX, |all| all / 2), stop)
+    });
+    if let Some(memory) = &memory
         && !stop.load(Ordering::Relaxed)
     {
-        study_settings.budget = budget.left();
-        let report = study(study_mesh, &study_settings, stop, progress)?;
+        study_settings.effort = budget.left();
+        let report = study_on(machine, study_mesh, &study_settings, stop, progress)?;
         for row in &mut rows {
             row.timed = timed(row, &report, memory);
         }
@@ -295,7 +319,6 @@ pub fn why(
         (samples, warnings) = (report.samples, report.warnings);
         warnings.extend(left_out_buffers(memory));
     }
-    let memory = settings.timing.as_ref().map(|timing| &timing.memory);
     Ok(Why {
         run,
         mesh: study_mesh.report(),
@@ -404,7 +427,10 @@ fn timed(row: &WhyRow, report: &Report, memory: &MemorySpeed) -> Option<Timed> {
 mod tests {
     use sixfold::shapes;
 
+    use std::num::NonZeroU32;
+
     use super::*;
+    use crate::engine::simulated_machine::SimulatedMachine;
 
     fn counted(settings: &WhySettings) -> Result<Why, StudyError> {
         let grid = shapes::triangle_grid(6, 6).expect("a grid");
@@ -461,22 +487,23 @@ mod tests {
 
     #[test]
     fn a_time_is_compared_with_memory_of_the_size_of_the_sweep() {
-        let memory = MemorySpeed::measure(
-            Duration::from_millis(20),
-            &sixfold_workload::MachineClock::start(),
-            &AtomicBool::new(false),
-        );
-        let memory = memory.expect("not stopped");
+        let grid = shapes::triangle_grid(6, 6).expect("a grid");
+        let vertices = grid.vertex_count() as f64;
+        let study_mesh = StudyMesh::new("grid", grid);
         let settings = WhySettings {
             backends: vec!["half-edge".into()],
             relations: vec![Relation::VertexFaces],
             timing: Some(Timing {
-                budget: Budget::start(Duration::from_millis(20)),
-                memory: memory.clone(),
+                effort: Effort::of_ms(20),
             }),
             ..WhySettings::default()
         };
-        let why = counted(&settings).expect("it can hold the mesh");
+        let stop = AtomicBool::new(false);
+        let machine = SimulatedMachine::equal_costs();
+        let memory = machine.memory_speed(Duration::MAX, &stop);
+        let memory = memory.expect("not stopped");
+        let why = why_on(&machine, &study_mesh, &settings, &stop, &mut |_| ());
+        let why = why.expect("it can hold the mesh");
         let [row] = &why.rows[..] else {
             panic!("one row: {:?}", why.rows);
         };
@@ -485,12 +512,25 @@ mod tests {
         let floor = row.reads.moved_bytes / timed.speed.gb_per_s;
         assert_eq!(timed.floor_ns, floor);
         assert_eq!(timed.waits_ns, row.reads.jumps * timed.speed.latency_ns);
-        assert!(timed.ns_per_element > 0.0 && why.mismatches() == 0);
+        assert!((timed.ns_per_element - 10_000.0 / vertices).abs() < 1e-6);
+        assert_eq!(why.mismatches(), 0);
         assert_eq!(why.memory.as_deref(), Some(memory.speeds()));
-        assert_eq!(why.run.settings.budget_s, 0.02, "the whole budget");
-        let missing = memory.left_out_from().is_some();
+        assert_eq!(why.run.settings.budget_s, Some(0.02), "the whole budget");
+        // The simulated machine has only the speed of the smallest buffer.
+        assert!(memory.left_out_from().is_some());
         let warned = why.warnings.iter().any(|w| w.contains("speed of buffers"));
-        assert_eq!(warned, missing, "{:?}", why.warnings);
+        assert!(warned, "{:?}", why.warnings);
+        let one_round = WhySettings {
+            timing: Some(Timing {
+                effort: Effort::of_rounds(1),
+            }),
+            ..settings
+        };
+        let why = why_on(&machine, &study_mesh, &one_round, &stop, &mut |_| ());
+        let why = why.expect("it can hold the mesh");
+        let run = &why.run.settings;
+        assert_eq!((run.budget_s, run.rounds), (None, NonZeroU32::new(1)));
+        assert!(why.samples.iter().all(|samples| samples.rounds == [0]));
     }
 
     #[test]

@@ -349,7 +349,7 @@ fn differences(before: &Run, after: &Run) -> Vec<SettingChange> {
             ("commit", shown(e.commit.as_ref())),
             ("clock", e.clock.clone()),
             ("allocator", shown(heap(e).as_ref())),
-            ("budget", format!("{} s", run.settings.budget_s)),
+            ("budget", run.settings.effort_text()),
             ("seed", run.settings.seed.to_string()),
         ]
     };

@@ -1,5 +1,6 @@
 //! How results were measured: the command, its settings, and the machine.
 
+use std::num::NonZeroU32;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
@@ -7,8 +8,10 @@ use sixfold_workload::Operation;
 use sixfold_workload::pages::Policy;
 use sysinfo::System;
 
+use crate::engine::effort::Effort;
 use crate::engine::heap::{CacheState, Memory};
 use crate::labs::study::Settings;
+use crate::numbers::counted;
 use crate::results::environment::Environment;
 use crate::results::merge::MergeError;
 
@@ -46,8 +49,11 @@ pub struct RunSettings {
     pub externals: Vec<String>,
     /// The requested operations. An empty list means the default of the command.
     pub operations: Vec<Operation>,
-    /// Time budget of the finding, in seconds.
-    pub budget_s: f64,
+    /// Time budget of the finding, in seconds; `None` if the number of rounds was given instead.
+    pub budget_s: Option<f64>,
+    /// The number of rounds; `None` if the time budget was given instead.
+    #[serde(default)]
+    pub rounds: Option<NonZeroU32>,
     /// Seed of the random numbers. The seed determines the order in which samples take elements,
     /// the order of the measurements, and the order `shuffled`, but not the size of a sample.
     pub seed: u64,
@@ -100,6 +106,23 @@ impl Start {
 }
 
 impl RunSettings {
+    /// Returns the default settings with `effort`.
+    pub fn of_effort(effort: Effort) -> Self {
+        Self {
+            budget_s: effort.budget().map(|budget| budget.as_secs_f64()),
+            rounds: effort.rounds(),
+            ..Self::default()
+        }
+    }
+
+    /// Returns the time budget or the number of rounds as text, such as `20 s` or `5 rounds`.
+    pub(crate) fn effort_text(&self) -> String {
+        match (self.budget_s, self.rounds) {
+            (_, Some(rounds)) => counted(rounds.get() as usize, "round", "rounds"),
+            (budget_s, None) => format!("{} s", budget_s.unwrap_or(0.0)),
+        }
+    }
+
     /// Returns the settings of a study. The study does not know `triangulate` and `strict`, so both
     /// are false.
     pub fn of_study(settings: &Settings) -> Self {
@@ -108,25 +131,27 @@ impl RunSettings {
             backends: settings.backends.clone(),
             externals: externals.collect(),
             operations: settings.operations.clone(),
-            budget_s: settings.budget.as_secs_f64(),
             seed: settings.seed,
             heap: settings.heap,
             caches: settings.caches,
-            triangulate: false,
-            strict: false,
+            ..Self::of_effort(settings.effort)
         }
     }
 
     /// Returns an error if `other` has other settings, because the times of two studies can then
     /// not be pooled.
     pub(crate) fn check_equal(&self, other: &Self) -> Result<(), MergeError> {
+        let effort = match (self.rounds, other.rounds) {
+            (Some(_), Some(_)) => "--rounds",
+            _ => "--budget",
+        };
         let options = |settings: &Self| -> [(&'static str, String); 9] {
             let operations: Vec<&str> = settings.operations.iter().map(|o| o.name()).collect();
             [
                 ("--backends", settings.backends.join(",")),
                 ("--external", settings.externals.join(",")),
                 ("--operations", operations.join(",")),
-                ("--budget", format!("{} s", settings.budget_s)),
+                (effort, settings.effort_text()),
                 ("--seed", settings.seed.to_string()),
                 ("--heap", settings.heap.to_string()),
                 ("--caches", settings.caches.name().into()),

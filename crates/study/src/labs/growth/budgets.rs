@@ -1,21 +1,21 @@
 //! Divides a time budget among the sizes of one shape.
 
-use std::time::Duration;
+use sixfold_workload::Clock;
 
-use crate::engine::budget::Budget;
+use crate::engine::effort::{Budget, Effort};
 
 /// The part of the budget for each size. It is proportional to the square root of the number of
 /// faces, because small sizes need more runs.
-pub(super) struct SizeBudgets {
+pub(super) struct SizeBudgets<'c> {
     weights: Vec<f64>,
-    budget: Budget,
+    budget: Budget<'c>,
 }
 
-impl SizeBudgets {
-    pub(super) fn new(sizes: &[usize], budget: Duration) -> Self {
+impl<'c> SizeBudgets<'c> {
+    pub(super) fn new(sizes: &[usize], effort: Effort, clock: &'c dyn Clock) -> Self {
         Self {
             weights: sizes.iter().map(|&faces| (faces as f64).sqrt()).collect(),
-            budget: Budget::start(budget),
+            budget: Budget::start(effort, clock),
         }
     }
 
@@ -25,12 +25,12 @@ impl SizeBudgets {
         [step, step + 1].map(|end| self.weights[..end].iter().sum::<f64>() / all)
     }
 
-    pub(super) fn left(&self) -> Duration {
+    pub(super) fn left(&self) -> Effort {
         self.budget.left()
     }
 
-    /// Returns the time for one size, as a part of the time left.
-    pub(super) fn budget(&self, step: usize) -> Duration {
+    /// Returns the effort for one size: a part of the time left, or all rounds.
+    pub(super) fn effort(&self, step: usize) -> Effort {
         let rest: f64 = self.weights[step..].iter().sum();
         self.budget.share(self.weights[step], rest)
     }
@@ -38,20 +38,27 @@ impl SizeBudgets {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
+    use crate::engine::simulated_machine::SimulatedMachine;
 
     #[test]
     fn parts_use_the_whole_budget_and_grow_with_the_size() {
-        let budgets = SizeBudgets::new(&[100, 10_000, 1_000_000], Duration::from_secs(1000));
+        let machine = SimulatedMachine::steady();
+        let effort = Effort::Budget(Duration::from_secs(1110));
+        let budgets = SizeBudgets::new(&[100, 10_000, 1_000_000], effort, &machine);
         let [first, second, last] = [0, 1, 2].map(|step| budgets.range(step));
         assert_eq!((first[0], first[1], second[1]), (0.0, second[0], last[0]));
         assert!((last[1] - 1.0).abs() < 1e-12);
         // The weights are the square roots of the sizes: 10, 100 and 1000.
         assert!((first[1] - 10.0 / 1110.0).abs() < 1e-12, "{first:?}");
-        let second = budgets.budget(0).as_secs_f64();
-        assert!((8.0..9.1).contains(&second), "{second}");
-        assert!(budgets.budget(2) > Duration::from_secs(990));
-        let spent = SizeBudgets::new(&[100, 200], Duration::ZERO);
-        assert_eq!(spent.budget(1), Duration::ZERO);
+        let seconds = |step: usize| budgets.effort(step).limit_ns() / 1e9;
+        assert!((seconds(0) - 10.0).abs() < 1e-6);
+        assert!((seconds(2) - 1110.0).abs() < 1e-6);
+        machine.work(1109e9);
+        assert!((seconds(1) - 100.0 / 1100.0).abs() < 1e-6);
+        machine.work(2e9);
+        assert_eq!(seconds(1), 0.0);
     }
 }

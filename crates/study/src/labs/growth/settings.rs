@@ -7,6 +7,7 @@ use sixfold::shapes::{Order, ShapeError};
 
 use super::BackendRefusal;
 use super::shapes::{SCALABLE_SHAPES, ScalableShape};
+use crate::engine::effort::Effort;
 use crate::inspect::{StudyMesh, inspect};
 use crate::labs::orders::{chosen_operations, draw_bytes, prepared_bytes};
 use crate::labs::study::{Settings, StudyError};
@@ -26,7 +27,7 @@ const MAX_STEPS: usize = 1000;
 /// of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GrowthSettings {
-    /// The backends, the operations, the seed and the total time budget. If the list of operations
+    /// The backends, the operations, the seed and the effort. If the list of operations
     /// is empty, [`DEFAULT_OPERATIONS`](crate::DEFAULT_OPERATIONS) are measured.
     pub study: Settings,
     /// Name of a shape in [`SCALABLE_SHAPES`].
@@ -45,7 +46,7 @@ impl Default for GrowthSettings {
     fn default() -> Self {
         Self {
             study: Settings {
-                budget: Duration::from_secs(60),
+                effort: Effort::Budget(Duration::from_secs(60)),
                 ..Settings::default()
             },
             shape: SCALABLE_SHAPES[0].name.into(),
@@ -102,7 +103,10 @@ impl GrowthSettings {
     /// budget of `study` is short, fewer sizes are measured.
     pub fn from_study(study: Settings) -> Self {
         let usual = Self::default();
-        let time_for = study.budget.as_millis() / MIN_SIZE_BUDGET.as_millis();
+        let time_for = match study.effort {
+            Effort::Budget(budget) => budget.as_millis() / MIN_SIZE_BUDGET.as_millis(),
+            Effort::Rounds(_) => u128::MAX,
+        };
         let steps = usize::try_from(time_for).unwrap_or(usize::MAX);
         Self {
             study,
@@ -267,7 +271,7 @@ mod tests {
     fn a_short_budget_has_fewer_sizes_but_at_least_two() {
         let steps = |milliseconds| {
             let settings = GrowthSettings::from_study(Settings {
-                budget: Duration::from_millis(milliseconds),
+                effort: Effort::Budget(Duration::from_millis(milliseconds)),
                 ..Settings::default()
             });
             (settings.steps, settings.plan().is_ok())

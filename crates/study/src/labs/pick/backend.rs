@@ -1,12 +1,13 @@
 //! A measured backend of a pick, with its samples.
 
+use crate::engine::effort::Effort;
 use crate::labs::pick::choice::position;
 use sixfold::Edit;
 use sixfold_workload::{
     Action, Backend, Clock, EditPlaceError, Job, MixBackend, Operation, Schedule, Series,
-    TimedBackend,
 };
 
+use crate::labs::pick::measurement::Contestant;
 use crate::labs::pick::report::Excluded;
 
 /// A structure or relation tables, ready for the mix.
@@ -54,7 +55,7 @@ impl<'a> PickBackend<'a> {
     }
 
     /// Splits the properties from the backend to measure.
-    pub(crate) fn split(self) -> (Candidate, Box<dyn TimedBackend + 'a>) {
+    pub(crate) fn split(self) -> Contestant<'a> {
         let candidate = Candidate {
             name: self.mixer.name().to_owned(),
             structure: self.structure,
@@ -127,7 +128,7 @@ pub(crate) fn keep_common_places(
 const TABLES_EQUAL_UP_TO: f64 = 2.0;
 /// Maximum number of times that each structure makes tables again before one structure is chosen.
 const TABLE_ROUNDS: usize = 5;
-/// Maximum time of these rounds, in nanoseconds.
+/// Maximum time of these rounds, in nanoseconds, if there is a time limit.
 const TABLE_ROUNDS_NS: f64 = 200e6;
 
 /// Returns tables of the relations that the workload queries. Returns `None` if the workload has no
@@ -138,6 +139,7 @@ const TABLE_ROUNDS_NS: f64 = 200e6;
 pub(crate) fn build_tables<'a>(
     backends: &[PickBackend<'a>],
     clock: &dyn Clock,
+    effort: Effort,
     tabulate: impl Fn(&Backend) -> Option<Box<dyn MixBackend + 'a>>,
 ) -> Option<PickBackend<'a>> {
     let start = clock.now();
@@ -150,7 +152,7 @@ pub(crate) fn build_tables<'a>(
         })
         .collect();
     for _ in 0..TABLE_ROUNDS {
-        if (clock.now() - start).ns() > TABLE_ROUNDS_NS {
+        if effort.rounds().is_none() && (clock.now() - start).ns() > TABLE_ROUNDS_NS {
             break;
         }
         for (_, tables, least) in &mut made {

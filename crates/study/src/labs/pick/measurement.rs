@@ -2,13 +2,14 @@
 
 use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
 
 use sixfold_core::Counts;
-use sixfold_workload::{Clock, Operation, Task, Time, TimedBackend};
+use sixfold_workload::{Operation, Task, Time, TimedBackend};
 
 use crate::engine::agreement::compare_checksums;
+use crate::engine::effort::Effort;
 use crate::engine::heap::Memory;
+use crate::engine::machine::Machine;
 use crate::engine::measure::{Entry, Progress};
 use crate::engine::ranking::{NO_DIFFERENCE, rank, ratio};
 use crate::engine::statistics::Median;
@@ -30,8 +31,8 @@ pub(crate) struct PickMeasurement<'c> {
     pub(crate) plan: &'c dyn TaskPlan,
     pub(crate) seed: u64,
     pub(crate) counts: Counts,
-    pub(crate) budget: Duration,
-    pub(crate) clock: &'c dyn Clock,
+    pub(crate) effort: Effort,
+    pub(crate) machine: &'c dyn Machine,
     pub(crate) memory: &'c mut Memory,
     pub(crate) stop: &'c AtomicBool,
     pub(crate) progress: &'c mut dyn FnMut(f64, &str),
@@ -71,9 +72,9 @@ impl PickMeasurement<'_> {
         let mut trial = Trial {
             counts: self.counts,
             skewed: is_skewed(&self.study_mesh.facts),
-            clock: self.clock,
+            machine: self.machine,
             memory: self.memory,
-            budget: self.budget,
+            effort: self.effort,
             named: true,
             seed: self.seed,
             stop: self.stop,
@@ -93,7 +94,13 @@ impl PickMeasurement<'_> {
             entries, second, ..
         } = measured;
         let subjects = &mut columns.subjects;
-        let agreements = compare_checksums(&entries, subjects, polygons, self.clock, self.stop);
+        let agreements = compare_checksums(
+            &entries,
+            subjects,
+            polygons,
+            self.machine.clock(),
+            self.stop,
+        );
         let evaluate = |column: usize| {
             let candidate = &candidates[column];
             let own: Vec<&Entry> = entries

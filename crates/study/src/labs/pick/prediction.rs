@@ -177,13 +177,12 @@ fn elements(relation: Relation, counts: &Counts) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use std::time::Duration;
-
     use sixfold::shapes;
     use sixfold_workload::pages::Policy;
     use sixfold_workload::{Operation, built_in};
 
     use super::*;
+    use crate::engine::effort::Effort;
 
     fn settings(workload: &str) -> PickSettings {
         PickSettings {
@@ -192,7 +191,7 @@ mod tests {
             extra: Vec::new(),
             needs: Vec::new(),
             max_memory: None,
-            budget: Duration::from_secs(1),
+            effort: Effort::of_rounds(1),
             seed: 1,
             heap: Policy::Kept,
         }

@@ -10,8 +10,9 @@ use sixfold_workload::{
     Suite, SuiteProgram, Task, Time, TimedBackend, Workload, patch,
 };
 
-use crate::engine::budget::Budget;
+use crate::engine::effort::{Budget, Effort};
 use crate::engine::heap::{CacheState, Memory};
+use crate::engine::machine::Machine;
 use crate::engine::measure::Entry;
 use crate::engine::timer::Timer;
 use crate::external::MeshFile;
@@ -50,8 +51,8 @@ pub struct ProgramSettings {
     pub runs: u64,
     /// The maximum size of a structure, in bytes; `None` for no limit.
     pub max_memory: Option<u64>,
-    /// Time limit for all programs and meshes together.
-    pub budget: Duration,
+    /// How much is measured. A time limit is for all programs and meshes together.
+    pub effort: Effort,
     /// Seed of the random numbers that choose the order of the measurements.
     pub seed: u64,
     /// What happens to freed memory pages during the measurement.
@@ -66,7 +67,7 @@ impl Default for ProgramSettings {
             backends: Vec::new(),
             runs: 1,
             max_memory: None,
-            budget: Duration::from_secs(20),
+            effort: Effort::Budget(Duration::from_secs(20)),
             seed: 1,
             heap: Policy::Kept,
             isolation: None,
@@ -95,6 +96,28 @@ pub fn pick_for_programs(
     progress: &mut dyn FnMut(f64, &str),
     finished: &mut dyn FnMut(&PickReport),
 ) -> Result<Vec<PickReport>, PickError> {
+    let machine = MachineClock::start();
+    pick_for_programs_on(
+        &machine,
+        study_meshes,
+        suite,
+        settings,
+        stop,
+        progress,
+        finished,
+    )
+}
+
+/// Does what [`pick_for_programs`] does, on `machine`.
+pub(crate) fn pick_for_programs_on(
+    machine: &dyn Machine,
+    study_meshes: &[StudyMesh],
+    suite: &Suite,
+    settings: &ProgramSettings,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(f64, &str),
+    finished: &mut dyn FnMut(&PickReport),
+) -> Result<Vec<PickReport>, PickError> {
     if study_meshes.is_empty() {
         return Err(PickError::NoMesh);
     }
@@ -102,14 +125,14 @@ pub fn pick_for_programs(
         return Err(StudyError::NoFaces.into());
     }
     settings.check_names(suite)?;
-    let budget = Budget::start(settings.budget);
+    let clock = machine.clock();
+    let budget = Budget::start(settings.effort, clock);
     let run = Run::start(settings.run_settings());
-    let clock = MachineClock::start();
-    let timer = Timer::measure(&clock);
+    let timer = Timer::measure(clock);
     let programs = suite.programs();
     let steps = (programs.len() * study_meshes.len()).max(1);
     // Not a share of the time that is left: a slow program must not exclude structures of the next.
-    let longest_run = settings.budget.mul_f64(LONGEST_RUN / steps as f64);
+    let longest_run_ns = LONGEST_RUN * settings.effort.limit_ns() / steps as f64;
     let mut memory = Memory::start(settings.heap, CacheState::Warm, 0);
     let mut reports = Vec::new();
     for (i, program) in programs.iter().enumerate() {
@@ -121,8 +144,8 @@ pub fn pick_for_programs(
                 break;
             }
             let context = MeasureContext {
-                budget: Budget::start(budget.share(1.0, (steps - step) as f64)),
-                clock: &clock,
+                budget: Budget::start(budget.share(1.0, (steps - step) as f64), clock),
+                machine,
                 memory: &mut memory,
                 stop,
                 progress: &mut |done, what| {
@@ -146,8 +169,8 @@ pub fn pick_for_programs(
             let conditions = Conditions {
                 qualification: Qualification {
                     refusals: refusal::Candidate::from_study_mesh(study_mesh),
-                    longest_run,
-                    clock: &clock,
+                    longest_run_ns,
+                    machine,
                 },
                 settings,
                 isolated,
@@ -218,10 +241,9 @@ impl ProgramSettings {
     fn run_settings(&self) -> RunSettings {
         RunSettings {
             backends: self.backends.clone(),
-            budget_s: self.budget.as_secs_f64(),
             seed: self.seed,
             heap: self.heap,
-            ..RunSettings::default()
+            ..RunSettings::of_effort(self.effort)
         }
     }
 }
@@ -252,7 +274,7 @@ fn measure_mesh(
 ) -> Outcome {
     let MeasureContext {
         budget,
-        clock,
+        machine,
         memory,
         stop,
         progress,
@@ -287,8 +309,8 @@ fn measure_mesh(
         plan: &plan,
         seed: settings.seed,
         counts: polygons.counts(study_mesh.facts.edges),
-        budget: budget.left(),
-        clock,
+        effort: budget.left(),
+        machine,
         memory,
         stop,
         progress,
@@ -320,7 +342,11 @@ impl<'e> Conditions<'e> {
                 let task = ChildTask {
                     program: program.name().to_owned(),
                     backend: contestant.name().to_owned(),
-                    longest_run_ns: self.qualification.longest_run.as_nanos() as u64,
+                    longest_run_ns: self
+                        .qualification
+                        .longest_run_ns
+                        .is_finite()
+                        .then_some(self.qualification.longest_run_ns as u64),
                     heap: self.settings.heap,
                     memory_limit: isolation.memory_limit,
                 };
@@ -351,9 +377,10 @@ impl<'e> Conditions<'e> {
 /// Decides whether a structure can hold a mesh and run a program in the available time.
 pub(crate) struct Qualification<'e> {
     pub(crate) refusals: refusal::Candidate<'e>,
-    /// The longest time of one run on a structure that scans the mesh.
-    pub(crate) longest_run: Duration,
-    pub(crate) clock: &'e MachineClock,
+    /// The longest time of one run on a structure that scans the mesh, in nanoseconds; infinity if
+    /// there is no time limit.
+    pub(crate) longest_run_ns: f64,
+    pub(crate) machine: &'e dyn Machine,
 }
 
 impl<'e> Qualification<'e> {
@@ -362,10 +389,11 @@ impl<'e> Qualification<'e> {
         &self,
         contestant: &Contestant,
     ) -> Result<Box<dyn TimedBackend + 'e>, String> {
-        if !is_local(contestant) {
+        if !is_local(contestant) && self.longest_run_ns.is_finite() {
             self.check_time(contestant)?;
         }
         let prepared = contestant.prepare(self.refusals.polygons);
+        let prepared = prepared.map(|built| self.machine.host(built, &self.refusals.counts));
         prepared.map_err(|refusal| match refusal {
             ProgramRefusal::Build(refusal) => {
                 let capabilities = &contestant.info().capabilities;
@@ -384,16 +412,20 @@ impl<'e> Qualification<'e> {
         while size < faces {
             let patch = patch(polygons, size);
             // A program may refuse a patch that it would not refuse as a part of the mesh.
-            let Ok(mut backend) = contestant.prepare(&patch) else {
+            let Ok(built) = contestant.prepare(&patch) else {
                 return Ok(());
             };
-            let run = backend.run(&Job::new(Task::Program), &Series::once(self.clock));
+            // Almost all edges of a patch have two faces.
+            let counts = patch.counts(patch.corner_count() / 2);
+            let mut backend = self.machine.host(built, &counts);
+            let series = Series::once(self.machine.clock());
+            let run = backend.run(&Job::new(Task::Program), &series);
             if run.refusal.is_some() {
                 return Ok(());
             }
             let growth = faces as f64 / patch.face_count().max(1) as f64;
             let expected = run.time.wall_ns * growth * growth;
-            let longest = self.longest_run.as_nanos() as f64;
+            let longest = self.longest_run_ns;
             if expected <= longest {
                 return Ok(());
             }
@@ -455,3 +487,6 @@ impl TaskPlan for WholeProgram {
         self.runs
     }
 }
+
+#[cfg(test)]
+mod tests;

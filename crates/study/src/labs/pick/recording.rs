@@ -1,19 +1,25 @@
 //! Records a program, as a workload and as a trace.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
 
 use sixfold_workload::{
     Backend, Contestant, Draw, Job, MachineClock, Recording, Route, Schedule, Series, Suite,
     SuiteProgram, Task, TimedBackend, prepare_mix,
 };
 
+use crate::engine::effort::{Budget, Effort};
+use crate::engine::machine::Machine;
 use crate::engine::statistics::Median;
 use crate::inspect::StudyMesh;
 use crate::labs::pick::programs::{ProgramSettings, is_local};
 
 /// The greatest number of operations of the mix in one timed run.
 const MAX_TURNS: f64 = 4096.0;
+
+/// The number of rounds in which a program, its trace and its workload are measured, unless it is
+/// given.
+const MIN_ROUNDS: usize = 3;
+const MAX_ROUNDS: usize = 101;
 
 /// The reason why a program is not recorded.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -63,6 +69,17 @@ pub fn record_program(
     settings: &ProgramSettings,
     stop: &AtomicBool,
 ) -> Result<RecordedProgram, RecordError> {
+    record_program_on(&MachineClock::start(), study_mesh, program, settings, stop)
+}
+
+/// Does what [`record_program`] does, on `machine`.
+pub(crate) fn record_program_on(
+    machine: &dyn Machine,
+    study_mesh: &StudyMesh,
+    program: &SuiteProgram,
+    settings: &ProgramSettings,
+    stop: &AtomicBool,
+) -> Result<RecordedProgram, RecordError> {
     let name = || program.name().to_owned();
     let mesh = || study_mesh.name.clone();
     if matches!(program.kind(), "refines" | "walks") {
@@ -77,20 +94,21 @@ pub fn record_program(
         reason,
     };
     let polygons = &study_mesh.polygons;
-    let clock = MachineClock::start();
+    let counts = polygons.counts(study_mesh.facts.edges);
+    let clock = machine.clock();
     let mut fastest: Option<(f64, &Contestant, Box<dyn TimedBackend + '_>)> = None;
     let mut first_reason = None;
     let contestants = program.contestants().iter();
     let structures = contestants.filter(|c| c.made_from().is_none());
     for contestant in structures.filter(|c| settings.chooses(c) && is_local(c)) {
         let mut prepared = match contestant.prepare(polygons) {
-            Ok(prepared) => prepared,
+            Ok(prepared) => machine.host(prepared, &counts),
             Err(refusal) => {
                 first_reason.get_or_insert(format!("{}: {refusal}", contestant.name()));
                 continue;
             }
         };
-        let series = Series::once(&clock).with_untimed(1);
+        let series = Series::once(clock).with_untimed(1);
         let run = prepared.run(&Job::new(Task::Program), &series);
         if let Some(refusal) = run.refusal {
             first_reason.get_or_insert(format!("{}: {refusal}", contestant.name()));
@@ -116,7 +134,8 @@ pub fn record_program(
                 study_mesh,
                 contestant,
                 seed: settings.seed,
-                budget: settings.budget,
+                effort: settings.effort,
+                machine,
                 stop,
             };
             Ok(calibration.measure(prepared, recording))
@@ -129,7 +148,8 @@ struct Calibration<'c> {
     study_mesh: &'c StudyMesh,
     contestant: &'c Contestant,
     seed: u64,
-    budget: Duration,
+    effort: Effort,
+    machine: &'c dyn Machine,
     stop: &'c AtomicBool,
 }
 
@@ -140,32 +160,38 @@ impl Calibration<'_> {
         mut recording: Recording,
     ) -> RecordedProgram {
         let polygons = &self.study_mesh.polygons;
-        let clock = MachineClock::start();
+        let clock = self.machine.clock();
         let traced = Suite::new().trace(recording.trace.clone());
         let same = |c: &&Contestant| c.name() == self.contestant.name();
         let trace = traced.programs().iter().flat_map(|p| p.contestants());
-        let mut trace = trace.filter(same).find_map(|c| c.prepare(polygons).ok());
+        let trace = trace.filter(same).find_map(|c| c.prepare(polygons).ok());
         let counts = polygons.counts(self.study_mesh.facts.edges);
+        let mut trace = trace.map(|built| self.machine.host(built, &counts));
         let schedule = Schedule::new(&recording.workload, &counts);
         let route = Route::new(recording.workload.access, polygons, self.seed);
         let draw = Draw::new(polygons, self.seed);
         let backend = Backend::find(self.contestant.name());
         let mix = backend.and_then(|b| prepare_mix(&b, polygons, &draw, &schedule, &route).ok());
-        let mut mix = mix.filter(|_| !recording.workload.mix.is_empty());
+        let mix = mix.filter(|_| !recording.workload.mix.is_empty());
+        let mut mix = mix.map(|built| self.machine.host(built, &counts));
         let operations = recording.workload.operations_on(&counts);
 
         let mut times: [Vec<f64>; 3] = Default::default();
-        let start = Instant::now();
+        let budget = Budget::start(self.effort, clock);
+        let fixed = self.effort.rounds().map(|rounds| rounds.get() as usize);
+        let rounds = fixed.unwrap_or(MAX_ROUNDS);
         let mut first = 0;
-        while times[0].len() < 3 || (start.elapsed() < self.budget && times[0].len() < 101) {
-            let once = Series::once(&clock);
+        while times[0].len() < rounds.min(MIN_ROUNDS)
+            || (budget.left().limit_ns() > 0.0 && times[0].len() < rounds)
+        {
+            let once = Series::once(clock);
             times[0].push(program.run(&Job::new(Task::Program), &once).time.ns());
             if let Some(trace) = &mut trace {
                 times[1].push(trace.run(&Job::new(Task::Program), &once).time.ns());
             }
             if let Some(mix) = &mut mix {
                 let runs = (operations / 256.0).clamp(1.0, MAX_TURNS) as u32;
-                let series = Series::with_runs(runs, &clock).with_result();
+                let series = Series::with_runs(runs, clock).with_result();
                 let job = Job {
                     first,
                     ..Job::new(Task::Mix)

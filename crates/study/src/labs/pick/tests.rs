@@ -7,7 +7,7 @@ use sixfold_workload::{
 };
 
 use super::*;
-use crate::engine::simulated_machine::SimulatedMachine;
+use crate::engine::simulated_machine::{SimulatedMachine, Work};
 use crate::labs::pick::measurement::Outcome;
 
 struct KnownBackend {
@@ -67,14 +67,14 @@ impl MixBackend for KnownBackend {
     fn keep_places(&mut self, _: &[Vec<bool>]) {}
 }
 
-fn settings(budget: Duration) -> PickSettings {
+fn settings(effort: Effort) -> PickSettings {
     PickSettings {
         workload: built_in("geodesic-dijkstra").expect("a built-in workload"),
         backends: Vec::new(),
         extra: Vec::new(),
         needs: Vec::new(),
         max_memory: None,
-        budget,
+        effort,
         seed: 7,
         heap: Policy::Kept,
     }
@@ -86,10 +86,10 @@ const FAULTY: &str = "face-vertex";
 /// Measures an indexed face set of 50 ns per operation, and mixers with `costs_ns`.
 fn measure_known(costs_ns: &[f64], seed: u64) -> Outcome {
     let study_mesh = StudyMesh::new("ball", shapes::icosahedron());
-    let budget = Duration::from_secs(1);
+    let effort = Effort::of_ms(1000);
     let settings = PickSettings {
         seed,
-        ..settings(budget)
+        ..settings(effort)
     };
     let counts = study_mesh.polygons.counts(study_mesh.facts.edges);
     let schedule = Schedule::new(&settings.workload, &counts);
@@ -126,8 +126,8 @@ fn measure_known(costs_ns: &[f64], seed: u64) -> Outcome {
         plan: &tasks,
         seed: settings.seed,
         counts,
-        budget,
-        clock: &machine,
+        effort,
+        machine: &machine,
         memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0),
         stop: &stop,
         progress: &mut |_, _| (),
@@ -202,30 +202,90 @@ fn intervals_cover_a_known_ratio() {
     assert!(covered >= 35, "{covered} of 40");
 }
 
+/// Costs of structures of a small mesh: structures that scan take 200 times as long for a query.
+fn costs(work: &Work<'_>) -> f64 {
+    let query_ns = match work.backend {
+        "polygon-soup" | "indexed-face-set" => 2000.0,
+        "face-vertex" => 30.0,
+        "relation-tables" => 8.0,
+        "half-edge" => 10.0,
+        _ => 20.0,
+    };
+    match work.task {
+        Task::Mix => 256.0 * query_ns,
+        Task::Part(_) | Task::Program => query_ns,
+        Task::Operation(Operation::Build) => match work.backend {
+            "relation-tables" => 90.0 * work.counts.faces as f64,
+            _ => 60.0 * work.counts.faces as f64,
+        },
+        Task::Operation(_) => query_ns * work.counts.faces as f64,
+    }
+}
+
 fn quick(settings: &PickSettings, meshes: &[PolygonMesh]) -> Result<PickReport, PickError> {
+    quick_on(&SimulatedMachine::with_costs(costs), settings, meshes)
+}
+
+fn quick_on(
+    machine: &SimulatedMachine,
+    settings: &PickSettings,
+    meshes: &[PolygonMesh],
+) -> Result<PickReport, PickError> {
     let named = meshes.iter().enumerate();
     let study_meshes = named.map(|(i, mesh)| StudyMesh::new(format!("mesh {i}"), mesh.clone()));
     let study_meshes: Vec<StudyMesh> = study_meshes.collect();
-    pick(
-        &study_meshes,
-        settings,
-        &AtomicBool::new(false),
-        &mut |_, _| (),
-    )
+    let stop = AtomicBool::new(false);
+    pick_on(machine, &study_meshes, settings, &stop, &mut |_, _| ())
+}
+
+/// Returns the names of the ranked backends, the fastest first.
+fn ranked(report: &PickReport) -> Vec<&str> {
+    let ranking = report.ranking.iter();
+    ranking.map(|row| row.backend.as_str()).collect()
 }
 
 #[test]
-fn a_real_measurement_ranks_all_backends_with_reasons() {
+fn all_backends_are_ranked_by_their_times_on_machines_of_any_speed() {
     let torus = shapes::triangle_torus(24, 24).expect("a torus");
-    let report = quick(&settings(Duration::from_secs(2)), &[torus]).expect("enough time");
-    assert_eq!(report.ranking.len(), 7, "{:?}", report.ranking);
-    assert!(report.excluded.is_empty());
-    let ratios = report.ranking.iter().map(|row| row.ratio_to_best);
-    assert!(ratios.is_sorted());
-    assert_eq!(report.ranking[0].ratio_to_best, 1.0);
-    assert_eq!(report.break_even.len(), 6);
-    let soup = report.ranking.last().expect("seven backends");
-    assert!(soup.sampled && soup.ratio_to_best > 10.0);
+    for (speed, drifts) in [
+        (1.0, false),
+        (0.05, false),
+        (30.0, false),
+        (1.0, true),
+        (0.05, true),
+    ] {
+        let machine = SimulatedMachine::with_costs(costs).at_speed(speed);
+        let machine = if drifts { machine.drifting() } else { machine };
+        for effort in [Effort::of_ms(2000), Effort::of_rounds(12)] {
+            let report = quick_on(&machine, &settings(effort), std::slice::from_ref(&torus));
+            let report = report.expect("all hold it");
+            let context = format!("speed {speed}, drifts: {drifts}, {effort:?}");
+            assert_eq!(report.ranking.len(), 7, "{context}: {:?}", report.ranking);
+            assert!(report.excluded.is_empty());
+            let names = ranked(&report);
+            assert_eq!(names[..2], ["relation-tables", "half-edge"], "{context}");
+            assert_eq!(names[4], "face-vertex", "{context}");
+            let ratios: Vec<f64> = report.ranking.iter().map(|r| r.ratio_to_best).collect();
+            assert!(ratios.is_sorted());
+            assert_eq!(ratios[0], 1.0);
+            assert_eq!(report.break_even.len(), 6);
+            if !drifts {
+                // 20 ns to 8 ns, and 30 ns to 8 ns.
+                for (rank, ratio) in [(2, 2.5), (3, 2.5), (4, 3.75)] {
+                    let found = ratios[rank];
+                    assert!((found / ratio - 1.0).abs() < 1e-6, "{context}: {ratios:?}");
+                }
+            }
+            let soup = report.ranking.last().expect("seven backends");
+            assert!(soup.sampled && soup.ratio_to_best > 10.0, "{context}");
+        }
+    }
+}
+
+#[test]
+fn the_report_explains_the_ranking() {
+    let torus = shapes::triangle_torus(24, 24).expect("a torus");
+    let report = quick(&settings(Effort::of_rounds(12)), &[torus]).expect("all hold it");
     assert!(
         report.sentences[0].contains("or geodesic-dijkstra, "),
         "{:?}",
@@ -263,7 +323,7 @@ fn needs_and_memory_limits_exclude_backends() {
     let with_limits = |needs: &[Need], max_memory| PickSettings {
         needs: needs.to_vec(),
         max_memory,
-        ..settings(Duration::from_secs(1))
+        ..settings(Effort::of_rounds(3))
     };
     let report = quick(
         &with_limits(&[Need::Edit, Need::NonManifold], None),
@@ -307,7 +367,7 @@ fn edits_are_done_by_all_at_the_same_places() {
     let torus = shapes::triangle_torus(30, 30).expect("a torus");
     let settings = PickSettings {
         workload: built_in("remeshing").expect("a built-in workload"),
-        ..settings(Duration::from_secs(3))
+        ..settings(Effort::of_rounds(3))
     };
     let report = quick(&settings, &[torus]).expect("enough time");
     let names: Vec<&str> = report
@@ -328,7 +388,7 @@ fn several_meshes_give_one_answer() {
         shapes::triangle_grid(20, 20).expect("a grid"),
         shapes::grid(12, 12).expect("a grid"),
     ];
-    let report = quick(&settings(Duration::from_secs(3)), &meshes).expect("enough time");
+    let report = quick(&settings(Effort::of_rounds(3)), &meshes).expect("enough time");
     assert_eq!(report.by_mesh.len(), 3);
     assert!(
         report
@@ -348,11 +408,11 @@ fn several_meshes_give_one_answer() {
 #[test]
 fn invalid_settings_are_refused() {
     assert!(matches!(
-        quick(&settings(Duration::from_secs(1)), &[]),
+        quick(&settings(Effort::of_rounds(3)), &[]),
         Err(PickError::NoMesh)
     ));
     let points = PolygonMesh::default();
-    let message = quick(&settings(Duration::from_secs(1)), &[points]).expect_err("no faces");
+    let message = quick(&settings(Effort::of_rounds(3)), &[points]).expect_err("no faces");
     assert!(
         matches!(message, PickError::Study(StudyError::NoFaces)),
         "{message}"
@@ -360,7 +420,7 @@ fn invalid_settings_are_refused() {
     let quads = shapes::grid(20, 20).expect("a grid");
     let remeshing = PickSettings {
         workload: built_in("remeshing").expect("a built-in workload"),
-        ..settings(Duration::from_secs(1))
+        ..settings(Effort::of_rounds(3))
     };
     let message = quick(&remeshing, &[quads]).expect_err("quads").to_string();
     assert!(
@@ -382,9 +442,10 @@ fn an_interrupted_measurement_keeps_its_samples() {
     let study_mesh = [StudyMesh::new("torus", torus)];
     let stop = AtomicBool::new(false);
     let mut calls = 0;
-    let report = pick(
+    let report = pick_on(
+        &SimulatedMachine::with_costs(costs),
         &study_mesh,
-        &settings(Duration::from_secs(60)),
+        &settings(Effort::of_ms(60_000)),
         &stop,
         &mut |_, what| {
             calls += usize::from(what.starts_with("measuring"));

@@ -1,23 +1,28 @@
+use crate::engine::effort::Effort;
 use crate::engine::heap::CacheState;
+use crate::engine::simulated_machine::SimulatedMachine;
+use crate::labs::orders::orders_on;
+use crate::labs::study::study_on;
 use sixfold_workload::pages::Policy;
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
 
 use sixfold::shapes;
 
 use super::*;
 use crate::results::rows::{ResultRow, Samples};
-use crate::{Operation, Report, Settings, StudyMesh, study};
+use crate::{Operation, Report, Settings, StudyMesh};
 
 /// Returns a study with known samples: 1000 ns times `factor`.
 fn report(factor: impl Fn(&str, Operation) -> f64) -> Report {
     let study_mesh = StudyMesh::new("ball", shapes::icosahedron());
     let settings = Settings {
         operations: vec![Operation::Boundary, Operation::EdgeLength, Operation::Build],
-        budget: Duration::from_millis(400),
+        effort: Effort::of_rounds(2),
         ..Settings::default()
     };
-    let report = study(&study_mesh, &settings, &AtomicBool::new(false), &mut |_| ());
+    let stop = AtomicBool::new(false);
+    let machine = SimulatedMachine::equal_costs();
+    let report = study_on(&machine, &study_mesh, &settings, &stop, &mut |_| ());
     let mut report = report.expect("a study");
     report.control = None;
     // Other tests of this program may have changed the policy.
@@ -301,10 +306,17 @@ fn other_labs_are_compared_and_nothing_in_common_is_an_error() {
     let stop = std::sync::atomic::AtomicBool::new(false);
     let settings = Settings {
         operations: vec![Operation::Boundary],
-        budget: Duration::from_millis(50),
+        effort: Effort::of_rounds(2),
         ..Settings::default()
     };
-    let orders = crate::orders(&ball, &settings, &stop, &mut |_| ()).expect("all hold it");
+    let orders = orders_on(
+        &SimulatedMachine::equal_costs(),
+        &ball,
+        &settings,
+        &stop,
+        &mut |_| (),
+    )
+    .expect("all hold it");
     let mut slower = orders.clone();
     slower.samples.clear();
     for row in &mut slower.results {

@@ -1,5 +1,4 @@
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
 
 use sixfold::shapes;
 
@@ -7,17 +6,25 @@ use super::*;
 use sixfold_workload::Operation;
 use sixfold_workload::pages::Policy;
 
-use crate::{Samples, Settings, Standing, StudyMesh, study};
+use crate::engine::effort::Effort;
+use crate::engine::simulated_machine::SimulatedMachine;
+use crate::labs::growth::growth_on;
+use crate::labs::orders::orders_on;
+use crate::labs::pick::pick_on;
+use crate::labs::study::study_on;
+use crate::{Samples, Settings, Standing, StudyMesh};
 
 /// A study in which the time of half-edge is `ratio` times the time of corner-table.
 fn report(mesh: &str, ratio: f64) -> Report {
     let study_mesh = StudyMesh::new(mesh, shapes::icosahedron());
     let settings = Settings {
         operations: vec![Operation::Boundary],
-        budget: Duration::from_millis(20),
+        effort: Effort::of_rounds(2),
         ..Settings::default()
     };
-    let report = study(&study_mesh, &settings, &AtomicBool::new(false), &mut |_| ());
+    let stop = AtomicBool::new(false);
+    let machine = SimulatedMachine::equal_costs();
+    let report = study_on(&machine, &study_mesh, &settings, &stop, &mut |_| ());
     let mut report = report.expect("a study");
     // Other tests of this program may have changed the policy.
     report
@@ -138,13 +145,13 @@ fn documents_of_other_meshes_are_joined() {
 fn studies_that_cannot_be_pooled_are_not_merged() {
     let one = report("a", 2.0);
     let mut slower = report("b", 2.0);
-    slower.run.settings.budget_s = 60.0;
+    (slower.run.settings.budget_s, slower.run.settings.rounds) = (Some(60.0), None);
     let mut again = one.clone();
     again.run.start.unix_time += 1;
     let mut other = one.clone();
     other.mesh.sha256 = "another".into();
     for (second, message) in [
-        (slower, "is 60 s, expected 0.02 s"),
+        (slower, "is 60 s, expected 2 rounds"),
         (again, "both have a study of a: compare"),
         (other, "but of different meshes"),
     ] {
@@ -162,11 +169,12 @@ fn written_documents_are_read_back_exactly() {
     let ball = StudyMesh::new("ball", shapes::icosahedron());
     let settings = Settings {
         operations: vec![Operation::Boundary],
-        budget: Duration::from_millis(100),
+        effort: Effort::of_rounds(2),
         ..Settings::default()
     };
     let stop = AtomicBool::new(false);
-    let orders = crate::orders(&ball, &settings, &stop, &mut |_| ());
+    let machine = SimulatedMachine::equal_costs();
+    let orders = orders_on(&machine, &ball, &settings, &stop, &mut |_| ());
     all.add(orders.expect("all hold it").into());
     let growth = crate::GrowthSettings {
         study: settings,
@@ -175,7 +183,7 @@ fn written_documents_are_read_back_exactly() {
         steps: 2,
         ..crate::GrowthSettings::default()
     };
-    let growth = crate::growth(&growth, &stop, &mut |_| ());
+    let growth = growth_on(&machine, &growth, &stop, &mut |_| ());
     all.add(growth.expect("all hold it").into());
     let why = crate::why(&ball, &crate::WhySettings::default(), &stop, &mut |_| ());
     all.add(why.expect("all hold it").into());
@@ -185,11 +193,11 @@ fn written_documents_are_read_back_exactly() {
         extra: Vec::new(),
         needs: vec![crate::Need::Edit],
         max_memory: None,
-        budget: Duration::from_millis(100),
+        effort: Effort::of_rounds(2),
         seed: 1,
         heap: Policy::Kept,
     };
-    let pick = crate::pick(&[ball], &picked, &stop, &mut |_, _| ());
+    let pick = pick_on(&machine, &[ball], &picked, &stop, &mut |_, _| ());
     all.add(pick.expect("a ranking").into());
 
     let text = written(&all);

@@ -1,10 +1,12 @@
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
 
 use sixfold::{PolygonMesh, shapes};
 
 use super::*;
-use crate::{Settings, StudyMesh, study};
+use crate::engine::effort::Effort;
+use crate::engine::simulated_machine::SimulatedMachine;
+use crate::labs::study::study_on;
+use crate::{Settings, StudyMesh};
 
 const BOUNDARY: Operation = Operation::Boundary;
 
@@ -13,11 +15,13 @@ const BOUNDARY: Operation = Operation::Boundary;
 fn study_of(name: &str, mesh: PolygonMesh, times: &[(&str, f64)]) -> Report {
     let settings = Settings {
         operations: vec![BOUNDARY],
-        budget: Duration::from_millis(20),
+        effort: Effort::of_rounds(1),
         ..Settings::default()
     };
     let study_mesh = StudyMesh::new(name, mesh);
-    let report = study(&study_mesh, &settings, &AtomicBool::new(false), &mut |_| ());
+    let stop = AtomicBool::new(false);
+    let machine = SimulatedMachine::equal_costs();
+    let report = study_on(&machine, &study_mesh, &settings, &stop, &mut |_| ());
     let mut report = report.expect("a study");
     let measured = times.iter().map(|(_, ns)| *ns).filter(|ns| *ns > 0.0);
     let least = measured.min_by(f64::total_cmp).expect("a measured time");
