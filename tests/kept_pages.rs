@@ -1,17 +1,31 @@
 //! Checks that no sample of a study or a pick has a page fault if freed pages are kept.
 //!
+//! The kernel can add page faults of its own, for example if memory is scarce or if it moves pages.
+//! Such faults come and go, but pages that were not kept cause faults in every measurement. A
+//! measurement with faults is therefore taken again. If even the last one has faults, the test
+//! fails unless a loop over memory that is never freed has faults too.
+//!
 //! This is a separate program with one thread: the policy must be set before other threads start.
 
+use std::fs;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use sixfold::shapes;
 use sixfold_study::{
-    MachineClock, PickSettings, Policy, Series, Settings, Start, StudyMesh, built_in, pages, pick,
-    study, timed,
+    HeapReport, MachineClock, PickSettings, Policy, Series, Settings, Start, StudyMesh, built_in,
+    free_memory, pages, pick, study, timed,
 };
 
 const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corner-table"];
+
+/// Every measurement of this test keeps freed pages if so many bytes are free, and also this part
+/// of all memory.
+const ENOUGH_MEMORY: u64 = 2 << 30;
+const ENOUGH_PART: u64 = 10;
+
+/// Maximum number of times that a block is filled, until filling it has no page faults.
+const MAX_FILLS: usize = 10;
 
 sixfold_tests::main_on_one_thread!(no_sample_faults);
 
@@ -23,21 +37,86 @@ fn no_sample_faults() {
     }
     freed_pages_are_kept_until_they_are_returned();
     for (frequency, seconds) in [(10, 2), (32, 3), (100, 8)] {
-        with_time_enough(seconds, |budget| {
+        measure_again(seconds, |budget| {
             no_sample_of_a_study_faults(frequency, budget)
         });
     }
-    with_time_enough(3, no_sample_of_a_pick_faults);
+    measure_again(3, no_sample_of_a_pick_faults);
     assert_eq!(pages::set_policy(Policy::System).policy, Policy::System);
 }
 
-/// Calls `test` with a budget of `seconds`. Doubles the budget until `test` returns true, because
-/// other programs may run on this machine.
-fn with_time_enough(seconds: u64, test: impl Fn(Duration) -> bool) {
-    let mut budgets = [1, 2, 4, 8, 16]
-        .map(|times| Duration::from_secs(times * seconds))
-        .into_iter();
-    assert!(budgets.any(test), "too few samples in the longest budget");
+/// The result of a measurement.
+enum Outcome {
+    /// There were enough samples, and none had a page fault.
+    NoFault,
+    /// The measurement returned freed pages to the kernel, because little memory was free.
+    LittleMemory,
+    TooFewSamples,
+    Faults(String),
+}
+
+/// Calls `measure` with a budget of `seconds`. Doubles the budget until there are enough samples
+/// without faults.
+fn measure_again(seconds: u64, measure: impl Fn(Duration) -> Outcome) {
+    let mut last = Outcome::TooFewSamples;
+    for times in [1, 2, 4, 8, 16] {
+        last = measure(Duration::from_secs(times * seconds));
+        match &last {
+            Outcome::NoFault => return,
+            Outcome::LittleMemory => {
+                println!("pages were not kept, because little memory is free");
+                return;
+            }
+            Outcome::TooFewSamples => {}
+            Outcome::Faults(message) => println!("measured again: {message}"),
+        }
+    }
+    match last {
+        Outcome::Faults(message) => {
+            let added = faults_without_allocation();
+            assert!(added > 0, "{message}");
+            println!("nothing to test: {added} faults in a loop that allocates nothing");
+        }
+        _ => panic!("too few samples in the longest budget"),
+    }
+}
+
+/// Returns the number of page faults in a loop over a block of memory that is already in use.
+fn faults_without_allocation() -> u64 {
+    const PASSES: u8 = 200;
+    const PAGE_BYTES: usize = 4096;
+    let mut block = vec![1_u8; 64 << 20];
+    let before = pages::faults().expect("page faults are counted");
+    for pass in 0..PASSES {
+        block
+            .iter_mut()
+            .step_by(PAGE_BYTES)
+            .for_each(|byte| *byte = pass);
+        std::hint::black_box(&mut block);
+    }
+    pages::faults().expect("page faults are counted") - before
+}
+
+/// Returns whether freed pages were kept.
+///
+/// # Panics
+///
+/// Panics if they were not kept, although enough memory is free.
+fn keeps_pages(heap: &HeapReport) -> bool {
+    let is_kept = heap.policy == Policy::Kept;
+    if !is_kept {
+        let enough = ENOUGH_MEMORY.max(all_memory() / ENOUGH_PART);
+        assert!(free_memory().is_some_and(|free| free < enough), "{heap:?}");
+    }
+    is_kept
+}
+
+/// Returns the bytes of main memory of the machine.
+fn all_memory() -> u64 {
+    let text = fs::read_to_string("/proc/meminfo").expect("page faults are counted only on Linux");
+    let total = text.lines().find_map(|line| line.strip_prefix("MemTotal:"));
+    let total = total.and_then(|words| words.split_whitespace().next()?.parse::<u64>().ok());
+    1024 * total.expect("the kernel gives kibibytes")
 }
 
 /// Returns the number of page faults when a block of `bytes` is filled.
@@ -54,15 +133,16 @@ fn faults_of(bytes: usize, start: Start<'_>) -> u64 {
 
 fn freed_pages_are_kept_until_they_are_returned() {
     let bytes = 64 << 20;
+    let fills_without_faults = || (0..MAX_FILLS).any(|_| faults_of(bytes, Start::Warm) == 0);
     faults_of(bytes, Start::Warm);
-    assert_eq!(faults_of(bytes, Start::Warm), 0, "the pages were kept");
+    assert!(fills_without_faults(), "the pages were kept");
     let fresh = faults_of(bytes, Start::FreshPages);
     assert!(fresh as usize > bytes / (64 << 10), "{fresh}: returned");
-    assert_eq!(faults_of(bytes, Start::Warm), 0, "kept again");
+    assert!(fills_without_faults(), "kept again");
 }
 
-/// Returns whether the budget was enough for more than 20 samples.
-fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> bool {
+/// Measures a study. More than 20 samples are enough.
+fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> Outcome {
     let polygons = shapes::geodesic(frequency).expect("a sphere");
     let study_mesh = StudyMesh::new("sphere", polygons);
     let settings = Settings {
@@ -73,17 +153,18 @@ fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> bool {
     let report = study(&study_mesh, &settings, &AtomicBool::new(false), &mut |_| ());
     let report = report.expect("all four can hold the mesh");
     let heap = report.run.environment.heap.as_ref().expect("a heap report");
-    assert_eq!((heap.policy, &heap.reason), (Policy::Kept, &None));
+    if !keeps_pages(heap) {
+        return Outcome::LittleMemory;
+    }
+    assert_eq!(heap.reason, None);
     let mut samples = 0;
     for raw in &report.samples {
         let faults = raw.faults.as_ref().expect("page faults are counted");
-        assert!(
-            faults.iter().all(|&n| n == 0),
-            "{}: {} on {}: {faults:?}",
-            study_mesh.name,
-            raw.operation,
-            raw.backend
-        );
+        if faults.iter().any(|&n| n > 0) {
+            let (operation, backend) = (&raw.operation, &raw.backend);
+            let message = format!("{frequency}: {operation} on {backend}: {faults:?}");
+            return Outcome::Faults(message);
+        }
         samples += faults.len();
     }
     // Building a mesh on fresh pages causes page faults.
@@ -93,11 +174,13 @@ fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> bool {
     }
     let faces = report.mesh.facts.faces;
     println!("{faces} faces, {budget:?}: no fault in {samples} samples");
-    samples > 20
+    match samples > 20 {
+        true => Outcome::NoFault,
+        false => Outcome::TooFewSamples,
+    }
 }
 
-/// Returns whether the budget was enough.
-fn no_sample_of_a_pick_faults(budget: Duration) -> bool {
+fn no_sample_of_a_pick_faults(budget: Duration) -> Outcome {
     let study_mesh = StudyMesh::new("sphere", shapes::geodesic(24).expect("a sphere"));
     let settings = PickSettings {
         workload: built_in("remeshing").expect("a built-in workload"),
@@ -112,12 +195,19 @@ fn no_sample_of_a_pick_faults(budget: Duration) -> bool {
     let never = AtomicBool::new(false);
     let report = pick(&[study_mesh], &settings, &never, &mut |_, _| ());
     let report = report.expect("all four can hold the mesh");
+    let heap = report.run.environment.heap.as_ref().expect("a heap report");
+    if !keeps_pages(heap) {
+        return Outcome::LittleMemory;
+    }
     if report.preliminary {
-        return false;
+        return Outcome::TooFewSamples;
     }
     for ranked in &report.ranking {
-        assert_eq!(ranked.faults, Some(0), "{}", ranked.backend);
+        let faults = ranked.faults.expect("page faults are counted");
+        if faults > 0 {
+            return Outcome::Faults(format!("pick: {}: {faults}", ranked.backend));
+        }
         assert!(ranked.first_build_ns > Some(0.0), "{}", ranked.backend);
     }
-    true
+    Outcome::NoFault
 }

@@ -18,11 +18,12 @@ fn memory_is_below_a_multiple_of_the_mesh() {
     let mesh = shapes::geodesic(150).expect("small");
     // A position has 12 bytes, a corner 4.
     let size = 12 * mesh.vertex_count() + 4 * mesh.corner_count();
-    let folder = std::env::temp_dir().join(format!("sixfold-io-memory-{}", std::process::id()));
-    fs::create_dir_all(&folder).expect("the temporary folder is writable");
+    let folder = tempfile::tempdir().expect("the temporary folder is writable");
     let mut table = Vec::new();
     for format in Format::ALL {
-        let path = folder.join(format!("{}.{}", format.name(), format.extension()));
+        let path = folder
+            .path()
+            .join(format!("{}.{}", format.name(), format.extension()));
         let mut bytes = Vec::new();
         write(&mesh, format, &mut bytes).expect("memory does not fail");
         fs::write(&path, &bytes).expect("writable");
@@ -40,7 +41,6 @@ fn memory_is_below_a_multiple_of_the_mesh() {
         println!("{format}: {:.2} and {:.2} × the mesh", found[0], found[1]);
         table.push((format, found));
     }
-    fs::remove_dir_all(&folder).expect("removable");
     for (format, found) in table {
         let limits = limits(format);
         for (found, limit) in found.into_iter().zip(limits) {

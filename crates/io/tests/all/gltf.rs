@@ -1,7 +1,6 @@
 //! The rules of glTF, and its errors with their messages.
 
 use std::fs;
-use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use sixfold_core::{Point, PolygonMesh};
@@ -321,17 +320,12 @@ fn unknown_required_extensions_are_refused_by_name() {
     let many = vec!["KHR_materials_unlit"; 100_000];
     parts.document["extensionsRequired"] = json!(many);
     parts.document["meshes"] = json!(vec![parts.document["meshes"][0].clone(); 2000]);
-    let start = Instant::now();
-    parts.read();
-    assert!(
-        start.elapsed() < Duration::from_secs(1),
-        "{:?}",
-        start.elapsed()
-    );
+    assert_eq!(parts.read().faces.len(), 2 * 2000);
 }
 
+/// `benches/checks/reading_growth.py` counts the instructions for such files.
 #[test]
-fn many_primitives_and_nodes_take_time_proportional_to_their_number() {
+fn many_primitives_are_read_and_many_copies_refused() {
     let mut parts = Parts::square();
     let accessor = parts.document["accessors"][0].clone();
     let accessors = parts.document["accessors"].as_array_mut().expect("a list");
@@ -339,19 +333,12 @@ fn many_primitives_and_nodes_take_time_proportional_to_their_number() {
     let primitive = |number: usize| json!({"attributes": {"POSITION": number + 2}, "mode": 0});
     let primitives: Vec<Value> = (0..50_000).map(primitive).collect();
     parts.document["meshes"][0]["primitives"] = json!(primitives);
-    let start = Instant::now();
     assert_eq!(parts.read().positions.len(), 200_000);
-    assert!(
-        start.elapsed() < Duration::from_secs(2),
-        "{:?}",
-        start.elapsed()
-    );
 
     // Every node repeats a mesh of primitives without vertices.
     parts.document["meshes"][0]["primitives"] = json!(vec![json!({"attributes": {}}); 50_000]);
     parts.document["nodes"] = json!(vec![json!({"mesh": 0}); 50_000]);
     let bytes = parts.glb();
-    let start = Instant::now();
     let error = read_from("a.glb", bytes.as_slice(), &ReadOptions::default()).expect_err("large");
     assert!(
         error
@@ -359,17 +346,11 @@ fn many_primitives_and_nodes_take_time_proportional_to_their_number() {
             .contains("vertices, corners and primitives"),
         "{error}"
     );
-    assert!(
-        start.elapsed() < Duration::from_secs(10),
-        "{:?}",
-        start.elapsed()
-    );
 }
 
 #[test]
 fn buffers_in_one_file_share_its_data() {
-    let folder = std::env::temp_dir().join(format!("sixfold-io-shared-{}", std::process::id()));
-    fs::create_dir_all(&folder).expect("the temporary folder is writable");
+    let folder = tempfile::tempdir().expect("the temporary folder is writable");
     let mut parts = Parts::square();
     // The first buffer needs a part of the file, the second all of it.
     let length = parts.data.len();
@@ -377,12 +358,11 @@ fn buffers_in_one_file_share_its_data() {
         {"uri": "a.bin", "byteLength": length - 6}, {"uri": "%61.bin", "byteLength": length},
     ]);
     parts.document["bufferViews"][1]["buffer"] = json!(1);
-    let path = folder.join("a.gltf");
+    let path = folder.path().join("a.gltf");
     fs::write(&path, parts.document.to_string()).expect("writable");
-    fs::write(folder.join("a.bin"), &parts.data).expect("writable");
+    fs::write(folder.path().join("a.bin"), &parts.data).expect("writable");
     let mesh = read(&path, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(faces(&mesh), [[0, 1, 2], [0, 2, 3]]);
-    fs::remove_dir_all(&folder).expect("removable");
 }
 
 #[test]
@@ -480,18 +460,17 @@ fn scenes_that_repeat_meshes_are_limited() {
 
 #[test]
 fn buffers_in_other_files_are_read() {
-    let folder = std::env::temp_dir().join(format!("sixfold-io-{}", std::process::id()));
-    fs::create_dir_all(&folder).expect("the temporary folder is writable");
+    let folder = tempfile::tempdir().expect("the temporary folder is writable");
     let mut parts = Parts::square();
     parts.document["buffers"][0] = json!({"uri": "the%20data.bin", "byteLength": parts.data.len()});
     let text = parts.document.to_string();
-    let path = folder.join("a.gltf");
+    let path = folder.path().join("a.gltf");
     fs::write(&path, &text).expect("writable");
-    fs::write(folder.join("the data.bin"), &parts.data).expect("writable");
+    fs::write(folder.path().join("the data.bin"), &parts.data).expect("writable");
     let mesh = read(&path, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((mesh.format, mesh.faces.len()), (Format::Gltf, 2));
 
-    fs::write(folder.join("the data.bin"), &parts.data[1..]).expect("writable");
+    fs::write(folder.path().join("the data.bin"), &parts.data[1..]).expect("writable");
     let error = read(&path, &ReadOptions::default())
         .expect_err("too short")
         .to_string();
@@ -501,7 +480,6 @@ fn buffers_in_other_files_are_read() {
     let message = "-: buffer 0: its data is in the file \"the%20data.bin\": name the glTF file \
                    instead of passing its content";
     assert_eq!(error.to_string(), message);
-    fs::remove_dir_all(&folder).expect("removable");
 }
 
 #[test]

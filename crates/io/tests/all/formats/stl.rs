@@ -3,7 +3,7 @@
 use sixfold_core::Point;
 use sixfold_io::{Format, Place, ReadError, ReadOptions, Welding, read_from};
 
-use crate::{assert_refused, faces, notices, places, read, read_as};
+use super::{assert_refused, faces, notices, places, read, read_as};
 
 /// Returns a binary STL of facets with these corners.
 fn stl(facets: &[[[f32; 3]; 3]], count: u32) -> Vec<u8> {

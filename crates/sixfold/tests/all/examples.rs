@@ -19,14 +19,14 @@ macro_rules! example {
     };
 }
 
-example!(dijkstra, "../examples/dijkstra.rs");
-example!(taubin, "../examples/taubin.rs");
-example!(regions, "../examples/regions.rs");
-example!(feature_lines, "../examples/feature_lines.rs");
-example!(subdivide_creases, "../examples/subdivide_creases.rs");
-example!(choose_structure, "../examples/choose_structure.rs");
-example!(laplacian, "../examples/laplacian.rs");
-example!(remesh, "../examples/remesh.rs");
+example!(dijkstra, "../../examples/dijkstra.rs");
+example!(taubin, "../../examples/taubin.rs");
+example!(regions, "../../examples/regions.rs");
+example!(feature_lines, "../../examples/feature_lines.rs");
+example!(subdivide_creases, "../../examples/subdivide_creases.rs");
+example!(choose_structure, "../../examples/choose_structure.rs");
+example!(laplacian, "../../examples/laplacian.rs");
+example!(remesh, "../../examples/remesh.rs");
 
 fn build<M: Representation>(polygons: &PolygonMesh) -> M {
     M::from_polygons(polygons).expect("a closed oriented triangle mesh")

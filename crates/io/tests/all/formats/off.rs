@@ -2,7 +2,7 @@
 
 use sixfold_core::Point;
 
-use crate::{assert_refused, faces, notices, read, read_as};
+use super::{assert_refused, faces, notices, read, read_as};
 
 #[test]
 fn off_has_comments_colours_and_prefixes() {

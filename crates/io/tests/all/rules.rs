@@ -2,7 +2,6 @@
 
 use std::fs;
 use std::io::{self, BufReader, Read};
-use std::path::PathBuf;
 
 use sixfold_core::{FaceId, Point, VertexId};
 use sixfold_io::{FileMesh, LeftOutReason, Place, ReadError, parse_obj, read_obj};
@@ -26,23 +25,6 @@ fn faces(obj: &FileMesh) -> Vec<Vec<usize>> {
     faces
         .map(|(_, face)| face.iter().map(|v| v.index() + 1).collect())
         .collect()
-}
-
-struct TempFile(PathBuf);
-
-impl TempFile {
-    fn new(name: &str, bytes: &[u8]) -> Self {
-        let path = std::env::temp_dir().join(format!("{}-{name}", std::process::id()));
-        fs::write(&path, bytes).expect("the temporary folder is writable");
-        Self(path)
-    }
-}
-
-impl Drop for TempFile {
-    fn drop(&mut self) {
-        // A file that cannot be removed does not affect the test.
-        drop(fs::remove_file(&self.0));
-    }
 }
 
 #[test]
@@ -336,11 +318,14 @@ fn errors_name_a_path_that_cannot_be_read() {
 
 #[test]
 fn errors_name_a_file_by_its_path() {
-    let good = TempFile::new("good.obj", format!("{TRIANGLE}f 1 2 3").as_bytes());
-    assert_eq!(faces(&read_obj(&good.0).expect("valid")), [[1, 2, 3]]);
-    let bad = TempFile::new("bad.obj", b"v 0 0\n");
-    let message = read_obj(&bad.0).expect_err("short").to_string();
-    let place = format!("{}:1: vertex 1 has 2 ", bad.0.display());
+    let folder = tempfile::tempdir().expect("the temporary folder is writable");
+    let good = folder.path().join("good.obj");
+    fs::write(&good, format!("{TRIANGLE}f 1 2 3")).expect("writable");
+    assert_eq!(faces(&read_obj(&good).expect("valid")), [[1, 2, 3]]);
+    let bad = folder.path().join("bad.obj");
+    fs::write(&bad, "v 0 0\n").expect("writable");
+    let message = read_obj(&bad).expect_err("short").to_string();
+    let place = format!("{}:1: vertex 1 has 2 ", bad.display());
     assert!(message.starts_with(&place), "{message}");
 }
 

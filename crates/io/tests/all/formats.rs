@@ -6,33 +6,33 @@ mod stl;
 
 use sixfold_io::{FileMesh, Place, ReadOptions, read_from};
 
-pub(crate) fn read(bytes: impl AsRef<[u8]>) -> FileMesh {
+pub(super) fn read(bytes: impl AsRef<[u8]>) -> FileMesh {
     read_as("a", bytes)
 }
 
-pub(crate) fn read_as(name: &str, bytes: impl AsRef<[u8]>) -> FileMesh {
+pub(super) fn read_as(name: &str, bytes: impl AsRef<[u8]>) -> FileMesh {
     let bytes = bytes.as_ref();
     read_from(name, bytes, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 #[track_caller]
-pub(crate) fn assert_refused(name: &str, bytes: impl AsRef<[u8]>, message: &str) {
+pub(super) fn assert_refused(name: &str, bytes: impl AsRef<[u8]>, message: &str) {
     let error = read_from(name, bytes.as_ref(), &ReadOptions::default()).expect_err(message);
     assert_eq!(error.to_string(), message);
 }
 
-pub(crate) fn faces(mesh: &FileMesh) -> Vec<Vec<usize>> {
+pub(super) fn faces(mesh: &FileMesh) -> Vec<Vec<usize>> {
     let faces = mesh.faces.iter();
     faces
         .map(|(_, face)| face.iter().map(|v| v.index()).collect())
         .collect()
 }
 
-pub(crate) fn notices(mesh: &FileMesh) -> Vec<String> {
+pub(super) fn notices(mesh: &FileMesh) -> Vec<String> {
     mesh.notices.iter().map(ToString::to_string).collect()
 }
 
-pub(crate) fn places(mesh: &FileMesh) -> Vec<Place> {
+pub(super) fn places(mesh: &FileMesh) -> Vec<Place> {
     mesh.faces.iter().map(|(f, _)| mesh.face_place(f)).collect()
 }
 

@@ -1,0 +1,4 @@
+//! Tests that run on every structure.
+
+mod conversions;
+mod examples;

@@ -1,0 +1,4 @@
+//! Tests that compare several spatial indices, or use a structure.
+
+mod laws;
+mod meshes;
