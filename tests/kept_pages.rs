@@ -1,4 +1,5 @@
-//! Checks that no sample of a study or a pick has a page fault if freed pages are kept.
+//! Checks that no sample of a study or a pick has a page fault if freed pages are kept, and that
+//! measurements with different heap policies do not run at the same time.
 //!
 //! This is a separate program with one thread: the policy must be set before other threads start.
 
@@ -7,16 +8,20 @@ use std::time::Duration;
 
 use sixfold::shapes;
 use sixfold_study::{
-    MachineClock, PickSettings, Policy, Series, Settings, Start, StudyMesh, built_in, pages, pick,
-    study, timed,
+    Backend, BackendRunner, HeapGuard, MachineClock, PickError, PickSettings, Policy, Series,
+    Settings, Start, StudyError, StudyMesh, built_in, pick, study, timed,
 };
 
 const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corner-table"];
 
-sixfold_tests::main_on_one_thread!(no_sample_faults);
+sixfold_tests::main_on_one_thread!(
+    no_sample_faults,
+    other_policies_are_refused_while_one_is_active,
+);
 
 fn no_sample_faults() {
-    let heap = pages::set_policy(Policy::Kept);
+    let guard = HeapGuard::acquire(Policy::Kept).expect("the only guard");
+    let heap = guard.report();
     if heap.policy != Policy::Kept || !heap.counts_faults {
         println!("nothing to test on this platform: {heap:?}");
         return;
@@ -28,7 +33,38 @@ fn no_sample_faults() {
         });
     }
     with_time_enough(3, no_sample_of_a_pick_faults);
-    assert_eq!(pages::set_policy(Policy::System).policy, Policy::System);
+    drop(guard);
+}
+
+fn other_policies_are_refused_while_one_is_active() {
+    let study_mesh = StudyMesh::new("cube", shapes::cube());
+    let guard = HeapGuard::acquire(Policy::System).expect("the only guard");
+    let expected = HeapGuard::acquire(Policy::Kept).expect_err("another policy");
+    let refused = |error: StudyError| {
+        assert_eq!(error, StudyError::HeapPolicy(expected));
+    };
+    let settings = Settings::default();
+    let never = AtomicBool::new(false);
+    let report = study(&study_mesh, &settings, &never, &mut |_| ());
+    refused(report.expect_err("another policy"));
+    let settings = pick_settings(Duration::ZERO);
+    let meshes = std::slice::from_ref(&study_mesh);
+    match pick(meshes, &settings, &never, &mut |_, _| ()) {
+        Err(PickError::Study(error)) => refused(error),
+        other => panic!("{other:?}"),
+    }
+    let backend = Backend::find("half-edge").expect("a structure");
+    let runner = || BackendRunner::new(&backend, &study_mesh.polygons);
+    refused(runner().err().expect("another policy"));
+    drop(guard);
+
+    let runner = runner().expect("no guard is left");
+    assert_eq!(
+        HeapGuard::acquire(Policy::System).err().map(|e| e.active),
+        Some(Policy::Kept)
+    );
+    drop(runner);
+    drop(HeapGuard::acquire(Policy::System).expect("the runner has ended"));
 }
 
 /// Calls `test` with a budget of `seconds`. Doubles the budget until `test` returns true, because
@@ -99,16 +135,7 @@ fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> bool {
 /// Returns whether the budget was enough.
 fn no_sample_of_a_pick_faults(budget: Duration) -> bool {
     let study_mesh = StudyMesh::new("sphere", shapes::geodesic(24).expect("a sphere"));
-    let settings = PickSettings {
-        workload: built_in("remeshing").expect("a built-in workload"),
-        backends: STRUCTURES.map(str::to_owned).to_vec(),
-        extra: Vec::new(),
-        needs: Vec::new(),
-        max_memory: None,
-        budget,
-        seed: 1,
-        heap: Policy::Kept,
-    };
+    let settings = pick_settings(budget);
     let never = AtomicBool::new(false);
     let report = pick(&[study_mesh], &settings, &never, &mut |_, _| ());
     let report = report.expect("all four can hold the mesh");
@@ -120,4 +147,17 @@ fn no_sample_of_a_pick_faults(budget: Duration) -> bool {
         assert!(ranked.first_build_ns > Some(0.0), "{}", ranked.backend);
     }
     true
+}
+
+fn pick_settings(budget: Duration) -> PickSettings {
+    PickSettings {
+        workload: built_in("remeshing").expect("a built-in workload"),
+        backends: STRUCTURES.map(str::to_owned).to_vec(),
+        extra: Vec::new(),
+        needs: Vec::new(),
+        max_memory: None,
+        budget,
+        seed: 1,
+        heap: Policy::Kept,
+    }
 }

@@ -97,7 +97,7 @@ fn engine_cost() {
         counts,
         skewed: false,
         clock: &clock,
-        memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0),
+        memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0).expect("the same policy"),
         budget: Duration::from_secs(20),
         named: false,
         seed: 1,

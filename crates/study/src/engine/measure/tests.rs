@@ -148,7 +148,7 @@ fn run_trial(
         },
         skewed: limits.skewed,
         clock: machine,
-        memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0),
+        memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0).expect("the same policy"),
         budget: limits.budget,
         named: limits.named,
         seed: 3,
