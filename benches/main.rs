@@ -15,12 +15,13 @@ mod zero_cost;
 use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use sixfold_study::{Policy, pages};
+use sixfold_study::{HeapGuard, Policy};
 
 /// Configures criterion for short measurements. Freed pages stay in the process, so that
 /// allocations cause no page faults.
 fn short_runs() -> Criterion {
-    pages::set_policy(Policy::Kept);
+    let heap = HeapGuard::acquire(Policy::Kept).expect("all benchmarks have the same policy");
+    heap.hold_until_exit();
     Criterion::default()
         .sample_size(20)
         .warm_up_time(Duration::from_millis(100))

@@ -1,4 +1,5 @@
-//! Checks that no sample of a study or a pick has a page fault if freed pages are kept.
+//! Checks that no sample of a study or a pick has a page fault if freed pages are kept, and that
+//! measurements with different heap policies do not run at the same time.
 //!
 //! The kernel can add page faults of its own, for example if memory is scarce or if it moves pages.
 //! Such faults come and go, but pages that were not kept cause faults in every measurement. A
@@ -8,13 +9,14 @@
 //! This is a separate program with one thread: the policy must be set before other threads start.
 
 use std::fs;
+use std::num::NonZeroU32;
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
 
 use sixfold::shapes;
 use sixfold_study::{
-    HeapReport, MachineClock, PickSettings, Policy, Series, Settings, Start, StudyMesh, built_in,
-    free_memory, pages, pick, study, timed,
+    Backend, BackendRunner, Effort, HeapGuard, HeapReport, MachineClock, PickError, PickSettings,
+    Policy, Series, Settings, Start, StudyError, StudyMesh, built_in, free_memory, pages, pick,
+    study, timed,
 };
 
 const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corner-table"];
@@ -24,25 +26,64 @@ const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corne
 const ENOUGH_MEMORY: u64 = 2 << 30;
 const ENOUGH_PART: u64 = 10;
 
+/// The number of rounds of a measurement. A pick with fewer rounds is preliminary.
+const ROUNDS: NonZeroU32 = NonZeroU32::new(8).expect("above 0");
+
+/// Maximum number of measurements, until one has no page faults.
+const MAX_MEASUREMENTS: usize = 5;
+
 /// Maximum number of times that a block is filled, until filling it has no page faults.
 const MAX_FILLS: usize = 10;
 
-sixfold_tests::main_on_one_thread!(no_sample_faults);
+sixfold_tests::main_on_one_thread!(
+    no_sample_faults,
+    other_policies_are_refused_while_one_is_active,
+);
 
 fn no_sample_faults() {
-    let heap = pages::set_policy(Policy::Kept);
+    let guard = HeapGuard::acquire(Policy::Kept).expect("the only guard");
+    let heap = guard.report();
     if heap.policy != Policy::Kept || !heap.counts_faults {
         println!("nothing to test on this platform: {heap:?}");
         return;
     }
     freed_pages_are_kept_until_they_are_returned();
-    for (frequency, seconds) in [(10, 2), (32, 3), (100, 8)] {
-        measure_again(seconds, |budget| {
-            no_sample_of_a_study_faults(frequency, budget)
-        });
+    for frequency in [10, 32, 100] {
+        measure_again(|| no_sample_of_a_study_faults(frequency));
     }
-    measure_again(3, no_sample_of_a_pick_faults);
-    assert_eq!(pages::set_policy(Policy::System).policy, Policy::System);
+    measure_again(no_sample_of_a_pick_faults);
+    drop(guard);
+}
+
+fn other_policies_are_refused_while_one_is_active() {
+    let study_mesh = StudyMesh::new("cube", shapes::cube());
+    let guard = HeapGuard::acquire(Policy::System).expect("the only guard");
+    let expected = HeapGuard::acquire(Policy::Kept).expect_err("another policy");
+    let refused = |error: StudyError| {
+        assert_eq!(error, StudyError::HeapPolicy(expected));
+    };
+    let settings = Settings::default();
+    let never = AtomicBool::new(false);
+    let report = study(&study_mesh, &settings, &never, &mut |_| ());
+    refused(report.expect_err("another policy"));
+    let settings = pick_settings();
+    let meshes = std::slice::from_ref(&study_mesh);
+    match pick(meshes, &settings, &never, &mut |_, _| ()) {
+        Err(PickError::Study(error)) => refused(error),
+        other => panic!("{other:?}"),
+    }
+    let backend = Backend::find("half-edge").expect("a structure");
+    let runner = || BackendRunner::new(&backend, &study_mesh.polygons);
+    refused(runner().err().expect("another policy"));
+    drop(guard);
+
+    let runner = runner().expect("no guard is left");
+    assert_eq!(
+        HeapGuard::acquire(Policy::System).err().map(|e| e.active),
+        Some(Policy::Kept)
+    );
+    drop(runner);
+    drop(HeapGuard::acquire(Policy::System).expect("the runner has ended"));
 }
 
 /// The result of a measurement.
@@ -51,34 +92,28 @@ enum Outcome {
     NoFault,
     /// The measurement returned freed pages to the kernel, because little memory was free.
     LittleMemory,
-    TooFewSamples,
     Faults(String),
 }
 
-/// Calls `measure` with a budget of `seconds`. Doubles the budget until there are enough samples
-/// without faults.
-fn measure_again(seconds: u64, measure: impl Fn(Duration) -> Outcome) {
-    let mut last = Outcome::TooFewSamples;
-    for times in [1, 2, 4, 8, 16] {
-        last = measure(Duration::from_secs(times * seconds));
-        match &last {
+/// Calls `measure` until there is no fault.
+fn measure_again(measure: impl Fn() -> Outcome) {
+    let mut last = None;
+    for _ in 0..MAX_MEASUREMENTS {
+        match measure() {
             Outcome::NoFault => return,
             Outcome::LittleMemory => {
                 println!("pages were not kept, because little memory is free");
                 return;
             }
-            Outcome::TooFewSamples => {}
-            Outcome::Faults(message) => println!("measured again: {message}"),
+            Outcome::Faults(message) => {
+                println!("measured again: {message}");
+                last = Some(message);
+            }
         }
     }
-    match last {
-        Outcome::Faults(message) => {
-            let added = faults_without_allocation();
-            assert!(added > 0, "{message}");
-            println!("nothing to test: {added} faults in a loop that allocates nothing");
-        }
-        _ => panic!("too few samples in the longest budget"),
-    }
+    let added = faults_without_allocation();
+    assert!(added > 0, "{last:?}");
+    println!("nothing to test: {added} faults in a loop that allocates nothing");
 }
 
 /// Returns the number of page faults in a loop over a block of memory that is already in use.
@@ -141,13 +176,12 @@ fn freed_pages_are_kept_until_they_are_returned() {
     assert!(fills_without_faults(), "kept again");
 }
 
-/// Measures a study. More than 20 samples are enough.
-fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> Outcome {
+fn no_sample_of_a_study_faults(frequency: usize) -> Outcome {
     let polygons = shapes::geodesic(frequency).expect("a sphere");
     let study_mesh = StudyMesh::new("sphere", polygons);
     let settings = Settings {
         backends: STRUCTURES.map(str::to_owned).to_vec(),
-        budget,
+        effort: Effort::Rounds(ROUNDS),
         ..Settings::default()
     };
     let report = study(&study_mesh, &settings, &AtomicBool::new(false), &mut |_| ());
@@ -173,25 +207,14 @@ fn no_sample_of_a_study_faults(frequency: usize, budget: Duration) -> Outcome {
         assert!(row.first_faults > Some(0), "{row:?}");
     }
     let faces = report.mesh.facts.faces;
-    println!("{faces} faces, {budget:?}: no fault in {samples} samples");
-    match samples > 20 {
-        true => Outcome::NoFault,
-        false => Outcome::TooFewSamples,
-    }
+    println!("{faces} faces: no fault in {samples} samples");
+    assert!(samples >= report.results.len() * ROUNDS.get() as usize);
+    Outcome::NoFault
 }
 
-fn no_sample_of_a_pick_faults(budget: Duration) -> Outcome {
+fn no_sample_of_a_pick_faults() -> Outcome {
     let study_mesh = StudyMesh::new("sphere", shapes::geodesic(24).expect("a sphere"));
-    let settings = PickSettings {
-        workload: built_in("remeshing").expect("a built-in workload"),
-        backends: STRUCTURES.map(str::to_owned).to_vec(),
-        extra: Vec::new(),
-        needs: Vec::new(),
-        max_memory: None,
-        budget,
-        seed: 1,
-        heap: Policy::Kept,
-    };
+    let settings = pick_settings();
     let never = AtomicBool::new(false);
     let report = pick(&[study_mesh], &settings, &never, &mut |_, _| ());
     let report = report.expect("all four can hold the mesh");
@@ -199,9 +222,7 @@ fn no_sample_of_a_pick_faults(budget: Duration) -> Outcome {
     if !keeps_pages(heap) {
         return Outcome::LittleMemory;
     }
-    if report.preliminary {
-        return Outcome::TooFewSamples;
-    }
+    assert!(!report.preliminary);
     for ranked in &report.ranking {
         let faults = ranked.faults.expect("page faults are counted");
         if faults > 0 {
@@ -210,4 +231,17 @@ fn no_sample_of_a_pick_faults(budget: Duration) -> Outcome {
         assert!(ranked.first_build_ns > Some(0.0), "{}", ranked.backend);
     }
     Outcome::NoFault
+}
+
+fn pick_settings() -> PickSettings {
+    PickSettings {
+        workload: built_in("remeshing").expect("a built-in workload"),
+        backends: STRUCTURES.map(str::to_owned).to_vec(),
+        extra: Vec::new(),
+        needs: Vec::new(),
+        max_memory: None,
+        effort: Effort::Rounds(ROUNDS),
+        seed: 1,
+        heap: Policy::Kept,
+    }
 }

@@ -11,9 +11,9 @@ use sixfold::{
     repeat_for_structures, shapes,
 };
 use sixfold_study::{
-    Agreement, Backend, BackendRunner, EditPass, Editor, Effort, MachineClock, Need, Operation, PickReport,
-    PickSettings, Policy, Refiner, Series, Settings, SingleEdit, Standing, StudyError, StudyMesh,
-    SubdivisionJob, Way, built_in, inspect, pick, study,
+    Agreement, Backend, BackendRunner, EditPass, Editor, Effort, MachineClock, Need, Operation,
+    PickReport, PickSettings, Policy, Refiner, Series, Settings, SingleEdit, Standing, StudyError,
+    StudyMesh, SubdivisionJob, Way, built_in, inspect, pick, study,
 };
 
 // The conformance suite uses this file too; see ARCHITECTURE.md.

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use sixfold_study::{Policy, Progress, pages};
+use sixfold_study::{HeapGuard, Policy, Progress};
 
 use crate::output::exit_without_drafts;
 use crate::text::{print_stderr, sanitize};
@@ -209,7 +209,10 @@ pub(crate) fn exit_on_interrupt() {
 /// The policy `heap` is applied first: the handler starts a thread, and glibc reads the number of
 /// heaps when the first thread starts.
 pub(crate) fn interrupt_flag(heap: Policy) -> Arc<AtomicBool> {
-    pages::set_policy(heap);
+    // No policy is active yet. If one were, the measurement would report the conflict.
+    if let Ok(guard) = HeapGuard::acquire(heap) {
+        guard.hold_until_exit();
+    }
     /// The exit code that shells use for an interrupted program.
     const SIGINT_CODE: i32 = 130;
     let flag = Arc::new(AtomicBool::new(false));

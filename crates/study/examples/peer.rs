@@ -20,7 +20,7 @@ use sixfold::io::read_obj;
 use sixfold::subdivision::{BoundaryRule, Scheme};
 use sixfold::{Creases, PolygonMesh};
 use sixfold_study::{
-    Backend, BackendRunner, MachineClock, Operation, Policy, SubdivisionJob, Time, Way, pages,
+    Backend, BackendRunner, HeapGuard, MachineClock, Operation, Policy, SubdivisionJob, Time, Way,
     timed,
 };
 
@@ -95,7 +95,7 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     let (polygons, _) = read_obj(path).map_err(|e| e.to_string())?.into_polygons();
     let mesh = path.file_stem().unwrap_or_default().to_string_lossy();
     let peer = format!("sixfold {}", arguments.backend);
-    pages::set_policy(Policy::Kept);
+    let _heap = HeapGuard::acquire(Policy::Kept).map_err(|e| e.to_string())?;
     let backend = find(&arguments.backend)?;
     let mut runner = BackendRunner::new(&backend, &polygons).map_err(|e| e.to_string())?;
     let wanted = |name: &str| {

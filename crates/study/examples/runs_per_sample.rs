@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::process::ExitCode;
 
 use sixfold::{Facts, PolygonMesh, shapes};
-use sixfold_study::{Backend, Clock, MachineClock, Operation, Policy, Series, pages};
+use sixfold_study::{Backend, Clock, HeapGuard, MachineClock, Operation, Policy, Series};
 use sixfold_workload::{Access, Draw, Job, Route, Schedule, Task, built_in, prepare_mix};
 
 const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corner-table"];
@@ -37,7 +37,7 @@ const PASSES: usize = 5;
 type Cell = (usize, usize, usize, String);
 
 fn main() -> ExitCode {
-    pages::set_policy(Policy::Kept);
+    let _heap = HeapGuard::acquire(Policy::Kept).expect("the only guard");
     let rounds = std::env::args().nth(1).and_then(|text| text.parse().ok());
     let rounds: usize = rounds.unwrap_or(21);
     let clock = MachineClock::start();

@@ -16,6 +16,15 @@
 //! JSON, written as CSV, and merged with other documents. [`compare`] compares two documents. A
 //! [`Pool`] has the means over the studies of many meshes.
 //!
+//! # Effect on the process
+//!
+//! [`study()`], [`orders`], [`growth`], [`neighbours`], [`pick`], [`pick_for_programs`],
+//! [`serve_program`] and [`BackendRunner`] change the settings of malloc for the whole process while
+//! they measure, so that freed pages stay in the process ([`Policy::Kept`]). The settings are
+//! restored at the end; [`HeapGuard`] lists what is restored. Two measurements at the same time must
+//! have the same [`Policy`]: the second one otherwise returns a [`HeapPolicyConflict`]. If memory
+//! runs out in one of them, none keeps pages any longer, and all results have the reason.
+//!
 //! The file `reports/SCHEMA.md` explains the values in the document. This crate has no command line
 //! and prints nothing. The measuring functions report the progress to a closure, and stop early
 //! when a flag is set.
@@ -80,7 +89,9 @@ pub use results::rows::{
 pub use results::run::{Run, RunSettings, Start as RunStart};
 pub use runner::{BackendRun, BackendRunner};
 pub use sanitize::sanitize;
-pub use sixfold_workload::pages::{self, HeapReport, Policy, UnknownPolicy};
+pub use sixfold_workload::pages::{
+    self, HeapGuard, HeapPolicyConflict, HeapReport, Policy, UnknownPolicy,
+};
 pub use sixfold_workload::{
     Access, Action, Amount, EditPlaceError, OwnBytes, OwnData, Part, Workload, WorkloadError,
     built_in, built_ins,

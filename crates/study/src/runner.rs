@@ -12,20 +12,22 @@ use crate::refusal::Candidate;
 use sixfold_workload::Backend;
 use sixfold_workload::Draw;
 use sixfold_workload::Operation;
-use sixfold_workload::pages::{self, Policy};
+use sixfold_workload::pages::{self, HeapGuard, Policy};
 use sixfold_workload::{Clock, Time};
 use sixfold_workload::{Series, Task, TimedBackend, exceeds_second_level};
 
 /// A built backend that can be timed alone, with the same code as in a study.
 ///
-/// Freed memory pages stay with the process if the allocator supports this.
+/// Freed memory pages stay with the process if the allocator supports this. The policy applies to
+/// the whole process, and ends when the last runner or other measurement in this process ends; see
+/// [`pages`](crate::pages#effect-on-the-process).
 pub struct BackendRunner<'a> {
     subject: Box<dyn TimedBackend + 'a>,
     /// The last operation, and the numbers of its untimed and timed runs per sample.
     last: Option<(Operation, [u32; 2])>,
     detector: DisturbanceDetector<'static>,
-    /// Whether freed pages stay with the process.
-    kept: bool,
+    /// The policy that keeps freed pages.
+    heap: HeapGuard,
     /// The number of samples taken.
     samples: usize,
 }
@@ -60,9 +62,10 @@ impl<'a> BackendRunner<'a> {
     ///
     /// # Errors
     ///
-    /// Returns [`StudyError::NoneHolds`] if the structure cannot hold the mesh.
+    /// Returns [`StudyError::NoneHolds`] if the structure cannot hold the mesh, and
+    /// [`StudyError::HeapPolicy`] if another heap policy is active in this process.
     pub fn new(backend: &Backend, polygons: &'a PolygonMesh) -> Result<Self, StudyError> {
-        let kept = pages::set_policy(Policy::Kept).policy == Policy::Kept;
+        let heap = HeapGuard::acquire(Policy::Kept)?;
         let draw: Option<&Draw> = None;
         let facts = Facts::from_polygons(polygons);
         let candidate = Candidate::with_facts(polygons, &facts);
@@ -75,7 +78,7 @@ impl<'a> BackendRunner<'a> {
             subject,
             last: None,
             detector: DisturbanceDetector::new(BUDGET_NS, reference_work()),
-            kept,
+            heap,
             samples: 0,
         })
     }
@@ -105,13 +108,13 @@ impl<'a> BackendRunner<'a> {
             subject, detector, ..
         } = self;
         let sample = || run_times(subject.as_mut(), operation, runs, clock);
-        let kept = self.kept;
+        let kept = self.heap.keeps_pages();
         let verdict = |run: &BackendRun| Verdict::on_faults(run.time, kept);
         detector.take_sample(clock, sample, verdict).value
     }
 
     fn rebuild(&mut self) {
-        if self.kept {
+        if self.heap.keeps_pages() {
             pages::release_pages();
             pages::reserve_in_random_order(2 * self.subject.bytes());
         }
@@ -119,7 +122,7 @@ impl<'a> BackendRunner<'a> {
         let gap: Vec<u8> = Vec::with_capacity(self.samples % GAPS * GAP_STEP);
         self.subject.rebuild();
         drop(black_box(gap));
-        if self.kept {
+        if self.heap.keeps_pages() {
             pages::reserve(self.subject.bytes());
         }
     }

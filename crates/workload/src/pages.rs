@@ -7,25 +7,36 @@
 //! runs after a warm-up have no page faults. [`release_pages`] returns the freed pages to the
 //! kernel, to measure a first run.
 //!
+//! # Effect on the process
+//!
+//! A policy applies to the whole process, also to threads that measure nothing. A [`HeapGuard`]
+//! holds the policy, and all measurements of this crate and of `sixfold-study` acquire a guard. When
+//! the last guard is dropped, malloc gets [its settings](HeapGuard#settings-that-are-restored)
+//! back. While a guard exists, a guard with another policy is refused ([`HeapPolicyConflict`]).
+//!
 //! [`Policy::Kept`] is implemented for the GNU C library with `mallopt`. With this policy, the
 //! allocator maps no block separately, never shrinks the heap, and uses one heap for all threads. A
-//! program must set the policy before it starts its first thread, because the C library reads the
-//! number of heaps only once. If a thread has its own heap, pages of this heap stay in the process,
-//! and [`release_pages`] returns only some of these pages.
+//! program must acquire the guard before it starts its first thread, because the C library reads
+//! the number of heaps only once. If a thread has its own heap, pages of this heap stay in the
+//! process, and [`release_pages`] returns only some of these pages.
 //!
 //! On other platforms, and with other allocators, the active policy is [`Policy::System`].
-//! [`set_policy`] returns the active policy.
+//! [`HeapGuard::report`] returns the active policy.
+
+mod guard;
 
 use std::fmt;
 use std::hint::black_box;
 use std::mem::MaybeUninit;
 use std::str::FromStr;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
+
+pub use guard::{HeapGuard, HeapPolicyConflict};
 
 /// A rule for the memory pages of freed blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
@@ -94,91 +105,20 @@ pub struct HeapReport {
     pub counts_faults: bool,
 }
 
-/// Applies the policy `requested` to the whole program and returns the active policy.
-/// [`Policy::Kept`] becomes active only if the allocator supports the policy and a test block
-/// confirms that pages are kept.
-pub fn set_policy(requested: Policy) -> HeapReport {
-    let reason = match requested {
-        Policy::System => {
-            stop_keeping();
-            None
-        }
-        Policy::Kept => keep().err(),
-    };
-    HeapReport {
-        policy: match (requested, &reason) {
-            (Policy::Kept, None) => Policy::Kept,
-            _ => Policy::System,
-        },
-        reason,
-        allocator: platform::allocator(),
-        page_bytes: page_bytes(),
-        transparent_huge_pages: transparent_huge_pages(),
-        counts_faults: counts_faults(),
-    }
-}
-
-fn keep() -> Result<(), String> {
-    if !platform::is_glibc_allocator() {
-        return Err(
-            "keeping pages needs the glibc allocator, but this program uses another allocator"
-                .into(),
-        );
-    }
-    KEEPING.store(true, Ordering::Relaxed);
-    if !platform::keep() {
-        stop_keeping();
-        return Err("the allocator refused to keep pages".into());
-    }
-    // Allocate and free a block twice. By default, the pages are returned in between.
-    let allocate = || {
-        let mut block = untouched_block(PROBE_BYTES).unwrap_or_default();
-        pages_of(&mut block).for_each(|page| {
-            page[0].write(1);
-        });
-        black_box(block);
-    };
-    allocate();
-    let before = faults();
-    allocate();
-    match (before, faults()) {
-        (Some(before), Some(after)) if after - before > MAX_PROBE_FAULTS => {
-            stop_keeping();
-            Err(
-                "the allocator accepted the option to keep pages, but returned pages to the system"
-                    .into(),
-            )
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Whether pages are kept.
-static KEEPING: AtomicBool = AtomicBool::new(false);
-
-/// Undoes [`keep`] and returns the kept pages to the kernel.
-fn stop_keeping() {
-    if KEEPING.swap(false, Ordering::Relaxed) {
-        platform::restore();
-        platform::release_pages();
-    }
-}
-
-/// Size of the block that tests whether pages are kept, in bytes.
-const PROBE_BYTES: usize = 16 << 20;
-/// Maximum number of page faults of the test block if pages are kept.
-const MAX_PROBE_FAULTS: u64 = 64;
 /// Minimum page size of all platforms, in bytes.
 const MIN_PAGE_BYTES: usize = 4096;
 /// Size of the first blocks that are allocated to find freed blocks, in bytes.
 const MAX_BLOCK_BYTES: usize = 1 << 20;
 
 /// Touches the pages of all freed blocks, and the pages of one new block of `bytes` bytes. Later
-/// allocations can then use these pages without page faults. The function is useful only if freed
-/// pages are kept.
+/// allocations can then use these pages without page faults. Does nothing if freed pages are not
+/// kept.
 ///
-/// The time is O(`bytes` + bytes of freed blocks), plus one walk over the list of freed blocks per
-/// MiB.
+/// At most 4 GiB of freed blocks are touched, because the C library counts their bytes modulo 2³².
+///
+/// # Complexity
+///
+/// O(`bytes` + bytes of freed blocks), plus one walk over the list of freed blocks per MiB.
 pub fn reserve(bytes: usize) {
     touch_free_pages(bytes, |_| {});
 }
@@ -197,28 +137,48 @@ pub fn reserve_in_random_order(bytes: usize) {
 type FreePage<'b> = &'b mut [MaybeUninit<u8>];
 
 /// Touches the pages of a block of `bytes` and of all freed blocks, after `arrange` has sorted the
-/// pages.
+/// pages. Does nothing if freed pages are not kept.
 fn touch_free_pages(bytes: usize, arrange: impl FnOnce(&mut [FreePage<'_>])) {
-    // Hold all blocks at the same time, so that no block is allocated twice. Start with large
-    // blocks, because small blocks fit anywhere.
-    let mut blocks: Vec<Vec<u8>> = untouched_block(bytes).into_iter().collect();
+    if !guard::is_keeping() {
+        return;
+    }
+    let mut blocks: Vec<_> = untouched_block(bytes).into_iter().collect();
+    let free_bytes = platform::free_bytes();
+    blocks.append(&mut free_blocks(free_bytes, platform::heap_bytes));
+    touch(&mut blocks, arrange);
+}
+
+/// Allocates blocks of `free_bytes` in total at most, as long as the heap does not grow. All blocks
+/// exist at the same time, so that no memory is part of two blocks. The blocks become smaller and
+/// smaller, because small blocks fit anywhere.
+fn free_blocks(free_bytes: usize, heap_bytes: impl Fn() -> Option<u32>) -> Vec<Vec<u8>> {
+    let mut blocks = Vec::new();
+    let mut left = free_bytes;
     let mut size = MAX_BLOCK_BYTES;
-    let mut heap = platform::heap_bytes();
+    let mut heap = heap_bytes();
     while size >= MIN_PAGE_BYTES && heap.is_some() {
-        let block = untouched_block(size);
-        let now = platform::heap_bytes();
+        let block = (size <= left).then(|| untouched_block(size)).flatten();
+        let now = heap_bytes();
         match block {
-            Some(block) if now == heap => blocks.push(block),
+            Some(block) if now == heap => {
+                blocks.push(block);
+                left -= size;
+            }
             _ => size /= 2,
         }
         heap = now;
     }
+    blocks
+}
+
+/// Touches all pages of `blocks` after `arrange` has sorted the pages.
+fn touch(blocks: &mut [Vec<u8>], arrange: impl FnOnce(&mut [FreePage<'_>])) {
     let mut pages: Vec<_> = blocks.iter_mut().flat_map(pages_of).collect();
     arrange(&mut pages);
     for page in pages {
         page[0].write(1);
     }
-    black_box(&mut blocks);
+    black_box(blocks);
 }
 
 fn pages_of(block: &mut Vec<u8>) -> impl Iterator<Item = FreePage<'_>> {
@@ -336,6 +296,12 @@ mod platform {
     const ATTEMPTS: usize = 16;
     /// Minimum growth of the heap, in bytes.
     const STEP: libc::c_int = 1 << 20;
+    /// Maximum number of heaps for each processor, by default.
+    const HEAPS_PER_CORE: usize = if cfg!(target_pointer_width = "32") {
+        2
+    } else {
+        8
+    };
 
     /// Sets the options of `Policy::Kept`. Returns whether the allocator
     /// accepts them.
@@ -349,10 +315,13 @@ mod platform {
         set(&options)
     }
 
-    /// Sets the thresholds that glibc reaches by itself after large blocks were freed. After this
-    /// call, glibc no longer adapts the thresholds. All threads still share one heap.
+    /// Sets the defaults, and the thresholds that glibc reaches by itself after large blocks were
+    /// freed. After this call, glibc no longer adapts the thresholds.
     pub(super) fn restore() {
+        let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get());
+        let heaps = libc::c_int::try_from(cores * HEAPS_PER_CORE).unwrap_or(libc::c_int::MAX);
         let options = [
+            (libc::M_ARENA_MAX, heaps),
             (libc::M_MMAP_MAX, 65536),
             (libc::M_MMAP_THRESHOLD, 32 << 20),
             (libc::M_TRIM_THRESHOLD, 64 << 20),
@@ -384,6 +353,11 @@ mod platform {
     /// Returns the size of the heap in bytes, modulo 2³².
     pub(super) fn heap_bytes() -> Option<u32> {
         Some(info().arena.cast_unsigned())
+    }
+
+    /// Returns the number of bytes in freed blocks of the heap, modulo 2³².
+    pub(super) fn free_bytes() -> usize {
+        info().fordblks.cast_unsigned() as usize
     }
 
     /// Returns the number of allocated bytes, modulo 2³².
@@ -429,6 +403,10 @@ mod platform {
         None
     }
 
+    pub(super) fn free_bytes() -> usize {
+        0
+    }
+
     pub(super) fn is_glibc_allocator() -> bool {
         false
     }
@@ -453,8 +431,9 @@ mod tests {
 
     #[test]
     fn every_page_of_a_block_is_touched_once_in_the_arranged_order() {
+        let mut blocks: Vec<_> = untouched_block(64 * MIN_PAGE_BYTES).into_iter().collect();
         let mut touched = 0;
-        touch_free_pages(64 * MIN_PAGE_BYTES, |pages| {
+        touch(&mut blocks, |pages| {
             touched = pages.len();
             let mut starts: Vec<_> = pages.iter().map(|page| page.as_ptr()).collect();
             starts.sort_unstable();
@@ -462,7 +441,31 @@ mod tests {
             assert_eq!(starts.len(), touched, "no page twice");
             pages.reverse();
         });
+        assert_eq!(touched, blocks[0].capacity().div_ceil(MIN_PAGE_BYTES));
         assert!(touched >= 64, "{touched}");
+    }
+
+    #[test]
+    fn blocks_end_at_the_free_bytes_of_a_heap_that_never_grows() {
+        // By default, glibc maps such blocks, so that they leave the size of the heap unchanged.
+        let taken = |free_bytes| {
+            let blocks = free_blocks(free_bytes, || Some(1 << 20));
+            blocks.iter().map(Vec::capacity).sum::<usize>()
+        };
+        let free_bytes = 5 * MAX_BLOCK_BYTES + 3 * MIN_PAGE_BYTES;
+        assert_eq!(taken(free_bytes), free_bytes);
+        assert_eq!(taken(MIN_PAGE_BYTES - 1), 0);
+        assert_eq!(free_blocks(free_bytes, || None).len(), 0, "an unknown heap");
+    }
+
+    #[test]
+    fn blocks_end_when_the_heap_grows() {
+        let sizes = std::cell::Cell::new(0);
+        let growing = || {
+            sizes.set(sizes.get() + 1);
+            Some(sizes.get())
+        };
+        assert_eq!(free_blocks(usize::MAX, growing).len(), 0);
     }
 
     #[test]

@@ -1,11 +1,12 @@
 //! Shared code of the programs that make reports.
 
-use sixfold_study::{Policy, Run, RunSettings, pages};
+use sixfold_study::{HeapGuard, Policy, Run, RunSettings};
 
 /// Describes the machine, and keeps freed memory pages from now on.
 pub(crate) fn start() -> Run {
+    let heap = HeapGuard::acquire(Policy::Kept).expect("the only guard");
     let mut run = Run::start(RunSettings::default());
-    run.environment.heap = Some(pages::set_policy(Policy::Kept));
+    run.environment.heap = Some(heap.hold_until_exit());
     run
 }
 

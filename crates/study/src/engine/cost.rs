@@ -97,7 +97,7 @@ fn engine_cost() {
         counts,
         skewed: false,
         machine: &clock,
-        memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0),
+        memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0).expect("the same policy"),
         effort: Duration::from_secs(20).into(),
         named: false,
         seed: 1,

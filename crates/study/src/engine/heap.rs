@@ -1,7 +1,7 @@
 //! The heap of the measurements, and protection against running out of memory.
 
 use serde::{Deserialize, Serialize};
-use sixfold_workload::pages::{self, HeapReport, Policy};
+use sixfold_workload::pages::{self, HeapGuard, HeapPolicyConflict, HeapReport, Policy};
 use sixfold_workload::{CacheFlusher, Start};
 use sysinfo::{MemoryRefreshKind, System};
 
@@ -52,27 +52,39 @@ pub struct CachesReport {
     pub defeats_level: Option<u8>,
 }
 
+/// The heap of a measurement. The heap policy ends when this value is dropped.
 pub(crate) struct Memory {
-    /// The active policy.
-    pub(crate) heap: HeapReport,
+    guard: HeapGuard,
     flusher: Option<CacheFlusher>,
 }
 
 impl Memory {
-    /// Sets the heap policy. If keeping pages could use up the free memory, sets the system's
-    /// policy. `needed` is the approximate peak memory of the measurements in bytes.
-    pub(crate) fn start(policy: Policy, state: CacheState, needed: u64) -> Self {
-        let heap = match shortage_reason(needed, free_memory()).filter(|_| policy == Policy::Kept) {
-            None => pages::set_policy(policy),
-            reason => HeapReport {
-                reason,
-                ..pages::set_policy(Policy::System)
-            },
-        };
-        Self {
-            heap,
-            flusher: (state == CacheState::Cold).then(CacheFlusher::new),
+    /// Applies the heap policy to the whole process. If keeping pages could use up the free memory,
+    /// no measurement in this process keeps pages from now on. `needed` is the approximate peak
+    /// memory of the measurements in bytes.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if another policy is active in this process.
+    pub(crate) fn start(
+        policy: Policy,
+        state: CacheState,
+        needed: u64,
+    ) -> Result<Self, HeapPolicyConflict> {
+        let guard = HeapGuard::acquire(policy)?;
+        if let Some(reason) = shortage_reason(needed, free_memory()) {
+            guard.stop_keeping(reason);
         }
+        Ok(Self {
+            guard,
+            flusher: (state == CacheState::Cold).then(CacheFlusher::new),
+        })
+    }
+
+    /// Returns the active policy. If keeping pages was stopped since the start, the report has the
+    /// reason.
+    pub(crate) fn heap(&self) -> HeapReport {
+        self.guard.report()
     }
 
     pub(crate) fn start_of_runs(&self) -> Start<'_> {
@@ -88,7 +100,7 @@ impl Memory {
 
     /// Returns whether freed pages are kept. Samples then have no page faults.
     pub(crate) fn keeps_pages(&self) -> bool {
-        self.heap.policy == Policy::Kept
+        self.guard.keeps_pages()
     }
 
     /// Touches the pages of freed blocks, so that later allocations cause no page faults. Also
@@ -133,14 +145,13 @@ impl Memory {
         }
     }
 
-    /// Stops keeping pages if memory runs out.
-    pub(crate) fn check_free_memory(&mut self) {
+    /// Stops keeping pages in the whole process if memory runs out.
+    pub(crate) fn check_free_memory(&self) {
         if !self.keeps_pages() {
             return;
         }
         if let Some(free) = free_memory().filter(|&free| free < min_free_bytes()) {
-            self.heap = pages::set_policy(Policy::System);
-            self.heap.reason = Some(format!(
+            self.guard.stop_keeping(format!(
                 "only {} of memory were free while pages were kept, so later samples use the system's heap",
                 shown(free)
             ));
@@ -217,9 +228,10 @@ mod tests {
 
     #[test]
     fn cold_caches_are_filled_with_other_data() {
-        let memory = Memory::start(Policy::Kept, CacheState::Cold, 0);
+        let start = |state| Memory::start(Policy::Kept, state, 0).expect("the same policy");
+        let memory = start(CacheState::Cold);
         assert!(memory.is_cold() && memory.caches().written_bytes > 0);
-        let memory = Memory::start(Policy::Kept, CacheState::Warm, 0);
+        let memory = start(CacheState::Warm);
         assert!(!memory.is_cold() && memory.caches().written_bytes == 0);
     }
 }

@@ -13,7 +13,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use sixfold::{Facts, PolygonMesh, QueryCost};
-use sixfold_workload::pages::Policy;
+use sixfold_workload::pages::{HeapGuard, Policy};
 use sixfold_workload::{
     Contestant, Job, MachineClock, Operation, Outcome, Run, Series, Suite, Task, Time, TimedBackend,
 };
@@ -137,8 +137,8 @@ struct ChildRequest {
 ///
 /// # Errors
 ///
-/// Returns an error if the memory limit cannot be set, if a line is not a request, or if `output`
-/// cannot be written.
+/// Returns an error if the memory limit cannot be set, if another heap policy is active in this
+/// process, if a line is not a request, or if `output` cannot be written.
 pub fn serve_program(
     suite: &Suite,
     task: &ChildTask,
@@ -147,7 +147,7 @@ pub fn serve_program(
     mut output: impl Write,
 ) -> io::Result<()> {
     limit_memory(task.memory_limit)?;
-    sixfold_workload::pages::set_policy(task.heap);
+    let _heap = HeapGuard::acquire(task.heap).map_err(io::Error::other)?;
     let mut answer = |value: serde_json::Value| {
         writeln!(output, "{value}")?;
         output.flush()

@@ -210,9 +210,13 @@ impl LabFinding for GrowthReport {
 ///
 /// Setting `stop` to true ends the measurement early, with a report of the finished sizes.
 ///
+/// The heap policy of `settings` applies to the whole process until the function returns; see
+/// [`pages`](crate::pages#effect-on-the-process).
+///
 /// # Errors
 ///
 /// Returns an error if the settings are invalid or if no requested backend can hold the shape.
+/// Also returns an error if another heap policy is active in this process.
 pub fn growth(
     settings: &GrowthSettings,
     stop: &AtomicBool,
@@ -244,7 +248,8 @@ pub(crate) fn growth_on(
         shortest_ns: None,
     };
     let study = &settings.study;
-    let mut memory = Memory::start(study.heap, study.caches, growth_bytes(settings)?);
+    let mut memory = Memory::start(study.heap, study.caches, growth_bytes(settings)?)
+        .map_err(StudyError::from)?;
     let time = SizeBudgets::new(&plan.sizes, study.effort, clock);
     let mut sizes: Vec<SizeReport> = Vec::new();
     let mut meshes = Vec::new();

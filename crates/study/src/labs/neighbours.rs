@@ -295,10 +295,14 @@ pub fn neighbour_indices() -> [&'static str; 5] {
 /// the first queries, and its time is scaled. Setting `stop` to true ends the measurement after the
 /// current sample, with a report of the finished part.
 ///
+/// The heap policy of `settings` applies to the whole process until the function returns; see
+/// [`pages`](crate::pages#effect-on-the-process).
+///
 /// # Errors
 ///
 /// Returns an error if the name of an index is unknown, if the mesh has no faces, or if a position
 /// is not finite.
+/// Also returns an error if another heap policy is active in this process.
 pub fn neighbours(
     study_mesh: &StudyMesh,
     settings: &NeighboursSettings,
@@ -342,7 +346,8 @@ pub(crate) fn neighbours_on(
     });
     let backends: Vec<IndexReport> = backends.collect();
     let needed: usize = backends.iter().map(|index| index.bytes).sum();
-    let mut memory = Memory::start(settings.heap, CacheState::Warm, needed as u64);
+    let mut memory =
+        Memory::start(settings.heap, CacheState::Warm, needed as u64).map_err(StudyError::from)?;
     let again = |first: usize| {
         build(&chosen[first])
             .ok()

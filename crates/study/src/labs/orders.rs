@@ -205,10 +205,14 @@ pub(crate) fn chosen_operations(settings: &Settings) -> Vec<Operation> {
 /// Setting `stop` to true ends the measurement after the current sample, with a report of the
 /// finished part.
 ///
+/// The heap policy of `settings` applies to the whole process until the function returns; see
+/// [`pages`](crate::pages#effect-on-the-process).
+///
 /// # Errors
 ///
 /// Returns an error if the name of a backend is unknown or not unique, if the mesh has no faces, or
 /// if no requested backend can hold the mesh.
+/// Also returns an error if another heap policy is active in this process.
 pub fn orders(
     study_mesh: &StudyMesh,
     settings: &Settings,
@@ -237,7 +241,8 @@ pub(crate) fn orders_on(
     let run = Run::start(RunSettings::of_study(settings));
     let counts = polygons.counts(study_mesh.facts.edges);
     let needed = orders_bytes(study_mesh, settings)?;
-    let mut memory = Memory::start(settings.heap, settings.caches, needed);
+    let mut memory =
+        Memory::start(settings.heap, settings.caches, needed).map_err(StudyError::from)?;
     let skewed = is_skewed(&study_mesh.facts);
     let needs_draw = chosen.iter().any(|b| skewed || scans(b, &operations));
     let meshes = OrderedMeshes::new(polygons, settings.seed, needs_draw);

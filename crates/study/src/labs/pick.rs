@@ -125,10 +125,14 @@ pub enum PickError {
 /// `stop` to true ends the measurement after the current sample, with a report of the finished
 /// part. `progress` is called with the finished part, from 0 to 1, and the current step.
 ///
+/// The heap policy of `settings` applies to the whole process until the function returns; see
+/// [`pages`](crate::pages#effect-on-the-process).
+///
 /// # Errors
 ///
 /// Returns an error if `study_meshes` is empty, if the name of a backend is unknown or not unique,
 /// if a mesh has no faces, or if the workload cannot be run on a mesh.
+/// Also returns an error if another heap policy is active in this process.
 pub fn pick(
     study_meshes: &[StudyMesh],
     settings: &PickSettings,
@@ -161,7 +165,8 @@ pub(crate) fn pick_on(
     let needed = study_meshes
         .iter()
         .map(|study_mesh| needed(study_mesh, settings));
-    let mut memory = Memory::start(settings.heap, CacheState::Warm, needed.max().unwrap_or(0));
+    let mut memory = Memory::start(settings.heap, CacheState::Warm, needed.max().unwrap_or(0))
+        .map_err(StudyError::from)?;
     let timer = Timer::measure(clock);
     let mut outcomes = Vec::new();
     for (i, study_mesh) in study_meshes.iter().enumerate() {

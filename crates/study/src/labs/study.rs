@@ -34,7 +34,7 @@ use sixfold_workload::Backend;
 use sixfold_workload::Draw;
 use sixfold_workload::Operation;
 use sixfold_workload::TimedBackend;
-use sixfold_workload::pages::Policy;
+use sixfold_workload::pages::{HeapPolicyConflict, Policy};
 use sixfold_workload::unknown;
 use sixfold_workload::{MachineClock, Time};
 
@@ -116,6 +116,9 @@ pub enum StudyError {
          mesh that the structure NAME can hold", reasons(.refusals)
     )]
     NoneHolds { refusals: Vec<(String, String)> },
+    /// A measurement with another heap policy is active in this process.
+    #[error(transparent)]
+    HeapPolicy(#[from] HeapPolicyConflict),
 }
 
 fn reasons(refusals: &[(String, String)]) -> String {
@@ -187,11 +190,15 @@ impl Settings {
 /// Setting `stop` to true ends the study after the current sample, with a report of the finished
 /// part. `progress` is called with the current step.
 ///
+/// The heap policy of `settings` applies to the whole process until the function returns; see
+/// [`pages`](crate::pages#effect-on-the-process).
+///
 /// # Errors
 ///
 /// Returns an error if the name of a backend is unknown or not unique, if the mesh has no faces, or
 /// if no selected structure can hold the mesh. Also returns an error if the mesh file for external
 /// programs cannot be written.
+/// Also returns an error if another heap policy is active in this process.
 pub fn study(
     study_mesh: &StudyMesh,
     settings: &Settings,
@@ -221,7 +228,7 @@ pub(crate) fn study_on(
     let run = Run::start(RunSettings::of_study(settings));
     let counts = polygons.counts(study_mesh.facts.edges);
     let needed = needed_bytes(&chosen, &operations, &counts);
-    let mut memory = Memory::start(settings.heap, settings.caches, needed);
+    let mut memory = Memory::start(settings.heap, settings.caches, needed)?;
     let skewed = is_skewed(&study_mesh.facts);
     let draw = chosen
         .iter()
@@ -248,7 +255,7 @@ pub(crate) fn study_on(
     for (external, mesh) in settings.externals.iter().zip(mesh_file.iter().cycle()) {
         let timeout = settings.external_timeout;
         let (report, subject) =
-            external::prepare(external, mesh, &counts, &memory.heap, timeout, stop);
+            external::prepare(external, mesh, &counts, &memory.heap(), timeout, stop);
         backends.push(report);
         programs.extend(subject);
     }

@@ -99,7 +99,7 @@ impl Environment {
 
     pub(crate) fn with_memory(self, memory: &Memory) -> Self {
         Self {
-            heap: Some(memory.heap.clone()),
+            heap: Some(memory.heap()),
             cache_state: Some(memory.caches()),
             ..self
         }

@@ -148,7 +148,7 @@ fn run_trial(
         },
         skewed: limits.skewed,
         machine,
-        memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0),
+        memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0).expect("the same policy"),
         effort: limits.budget.into(),
         named: limits.named,
         seed: 3,

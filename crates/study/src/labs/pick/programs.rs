@@ -84,10 +84,14 @@ impl Default for ProgramSettings {
 /// current sample. `progress` is called with the finished part, from 0 to 1, and the current step.
 /// `finished` is called with the report of each program.
 ///
+/// The heap policy of `settings` applies to the whole process until the function returns; see
+/// [`pages`](crate::pages#effect-on-the-process).
+///
 /// # Errors
 ///
 /// Returns an error if `study_meshes` is empty, if a mesh has no faces, if the name of a structure is
 /// unknown, or if the mesh for child processes cannot be written.
+/// Also returns an error if another heap policy is active in this process.
 pub fn pick_for_programs(
     study_meshes: &[StudyMesh],
     suite: &Suite,
@@ -133,7 +137,7 @@ pub(crate) fn pick_for_programs_on(
     let steps = (programs.len() * study_meshes.len()).max(1);
     // Not a share of the time that is left: a slow program must not exclude structures of the next.
     let longest_run_ns = LONGEST_RUN * settings.effort.limit_ns() / steps as f64;
-    let mut memory = Memory::start(settings.heap, CacheState::Warm, 0);
+    let mut memory = Memory::start(settings.heap, CacheState::Warm, 0).map_err(StudyError::from)?;
     let mut reports = Vec::new();
     for (i, program) in programs.iter().enumerate() {
         let mut outcomes = Vec::new();
