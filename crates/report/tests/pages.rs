@@ -1,14 +1,17 @@
 //! Tests the pages of small studies: their marks show the data, and they load no external
 //! resources.
 
+use std::num::NonZeroU32;
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
 
 use sixfold::shapes;
 use sixfold_report::{Figure, ReportPage};
 use sixfold_study::{
-    Failed, FailureKind, Finding, Operation, Report, Results, Settings, StudyMesh, study,
+    Effort, Failed, FailureKind, Finding, Operation, Report, Results, Settings, StudyMesh, study,
 };
+
+/// Enough rounds for intervals.
+const ROUNDS: NonZeroU32 = NonZeroU32::new(8).expect("above 0");
 
 const NAME_WITH_MARKUP: &str = "<script>alert('a|b')</script>&.obj";
 
@@ -16,7 +19,7 @@ fn report(mesh: &str) -> Report {
     let study_mesh = StudyMesh::new(mesh, shapes::icosahedron());
     let settings = Settings {
         operations: operations(),
-        budget: Duration::from_millis(80),
+        effort: Effort::Rounds(ROUNDS),
         ..Settings::default()
     };
     let report = study(&study_mesh, &settings, &AtomicBool::new(false), &mut |_| ());
@@ -218,7 +221,7 @@ fn groups_of_meshes_have_a_table() {
     let mut all = results(&["a.obj"]);
     let settings = Settings {
         operations: operations(),
-        budget: Duration::from_millis(80),
+        effort: Effort::Rounds(ROUNDS),
         ..Settings::default()
     };
     let grid = StudyMesh::new("b.obj", shapes::triangle_grid(12, 12).expect("small"));

@@ -112,6 +112,22 @@ fn wrong_usage_says_what_is_allowed() {
         (&["study", "mesh.obj", "--operations", "fly"], "vv_smooth"),
         (&["study", "mesh.obj", "--budget", "0s"], "above 0"),
         (&["study", "mesh.obj", "--budget", "soon"], "500ms"),
+        (&["study", "mesh.obj", "--rounds", "0"], "from 1 to"),
+        (&["pick", "mesh.obj", "--rounds", "-3"], "from 1 to"),
+        (&["orders", "mesh.obj", "--rounds", "many"], "whole number"),
+        (&["growth", "--rounds", "2.5"], "whole number"),
+        (
+            &["neighbours", "mesh.obj", "--rounds", "4294967296"],
+            "4294967295",
+        ),
+        (
+            &["study", "mesh.obj", "--rounds", "2", "--budget", "1s"],
+            "cannot be used with",
+        ),
+        (
+            &["growth", "--budget", "1s", "--rounds", "2"],
+            "cannot be used with",
+        ),
         (
             &["study", "mesh.obj", "--json", "no/such/folder.json"],
             "folder.json",
