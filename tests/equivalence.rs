@@ -31,8 +31,9 @@ fn compare_answers(polygons: &PolygonMesh, welded: bool) {
         {
             let (name, expected) = first.get_or_insert_with(|| (M::NAME, got.clone()));
             for (query, answer) in expected.iter() {
-                let mesh = one_line(polygons);
-                assert_eq!(got.get(query), Some(answer), "{query}, {} against {name}, on {mesh}", M::NAME);
+                // The text of the mesh is made only for a failure, because there are many queries.
+                let on = || format!("{query}, {} against {name}, on {}", M::NAME, one_line(polygons));
+                assert_eq!(got.get(query), Some(answer), "{}", on());
             }
             assert_eq!(got.len(), expected.len(), "rings, {} against {name}", M::NAME);
         }
