@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for run in 0..runs {
         let settings = Settings {
             operations: Relation::ALL.map(Operation::Relation).to_vec(),
-            budget: Duration::from_secs(seconds),
+            effort: Duration::from_secs(seconds).into(),
             seed: run as u64 + 1,
             ..Settings::default()
         };

@@ -54,7 +54,8 @@ pub struct CachesReport {
 
 /// The heap of a measurement. The heap policy ends when this value is dropped.
 pub(crate) struct Memory {
-    guard: HeapGuard,
+    /// The policy of this process; `None` on a simulated machine, which has no pages.
+    guard: Option<HeapGuard>,
     flusher: Option<CacheFlusher>,
 }
 
@@ -76,15 +77,34 @@ impl Memory {
             guard.stop_keeping(reason);
         }
         Ok(Self {
-            guard,
+            guard: Some(guard),
             flusher: (state == CacheState::Cold).then(CacheFlusher::new),
         })
+    }
+
+    /// Returns the memory of a simulated machine. The heap of this process stays as it is.
+    #[cfg(test)]
+    pub(crate) fn simulated(state: CacheState) -> Self {
+        Self {
+            guard: None,
+            flusher: (state == CacheState::Cold).then(CacheFlusher::new),
+        }
     }
 
     /// Returns the active policy. If keeping pages was stopped since the start, the report has the
     /// reason.
     pub(crate) fn heap(&self) -> HeapReport {
-        self.guard.report()
+        let simulated = || HeapReport {
+            policy: Policy::Kept,
+            reason: None,
+            allocator: "none".into(),
+            page_bytes: None,
+            transparent_huge_pages: None,
+            counts_faults: false,
+        };
+        self.guard
+            .as_ref()
+            .map_or_else(simulated, HeapGuard::report)
     }
 
     pub(crate) fn start_of_runs(&self) -> Start<'_> {
@@ -100,7 +120,7 @@ impl Memory {
 
     /// Returns whether freed pages are kept. Samples then have no page faults.
     pub(crate) fn keeps_pages(&self) -> bool {
-        self.guard.keeps_pages()
+        self.guard.as_ref().is_some_and(HeapGuard::keeps_pages)
     }
 
     /// Touches the pages of freed blocks, so that later allocations cause no page faults. Also
@@ -134,7 +154,8 @@ impl Memory {
     /// Returns whether enough memory stays free after an allocation of `bytes`. Returns true if the
     /// free memory is unknown.
     pub(crate) fn has_room_for(&self, bytes: u64) -> bool {
-        free_memory().is_none_or(|free| free > min_free_bytes().saturating_add(bytes))
+        self.guard.is_none()
+            || free_memory().is_none_or(|free| free > min_free_bytes().saturating_add(bytes))
     }
 
     /// Returns the pages of freed blocks to the kernel. Allocations then get fresh pages until
@@ -147,11 +168,11 @@ impl Memory {
 
     /// Stops keeping pages in the whole process if memory runs out.
     pub(crate) fn check_free_memory(&self) {
-        if !self.keeps_pages() {
+        let Some(guard) = self.guard.as_ref().filter(|guard| guard.keeps_pages()) else {
             return;
-        }
+        };
         if let Some(free) = free_memory().filter(|&free| free < min_free_bytes()) {
-            self.guard.stop_keeping(format!(
+            guard.stop_keeping(format!(
                 "only {} of memory were free while pages were kept, so later samples use the system's heap",
                 shown(free)
             ));

@@ -4,7 +4,9 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use crate::engine::disturbance::{ReferenceWork, reference_work};
+use crate::engine::heap::{CacheState, Memory};
 use sixfold_core::Counts;
+use sixfold_workload::pages::{HeapPolicyConflict, Policy};
 use sixfold_workload::{Clock, MachineClock, MemorySpeed, TimedBackend};
 
 /// What a lab takes from the machine on which it runs. In tests, this is a simulated machine.
@@ -19,6 +21,14 @@ pub(crate) trait Machine: Sync {
         built: Box<dyn TimedBackend + 'b>,
         counts: &Counts,
     ) -> Box<dyn TimedBackend + 'b>;
+
+    /// Starts the heap and the caches of a measurement, as [`Memory::start`] does.
+    fn start_memory(
+        &self,
+        policy: Policy,
+        state: CacheState,
+        needed: u64,
+    ) -> Result<Memory, HeapPolicyConflict>;
 
     /// Returns the work whose time shows whether other programs disturb the machine.
     fn reference_work(&self) -> ReferenceWork<'_>;
@@ -39,6 +49,15 @@ impl Machine for MachineClock {
         _: &Counts,
     ) -> Box<dyn TimedBackend + 'b> {
         built
+    }
+
+    fn start_memory(
+        &self,
+        policy: Policy,
+        state: CacheState,
+        needed: u64,
+    ) -> Result<Memory, HeapPolicyConflict> {
+        Memory::start(policy, state, needed)
     }
 
     fn reference_work(&self) -> ReferenceWork<'_> {

@@ -11,7 +11,9 @@ use sixfold_workload::{
 };
 
 use crate::engine::disturbance::ReferenceWork;
+use crate::engine::heap::{CacheState, Memory};
 use crate::engine::machine::Machine;
+use sixfold_workload::pages::{HeapPolicyConflict, Policy};
 
 /// One run of a task on a whole mesh.
 #[derive(Clone, Copy, Debug)]
@@ -199,6 +201,15 @@ impl Machine for SimulatedMachine {
         };
         self.work(hosted.cost_ns(Task::Operation(Operation::Build)));
         Box::new(hosted)
+    }
+
+    fn start_memory(
+        &self,
+        _: Policy,
+        state: CacheState,
+        _: u64,
+    ) -> Result<Memory, HeapPolicyConflict> {
+        Ok(Memory::simulated(state))
     }
 
     /// Takes no time, so that no moment counts as disturbed.

@@ -248,7 +248,8 @@ pub(crate) fn growth_on(
         shortest_ns: None,
     };
     let study = &settings.study;
-    let mut memory = Memory::start(study.heap, study.caches, growth_bytes(settings)?)
+    let mut memory = machine
+        .start_memory(study.heap, study.caches, growth_bytes(settings)?)
         .map_err(StudyError::from)?;
     let time = SizeBudgets::new(&plan.sizes, study.effort, clock);
     let mut sizes: Vec<SizeReport> = Vec::new();

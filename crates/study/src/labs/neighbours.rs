@@ -24,7 +24,7 @@ pub use tasks::{SpatialTask, UnknownSpatialTask};
 
 use crate::engine::agreement::compare_checksums;
 use crate::engine::effort::{Budget, Effort};
-use crate::engine::heap::{CacheState, Memory};
+use crate::engine::heap::CacheState;
 use crate::engine::machine::Machine;
 use crate::engine::measure::{Entry, Progress};
 use crate::engine::ranking::{NO_DIFFERENCE, rank, ratio};
@@ -346,8 +346,9 @@ pub(crate) fn neighbours_on(
     });
     let backends: Vec<IndexReport> = backends.collect();
     let needed: usize = backends.iter().map(|index| index.bytes).sum();
-    let mut memory =
-        Memory::start(settings.heap, CacheState::Warm, needed as u64).map_err(StudyError::from)?;
+    let mut memory = machine
+        .start_memory(settings.heap, CacheState::Warm, needed as u64)
+        .map_err(StudyError::from)?;
     let again = |first: usize| {
         build(&chosen[first])
             .ok()

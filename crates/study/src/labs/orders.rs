@@ -23,7 +23,6 @@ pub use effects::{Comparison, Factor, Larger, OrderEffect, StructureEffect};
 use crate::engine::agreement::compare_checksums;
 use crate::engine::control::noise;
 use crate::engine::effort::Budget;
-use crate::engine::heap::Memory;
 use crate::engine::machine::Machine;
 use crate::engine::measure::{Entry, Progress};
 use crate::engine::timer::Timer;
@@ -241,8 +240,9 @@ pub(crate) fn orders_on(
     let run = Run::start(RunSettings::of_study(settings));
     let counts = polygons.counts(study_mesh.facts.edges);
     let needed = orders_bytes(study_mesh, settings)?;
-    let mut memory =
-        Memory::start(settings.heap, settings.caches, needed).map_err(StudyError::from)?;
+    let mut memory = machine
+        .start_memory(settings.heap, settings.caches, needed)
+        .map_err(StudyError::from)?;
     let skewed = is_skewed(&study_mesh.facts);
     let needs_draw = chosen.iter().any(|b| skewed || scans(b, &operations));
     let meshes = OrderedMeshes::new(polygons, settings.seed, needs_draw);

@@ -165,7 +165,8 @@ pub(crate) fn pick_on(
     let needed = study_meshes
         .iter()
         .map(|study_mesh| needed(study_mesh, settings));
-    let mut memory = Memory::start(settings.heap, CacheState::Warm, needed.max().unwrap_or(0))
+    let mut memory = machine
+        .start_memory(settings.heap, CacheState::Warm, needed.max().unwrap_or(0))
         .map_err(StudyError::from)?;
     let timer = Timer::measure(clock);
     let mut outcomes = Vec::new();

@@ -13,7 +13,7 @@ use sixfold_core::Counts;
 use crate::engine::agreement::compare_checksums;
 use crate::engine::control::noise;
 use crate::engine::effort::{Budget, Effort};
-use crate::engine::heap::{CacheState, Memory};
+use crate::engine::heap::CacheState;
 use crate::engine::machine::Machine;
 use crate::engine::measure::{Entry, Progress};
 use crate::engine::ranking::rank;
@@ -228,7 +228,7 @@ pub(crate) fn study_on(
     let run = Run::start(RunSettings::of_study(settings));
     let counts = polygons.counts(study_mesh.facts.edges);
     let needed = needed_bytes(&chosen, &operations, &counts);
-    let mut memory = Memory::start(settings.heap, settings.caches, needed)?;
+    let mut memory = machine.start_memory(settings.heap, settings.caches, needed)?;
     let skewed = is_skewed(&study_mesh.facts);
     let draw = chosen
         .iter()

@@ -16,7 +16,6 @@ use crate::engine::simulated_machine::SimulatedMachine;
 use crate::engine::statistics::Median;
 use crate::engine::trial::Columns;
 use sixfold_core::Counts;
-use sixfold_workload::pages::Policy;
 
 struct Synthetic {
     machine: SimulatedMachine,
@@ -148,7 +147,7 @@ fn run_trial(
         },
         skewed: limits.skewed,
         machine,
-        memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0).expect("the same policy"),
+        memory: &mut Memory::simulated(CacheState::Warm),
         effort: limits.budget.into(),
         named: limits.named,
         seed: 3,

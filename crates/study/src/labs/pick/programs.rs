@@ -11,7 +11,7 @@ use sixfold_workload::{
 };
 
 use crate::engine::effort::{Budget, Effort};
-use crate::engine::heap::{CacheState, Memory};
+use crate::engine::heap::CacheState;
 use crate::engine::machine::Machine;
 use crate::engine::measure::Entry;
 use crate::engine::timer::Timer;
@@ -137,7 +137,9 @@ pub(crate) fn pick_for_programs_on(
     let steps = (programs.len() * study_meshes.len()).max(1);
     // Not a share of the time that is left: a slow program must not exclude structures of the next.
     let longest_run_ns = LONGEST_RUN * settings.effort.limit_ns() / steps as f64;
-    let mut memory = Memory::start(settings.heap, CacheState::Warm, 0).map_err(StudyError::from)?;
+    let mut memory = machine
+        .start_memory(settings.heap, CacheState::Warm, 0)
+        .map_err(StudyError::from)?;
     let mut reports = Vec::new();
     for (i, program) in programs.iter().enumerate() {
         let mut outcomes = Vec::new();

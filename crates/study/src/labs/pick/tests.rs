@@ -128,7 +128,7 @@ fn measure_known(costs_ns: &[f64], seed: u64) -> Outcome {
         counts,
         effort,
         machine: &machine,
-        memory: &mut Memory::start(Policy::Kept, CacheState::Warm, 0).expect("the same policy"),
+        memory: &mut Memory::simulated(CacheState::Warm),
         stop: &stop,
         progress: &mut |_, _| (),
     };

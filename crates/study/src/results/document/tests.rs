@@ -169,7 +169,7 @@ fn written_documents_are_read_back_exactly() {
     let ball = StudyMesh::new("ball", shapes::icosahedron());
     let settings = Settings {
         operations: vec![Operation::Boundary],
-        effort: Effort::of_rounds(2),
+        effort: Effort::of_rounds(3),
         ..Settings::default()
     };
     let stop = AtomicBool::new(false);

@@ -12,8 +12,10 @@ use sixfold_workload::{Clock, MemorySpeed, Outcome as ProgramOutcome, Program};
 
 use super::*;
 use crate::engine::disturbance::ReferenceWork;
+use crate::engine::heap::Memory;
 use crate::engine::simulated_machine::{SimulatedMachine, Work};
 use crate::labs::pick::recording::record_program_on;
+use sixfold_workload::pages::HeapPolicyConflict;
 
 /// A face-vertex mesh whose queries take time on [`QueryTime`]: 10 ns, but 400 ns for the faces at a
 /// face if `SLOW`.
@@ -48,6 +50,15 @@ impl Machine for QueryTime {
         _: &Counts,
     ) -> Box<dyn TimedBackend + 'b> {
         built
+    }
+
+    fn start_memory(
+        &self,
+        _: Policy,
+        state: CacheState,
+        _: u64,
+    ) -> Result<Memory, HeapPolicyConflict> {
+        Ok(Memory::simulated(state))
     }
 
     fn reference_work(&self) -> ReferenceWork<'_> {
