@@ -54,7 +54,7 @@ fn an_interrupted_report_on_nothing_is_not_written() {
     sixfold.grid("grid.obj", 20);
     let arguments = ["study", "grid.obj", "--rounds", "1000000", "--report", "R"];
     // The first operation may be finished before the program sees the signal.
-    let run = sixfold.run_interrupted(&arguments, "INT", "0 % warming up");
+    let run = sixfold.run_interrupted(&arguments, "INT", "warming up build");
     match run.stderr.contains("no result was finished") {
         true => assert_eq!(sixfold.names(), ["grid.obj"]),
         false => assert!(!text(&sixfold, "R/report.md").contains("on 0 meshes")),

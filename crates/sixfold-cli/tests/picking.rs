@@ -20,7 +20,7 @@ fn the_answer_has_a_ranking_with_reasons() {
         "--workload",
         "mine.toml",
         "--rounds",
-        "2",
+        "8",
         "--json",
         "answer.json",
     ];
@@ -74,7 +74,7 @@ fn json_on_standard_output_has_no_text_beside_it() {
             "--needs",
             "edit",
             "--rounds",
-            "2",
+            "8",
             "--json",
             "-",
         ],
@@ -122,7 +122,7 @@ fn meshes_that_cannot_be_read_are_left_out() {
     std::fs::create_dir(sixfold.folder().join("empty")).expect("a folder");
     sixfold.file("mine.toml", MINE);
     let arguments = ["pick", "empty", "missing.obj", "broken.obj", "grid.obj"];
-    let options = ["--workload", "mine.toml", "--rounds", "2"];
+    let options = ["--workload", "mine.toml", "--rounds", "8"];
     let run = run_ok(&sixfold, &[&arguments[..], &options].concat());
     for name in ["empty: no mesh file", "missing.obj", "broken.obj"] {
         let note = format!("note: not measured: {name}");
@@ -210,7 +210,7 @@ fn a_workload_that_is_shown_can_be_run() {
             "--workload",
             "mine.toml",
             "--rounds",
-            "2",
+            "8",
         ],
     );
     assert!(run.stdout.contains("For mine, "), "{}", run.stdout);

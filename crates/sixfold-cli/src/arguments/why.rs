@@ -60,7 +60,7 @@ pub(crate) struct Why {
     #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration, allow_hyphen_values = true, conflicts_with = "counts_only")]
     pub(crate) budget: Duration,
     /// Measure exactly N rounds of everything, without a time limit
-    #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", conflicts_with_all = ["budget", "counts_only"], value_parser = rounds, allow_hyphen_values = true)]
     pub(crate) rounds: Option<NonZeroU32>,
     #[command(flatten)]
     pub(crate) files: ResultFiles,

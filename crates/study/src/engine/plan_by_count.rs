@@ -8,7 +8,7 @@ use sixfold_workload::ElementSample;
 
 /// Minimum number of elements that the runs of a sample visit. Queries of so many elements take
 /// longer than the clock needs for a good resolution.
-const ELEMENTS_PER_SAMPLE: f64 = 50_000.0;
+const ELEMENTS_PER_SAMPLE: f64 = 100_000.0;
 /// The number of visits that take as long as making, moving or removing one element.
 const VISITS_PER_MADE_ELEMENT: f64 = 50.0;
 /// Maximum number of faces that a sample of a scanning operation visits.

@@ -170,6 +170,7 @@ pub(crate) fn pick_for_programs_on(
                 }
             };
             if isolated.is_none() && asked.is_none() {
+                (context.progress)(0.0, "counting what it asks");
                 asked = record(study_mesh, program, settings);
             }
             let conditions = Conditions {
