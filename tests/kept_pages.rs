@@ -14,9 +14,9 @@ use std::sync::atomic::AtomicBool;
 
 use sixfold::shapes;
 use sixfold_study::{
-    Backend, BackendRunner, Effort, HeapGuard, HeapReport, MachineClock, PickError, PickSettings,
-    Policy, Series, Settings, Start, StudyError, StudyMesh, built_in, free_memory, pages, pick,
-    study, timed,
+    Backend, BackendRunner, Effort, HeapGuard, HeapReport, MachineClock, Operation, PickError,
+    PickSettings, Policy, Series, Settings, Start, StudyError, StudyMesh, built_in, free_memory,
+    pages, pick, study, timed,
 };
 
 const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corner-table"];
@@ -48,8 +48,13 @@ fn no_sample_faults() {
         return;
     }
     freed_pages_are_kept_until_they_are_returned();
-    for frequency in [10, 32, 100] {
-        measure_again(|| no_sample_of_a_study_faults(frequency));
+    // All operations on a small mesh, and those that make another mesh on larger ones.
+    measure_again(|| no_sample_of_a_study_faults(6, Vec::new()));
+    for frequency in [24, 48] {
+        let makes = |operation: &Operation| operation.creates_mesh() || operation.name() == "build";
+        let making: Vec<Operation> = Operation::ALL.into_iter().filter(makes).collect();
+        let some = making.into_iter().step_by(3).collect::<Vec<_>>();
+        measure_again(|| no_sample_of_a_study_faults(frequency, some.clone()));
     }
     measure_again(no_sample_of_a_pick_faults);
     drop(guard);
@@ -176,11 +181,12 @@ fn freed_pages_are_kept_until_they_are_returned() {
     assert!(fills_without_faults(), "kept again");
 }
 
-fn no_sample_of_a_study_faults(frequency: usize) -> Outcome {
+fn no_sample_of_a_study_faults(frequency: usize, operations: Vec<Operation>) -> Outcome {
     let polygons = shapes::geodesic(frequency).expect("a sphere");
     let study_mesh = StudyMesh::new("sphere", polygons);
     let settings = Settings {
         backends: STRUCTURES.map(str::to_owned).to_vec(),
+        operations,
         effort: Effort::Rounds(ROUNDS),
         ..Settings::default()
     };

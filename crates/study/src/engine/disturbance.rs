@@ -60,6 +60,15 @@ impl<'w> DisturbanceDetector<'w> {
         }
     }
 
+    /// Creates a detector for a fixed number of samples: it never waits, and takes no sample again
+    /// because of other programs, so that the work does not depend on the time.
+    pub(crate) fn without_waiting(work: ReferenceWork<'w>) -> Self {
+        Self {
+            faults_left_ns: f64::INFINITY,
+            ..Self::new(0.0, work)
+        }
+    }
+
     /// Takes a sample by calling `sample`. Takes the sample again if `verdict` returns
     /// [`Verdict::Again`] or if the machine was disturbed. Repeats this at most three times, and
     /// only while time is left for that reason.
@@ -298,6 +307,23 @@ mod tests {
         assert_eq!(tries(Verdict::Final, disturbed, 1e9), (1, true));
         assert_eq!(tries(Verdict::Good, disturbed, 0.0), (1, false));
         assert_eq!(tries(Verdict::Again, quiet, 0.0), (4, false));
+    }
+
+    #[test]
+    fn a_fixed_number_of_samples_waits_for_nothing_but_pages() {
+        let tries = |verdict: Verdict| {
+            let mut detector = DisturbanceDetector {
+                reference_ns: vec![TICK_NS / 2.0; 400],
+                ..DisturbanceDetector::without_waiting(no_work())
+            };
+            let mut tries = 0;
+            let clock = Ticking::default();
+            let taken = detector.take_sample(&clock, || tries += 1, |()| verdict);
+            assert!(taken.slowdown > DISTURBED && !taken.disturbed);
+            tries
+        };
+        assert_eq!(tries(Verdict::Good), 1);
+        assert_eq!(tries(Verdict::Again), 4);
     }
 
     #[test]

@@ -283,13 +283,16 @@ impl Measurement<'_, '_, '_> {
 
     /// Runs rounds until the next round would exceed the time. The first round always starts, but
     /// leaves out entries that would exceed the time. If the number of rounds is fixed, runs all of
-    /// them, and takes no sample again.
+    /// them, and takes a sample again only because of page faults.
     fn rounds(&mut self, entries: &mut [Entry], start: f64, deadline: f64) {
         let mut groups = groups(entries);
         let fixed = self.trial.effort.rounds();
         let rounds = fixed.map_or(MAX_ROUNDS, NonZeroU32::get);
-        let limit_ns = self.trial.effort.budget().map_or(0, |b| b.as_nanos()) as f64;
-        let mut detector = DisturbanceDetector::new(limit_ns, self.trial.machine.reference_work());
+        let work = self.trial.machine.reference_work();
+        let mut detector = match fixed {
+            None => DisturbanceDetector::new(self.trial.effort.limit_ns(), work),
+            Some(_) => DisturbanceDetector::without_waiting(work),
+        };
         // First estimate: building and touching a structure takes 1 ns per byte.
         let mut rebuild_ns: f64 = self.subjects.iter().map(|s| s.bytes() as f64).sum();
         let mut rebuilding_ns = 0.0;
