@@ -142,9 +142,13 @@ fn touch_free_pages(bytes: usize, arrange: impl FnOnce(&mut [FreePage<'_>])) {
     if !guard::is_keeping() {
         return;
     }
-    let mut blocks: Vec<_> = untouched_block(bytes).into_iter().collect();
+    let mapped = platform::mapped_bytes();
+    let block = untouched_block(bytes);
+    // A full heap of a thread cannot grow: the block is then mapped, and its pages are not kept.
+    let block = block.filter(|_| platform::mapped_bytes() == mapped);
     let free_bytes = platform::free_bytes();
-    blocks.append(&mut free_blocks(free_bytes, platform::heap_bytes));
+    let mut blocks = free_blocks(free_bytes, platform::heap_bytes);
+    blocks.extend(block);
     touch(&mut blocks, arrange);
 }
 
@@ -350,9 +354,15 @@ mod platform {
         unsafe { libc::mallinfo() }
     }
 
-    /// Returns the size of the heap in bytes, modulo 2³².
+    /// Returns the size of the heap and of the mapped blocks in bytes, modulo 2³².
     pub(super) fn heap_bytes() -> Option<u32> {
-        Some(info().arena.cast_unsigned())
+        let info = info();
+        Some(info.arena.wrapping_add(info.hblkhd).cast_unsigned())
+    }
+
+    /// Returns the size of the blocks that are mapped separately in bytes, modulo 2³².
+    pub(super) fn mapped_bytes() -> u32 {
+        info().hblkhd.cast_unsigned()
     }
 
     /// Returns the number of bytes in freed blocks of the heap, modulo 2³².
@@ -401,6 +411,10 @@ mod platform {
 
     pub(super) fn heap_bytes() -> Option<u32> {
         None
+    }
+
+    pub(super) fn mapped_bytes() -> u32 {
+        0
     }
 
     pub(super) fn free_bytes() -> usize {

@@ -76,8 +76,10 @@ pub struct HeapPolicyConflict {
 /// - The library no longer adapts the two thresholds.
 /// - Other values from `GLIBC_TUNABLES`, from variables such as `MALLOC_TOP_PAD_`, or from earlier
 ///   calls of `mallopt` are lost. A program that needs them calls `mallopt` again.
-/// - The library reads `M_ARENA_MAX` only once, when a second thread first allocates. If this
-///   happens while pages are kept, all threads share one heap until the process ends.
+/// - The library reads `M_ARENA_MAX` only once, when a new thread first allocates after the value
+///   was set. If this happens while pages are kept, all threads share one heap until the process
+///   ends. If it happens later, the threads of later measurements have heaps of their own, which
+///   keep no blocks above 64 MiB. The main thread always has the heap that keeps all blocks.
 ///
 /// # Examples
 ///
