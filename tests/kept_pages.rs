@@ -21,8 +21,8 @@ use sixfold_study::{
 
 const STRUCTURES: [&str; 4] = ["face-vertex", "winged-edge", "half-edge", "corner-table"];
 
-/// Every measurement of this test keeps freed pages if so many bytes are free, and also this part
-/// of all memory.
+/// Every measurement of this test keeps freed pages if at least this number of bytes and at least
+/// this part of all memory are free.
 const ENOUGH_MEMORY: u64 = 2 << 30;
 const ENOUGH_PART: u64 = 10;
 

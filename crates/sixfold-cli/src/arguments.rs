@@ -75,9 +75,9 @@ round, one backend is measured twice. The difference between the two times of th
 noise. Differences between backends that are smaller than the noise count as ties.
 
 Budget and rounds: With --budget, as many rounds are run as fit into the time. What takes too long is
-sampled, estimated or left out. With --rounds, exactly so many rounds of everything are run, however
-long they take. Two machines then do the same work: whether a slow operation runs on a sample of the
-elements depends on the number of elements, not on measured times.
+sampled, estimated or left out. With --rounds, exactly this number of rounds of everything is run,
+without a time limit. Two machines then do the same work: whether a slow operation runs on a sample
+of the elements depends on the number of elements, not on measured times.
 
 Seed: The seed determines the random order of the runs, and which elements are in a sample.
 

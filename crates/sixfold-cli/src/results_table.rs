@@ -147,10 +147,11 @@ fn noise_warning(report: &Report, operation: Operation) -> Option<String> {
     row.is_unsteady().then(|| {
         format!(
             "{} was measured twice here, and its two times differ by {:.0} %: smaller differences \
-             in this row are not significant. Measure again with a longer --budget, or with \
-             --operations {} only.",
+             in this row are not significant. Measure again with {}, or with --operations {} \
+             only.",
             control.backend,
             100.0 * (row.difference() - 1.0),
+            report.run.settings.more_samples(),
             row.operation
         )
     })

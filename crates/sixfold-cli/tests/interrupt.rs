@@ -80,7 +80,7 @@ fn an_interrupted_explanation_keeps_what_is_finished() {
     assert_eq!(sixfold.names(), ["grid.obj", "kept.json"]);
 }
 
-/// Makes a file that nobody writes, so that a program waits for its end.
+/// Makes a named pipe that nobody writes. A program that reads it waits.
 fn endless_file(sixfold: &Sixfold, name: &str) {
     let path = sixfold.folder().join(name);
     let made = std::process::Command::new("mkfifo").arg(&path).status();

@@ -13,7 +13,10 @@ pub enum Effort {
     Budget(Duration),
     /// This number of rounds of everything that was asked for, without a time limit. The number of
     /// runs in a sample, and whether a scan is sampled, follow from the number of elements, not from
-    /// the clock. Two machines therefore do the same work.
+    /// the clock. Two machines therefore plan the same samples. Three things still depend on the
+    /// machine: a sample with page faults is taken again, short edits run on as many copies of the
+    /// mesh as the clock and the cache need, and a pick makes relation tables from a structure that
+    /// makes them fast.
     Rounds(NonZeroU32),
 }
 
@@ -88,16 +91,12 @@ impl<'c> Budget<'c> {
         }
     }
 
-    /// Returns the time since the start, in nanoseconds.
-    pub(crate) fn elapsed_ns(&self) -> f64 {
-        self.clock.now().wall_ns - self.start_ns
-    }
-
     /// Returns the effort that is left: the remaining time, or all rounds.
     pub(crate) fn left(&self) -> Effort {
         match self.effort {
             Effort::Budget(budget) => {
-                let elapsed = Duration::from_nanos(self.elapsed_ns().max(0.0) as u64);
+                let elapsed_ns = self.clock.now().wall_ns - self.start_ns;
+                let elapsed = Duration::from_nanos(elapsed_ns.max(0.0) as u64);
                 Effort::Budget(budget.saturating_sub(elapsed))
             }
             rounds => rounds,

@@ -404,8 +404,9 @@ impl Measurement<'_, '_, '_> {
     }
 
     /// Measures the allocating operations on fresh pages: one run per sample, in rounds, while
-    /// there is time. If the number of rounds is fixed, there are at most as many of these rounds. A normal run follows each of these runs. The ratio of the two does not depend
-    /// on the current speed of the machine.
+    /// there is time. If the number of rounds is fixed, there are at most as many of these rounds. A
+    /// normal run follows each of these runs. The ratio of the two does not depend on the current
+    /// speed of the machine.
     fn first_times(&mut self, entries: &mut [Entry], deadline: f64) {
         let control = self.control;
         let mut entries: Vec<&mut Entry> = entries

@@ -4,7 +4,7 @@ use crate::engine::statistics::{MIN_SAMPLES, Median};
 use crate::engine::timer::Timer;
 use crate::results::environment::Environment;
 use crate::results::rows::{Control, ResultRow};
-use crate::results::run::Run;
+use crate::results::run::{Run, RunSettings};
 use sixfold_workload::pages::Policy;
 
 /// Maximum load of an idle machine at the start, as a part of the cores.
@@ -32,11 +32,11 @@ pub(crate) fn warnings(
         page_faults(environment, results),
         busy(run),
         interrupted(environment, results),
-        noisy(control, results),
+        noisy(&run.settings, control, results),
         coarse(timer),
         wall_time_only(environment),
-        few(results),
-        wide(results),
+        few(&run.settings, results),
+        wide(&run.settings, results),
         powersave(environment),
     ];
     all.into_iter().flatten().collect()
@@ -134,13 +134,18 @@ fn interrupted(environment: &Environment, results: &[&ResultRow]) -> Option<Stri
     })
 }
 
-fn noisy(control: Option<&Control>, results: &[&ResultRow]) -> Option<String> {
+fn noisy(
+    settings: &RunSettings,
+    control: Option<&Control>,
+    results: &[&ResultRow],
+) -> Option<String> {
     let control = control.filter(|control| control.typical > NOISY)?;
     // With fewer samples, there is no interval, and `few` warns of this.
     results.iter().find(|row| row.ci_low_ns.is_some())?;
     Some(format!(
-        "Two measurements of one backend typically differ by {:.0} %: smaller differences between backends are not significant. Measure on a quieter machine, or with a longer --budget.",
-        100.0 * (control.typical - 1.0)
+        "Two measurements of one backend typically differ by {:.0} %: smaller differences between backends are not significant. Measure on a quieter machine, or with {}.",
+        100.0 * (control.typical - 1.0),
+        settings.more_samples()
     ))
 }
 
@@ -162,7 +167,7 @@ fn wall_time_only(environment: &Environment) -> Option<String> {
     })
 }
 
-fn few(results: &[&ResultRow]) -> Option<String> {
+fn few(settings: &RunSettings, results: &[&ResultRow]) -> Option<String> {
     let measured = results.iter().filter(|row| row.median_ns.is_some());
     let all = measured.clone().count();
     let few = measured.filter(|row| row.samples < MIN_SAMPLES).count();
@@ -170,12 +175,17 @@ fn few(results: &[&ResultRow]) -> Option<String> {
     (few > 0 && !once).then(|| {
         format!(
             "{few} of {all} times are from fewer than {MIN_SAMPLES} samples, so their intervals are wide \
-             or missing. Use a longer --budget or fewer --operations."
+             or missing. Use {}{}.",
+            settings.more_samples(),
+            match settings.rounds {
+                None => " or fewer --operations",
+                Some(_) => "",
+            }
         )
     })
 }
 
-fn wide(results: &[&ResultRow]) -> Option<String> {
+fn wide(settings: &RunSettings, results: &[&ResultRow]) -> Option<String> {
     let half_width = |row: &ResultRow| {
         let (low, high) = row.ci_low_ns.zip(row.ci_high_ns)?;
         let median = row.median_ns?;
@@ -192,11 +202,12 @@ fn wide(results: &[&ResultRow]) -> Option<String> {
     let (worst, row) = wide.max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(format!(
         "{count} of {all} intervals extend more than {:.0} % from their median. The widest \
-         interval extends {:.0} % ({} on {}). Use a longer --budget or a quieter machine.",
+         interval extends {:.0} % ({} on {}). Use {} or a quieter machine.",
         100.0 * WIDE,
         100.0 * worst,
         row.operation,
-        row.backend
+        row.backend,
+        settings.more_samples()
     ))
 }
 
@@ -230,6 +241,21 @@ mod tests {
             ..Environment::default()
         };
         run
+    }
+
+    #[test]
+    fn the_advice_names_the_option_that_was_used() {
+        let mut run = quiet();
+        let few = ResultRow {
+            samples: 2,
+            ..fine()
+        };
+        let advice = |run: &Run| warnings(run, &TIMER, &[&few], None).join(" ");
+        assert!(advice(&run).contains("Use a longer --budget or fewer --operations."));
+        (run.settings.budget_s, run.settings.rounds) = (None, std::num::NonZeroU32::new(2));
+        let advice = advice(&run);
+        assert!(advice.contains("Use more --rounds."), "{advice}");
+        assert!(!advice.contains("--budget"), "{advice}");
     }
 
     /// Returns the quiet run with another environment.

@@ -138,6 +138,14 @@ impl RunSettings {
         }
     }
 
+    /// Returns what gives more samples: a longer budget or more rounds.
+    pub fn more_samples(&self) -> &'static str {
+        match self.rounds {
+            None => "a longer --budget",
+            Some(_) => "more --rounds",
+        }
+    }
+
     /// Returns an error if `other` has other settings, because the times of two studies can then
     /// not be pooled.
     pub(crate) fn check_equal(&self, other: &Self) -> Result<(), MergeError> {

@@ -18,7 +18,7 @@ pub(super) fn sentences(
     sentences.extend(fastest(sizes));
     sentences.extend(cache_limits(caches, ends));
     sentences.extend(noise(sizes));
-    sentences.extend(uncertain_figures(sizes, fits));
+    sentences.extend(estimates(fits));
     for size in sizes {
         for row in &size.results {
             if row.agreement == Agreement::Mismatch {
@@ -232,26 +232,16 @@ fn noise(sizes: &[SizeReport]) -> Option<String> {
     ))
 }
 
-/// Lists the figures that are uncertain because the budget was too small.
-fn uncertain_figures(sizes: &[SizeReport], fits: &[Fit]) -> Vec<String> {
-    let mut sentences = Vec::new();
-    let rows = sizes.iter().flat_map(|size| &size.results);
-    let measured = rows.filter(|r| r.median_ns.is_some());
-    if let Some(fewest) = measured.map(|r| r.samples).min().filter(|&n| n < 5) {
-        let samples = if fewest == 1 { "sample" } else { "samples" };
-        sentences.push(format!(
-            "Some figures are from only {fewest} {samples}: use a longer --budget."
-        ));
-    }
+/// Counts the estimates to which lines are fitted.
+fn estimates(fits: &[Fit]) -> Option<String> {
     let estimated: usize = fits.iter().map(|fit| fit.estimated).sum();
-    if estimated > 0 {
-        sentences.push(format!(
-            "{} of the times to which the lines are fitted are estimates, because real runs would exceed \
-             the budget.",
+    (estimated > 0).then(|| {
+        format!(
+            "{} of the times to which the lines are fitted are estimates, because real runs would \
+             exceed the budget.",
             grouped(estimated)
-        ));
-    }
-    sentences
+        )
+    })
 }
 
 #[cfg(test)]

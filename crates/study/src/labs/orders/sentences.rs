@@ -29,7 +29,6 @@ pub(super) fn sentences(
             percent(control.worst),
         )
     }));
-    sentences.extend(few_samples(rows));
     for OrderRow { order, row } in rows {
         if row.agreement == Agreement::Mismatch {
             let (backend, operation) = (&row.backend, row.operation);
@@ -195,15 +194,5 @@ fn verdict(comparisons: &[Comparison]) -> Option<String> {
             known.len(),
             count(Larger::Depends)
         )
-    })
-}
-
-/// Lists the figures that are uncertain because the budget was too small.
-fn few_samples(rows: &[OrderRow]) -> Option<String> {
-    let measured = rows.iter().filter(|r| r.row.median_ns.is_some());
-    let fewest = measured.map(|r| r.row.samples).min()?;
-    (fewest < 5).then(|| {
-        let samples = if fewest == 1 { "sample" } else { "samples" };
-        format!("Some figures are from only {fewest} {samples}: use a longer --budget.")
     })
 }

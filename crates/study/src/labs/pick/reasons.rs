@@ -32,17 +32,18 @@ pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
 /// Returns warnings about noise, few rounds, a busy machine and wrong results.
 pub(crate) fn warnings(report: &PickReport) -> Vec<String> {
     let mut warnings = crate::engine::warnings::machine_warnings(&report.run);
+    let more = report.run.settings.more_samples();
     if let Some(noise) = report.noise.filter(|&noise| noise > 1.05) {
         warnings.push(format!(
-            "Two measurements of one backend differ by {:.0} %: smaller differences between backends are not significant. Measure on a quieter machine, or with a longer --budget.",
+            "Two measurements of one backend differ by {:.0} %: smaller differences between backends are not significant. Measure on a quieter machine, or with {more}.",
             100.0 * (noise - 1.0)
         ));
     }
     let fewest = report.ranking.iter().map(|ranked| ranked.samples).min();
     if let Some(fewest) = fewest.filter(|_| report.preliminary) {
         warnings.push(format!(
-            "Some times are from only {}, but a narrow interval needs {MIN_SAMPLES} samples: use a \
-             longer --budget.",
+            "Some times are from only {}, but a narrow interval needs {MIN_SAMPLES} samples: use \
+             {more}.",
             counted(fewest, "sample", "samples")
         ));
     }

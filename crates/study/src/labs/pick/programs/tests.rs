@@ -1,73 +1,28 @@
 //! Programs on machines whose time passes as the tests say.
 
-use std::cell::Cell;
-
 use sixfold::prelude::*;
 use sixfold::{
     BuildError, Capabilities, FaceId, InvariantError, MemoryFootprint, MoveError, Relation,
     VertexId, shapes,
 };
-use sixfold_core::Counts;
-use sixfold_workload::{Clock, MemorySpeed, Outcome as ProgramOutcome, Program};
+use sixfold_workload::{Outcome as ProgramOutcome, Program};
 
 use super::*;
-use crate::engine::disturbance::ReferenceWork;
-use crate::engine::heap::Memory;
 use crate::engine::simulated_machine::{SimulatedMachine, Work};
 use crate::labs::pick::recording::record_program_on;
-use sixfold_workload::pages::HeapPolicyConflict;
 
-/// A face-vertex mesh whose queries take time on [`QueryTime`]: 10 ns, but 400 ns for the faces at a
+/// A face-vertex mesh whose queries take time on [`MACHINE`]: 10 ns, but 400 ns for the faces at a
 /// face if `SLOW`.
 #[derive(Clone)]
 struct Ticking<const SLOW: bool>(FaceVertexMesh);
 
 thread_local! {
-    static NOW_NS: Cell<f64> = const { Cell::new(0.0) };
+    /// The machine on which the queries of [`Ticking`] take time.
+    static MACHINE: SimulatedMachine = SimulatedMachine::steady();
 }
 
 fn tick(ns: f64) {
-    NOW_NS.set(NOW_NS.get() + ns);
-}
-
-/// A machine whose time passes in the queries of [`Ticking`].
-struct QueryTime;
-
-impl Clock for QueryTime {
-    fn now(&self) -> Time {
-        Time::from_wall_ns(NOW_NS.get())
-    }
-}
-
-impl Machine for QueryTime {
-    fn clock(&self) -> &dyn Clock {
-        self
-    }
-
-    fn host<'b>(
-        &self,
-        built: Box<dyn TimedBackend + 'b>,
-        _: &Counts,
-    ) -> Box<dyn TimedBackend + 'b> {
-        built
-    }
-
-    fn start_memory(
-        &self,
-        _: Policy,
-        state: CacheState,
-        _: u64,
-    ) -> Result<Memory, HeapPolicyConflict> {
-        Ok(Memory::simulated(state))
-    }
-
-    fn reference_work(&self) -> ReferenceWork<'_> {
-        Box::new(|_| ())
-    }
-
-    fn memory_speed(&self, _: Duration, _: &AtomicBool) -> Option<MemorySpeed> {
-        None
-    }
+    MACHINE.with(|machine| machine.work(ns));
 }
 
 /// Passes the queries of relations on.
@@ -209,7 +164,7 @@ fn measure(effort: Effort) -> Vec<(Relation, PickReport)> {
     let meshes = [StudyMesh::new("torus", torus)];
     let stop = AtomicBool::new(false);
     let reports = pick_for_programs_on(
-        &QueryTime,
+        &MACHINE.with(SimulatedMachine::clone),
         &meshes,
         &suite,
         &settings,
