@@ -12,6 +12,8 @@ use std::hint::black_box;
 
 use sixfold_workload::{Clock, Time, timed};
 
+use crate::engine::statistics::MIN_SAMPLES;
+
 /// Maximum number of times a sample is taken again.
 const MAX_RETAKEN: u32 = 3;
 /// Number of words that the fixed work reads: half of a typical first-level cache.
@@ -30,9 +32,10 @@ const LONGEST_WAIT_NS: f64 = 10_000_000.0;
 const FOR_DISTURBED: f64 = 0.3;
 /// Part of the budget for samples taken again because of page faults.
 const FOR_FAULTS: f64 = 0.1;
-/// Minimum part of undisturbed samples. If there are fewer, all samples count: the machine is then
-/// usually in the state that the detector calls disturbed. Leaving out most samples would make the
-/// medians less certain without making them more alike.
+/// Minimum part of undisturbed samples. If there are fewer, or fewer than [`MIN_SAMPLES`], all
+/// samples count. In the first case, the machine is usually in the state that the detector calls
+/// disturbed. Leaving out most samples would make the medians less certain without making them more
+/// alike.
 const MIN_UNDISTURBED: f64 = 0.5;
 
 /// Does a number of passes of the fixed work.
@@ -209,12 +212,13 @@ pub(crate) struct TakenSample<T> {
 }
 
 /// Returns the samples that count. These are the undisturbed samples if they are at least half of
-/// all samples, else all samples.
+/// all samples and enough for a narrow interval, else all samples.
 pub(crate) fn undisturbed<T: Copy>(samples: &[T], slowdowns: &[f64]) -> Vec<T> {
     let quiet = samples.iter().zip(slowdowns);
     let quiet = quiet.filter(|(_, slowdown)| **slowdown <= DISTURBED);
     let quiet: Vec<T> = quiet.map(|(sample, _)| *sample).collect();
-    match !quiet.is_empty() && quiet.len() as f64 >= MIN_UNDISTURBED * samples.len() as f64 {
+    let needed = (MIN_UNDISTURBED * samples.len() as f64).max(MIN_SAMPLES as f64);
+    match quiet.len() as f64 >= needed {
         true => quiet,
         false => samples.to_vec(),
     }
@@ -328,17 +332,19 @@ mod tests {
 
     #[test]
     fn disturbed_samples_do_not_count_if_enough_others_do() {
-        let samples: Vec<(u32, Time)> = (0..6)
-            .map(|i| (i, Time::from_wall_ns(f64::from(i))))
-            .collect();
-        let rounds = |slowdowns: [f64; 6]| -> Vec<u32> {
-            let counted = undisturbed(&samples, &slowdowns);
-            counted.iter().map(|(round, _)| *round).collect()
+        let counted = |slowdowns: &[f64]| -> Vec<usize> {
+            let samples: Vec<usize> = (0..slowdowns.len()).collect();
+            undisturbed(&samples, slowdowns)
         };
-        assert_eq!(rounds([1.0, 1.5, 1.0, 1.29, 2.0, 1.0]), [0, 2, 3, 5]);
-        assert_eq!(rounds([1.0, 1.5, 1.0, 1.5, 1.0, 1.5]), [0, 2, 4]);
-        assert_eq!(rounds([1.0, 1.5, 1.0, 1.5, 2.0, 1.5]), [0, 1, 2, 3, 4, 5]);
+        let six = [1.0, 1.5, 1.0, 1.29, 2.0, 1.0, 1.0, 1.3];
+        assert_eq!(counted(&six), [0, 2, 3, 5, 6, 7]);
+        let half = [1.0, 1.5, 1.0, 1.5, 1.0, 1.5].repeat(2);
+        assert_eq!(counted(&half), [0, 2, 4, 6, 8, 10]);
+        let less_than_half = [&half[..], &[1.31]].concat();
+        assert_eq!(counted(&less_than_half).len(), 13);
+        let too_few_for_an_interval = [1.0, 1.5, 1.0, 1.0, 1.0, 1.0];
+        assert_eq!(counted(&too_few_for_an_interval).len(), 6);
         // Results of older versions have no slowdowns.
-        assert_eq!(undisturbed(&samples, &[]).len(), 6);
+        assert_eq!(undisturbed(&[0; 6], &[]).len(), 6);
     }
 }

@@ -33,8 +33,8 @@ pub struct Samples {
     pub faults: Option<Vec<u64>>,
     /// For each sample, the slowdown of the machine. A small fixed piece of work is timed before
     /// and after the sample. The slowdown is the longer time of the fixed work, divided by the time
-    /// of the fixed work on an undisturbed machine. If at least half of the samples have a
-    /// slowdown of at most 1.3, the other samples do not count.
+    /// of the fixed work on an undisturbed machine. If at least half of the samples, and at least 6,
+    /// have a slowdown of at most 1.3, the other samples do not count.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub slowdowns: Vec<f64>,
     /// The times of first runs, in nanoseconds. A first run uses fresh memory pages and new tables.
@@ -69,8 +69,8 @@ impl Samples {
     }
 
     /// Returns the times of all undisturbed samples, in nanoseconds. The times are processor times
-    /// if known, else wall times. If less than half of the samples are undisturbed, returns the
-    /// times of all samples.
+    /// if known, else wall times. If less than half of the samples, or fewer than 6, are
+    /// undisturbed, returns the times of all samples.
     pub fn counted_ns(&self) -> Vec<f64> {
         undisturbed(
             self.cpu_ns.as_ref().unwrap_or(&self.wall_ns),
