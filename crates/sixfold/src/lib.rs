@@ -85,6 +85,39 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Keep data through edits
+//!
+//! [`MeshWithData`] updates data of vertices, edges or faces after each edit. For programs that update
+//! their data themselves, each edit has a second form that writes its changes to a log (for example
+//! [`bisect_edge_logged`](MeshEdit::bisect_edge_logged)):
+//!
+//! ```
+//! use sixfold::prelude::*;
+//! use sixfold::shapes;
+//!
+//! let mesh = EditableHalfEdgeMesh::from_polygons(&shapes::icosahedron())?;
+//! let materials = FaceData::new(&mesh, 7_u32).with_rule(|materials, new| {
+//!     new.parents.first().map_or(0, |&f| materials[f]) // new faces: that of a face that was cut
+//! });
+//! let mut mesh = MeshWithData::new(mesh, materials);
+//!
+//! let edge = mesh.edges().next().expect("thirty of them");
+//! let middle = mesh.bisect_edge(edge, Point::ZERO)?;
+//! assert_eq!(mesh.face_count(), 22);
+//! assert!(mesh.faces().all(|f| mesh.data()[f] == 7));
+//!
+//! let spoke = mesh.vertex_edges(middle).next().expect("four of them");
+//! let [a, b] = mesh.edge_vertices(spoke);
+//! let keep = if a == middle { b } else { a };
+//! mesh.collapse_edge(spoke, keep, mesh.position(keep))?;
+//! assert!(!mesh.contains_edge(spoke));
+//!
+//! let (mesh, _materials) = mesh.into_parts();
+//! let mesh: HalfEdgeMesh = mesh.into_compact(); // its queries need no check for deleted rows
+//! assert_eq!(mesh.face_count(), 20);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # Subdivide
 //!
 //! ```
@@ -96,6 +129,26 @@
 //! let fine = subdivide_native::<HalfEdgeMesh>(&scheme, &shapes::cube(), &smooth, 3, |_, _| ())?;
 //! assert_eq!(fine.polygons.face_count(), 6 * 64);
 //! # Ok::<(), sixfold::subdivision::SubdivisionError>(())
+//! ```
+//!
+//! Each call of `refine_into` makes one level in the structure's own tables, and reuses the memory of
+//! the arguments `numbers` and `fine`:
+//!
+//! ```
+//! use sixfold::subdivision::{Scheme, Subdivision};
+//! use sixfold::{Creases, HalfEdgeMesh, MeshQuery, Refine, Representation, shapes};
+//!
+//! let polygons = shapes::cube();
+//! let rim = Creases::new(&polygons, [([0, 1], 2.5), ([1, 2], f32::INFINITY)], [])?;
+//! let scheme = Subdivision::new(Scheme::CatmullClark);
+//!
+//! let cage = HalfEdgeMesh::from_polygons(&polygons)?;
+//! let creases = scheme.control_creases(&cage, &polygons, &rim)?;
+//! let (mut numbers, mut fine) = (Default::default(), HalfEdgeMesh::empty());
+//! let left = scheme.refine_into(&cage, &creases, 0, &mut numbers, &mut fine)?;
+//! assert_eq!(fine.face_count(), 24);
+//! assert_eq!(left.edges().len(), 4);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # Choose a structure
