@@ -192,7 +192,7 @@ fn reported_bytes_are_right_on_real_meshes() {
             if file.extension().is_none_or(|extension| extension != "obj") {
                 continue;
             }
-            let mesh = io::read_obj(&file).unwrap_or_else(|error| panic!("{error}"));
+            let mesh = io::read(&file).unwrap_or_else(|error| panic!("{error}"));
             let structures = check_audit(&file.display().to_string(), &mesh.into_polygons().0);
             meshes += usize::from(structures > 0);
         }

@@ -75,6 +75,12 @@ macro_rules! edits {
 ///     mesh.bisect_edge(e, (a + b) / 2.0)
 /// }
 /// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be edited",
+    label = "this mesh is read-only",
+    note = "a compact structure becomes editable by `into_editable()`; `from_polygons` of an editable \
+            type, such as `EditableHalfEdgeMesh`, builds one"
+)]
 pub trait MeshEdit: MeshQuery + Sized {
     /// How much of the mesh each edit reads, in the order of [`Edit::ALL`]; `None` if the structure
     /// does not support the edit.

@@ -10,6 +10,7 @@
 //! - [`MeshQuery`]: the nine relations between vertices, edges and faces (Weiler 1985), and their
 //!   contract.
 //! - [`OrientedWalk`]: steps along the sides of a face and around a vertex.
+//! - [`MeshMove`]: new positions of all vertices.
 //! - [`Representation`]: the trait of all structures: construction, conversion and memory.
 //! - [`LocalQueries`]: the trait of structures whose queries never read all faces.
 //! - [`Handle`] and [`HandleMap`]: handles of vertices, edges and faces, and maps from handles to
@@ -88,6 +89,7 @@ mod iterator_ext;
 mod local_queries;
 mod measured;
 mod memory;
+mod mesh_move;
 mod mesh_with_data;
 mod new_rows;
 mod numbering;
@@ -133,6 +135,7 @@ pub use local_queries::CostsAreLocal;
 pub use local_queries::LocalQueries;
 pub use measured::Counts;
 pub use memory::{MemoryFootprint, TableBytes};
+pub use mesh_move::MeshMove;
 pub use mesh_with_data::MeshWithData;
 pub use numbering::Numbers;
 pub use oriented_walk::{OrientedWalk, SideMap};
@@ -180,8 +183,9 @@ pub use probe::{Access, AccessKind, Probe, Traced, Untraced};
 /// and the types in their signatures.
 pub mod prelude {
     pub use crate::{
-        BuildError, EdgeData, EdgeId, EdgeMap, EditError, EditLog, EditRecord, FaceData, FaceId,
-        FaceMap, LocalQueries, MeshEdit, MeshQuery, MeshWithData, OrientedWalk, Point, PolygonMesh,
-        Refine, Representation, SideMap, VertexData, VertexId, VertexMap,
+        BuildError, Compact, EdgeData, EdgeId, EdgeMap, EditError, EditLog, EditRecord, Editable,
+        FaceData, FaceId, FaceMap, HandleMap, LocalQueries, MeshEdit, MeshMove, MeshQuery,
+        MeshWithData, MoveError, Numbers, OldToNew, OrientedWalk, Point, PolygonMesh, Refine,
+        Refusal, Representation, SideMap, VertexData, VertexId, VertexMap,
     };
 }

@@ -1,5 +1,6 @@
 //! Structures whose queries never scan the mesh.
 
+use crate::query::MeshQuery;
 use crate::representation::{QueryCost, Representation};
 
 /// A structure whose queries never scan all faces: none of its [`COSTS`](Representation::COSTS) is
@@ -8,7 +9,8 @@ use crate::representation::{QueryCost, Representation};
 /// An algorithm that queries each of n elements takes O(n) time on a structure with local queries,
 /// and O(n²) time on a structure that scans. With the bound `LocalQueries`, the compiler refuses
 /// structures that scan. At run time, [`Representation::is_local`] and [`Representation::cost`]
-/// show whether queries scan.
+/// show whether queries scan. A [`MeshWithData`](crate::MeshWithData) has local queries if its mesh
+/// has.
 ///
 /// ```
 /// use sixfold_core::LocalQueries;
@@ -26,7 +28,7 @@ use crate::representation::{QueryCost, Representation};
     label = "this structure does not implement `LocalQueries`",
     note = "use a structure that implements `LocalQueries`: none of its queries scans"
 )]
-pub trait LocalQueries: Representation {
+pub trait LocalQueries: MeshQuery {
     /// Proof that the costs were checked; only [`local_queries!`](crate::local_queries) creates it.
     #[doc(hidden)]
     const COSTS_ARE_LOCAL: CostsAreLocal;

@@ -8,15 +8,19 @@ use crate::capability::Capabilities;
 use crate::edit::{MeshEdit, Refusal};
 use crate::edit_kind::Edit;
 use crate::edit_log::{EditLog, EditRecord};
+use crate::error::{InvariantError, MoveError};
 use crate::follow_edits::{AcceptedEdit, FollowEdits, Source};
-use crate::query::MeshQuery;
-use crate::representation::QueryCost;
+use crate::local_queries::{CostsAreLocal, LocalQueries};
+use crate::mesh_move::MeshMove;
+use crate::oriented_walk::{OrientedWalk, SideMap};
+use crate::query::{MeshQuery, VertexMap};
+use crate::representation::{QueryCost, Representation};
 
 /// A mesh together with data by vertex, edge or face. Every edit of the mesh also updates the data.
 ///
-/// This type implements [`MeshQuery`] and [`MeshEdit`] with the handles of the mesh `M`. A
-/// `MeshWithData` can therefore be passed to every algorithm that edits meshes, such as decimation
-/// and remeshing. After each edit, the data `D` is updated through [`FollowEdits`]. `D` is usually
+/// This type implements [`MeshQuery`], [`OrientedWalk`], [`MeshMove`] and [`MeshEdit`] with the
+/// handles of the mesh `M`, if `M` implements them. A `MeshWithData` can therefore be passed to every
+/// algorithm that walks along, moves or edits meshes, such as decimation and remeshing. After each edit, the data `D` is updated through [`FollowEdits`]. `D` is usually
 /// [`VertexData`](crate::VertexData), [`EdgeData`](crate::EdgeData), [`FaceData`](crate::FaceData),
 /// or a tuple or vector of these types. The data `()` costs nothing.
 ///
@@ -88,7 +92,18 @@ impl<M: MeshQuery, D> MeshWithData<M, D> {
     }
 }
 
-impl<M: MeshEdit, D: FollowEdits<M>> MeshWithData<M, D> {
+impl<M: Representation, D> MeshWithData<M, D> {
+    /// Checks all numbered invariants of the structure; O(corners) expected.
+    ///
+    /// # Errors
+    ///
+    /// Fails like [`Representation::validate`].
+    pub fn validate(&self) -> Result<(), InvariantError> {
+        self.mesh.validate()
+    }
+}
+
+impl<M: MeshQuery, D: FollowEdits<M>> MeshWithData<M, D> {
     /// Does an edit, passes its changes to `log`, and then updates the data.
     #[inline]
     fn edit<L: EditLog<Self>, T>(
@@ -179,7 +194,7 @@ where
     }
 }
 
-/// Forwards each query to the mesh.
+/// Forwards each query or step to the mesh.
 macro_rules! queries {
     ($($query:ident($($argument:ident: $kind:ty),*) -> $answer:ty;)+) => {$(
         #[inline]
@@ -227,6 +242,50 @@ impl<M: MeshQuery, D> MeshQuery for MeshWithData<M, D> {
         edge_rows() -> usize;
         face_rows() -> usize;
         one_ring(v: M::Vertex) -> Option<impl Iterator<Item = M::Vertex>>;
+    }
+}
+
+impl<M: LocalQueries, D> LocalQueries for MeshWithData<M, D> {
+    const COSTS_ARE_LOCAL: CostsAreLocal = M::COSTS_ARE_LOCAL;
+}
+
+impl<M: OrientedWalk, D> OrientedWalk for MeshWithData<M, D> {
+    type Side = M::Side;
+
+    queries! {
+        face_sides(f: M::Face) -> impl Iterator<Item = M::Side>;
+        edge_sides(e: M::Edge) -> impl Iterator<Item = M::Side>;
+        outgoing_sides(v: M::Vertex) -> impl Iterator<Item = M::Side>;
+        next_side(s: M::Side) -> M::Side;
+        prev_side(s: M::Side) -> M::Side;
+        twin_side(s: M::Side) -> Option<M::Side>;
+        side_origin(s: M::Side) -> M::Vertex;
+        side_target(s: M::Side) -> M::Vertex;
+        side_face(s: M::Side) -> M::Face;
+        side_edge(s: M::Side) -> M::Edge;
+        ccw_side(s: M::Side) -> Option<M::Side>;
+        cw_side(s: M::Side) -> Option<M::Side>;
+        sides() -> impl Iterator<Item = M::Side>;
+        side_count() -> usize;
+    }
+
+    #[inline]
+    fn side_map<T: Clone>(&self, value: T) -> SideMap<Self, T> {
+        self.mesh.side_map(value)
+    }
+}
+
+impl<M: MeshMove, D: FollowEdits<M>> MeshMove for MeshWithData<M, D> {
+    fn set_positions_logged(
+        &mut self,
+        positions: &VertexMap<Self, Point>,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), MoveError> {
+        self.edit(
+            |_| Source::Nothing,
+            log,
+            |mesh, log| mesh.set_positions_logged(positions, log),
+        )
     }
 }
 

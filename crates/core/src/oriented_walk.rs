@@ -84,6 +84,11 @@ pub type SideMap<M, T> = <<M as OrientedWalk>::Side as Handle>::Map<T>;
 /// [`prev_side`]: Self::prev_side
 /// [`ccw_side`]: Self::ccw_side
 /// [`cw_side`]: Self::cw_side
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no steps from side to side",
+    label = "this mesh does not implement `OrientedWalk`",
+    note = "half-edge meshes, winged-edge meshes, corner tables and face-vertex meshes implement it"
+)]
 pub trait OrientedWalk: MeshQuery {
     /// The handle of a side.
     type Side: Handle;

@@ -53,6 +53,11 @@ pub type FaceMap<M, T> = <<M as MeshQuery>::Face as Handle>::Map<T>;
 /// coordinates of a vertex or the pair of ends of an edge, a query of a missing element does not
 /// panic, and the relations of the element are empty. The methods `contains_vertex`,
 /// `contains_edge` and `contains_face` return false for a missing element.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a mesh that can be queried",
+    label = "this type does not implement `MeshQuery`",
+    note = "build one of the six structures, for example by `HalfEdgeMesh::from_polygons(&polygons)`"
+)]
 pub trait MeshQuery {
     /// The handle of a vertex: a row number, or the coordinates of the vertex.
     type Vertex: Handle;

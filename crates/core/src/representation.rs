@@ -2,14 +2,13 @@
 
 use std::fmt;
 
-use crate::Point;
-use crate::error::{BuildError, InvariantError, MoveError};
+use crate::error::{BuildError, InvariantError};
 use crate::memory::MemoryFootprint;
+use crate::mesh_move::MeshMove;
 use crate::polygon_mesh::PolygonMesh;
-use crate::query::{MeshQuery, VertexMap};
 use crate::row_id::{FaceId, VertexId};
 
-/// One of the nine relations of [`MeshQuery`].
+/// One of the nine relations of [`MeshQuery`](crate::MeshQuery).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -33,7 +32,8 @@ pub enum Relation {
 }
 
 impl Relation {
-    /// All nine relations, in the order of the table in [`MeshQuery`].
+    /// All nine relations, in the order of the table in
+    /// [`MeshQuery`](crate::MeshQuery).
     pub const ALL: [Self; 9] = [
         Self::VertexVertices,
         Self::VertexEdges,
@@ -103,7 +103,7 @@ impl QueryCost {
 ///
 /// # Contract
 ///
-/// - `from_polygons` and [`CAPABILITIES`](MeshQuery::CAPABILITIES)`.check` agree: both succeed, or
+/// - `from_polygons` and [`CAPABILITIES`](crate::MeshQuery::CAPABILITIES)`.check` agree: both succeed, or
 ///   both return the same error. The results may differ only if the mesh has too many elements for
 ///   the handles of the structure.
 /// - `faces()` and `vertices()` keep the order of the input. If vertices are identified by
@@ -111,7 +111,7 @@ impl QueryCost {
 /// - `to_polygons(from_polygons(m))` equals `m`, except that a face may start at another corner. If
 ///   vertices are identified by coordinates, vertices with equal coordinates become one vertex, and
 ///   the vertices of the result are in the order of `vertices()`.
-pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
+pub trait Representation: MeshMove + Clone + Sized + Send + Sync {
     /// The name of the structure for users, for example `half-edge`.
     const NAME: &'static str;
 
@@ -152,20 +152,6 @@ pub trait Representation: MeshQuery + Clone + Sized + Send + Sync {
 
     /// Returns the handle that face `f` of `polygons` has in `from_polygons(polygons)`; O(1).
     fn face_handle(polygons: &PolygonMesh, f: FaceId) -> Self::Face;
-
-    /// Moves every vertex to its position in `positions`; O(vertices), or O(corners) if vertices
-    /// are identified by coordinates.
-    ///
-    /// If vertices are identified by coordinates, their handles change, and vertices that move to
-    /// the same position become one vertex.
-    ///
-    /// # Errors
-    ///
-    /// Returns [`MoveError::OtherMesh`] if the number of positions differs from the number of
-    /// vertices. A structure that identifies vertices by coordinates returns
-    /// [`MoveError::CoincidentCorners`] if two corners of a face would have the same position.
-    /// After an error, every vertex has its old position.
-    fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError>;
 
     /// Returns the number of bytes that each table allocates on the heap.
     fn memory(&self) -> MemoryFootprint;

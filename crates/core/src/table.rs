@@ -234,7 +234,7 @@ impl<T, P: Probe> Table<T, P> {
 impl<P: Probe> Table<Point, P> {
     /// Moves every vertex to its position in `positions`; O(vertices). The probe does not record
     /// the change. Structures with a table of positions implement
-    /// [`Representation::set_positions`](crate::Representation::set_positions) by this method.
+    /// [`MeshMove::set_positions`](crate::MeshMove::set_positions) by this method.
     ///
     /// # Errors
     ///

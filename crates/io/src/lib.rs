@@ -2,7 +2,7 @@
 //!
 //! Start with [`read()`] or [`read_from`], which recognise the format by the content.
 //! [`FileMesh::into_polygons`] returns the mesh from which structures are built, and the faces that
-//! it left out. [`write()`] writes a mesh; [`MeshWriter::losses`] lists what a format cannot keep.
+//! it left out. [`write()`] writes a mesh and returns what the format cannot keep.
 //! Sharp edges are read from OBJ ([`FileMesh::creases`]) or from a file of their own:
 //! [`read_creases`] and [`write_creases`].
 //!
@@ -138,5 +138,5 @@ pub use obj::{CornerTag, CreaseTag, Tag, TagFault, UnusedCrease, parse_obj};
 pub use options::{ReadOptions, Welding};
 pub use place::{Location, Place, PolygonPlaces};
 pub use ply::PlyHeaderFault;
-pub use read::{read, read_from, read_obj};
-pub use write::{Loss, MeshWriter, WriteError, write, write_obj, write_obj_with_normals};
+pub use read::{read, read_from, read_with};
+pub use write::{Loss, WriteError, WriteOptions, losses, write, write_to, write_with};

@@ -4,7 +4,7 @@
 use std::fs;
 
 use peak_alloc::PeakAlloc;
-use sixfold_io::{Format, ReadOptions, read, write};
+use sixfold_io::{Format, ReadOptions, WriteOptions, read_with, write_to};
 use sixfold_shapes as shapes;
 
 #[global_allocator]
@@ -25,13 +25,14 @@ fn memory_is_below_a_multiple_of_the_mesh() {
             .path()
             .join(format!("{}.{}", format.name(), format.extension()));
         let mut bytes = Vec::new();
-        write(&mesh, format, &mut bytes).expect("memory does not fail");
+        write_to(&mesh, format, &WriteOptions::default(), &mut bytes)
+            .expect("memory does not fail");
         fs::write(&path, &bytes).expect("writable");
         drop(bytes);
         let peak = |options: ReadOptions| {
             let before = HEAP.current_usage();
             HEAP.reset_peak_usage();
-            let read = read(&path, &options).unwrap_or_else(|error| panic!("{error}"));
+            let read = read_with(&path, &options).unwrap_or_else(|error| panic!("{error}"));
             let peak = HEAP.peak_usage() - before;
             assert_eq!(read.positions.len(), mesh.vertex_count(), "{format}");
             peak.saturating_sub(FIXED) as f64 / size as f64

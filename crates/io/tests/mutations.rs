@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use peak_alloc::PeakAlloc;
-use sixfold_io::{Format, ReadOptions, Welding, read_from, write};
+use sixfold_io::{Format, ReadOptions, Welding, WriteOptions, read_from, write_to};
 use sixfold_shapes as shapes;
 
 #[global_allocator]
@@ -150,7 +150,8 @@ fn written_files() -> Vec<(String, Vec<u8>)> {
     for mesh in [&mixed, &closed] {
         for format in Format::ALL {
             let mut bytes = Vec::new();
-            write(mesh, format, &mut bytes).expect("memory does not fail");
+            write_to(mesh, format, &WriteOptions::default(), &mut bytes)
+                .expect("memory does not fail");
             files.push((format!("{format}.{}", format.extension()), bytes));
         }
     }

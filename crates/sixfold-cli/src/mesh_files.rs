@@ -4,7 +4,9 @@ use std::io;
 use std::path::Path;
 use std::sync::OnceLock;
 
-use sixfold::io::{FileMesh, Format, MeshWriter, ReadOptions, Welding, read, read_from};
+use sixfold::io::{
+    FileMesh, Format, ReadOptions, Welding, WriteOptions, losses, read_from, read_with, write_to,
+};
 use sixfold::{Point, PolygonMesh};
 
 use crate::arguments::FileOptions;
@@ -55,7 +57,7 @@ pub(crate) fn read_mesh_at(path: &Path, origin: Option<[f64; 3]>) -> Result<File
     let name = shown(path);
     let mesh = match is_stdout(path) {
         true => read_from(&name, io::stdin().lock(), &settings),
-        false => read(path, &settings),
+        false => read_with(path, &settings),
     };
     let mesh = mesh.map_err(Failure::usage)?;
     for note in notes(&mesh) {
@@ -158,22 +160,20 @@ pub(crate) fn write_mesh(
     polygons: &PolygonMesh,
     normals: &[Option<Point>],
 ) -> Result<(), Failure> {
-    let mut writer = MeshWriter::new(polygons);
-    if !normals.is_empty() {
-        writer = writer.with_normals(normals).map_err(Failure::usage)?;
-    }
-    write_with(output, path, &writer)
+    let options = WriteOptions::default().with_normals(normals);
+    write_with(output, path, polygons, &options)
 }
 
 /// Writes a mesh with its data like [`write_mesh`].
 pub(crate) fn write_with(
     output: Output,
     path: &Path,
-    writer: &MeshWriter<'_>,
+    polygons: &PolygonMesh,
+    options: &WriteOptions<'_>,
 ) -> Result<(), Failure> {
     let format = written_format(path);
-    output.finish(|to| Ok(writer.write(format, to)?))?;
-    for loss in writer.losses(format) {
+    output.finish(|to| Ok(write_to(polygons, format, options, to)?))?;
+    for loss in losses(polygons, format, options) {
         print_stderr(&format!(
             "note: {}: {loss}, because {format} cannot keep more",
             path.display()

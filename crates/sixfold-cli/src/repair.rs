@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use serde::Serialize;
-use sixfold::io::{Format, Loss, MeshWriter};
+use sixfold::io::{Format, Loss, WriteOptions, losses};
 use sixfold::repair::{RepairError, Repaired, Step, StepReport, Weld, repair, repair_for};
 use sixfold::{Creases, PolygonMesh, StructureInfo, structure_infos};
 
@@ -63,10 +63,11 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
             "note: {file}: {elements} not in the repaired mesh"
         ));
     }
-    let writer = MeshWriter::new(&repaired.polygons).with_creases(&creases);
-    write_with(output, &arguments.output, &writer)?;
+    let options = WriteOptions::default().with_creases(&creases);
+    write_with(output, &arguments.output, &repaired.polygons, &options)?;
     if let Some(json) = json {
-        let losses = writer.losses(written_format(&arguments.output));
+        let format = written_format(&arguments.output);
+        let losses = losses(&repaired.polygons, format, &options);
         let report = Report::new(&read, &repaired, lost, &losses);
         json.finish(|writer| {
             serde_json::to_writer_pretty(&mut *writer, &report)?;

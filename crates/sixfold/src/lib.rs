@@ -6,7 +6,7 @@
 //!
 //! | task | start at |
 //! |---|---|
-//! | [load a mesh](#load-a-mesh) | [`io::read_obj`], [`PolygonMesh::new`], [`shapes`] |
+//! | [load a mesh](#load-a-mesh) | [`io::read`], [`PolygonMesh::new`], [`shapes`] |
 //! | [walk around a vertex](#walk-around-a-vertex) | [`MeshQuery::vertex_vertices`], [`MeshQuery::one_ring`] |
 //! | [flip an edge](#flip-an-edge) | [`MeshEdit::flip_edge`] |
 //! | [subdivide](#subdivide) | [`subdivision::subdivide_native`], [`subdivision::Scheme`] |
@@ -27,7 +27,7 @@
 //! ```no_run
 //! use sixfold::{HalfEdgeMesh, io};
 //!
-//! let (polygons, left_out) = io::read_obj("bunny.obj")?.into_polygons();
+//! let (polygons, left_out) = io::read("bunny.ply")?.into_polygons();
 //! println!("{polygons}; {} faces left out", left_out.len());
 //! let mesh = HalfEdgeMesh::try_from(&polygons)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -241,8 +241,8 @@
 // Traits for queries, walks, edits and refinement; capabilities and costs of a structure.
 #[doc(inline)]
 pub use sixfold_core::{
-    Capabilities, Edit, LocalQueries, MeshEdit, MeshQuery, OrientedWalk, QueryCost, Refine,
-    Relation, Representation, Split,
+    Capabilities, Compact, Edit, Editable, LocalQueries, MeshEdit, MeshMove, MeshQuery,
+    OrientedWalk, QueryCost, Refine, Relation, Representation, Split,
 };
 // Meshes as lists of faces; their topology, creases, sizes and memory.
 #[doc(inline)]
