@@ -8,8 +8,7 @@ use sixfold::remeshing::{
     Decimation, DecimationBoundary, RemeshError, Remeshing, Stop, decimate_watched, remesh_watched,
 };
 use sixfold::{
-    Edit, EditVisitor, MeshEdit, PolygonMesh, QueryCost, Representation, structure_infos,
-    visit_editable,
+    Edit, MeshEdit, PolygonMesh, QueryCost, Representation, for_each_editable, structure_infos,
 };
 
 use crate::arguments::{Decimate, Remesh};
@@ -51,11 +50,7 @@ fn edit_file([from, to]: [&Path; 2], backend: &str, work: &impl Work) -> Result<
     check_triangles(&polygons)?;
     // Open the output before the work, so that an unusable path gives an error at once.
     let output = open_mesh(to)?;
-    let mut job = EditJob {
-        polygons: &polygons,
-        work,
-    };
-    let done = visit_editable(backend, &mut job);
+    let done = edited_by(backend, &polygons, work);
     let (polygons, EditSummary { edits, shortfall }) =
         done.ok_or_else(|| Failure::unsupported(not_editable(backend)))??;
     write_mesh(output, to, &polygons, &[])?;
@@ -206,23 +201,25 @@ impl Work for Remeshing {
     }
 }
 
-/// Edits on a structure that is selected at run time.
-struct EditJob<'a, W> {
-    polygons: &'a PolygonMesh,
-    work: &'a W,
+/// Does the work on the structure called `backend`; `None` if it has no edits, or does not exist.
+fn edited_by(backend: &str, polygons: &PolygonMesh, work: &impl Work) -> Option<Edited> {
+    for_each_editable!(M => {
+        if backend == M::NAME {
+            return Some(edited::<M>(polygons, work));
+        }
+    });
+    None
 }
 
-impl<W: Work> EditVisitor for EditJob<'_, W> {
-    type Output = Result<(PolygonMesh, EditSummary), Failure>;
+type Edited = Result<(PolygonMesh, EditSummary), Failure>;
 
-    fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output {
-        let mesh = M::from_polygons(self.polygons);
-        let mut mesh = mesh.map_err(|refusal| {
-            let refusal = format!("{} cannot hold the mesh: {refusal}", M::NAME);
-            Failure::cannot_hold(M::NAME, refusal)
-        })?;
-        warn_of_scans::<M>(self.polygons.face_count());
-        let summary = self.work.run(&mut mesh).map_err(remesh_failure)?;
-        Ok((mesh.to_polygons(), summary))
-    }
+fn edited<M: Representation + MeshEdit>(polygons: &PolygonMesh, work: &impl Work) -> Edited {
+    let mesh = M::from_polygons(polygons);
+    let mut mesh = mesh.map_err(|refusal| {
+        let refusal = format!("{} cannot hold the mesh: {refusal}", M::NAME);
+        Failure::cannot_hold(M::NAME, refusal)
+    })?;
+    warn_of_scans::<M>(polygons.face_count());
+    let summary = work.run(&mut mesh).map_err(remesh_failure)?;
+    Ok((mesh.to_polygons(), summary))
 }

@@ -4,17 +4,18 @@ mod forecast;
 mod limit;
 mod local;
 
+use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPoolBuilder;
 use sixfold::io::{read_creases, write_creases};
 use sixfold::subdivision::{
-    BoundaryRule, Method, Scheme, Step, Subdivision, SubdivisionError, subdivide, subdivide_native,
+    BoundaryRule, Method, Scheme, Step, Subdivision, SubdivisionError, subdivide_native_watched,
+    subdivide_watched,
 };
 use sixfold::{
-    Creases, PolygonMesh, Refine, RefineVisitor, Representation, Visitor, support, visit,
-    visit_refinable,
+    Creases, PolygonMesh, Refine, Representation, Visitor, for_each_refinable, support, visit,
 };
 
 use crate::arguments::Subdivide;
@@ -231,7 +232,7 @@ impl Job<'_> {
                         "{threads} threads cannot be started ({error}): choose fewer --threads"
                     ))
                 })?;
-                pool.install(|| visit_refinable(backend, self))
+                pool.install(|| self.run_native(backend))
             }
             _ => visit(backend, self),
         };
@@ -246,16 +247,38 @@ impl Job<'_> {
         }
     }
 
+    /// Splits the tables of the structure called `backend`; `None` if it cannot, or does not exist.
+    fn run_native(&mut self, backend: &str) -> Option<Result<Step, SubdivisionError>> {
+        for_each_refinable!(M => {
+            if backend == M::NAME {
+                return Some(self.refine::<M>());
+            }
+        });
+        None
+    }
+
+    fn refine<M: Refine>(&mut self) -> Result<Step, SubdivisionError> {
+        let mut watch = Self::record_levels(&self.bar, &mut self.finished);
+        let Self {
+            polygons,
+            creases,
+            levels,
+            ..
+        } = *self;
+        subdivide_native_watched::<M>(&self.subdivision, polygons, creases, levels, &mut watch)
+    }
+
     fn record_levels<'b>(
         bar: &'b FaceBar,
         finished: &'b mut Vec<FinishedLevel>,
-    ) -> impl FnMut(u32, usize) + 'b {
+    ) -> impl FnMut(u32, usize) -> ControlFlow<()> + 'b {
         let mut start = Instant::now();
         move |level, faces| {
             let time = start.elapsed();
             bar.add_level(level, faces);
             finished.push(FinishedLevel { level, faces, time });
             start = Instant::now();
+            ControlFlow::Continue(())
         }
     }
 }
@@ -264,7 +287,7 @@ impl Visitor for Job<'_> {
     type Output = Result<Step, SubdivisionError>;
 
     fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
-        let watch = Self::record_levels(&self.bar, &mut self.finished);
+        let mut watch = Self::record_levels(&self.bar, &mut self.finished);
         let Self {
             method,
             polygons,
@@ -272,21 +295,13 @@ impl Visitor for Job<'_> {
             levels,
             ..
         } = *self;
-        subdivide::<M>(&self.subdivision, method, polygons, creases, levels, watch)
-    }
-}
-
-impl RefineVisitor for Job<'_> {
-    type Output = Result<Step, SubdivisionError>;
-
-    fn visit<M: Refine + 'static>(&mut self) -> Self::Output {
-        let watch = Self::record_levels(&self.bar, &mut self.finished);
-        let Self {
+        subdivide_watched::<M>(
+            &self.subdivision,
+            method,
             polygons,
             creases,
             levels,
-            ..
-        } = *self;
-        subdivide_native::<M>(&self.subdivision, polygons, creases, levels, watch)
+            &mut watch,
+        )
     }
 }
