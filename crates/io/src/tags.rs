@@ -4,7 +4,8 @@ use std::fmt;
 
 use sixfold_core::{CreaseError, Creases, FaceList, MAX_ROWS, Pair, VertexId, row};
 
-use crate::error::shortened;
+use crate::excerpt::shortened;
+use crate::faults::TagFault;
 use crate::file_mesh::{ShortFace, repeated_vertex};
 use crate::sharpness::sharpness;
 
@@ -52,39 +53,6 @@ impl fmt::Display for UnusedCrease {
     }
 }
 
-/// A fault in a `t crease` or `t corner` tag.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-#[expect(missing_docs, reason = "the message shows the meaning of each field")]
-pub enum TagFault {
-    /// The tag does not start with three counts such as `2/1/0`.
-    #[error("tag {tag} has invalid counts {text:?}: write the tag like `t {tag} {}`", tag.example())]
-    Counts { tag: Tag, text: String },
-    /// The number of values does not match the counts.
-    #[error(
-        "the counts of tag {tag} require {required} values, found {found}: correct the counts or the values"
-    )]
-    Length {
-        tag: Tag,
-        required: usize,
-        found: usize,
-    },
-    /// The counts are not possible for this kind of tag.
-    #[error("counts {counts} do not fit tag {tag}: write the tag like `t {tag} {}`; {}", tag.example(), tag.rule())]
-    Shape { tag: Tag, counts: String },
-    /// A value is not a vertex number.
-    #[error("{text:?} in tag {tag} is not a vertex number: use whole numbers that count from 0")]
-    Vertex { tag: Tag, text: String },
-    /// A value is not a sharpness.
-    #[error(
-        "sharpness {text:?} in tag {tag} is not a number from 0 to inf: write it like 2, 0.5 or inf"
-    )]
-    Sharpness { tag: Tag, text: String },
-    /// The file does not have this vertex or edge.
-    #[error("tag {tag}: {cause}")]
-    Mesh { tag: Tag, cause: CreaseError },
-}
-
 /// A kind of tag that sets sharpness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tag {
@@ -104,14 +72,14 @@ impl Tag {
         }
     }
 
-    const fn example(self) -> &'static str {
+    pub(crate) const fn example(self) -> &'static str {
         match self {
             Self::Crease => "2/1/0 0 1 2.5",
             Self::Corner => "1/1/0 0 2.5",
         }
     }
 
-    const fn rule(self) -> &'static str {
+    pub(crate) const fn rule(self) -> &'static str {
         match self {
             Self::Crease => "n vertices in a row need 1 or n - 1 sharpness values",
             Self::Corner => "n vertices need 1 or n sharpness values",
