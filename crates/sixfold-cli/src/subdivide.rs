@@ -5,11 +5,12 @@ mod limit;
 mod local;
 
 use std::ops::ControlFlow;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPoolBuilder;
-use sixfold::io::{read_creases, write_creases};
+use sixfold::io::{WriteOptions, read_creases, write_creases};
 use sixfold::subdivision::{
     BoundaryRule, Method, Scheme, Step, Subdivision, SubdivisionError, subdivide_native_watched,
     subdivide_watched,
@@ -21,7 +22,7 @@ use sixfold::{
 use crate::arguments::Subdivide;
 use crate::failure::Failure;
 use crate::load;
-use crate::mesh_files::{open_mesh, shown, write_mesh};
+use crate::mesh_files::{MeshOutput, shown};
 use crate::output::{Output, check_not_overwritten, check_outputs, is_stdout};
 use crate::progress::{FaceBar, exit_on_interrupt};
 use crate::text::{TextOutput, sanitize};
@@ -47,7 +48,7 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         return local::run(arguments, select);
     }
     let method = method(arguments)?;
-    let (polygons, mut creases) = load::with_creases(&arguments.mesh)?;
+    let (polygons, mut creases) = load::with_creases(&arguments.mesh, arguments.read)?;
     check_tags(arguments, &creases)?;
     if let Some(path) = &arguments.creases {
         let listed = read_creases(path, &polygons).map_err(Failure::usage)?;
@@ -63,8 +64,9 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     )?;
     forecast.check(arguments.force)?;
     // Open the output before the work, so that an unusable path gives an error at once.
-    let output = open_mesh(&arguments.output)?;
-    let limit = arguments.limit.as_deref().map(open_mesh).transpose()?;
+    let open = |path: &PathBuf| MeshOutput::open(path, arguments.write);
+    let output = open(&arguments.output)?;
+    let limit = arguments.limit.as_ref().map(open).transpose()?;
     let left = Output::open_if(arguments.creases_left.as_ref())?;
     text.print_line(&forecast.describe());
     let mut job = Job {
@@ -85,12 +87,12 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         Some(output) => Some((output, Limits::new(&subdivision, &step, arguments.levels)?)),
         None => None,
     };
-    write_mesh(output, &arguments.output, &step.polygons, &[])?;
+    output.write(&step.polygons, &WriteOptions::default())?;
     if let Some(left) = left {
         left.finish(|writer| write_creases(&step.creases, writer))?;
     }
     if let (Some((output, limits)), Some(path)) = (limits, &arguments.limit) {
-        limits.write(output, path)?;
+        limits.write(output)?;
         limits
             .describe(path)
             .iter()
