@@ -75,7 +75,7 @@ trait HandWritten: Representation<Vertex = VertexId, Face = FaceId> {
 
 impl HandWritten for HalfEdgeMesh {
     fn means_by_hand(&self, means: &mut [Point]) {
-        let (positions, halves) = (self.positions(), self.half_rows());
+        let (positions, halves) = (self.positions(), self.half_edge_rows());
         for (mean, leaving) in means.iter_mut().zip(self.leaving_rows()) {
             let Some(first) = leaving.get() else { continue };
             let (mut sum, mut valence, mut h) = (Point::ZERO, 0_u32, first);
@@ -93,7 +93,7 @@ impl HandWritten for HalfEdgeMesh {
     }
 
     fn normals_by_hand(&self, by_face: &mut [Point], by_vertex: &mut [Point]) {
-        let (positions, halves) = (self.positions(), self.half_rows());
+        let (positions, halves) = (self.positions(), self.half_edge_rows());
         for (normal, &first) in by_face.iter_mut().zip(self.first_rows()) {
             let (mut fan, mut h) = (Fan::default(), first);
             loop {

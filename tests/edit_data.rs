@@ -6,10 +6,10 @@ use std::panic::catch_unwind;
 
 use sixfold::remeshing::{Decimation, Remeshing, Target};
 use sixfold::{
-    AcceptedEdit, Changes, EdgeMap, EditableCornerTable, EditableHalfEdgeMesh,
+    AcceptedEdit, Changes, EdgeData, EdgeMap, EditableCornerTable, EditableHalfEdgeMesh,
     EditableIndexedFaceSet, EditablePolygonSoup, FaceData, FaceMap, FollowEdits, Handle, HandleMap,
-    MeshEdit, MeshQuery, MeshWithData, Point, PolygonMesh, Representation, VertexData, VertexMap,
-    for_each_editable,
+    LocalQueries, MeshEdit, MeshMove, MeshQuery, MeshWithData, OrientedWalk, Point, PolygonMesh,
+    Representation, VertexData, VertexMap, for_each_editable,
 };
 use sixfold_conformance::law::{ElementNumbers, numbers_follow_edits};
 
@@ -72,6 +72,78 @@ fn compare_structures(operator: &impl Operator, polygons: &PolygonMesh) {
         let same = first.get_or_insert_with(|| faces.clone()) == &faces;
         assert!(same, "{} has other data", M::NAME);
     });
+}
+
+#[test]
+fn data_follows_moved_vertices_on_all() {
+    let polygons = sixfold::shapes::icosahedron();
+    for_each_editable!(M => {
+        let mesh = M::from_polygons(&polygons).expect("a manifold of triangles");
+        let (mut vertices, mut edges) = (VertexData::new(&mesh, 0), EdgeData::new(&mesh, 0));
+        for (i, v) in mesh.vertices().enumerate() {
+            vertices[v] = i;
+        }
+        for (i, e) in mesh.edges().enumerate() {
+            edges[e] = i;
+        }
+        let mut mesh = MeshWithData::new(mesh, (vertices, edges));
+        let mut doubled = mesh.vertex_map(Point::ZERO);
+        for v in mesh.vertices() {
+            doubled[v] = 2.0 * mesh.position(v);
+        }
+        mesh.set_positions(&doubled).expect("no two vertices meet");
+        mesh.validate().expect("every invariant");
+        let (vertices, edges) = mesh.data();
+        assert!(mesh.vertices().enumerate().all(|(i, v)| vertices[v] == i), "{}", M::NAME);
+        assert!(mesh.edges().enumerate().all(|(i, e)| edges[e] == i), "{}", M::NAME);
+        let first = mesh.vertices().next().expect("12 vertices");
+        assert_eq!(mesh.position(first), 2.0 * polygons.positions()[0], "{}", M::NAME);
+    });
+}
+
+/// Returns the sum of the values of the faces around the origin of `side`, in order.
+fn sum_around<M: OrientedWalk + LocalQueries>(
+    mesh: &MeshWithData<M, FaceData<M, u32>>,
+    side: M::Side,
+) -> u32 {
+    let mut sum = 0;
+    let mut at = Some(side);
+    while let Some(s) = at {
+        sum += mesh.data()[mesh.side_face(s)];
+        at = mesh.ccw_side(s).filter(|&next| next != side);
+    }
+    sum
+}
+
+#[test]
+fn a_mesh_with_data_walks_and_has_local_queries() {
+    fn largest_valence<M: LocalQueries>(mesh: &M) -> usize {
+        mesh.vertices().map(|v| mesh.valence(v)).max().unwrap_or(0)
+    }
+    let mesh = EditableHalfEdgeMesh::from_polygons(&sixfold::shapes::icosahedron());
+    let mesh = mesh.expect("a closed manifold");
+    let mut numbers = FaceData::new(&mesh, 0);
+    for (i, f) in (1..).zip(mesh.faces()) {
+        numbers[f] = i;
+    }
+    let mesh = MeshWithData::new(mesh, numbers);
+    assert_eq!(largest_valence(&mesh), 5);
+    for v in mesh.vertices() {
+        let side = mesh.outgoing_sides(v).next().expect("five");
+        let expected: u32 = mesh.vertex_faces(v).map(|f| mesh.data()[f]).sum();
+        assert_eq!(sum_around(&mesh, side), expected);
+    }
+    assert_eq!((mesh.side_count(), mesh.sides().count()), (60, 60));
+    for s in mesh.sides() {
+        assert_eq!(mesh.next_side(mesh.prev_side(s)), s);
+        assert_eq!(mesh.twin_side(s).and_then(|t| mesh.twin_side(t)), Some(s));
+        let ends = [mesh.side_origin(s), mesh.side_target(s)];
+        assert_eq!(mesh.edge_between(ends[0], ends[1]), Some(mesh.side_edge(s)));
+        assert_eq!(mesh.cw_side(s).and_then(|c| mesh.ccw_side(c)), Some(s));
+        assert!(mesh.face_sides(mesh.side_face(s)).any(|t| t == s));
+        assert!(mesh.edge_sides(mesh.side_edge(s)).any(|t| t == s));
+    }
+    assert_eq!(mesh.side_map(7)[mesh.sides().next().expect("60")], 7);
 }
 
 #[test]

@@ -2,11 +2,11 @@
 //!
 //! This is a separate program, because its allocator counts every byte. It runs on one thread.
 
-use std::cell::Cell;
+use std::alloc::System;
 use std::path::PathBuf;
 use std::{env, fs};
 
-use peak_alloc::PeakAlloc;
+use peakmem_alloc::{PeakMemAlloc, PeakMemAllocTrait};
 use sixfold::remeshing::{Decimation, DecimationBoundary, Target, decimate};
 use sixfold::{
     MeshEdit, MeshQuery, Point, PolygonMesh, Representation, for_each_editable, io, shapes,
@@ -14,33 +14,33 @@ use sixfold::{
 };
 use sixfold_core::Measured;
 use sixfold_study::{Audit, Backend, Heap, StudyMesh, audit};
+use stats_alloc::StatsAlloc;
 
 #[path = "../crates/conformance/tests/all/face_and_edge_lists.rs"]
 mod face_and_edge_lists;
 
 use face_and_edge_lists::FaceAndEdgeLists;
 
+static LIVE: StatsAlloc<System> = StatsAlloc::system();
+
 #[global_allocator]
-static HEAP: PeakAlloc = PeakAlloc;
+static PEAK: PeakMemAlloc<&StatsAlloc<System>> = PeakMemAlloc::new(&LIVE);
 
 /// Counters of the allocator. The `sixfold` command has its own counters.
-#[derive(Default)]
-struct Counters {
-    before: Cell<usize>,
-}
+struct Counters;
 
 impl Heap for Counters {
     fn live(&self) -> usize {
-        HEAP.current_usage()
+        let stats = LIVE.stats();
+        stats.bytes_allocated - stats.bytes_deallocated
     }
 
     fn restart_peak(&self) {
-        HEAP.reset_peak_usage();
-        self.before.set(HEAP.current_usage());
+        PEAK.reset_peak_memory();
     }
 
     fn peak(&self) -> usize {
-        HEAP.peak_usage() - self.before.get()
+        PEAK.get_peak_memory()
     }
 }
 
@@ -55,7 +55,7 @@ sixfold_tests::main_on_one_thread!(
 );
 
 fn counters_are_correct() {
-    let heap = Counters::default();
+    let heap = Counters;
     let before = heap.live();
     heap.restart_peak();
     let mut block = Vec::<u8>::with_capacity(12_345);
@@ -68,7 +68,7 @@ fn counters_are_correct() {
 
 fn run_audit(name: &str, polygons: PolygonMesh) -> Audit {
     let study_mesh = StudyMesh::new(name, polygons);
-    let heap = Counters::default();
+    let heap = Counters;
     audit(&study_mesh, &Backend::structures(), &heap, &mut |_| ())
 }
 
@@ -192,7 +192,7 @@ fn reported_bytes_are_right_on_real_meshes() {
             if file.extension().is_none_or(|extension| extension != "obj") {
                 continue;
             }
-            let mesh = io::read_obj(&file).unwrap_or_else(|error| panic!("{error}"));
+            let mesh = io::read(&file).unwrap_or_else(|error| panic!("{error}"));
             let structures = check_audit(&file.display().to_string(), &mesh.into_polygons().0);
             meshes += usize::from(structures > 0);
         }
@@ -218,7 +218,7 @@ fn words_per_vertex_equal_the_literature() {
 fn bytes_outside_the_formula_are_found() {
     let torus = || StudyMesh::new("torus", shapes::triangle_torus(20, 15).expect("a torus"));
     let seventh = Backend::new::<FaceAndEdgeLists>();
-    let heap = Counters::default();
+    let heap = Counters;
     let audit_of = |backend: Backend| audit(&torus(), &[backend], &heap, &mut |_| ());
     assert_eq!(audit_of(seventh).faults(), Vec::<String>::new());
 
@@ -244,9 +244,9 @@ fn tables_report_all_bytes_after_edits() {
         boundary: DecimationBoundary::default(),
     };
     for_each_editable!(M => {
-        let before = HEAP.current_usage();
+        let before = Counters.live();
         let mut mesh = M::from_polygons(&polygons).expect("closed");
-        let counted = || HEAP.current_usage() - before;
+        let counted = || Counters.live() - before;
         assert_eq!(counted(), mesh.memory().total(), "{}, built", M::NAME);
         let faces: Vec<_> = mesh.faces().step_by(2).collect();
         for (i, &f) in faces.iter().enumerate() {

@@ -306,7 +306,7 @@ fn compare_case(reference: &Reference, case: &Case, counts: &Counts) {
             Ok((mesh, step.creases))
         };
         let all = |levels| {
-            let step = subdivide::<M>(subdivision, method, polygons, creases, levels, |_, _| ());
+            let step = subdivide::<M>(subdivision, method, polygons, creases, levels);
             step.expect("all steps").polygons
         };
         record(compare_levels(case, &answer, next, all));
@@ -335,7 +335,7 @@ fn native<M: Refine>(case: &Case, answer: &Answer) -> Option<usize> {
         Ok((child, creases))
     };
     let all = |levels| {
-        let step = subdivide_native::<M>(subdivision, polygons, creases, levels, |_, _| ());
+        let step = subdivide_native::<M>(subdivision, polygons, creases, levels);
         step.expect("all steps").polygons
     };
     compare_levels(case, answer, next, all)

@@ -2,12 +2,14 @@
 //!
 //! This is a separate program, because its allocator counts every byte.
 
-use peak_alloc::PeakAlloc;
+use std::alloc::System;
+
+use peakmem_alloc::{INSTRUMENTED_SYSTEM, PeakMemAlloc, PeakMemAllocTrait};
 use sixfold::subdivision::{Scheme, Subdivision};
 use sixfold::{Creases, PolygonMesh, Refine, Representation, for_each_refinable, shapes};
 
 #[global_allocator]
-static HEAP: PeakAlloc = PeakAlloc;
+static HEAP: &PeakMemAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 /// Returns the peak memory of one step divided by the memory of the mesh and its child.
 fn peak_of_a_step<M: Refine>(scheme: Scheme, polygons: &PolygonMesh) -> Option<f64> {
@@ -19,12 +21,11 @@ fn peak_of_a_step<M: Refine>(scheme: Scheme, polygons: &PolygonMesh) -> Option<f
     let mesh = M::from_polygons(polygons).ok()?;
     let creases = subdivision.control_creases(&mesh, polygons, &Creases::default());
     let creases = creases.expect("no creases");
-    let before = HEAP.current_usage();
-    HEAP.reset_peak_usage();
+    HEAP.reset_peak_memory();
     let (mut numbers, mut child) = (M::EdgeNumbers::default(), M::empty());
     let done = subdivision.refine_into(&mesh, &creases, 0, &mut numbers, &mut child);
     done.expect("the structure supports the split");
-    let peak = HEAP.peak_usage() - before;
+    let peak = HEAP.get_peak_memory();
     let [parent, child] = [&mesh, &child].map(|mesh| mesh.memory().total());
     Some((parent + peak) as f64 / (parent + child) as f64)
 }

@@ -26,7 +26,7 @@ fn meshes() -> Vec<(String, PolygonMesh)> {
     files.sort();
     assert!(files.len() > 50, "only {} meshes", files.len());
     let read = files.into_iter().map(|file| {
-        let mesh = io::read_obj(&file).unwrap_or_else(|error| panic!("{error}"));
+        let mesh = io::read(&file).unwrap_or_else(|error| panic!("{error}"));
         (file.display().to_string(), mesh.into_polygons().0)
     });
     read.collect()

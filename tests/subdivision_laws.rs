@@ -44,8 +44,7 @@ fn subdivided(
     levels: u32,
 ) -> Step {
     let method = Method::Gather;
-    let step =
-        subdivide::<IndexedFaceSet>(subdivision, method, polygons, creases, levels, |_, _| ());
+    let step = subdivide::<IndexedFaceSet>(subdivision, method, polygons, creases, levels);
     step.expect("the scheme accepts the mesh")
 }
 
@@ -315,10 +314,10 @@ proptest! {
         let Case { subdivision, polygons, creases } = &start;
         let itself = Step { polygons: polygons.clone(), creases: creases.clone() };
         for method in [Method::Gather, Method::Scatter] {
-            let step = subdivide::<IndexedFaceSet>(subdivision, method, polygons, creases, 0, |_, _| ());
+            let step = subdivide::<IndexedFaceSet>(subdivision, method, polygons, creases, 0);
             prop_assert_eq!(step.as_ref(), Ok(&itself));
         }
-        let step = subdivide_native::<HalfEdgeMesh>(subdivision, polygons, creases, 0, |_, _| ());
+        let step = subdivide_native::<HalfEdgeMesh>(subdivision, polygons, creases, 0);
         prop_assert_eq!(step, Ok(itself));
     }
 }

@@ -10,6 +10,7 @@
 //! - [`MeshQuery`]: the nine relations between vertices, edges and faces (Weiler 1985), and their
 //!   contract.
 //! - [`OrientedWalk`]: steps along the sides of a face and around a vertex.
+//! - [`MeshMove`]: new positions of all vertices.
 //! - [`Representation`]: the trait of all structures: construction, conversion and memory.
 //! - [`LocalQueries`]: the trait of structures whose queries never read all faces.
 //! - [`Handle`] and [`HandleMap`]: handles of vertices, edges and faces, and maps from handles to
@@ -60,128 +61,89 @@
 //! threads. `serde`: facts, capabilities, costs and memory tables can be serialised. `mint`:
 //! positions can be points and vectors of the crate `mint`.
 
-mod boundary;
-mod capability;
-mod classes;
-mod clone_by_field;
-mod convert;
-mod creases;
-mod distinct;
 mod edit;
-mod edit_check;
-mod edit_error;
-mod edit_kind;
-mod edit_log;
-mod editing;
-mod element_data;
-mod error;
-mod face_list;
-mod face_spans;
-mod faces_by_lowest;
-mod facts;
-mod fans;
-mod follow_edits;
-mod handle;
-mod holes;
-mod incidence;
-mod iterator_ext;
-mod local_queries;
-mod measured;
-mod memory;
-mod mesh_with_data;
-mod new_rows;
-mod numbering;
-mod oriented_walk;
-mod pairing;
-mod partition;
-mod polygon_mesh;
-mod probe;
-mod query;
-mod ranks;
-mod refine;
-mod representation;
-mod row_id;
-mod scan;
-mod scan_edit;
-mod scanned;
-mod short_vec;
-mod sides;
-mod table;
-mod threads;
+mod handles;
+mod polygons;
+mod scanning;
+mod tables;
+mod traits;
 
 // For programs.
-pub use boundary::BoundaryLoop;
-pub use capability::Capabilities;
-pub use creases::{Creases, SHARPNESS_INFINITE};
-pub use edit::{MeshEdit, Refusal};
-pub use edit_error::EditError;
-pub use edit_kind::Edit;
-pub use edit_log::{Changes, EditLog, EditRecord, OldToNew};
-pub use element_data::{Created, EdgeData, ElementData, FaceData, VertexData};
+pub use edit::edit_error::EditError;
+pub use edit::edit_kind::Edit;
+pub use edit::edit_log::{Changes, EditLog, EditRecord, OldToNew};
+pub use edit::element_data::{Created, EdgeData, ElementData, FaceData, VertexData};
 #[doc(hidden)]
-pub use element_data::{Edges, ElementKind, Faces, Vertices};
-pub use error::{BuildError, CreaseError, InvariantError, MoveError, PolygonError, RefineError};
-pub use face_list::FaceList;
-pub use facts::{Distribution, Facts};
-pub use follow_edits::{AcceptedEdit, FollowEdits};
+pub use edit::element_data::{Edges, ElementKind, Faces, Vertices};
+pub use edit::follow_edits::{AcceptedEdit, FollowEdits};
+pub use edit::mesh_edit::{MeshEdit, Refusal};
+pub use edit::mesh_with_data::MeshWithData;
 pub use glam;
 pub use glam::Vec3 as Point;
-pub use handle::{Handle, HandleMap, HashHandleMap, Pair, RowMap};
-pub use incidence::EdgeUse;
+pub use handles::handle::{Handle, HandleMap, HashHandleMap, RowMap};
+pub use handles::numbering::Numbers;
+pub use handles::pair::Pair;
+pub use handles::row_id::{EdgeId, FaceId, VertexId};
+pub use polygons::capability::Capabilities;
+pub use polygons::counts::Counts;
+pub use polygons::creases::{Creases, SHARPNESS_INFINITE};
+pub use polygons::error::{
+    BuildError, CreaseError, InvariantError, MoveError, PolygonError, RefineError,
+};
+pub use polygons::face_list::FaceList;
+pub use polygons::facts::{Distribution, Facts};
+pub use polygons::incidence::EdgeUse;
+pub use polygons::polygon_mesh::PolygonMesh;
+pub use tables::memory::{MemoryFootprint, TableBytes};
+pub use traits::boundary::BoundaryLoop;
 #[doc(hidden)]
-pub use local_queries::CostsAreLocal;
-pub use local_queries::LocalQueries;
-pub use measured::Counts;
-pub use memory::{MemoryFootprint, TableBytes};
-pub use mesh_with_data::MeshWithData;
-pub use numbering::Numbers;
-pub use oriented_walk::{OrientedWalk, SideMap};
-pub use polygon_mesh::PolygonMesh;
-pub use query::{EdgeMap, FaceMap, MeshQuery, VertexMap};
-pub use refine::{Refine, Split};
-pub use representation::{QueryCost, Relation, Representation};
-pub use row_id::{EdgeId, FaceId, VertexId};
+pub use traits::local_queries::CostsAreLocal;
+pub use traits::local_queries::LocalQueries;
+pub use traits::mesh_move::MeshMove;
+pub use traits::oriented_walk::{OrientedWalk, SideMap};
+pub use traits::query::{EdgeMap, FaceMap, MeshQuery, VertexMap};
+pub use traits::refine::Refine;
+pub use traits::representation::{QueryCost, Relation, Representation};
+pub use traits::split::Split;
 
 // For authors of structures.
-pub use classes::Classes;
-pub use distinct::{Distinct, DistinctWalk};
-pub use edit_check::{check_corners, check_cut, check_rows};
-pub use edit_log::uses_reports;
-pub use editing::{
-    Compact, EDGE_HOLES, Editable, Editing, FACE_HOLES, HoleSet, NoHoles, NoScatteredFaces,
-    VERTEX_HOLES,
-};
-pub use face_spans::{FaceSpans, ScatteredFaces};
-pub use faces_by_lowest::FacesByLowest;
-pub use fans::Fans;
-pub use holes::Holes;
-pub use incidence::{EdgeSides, Incidence, Side};
-pub use iterator_ext::{IteratorExt, MapInline};
-pub use new_rows::NewRows;
-pub use pairing::{LinkFaces, SideRows, TwinPairs, pair_triangle_sides};
-pub use partition::Partition;
-pub use ranks::Ranks;
-pub use refine::{
+pub use edit::edit_check::{check_corners, check_cut, check_rows};
+pub use edit::edit_log::uses_reports;
+pub use edit::new_rows::NewRows;
+pub use handles::distinct::{Distinct, DistinctWalk};
+pub use handles::iterator_ext::{IteratorExt, MapInline};
+pub use handles::row_id::{MAX_ROWS, RowId, Slot, row};
+pub use handles::short_vec::{Lookup, ShortVec};
+pub use polygons::classes::Classes;
+pub use polygons::faces_by_lowest::FacesByLowest;
+pub use polygons::fans::Fans;
+pub use polygons::incidence::{EdgeSides, Incidence, Side};
+pub use polygons::partition::Partition;
+pub use scanning::scan::hits_in;
+pub use scanning::scan_edit::ScannedMesh;
+pub use scanning::scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};
+pub use tables::editing::{Compact, Editable, Editing, NoScatteredFaces};
+pub use tables::face_spans::{FaceSpans, ScatteredFaces};
+pub use tables::holes::{EDGE_HOLES, FACE_HOLES, HoleSet, Holes, NoHoles, VERTEX_HOLES};
+pub use tables::pairing::{LinkFaces, SideRows, TwinPairs, pair_triangle_sides};
+pub use tables::ranks::Ranks;
+pub use tables::table::Table;
+pub use tables::threads::join;
+pub use traits::refine::{
     CHUNK_ROWS, all_rows, check_split, chunk_starts, for_each_chunk, map_chunks, rows_of_chunk,
 };
-pub use row_id::{MAX_ROWS, RowId, Slot, row};
-pub use scan::hits_in;
-pub use scan_edit::ScannedMesh;
-pub use scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};
-pub use short_vec::{Lookup, ShortVec};
-pub use table::Table;
-pub use threads::join;
 
 // For measurements.
-pub use measured::Measured;
-pub use probe::{Access, AccessKind, Probe, Traced, Untraced};
+pub use tables::probe::{Access, AccessKind, Probe, Traced, Untraced};
+pub use traits::measured::Measured;
 
 /// The imports of a program that uses meshes: the traits with queries, walks, edits and refinement,
 /// and the types in their signatures.
 pub mod prelude {
     pub use crate::{
-        BuildError, EdgeData, EdgeId, EdgeMap, EditError, EditLog, EditRecord, FaceData, FaceId,
-        FaceMap, LocalQueries, MeshEdit, MeshQuery, MeshWithData, OrientedWalk, Point, PolygonMesh,
-        Refine, Representation, SideMap, VertexData, VertexId, VertexMap,
+        BuildError, Compact, EdgeData, EdgeId, EdgeMap, EditError, EditLog, EditRecord, Editable,
+        FaceData, FaceId, FaceMap, HandleMap, LocalQueries, MeshEdit, MeshMove, MeshQuery,
+        MeshWithData, MoveError, Numbers, OldToNew, OrientedWalk, Point, PolygonMesh, Refine,
+        Refusal, Representation, SideMap, VertexData, VertexId, VertexMap,
     };
 }

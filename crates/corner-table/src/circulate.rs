@@ -8,7 +8,7 @@
 //!    b ───── v
 //! ```
 
-use sixfold_core::{Editing, Probe, Slot, VertexId, row};
+use sixfold_core::{Editing, IteratorExt, Probe, Slot, VertexId, row};
 
 use crate::mesh::{CornerId, CornerTable, EdgeCorner, edge_between, named_edge, names_edge};
 
@@ -57,35 +57,16 @@ impl<P: Probe, E: Editing> Iterator for Edges<'_, P, E> {
     }
 }
 
-/// The corners at a vertex, counter-clockwise: each step is `c → swing(c)`.
-#[derive(Clone, Debug)]
-pub struct CornersAt<'a, P: Probe, E: Editing>(Fan<'a, P, E>);
-
-impl<P: Probe, E: Editing> Iterator for CornersAt<'_, P, E> {
-    type Item = CornerId;
-
-    #[inline]
-    fn next(&mut self) -> Option<CornerId> {
-        self.0.next().map(|(after, _)| after.prev())
-    }
-
-    #[inline]
-    fn fold<B, F: FnMut(B, CornerId) -> B>(self, init: B, mut f: F) -> B {
-        self.0
-            .fold(init, |folded, (after, _)| f(folded, after.prev()))
-    }
-}
-
 impl<P: Probe, E: Editing> CornerTable<E, P> {
-    /// Returns the corners at `v`, counter-clockwise. If `v` is on a boundary, the triangle of the
+    /// Yields the corners at `v`, counter-clockwise: each step is `c → swing(c)`. If `v` is on a boundary, the triangle of the
     /// first corner and the triangle of the last corner have a boundary edge at `v`.
     ///
     /// # Panics
     ///
     /// Panics if there is no vertex `v`.
     #[inline]
-    pub fn corners_at(&self, v: VertexId) -> CornersAt<'_, P, E> {
-        CornersAt(self.fan(v))
+    pub fn corners_at(&self, v: VertexId) -> impl Iterator<Item = CornerId> + Clone {
+        self.fan(v).map_inline(|(after, _)| after.prev())
     }
 
     #[inline]

@@ -1,9 +1,10 @@
 //! Building from polygons, and conversion to polygons.
 
 use sixfold_core::{
-    BuildError, Counts, Editing, FACE_HOLES, FaceId, FaceList, HoleSet, InvariantError, Measured,
-    MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
-    RowId, RowMap, Slot, Table, Untraced, VERTEX_HOLES, VertexId, pair_triangle_sides,
+    BuildError, Counts, EditLog, Editing, FACE_HOLES, FaceId, FaceList, HoleSet, InvariantError,
+    Measured, MemoryFootprint, MeshMove, MeshQuery, MoveError, Point, PolygonMesh, Probe,
+    QueryCost, Representation, RowId, RowMap, Slot, Table, Untraced, VERTEX_HOLES, VertexId,
+    pair_triangle_sides,
 };
 
 use crate::mesh::{CornerId, CornerTable};
@@ -68,10 +69,6 @@ impl<E: Editing> Representation for CornerTable<E> {
         f
     }
 
-    fn set_positions(&mut self, positions: &RowMap<VertexId, Point>) -> Result<(), MoveError> {
-        self.positions.set_positions(positions)
-    }
-
     fn memory(&self) -> MemoryFootprint {
         let Self {
             positions,
@@ -96,6 +93,16 @@ impl<E: Editing> Representation for CornerTable<E> {
 
     fn validate(&self) -> Result<(), InvariantError> {
         crate::validate::validate(self)
+    }
+}
+
+impl<E: Editing> MeshMove for CornerTable<E> {
+    fn set_positions_logged(
+        &mut self,
+        positions: &RowMap<VertexId, Point>,
+        _: &mut impl EditLog<Self>,
+    ) -> Result<(), MoveError> {
+        self.positions.set_positions(positions)
     }
 }
 

@@ -103,7 +103,6 @@ mod refine;
 mod validate;
 mod walk;
 
-pub use circulate::CornersAt;
 pub use mesh::{CornerId, EdgeCorner};
 pub use refine::EdgeNumbers;
 

@@ -1,9 +1,9 @@
 //! Building from polygons, and conversion to polygons.
 
 use sixfold_core::{
-    BuildError, Counts, Editing, FACE_HOLES, FaceId, FaceList, FaceSpans, HoleSet, InvariantError,
-    Measured, MemoryFootprint, MoveError, NewRows, Point, PolygonMesh, Probe, QueryCost,
-    Representation, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap, row,
+    BuildError, Counts, EditLog, Editing, FACE_HOLES, FaceId, FaceList, FaceSpans, HoleSet,
+    InvariantError, Measured, MemoryFootprint, MeshMove, MoveError, NewRows, Point, PolygonMesh,
+    Probe, QueryCost, Representation, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap, row,
 };
 
 use crate::mesh::{FaceVertexMesh, Fan};
@@ -61,10 +61,6 @@ impl<E: Editing> Representation for FaceVertexMesh<E> {
         f
     }
 
-    fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError> {
-        self.positions.set_positions(positions)
-    }
-
     fn memory(&self) -> MemoryFootprint {
         let tables = [
             self.positions.bytes(),
@@ -80,6 +76,16 @@ impl<E: Editing> Representation for FaceVertexMesh<E> {
 
     fn validate(&self) -> Result<(), InvariantError> {
         self.check_invariants()
+    }
+}
+
+impl<E: Editing> MeshMove for FaceVertexMesh<E> {
+    fn set_positions_logged(
+        &mut self,
+        positions: &VertexMap<Self, Point>,
+        _: &mut impl EditLog<Self>,
+    ) -> Result<(), MoveError> {
+        self.positions.set_positions(positions)
     }
 }
 

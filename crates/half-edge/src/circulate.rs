@@ -1,70 +1,35 @@
 //! Walks around a vertex and along a face, as iterators that end after one turn.
 
-use sixfold_core::{EdgeId, Editing, FaceId, Probe, Slot, VertexId};
+use sixfold_core::{EdgeId, Editing, FaceId, IteratorExt, Probe, Slot, VertexId};
 
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh, panic_deleted};
 
-/// The half-edges that leave a vertex, clockwise: each step is `h → next(twin(h))`.
-#[derive(Clone, Debug)]
-pub struct Leaving<'a, P: Probe, E: Editing>(Spokes<'a, P, E>);
-
-impl<P: Probe, E: Editing> Iterator for Leaving<'_, P, E> {
-    type Item = HalfEdgeId;
-
-    #[inline]
-    fn next(&mut self) -> Option<HalfEdgeId> {
-        self.0.next().map(|(h, _)| h)
-    }
-
-    #[inline]
-    fn fold<B, F: FnMut(B, HalfEdgeId) -> B>(self, init: B, mut f: F) -> B {
-        self.0.fold(init, |folded, (h, _)| f(folded, h))
-    }
-}
-
-/// The half-edges along a face, counter-clockwise: each step is `h → next(h)`.
-#[derive(Clone, Debug)]
-pub struct AroundFace<'a, P: Probe, E: Editing>(Sides<'a, P, E>);
-
-impl<P: Probe, E: Editing> Iterator for AroundFace<'_, P, E> {
-    type Item = HalfEdgeId;
-
-    #[inline]
-    fn next(&mut self) -> Option<HalfEdgeId> {
-        self.0.next().map(|(h, _)| h)
-    }
-
-    #[inline]
-    fn fold<B, F: FnMut(B, HalfEdgeId) -> B>(self, init: B, mut f: F) -> B {
-        self.0.fold(init, |folded, (h, _)| f(folded, h))
-    }
-}
-
 impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
-    /// Yields the half-edges that leave `v`, clockwise. At a boundary vertex, the first half-edge
+    /// Yields the half-edges that leave `v`, clockwise: each step is `h → next(twin(h))`. At a boundary vertex, the first half-edge
     /// is on the boundary loop.
     ///
     /// # Panics
     ///
     /// Panics if `v` is not a vertex of this mesh.
     #[inline]
-    pub fn leaving(&self, v: VertexId) -> Leaving<'_, P, E> {
-        Leaving(self.spokes(v))
+    pub fn leaving(&self, v: VertexId) -> impl Iterator<Item = HalfEdgeId> + Clone {
+        self.spokes(v).map_inline(|(h, _)| h)
     }
 
-    /// Yields the half-edges that have `f` on their left, counter-clockwise.
+    /// Yields the half-edges that have `f` on their left, counter-clockwise: each step is
+    /// `h → next(h)`.
     ///
     /// # Panics
     ///
     /// Panics if `f` is not a face of this mesh.
     #[inline]
-    pub fn around_face(&self, f: FaceId) -> AroundFace<'_, P, E> {
-        AroundFace(self.sides(f))
+    pub fn around_face(&self, f: FaceId) -> impl Iterator<Item = HalfEdgeId> + Clone {
+        self.sides(f).map_inline(|(h, _)| h)
     }
 
     #[inline]
     pub(crate) fn spokes(&self, v: VertexId) -> Spokes<'_, P, E> {
-        let at = self.half_leaving(v);
+        let at = self.vertex_half_edge(v);
         Spokes {
             mesh: self,
             at,
@@ -74,7 +39,7 @@ impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
 
     #[inline]
     pub(crate) fn sides(&self, f: FaceId) -> Sides<'_, P, E> {
-        let first = self.half_along(f);
+        let first = self.face_half_edge(f);
         Sides {
             mesh: self,
             at: Some(first),
@@ -196,7 +161,7 @@ pub(crate) struct EdgeEdges<'a, P: Probe, E: Editing> {
 impl<'a, P: Probe, E: Editing> EdgeEdges<'a, P, E> {
     #[inline]
     pub(crate) fn new(mesh: &'a HalfEdgeMesh<E, P>, e: EdgeId) -> Self {
-        let [one, other] = mesh.halves_of(e);
+        let [one, other] = mesh.edge_half_edges(e);
         let half = mesh.halves.read(other.index());
         if E::CAN_DELETE && half.is_deleted() {
             panic_deleted(e);

@@ -1,9 +1,9 @@
 //! Building from polygons, and conversion to polygons.
 
 use sixfold_core::{
-    BuildError, Counts, Editing, FaceId, FaceList, HoleSet, InvariantError, LinkFaces, Measured,
-    MemoryFootprint, MeshQuery, MoveError, NewRows, Point, PolygonMesh, Probe, QueryCost,
-    Representation, RowId, RowMap, SideRows, Slot, TwinPairs, VertexId, row,
+    BuildError, Counts, EditLog, Editing, FaceId, FaceList, HoleSet, InvariantError, LinkFaces,
+    Measured, MemoryFootprint, MeshMove, MeshQuery, MoveError, NewRows, Point, PolygonMesh, Probe,
+    QueryCost, Representation, RowId, RowMap, SideRows, Slot, TwinPairs, VertexId, row,
 };
 
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
@@ -56,10 +56,6 @@ impl<E: Editing> Representation for HalfEdgeMesh<E> {
         f
     }
 
-    fn set_positions(&mut self, positions: &RowMap<VertexId, Point>) -> Result<(), MoveError> {
-        self.positions.set_positions(positions)
-    }
-
     fn memory(&self) -> MemoryFootprint {
         let Self {
             positions,
@@ -85,6 +81,16 @@ impl<E: Editing> Representation for HalfEdgeMesh<E> {
 
     fn validate(&self) -> Result<(), InvariantError> {
         crate::validate::validate(self)
+    }
+}
+
+impl<E: Editing> MeshMove for HalfEdgeMesh<E> {
+    fn set_positions_logged(
+        &mut self,
+        positions: &RowMap<VertexId, Point>,
+        _: &mut impl EditLog<Self>,
+    ) -> Result<(), MoveError> {
+        self.positions.set_positions(positions)
     }
 }
 

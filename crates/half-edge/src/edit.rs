@@ -337,7 +337,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
 
     #[inline]
     fn delete_edge(&mut self, e: EdgeId) {
-        for h in self.halves_of(e) {
+        for h in self.edge_half_edges(e) {
             *self.halves.write(h.index()) = Half::DELETED;
         }
         self.edge_holes.insert(e.index());

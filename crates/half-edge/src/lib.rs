@@ -77,7 +77,7 @@
 //! let v = VertexId::new(0);
 //! assert_eq!(mesh.vertex_vertices(v).count(), 3);
 //! let diagonal = mesh.edges().find(|&e| mesh.edge_faces(e).count() == 2).expect("one");
-//! let [h, _] = mesh.halves_of(diagonal);
+//! let [h, _] = mesh.edge_half_edges(diagonal);
 //! assert_eq!(mesh.origin(mesh.next(h)), mesh.target(h));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -91,7 +91,6 @@ mod refine;
 mod validate;
 mod walk;
 
-pub use circulate::{AroundFace, Leaving};
 pub use mesh::{Half, HalfEdgeId};
 
 /// The mesh type with its type parameters, for generic code.

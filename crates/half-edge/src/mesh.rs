@@ -3,8 +3,8 @@
 use std::fmt::Debug;
 
 use sixfold_core::{
-    Compact, EDGE_HOLES, EdgeId, Editable, Editing, FACE_HOLES, FaceId, HoleSet, Point, Probe,
-    Slot, Table, Untraced, VERTEX_HOLES, VertexId, row_id,
+    Compact, EDGE_HOLES, EdgeId, Editable, Editing, FACE_HOLES, FaceId, HoleSet, MeshQuery, Point,
+    Probe, Slot, Table, Untraced, VERTEX_HOLES, VertexId, row_id,
 };
 
 row_id! {
@@ -206,9 +206,14 @@ impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
         h.edge()
     }
 
+    /// Yields the half-edges of all edges, edge by edge, also those on boundary loops.
+    pub fn half_edges(&self) -> impl Iterator<Item = HalfEdgeId> {
+        self.edges().flat_map(|e| self.edge_half_edges(e))
+    }
+
     /// Returns the two half-edges of `e`; O(1), reads no table.
     #[inline]
-    pub fn halves_of(&self, e: EdgeId) -> [HalfEdgeId; 2] {
+    pub fn edge_half_edges(&self, e: EdgeId) -> [HalfEdgeId; 2] {
         let h = HalfEdgeId::new((e.index() as u32) << 1);
         [h, h.twin()]
     }
@@ -220,7 +225,7 @@ impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
     ///
     /// Panics if `v` is not a vertex of this mesh.
     #[inline]
-    pub fn half_leaving(&self, v: VertexId) -> Option<HalfEdgeId> {
+    pub fn vertex_half_edge(&self, v: VertexId) -> Option<HalfEdgeId> {
         let leaving = self.leaving.read(v.index()).get();
         // If the cold function made this test, the VF sweep was 6 % slower.
         if leaving.is_none() && self.vertex_holes.has(v.index()) {
@@ -235,7 +240,7 @@ impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
     ///
     /// Panics if `f` is not a face of this mesh.
     #[inline]
-    pub fn half_along(&self, f: FaceId) -> HalfEdgeId {
+    pub fn face_half_edge(&self, f: FaceId) -> HalfEdgeId {
         let first = *self.first.read(f.index());
         if E::CAN_DELETE && first == NO_HALF {
             panic_deleted(f);
@@ -250,7 +255,8 @@ impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
         self.face(h).is_none()
     }
 
-    /// Returns the number of half-edges, which is twice the number of edges.
+    /// Returns the number of half-edges, which is twice the number of edges. In an editable mesh, row
+    /// numbers can be larger: use [`half_edges`](Self::half_edges).
     #[inline]
     pub fn half_edge_count(&self) -> usize {
         self.halves.len() - 2 * self.edge_holes.len()
@@ -299,7 +305,7 @@ impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
     }
 
     /// Returns the record of each half-edge, in the order of the half-edge rows.
-    pub fn half_rows(&self) -> &[Half] {
+    pub fn half_edge_rows(&self) -> &[Half] {
         self.halves.rows()
     }
 
@@ -311,7 +317,7 @@ impl<P: Probe, E: Editing> HalfEdgeMesh<E, P> {
 
 #[cfg(test)]
 mod tests {
-    use sixfold_core::{MeshQuery, PolygonMesh, Representation};
+    use sixfold_core::{PolygonMesh, Representation};
 
     use super::*;
 
@@ -341,13 +347,14 @@ mod tests {
         let open: HalfEdgeMesh =
             HalfEdgeMesh::from_polygons(&open.expect("valid")).expect("manifold");
         for mesh in [cube(), open] {
-            for h in (0..mesh.half_edge_count() as u32).map(HalfEdgeId::new) {
+            assert_eq!(mesh.half_edges().count(), mesh.half_edge_count());
+            for h in mesh.half_edges() {
                 assert_eq!(mesh.prev(mesh.next(h)), h);
                 assert_eq!(mesh.next(mesh.prev(h)), h);
                 assert_eq!(mesh.twin(mesh.twin(h)), h);
                 assert_eq!(mesh.target(h), mesh.origin(mesh.next(h)));
                 assert_eq!(mesh.face(h).is_none(), mesh.is_boundary(h));
-                assert!(mesh.halves_of(mesh.edge(h)).contains(&h));
+                assert!(mesh.edge_half_edges(mesh.edge(h)).contains(&h));
             }
             for v in mesh.vertices() {
                 assert!(mesh.leaving(v).all(|h| mesh.origin(h) == v));

@@ -44,7 +44,7 @@ impl Refine for HalfEdgeMesh {
     }
 
     fn number_edges(&self, numbers: &mut Ranks) {
-        numbers.fill(self.half_rows(), |half| [half.face != Slot::NONE]);
+        numbers.fill(self.half_edge_rows(), |half| [half.face != Slot::NONE]);
     }
 
     fn edge_chunks(&self, _: &Ranks) -> Vec<usize> {
@@ -108,7 +108,7 @@ impl Refine for HalfEdgeMesh {
             // The middle triangle of a face.
             _ => return FaceId::new(row(child - corners)),
         };
-        let face = self.half_rows()[corner].face.get();
+        let face = self.half_edge_rows()[corner].face.get();
         face.expect("a corner has a face")
     }
 
@@ -154,7 +154,7 @@ impl HalfEdgeMesh {
     /// Returns whether the origin of `h` is an inner vertex with two edges. Two faces then share
     /// both edges.
     fn is_double_edge(&self, h: Slot<HalfEdgeId>) -> bool {
-        let after = |h: HalfEdgeId| self.half_rows()[h.twin().index()].next;
+        let after = |h: HalfEdgeId| self.half_edge_rows()[h.twin().index()].next;
         h.get()
             .is_some_and(|h| after(after(h)) == h && !self.is_boundary(h))
     }

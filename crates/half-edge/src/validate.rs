@@ -26,11 +26,11 @@ fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> 
 }
 
 fn halves<E: Editing>(mesh: &HalfEdgeMesh<E>) -> impl Iterator<Item = HalfEdgeId> {
-    mesh.edges().flat_map(|e| mesh.halves_of(e))
+    mesh.edges().flat_map(|e| mesh.edge_half_edges(e))
 }
 
 fn check_pairs<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
-    match mesh.half_rows().len() {
+    match mesh.half_edge_rows().len() {
         rows if rows.is_multiple_of(2) => Ok(()),
         rows => fails("I1", format!("{rows} half-edges, expected an even number")),
     }
@@ -53,7 +53,7 @@ fn check_holes<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError>
             return fails("I9", format!("v{v} is deleted, but {leaving:?} leaves it"));
         }
     }
-    for (e, pair) in mesh.half_rows().as_chunks::<2>().0.iter().enumerate() {
+    for (e, pair) in mesh.half_edge_rows().as_chunks::<2>().0.iter().enumerate() {
         let marked = pair.map(|half| half == Half::DELETED);
         if marked != [mesh.edge_holes.has(e); 2] {
             return fails(
@@ -84,13 +84,13 @@ fn check_handles<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantErro
     };
     let is_face = |f: FaceId| f.index() < mesh.face_rows() && !mesh.face_holes.has(f.index());
     for h in halves(mesh) {
-        let half = mesh.half_rows()[h.index()];
+        let half = mesh.half_edge_rows()[h.index()];
         if !is_half(half.next) || !is_vertex(half.origin) || !half.face.get().is_none_or(is_face) {
             return fails("I2", format!("{h} refers to a missing element: {half:?}"));
         }
     }
     let leaving = mesh.leaving_rows().iter().filter_map(|slot| slot.get());
-    let along = mesh.faces().map(|f| mesh.half_along(f));
+    let along = mesh.faces().map(|f| mesh.face_half_edge(f));
     match leaving.chain(along).find(|&h| !is_half(h)) {
         Some(h) => fails("I5", format!("a row refers to {h}, which does not exist")),
         None => Ok(()),
@@ -105,7 +105,7 @@ fn check_edge_faces<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantE
 }
 
 fn check_permutation<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
-    let mut reached = vec![false; mesh.half_rows().len()];
+    let mut reached = vec![false; mesh.half_edge_rows().len()];
     for h in halves(mesh) {
         let next = mesh.next(h);
         if std::mem::replace(&mut reached[next.index()], true) {
@@ -135,7 +135,7 @@ fn check_ends<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> 
 fn check_leaving<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     for h in halves(mesh) {
         let v = mesh.origin(h);
-        let Some(leaving) = mesh.half_leaving(v) else {
+        let Some(leaving) = mesh.vertex_half_edge(v) else {
             return fails(
                 "I5",
                 format!("{h} starts at {v}, which has no leaving half-edge"),
@@ -152,7 +152,7 @@ fn check_leaving<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantErro
         }
     }
     for v in mesh.vertices() {
-        if let Some(h) = mesh.half_leaving(v).filter(|&h| mesh.origin(h) != v) {
+        if let Some(h) = mesh.vertex_half_edge(v).filter(|&h| mesh.origin(h) != v) {
             return fails("I5", format!("{h} does not leave {v}"));
         }
     }
@@ -180,7 +180,7 @@ fn check_fans<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> 
 fn check_faces<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     let mut along = 0;
     for f in mesh.faces() {
-        let h = mesh.half_along(f);
+        let h = mesh.face_half_edge(f);
         if mesh.face(h) != Some(f) {
             return fails("I7", format!("{h} does not run along {f}"));
         }
@@ -243,7 +243,7 @@ mod tests {
     #[test]
     fn each_broken_invariant_is_named() {
         let mesh = sound();
-        let inner = mesh.half_along(FaceId::new(0));
+        let inner = mesh.face_half_edge(FaceId::new(0));
         let outer = halves(&mesh).find(|&h| mesh.is_boundary(h)).expect("open");
         let (i, o) = (inner.index(), outer.index());
         assert_eq!(broken(|m| m.halves.rows_mut()[i].next = h(99)), "I2");
@@ -278,7 +278,7 @@ mod tests {
             broken(|m| m.leaving.rows_mut()[4] = m.leaving.rows()[2]),
             "I5"
         );
-        let along = |m: &EditableHalfEdgeMesh, f| m.half_along(FaceId::new(f));
+        let along = |m: &EditableHalfEdgeMesh, f| m.face_half_edge(FaceId::new(f));
         assert_eq!(broken(|m| m.first.rows_mut()[0] = along(m, 1)), "I7");
         assert_eq!(broken(|m| m.vertex_holes.insert(0)), "I9");
         assert_eq!(broken(|m| m.vertex_holes.insert(5)), "I9");
@@ -293,7 +293,7 @@ mod tests {
         let mut mesh = sound();
         mesh.vertex_holes.insert(4);
         assert_eq!(mesh.validate(), Ok(()), "an isolated vertex is deleted");
-        let i = mesh.half_along(FaceId::new(0)).index();
+        let i = mesh.face_half_edge(FaceId::new(0)).index();
         for (name, broken) in [
             (
                 "I2",

@@ -24,7 +24,7 @@ impl<P: Probe, E: Editing> OrientedWalk for HalfEdgeMesh<E, P> {
 
     #[inline]
     fn edge_sides(&self, e: EdgeId) -> impl Iterator<Item = HalfEdgeId> {
-        let halves = self.halves_of(e).into_iter().zip(self.pair(e));
+        let halves = self.edge_half_edges(e).into_iter().zip(self.pair(e));
         halves.filter_map(|(h, half)| half.face.get().map(|_| h))
     }
 

@@ -1,9 +1,9 @@
 //! Building from polygons, and conversion to polygons.
 
 use sixfold_core::{
-    BuildError, Counts, Editing, FaceId, FaceList, FaceSpans, HoleSet, InvariantError, Measured,
-    MemoryFootprint, MoveError, NewRows, Point, PolygonMesh, Probe, QueryCost, Representation,
-    ScannedFaces, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap,
+    BuildError, Counts, EditLog, Editing, FaceId, FaceList, FaceSpans, HoleSet, InvariantError,
+    Measured, MemoryFootprint, MeshMove, MoveError, NewRows, Point, PolygonMesh, Probe, QueryCost,
+    Representation, ScannedFaces, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap,
 };
 
 use crate::mesh::IndexedFaceSet;
@@ -56,10 +56,6 @@ impl<E: Editing> Representation for IndexedFaceSet<E> {
         f
     }
 
-    fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError> {
-        self.positions.set_positions(positions)
-    }
-
     fn memory(&self) -> MemoryFootprint {
         let by_vertex = std::iter::once(self.positions.bytes()).chain(self.vertex_holes.bytes());
         by_vertex.chain(self.faces.bytes()).collect()
@@ -67,6 +63,16 @@ impl<E: Editing> Representation for IndexedFaceSet<E> {
 
     fn validate(&self) -> Result<(), InvariantError> {
         self.check_invariants()
+    }
+}
+
+impl<E: Editing> MeshMove for IndexedFaceSet<E> {
+    fn set_positions_logged(
+        &mut self,
+        positions: &VertexMap<Self, Point>,
+        _: &mut impl EditLog<Self>,
+    ) -> Result<(), MoveError> {
+        self.positions.set_positions(positions)
     }
 }
 

@@ -11,7 +11,7 @@ use std::fs::{self, File};
 use std::path::Path;
 use std::time::Instant;
 
-use sixfold_io::{FileMesh, Format, ReadOptions, read, write};
+use sixfold_io::{FileMesh, Format, WriteOptions, write_to};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -23,7 +23,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             let name = format!("{}.{}", format.name(), format.extension());
             let path = Path::new(folder).join(name);
             let start = Instant::now();
-            write(&mesh, format, File::create(&path)?)?;
+            let file = File::create(&path)?;
+            write_to(&mesh, format, &WriteOptions::default(), file)?;
             println!(
                 "{}: written in {:.2} s",
                 path.display(),
@@ -52,7 +53,7 @@ fn measure(file: &str) -> Result<(FileMesh, f64, f64), Box<dyn Error>> {
     fs::write("/proc/self/clear_refs", "5")?;
     let before = memory("VmRSS:")?;
     let start = Instant::now();
-    let mesh = read(file, &ReadOptions::default())?;
+    let mesh = sixfold_io::read(file)?;
     let seconds = start.elapsed().as_secs_f64();
     let peak = memory("VmHWM:")? - before;
     Ok((mesh, seconds, peak))

@@ -140,7 +140,7 @@ impl<'a> MeshBuilder<'a> {
         ReadError::Unexpected {
             at: self.at(place),
             expected: expected.to_owned(),
-            found: crate::error::shortened(&String::from_utf8_lossy(found)),
+            found: crate::excerpt::shortened(&String::from_utf8_lossy(found)),
         }
     }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use sixfold_core::{CreaseError, Creases, MAX_ROWS, PolygonMesh, VertexId};
 
-use crate::error::shortened;
+use crate::excerpt::shortened;
 use crate::lines::{Lines, Start};
 use crate::place::Location;
 use crate::read::{OpenError, open_file};

@@ -2,11 +2,9 @@
 
 use std::io;
 
+use crate::faults::{GltfFault, PlyHeaderFault, TagFault};
 use crate::format::Format;
-use crate::gltf::GltfFault;
-use crate::obj::TagFault;
 use crate::place::Location;
-use crate::ply::PlyHeaderFault;
 
 /// The reason why an OBJ file cannot be read, with the line and a way to correct the file.
 ///
@@ -156,14 +154,5 @@ fn vertices_phrase(vertices: usize) -> String {
         0 => "is no vertex".to_owned(),
         1 => "is 1 vertex".to_owned(),
         _ => format!("are {vertices} vertices"),
-    }
-}
-
-/// Shortens `text` for a message.
-pub(crate) fn shortened(text: &str) -> String {
-    const MAX_CHARS: usize = 40;
-    match text.char_indices().nth(MAX_CHARS) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
     }
 }

@@ -7,8 +7,8 @@ use sixfold_core::{Creases, FaceId, FaceList, Facts, IteratorExt, Point, Polygon
 use crate::format::Format;
 use crate::narrowing::Narrowing;
 use crate::notice::Notice;
-use crate::obj::{CornerTag, CreaseTag, UnusedCrease, creases_on_polygons};
 use crate::place::{FacePlaces, Gaps, Place, PolygonPlaces, VertexPlaces};
+use crate::tags::{CornerTag, CreaseTag, UnusedCrease, creases_on_polygons};
 
 /// The vertices and faces of a file.
 ///

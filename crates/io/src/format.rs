@@ -5,7 +5,7 @@ use std::path::Path;
 use std::str::FromStr;
 
 use crate::byte_source::words;
-use crate::off::OffKeyword;
+use crate::off_keyword::OffKeyword;
 
 /// A file format. Formats with a text form and a binary form have one entry for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

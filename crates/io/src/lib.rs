@@ -2,7 +2,7 @@
 //!
 //! Start with [`read()`] or [`read_from`], which recognise the format by the content.
 //! [`FileMesh::into_polygons`] returns the mesh from which structures are built, and the faces that
-//! it left out. [`write()`] writes a mesh; [`MeshWriter::losses`] lists what a format cannot keep.
+//! it left out. [`write()`] writes a mesh and returns what the format cannot keep.
 //! Sharp edges are read from OBJ ([`FileMesh::creases`]) or from a file of their own:
 //! [`read_creases`] and [`write_creases`].
 //!
@@ -109,6 +109,8 @@ mod builder;
 mod byte_source;
 mod crease_file;
 mod error;
+mod excerpt;
+mod faults;
 mod file_mesh;
 mod format;
 mod gltf;
@@ -118,25 +120,27 @@ mod notice;
 mod number;
 mod obj;
 mod off;
+mod off_keyword;
 mod options;
 mod place;
 mod ply;
 mod read;
 mod sharpness;
 mod stl;
+mod tags;
 mod welder;
 mod write;
 
 pub use crease_file::{CreaseFileError, parse_creases, read_creases, write_creases};
 pub use error::ReadError;
+pub use faults::{GltfFault, PlyHeaderFault, TagFault};
 pub use file_mesh::{FileMesh, LeftOut, LeftOutReason, ShortFace};
 pub use format::{Format, UnknownFormatName};
-pub use gltf::GltfFault;
 pub use narrowing::Narrowing;
 pub use notice::{IgnoredKind, Notice};
-pub use obj::{CornerTag, CreaseTag, Tag, TagFault, UnusedCrease, parse_obj};
+pub use obj::parse_obj;
 pub use options::{ReadOptions, Welding};
 pub use place::{Location, Place, PolygonPlaces};
-pub use ply::PlyHeaderFault;
-pub use read::{read, read_from, read_obj};
-pub use write::{Loss, MeshWriter, WriteError, write, write_obj, write_obj_with_normals};
+pub use read::{read, read_from, read_with};
+pub use tags::{CornerTag, CreaseTag, Tag, UnusedCrease};
+pub use write::{Loss, WriteError, WriteOptions, losses, write, write_to, write_with};

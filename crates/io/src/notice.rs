@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::error::shortened;
+use crate::excerpt::shortened;
 use crate::place::Place;
 
 /// A kind of content that a reader ignores.

@@ -1,10 +1,6 @@
 //! Reads OBJ text.
 
 mod normaliser;
-mod tags;
-
-pub(crate) use tags::creases_on_polygons;
-pub use tags::{CornerTag, CreaseTag, Tag, TagFault, UnusedCrease};
 
 use std::io::BufRead;
 use std::path::Path;

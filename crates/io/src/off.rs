@@ -4,11 +4,13 @@ use std::io::Read;
 
 use crate::builder::MeshBuilder;
 use crate::byte_source::ByteSource;
-use crate::error::{ReadError, shortened};
+use crate::error::ReadError;
+use crate::excerpt::shortened;
 use crate::file_mesh::FileMesh;
 use crate::format::Format;
 use crate::notice::IgnoredKind;
 use crate::number::{Coordinate, parse_coordinate, parse_whole};
+use crate::off_keyword::OffKeyword;
 use crate::options::ReadOptions;
 use crate::place::{FacePlaces, Place};
 
@@ -52,52 +54,6 @@ pub(crate) fn read(
     } = reader;
     builder.note_trailing(source)?;
     builder.finish()
-}
-
-/// The first word of a file, `OFF`, and its prefixes, which say what a vertex has.
-///
-/// Geomview writes the prefixes in the order `ST`, `C`, `N`, `4`, `n`, and the values of a vertex in
-/// the order position, normal, colour, texture coordinates. Other programs write the prefixes in
-/// other orders; the order of the values stays.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct OffKeyword {
-    /// `ST`: two texture coordinates.
-    texture: bool,
-    /// `C`: a colour.
-    colour: bool,
-    /// `N`: a normal.
-    normal: bool,
-    /// `4`: a fourth coordinate, by which the others are divided.
-    homogeneous: bool,
-    /// `n`: the number of coordinates follows the keyword.
-    any_dimension: bool,
-}
-
-impl OffKeyword {
-    /// Parses a keyword; `None` if `word` is not one. Each prefix may occur once, in any order.
-    /// Only `N` and `n` depend on upper and lower case.
-    pub(crate) fn parse(word: &[u8]) -> Option<Self> {
-        let (mut rest, off) = word.split_at_checked(word.len().checked_sub(3)?)?;
-        if !off.eq_ignore_ascii_case(b"OFF") {
-            return None;
-        }
-        let mut keyword = Self::default();
-        while let [first, after @ ..] = rest {
-            let (flag, after) = match (first, after) {
-                (b'S' | b's', [b'T' | b't', after @ ..]) => (&mut keyword.texture, after),
-                (b'C' | b'c', _) => (&mut keyword.colour, after),
-                (b'N', _) => (&mut keyword.normal, after),
-                (b'4', _) => (&mut keyword.homogeneous, after),
-                (b'n', _) => (&mut keyword.any_dimension, after),
-                _ => return None,
-            };
-            if std::mem::replace(flag, true) {
-                return None;
-            }
-            rest = after;
-        }
-        Some(keyword)
-    }
 }
 
 /// The header of a file.

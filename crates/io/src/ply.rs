@@ -6,7 +6,6 @@ mod header;
 mod layout;
 mod scalar;
 
-pub use header::PlyHeaderFault;
 pub(crate) use scalar::{ByteOrder, Scalar};
 
 use std::io::Read;
@@ -17,6 +16,7 @@ use layout::{Role, Step, note_ignored, role};
 use crate::builder::MeshBuilder;
 use crate::byte_source::ByteSource;
 use crate::error::ReadError;
+use crate::faults::PlyHeaderFault;
 use crate::file_mesh::FileMesh;
 use crate::format::Format;
 use crate::notice::IgnoredKind;

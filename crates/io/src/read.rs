@@ -25,16 +25,23 @@ use crate::{gltf, obj, off, ply, stl};
 /// # Examples
 ///
 /// ```no_run
-/// use sixfold_io::{ReadOptions, read};
-///
-/// let mesh = read("scan.ply", &ReadOptions::default())?;
+/// let mesh = sixfold_io::read("scan.ply")?;
 /// for notice in &mesh.notices {
 ///     println!("{notice}");
 /// }
 /// let (polygons, left_out) = mesh.into_polygons();
 /// # Ok::<(), sixfold_io::ReadError>(())
 /// ```
-pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<FileMesh, ReadError> {
+pub fn read(path: impl AsRef<Path>) -> Result<FileMesh, ReadError> {
+    read_with(path, &ReadOptions::default())
+}
+
+/// Reads the mesh in the file `path` with `options`, like [`read()`].
+///
+/// # Errors
+///
+/// Fails like [`read()`].
+pub fn read_with(path: impl AsRef<Path>, options: &ReadOptions) -> Result<FileMesh, ReadError> {
     let path = path.as_ref();
     let name = path.display().to_string();
     let file = match open(path) {
@@ -76,16 +83,6 @@ pub fn read_from(
     options: &ReadOptions,
 ) -> Result<FileMesh, ReadError> {
     read_any(name, None, &mut ByteSource::new(source, None), *options)
-}
-
-/// Reads the OBJ file at `path`; O(bytes).
-///
-/// # Errors
-///
-/// Fails if the file cannot be read, or if [`parse_obj`](crate::parse_obj) fails. Error messages
-/// name the file by `path`.
-pub fn read_obj(path: impl AsRef<Path>) -> Result<FileMesh, ReadError> {
-    read(path, &ReadOptions::default().with_format(Format::Obj))
 }
 
 /// Reads a mesh; `path` is the place of the file, if it has one.

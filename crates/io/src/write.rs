@@ -7,12 +7,13 @@ mod off;
 mod ply;
 mod stl;
 
-pub use loss::Loss;
+pub use loss::{Loss, losses};
 pub(crate) use obj::ShortestDecimal;
-pub use obj::{write_obj, write_obj_with_normals};
 
 use std::fmt;
+use std::fs::File;
 use std::io::{self, BufWriter, Write};
+use std::path::Path;
 
 use sixfold_core::{Creases, Point, PolygonMesh, VertexId};
 
@@ -38,6 +39,14 @@ pub enum WriteError {
         bytes: u64,
         limit: u64,
     },
+    /// The ending of the name is not that of a format.
+    #[error(
+        "{file}: the ending names no format for meshes: use stl, ply, off, gltf, glb or obj, or set a format"
+    )]
+    UnknownEnding { file: String },
+    /// The file cannot be created.
+    #[error("{file}: {cause}")]
+    Create { file: String, cause: io::Error },
     /// The destination returned an error.
     #[error("{0}")]
     Io(#[from] io::Error),
@@ -48,146 +57,188 @@ impl From<WriteError> for io::Error {
     /// [`InvalidInput`](io::ErrorKind::InvalidInput) if the mesh is the cause.
     fn from(error: WriteError) -> Self {
         match error {
-            WriteError::Io(error) => error,
+            WriteError::Io(error) | WriteError::Create { cause: error, .. } => error,
             error => Self::new(io::ErrorKind::InvalidInput, error),
         }
     }
 }
 
-/// Writes `polygons` in a format; O(corners). Reading the output gives the same mesh, bit for bit,
-/// except for what [`MeshWriter::losses`] lists.
-///
-/// This function buffers the output. If the format cannot represent the mesh, nothing is written.
+/// Writes `polygons` to the file `path`, in the format of the ending of `path`; O(corners). Returns
+/// what the format cannot keep. Reading the file gives the same mesh, bit for bit, except for this.
 ///
 /// # Errors
 ///
-/// Returns any error of `out`, and an error if a coordinate is not finite, or if the file would be
-/// too large for the format.
+/// Fails if the ending names no format, if a coordinate is not finite, if the file would be too large
+/// for the format, or if the file cannot be written ([`WriteError`]). An old file is replaced only if
+/// the format can represent the mesh.
 ///
 /// # Examples
 ///
 /// ```
 /// use sixfold_core::{Point, PolygonMesh};
-/// use sixfold_io::{Format, ReadOptions, read_from, write};
 ///
 /// let corners = [Point::ZERO, Point::X, Point::ONE, Point::Y];
 /// let square = PolygonMesh::new(corners, [[0, 1, 2, 3]])?;
-/// let mut bytes = Vec::new();
-/// write(&square, Format::Ply, &mut bytes)?;
-/// let (again, _) = read_from("square.ply", bytes.as_slice(), &ReadOptions::default())?.into_polygons();
-/// assert_eq!(again, square);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn write(polygons: &PolygonMesh, format: Format, out: impl Write) -> Result<(), WriteError> {
-    MeshWriter::new(polygons).write(format, out)
-}
-
-/// A mesh to be written, with the data of its vertices.
-///
-/// # Examples
-///
-/// ```
-/// use sixfold_core::{Point, PolygonMesh};
-/// use sixfold_io::{Format, MeshWriter};
-///
-/// let corners = [Point::ZERO, Point::X, Point::ONE, Point::Y];
-/// let square = PolygonMesh::new(corners, [[0, 1, 2, 3]])?;
-/// let losses = MeshWriter::new(&square).losses(Format::Stl);
-/// let messages: Vec<String> = losses.iter().map(ToString::to_string).collect();
+/// let folder = tempfile::tempdir()?;
+/// let losses = sixfold_io::write(folder.path().join("square.stl"), &square)?;
+/// let losses: Vec<String> = losses.iter().map(ToString::to_string).collect();
 /// assert_eq!(
-///     messages,
+///     losses,
 ///     [
 ///         "vertices are not shared: a reader has to join equal positions",
 ///         "1 polygon is cut into triangles",
 ///     ]
 /// );
-/// # Ok::<(), sixfold_core::PolygonError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug)]
-pub struct MeshWriter<'a> {
-    polygons: &'a PolygonMesh,
+pub fn write(path: impl AsRef<Path>, polygons: &PolygonMesh) -> Result<Vec<Loss>, WriteError> {
+    write_with(path, polygons, &WriteOptions::default())
+}
+
+/// Writes `polygons` and the data in `options` to the file `path`, like [`write()`].
+///
+/// # Errors
+///
+/// Fails like [`write()`], and if the numbers of normals and vertices differ.
+pub fn write_with(
+    path: impl AsRef<Path>,
+    polygons: &PolygonMesh,
+    options: &WriteOptions<'_>,
+) -> Result<Vec<Loss>, WriteError> {
+    let path = path.as_ref();
+    let file = || path.display().to_string();
+    let format = options.format.or_else(|| Format::from_path(path));
+    let format = format.ok_or_else(|| WriteError::UnknownEnding { file: file() })?;
+    // A mesh that cannot be written must not empty a file.
+    options.check(polygons, format)?;
+    let create = |cause| WriteError::Create {
+        file: file(),
+        cause,
+    };
+    write_to(
+        polygons,
+        format,
+        options,
+        File::create(path).map_err(create)?,
+    )?;
+    Ok(losses(polygons, format, options))
+}
+
+/// Writes `polygons` and the data in `options` to `out`; O(corners). [`losses`] lists what `format`
+/// cannot keep.
+///
+/// This function buffers the output. If the format cannot represent the mesh, nothing is written.
+///
+/// # Errors
+///
+/// Returns any error of `out`, and an error if a coordinate is not finite, if the file would be too
+/// large for the format, or if the numbers of normals and vertices differ.
+///
+/// # Examples
+///
+/// ```
+/// use sixfold_core::{Point, PolygonMesh};
+/// use sixfold_io::{Format, ReadOptions, WriteOptions, read_from, write_to};
+///
+/// let corners = [Point::ZERO, Point::X, Point::ONE, Point::Y];
+/// let square = PolygonMesh::new(corners, [[0, 1, 2, 3]])?;
+/// let mut bytes = Vec::new();
+/// write_to(&square, Format::Ply, &WriteOptions::default(), &mut bytes)?;
+/// let (again, _) = read_from("square.ply", bytes.as_slice(), &ReadOptions::default())?.into_polygons();
+/// assert_eq!(again, square);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn write_to(
+    polygons: &PolygonMesh,
+    format: Format,
+    options: &WriteOptions<'_>,
+    out: impl Write,
+) -> Result<(), WriteError> {
+    options.check(polygons, format)?;
+    let mut out = BufWriter::with_capacity(1 << 16, out);
+    match format {
+        Format::Obj => {
+            obj::write_text(polygons, options.normals, &mut out)?;
+            if let Some(creases) = options.creases {
+                obj::write_tags(creases, &mut out)?;
+            }
+        }
+        Format::Stl => stl::write_binary(polygons, &mut out)?,
+        Format::StlAscii => stl::write_ascii(polygons, &mut out)?,
+        Format::Ply | Format::PlyBigEndian | Format::PlyAscii => {
+            ply::write(polygons, options.complete_normals(), format, &mut out)?;
+        }
+        Format::Off => off::write(polygons, &mut out)?,
+        Format::Gltf | Format::Glb => {
+            gltf::write(polygons, options.complete_normals(), format, &mut out)?;
+        }
+    }
+    Ok(out.flush()?)
+}
+
+/// Options of writing; the default writes positions and faces.
+///
+/// # Examples
+///
+/// ```
+/// use sixfold_core::{Creases, Point, PolygonMesh};
+/// use sixfold_io::{Format, WriteOptions, parse_obj, write_to};
+///
+/// let triangle = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]])?;
+/// let creases = Creases::new(&triangle, [([0, 1], 2.5)], [(2, f32::INFINITY)])?;
+/// let mut text = Vec::new();
+/// let options = WriteOptions::default().with_creases(&creases);
+/// write_to(&triangle, Format::Obj, &options, &mut text)?;
+/// assert_eq!(parse_obj("triangle.obj", text.as_slice())?.creases().0, creases);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WriteOptions<'a> {
+    format: Option<Format>,
     /// One entry for each vertex, or none at all.
     normals: &'a [Option<Point>],
     creases: Option<&'a Creases>,
 }
 
-impl<'a> MeshWriter<'a> {
-    /// Creates a writer of the positions and faces of `polygons`.
-    pub fn new(polygons: &'a PolygonMesh) -> Self {
-        Self {
-            polygons,
-            normals: &[],
-            creases: None,
-        }
+impl<'a> WriteOptions<'a> {
+    /// Writes a file as `format`, whatever its name is.
+    #[must_use]
+    pub fn with_format(self, format: Format) -> Self {
+        let format = Some(format);
+        Self { format, ..self }
     }
 
-    /// Adds normals of unit length, one entry for each vertex. OBJ stores the normals that exist;
-    /// PLY and glTF store them if none is missing.
-    ///
-    /// # Errors
-    ///
-    /// [`WriteError::NormalCount`] if the numbers of vertices and normals differ.
-    pub fn with_normals(self, normals: &'a [Option<Point>]) -> Result<Self, WriteError> {
-        let vertices = self.polygons.vertex_count();
-        if normals.len() != vertices {
-            let normals = normals.len();
-            return Err(WriteError::NormalCount { normals, vertices });
-        }
-        Ok(Self { normals, ..self })
+    /// Adds normals of unit length, one entry for each vertex. OBJ stores the normals that exist; a
+    /// face is written without normals if one of its corners has none. PLY and glTF store normals if
+    /// none is missing.
+    #[must_use]
+    pub fn with_normals(self, normals: &'a [Option<Point>]) -> Self {
+        Self { normals, ..self }
     }
 
     /// Adds sharp edges and vertices, which must be those of the mesh. Only OBJ stores them, as the
     /// tags `t crease` and `t corner`.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use sixfold_core::{Creases, Point, PolygonMesh};
-    /// use sixfold_io::{Format, MeshWriter, parse_obj};
-    ///
-    /// let triangle = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]])?;
-    /// let creases = Creases::new(&triangle, [([0, 1], 2.5)], [(2, f32::INFINITY)])?;
-    /// let mut text = Vec::new();
-    /// let writer = MeshWriter::new(&triangle).with_creases(&creases);
-    /// writer.write(Format::Obj, &mut text)?;
-    /// assert_eq!(parse_obj("triangle.obj", text.as_slice())?.creases().0, creases);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    #[must_use]
     pub fn with_creases(self, creases: &'a Creases) -> Self {
         let creases = Some(creases);
         Self { creases, ..self }
     }
 
-    /// Writes the mesh; see [`write`](crate::write()).
-    ///
-    /// # Errors
-    ///
-    /// Returns the same errors as [`write`](crate::write()).
-    pub fn write(&self, format: Format, out: impl Write) -> Result<(), WriteError> {
-        let positions = self.polygons.positions();
+    /// Checks that `format` can represent the mesh.
+    fn check(&self, polygons: &PolygonMesh, format: Format) -> Result<(), WriteError> {
+        let (normals, vertices) = (self.normals.len(), polygons.vertex_count());
+        if normals != 0 && normals != vertices {
+            return Err(WriteError::NormalCount { normals, vertices });
+        }
+        let positions = polygons.positions();
         if let Some(v) = positions.iter().position(|p| !p.is_finite()) {
             let vertex = VertexId::new(sixfold_core::row(v));
             return Err(WriteError::NotFinite { vertex, format });
         }
-        let mut out = BufWriter::with_capacity(1 << 16, out);
         match format {
-            Format::Obj => {
-                obj::write_text(self.polygons, self.normals, &mut out)?;
-                if let Some(creases) = self.creases {
-                    obj::write_tags(creases, &mut out)?;
-                }
-            }
-            Format::Stl => stl::write_binary(self.polygons, &mut out)?,
-            Format::StlAscii => stl::write_ascii(self.polygons, &mut out)?,
-            Format::Ply | Format::PlyBigEndian | Format::PlyAscii => {
-                ply::write(self.polygons, self.complete_normals(), format, &mut out)?;
-            }
-            Format::Off => off::write(self.polygons, &mut out)?,
-            Format::Gltf | Format::Glb => {
-                gltf::write(self.polygons, self.complete_normals(), format, &mut out)?;
-            }
+            Format::Glb => gltf::check_size(polygons, self.complete_normals()),
+            _ => Ok(()),
         }
-        Ok(out.flush()?)
     }
 
     /// Returns the normals if no vertex lacks one, otherwise an empty list.

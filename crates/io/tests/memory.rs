@@ -1,14 +1,15 @@
 //! The memory that reading takes, as a multiple of the mesh. This is a separate program with a single
 //! test, because its allocator counts every byte.
 
+use std::alloc::System;
 use std::fs;
 
-use peak_alloc::PeakAlloc;
-use sixfold_io::{Format, ReadOptions, read, write};
+use peakmem_alloc::{INSTRUMENTED_SYSTEM, PeakMemAlloc, PeakMemAllocTrait};
+use sixfold_io::{Format, ReadOptions, WriteOptions, read_with, write_to};
 use sixfold_shapes as shapes;
 
 #[global_allocator]
-static HEAP: PeakAlloc = PeakAlloc;
+static HEAP: &PeakMemAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 /// Buffers of a fixed size.
 const FIXED: usize = 1_500_000;
@@ -25,14 +26,14 @@ fn memory_is_below_a_multiple_of_the_mesh() {
             .path()
             .join(format!("{}.{}", format.name(), format.extension()));
         let mut bytes = Vec::new();
-        write(&mesh, format, &mut bytes).expect("memory does not fail");
+        write_to(&mesh, format, &WriteOptions::default(), &mut bytes)
+            .expect("memory does not fail");
         fs::write(&path, &bytes).expect("writable");
         drop(bytes);
         let peak = |options: ReadOptions| {
-            let before = HEAP.current_usage();
-            HEAP.reset_peak_usage();
-            let read = read(&path, &options).unwrap_or_else(|error| panic!("{error}"));
-            let peak = HEAP.peak_usage() - before;
+            HEAP.reset_peak_memory();
+            let read = read_with(&path, &options).unwrap_or_else(|error| panic!("{error}"));
+            let peak = HEAP.get_peak_memory();
             assert_eq!(read.positions.len(), mesh.vertex_count(), "{format}");
             peak.saturating_sub(FIXED) as f64 / size as f64
         };

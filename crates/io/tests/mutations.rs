@@ -3,15 +3,16 @@
 //! Each gives a mesh or an error. Neither may need more memory than a few times the file. This is a
 //! separate program with a single test, because its allocator counts every byte.
 
+use std::alloc::System;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use peak_alloc::PeakAlloc;
-use sixfold_io::{Format, ReadOptions, Welding, read_from, write};
+use peakmem_alloc::{INSTRUMENTED_SYSTEM, PeakMemAlloc, PeakMemAllocTrait};
+use sixfold_io::{Format, ReadOptions, Welding, WriteOptions, read_from, write_to};
 use sixfold_shapes as shapes;
 
 #[global_allocator]
-static HEAP: PeakAlloc = PeakAlloc;
+static HEAP: &PeakMemAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 /// Damaged copies of each small file; larger files get fewer.
 const VARIANTS: usize = 1500;
@@ -113,10 +114,9 @@ fn damaged(bytes: &[u8], random: &mut Random) -> Vec<u8> {
 
 /// Reads `bytes`; checks the result and the memory.
 fn check(name: &str, bytes: &[u8], options: &ReadOptions) -> bool {
-    let before = HEAP.current_usage();
-    HEAP.reset_peak_usage();
+    HEAP.reset_peak_memory();
     let read = read_from(name, bytes, options);
-    let peak = HEAP.peak_usage() - before;
+    let peak = HEAP.get_peak_memory();
     let limit = FIXED + PER_BYTE * bytes.len();
     assert!(
         peak <= limit,
@@ -150,7 +150,8 @@ fn written_files() -> Vec<(String, Vec<u8>)> {
     for mesh in [&mixed, &closed] {
         for format in Format::ALL {
             let mut bytes = Vec::new();
-            write(mesh, format, &mut bytes).expect("memory does not fail");
+            write_to(mesh, format, &WriteOptions::default(), &mut bytes)
+                .expect("memory does not fail");
             files.push((format!("{format}.{}", format.extension()), bytes));
         }
     }

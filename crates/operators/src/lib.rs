@@ -36,7 +36,7 @@
 //!
 //! [`VertexMap`]: sixfold_core::VertexMap
 //! [`PolygonMesh`]: sixfold_core::PolygonMesh
-//! [`set_positions`]: sixfold_core::Representation::set_positions
+//! [`set_positions`]: sixfold_core::MeshMove::set_positions
 
 mod dual;
 mod ear_clipping;

@@ -126,7 +126,7 @@ impl Smoothing {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// [`set_positions`]: sixfold_core::Representation::set_positions
+/// [`set_positions`]: sixfold_core::MeshMove::set_positions
 pub fn smoothed<M: MeshQuery>(
     mesh: &M,
     smoothing: &Smoothing,

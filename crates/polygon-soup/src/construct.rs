@@ -1,10 +1,11 @@
 //! Building from polygons, and conversion to polygons.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use sixfold_core::{
-    BuildError, Counts, Editing, FaceId, FaceList, InvariantError, IteratorExt, Measured,
-    MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Representation,
-    ScannedFaces, ScannedVertex, VertexId, VertexMap, row,
+    BuildError, Counts, EditLog, Editing, FaceId, FaceList, Handle, InvariantError, IteratorExt,
+    Measured, MemoryFootprint, MeshMove, MeshQuery, MoveError, Pair, Point, PolygonMesh, Probe,
+    QueryCost, Representation, ScannedFaces, ScannedVertex, ShortVec, VertexId, VertexMap, row,
+    uses_reports,
 };
 
 use crate::mesh::PolygonSoup;
@@ -73,9 +74,23 @@ impl<E: Editing> Representation for PolygonSoup<E> {
         f
     }
 
+    fn memory(&self) -> MemoryFootprint {
+        self.faces.bytes().collect()
+    }
+
+    fn validate(&self) -> Result<(), InvariantError> {
+        self.check_invariants()
+    }
+}
+
+impl<E: Editing> MeshMove for PolygonSoup<E> {
     /// Moves every corner to the position that the map has for its vertex. Takes O(corners)
     /// expected time.
-    fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError> {
+    fn set_positions_logged(
+        &mut self,
+        positions: &VertexMap<Self, Point>,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), MoveError> {
         let corners = self.corners().iter();
         let moved = corners.map(|corner| {
             // A corner of no face stays blank.
@@ -90,16 +105,75 @@ impl<E: Editing> Representation for PolygonSoup<E> {
                 return Err(MoveError::CoincidentCorners { face });
             }
         }
+        if uses_reports::<Self, _>(log) {
+            self.report_moves(&moved, log);
+        }
         self.faces.corners.rows_mut().copy_from_slice(&moved);
         Ok(())
     }
+}
 
-    fn memory(&self) -> MemoryFootprint {
-        self.faces.bytes().collect()
+impl<E: Editing> PolygonSoup<E> {
+    /// Reports the new handles of vertices and edges when the corners move to `moved`; O(corners)
+    /// expected.
+    fn report_moves(&self, moved: &[Point], log: &mut impl EditLog<Self>) {
+        let (mut vertices, mut edges) = (Renamings::default(), Renamings::default());
+        for face in self.faces() {
+            let range = self.spans().range(face);
+            let old = self.corners()[range.clone()].iter();
+            let new = moved[range].iter();
+            let corner = |(&old, &new)| [old, new].map(SoupVertex::from_corner);
+            let corners: ShortVec<[SoupVertex; 2]> = old.zip(new).map(corner).collect();
+            for (i, &[old, new]) in corners.iter().enumerate() {
+                match vertices.of(old, new) {
+                    Some(Renaming::Renamed) => log.renamed_vertex(old, new),
+                    Some(Renaming::Merged) => log.removed_vertex(old),
+                    None => {}
+                }
+                let [next_old, next_new] = corners[(i + 1) % corners.len()];
+                let (old, new) = (Pair::new(old, next_old), Pair::new(new, next_new));
+                match edges.of(old, new) {
+                    Some(Renaming::Renamed) => log.renamed_edge(old, new),
+                    Some(Renaming::Merged) => log.removed_edge(old),
+                    None => {}
+                }
+            }
+        }
     }
+}
 
-    fn validate(&self) -> Result<(), InvariantError> {
-        self.check_invariants()
+/// The old and new handles seen so far.
+struct Renamings<H> {
+    old: FxHashSet<H>,
+    new: FxHashSet<H>,
+}
+
+enum Renaming {
+    Renamed,
+    /// Another element already has the new handle.
+    Merged,
+}
+
+impl<H> Default for Renamings<H> {
+    fn default() -> Self {
+        Self {
+            old: FxHashSet::default(),
+            new: FxHashSet::default(),
+        }
+    }
+}
+
+impl<H: Handle> Renamings<H> {
+    /// Returns what happens to the element `old`, whose new handle is `new`; `None` if its handle
+    /// stays, or if the element was seen before.
+    fn of(&mut self, old: H, new: H) -> Option<Renaming> {
+        if !self.old.insert(old) {
+            return None;
+        }
+        match self.new.insert(new) {
+            true => (old != new).then_some(Renaming::Renamed),
+            false => Some(Renaming::Merged),
+        }
     }
 }
 

@@ -75,7 +75,7 @@ use crate::vertex::SoupVertex;
 /// is refused if the edit itself is not possible (for example the flip of a boundary edge), if a
 /// handle is not valid, if two vertices would coincide, or if the tables are full.
 ///
-/// [`set_positions`]: sixfold_core::Representation::set_positions
+/// [`set_positions`]: sixfold_core::MeshMove::set_positions
 ///
 /// # Examples
 ///

@@ -2,9 +2,7 @@
 
 use sixfold_core::VertexId;
 
-use crate::labels::MAX_LABELS;
-use crate::settings::{MAX_PIXELS, MAX_SIDE, MIN_PANEL};
-use crate::svg::MAX_SVG_FACES;
+use crate::limits::{MAX_LABELS, MAX_PIXELS, MAX_SIDE, MAX_SVG_FACES, MIN_PANEL};
 
 /// The reason why a picture cannot be drawn.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

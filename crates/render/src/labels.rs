@@ -7,10 +7,8 @@ use crate::edges::Edges;
 use crate::error::MeshFault;
 use crate::layout::Panel;
 use crate::light::{BACKGROUND, Colour};
+use crate::limits::MAX_LABELS;
 use crate::strokes::VisibilityTest;
-
-/// Maximum number of vertices, edges and faces of a mesh with labels. More labels cannot be read.
-pub const MAX_LABELS: usize = 2000;
 
 /// The name of an element, and the middle of the text in pixels of the panel.
 #[derive(Clone, Debug, PartialEq)]

@@ -20,6 +20,7 @@ mod error;
 mod labels;
 mod layout;
 mod light;
+mod limits;
 mod normals;
 mod picture;
 mod rasterise;
@@ -29,9 +30,7 @@ mod strokes;
 mod svg;
 
 pub use error::{MeshFault, RenderError};
-pub use labels::MAX_LABELS;
+pub use limits::{MAX_LABELS, MAX_PIXELS, MAX_SIDE, MAX_SVG_FACES, MIN_PANEL};
 pub use picture::{Picture, draw};
-pub use settings::{
-    Faults, MAX_PIXELS, MAX_SIDE, MIN_PANEL, RenderMesh, Settings, Shading, Size, Up, View,
-};
-pub use svg::{MAX_SVG_FACES, draw_svg};
+pub use settings::{Faults, RenderMesh, Settings, Shading, Size, Up, View};
+pub use svg::draw_svg;

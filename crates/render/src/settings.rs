@@ -4,15 +4,7 @@ use glam::DVec3;
 use sixfold_core::{Creases, FaceId, Point, PolygonMesh, VertexId};
 
 use crate::error::RenderError;
-
-/// Maximum width and height of a picture, in pixels.
-pub const MAX_SIDE: u32 = 8192;
-
-/// Maximum number of pixels of a picture.
-pub const MAX_PIXELS: u32 = 1 << 23;
-
-/// Minimum width and height, in pixels, of the part of a picture that shows one mesh.
-pub const MIN_PANEL: u32 = 16;
+use crate::limits::{MAX_PIXELS, MAX_SIDE, MIN_PANEL};
 
 /// A mesh to draw, with its creases.
 #[derive(Clone, Copy, Debug)]

@@ -9,12 +9,10 @@ use crate::error::{MeshFault, RenderError};
 use crate::labels::Label;
 use crate::layout::{Panel, layout};
 use crate::light::{BACKGROUND, shade};
+use crate::limits::MAX_SVG_FACES;
 use crate::picture::VisibleParts;
 use crate::settings::{RenderMesh, Settings, Size};
 use crate::strokes::Stroke;
-
-/// Maximum number of visible faces of a mesh in an SVG file. SVG viewers fail to show more faces.
-pub const MAX_SVG_FACES: usize = 50_000;
 
 /// Draws the meshes in a row, and returns the text of an SVG file. Time and memory are as for
 /// [`draw`](crate::draw).

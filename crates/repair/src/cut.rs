@@ -16,8 +16,7 @@ use sixfold_core::{
 };
 
 use crate::error::RepairError;
-use crate::report::StepCounts;
-use crate::step::Outcome;
+use crate::outcome::{Outcome, StepCounts};
 use crate::trace::{CornerId, Rebuild, VertexTrace};
 use angles::Angles;
 use joins::Joins;

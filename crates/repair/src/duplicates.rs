@@ -6,8 +6,8 @@ use rustc_hash::FxHashMap;
 use sixfold_core::{FaceId, FacesByLowest, PolygonMesh, VertexId};
 
 use crate::error::RepairError;
+use crate::outcome::Outcome;
 use crate::remove::without;
-use crate::step::Outcome;
 
 /// What happens to two faces that name the same vertices in opposite cyclic order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -5,8 +5,8 @@ use sixfold_core::{FaceId, PolygonMesh};
 use sixfold_operators::area_vector;
 
 use crate::error::RepairError;
+use crate::outcome::Outcome;
 use crate::remove::without;
-use crate::step::Outcome;
 
 /// Removes faces whose area is exactly zero; O(corners). The vertices remain.
 pub(crate) fn remove(polygons: &PolygonMesh) -> Result<Outcome, RepairError> {

@@ -8,8 +8,7 @@ use sixfold_core::{Capabilities, Incidence, Pair, PolygonMesh, RowId, Slot, Vert
 use sixfold_operators::clipped_polygon;
 
 use crate::error::RepairError;
-use crate::report::{Left, StepCounts};
-use crate::step::Outcome;
+use crate::outcome::{Left, Outcome, StepCounts};
 use crate::trace::Rebuild;
 use minimum_area::minimum_area_triangulation;
 

@@ -59,6 +59,7 @@ mod error;
 mod flat;
 mod holes;
 mod orient;
+mod outcome;
 mod plan;
 mod remove;
 mod report;
@@ -73,8 +74,9 @@ pub use diagnosis::{Diagnosis, Fault, FaultKind, Place, diagnose, facts_and_diag
 pub use duplicates::OppositeFaces;
 pub use error::RepairError;
 pub use holes::{FillHoles, HoleFilling};
+pub use outcome::{Left, StepCounts};
 pub use plan::repair_for;
-pub use report::{Left, Repaired, StepCounts, StepReport};
+pub use report::{Repaired, StepReport};
 #[doc(no_inline)]
 pub use sixfold_operators::{Components, Facing, Triangulation};
 pub use step::{Step, repair};

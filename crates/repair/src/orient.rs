@@ -3,8 +3,7 @@
 use sixfold_core::{PolygonMesh, Slot};
 use sixfold_operators::{Components, Facing, OrientedComponents, oriented_components};
 
-use crate::report::{Left, StepCounts};
-use crate::step::Outcome;
+use crate::outcome::{Left, Outcome, StepCounts};
 use crate::trace::{CornerId, Trace, VertexTrace, corners_of};
 
 /// Orients the faces; O(n log n) for n corners.

@@ -3,8 +3,7 @@
 use sixfold_core::{Classes, FaceId, Incidence, PolygonMesh, Slot, VertexId, row};
 
 use crate::error::RepairError;
-use crate::report::StepCounts;
-use crate::step::Outcome;
+use crate::outcome::{Outcome, StepCounts};
 use crate::trace::{Rebuild, VertexTrace};
 
 /// Removes vertices without a face; O(vertices + corners).

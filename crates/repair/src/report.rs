@@ -1,9 +1,8 @@
 //! The report of a repair: what each step did, and what it left.
 
-use std::fmt;
-
 use sixfold_core::{FaceId, PolygonMesh, VertexId};
 
+use crate::outcome::{Left, StepCounts};
 use crate::step::Step;
 use crate::trace::ElementMap;
 
@@ -37,96 +36,4 @@ pub struct StepReport {
     pub counts: StepCounts,
     /// The places that the step could not repair, in order.
     pub left: Vec<Left>,
-}
-
-/// The numbers of elements that a step changed.
-///
-/// The vertices after the step are those before it, minus `vertices_merged` and
-/// `vertices_removed`, plus `vertices_added`; the faces likewise. A face that becomes several
-/// faces counts once in `faces_changed`, and each of its further parts in `faces_added`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[non_exhaustive]
-pub struct StepCounts {
-    /// Vertices that became one with a vertex that remains.
-    pub vertices_merged: usize,
-    /// Copies of vertices, one for each further fan.
-    pub vertices_added: usize,
-    /// Vertices that were removed.
-    pub vertices_removed: usize,
-    /// Edges that became two or more edges with the same positions.
-    pub edges_cut: usize,
-    /// Faces that were added.
-    pub faces_added: usize,
-    /// Faces that were removed.
-    pub faces_removed: usize,
-    /// Faces that lost corners or became several faces.
-    pub faces_changed: usize,
-    /// Faces that were reversed.
-    pub faces_reversed: usize,
-    /// Holes that were filled.
-    pub holes_filled: usize,
-    /// The largest distance between a vertex and its position after the step, in units of the
-    /// coordinates.
-    pub largest_shift: f64,
-}
-
-impl StepCounts {
-    /// Returns whether a count is not zero.
-    pub fn is_change(&self) -> bool {
-        *self != Self::default()
-    }
-}
-
-/// A place that a step left as it was.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize),
-    serde(tag = "kind", rename_all = "snake_case")
-)]
-#[non_exhaustive]
-#[expect(missing_docs, reason = "the message says what each field is")]
-pub enum Left {
-    /// A component whose faces cannot agree; `face` is its first face.
-    NotOrientable {
-        #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::row"))]
-        face: FaceId,
-        faces: usize,
-        #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::rows"))]
-        ends: [VertexId; 2],
-    },
-    /// A hole that has more edges than allowed; `vertex` is its lowest vertex.
-    LargeHole {
-        #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::row"))]
-        vertex: VertexId,
-        edges: usize,
-    },
-    /// A hole for which every triangulation has a diagonal that is an edge already, or for which
-    /// ear clipping found such a triangulation only; `vertex` is its lowest vertex.
-    BlockedHole {
-        #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::row"))]
-        vertex: VertexId,
-        edges: usize,
-    },
-}
-
-impl fmt::Display for Left {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotOrientable { face, faces, ends } => write!(
-                f,
-                "the component of face {face} ({faces} faces) is not orientable; its faces cannot agree at edge {}–{}",
-                ends[0], ends[1]
-            ),
-            Self::LargeHole { vertex, edges } => write!(
-                f,
-                "the hole at vertex {vertex} has {edges} edges, more than the limit"
-            ),
-            Self::BlockedHole { vertex, edges } => write!(
-                f,
-                "the hole at vertex {vertex} ({edges} edges) has no triangulation without a diagonal that is already an edge"
-            ),
-        }
-    }
 }

@@ -8,7 +8,8 @@ use sixfold_operators::{Components, Facing, Triangulation};
 use crate::duplicates::OppositeFaces;
 use crate::error::RepairError;
 use crate::holes::FillHoles;
-use crate::report::{Left, Repaired, StepCounts, StepReport};
+use crate::outcome::Outcome;
+use crate::report::{Repaired, StepReport};
 use crate::trace::{Trace, element_maps};
 use crate::weld::Weld;
 use crate::{cut, duplicates, flat, holes, orient, remove, triangulate, weld};
@@ -102,33 +103,6 @@ impl serde::Serialize for Step {
 impl fmt::Display for Step {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.title())
-    }
-}
-
-/// The result of one step.
-pub(crate) struct Outcome {
-    /// The changed mesh; `None` if it is unchanged.
-    pub(crate) changed: Option<(PolygonMesh, Trace)>,
-    pub(crate) counts: StepCounts,
-    pub(crate) left: Vec<Left>,
-}
-
-impl Outcome {
-    /// Returns the outcome of a step that changes nothing.
-    pub(crate) fn unchanged() -> Self {
-        Self {
-            changed: None,
-            counts: StepCounts::default(),
-            left: Vec::new(),
-        }
-    }
-
-    pub(crate) fn changed(changed: (PolygonMesh, Trace), counts: StepCounts) -> Self {
-        Self {
-            changed: Some(changed),
-            counts,
-            left: Vec::new(),
-        }
     }
 }
 

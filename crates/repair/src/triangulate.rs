@@ -4,8 +4,7 @@ use sixfold_core::{PolygonMesh, Slot};
 use sixfold_operators::{Triangulation, triangulated};
 
 use crate::error::RepairError;
-use crate::report::StepCounts;
-use crate::step::Outcome;
+use crate::outcome::{Outcome, StepCounts};
 use crate::trace::{CornerId, Trace, VertexTrace, corners_of};
 
 /// Cuts polygons into triangles; [`triangulated`] states the time.

@@ -8,8 +8,7 @@ use glam::DVec3;
 use sixfold_core::{Point, PolygonMesh, Slot, VertexId, row};
 
 use crate::error::RepairError;
-use crate::report::StepCounts;
-use crate::step::Outcome;
+use crate::outcome::{Outcome, StepCounts};
 use crate::trace::{Rebuild, VertexTrace, corners_of};
 use grid::Grid;
 use kd_tree::KdTree;

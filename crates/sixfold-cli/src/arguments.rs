@@ -28,7 +28,7 @@ use sixfold_study::{CacheState, Effort, External, Operation, Policy, Settings};
 
 pub(crate) use comparing::{Compare, GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders};
 pub(crate) use distance::Distance;
-pub(crate) use files::{FileOptions, ReadFiles, file_options, with_file_options};
+pub(crate) use files::{ReadFiles, ReadPolygons, WriteFiles};
 pub(crate) use inspect::Inspect;
 pub(crate) use memory::Memory;
 pub(crate) use neighbours::Neighbours;
@@ -273,6 +273,8 @@ pub(crate) struct Study {
     /// Study part i of n of the meshes; `sixfold merge` joins the parts
     #[arg(long, value_name = "i/n", requires = "report")]
     pub(crate) shard: Option<Shard>,
+    #[command(flatten)]
+    pub(crate) read: ReadFiles,
 }
 
 /// How freed pages and the caches are treated while times are measured.
@@ -356,6 +358,7 @@ impl Default for Study {
             labs: None,
             resume: false,
             shard: None,
+            read: ReadFiles::default(),
         }
     }
 }
@@ -378,6 +381,8 @@ pub(crate) struct Generate {
     /// The file to write (- for standard output)
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) write: WriteFiles,
 }
 
 fn backend(name: &str) -> Result<String, String> {

@@ -42,7 +42,7 @@ pub(crate) fn run(arguments: &Distance) -> Result<ExitCode, Failure> {
         ));
     }
     let json = Output::open_if(arguments.json.as_ref())?;
-    let [first, second] = load::pair(&arguments.first, &arguments.second)?;
+    let [first, second] = load::pair(&arguments.first, &arguments.second, arguments.read)?;
     let sampling = Sampling {
         samples: arguments.samples,
         seed: arguments.seed,

@@ -2,11 +2,12 @@
 
 use std::process::ExitCode;
 
+use sixfold::io::WriteOptions;
 use sixfold::shapes::{GENERATORS, Generator, Parameter, generator};
 
 use crate::arguments::Generate;
 use crate::failure::Failure;
-use crate::mesh_files::{open_mesh, write_mesh};
+use crate::mesh_files::MeshOutput;
 use crate::output::is_stdout;
 use crate::progress::exit_on_interrupt;
 use crate::text::{TextOutput, hanging_indent, sanitize};
@@ -26,8 +27,8 @@ pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
         .collect();
     let made = generator.build(&settings).map_err(Failure::usage)?;
     let mesh = arguments.order.apply(&made, arguments.seed);
-    let output = open_mesh(&arguments.output)?;
-    write_mesh(output, &arguments.output, &mesh, &[])?;
+    let output = MeshOutput::open(&arguments.output, arguments.write)?;
+    output.write(&mesh, &WriteOptions::default())?;
     let vertices = counted(mesh.vertex_count(), "vertex", "vertices");
     let faces = counted(mesh.face_count(), "face", "faces");
     let place = sanitize(&arguments.output.display().to_string());

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::builder::StyledStr;
 use clap::{Command as Definition, CommandFactory};
 
-use crate::arguments::{Arguments, Completions, Manual, with_file_options};
+use crate::arguments::{Arguments, Completions, Manual};
 use crate::failure::Failure;
 use crate::output::cannot_write;
 use crate::text::{hanging_indent, ignore_closed_pipe, reflow, width};
@@ -57,7 +57,6 @@ pub(crate) fn definition() -> Definition {
         .mut_subcommand("orders", |orders| orders.after_help(orders::help()))
         .mut_subcommand("growth", |growth| growth.after_help(growth::help()))
         .mut_subcommand("generate", |generate| generate.after_help(generate::help()))
-        .mut_subcommands(with_file_options)
         .mut_subcommands(fit_to_width);
     let definition = fit_to_width(definition).term_width(width());
     let template = format!(

@@ -54,7 +54,7 @@ pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
         if !inspected.is_empty() {
             text.print_line("");
         }
-        match inspect(path, arguments.triangulate, &mut text) {
+        match inspect(path, arguments, &mut text) {
             Ok(done) => inspected.push(done),
             Err(failure) if paths.len() == 1 => return Err(failure),
             Err(failure) => {
@@ -86,14 +86,14 @@ pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
 }
 
 /// Inspects one mesh and prints the text.
-fn inspect(path: &Path, triangulate: bool, text: &mut TextOutput) -> Result<Inspected, Failure> {
+fn inspect(path: &Path, arguments: &Inspect, text: &mut TextOutput) -> Result<Inspected, Failure> {
     let InspectedMesh {
         study_mesh,
         diagnosis,
         places,
         left_out,
         narrowing,
-    } = load::for_inspection(path, triangulate)?;
+    } = load::for_inspection(path, arguments.read, arguments.triangulate)?;
     let inspection = inspect_diagnosed(&study_mesh, &diagnosis, &Backend::structures());
     let diagnosed = Diagnosed {
         polygons: &study_mesh.polygons,

@@ -55,6 +55,7 @@ mod edits;
 mod facts_text;
 mod failure;
 mod faults_text;
+mod files;
 mod free_memory;
 mod generate;
 mod growth;
@@ -121,10 +122,7 @@ impl<C: Heap + AllocationCounter> AllocatorCounters for C {}
 #[doc(hidden)]
 pub fn sixfold(counters: &dyn AllocatorCounters) -> ExitCode {
     let matches = help::definition().try_get_matches_from(words());
-    let arguments = matches.and_then(|matches| {
-        mesh_files::set_options(arguments::file_options(&matches));
-        Arguments::from_arg_matches(&matches)
-    });
+    let arguments = matches.and_then(|matches| Arguments::from_arg_matches(&matches));
     let done = match arguments.map(|arguments| arguments.command) {
         Err(error) => print_clap_message(&error),
         Ok(None) => study::run(&arguments::Study::default()),

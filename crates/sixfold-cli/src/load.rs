@@ -8,6 +8,7 @@ use sixfold::repair::{Diagnosis, diagnose, facts_and_diagnosis};
 use sixfold::{Creases, PolygonMesh, shapes};
 use sixfold_study::{Results, StudyMesh, sha256_of};
 
+use crate::arguments::{ReadFiles, ReadPolygons};
 use crate::failure::Failure;
 use crate::faults_text::SHOWN_PLACES;
 use crate::mesh_files::{cut_polygons, read_mesh, read_mesh_at, shown};
@@ -31,8 +32,12 @@ pub(crate) struct InspectedMesh {
 
 /// Reads a mesh without its degenerate faces, lists the degenerate faces, and diagnoses the mesh.
 /// `triangulate` cuts polygons first.
-pub(crate) fn for_inspection(path: &Path, triangulate: bool) -> Result<InspectedMesh, Failure> {
-    let mesh = read_mesh(path)?;
+pub(crate) fn for_inspection(
+    path: &Path,
+    files: ReadFiles,
+    triangulate: bool,
+) -> Result<InspectedMesh, Failure> {
+    let mesh = read_mesh(path, files)?;
     let narrowing = mesh.narrowing;
     if triangulate || mesh.has_degenerate_faces() {
         let (mut study_mesh, left_out, places) = into_study_mesh(path, mesh);
@@ -65,10 +70,11 @@ pub(crate) fn for_inspection(path: &Path, triangulate: bool) -> Result<Inspected
 /// Reads a mesh for a study. `strict` refuses degenerate faces. `triangulate` cuts polygons.
 pub(crate) fn for_study(
     path: &Path,
+    files: ReadFiles,
     strict: bool,
     triangulate: bool,
 ) -> Result<StudyMesh, Failure> {
-    let (mut study_mesh, left_out, _) = into_study_mesh(path, read_mesh(path)?);
+    let (mut study_mesh, left_out, _) = into_study_mesh(path, read_mesh(path, files)?);
     let file = shown(path);
     if !left_out.is_empty() && strict {
         let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
@@ -99,9 +105,18 @@ pub(crate) fn for_study(
 }
 
 /// Reads a mesh without its degenerate faces. Also returns the creases in the file.
-pub(crate) fn with_creases(path: &Path) -> Result<(PolygonMesh, Creases), Failure> {
-    let read = for_repair(path)?;
-    Ok((read.polygons, read.creases))
+pub(crate) fn with_creases(
+    path: &Path,
+    chosen: ReadPolygons,
+) -> Result<(PolygonMesh, Creases), Failure> {
+    let ReadMesh {
+        polygons, creases, ..
+    } = for_repair(path, chosen.files)?;
+    let polygons = match chosen.triangulate {
+        true => cut_polygons(path, polygons)?,
+        false => polygons,
+    };
+    Ok((polygons, creases))
 }
 
 /// A mesh without its degenerate faces, and what reading changed.
@@ -117,10 +132,10 @@ pub(crate) struct ReadMesh {
 }
 
 /// Reads a mesh without its degenerate faces, and returns what reading changed.
-pub(crate) fn for_repair(path: &Path) -> Result<ReadMesh, Failure> {
-    let mut mesh = read_mesh(path)?;
+pub(crate) fn for_repair(path: &Path, files: ReadFiles) -> Result<ReadMesh, Failure> {
+    let mut mesh = read_mesh(path, files)?;
     let (joined, ignored) = (mesh.welded_vertices, std::mem::take(&mut mesh.notices));
-    let (polygons, creases, left_out) = without_degenerate(path, mesh)?;
+    let (polygons, creases, left_out) = without_degenerate(path, mesh);
     Ok(ReadMesh {
         polygons,
         creases,
@@ -132,32 +147,39 @@ pub(crate) fn for_repair(path: &Path) -> Result<ReadMesh, Failure> {
 
 /// Reads two meshes without their degenerate faces. If the option --recentre is set, both are moved
 /// by the centre of the first one, so that their distance stays.
-pub(crate) fn pair(first: &Path, second: &Path) -> Result<[PolygonMesh; 2], Failure> {
-    let mesh = read_mesh(first)?;
+pub(crate) fn pair(
+    first: &Path,
+    second: &Path,
+    chosen: ReadPolygons,
+) -> Result<[PolygonMesh; 2], Failure> {
+    let polygons_of = |path: &Path, mesh: FileMesh| {
+        let (polygons, ..) = without_degenerate(path, mesh);
+        match chosen.triangulate {
+            true => cut_polygons(path, polygons),
+            false => Ok(polygons),
+        }
+    };
+    let mesh = read_mesh(first, chosen.files)?;
     let origin = mesh.origin;
-    let (first, ..) = without_degenerate(first, mesh)?;
-    let mesh = read_mesh_at(second, Some(origin))?;
-    let (second, ..) = without_degenerate(second, mesh)?;
-    Ok([first, second])
+    let first = polygons_of(first, mesh)?;
+    let mesh = read_mesh_at(second, chosen.files, Some(origin))?;
+    Ok([first, polygons_of(second, mesh)?])
 }
 
 /// Returns the mesh without its degenerate faces, its creases, and the number of degenerate faces.
-fn without_degenerate(
-    path: &Path,
-    mesh: FileMesh,
-) -> Result<(PolygonMesh, Creases, usize), Failure> {
+fn without_degenerate(path: &Path, mesh: FileMesh) -> (PolygonMesh, Creases, usize) {
     let (creases, unused) = mesh.creases();
     for crease in &unused {
         print_stderr(&format!("note: {}: {crease}", shown(path)));
     }
     let (polygons, left_out) = mesh.into_polygons();
     print_left_out(path, &left_out);
-    Ok((cut_polygons(path, polygons)?, creases, left_out.len()))
+    (polygons, creases, left_out.len())
 }
 
 /// Reads a mesh for a command that drops creases. Prints a note if there are creases.
-pub(crate) fn without_creases(path: &Path) -> Result<PolygonMesh, Failure> {
-    let (polygons, creases) = with_creases(path)?;
+pub(crate) fn without_creases(path: &Path, chosen: ReadPolygons) -> Result<PolygonMesh, Failure> {
+    let (polygons, creases) = with_creases(path, chosen)?;
     if !creases.is_empty() {
         let file = shown(path);
         print_stderr(&format!(

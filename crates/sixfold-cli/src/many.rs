@@ -234,7 +234,12 @@ impl Run<'_> {
 fn load_mesh(mesh: &Mesh, arguments: &Study) -> Result<StudyMesh, Failure> {
     match &mesh.path {
         None => Ok(load::built_in()),
-        Some(path) => load::for_study(path, arguments.strict, arguments.triangulate),
+        Some(path) => load::for_study(
+            path,
+            arguments.read,
+            arguments.strict,
+            arguments.triangulate,
+        ),
     }
 }
 

@@ -31,7 +31,7 @@ pub(crate) fn run(
     // Counting cannot be resumed, so Ctrl-C ends it at once.
     exit_on_interrupt();
     let study_mesh = match mesh {
-        Some(path) => load::for_study(path, false, arguments.triangulate)?,
+        Some(path) => load::for_study(path, arguments.read, false, arguments.triangulate)?,
         None => load::built_in(),
     };
     let settings = Settings {

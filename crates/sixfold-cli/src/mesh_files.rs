@@ -1,13 +1,14 @@
-//! Reads and writes mesh files as the options for all commands say.
+//! Reads and writes mesh files.
 
 use std::io;
 use std::path::Path;
-use std::sync::OnceLock;
 
-use sixfold::io::{FileMesh, Format, MeshWriter, ReadOptions, Welding, read, read_from};
+use sixfold::io::{
+    FileMesh, Format, ReadOptions, Welding, WriteOptions, losses, read_from, read_with, write_to,
+};
 use sixfold::{Point, PolygonMesh};
 
-use crate::arguments::FileOptions;
+use crate::arguments::{ReadFiles, WriteFiles};
 use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
 use crate::text::print_stderr;
@@ -20,29 +21,20 @@ use sixfold_study::numbers::counted;
 /// larger part means that the mesh is far from the origin.
 const REPORTED_SHIFT: f64 = 1e-7;
 
-/// The options, which are the same for all files of a run.
-static OPTIONS: OnceLock<FileOptions> = OnceLock::new();
-
-/// Sets the options. They must be set before the first file is read or written.
-pub(crate) fn set_options(options: FileOptions) {
-    OPTIONS.get_or_init(|| options);
-}
-
-fn options() -> FileOptions {
-    OPTIONS.get().copied().unwrap_or_default()
-}
-
 /// Reads a mesh file of any format, or standard input for `-`, and prints a note for each part that
 /// is ignored or changed.
-pub(crate) fn read_mesh(path: &Path) -> Result<FileMesh, Failure> {
-    read_mesh_at(path, None)
+pub(crate) fn read_mesh(path: &Path, chosen: ReadFiles) -> Result<FileMesh, Failure> {
+    read_mesh_at(path, chosen, None)
 }
 
 /// Reads a mesh like [`read_mesh`]. The option --recentre moves the mesh so that `origin` is the
 /// origin; if `origin` is `None`, the centre of the mesh.
-pub(crate) fn read_mesh_at(path: &Path, origin: Option<[f64; 3]>) -> Result<FileMesh, Failure> {
+pub(crate) fn read_mesh_at(
+    path: &Path,
+    chosen: ReadFiles,
+    origin: Option<[f64; 3]>,
+) -> Result<FileMesh, Failure> {
     let mut settings = ReadOptions::default();
-    let chosen = options().read;
     if chosen.as_stored {
         settings = settings.with_welding(Welding::Nothing);
     }
@@ -55,10 +47,10 @@ pub(crate) fn read_mesh_at(path: &Path, origin: Option<[f64; 3]>) -> Result<File
     let name = shown(path);
     let mesh = match is_stdout(path) {
         true => read_from(&name, io::stdin().lock(), &settings),
-        false => read(path, &settings),
+        false => read_with(path, &settings),
     };
     let mesh = mesh.map_err(Failure::usage)?;
-    for note in notes(&mesh) {
+    for note in notes(&mesh, chosen) {
         print_stderr(&format!("note: {name}: {note}"));
     }
     Ok(mesh)
@@ -73,7 +65,7 @@ pub(crate) fn shown(path: &Path) -> String {
 }
 
 /// Describes what was ignored or changed.
-fn notes(mesh: &FileMesh) -> Vec<String> {
+fn notes(mesh: &FileMesh, chosen: ReadFiles) -> Vec<String> {
     let mut notes: Vec<String> = mesh.notices.iter().map(ToString::to_string).collect();
     if mesh.welded_vertices > 0 {
         let corners = mesh.welded_vertices + mesh.positions.len();
@@ -83,7 +75,7 @@ fn notes(mesh: &FileMesh) -> Vec<String> {
             "joined {corners} at equal positions to {vertices}: --as-stored keeps them apart"
         ));
     }
-    notes.extend(rounding_note(mesh));
+    notes.extend(rounding_note(mesh, chosen));
     if mesh.origin != [0.0; 3] {
         let [x, y, z] = mesh.origin.map(|coordinate| 0.0 - coordinate);
         notes.push(format!("moved by {x}, {y}, {z} to the origin"));
@@ -93,7 +85,7 @@ fn notes(mesh: &FileMesh) -> Vec<String> {
 
 /// Describes what rounding to 32 bits did, if it merged vertices or if the mesh is far from the
 /// origin.
-fn rounding_note(mesh: &FileMesh) -> Option<String> {
+fn rounding_note(mesh: &FileMesh, chosen: ReadFiles) -> Option<String> {
     let narrowing = mesh.narrowing;
     let positions = || mesh.positions.iter().copied();
     let low = positions().reduce(Point::min).unwrap_or_default();
@@ -109,75 +101,70 @@ fn rounding_note(mesh: &FileMesh) -> Option<String> {
         ),
         false => String::new(),
     };
-    let way_out = match options().read.recentre {
+    let way_out = match chosen.recentre {
         true => "",
         false => ": --recentre moves the mesh to the origin first",
     };
     Some(format!("{narrowing}{part}{way_out}"))
 }
 
-/// Cuts the polygons of the mesh in the file at `path`, if the option --triangulate is set.
+/// Cuts the polygons of the mesh in the file at `path`.
 pub(crate) fn cut_polygons(path: &Path, polygons: PolygonMesh) -> Result<PolygonMesh, Failure> {
-    if !options().cut.triangulate || polygons.first_polygon().is_none() {
+    if polygons.first_polygon().is_none() {
         return Ok(polygons);
     }
     let study_mesh = StudyMesh::new(shown(path), polygons);
     triangulated(study_mesh).map(|study_mesh| study_mesh.polygons)
 }
 
-/// Opens a mesh file for writing. An ending that is not that of a format is an error, unless
-/// --format chooses the format.
-pub(crate) fn open_mesh(path: &Path) -> Result<Output, Failure> {
-    let ending = path.extension();
-    if let (None, None, Some(ending)) = (options().write.format, Format::from_path(path), ending) {
-        let endings = Format::EXTENSIONS.map(|ending| format!(".{ending}"));
-        return Err(Failure::usage(format!(
-            "{}: .{} is not the ending of a format that can be written: use one of {}, or choose \
-             the format with --format",
-            path.display(),
-            ending.display(),
-            endings.join(", ")
-        )));
-    }
-    Output::open(path)
-}
-
-/// Returns the format of a mesh that is written to `path`: that of --format, or of the ending of
-/// `path`; otherwise it is OBJ.
-pub(crate) fn written_format(path: &Path) -> Format {
-    let by_name = || Format::from_path(path).unwrap_or(Format::Obj);
-    options().write.format.unwrap_or_else(by_name)
-}
-
-/// Writes a mesh to `output`, which was opened at `path` by [`open_mesh`], in the
-/// [`written_format`]. Prints a note for everything that the format cannot keep.
-/// `normals` is empty, or has an entry for each vertex.
-pub(crate) fn write_mesh(
+/// A mesh file that is open for writing.
+pub(crate) struct MeshOutput {
     output: Output,
-    path: &Path,
-    polygons: &PolygonMesh,
-    normals: &[Option<Point>],
-) -> Result<(), Failure> {
-    let mut writer = MeshWriter::new(polygons);
-    if !normals.is_empty() {
-        writer = writer.with_normals(normals).map_err(Failure::usage)?;
-    }
-    write_with(output, path, &writer)
+    name: String,
+    /// The format of --format, or of the ending of the name; otherwise OBJ.
+    pub(crate) format: Format,
 }
 
-/// Writes a mesh with its data like [`write_mesh`].
-pub(crate) fn write_with(
-    output: Output,
-    path: &Path,
-    writer: &MeshWriter<'_>,
-) -> Result<(), Failure> {
-    let format = written_format(path);
-    output.finish(|to| Ok(writer.write(format, to)?))?;
-    for loss in writer.losses(format) {
-        print_stderr(&format!(
-            "note: {}: {loss}, because {format} cannot keep more",
-            path.display()
-        ));
+impl MeshOutput {
+    /// Opens a mesh file. An ending that is not that of a format is an error, unless --format
+    /// chooses the format.
+    pub(crate) fn open(path: &Path, chosen: WriteFiles) -> Result<Self, Failure> {
+        let format = chosen.format.or_else(|| Format::from_path(path));
+        if let (None, Some(ending)) = (format, path.extension()) {
+            let endings = Format::EXTENSIONS.map(|ending| format!(".{ending}"));
+            return Err(Failure::usage(format!(
+                "{}: .{} is not the ending of a format that can be written: use one of {}, or \
+                 choose the format with --format",
+                path.display(),
+                ending.display(),
+                endings.join(", ")
+            )));
+        }
+        Ok(Self {
+            output: Output::open(path)?,
+            name: path.display().to_string(),
+            format: format.unwrap_or(Format::Obj),
+        })
     }
-    Ok(())
+
+    /// Writes a mesh with the data in `options`. Prints a note for everything that the format cannot
+    /// keep.
+    pub(crate) fn write(
+        self,
+        polygons: &PolygonMesh,
+        options: &WriteOptions<'_>,
+    ) -> Result<(), Failure> {
+        let Self {
+            output,
+            name,
+            format,
+        } = self;
+        output.finish(|to| Ok(write_to(polygons, format, options, to)?))?;
+        for loss in losses(polygons, format, options) {
+            print_stderr(&format!(
+                "note: {name}: {loss}, because {format} cannot keep more"
+            ));
+        }
+        Ok(())
+    }
 }

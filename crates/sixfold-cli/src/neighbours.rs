@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &Neighbours) -> Result<ExitCode, Failure> {
     };
     let mut session = Session::open(mesh, &arguments.files, settings.heap)?;
     let study_mesh = match mesh {
-        Some(path) => load::for_study(path, false, false)?,
+        Some(path) => load::for_study(path, arguments.read, false, false)?,
         None => load::built_in(),
     };
     warn_of_debug_build();

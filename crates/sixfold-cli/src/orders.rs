@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     let mesh = arguments.mesh.as_deref();
     let mut session = Session::open(mesh, &arguments.files, arguments.memory.heap)?;
     let study_mesh = match mesh {
-        Some(path) => load::for_study(path, false, arguments.triangulate)?,
+        Some(path) => load::for_study(path, arguments.read, false, arguments.triangulate)?,
         None => load::built_in(),
     };
     let settings = Settings {

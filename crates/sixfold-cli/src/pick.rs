@@ -10,7 +10,7 @@ use sixfold_study::{
     ProgramSettings, Ranked, StudyMesh, Suite, Trace, Workload,
 };
 
-use crate::arguments::Pick;
+use crate::arguments::{Pick, ReadFiles};
 use crate::failure::Failure;
 use crate::load;
 use crate::many::{Mesh, find_meshes};
@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     let meshes = find_meshes(&arguments.meshes, &mut |note| print_stderr(note))?;
     let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
     let mut session = Session::open(paths, &arguments.files, arguments.heap)?;
-    let study_meshes = study_meshes(&meshes, arguments.triangulate)?;
+    let study_meshes = study_meshes(&meshes, arguments.read, arguments.triangulate)?;
     let settings = PickSettings {
         workload,
         backends: arguments.backends.clone(),
@@ -88,7 +88,7 @@ fn run_trace(path: &Path, arguments: &Pick) -> Result<ExitCode, Failure> {
         &Suite::new().trace(trace),
         &settings,
         &arguments.meshes,
-        arguments.triangulate,
+        (arguments.read, arguments.triangulate),
         &arguments.files,
         Limits::new(settings.effort, default_memory_limit()),
     )
@@ -100,9 +100,13 @@ fn run_trace(path: &Path, arguments: &Pick) -> Result<ExitCode, Failure> {
 /// # Errors
 ///
 /// Fails if no mesh can be read.
-pub(crate) fn study_meshes(meshes: &[Mesh], triangulate: bool) -> Result<Vec<StudyMesh>, Failure> {
+pub(crate) fn study_meshes(
+    meshes: &[Mesh],
+    files: ReadFiles,
+    triangulate: bool,
+) -> Result<Vec<StudyMesh>, Failure> {
     let read = |mesh: &Mesh| match (&mesh.path, &mesh.problem) {
-        (Some(path), _) => load::for_study(path, false, triangulate),
+        (Some(path), _) => load::for_study(path, files, false, triangulate),
         (None, Some(problem)) => Err(Failure::usage(format!("{}: {problem}", mesh.name))),
         (None, None) => Ok(load::built_in()),
     };

@@ -17,13 +17,12 @@ use sixfold_study::{
     SuiteProgram, free_memory, serve_program,
 };
 
-use crate::arguments::{FileOptions, Programs, ResultFiles};
+use crate::arguments::{Programs, ReadFiles, ResultFiles};
 use crate::failure::Failure;
 use crate::free_memory::used_memory;
 use crate::load;
 use crate::many::find_meshes;
 use crate::measure::{Session, warn_of_debug_build, with_command};
-use crate::mesh_files;
 use crate::output::exit_without_drafts;
 use crate::pick;
 use crate::progress::{Bar, INTERRUPTED};
@@ -68,12 +67,8 @@ pub(crate) fn run(suite: Suite) -> Result<ExitCode, Failure> {
         true => suite,
         false => suite.only(&arguments.programs),
     };
-    mesh_files::set_options(FileOptions {
-        read: arguments.read,
-        ..FileOptions::default()
-    });
     if let Some(task) = &arguments.child {
-        return serve(&suite, task, &arguments.meshes);
+        return serve(&suite, task, &arguments.meshes, arguments.read);
     }
     let memory_limit = arguments.memory_limit.or_else(default_memory_limit);
     let settings = ProgramSettings {
@@ -94,7 +89,7 @@ pub(crate) fn run(suite: Suite) -> Result<ExitCode, Failure> {
             &suite,
             &settings,
             &arguments.meshes,
-            arguments.triangulate,
+            (arguments.read, arguments.triangulate),
             &arguments.files,
             Limits {
                 sample: arguments.time_limit.filter(|_| !arguments.isolate),
@@ -126,13 +121,18 @@ pub(crate) fn default_memory_limit() -> Option<u64> {
 }
 
 /// Runs a program in this process as the parent process requests.
-fn serve(suite: &Suite, task: &str, meshes: &[PathBuf]) -> Result<ExitCode, Failure> {
+fn serve(
+    suite: &Suite,
+    task: &str,
+    meshes: &[PathBuf],
+    files: ReadFiles,
+) -> Result<ExitCode, Failure> {
     let wrong = |error: &dyn Display| Failure::usage(format!("--child: {error}"));
     let task: ChildTask = serde_json::from_str(task).map_err(|error| wrong(&error))?;
     let [mesh] = meshes else {
         return Err(wrong(&"expected one mesh"));
     };
-    let polygons = load::for_study(mesh, false, false)?.polygons;
+    let polygons = load::for_study(mesh, files, false, false)?.polygons;
     let (input, output) = (io::stdin().lock(), io::stdout().lock());
     let served = serve_program(suite, &task, &polygons, input, output);
     served.map_err(|error| wrong(&error))?;
@@ -153,14 +153,14 @@ pub(crate) fn measure(
     suite: &Suite,
     settings: &ProgramSettings,
     meshes: &[PathBuf],
-    triangulate: bool,
+    (read, triangulate): (ReadFiles, bool),
     files: &ResultFiles,
     limits: Limits,
 ) -> Result<ExitCode, Failure> {
     let meshes = find_meshes(meshes, &mut |note| print_stderr(note))?;
     let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
     let mut session = Session::open(paths, files, settings.heap)?;
-    let study_meshes = pick::study_meshes(&meshes, triangulate)?;
+    let study_meshes = pick::study_meshes(&meshes, read, triangulate)?;
     warn_of_debug_build();
     print_meshes(&study_meshes, &mut session.text);
     for program in suite.programs().iter().filter(|p| p.own_ns() != 0.0) {

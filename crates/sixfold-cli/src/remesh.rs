@@ -1,23 +1,21 @@
 //! `sixfold decimate` and `remesh`: changes the triangles of a surface by local edits.
 
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::process::ExitCode;
 
+use sixfold::io::WriteOptions;
 use sixfold::remeshing::{
     Decimation, DecimationBoundary, RemeshError, Remeshing, Stop, decimate_watched, remesh_watched,
 };
 use sixfold::{
-    Edit, EditVisitor, MeshEdit, PolygonMesh, QueryCost, Representation, structure_infos,
-    visit_editable,
+    Edit, MeshEdit, PolygonMesh, QueryCost, Representation, for_each_editable, structure_infos,
 };
 
 use crate::arguments::{Decimate, Remesh};
 use crate::failure::Failure;
-use crate::load;
-use crate::mesh_files::{open_mesh, write_mesh};
-use crate::output::{check_outputs, is_stdout};
-use crate::progress::{StepBar, exit_on_interrupt};
+use crate::files::Files;
+use crate::output::is_stdout;
+use crate::progress::StepBar;
 use crate::text::{TextOutput, print_stderr, sanitize};
 use sixfold_study::numbers::{counted, grouped};
 
@@ -29,8 +27,13 @@ pub(crate) fn decimate(arguments: &Decimate) -> Result<ExitCode, Failure> {
         target: arguments.goal.target(),
         boundary: arguments.boundary,
     };
-    let place = [arguments.mesh.as_path(), &arguments.output];
-    edit_file(place, &arguments.backend, &decimation)
+    let files = Files {
+        from: &arguments.mesh,
+        to: &arguments.output,
+        read: arguments.read,
+        write: arguments.write,
+    };
+    edit_file(files, &arguments.backend, &decimation)
 }
 
 pub(crate) fn remesh(arguments: &Remesh) -> Result<ExitCode, Failure> {
@@ -39,26 +42,23 @@ pub(crate) fn remesh(arguments: &Remesh) -> Result<ExitCode, Failure> {
         iterations: arguments.iterations,
         max_faces: arguments.max_faces,
     };
-    let place = [arguments.mesh.as_path(), &arguments.output];
-    edit_file(place, &arguments.backend, &remeshing)
+    let files = Files {
+        from: &arguments.mesh,
+        to: &arguments.output,
+        read: arguments.read,
+        write: arguments.write,
+    };
+    edit_file(files, &arguments.backend, &remeshing)
 }
 
-fn edit_file([from, to]: [&Path; 2], backend: &str, work: &impl Work) -> Result<ExitCode, Failure> {
-    check_outputs(Some(from), &[("--output", Some(&to.to_owned()))])?;
-    exit_on_interrupt();
-    let polygons = load::without_creases(from)?;
+fn edit_file(files: Files<'_>, backend: &str, work: &impl Work) -> Result<ExitCode, Failure> {
     // Check here, because the error of a structure would not name the command that helps.
-    check_triangles(&polygons)?;
-    // Open the output before the work, so that an unusable path gives an error at once.
-    let output = open_mesh(to)?;
-    let mut job = EditJob {
-        polygons: &polygons,
-        work,
-    };
-    let done = visit_editable(backend, &mut job);
+    let (polygons, output) = files.open(check_triangles)?;
+    let done = edited_by(backend, &polygons, work);
     let (polygons, EditSummary { edits, shortfall }) =
         done.ok_or_else(|| Failure::unsupported(not_editable(backend)))??;
-    write_mesh(output, to, &polygons, &[])?;
+    output.write(&polygons, &WriteOptions::default())?;
+    let to = files.to;
     if let Some(shortfall) = shortfall {
         print_stderr(&format!("note: {}: {shortfall}", to.display()));
     }
@@ -206,23 +206,25 @@ impl Work for Remeshing {
     }
 }
 
-/// Edits on a structure that is selected at run time.
-struct EditJob<'a, W> {
-    polygons: &'a PolygonMesh,
-    work: &'a W,
+/// Does the work on the structure called `backend`; `None` if it has no edits, or does not exist.
+fn edited_by(backend: &str, polygons: &PolygonMesh, work: &impl Work) -> Option<Edited> {
+    for_each_editable!(M => {
+        if backend == M::NAME {
+            return Some(edited::<M>(polygons, work));
+        }
+    });
+    None
 }
 
-impl<W: Work> EditVisitor for EditJob<'_, W> {
-    type Output = Result<(PolygonMesh, EditSummary), Failure>;
+type Edited = Result<(PolygonMesh, EditSummary), Failure>;
 
-    fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output {
-        let mesh = M::from_polygons(self.polygons);
-        let mut mesh = mesh.map_err(|refusal| {
-            let refusal = format!("{} cannot hold the mesh: {refusal}", M::NAME);
-            Failure::cannot_hold(M::NAME, refusal)
-        })?;
-        warn_of_scans::<M>(self.polygons.face_count());
-        let summary = self.work.run(&mut mesh).map_err(remesh_failure)?;
-        Ok((mesh.to_polygons(), summary))
-    }
+fn edited<M: Representation + MeshEdit>(polygons: &PolygonMesh, work: &impl Work) -> Edited {
+    let mesh = M::from_polygons(polygons);
+    let mut mesh = mesh.map_err(|refusal| {
+        let refusal = format!("{} cannot hold the mesh: {refusal}", M::NAME);
+        Failure::cannot_hold(M::NAME, refusal)
+    })?;
+    warn_of_scans::<M>(polygons.face_count());
+    let summary = work.run(&mut mesh).map_err(remesh_failure)?;
+    Ok((mesh.to_polygons(), summary))
 }

@@ -3,14 +3,14 @@
 use std::process::ExitCode;
 
 use serde::Serialize;
-use sixfold::io::{Format, Loss, MeshWriter};
+use sixfold::io::{Format, Loss, WriteOptions, losses};
 use sixfold::repair::{RepairError, Repaired, Step, StepReport, Weld, repair, repair_for};
 use sixfold::{Creases, PolygonMesh, StructureInfo, structure_infos};
 
 use crate::arguments::Repair;
 use crate::failure::Failure;
 use crate::load::{self, ReadMesh};
-use crate::mesh_files::{open_mesh, shown, write_with, written_format};
+use crate::mesh_files::{MeshOutput, shown};
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{Spinner, exit_on_interrupt};
 use crate::text::{TextOutput, print_stderr, sanitize};
@@ -36,10 +36,10 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
         ));
     }
     exit_on_interrupt();
-    let read = load::for_repair(&arguments.mesh)?;
+    let read = load::for_repair(&arguments.mesh, arguments.read)?;
     let polygons = &read.polygons;
     // The outputs are opened before the work, so that an unusable place gives an error at once.
-    let output = open_mesh(&arguments.output)?;
+    let output = MeshOutput::open(&arguments.output, arguments.write)?;
     let json = Output::open_if(arguments.json.as_ref())?;
     let faces = counted(polygons.face_count(), "face", "faces");
     let spinner = Spinner::start(format!("repairing {faces}"));
@@ -63,10 +63,11 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
             "note: {file}: {elements} not in the repaired mesh"
         ));
     }
-    let writer = MeshWriter::new(&repaired.polygons).with_creases(&creases);
-    write_with(output, &arguments.output, &writer)?;
+    let options = WriteOptions::default().with_creases(&creases);
+    let format = output.format;
+    output.write(&repaired.polygons, &options)?;
     if let Some(json) = json {
-        let losses = writer.losses(written_format(&arguments.output));
+        let losses = losses(&repaired.polygons, format, &options);
         let report = Report::new(&read, &repaired, lost, &losses);
         json.finish(|writer| {
             serde_json::to_writer_pretty(&mut *writer, &report)?;
@@ -82,7 +83,7 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
     text.print_line(&format!("{place}: {}", repaired.polygons));
     text.finish()?;
     let refusing = arguments.structure.as_deref();
-    if let Some(name) = refusing.filter(|name| undoes_repair(arguments, &repaired.polygons, name)) {
+    if let Some(name) = refusing.filter(|name| undoes_repair(format, &repaired.polygons, name)) {
         print_stderr(&format!(
             "warning: {}: readers of STL join vertices at equal positions, and {name} refuses the \
              mesh that results: write PLY or OBJ, which keep the cut",
@@ -95,11 +96,8 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
 
 /// Returns whether the written file is STL, and the structure called `name` refuses the mesh that
 /// readers make of it: `polygons` with equal positions joined.
-fn undoes_repair(arguments: &Repair, polygons: &PolygonMesh, name: &str) -> bool {
-    if !matches!(
-        written_format(&arguments.output),
-        Format::Stl | Format::StlAscii
-    ) {
+fn undoes_repair(format: Format, polygons: &PolygonMesh, name: &str) -> bool {
+    if !matches!(format, Format::Stl | Format::StlAscii) {
         return false;
     }
     // A facet whose corners are joined is left out by readers; welding removes it, too.

@@ -1,17 +1,16 @@
 //! `sixfold smooth`, `dual` and `triangulate`: change positions or faces without refinement.
 
-use std::path::Path;
 use std::process::ExitCode;
 
+use sixfold::io::WriteOptions;
 use sixfold::operators::{Smoothing, SmoothingError, dual, oriented, smoothed, triangulated};
 use sixfold::{PolygonMesh, Representation, Visitor, visit};
 
-use crate::arguments::{Dual, Smooth, Triangulate};
+use crate::arguments::{Dual, ReadPolygons, Smooth, Triangulate};
 use crate::failure::Failure;
-use crate::load;
-use crate::mesh_files::{open_mesh, write_mesh};
-use crate::output::{check_outputs, is_stdout};
-use crate::progress::{Spinner, exit_on_interrupt};
+use crate::files::Files;
+use crate::output::is_stdout;
+use crate::progress::Spinner;
 use crate::text::{TextOutput, sanitize};
 use sixfold_study::numbers::counted;
 
@@ -23,22 +22,40 @@ pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
         step_back: arguments.step_back,
         iterations: arguments.iterations,
     });
-    let place = [arguments.mesh.as_path(), &arguments.output];
-    reshape_file(place, "smoothed", |polygons| {
+    let files = Files {
+        from: &arguments.mesh,
+        to: &arguments.output,
+        read: arguments.read,
+        write: arguments.write,
+    };
+    reshape_file(files, "smoothed", |polygons| {
         on_backend(&arguments.backend, polygons, &work)
     })
 }
 
 pub(crate) fn make_dual(arguments: &Dual) -> Result<ExitCode, Failure> {
-    let place = [arguments.mesh.as_path(), &arguments.output];
-    reshape_file(place, "the dual", |polygons| {
+    let files = Files {
+        from: &arguments.mesh,
+        to: &arguments.output,
+        read: arguments.read,
+        write: arguments.write,
+    };
+    reshape_file(files, "the dual", |polygons| {
         on_backend(&arguments.backend, polygons, &DualWork)
     })
 }
 
 pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> {
-    let place = [arguments.mesh.as_path(), &arguments.output];
-    reshape_file(place, "triangles", |polygons| {
+    let files = Files {
+        from: &arguments.mesh,
+        to: &arguments.output,
+        read: ReadPolygons {
+            triangulate: false, // the command itself cuts polygons
+            files: arguments.read,
+        },
+        write: arguments.write,
+    };
+    reshape_file(files, "triangles", |polygons| {
         let polygons = match arguments.orient {
             Some(facing) => {
                 oriented(polygons, facing)
@@ -52,21 +69,18 @@ pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> 
 }
 
 fn reshape_file(
-    [from, to]: [&Path; 2],
+    files: Files<'_>,
     what: &str,
     change: impl FnOnce(&PolygonMesh) -> Result<PolygonMesh, Failure>,
 ) -> Result<ExitCode, Failure> {
-    check_outputs(Some(from), &[("--output", Some(&to.to_owned()))])?;
-    exit_on_interrupt();
-    let polygons = load::without_creases(from)?;
-    // Open the output before the work, so that an unusable path gives an error at once.
-    let output = open_mesh(to)?;
+    let (polygons, output) = files.open(|_| Ok(()))?;
     let faces = counted(polygons.face_count(), "face", "faces");
     let spinner = Spinner::start(format!("working on {faces}"));
     let changed = change(&polygons);
     spinner.clear();
     let changed = changed?;
-    write_mesh(output, to, &changed, &[])?;
+    output.write(&changed, &WriteOptions::default())?;
+    let to = files.to;
     let mut text = TextOutput::new(!is_stdout(to));
     let place = sanitize(&to.display().to_string());
     let vertices = counted(changed.vertex_count(), "vertex", "vertices");

@@ -39,7 +39,12 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     let mesh = arguments.meshes.first().map(PathBuf::as_path);
     let mut session = Session::open(mesh, &arguments.files, settings.heap)?;
     let study_mesh = match mesh {
-        Some(path) => load::for_study(path, arguments.strict, arguments.triangulate)?,
+        Some(path) => load::for_study(
+            path,
+            arguments.read,
+            arguments.strict,
+            arguments.triangulate,
+        )?,
         None => load::built_in(),
     };
     warn_of_debug_build();

@@ -4,23 +4,25 @@ mod forecast;
 mod limit;
 mod local;
 
+use std::ops::ControlFlow;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPoolBuilder;
-use sixfold::io::{read_creases, write_creases};
+use sixfold::io::{WriteOptions, read_creases, write_creases};
 use sixfold::subdivision::{
-    BoundaryRule, Method, Scheme, Step, Subdivision, SubdivisionError, subdivide, subdivide_native,
+    BoundaryRule, Method, Scheme, Step, Subdivision, SubdivisionError, subdivide_native_watched,
+    subdivide_watched,
 };
 use sixfold::{
-    Creases, PolygonMesh, Refine, RefineVisitor, Representation, Visitor, support, visit,
-    visit_refinable,
+    Creases, PolygonMesh, Refine, Representation, Visitor, for_each_refinable, support, visit,
 };
 
 use crate::arguments::Subdivide;
 use crate::failure::Failure;
 use crate::load;
-use crate::mesh_files::{open_mesh, shown, write_mesh};
+use crate::mesh_files::{MeshOutput, shown};
 use crate::output::{Output, check_not_overwritten, check_outputs, is_stdout};
 use crate::progress::{FaceBar, exit_on_interrupt};
 use crate::text::{TextOutput, sanitize};
@@ -46,7 +48,7 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         return local::run(arguments, select);
     }
     let method = method(arguments)?;
-    let (polygons, mut creases) = load::with_creases(&arguments.mesh)?;
+    let (polygons, mut creases) = load::with_creases(&arguments.mesh, arguments.read)?;
     check_tags(arguments, &creases)?;
     if let Some(path) = &arguments.creases {
         let listed = read_creases(path, &polygons).map_err(Failure::usage)?;
@@ -62,8 +64,9 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     )?;
     forecast.check(arguments.force)?;
     // Open the output before the work, so that an unusable path gives an error at once.
-    let output = open_mesh(&arguments.output)?;
-    let limit = arguments.limit.as_deref().map(open_mesh).transpose()?;
+    let open = |path: &PathBuf| MeshOutput::open(path, arguments.write);
+    let output = open(&arguments.output)?;
+    let limit = arguments.limit.as_ref().map(open).transpose()?;
     let left = Output::open_if(arguments.creases_left.as_ref())?;
     text.print_line(&forecast.describe());
     let mut job = Job {
@@ -84,12 +87,12 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         Some(output) => Some((output, Limits::new(&subdivision, &step, arguments.levels)?)),
         None => None,
     };
-    write_mesh(output, &arguments.output, &step.polygons, &[])?;
+    output.write(&step.polygons, &WriteOptions::default())?;
     if let Some(left) = left {
         left.finish(|writer| write_creases(&step.creases, writer))?;
     }
     if let (Some((output, limits)), Some(path)) = (limits, &arguments.limit) {
-        limits.write(output, path)?;
+        limits.write(output)?;
         limits
             .describe(path)
             .iter()
@@ -231,7 +234,7 @@ impl Job<'_> {
                         "{threads} threads cannot be started ({error}): choose fewer --threads"
                     ))
                 })?;
-                pool.install(|| visit_refinable(backend, self))
+                pool.install(|| self.run_native(backend))
             }
             _ => visit(backend, self),
         };
@@ -246,16 +249,38 @@ impl Job<'_> {
         }
     }
 
+    /// Splits the tables of the structure called `backend`; `None` if it cannot, or does not exist.
+    fn run_native(&mut self, backend: &str) -> Option<Result<Step, SubdivisionError>> {
+        for_each_refinable!(M => {
+            if backend == M::NAME {
+                return Some(self.refine::<M>());
+            }
+        });
+        None
+    }
+
+    fn refine<M: Refine>(&mut self) -> Result<Step, SubdivisionError> {
+        let mut watch = Self::record_levels(&self.bar, &mut self.finished);
+        let Self {
+            polygons,
+            creases,
+            levels,
+            ..
+        } = *self;
+        subdivide_native_watched::<M>(&self.subdivision, polygons, creases, levels, &mut watch)
+    }
+
     fn record_levels<'b>(
         bar: &'b FaceBar,
         finished: &'b mut Vec<FinishedLevel>,
-    ) -> impl FnMut(u32, usize) + 'b {
+    ) -> impl FnMut(u32, usize) -> ControlFlow<()> + 'b {
         let mut start = Instant::now();
         move |level, faces| {
             let time = start.elapsed();
             bar.add_level(level, faces);
             finished.push(FinishedLevel { level, faces, time });
             start = Instant::now();
+            ControlFlow::Continue(())
         }
     }
 }
@@ -264,7 +289,7 @@ impl Visitor for Job<'_> {
     type Output = Result<Step, SubdivisionError>;
 
     fn visit<M: Representation + 'static>(&mut self) -> Self::Output {
-        let watch = Self::record_levels(&self.bar, &mut self.finished);
+        let mut watch = Self::record_levels(&self.bar, &mut self.finished);
         let Self {
             method,
             polygons,
@@ -272,21 +297,13 @@ impl Visitor for Job<'_> {
             levels,
             ..
         } = *self;
-        subdivide::<M>(&self.subdivision, method, polygons, creases, levels, watch)
-    }
-}
-
-impl RefineVisitor for Job<'_> {
-    type Output = Result<Step, SubdivisionError>;
-
-    fn visit<M: Refine + 'static>(&mut self) -> Self::Output {
-        let watch = Self::record_levels(&self.bar, &mut self.finished);
-        let Self {
+        subdivide_watched::<M>(
+            &self.subdivision,
+            method,
             polygons,
             creases,
             levels,
-            ..
-        } = *self;
-        subdivide_native::<M>(&self.subdivision, polygons, creases, levels, watch)
+            &mut watch,
+        )
     }
 }

@@ -18,7 +18,7 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     let mesh = arguments.mesh.as_deref();
     let mut session = Session::open(mesh, &arguments.files, Policy::Kept)?;
     let study_mesh = match mesh {
-        Some(path) => load::for_study(path, false, arguments.triangulate)?,
+        Some(path) => load::for_study(path, arguments.read, false, arguments.triangulate)?,
         None => load::built_in(),
     };
     let effort = (!arguments.counts_only).then(|| arguments.effort());

@@ -6,9 +6,7 @@
 //! ```
 
 use std::error::Error;
-use std::path::Path;
 
-use sixfold::io::read_obj;
 use sixfold::prelude::*;
 use sixfold::{Visitor, visit};
 
@@ -32,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let name = arguments.next().unwrap_or_else(|| "half-edge".into());
     let polygons = match arguments.next() {
-        Some(path) => read_obj(Path::new(&path))?.into_polygons().0,
+        Some(path) => sixfold::io::read(&path)?.into_polygons().0,
         None => sixfold::shapes::geodesic(8)?,
     };
     let mut task = MeanValence {

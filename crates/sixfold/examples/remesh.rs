@@ -7,7 +7,7 @@
 
 use std::error::Error;
 
-use sixfold::io::write_obj;
+use sixfold::io::{Format, WriteOptions, write_to};
 use sixfold::prelude::*;
 
 mod common;
@@ -82,6 +82,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
     }
     let (mesh, _) = mesh.into_parts();
-    write_obj(&mesh.to_polygons(), std::io::stdout().lock())?;
+    let out = std::io::stdout().lock();
+    write_to(
+        &mesh.to_polygons(),
+        Format::Obj,
+        &WriteOptions::default(),
+        out,
+    )?;
     Ok(())
 }

@@ -7,7 +7,7 @@
 
 use std::error::Error;
 
-use sixfold::io::write_obj;
+use sixfold::io::{Format, WriteOptions, write_to};
 use sixfold::prelude::*;
 use sixfold::subdivision::{Scheme, Step, Subdivision, renumbered};
 use sixfold::{CreaseError, Creases};
@@ -69,6 +69,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let sharp = step.creases.edges().len();
         eprintln!("level {level}: {faces} faces, {sharp} sharp edges");
     })?;
-    write_obj(&smooth, std::io::stdout().lock())?;
+    let out = std::io::stdout().lock();
+    write_to(&smooth, Format::Obj, &WriteOptions::default(), out)?;
     Ok(())
 }

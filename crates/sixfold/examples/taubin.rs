@@ -9,7 +9,7 @@
 use std::error::Error;
 
 use sixfold::MoveError;
-use sixfold::io::write_obj;
+use sixfold::io::{Format, WriteOptions, write_to};
 use sixfold::prelude::*;
 
 mod common;
@@ -52,6 +52,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let polygons = common::mesh_argument(sixfold::shapes::torus(40, 20)?)?;
     let mut mesh = FaceVertexMesh::from_polygons(&polygons)?;
     smooth(&mut mesh, 10)?;
-    write_obj(&mesh.to_polygons(), std::io::stdout().lock())?;
+    let out = std::io::stdout().lock();
+    write_to(
+        &mesh.to_polygons(),
+        Format::Obj,
+        &WriteOptions::default(),
+        out,
+    )?;
     Ok(())
 }

@@ -6,7 +6,7 @@
 //!
 //! | task | start at |
 //! |---|---|
-//! | [load a mesh](#load-a-mesh) | [`io::read_obj`], [`PolygonMesh::new`], [`shapes`] |
+//! | [load a mesh](#load-a-mesh) | [`io::read`], [`PolygonMesh::new`], [`shapes`] |
 //! | [walk around a vertex](#walk-around-a-vertex) | [`MeshQuery::vertex_vertices`], [`MeshQuery::one_ring`] |
 //! | [flip an edge](#flip-an-edge) | [`MeshEdit::flip_edge`] |
 //! | [subdivide](#subdivide) | [`subdivision::subdivide_native`], [`subdivision::Scheme`] |
@@ -27,7 +27,7 @@
 //! ```no_run
 //! use sixfold::{HalfEdgeMesh, io};
 //!
-//! let (polygons, left_out) = io::read_obj("bunny.obj")?.into_polygons();
+//! let (polygons, left_out) = io::read("bunny.ply")?.into_polygons();
 //! println!("{polygons}; {} faces left out", left_out.len());
 //! let mesh = HalfEdgeMesh::try_from(&polygons)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -53,15 +53,16 @@
 //! ```
 //! use sixfold::prelude::*;
 //!
-//! /// Returns the mean of the vertices adjacent to `v`, on any structure.
-//! fn mean_of_neighbours<M: MeshQuery>(mesh: &M, v: M::Vertex) -> Point {
-//!     let sum: Point = mesh.vertex_vertices(v).map(|w| mesh.position(w)).sum();
-//!     sum / mesh.valence(v) as f32
+//! /// Returns the mean of the vertices adjacent to `v`, on any structure; `None` if `v` is isolated.
+//! fn mean_of_neighbours<M: MeshQuery>(mesh: &M, v: M::Vertex) -> Option<Point> {
+//!     let neighbours = mesh.vertex_vertices(v).map(|w| mesh.position(w));
+//!     let (sum, count) = neighbours.fold((Point::ZERO, 0.0), |(sum, n), p| (sum + p, n + 1.0));
+//!     (count > 0.0).then(|| sum / count)
 //! }
 //!
 //! let mesh = HalfEdgeMesh::from_polygons(&sixfold::shapes::octahedron())?;
 //! let v = VertexId::new(0);
-//! assert!(mean_of_neighbours(&mesh, v).length() < 1e-6);
+//! assert_eq!(mean_of_neighbours(&mesh, v), Some(Point::ZERO));
 //! let ring = mesh.one_ring(v).expect("a manifold vertex"); // the same vertices, in order
 //! assert_eq!(ring.count(), 4);
 //! # Ok::<(), BuildError>(())
@@ -85,6 +86,39 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Keep data through edits
+//!
+//! [`MeshWithData`] updates data of vertices, edges or faces after each edit. For programs that update
+//! their data themselves, each edit has a second form that writes its changes to a log (for example
+//! [`bisect_edge_logged`](MeshEdit::bisect_edge_logged)):
+//!
+//! ```
+//! use sixfold::prelude::*;
+//! use sixfold::shapes;
+//!
+//! let mesh = EditableHalfEdgeMesh::from_polygons(&shapes::icosahedron())?;
+//! let materials = FaceData::new(&mesh, 7_u32).with_rule(|materials, new| {
+//!     new.parents.first().map_or(0, |&f| materials[f]) // new faces: that of a face that was cut
+//! });
+//! let mut mesh = MeshWithData::new(mesh, materials);
+//!
+//! let edge = mesh.edges().next().expect("thirty of them");
+//! let middle = mesh.bisect_edge(edge, Point::ZERO)?;
+//! assert_eq!(mesh.face_count(), 22);
+//! assert!(mesh.faces().all(|f| mesh.data()[f] == 7));
+//!
+//! let spoke = mesh.vertex_edges(middle).next().expect("four of them");
+//! let [a, b] = mesh.edge_vertices(spoke);
+//! let keep = if a == middle { b } else { a };
+//! mesh.collapse_edge(spoke, keep, mesh.position(keep))?;
+//! assert!(!mesh.contains_edge(spoke));
+//!
+//! let (mesh, _materials) = mesh.into_parts();
+//! let mesh: HalfEdgeMesh = mesh.into_compact(); // its queries need no check for deleted rows
+//! assert_eq!(mesh.face_count(), 20);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # Subdivide
 //!
 //! ```
@@ -93,9 +127,29 @@
 //!
 //! let scheme = Subdivision::new(Scheme::CatmullClark);
 //! let smooth = Creases::default();
-//! let fine = subdivide_native::<HalfEdgeMesh>(&scheme, &shapes::cube(), &smooth, 3, |_, _| ())?;
+//! let fine = subdivide_native::<HalfEdgeMesh>(&scheme, &shapes::cube(), &smooth, 3)?;
 //! assert_eq!(fine.polygons.face_count(), 6 * 64);
 //! # Ok::<(), sixfold::subdivision::SubdivisionError>(())
+//! ```
+//!
+//! Each call of `refine_into` makes one level in the structure's own tables, and reuses the memory of
+//! the arguments `numbers` and `fine`:
+//!
+//! ```
+//! use sixfold::subdivision::{Scheme, Subdivision};
+//! use sixfold::{Creases, HalfEdgeMesh, MeshQuery, Refine, Representation, shapes};
+//!
+//! let polygons = shapes::cube();
+//! let rim = Creases::new(&polygons, [([0, 1], 2.5), ([1, 2], f32::INFINITY)], [])?;
+//! let scheme = Subdivision::new(Scheme::CatmullClark);
+//!
+//! let cage = HalfEdgeMesh::from_polygons(&polygons)?;
+//! let creases = scheme.control_creases(&cage, &polygons, &rim)?;
+//! let (mut numbers, mut fine) = (Default::default(), HalfEdgeMesh::empty());
+//! let left = scheme.refine_into(&cage, &creases, 0, &mut numbers, &mut fine)?;
+//! assert_eq!(fine.face_count(), 24);
+//! assert_eq!(left.edges().len(), 4);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # Choose a structure
@@ -188,8 +242,8 @@
 // Traits for queries, walks, edits and refinement; capabilities and costs of a structure.
 #[doc(inline)]
 pub use sixfold_core::{
-    Capabilities, Edit, LocalQueries, MeshEdit, MeshQuery, OrientedWalk, QueryCost, Refine,
-    Relation, Representation, Split,
+    Capabilities, Compact, Edit, Editable, LocalQueries, MeshEdit, MeshMove, MeshQuery,
+    OrientedWalk, QueryCost, Refine, Relation, Representation, Split,
 };
 // Meshes as lists of faces; their topology, creases, sizes and memory.
 #[doc(inline)]
@@ -249,10 +303,7 @@ pub use sixfold_subdivision as subdivision;
 mod structure_list;
 mod support;
 
-pub use structure_list::{
-    EditVisitor, RefineVisitor, StructureInfo, Visitor, structure_infos, visit, visit_all,
-    visit_editable, visit_refinable,
-};
+pub use structure_list::{StructureInfo, Visitor, structure_infos, visit};
 pub use support::{Support, support};
 
 /// The usual imports of a program: the six structures, and the traits for queries, edits and

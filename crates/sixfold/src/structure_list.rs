@@ -107,32 +107,16 @@ macro_rules! for_each_walkable {
 
 /// A generic function that is called with a structure selected at run time.
 ///
-/// The structure is selected once per call. The code of the function uses static dispatch.
+/// The structure is selected once per call. The code of the function uses static dispatch. For
+/// structures that can be edited or refined, compare the name with `M::NAME` in
+/// [`for_each_editable!`](crate::for_each_editable) or
+/// [`for_each_refinable!`](crate::for_each_refinable).
 pub trait Visitor {
     /// The type that `visit` returns.
     type Output;
 
     /// Calls the function for the structure `M`.
     fn visit<M: Representation + 'static>(&mut self) -> Self::Output;
-}
-
-/// A generic function that is called with an editable structure selected at run time.
-pub trait EditVisitor {
-    /// The type that `visit` returns.
-    type Output;
-
-    /// Calls the function for the structure `M`.
-    fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> Self::Output;
-}
-
-/// A generic function that is called with a refinable structure selected at run time. A refinable
-/// structure can split all faces in its own tables ([`Refine`]).
-pub trait RefineVisitor {
-    /// The type that `visit` returns.
-    type Output;
-
-    /// Calls the function for the structure `M`.
-    fn visit<M: Refine + 'static>(&mut self) -> Self::Output;
 }
 
 /// Properties of one structure that do not depend on a mesh.
@@ -211,38 +195,9 @@ pub fn structure_infos() -> Vec<StructureInfo> {
     structures!([infos])
 }
 
-/// Calls `visitor` for every structure, in the order of [`structure_infos`].
-pub fn visit_all<V: Visitor>(visitor: &mut V) -> Vec<V::Output> {
-    let mut outputs = Vec::new();
-    for_each_representation!(M => { outputs.push(visitor.visit::<M>()); });
-    outputs
-}
-
 /// Calls `visitor` for the structure called `name`. Returns `None` if there is no such structure.
 pub fn visit<V: Visitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
     for_each_representation!(M => {
-        if name == M::NAME {
-            return Some(visitor.visit::<M>());
-        }
-    });
-    None
-}
-
-/// Calls `visitor` for the structure called `name`. Returns `None` if there is no such structure,
-/// or if the structure cannot split its own tables.
-pub fn visit_refinable<V: RefineVisitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
-    for_each_refinable!(M => {
-        if name == M::NAME {
-            return Some(visitor.visit::<M>());
-        }
-    });
-    None
-}
-
-/// Calls `visitor` for the structure called `name`. Returns `None` if there is no such structure,
-/// or if the structure cannot be edited.
-pub fn visit_editable<V: EditVisitor>(name: &str, visitor: &mut V) -> Option<V::Output> {
-    for_each_editable!(M => {
         if name == M::NAME {
             return Some(visitor.visit::<M>());
         }
@@ -264,34 +219,20 @@ mod tests {
         }
     }
 
-    impl EditVisitor for Name {
-        type Output = &'static str;
-
-        fn visit<M: Representation + MeshEdit + 'static>(&mut self) -> &'static str {
-            M::NAME
-        }
-    }
-
-    impl RefineVisitor for Name {
-        type Output = &'static str;
-
-        fn visit<M: Refine + 'static>(&mut self) -> &'static str {
-            M::NAME
-        }
-    }
-
     #[test]
     fn every_structure_is_found_by_its_name() {
         let infos = structure_infos();
         let names: Vec<_> = infos.iter().map(|info| info.name).collect();
-        assert_eq!(visit_all(&mut Name), names);
+        let (mut all, mut editable, mut refinable) = (Vec::new(), Vec::new(), Vec::new());
+        for_each_representation!(M => { all.push(M::NAME); });
+        for_each_editable!(M => { editable.push(M::NAME); });
+        for_each_refinable!(M => { refinable.push(M::NAME); });
+        assert_eq!(all, names);
         for info in infos {
             let name = info.name;
             assert_eq!(visit(name, &mut Name), Some(name));
-            let edits = visit_editable(name, &mut Name);
-            assert_eq!(edits, info.is_editable().then_some(name), "{name}");
-            let refines = visit_refinable(name, &mut Name);
-            assert_eq!(refines, (!info.splits.is_empty()).then_some(name), "{name}");
+            assert_eq!(editable.contains(&name), info.is_editable(), "{name}");
+            assert_eq!(refinable.contains(&name), !info.splits.is_empty(), "{name}");
         }
         assert_eq!(visit("abacus", &mut Name), None);
     }

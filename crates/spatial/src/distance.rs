@@ -8,32 +8,13 @@ use sixfold_core::{MAX_ROWS, PolygonMesh, for_each_chunk};
 use crate::error::DistanceError;
 use crate::index::SpatialIndex;
 use crate::item::{FaceTriangle, polygon_triangles};
-use crate::sampling::AreaSamples;
+use crate::sampling::{AreaSamples, Sampling};
 use crate::surface_queries::{SearchHint, SurfaceQueries};
 use crate::tree::Bvh;
 
 /// Queries of one block. Each block has its own random numbers, so the result does not depend on the
 /// number of threads.
 const BLOCK: usize = 4096;
-
-/// How a surface is sampled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sampling {
-    /// The number of sample points on each surface.
-    pub samples: usize,
-    /// The start of the random numbers. The same seed gives the same samples on every machine.
-    pub seed: u64,
-}
-
-/// 100,000 samples, seed 0.
-impl Default for Sampling {
-    fn default() -> Self {
-        Self {
-            samples: 100_000,
-            seed: 0,
-        }
-    }
-}
 
 /// The distances from the points of one surface to another surface, in the unit of the coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]

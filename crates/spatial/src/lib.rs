@@ -76,7 +76,7 @@ mod tree;
 mod triangle;
 
 pub use bounds::Bounds;
-pub use distance::{MeshDistance, OneSidedDistance, Sampling, mesh_distance, one_sided_distance};
+pub use distance::{MeshDistance, OneSidedDistance, mesh_distance, one_sided_distance};
 pub use error::{DistanceError, SpatialError};
 pub use grid::UniformGrid;
 pub use index::{ItemList, SpatialIndex};
@@ -86,6 +86,7 @@ pub use item::{
 };
 pub use point_queries::{Neighbour, PointQueries};
 pub use ray::Ray;
+pub use sampling::Sampling;
 pub use surface_queries::{RayHit, SearchHint, SurfacePoint, SurfaceQueries};
 pub use tree::{Bvh, KdTree, Octree, SplitByArea, SplitByMedian, SplitByOctants, SplitRule, Tree};
 pub use triangle::closest_point_on_triangle;

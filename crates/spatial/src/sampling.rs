@@ -6,8 +6,26 @@ use glam::DVec3;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::distance::Sampling;
 use crate::item::FaceTriangle;
+
+/// How a surface is sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sampling {
+    /// The number of sample points on each surface.
+    pub samples: usize,
+    /// The start of the random numbers. The same seed gives the same samples on every machine.
+    pub seed: u64,
+}
+
+/// 100,000 samples, seed 0.
+impl Default for Sampling {
+    fn default() -> Self {
+        Self {
+            samples: 100_000,
+            seed: 0,
+        }
+    }
+}
 
 /// Points on triangles, in the order of the triangles, in proportion to their areas.
 ///

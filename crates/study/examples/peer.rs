@@ -16,7 +16,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use serde_json::json;
-use sixfold::io::read_obj;
+use sixfold::io;
 use sixfold::subdivision::{BoundaryRule, Scheme};
 use sixfold::{Creases, PolygonMesh};
 use sixfold_study::{
@@ -92,7 +92,7 @@ fn find(backend: &str) -> Result<Backend, String> {
 
 fn run(arguments: &Arguments) -> Result<(), String> {
     let path = Path::new(&arguments.mesh);
-    let (polygons, _) = read_obj(path).map_err(|e| e.to_string())?.into_polygons();
+    let (polygons, _) = io::read(path).map_err(|e| e.to_string())?.into_polygons();
     let mesh = path.file_stem().unwrap_or_default().to_string_lossy();
     let peer = format!("sixfold {}", arguments.backend);
     let _heap = HeapGuard::acquire(Policy::Kept).map_err(|e| e.to_string())?;

@@ -27,7 +27,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 use sixfold::PolygonMesh;
-use sixfold::io::write_obj;
+use sixfold::io::{Format, WriteOptions, write_to};
 use sixfold_core::Counts;
 use tempfile::TempDir;
 
@@ -136,7 +136,8 @@ impl MeshFile {
     pub(crate) fn write(polygons: &PolygonMesh) -> io::Result<Self> {
         let folder = tempfile::tempdir()?;
         let file = Self { folder };
-        write_obj(polygons, io::BufWriter::new(File::create(file.path())?))?;
+        let out = File::create(file.path())?;
+        write_to(polygons, Format::Obj, &WriteOptions::default(), out)?;
         Ok(file)
     }
 

@@ -50,10 +50,9 @@ mod tests {
         let corners = [Point::ZERO, Point::X, Point::new(1.0, 1.0, 1.0), Point::Y];
         let square = PolygonMesh::new(corners, [[0, 1, 2, 3]]).expect("a quad");
         let (scheme, none) = (Subdivision::new(Scheme::Bilinear), Creases::default());
-        let steps = [Method::Gather, Method::Scatter].map(|method| {
-            subdivide::<IndexedFaceSet>(&scheme, method, &square, &none, 1, |_, _| ())
-        });
-        let native = subdivide_native::<HalfEdgeMesh>(&scheme, &square, &none, 1, |_, _| ());
+        let steps = [Method::Gather, Method::Scatter]
+            .map(|method| subdivide::<IndexedFaceSet>(&scheme, method, &square, &none, 1));
+        let native = subdivide_native::<HalfEdgeMesh>(&scheme, &square, &none, 1);
         for step in steps.into_iter().chain([native]) {
             let mesh = step.expect("a quad").polygons;
             let points = mesh.positions();

@@ -79,10 +79,10 @@ mod tests {
         let scheme = Subdivision::new(Scheme::CatmullClark);
         let none = Creases::default();
         let steps = [Method::Gather, Method::Scatter].map(|method| {
-            let step = subdivide::<IndexedFaceSet>(&scheme, method, &cube(), &none, 1, |_, _| ());
+            let step = subdivide::<IndexedFaceSet>(&scheme, method, &cube(), &none, 1);
             step.expect("a cube")
         });
-        let native = subdivide_native::<HalfEdgeMesh>(&scheme, &cube(), &none, 1, |_, _| ());
+        let native = subdivide_native::<HalfEdgeMesh>(&scheme, &cube(), &none, 1);
         for step in steps.into_iter().chain(native) {
             let points = step.polygons.positions();
             let near = |a: Point, b: Point| a.distance(b) < 1e-6;
@@ -129,11 +129,10 @@ mod tests {
                 ..Subdivision::new(Scheme::CatmullClark)
             };
             let steps = [Method::Gather, Method::Scatter].map(|method| {
-                let step =
-                    subdivide::<IndexedFaceSet>(&scheme, method, &grid, &creases, 1, |_, _| ());
+                let step = subdivide::<IndexedFaceSet>(&scheme, method, &grid, &creases, 1);
                 step.expect("quads")
             });
-            let native = subdivide_native::<HalfEdgeMesh>(&scheme, &grid, &creases, 1, |_, _| ());
+            let native = subdivide_native::<HalfEdgeMesh>(&scheme, &grid, &creases, 1);
             for step in steps.into_iter().chain(native) {
                 let points = step.polygons.positions();
                 assert_near(points[0], corner);

@@ -214,8 +214,7 @@ mod tests {
         let out = scheme.left_out(&mesh, &creases).expect("boundary none");
         let faces = mesh.faces().iter().map(|(f, _): (FaceId, _)| f.index());
         let kept: Vec<usize> = faces.filter(|&f| !out[f]).collect();
-        let step =
-            subdivide::<IndexedFaceSet>(&scheme, Method::Gather, &mesh, &creases, 1, |_, _| ());
+        let step = subdivide::<IndexedFaceSet>(&scheme, Method::Gather, &mesh, &creases, 1);
         (kept, step.expect("quads").polygons.face_count())
     }
 

@@ -218,7 +218,7 @@ mod tests {
     fn step_of<M: Representation>(method: Method, polygons: &PolygonMesh) -> PolygonMesh {
         let scheme = Subdivision::new(Scheme::DooSabin);
         let none = Creases::default();
-        let step = subdivide::<M>(&scheme, method, polygons, &none, 1, |_, _| ());
+        let step = subdivide::<M>(&scheme, method, polygons, &none, 1);
         step.expect("a manifold").polygons
     }
 

@@ -54,6 +54,9 @@ pub enum SubdivisionError {
     /// There are more elements than 32-bit handles can number.
     #[error(transparent)]
     Polygons(#[from] PolygonError),
+    /// The caller stopped the subdivision after this level.
+    #[error("stopped after level {level}")]
+    Stopped { level: u32 },
     /// The structure cannot hold the mesh of this level (level 0 is the input mesh).
     #[error("{structure} cannot hold level {level}: {refusal}")]
     Build {
@@ -114,6 +117,9 @@ pub enum LocalError {
     /// There are more elements than 32-bit handles can number.
     #[error(transparent)]
     Polygons(#[from] PolygonError),
+    /// The caller stopped the subdivision after this level.
+    #[error("stopped after level {level}")]
+    Stopped { level: u32 },
     /// The structure cannot hold the mesh of this level (level 0 is the input mesh).
     #[error("{structure} cannot hold level {level}: {refusal}")]
     Build {

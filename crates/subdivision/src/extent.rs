@@ -138,14 +138,8 @@ mod tests {
             extent = subdivision.refined_extent(&extent, level);
             let none = Creases::default();
             let levels = level + 1;
-            let step = subdivide::<IndexedFaceSet>(
-                &subdivision,
-                Method::Gather,
-                polygons,
-                &none,
-                levels,
-                |_, _| (),
-            );
+            let step =
+                subdivide::<IndexedFaceSet>(&subdivision, Method::Gather, polygons, &none, levels);
             let mut got = Extent::from_polygons(&step.expect("a manifold").polygons);
             got.counts.uniform = extent.counts.uniform;
             assert_eq!(got, extent, "{scheme}, level {levels}");

@@ -1,5 +1,7 @@
 //! Runs several subdivision steps. The input and the result are polygon meshes.
 
+use std::ops::ControlFlow;
+
 use sixfold_core::{Creases, FaceId, FaceList, PolygonMesh, Refine, Representation, VertexId};
 
 use crate::control::renumbered;
@@ -8,9 +10,7 @@ use crate::scheme::Method;
 use crate::step::Step;
 use crate::subdivision::Subdivision;
 
-/// Runs `levels` steps of a scheme. A structure of type `M` is built for each step. After each
-/// step, calls `watch` with the level and the number of faces of the refined mesh; the level after
-/// the first step is 1. The faces that the boundary rule [`BoundaryRule::None`](crate::BoundaryRule::None)
+/// Runs `levels` steps of a scheme. A structure of type `M` is built for each step. The faces that the boundary rule [`BoundaryRule::None`](crate::BoundaryRule::None)
 /// removes are removed after the last step. If `levels` is 0, returns the input mesh.
 ///
 /// # Errors
@@ -23,7 +23,25 @@ pub fn subdivide<M: Representation>(
     polygons: &PolygonMesh,
     creases: &Creases,
     levels: u32,
-    mut watch: impl FnMut(u32, usize),
+) -> Result<Step, SubdivisionError> {
+    let mut go_on = |_, _| ControlFlow::Continue(());
+    subdivide_watched::<M>(subdivision, method, polygons, creases, levels, &mut go_on)
+}
+
+/// Subdivides like [`subdivide`]. After each step, calls `watch` with the level and the number of
+/// faces of the refined mesh; the level after the first step is 1.
+///
+/// # Errors
+///
+/// Fails like [`subdivide`]. Returns [`SubdivisionError::Stopped`] if `watch` returns
+/// `ControlFlow::Break`.
+pub fn subdivide_watched<M: Representation>(
+    subdivision: &Subdivision,
+    method: Method,
+    polygons: &PolygonMesh,
+    creases: &Creases,
+    levels: u32,
+    watch: &mut dyn FnMut(u32, usize) -> ControlFlow<()>,
 ) -> Result<Step, SubdivisionError> {
     let mut step = Step {
         polygons: polygons.clone(),
@@ -54,7 +72,7 @@ pub fn subdivide<M: Representation>(
                 .collect()
         });
         step = next;
-        watch(level + 1, step.polygons.face_count());
+        report_level(watch, level + 1, step.polygons.face_count())?;
     }
     Ok(without_faces(step, left_out))
 }
@@ -62,7 +80,7 @@ pub fn subdivide<M: Representation>(
 /// Builds a structure of type `M` once, and runs `levels` steps that split the tables of the
 /// structure. With the feature `rayon`, steps use the threads of the current rayon pool. The result
 /// equals the result of [`subdivide`], but faces and edge points are in the order of the tables of
-/// the structure. `watch` is called as in [`subdivide`].
+/// the structure.
 ///
 /// # Errors
 ///
@@ -76,7 +94,23 @@ pub fn subdivide_native<M: Refine>(
     polygons: &PolygonMesh,
     creases: &Creases,
     levels: u32,
-    mut watch: impl FnMut(u32, usize),
+) -> Result<Step, SubdivisionError> {
+    let mut go_on = |_, _| ControlFlow::Continue(());
+    subdivide_native_watched::<M>(subdivision, polygons, creases, levels, &mut go_on)
+}
+
+/// Subdivides like [`subdivide_native`], and calls `watch` like [`subdivide_watched`].
+///
+/// # Errors
+///
+/// Fails like [`subdivide_native`]. Returns [`SubdivisionError::Stopped`] if `watch` returns
+/// `ControlFlow::Break`.
+pub fn subdivide_native_watched<M: Refine>(
+    subdivision: &Subdivision,
+    polygons: &PolygonMesh,
+    creases: &Creases,
+    levels: u32,
+    watch: &mut dyn FnMut(u32, usize) -> ControlFlow<()>,
 ) -> Result<Step, SubdivisionError> {
     if levels == 0 {
         return Ok(Step {
@@ -98,10 +132,21 @@ pub fn subdivide_native<M: Refine>(
                 parents.map(|f| left_out[f.index()]).collect()
             });
         mesh = child;
-        watch(level + 1, mesh.face_count());
+        report_level(watch, level + 1, mesh.face_count())?;
     }
     let polygons = mesh.to_polygons();
     Ok(without_faces(Step { polygons, creases }, left_out))
+}
+
+fn report_level(
+    watch: &mut dyn FnMut(u32, usize) -> ControlFlow<()>,
+    level: u32,
+    faces: usize,
+) -> Result<(), SubdivisionError> {
+    match watch(level, faces) {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(SubdivisionError::Stopped { level }),
+    }
 }
 
 /// Builds a structure of type `M` from the polygons of a level.
@@ -165,4 +210,47 @@ fn without_faces(step: Step, left_out: Option<Vec<bool>>) -> Step {
     let creases = Creases::from_entries(edges.collect(), corners.collect());
     let polygons = PolygonMesh::from_faces(positions, kept).expect("faces of a mesh");
     Step { polygons, creases }
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold_half_edge::HalfEdgeMesh;
+
+    use super::*;
+    use crate::scheme::Scheme;
+
+    #[test]
+    fn a_watch_sees_every_level_and_can_stop() {
+        let (cube, none) = (sixfold_shapes::cube(), Creases::default());
+        let scheme = Subdivision::new(Scheme::CatmullClark);
+        for last in 1..=3 {
+            for native in [false, true] {
+                let mut seen = Vec::new();
+                let mut watch = |level, faces| {
+                    seen.push((level, faces));
+                    match level < last {
+                        true => ControlFlow::Continue(()),
+                        false => ControlFlow::Break(()),
+                    }
+                };
+                let stopped = match native {
+                    true => subdivide_native_watched::<HalfEdgeMesh>(
+                        &scheme, &cube, &none, 4, &mut watch,
+                    ),
+                    false => subdivide_watched::<HalfEdgeMesh>(
+                        &scheme,
+                        Method::Gather,
+                        &cube,
+                        &none,
+                        4,
+                        &mut watch,
+                    ),
+                };
+                let error = stopped.expect_err("the watch stops it");
+                assert_eq!(error, SubdivisionError::Stopped { level: last });
+                let expected = [(1, 24), (2, 96), (3, 384)];
+                assert_eq!(seen, expected[..last as usize]);
+            }
+        }
+    }
 }

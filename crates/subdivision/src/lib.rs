@@ -52,7 +52,9 @@ pub use control::renumbered;
 pub use curve::{Ends, chaikin, cubic_b_spline, cubic_b_spline_at};
 pub use error::{CurveError, LocalError, SubdivisionError};
 pub use extent::Extent;
-pub use levels::{build_level, subdivide, subdivide_native};
+pub use levels::{
+    build_level, subdivide, subdivide_native, subdivide_native_watched, subdivide_watched,
+};
 pub use limit::{LimitNormal, LimitPoint, NoLimit};
 pub use local::{LocalMesh, refine_locally};
 pub use options::{BoundaryRule, Creasing, LoopWeights};

@@ -114,7 +114,7 @@ mod tests {
         };
         let none = Creases::default();
         [Method::Gather, Method::Scatter].map(|method| {
-            let step = subdivide::<IndexedFaceSet>(&scheme, method, polygons, &none, 1, |_, _| ());
+            let step = subdivide::<IndexedFaceSet>(&scheme, method, polygons, &none, 1);
             step.expect("triangles").polygons.positions().to_vec()
         })
     }

@@ -257,14 +257,7 @@ mod tests {
     fn steps(polygons: &PolygonMesh, levels: u32) -> PolygonMesh {
         let scheme = Subdivision::new(Scheme::Sqrt3);
         let none = Creases::default();
-        let done = subdivide::<IndexedFaceSet>(
-            &scheme,
-            Method::Gather,
-            polygons,
-            &none,
-            levels,
-            |_, _| (),
-        );
+        let done = subdivide::<IndexedFaceSet>(&scheme, Method::Gather, polygons, &none, levels);
         done.expect("triangles").polygons
     }
 

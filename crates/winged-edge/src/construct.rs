@@ -1,10 +1,10 @@
 //! Building from polygons, and conversion to polygons.
 
 use sixfold_core::{
-    BuildError, Counts, EDGE_HOLES, EdgeId, Editing, FACE_HOLES, FaceId, FaceList, HoleSet,
-    InvariantError, LinkFaces, Measured, MemoryFootprint, MeshQuery, MoveError, NewRows, Point,
-    PolygonMesh, Probe, QueryCost, Representation, RowMap, Slot, Table, TwinPairs, Untraced,
-    VERTEX_HOLES, VertexId, row,
+    BuildError, Counts, EDGE_HOLES, EdgeId, EditLog, Editing, FACE_HOLES, FaceId, FaceList,
+    HoleSet, InvariantError, LinkFaces, Measured, MemoryFootprint, MeshMove, MeshQuery, MoveError,
+    NewRows, Point, PolygonMesh, Probe, QueryCost, Representation, RowMap, Slot, Table, TwinPairs,
+    Untraced, VERTEX_HOLES, VertexId, row,
 };
 
 use crate::edge::{Edge, Run};
@@ -58,10 +58,6 @@ impl<E: Editing> Representation for WingedEdgeMesh<E> {
         f
     }
 
-    fn set_positions(&mut self, positions: &RowMap<VertexId, Point>) -> Result<(), MoveError> {
-        self.positions.set_positions(positions)
-    }
-
     fn memory(&self) -> MemoryFootprint {
         let Self {
             positions,
@@ -86,6 +82,16 @@ impl<E: Editing> Representation for WingedEdgeMesh<E> {
 
     fn validate(&self) -> Result<(), InvariantError> {
         crate::validate::validate(self)
+    }
+}
+
+impl<E: Editing> MeshMove for WingedEdgeMesh<E> {
+    fn set_positions_logged(
+        &mut self,
+        positions: &RowMap<VertexId, Point>,
+        _: &mut impl EditLog<Self>,
+    ) -> Result<(), MoveError> {
+        self.positions.set_positions(positions)
     }
 }
 

@@ -232,8 +232,9 @@ pub fn timed(clock: &dyn Clock, work: impl FnOnce()) -> Time {
 ))]
 #[inline]
 fn thread_cpu_ns() -> Option<f64> {
-    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
-    Some(time.tv_sec as f64 * 1e9 + time.tv_nsec as f64)
+    use nix::time::{ClockId, clock_gettime};
+    let time = clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID).ok()?;
+    Some(time.tv_sec() as f64 * 1e9 + time.tv_nsec() as f64)
 }
 
 #[cfg(not(any(

@@ -5,7 +5,8 @@
 //! repaired mesh must be one that the structure holds.
 
 use sixfold::io::{
-    FileMesh, Format, MeshWriter, ReadOptions, Welding, parse_creases, read_from, write_creases,
+    FileMesh, Format, ReadOptions, Welding, WriteOptions, losses, parse_creases, read_from, write_creases,
+    write_to,
 };
 use sixfold::repair::{Step, diagnose, repair, repair_for};
 use sixfold::{PolygonMesh, shapes, structure_infos};
@@ -46,16 +47,16 @@ fn check_mesh(mesh: FileMesh) {
 
 /// Writes and reads a mesh, and compares what the writer did not report as lost.
 fn round_trip(polygons: &PolygonMesh, format: Format) {
-    let writer = MeshWriter::new(polygons);
+    let options = WriteOptions::default();
     let mut bytes = Vec::new();
-    if writer.write(format, &mut bytes).is_err() {
+    if write_to(polygons, format, &options, &mut bytes).is_err() {
         return;
     }
-    let options = ReadOptions::default().with_welding(Welding::Nothing);
+    let as_stored = ReadOptions::default().with_welding(Welding::Nothing);
     let name = format!("a.{}", format.extension());
     let back =
-        read_from(&name, bytes.as_slice(), &options).unwrap_or_else(|error| panic!("{error}"));
-    if writer.losses(format).is_empty() {
+        read_from(&name, bytes.as_slice(), &as_stored).unwrap_or_else(|error| panic!("{error}"));
+    if losses(polygons, format, &options).is_empty() {
         let back = back.into_polygons().0;
         assert_eq!(back.faces(), polygons.faces(), "{format}");
         assert!(back.positions() == polygons.positions(), "{format}");

@@ -1,7 +1,8 @@
 //! Laws about construction, export, moved vertices, validation and probes.
 
 use sixfold_core::{
-    FaceId, Measured, MeshQuery, Point, PolygonMesh, Relation, Representation, Traced, VertexId,
+    EdgeMap, EditRecord, FaceId, Measured, MeshQuery, Point, PolygonMesh, Relation, Representation,
+    Traced, VertexId, VertexMap,
 };
 
 use super::relations::{check_relation, is_rotation};
@@ -48,7 +49,8 @@ pub fn round_trip<M: Representation>(polygons: &PolygonMesh) {
 /// `set_positions` moves every vertex, and does not change the connectivity or the answer of a
 /// query.
 ///
-/// If vertices are identified by their coordinates, vertices with equal new positions are merged.
+/// If vertices are identified by their coordinates, vertices with equal new positions are merged. A
+/// log receives the new handles, so that maps keep the values of all elements that remain.
 pub fn set_positions<M: Representation>(polygons: &PolygonMesh) {
     let Some(mut subject) = Subject::<M>::from_polygons(polygons) else {
         return;
@@ -77,9 +79,12 @@ fn move_and_check<M: Representation>(subject: Subject<M>, places: Vec<Point>) ->
     for (v, &position) in input.vertices().zip(&places) {
         positions[handles.vertex(v)] = position;
     }
-    if let Err(refusal) = mesh.set_positions(&positions) {
+    let numbers = Numbered::new(&mesh);
+    let mut record = EditRecord::new();
+    if let Err(refusal) = mesh.set_positions_logged(&positions, &mut record) {
         panic!("{}: set_positions: {refusal}", M::NAME);
     }
+    numbers.check_after(&mesh, &record);
     let faces = input.faces().clone();
     let input = PolygonMesh::from_faces(places, faces).expect("the faces are those of a mesh");
     assert_same::<M>(
@@ -100,6 +105,64 @@ fn move_and_check<M: Representation>(subject: Subject<M>, places: Vec<Point>) ->
     check_relations(&subject);
     check_invariants(&subject.mesh);
     subject
+}
+
+/// The place of each vertex and each edge in the order of the mesh.
+struct Numbered<M: MeshQuery> {
+    vertices: VertexMap<M, usize>,
+    edges: EdgeMap<M, usize>,
+    counts: [usize; 2],
+}
+
+impl<M: Representation> Numbered<M> {
+    fn new(mesh: &M) -> Self {
+        let mut numbers = Self {
+            vertices: mesh.vertex_map(usize::MAX),
+            edges: mesh.edge_map(usize::MAX),
+            counts: [mesh.vertex_count(), mesh.edge_count()],
+        };
+        for (i, v) in mesh.vertices().enumerate() {
+            numbers.vertices[v] = i;
+        }
+        for (i, e) in mesh.edges().enumerate() {
+            numbers.edges[e] = i;
+        }
+        numbers
+    }
+
+    /// Checks that the elements of `mesh` after a move have the numbers of the first elements that
+    /// became them, and that `record` has no other changes.
+    fn check_after(mut self, mesh: &M, record: &EditRecord<M>) {
+        record.vertices.apply_to(&mut self.vertices, &usize::MAX);
+        record.edges.apply_to(&mut self.edges, &usize::MAX);
+        let vertices = mesh.vertices().map(|v| self.vertices[v]).collect();
+        let edges = mesh.edges().map(|e| self.edges[e]).collect();
+        let removed = [record.vertices.removed.len(), record.edges.removed.len()];
+        let kinds = [("vertices", vertices), ("edges", edges)];
+        for ((kind, numbers), (count, removed)) in
+            kinds.into_iter().zip(self.counts.into_iter().zip(removed))
+        {
+            let numbers: Vec<usize> = numbers;
+            let ascending = numbers.is_sorted_by(|a, b| a < b);
+            assert!(
+                ascending && numbers.last().is_none_or(|&last| last < count),
+                "{}: {kind} by the numbers before set_positions_logged: {numbers:?}",
+                M::NAME
+            );
+            assert_eq!(
+                count - removed,
+                numbers.len(),
+                "{}: {kind} that set_positions_logged leaves (left) and those of the mesh (right)",
+                M::NAME
+            );
+        }
+        let created = record.vertices.created.len() + record.edges.created.len();
+        assert!(
+            created == 0 && record.faces.is_empty(),
+            "{}: set_positions_logged reports new elements or changed faces",
+            M::NAME
+        );
+    }
 }
 
 fn distant_position(v: VertexId) -> Point {

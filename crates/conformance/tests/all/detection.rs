@@ -126,6 +126,7 @@ detects! {
         FaceReversedOnExport => round_trip, "of to_polygons is";
         LastVertexNotMoved => set_positions, "after set_positions";
         SecondMoveIgnored => set_positions, "after set_positions";
+        MoveReportsRemoval => set_positions, "vertices that set_positions_logged leaves";
         ValidateFails => invariants, "validate: I9 fails";
         DifferentWhenProbed => probed, "probed (left) and not probed (right)";
     }

@@ -1,9 +1,9 @@
 //! A seventh structure in one file: faces and edges as lists, and a scan for most queries.
 
 use sixfold_core::{
-    BuildError, Capabilities, Counts, EdgeId, FaceId, FaceList, FaceSpans, InvariantError,
-    Measured, MemoryFootprint, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost,
-    Representation, Table, Untraced, VertexId, VertexMap, row,
+    BuildError, Capabilities, Counts, EdgeId, EditLog, FaceId, FaceList, FaceSpans, InvariantError,
+    Measured, MemoryFootprint, MeshMove, MeshQuery, MoveError, Point, PolygonMesh, Probe,
+    QueryCost, Representation, Table, Untraced, VertexId, VertexMap, row,
 };
 
 /// The corners of every face and the ends of every edge.
@@ -175,10 +175,6 @@ impl Representation for FaceAndEdgeLists {
         f
     }
 
-    fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError> {
-        self.positions.set_positions(positions)
-    }
-
     fn memory(&self) -> MemoryFootprint {
         let tables = [
             self.positions.bytes(),
@@ -197,6 +193,16 @@ impl Representation for FaceAndEdgeLists {
         let ascend = ends.iter().all(|[a, b]| a < b) && ends.windows(2).all(|e| e[0] < e[1]);
         let fault = || InvariantError::new("I2", "edges out of order");
         ascend.then_some(()).ok_or_else(fault)
+    }
+}
+
+impl MeshMove for FaceAndEdgeLists {
+    fn set_positions_logged(
+        &mut self,
+        positions: &VertexMap<Self, Point>,
+        _: &mut impl EditLog<Self>,
+    ) -> Result<(), MoveError> {
+        self.positions.set_positions(positions)
     }
 }
 

@@ -85,6 +85,7 @@ pub(crate) enum FlawKind {
     FaceReversedOnExport,
     LastVertexNotMoved,
     SecondMoveIgnored,
+    MoveReportsRemoval,
     ValidateFails,
     DifferentWhenProbed,
     AllConstant,

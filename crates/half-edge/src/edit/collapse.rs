@@ -63,7 +63,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
     fn read_collapse(&self, e: EdgeId, pair: [Half; 2], keep: VertexId) -> Collapse {
         let side = usize::from(pair[0].origin == keep);
         let (into, back) = (pair[side], pair[side ^ 1]);
-        let h = self.halves_of(e)[side];
+        let h = self.edge_half_edges(e)[side];
         let end = |last| End {
             valence: 1,
             on_boundary: false,

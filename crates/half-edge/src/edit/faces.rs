@@ -72,7 +72,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
                 self.check_no_edge(v, next)?;
                 new_edges += 1;
             }
-            if !filled && !filled_before && self.half_leaving(v).is_some() {
+            if !filled && !filled_before && self.vertex_half_edge(v).is_some() {
                 return Err(EditError::SeveralFans { vertex: v });
             }
             filled_before = filled;

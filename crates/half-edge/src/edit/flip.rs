@@ -23,7 +23,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         let (Some(f), Some(g)) = (one.face.get(), other.face.get()) else {
             return Err(EditError::NotTwoFaces { edge: e, faces: 1 });
         };
-        let [h, t] = self.halves_of(e);
+        let [h, t] = self.edge_half_edges(e);
         let (bc, ad) = (one.next, other.next);
         let [at_bc, at_cb] = self.record_pair(bc);
         let [at_ad, at_da] = self.record_pair(ad);

@@ -61,7 +61,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
     /// Returns a half-edge of `e` whose twin has a face.
     fn half_beside_a_face(&self, e: EdgeId) -> Result<HalfEdgeId, Refusal> {
         let [_, other] = self.check_edge(e)?;
-        let [h, t] = self.halves_of(e);
+        let [h, t] = self.edge_half_edges(e);
         Ok(if other.face == Slot::NONE { t } else { h })
     }
 
@@ -248,7 +248,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         let (Some(f), Some(g)) = (one.face.get(), other.face.get()) else {
             return Err(EditError::NotTwoFaces { edge: e, faces: 1 });
         };
-        let [h, t] = self.halves_of(e);
+        let [h, t] = self.edge_half_edges(e);
         // The corners of one face, except the ends of `e`.
         let mut corners = HandleSet::new();
         let mut before_h = one.next;

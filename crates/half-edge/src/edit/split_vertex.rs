@@ -36,7 +36,9 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
         log: &mut impl EditLog<Self>,
     ) -> Result<VertexId, Refusal> {
         self.check_vertex(v)?;
-        let first = self.half_leaving(v).ok_or(EditError::NoFan { vertex: v })?;
+        let first = self
+            .vertex_half_edge(v)
+            .ok_or(EditError::NoFan { vertex: v })?;
         if left == right {
             return Err(EditError::BadNeighbours { vertex: v });
         }

@@ -28,7 +28,7 @@ fn rows(mesh: &EditableHalfEdgeMesh) -> Vec<String> {
         let face = half.face.get().map_or(".".to_owned(), |f| f.to_string());
         format!("{} {} {face}", half.next, half.origin)
     };
-    mesh.half_rows().iter().map(row).collect()
+    mesh.half_edge_rows().iter().map(row).collect()
 }
 
 fn corners(mesh: &EditableHalfEdgeMesh, f: u32) -> Vec<VertexId> {
@@ -50,7 +50,7 @@ fn a_flip_writes_the_expected_rows() {
     // Before the flip, h2 runs from v0 to v2 along f1, and h3 runs back along f0. After the flip,
     // h2 runs from v1 to v3, and f1 keeps v0.
     let e = edge(&mesh, 0, 2);
-    assert_eq!(mesh.halves_of(e), [2, 3].map(HalfEdgeId::new));
+    assert_eq!(mesh.edge_half_edges(e), [2, 3].map(HalfEdgeId::new));
     assert_eq!(mesh.flip_edge(e), Ok(e));
     let after = "h2 v0 f1, h4 v1 ., h5 v1 f1, h6 v3 f0, h9 v0 ., \
                  h0 v3 f1, h8 v1 f0, h1 v2 ., h3 v2 f0, h7 v3 .";
@@ -78,8 +78,8 @@ fn a_collapse_marks_the_deleted_rows() {
     assert_eq!(record.vertices.removed, [v(4)]);
     for e in gone {
         assert!(record.edges.removed.contains(&e), "{e}");
-        for h in mesh.halves_of(e) {
-            assert_eq!(mesh.half_rows()[h.index()], Half::DELETED);
+        for h in mesh.edge_half_edges(e) {
+            assert_eq!(mesh.half_edge_rows()[h.index()], Half::DELETED);
         }
     }
     assert_eq!([0, 3].map(|f| mesh.first_rows()[f]), [NO_HALF; 2]);
@@ -91,7 +91,7 @@ fn a_collapse_marks_the_deleted_rows() {
 fn queries_of_deleted_elements_panic_with_their_handle() {
     let mut mesh = mesh(6, [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]);
     let e = edge(&mesh, 0, 4);
-    let [h, t] = mesh.halves_of(e);
+    let [h, t] = mesh.edge_half_edges(e);
     mesh.remove_vertex(v(4)).expect("legal");
     mesh.remove_vertex(v(5)).expect("isolated");
     let f = FaceId::new(2);
@@ -102,7 +102,7 @@ fn queries_of_deleted_elements_panic_with_their_handle() {
         ("v4", &|| discard(mesh.vertex_vertices(v(4)).count())),
         ("v5", &|| discard(mesh.vertex_edges(v(5)).count())),
         ("v4", &|| discard(mesh.vertex_faces(v(4)).count())),
-        ("v4", &|| discard(mesh.half_leaving(v(4)))),
+        ("v4", &|| discard(mesh.vertex_half_edge(v(4)))),
         ("e1", &|| discard(mesh.edge_vertices(e))),
         ("e1", &|| discard(mesh.edge_edges(e).count())),
         ("e1", &|| discard(mesh.edge_faces(e).count())),

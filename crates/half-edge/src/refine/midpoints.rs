@@ -78,7 +78,7 @@ pub(super) fn quads<const CLOSED: bool>(
     child: &mut HalfEdgeMesh,
 ) {
     let sizes = Sizes::new(mesh, true);
-    let rows = mesh.half_rows();
+    let rows = mesh.half_edge_rows();
     let inner = |h: u32| 4 * sizes.edges + 2 * corners.number(h);
     let has_large_face = AtomicBool::new(false);
     split(mesh, corners, sizes, child, |h, record, n| {
@@ -110,7 +110,7 @@ pub(super) fn triangles<const CLOSED: bool>(
     child: &mut HalfEdgeMesh,
 ) {
     let sizes = Sizes::new(mesh, false);
-    let rows = mesh.half_rows();
+    let rows = mesh.half_edge_rows();
     let inner = |h: u32| 4 * sizes.edges + 2 * corners.number(h);
     split(mesh, corners, sizes, child, |h, record, n| {
         let p = rows[n as usize].next.index() as u32;
@@ -137,7 +137,7 @@ fn split<const CLOSED: bool>(
     child: &mut HalfEdgeMesh,
     inner_pair: impl Fn(u32, &Half, u32) -> [Half; 2] + Sync,
 ) {
-    let edges = mesh.half_rows().as_chunks::<2>().0;
+    let edges = mesh.half_edge_rows().as_chunks::<2>().0;
     for_each_edge_chunk(edges.len(), corners, 4, child, |chunk| {
         // The compiler keeps local copies in registers, because no write to the tables can change
         // the copies.

@@ -48,7 +48,7 @@ pub(super) fn sqrt3<const CLOSED: bool, const TRISECT: bool>(
     let [vertices, faces, edges] =
         [mesh.vertex_count(), mesh.face_count(), mesh.edge_count()].map(|n| n as u32);
     let split = Sqrt3::<CLOSED, TRISECT> {
-        rows: mesh.half_rows(),
+        rows: mesh.half_edge_rows(),
         corners,
         vertices,
         faces,

@@ -39,7 +39,7 @@ fn triangle_becomes(expected: &HalfEdgeMesh, by: Split) {
     let rows = [0, 1, 2].map(|e| [inside[e], outside[e]]);
     let triangle = mesh(3, rows.as_flattened(), &[5, 1, 3], &[0]);
     let child = split(&triangle, by);
-    assert_eq!(child.half_rows(), expected.half_rows());
+    assert_eq!(child.half_edge_rows(), expected.half_edge_rows());
     assert_eq!(child.leaving_rows(), expected.leaving_rows());
     assert_eq!(child.first_rows(), expected.first_rows());
     assert_eq!(child.vertex_count(), expected.vertex_count());
@@ -145,7 +145,7 @@ fn the_edge_between_two_triangles_is_flipped() {
     ];
     for (h, (next, v, f)) in flipped {
         let expected = half(next, v, f.map(FaceId::new).into());
-        assert_eq!(child.half_rows()[h], expected, "h{h}");
+        assert_eq!(child.half_edge_rows()[h], expected, "h{h}");
     }
 }
 

@@ -2,8 +2,9 @@
 
 use super::buffers::Buffers;
 use super::document::{Accessor, Document};
-use super::{GltfFault, fault, item};
+use super::{fault, item};
 use crate::error::ReadError;
+use crate::faults::GltfFault;
 use crate::number::Coordinate;
 use crate::ply::{ByteOrder, Scalar};
 
@@ -114,7 +115,7 @@ fn check_type(accessor: &Accessor, width: usize) -> Result<Scalar, GltfFault> {
     scalar.ok_or_else(|| GltfFault::Type {
         found: format!(
             "{} of {}",
-            crate::error::shortened(&accessor.kind),
+            crate::excerpt::shortened(&accessor.kind),
             accessor.component_type
         ),
         expected,

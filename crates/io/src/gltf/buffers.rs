@@ -7,8 +7,10 @@ use std::path::{Component, Path, PathBuf};
 use std::rc::Rc;
 
 use super::document::{Document, Uri};
-use super::{GltfFault, fault, item};
-use crate::error::{ReadError, shortened};
+use super::{fault, item};
+use crate::error::ReadError;
+use crate::excerpt::shortened;
+use crate::faults::GltfFault;
 
 /// The data of each buffer that contains positions or indices.
 pub(super) struct Buffers<'a> {

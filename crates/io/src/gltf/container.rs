@@ -2,10 +2,10 @@
 
 use std::io::Read;
 
-use super::GltfFault;
 use crate::builder::MeshBuilder;
 use crate::byte_source::ByteSource;
 use crate::error::ReadError;
+use crate::faults::GltfFault;
 use crate::format::Format;
 use crate::place::Place;
 

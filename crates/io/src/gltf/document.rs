@@ -9,9 +9,9 @@ use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use serde::de::{IgnoredAny, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::GltfFault;
 use crate::builder::MeshBuilder;
 use crate::error::ReadError;
+use crate::faults::GltfFault;
 use crate::place::Place;
 
 /// Base64 with or without padding.
@@ -220,7 +220,7 @@ impl Document {
         if document.asset.version.split('.').next() == Some("2") {
             return Ok(document);
         }
-        let version = crate::error::shortened(&document.asset.version);
+        let version = crate::excerpt::shortened(&document.asset.version);
         let fault = GltfFault::Version { version };
         let at = builder.at(Place::Line(1));
         Err(ReadError::Gltf { at, fault })

@@ -79,7 +79,7 @@ pub(super) fn check(
     }
     for (number, name) in document.extensions_required.iter().enumerate() {
         if !is_known(name) {
-            let name = crate::error::shortened(name);
+            let name = crate::excerpt::shortened(name);
             let feature = format!("the file requires the extension {name}");
             let way_out = "export it without this extension";
             return Err(refused("required extension", number, feature, way_out));

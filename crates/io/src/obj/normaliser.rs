@@ -4,13 +4,14 @@ use std::io::{self, BufRead, Read, Write};
 
 use sixfold_core::MAX_ROWS;
 
-use super::tags::{Tag, Tags};
 use crate::builder::MeshBuilder;
-use crate::error::{ReadError, shortened};
+use crate::error::ReadError;
+use crate::excerpt::shortened;
 use crate::lines::{Lines, Start};
 use crate::notice::IgnoredKind;
 use crate::number::Coordinate;
 use crate::place::{Location, Place};
+use crate::tags::{Tag, Tags};
 
 /// Number of vertices that are passed to the parser at once. It bounds the memory of the parser.
 const BLOCK: usize = 1 << 14;

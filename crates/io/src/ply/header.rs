@@ -6,58 +6,12 @@ use std::io::Read;
 use super::Scalar;
 use crate::builder::MeshBuilder;
 use crate::byte_source::{ByteSource, words};
-use crate::error::{ReadError, shortened};
+use crate::error::ReadError;
+use crate::excerpt::shortened;
+use crate::faults::PlyHeaderFault;
 use crate::format::Format;
 use crate::number::parse_whole;
 use crate::place::Place;
-
-/// A fault in the header of a PLY file.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-#[expect(missing_docs, reason = "the message shows the meaning of each field")]
-pub enum PlyHeaderFault {
-    /// There is no `format` line before the first element.
-    #[error(
-        "the header has no `format` line before its elements: add `format ascii 1.0` if the data is text"
-    )]
-    NoFormat,
-    /// The form is not one of the three that exist.
-    #[error(
-        "{text:?} is not a form of PLY: use ascii, binary_little_endian or binary_big_endian, and version 1.0"
-    )]
-    UnknownForm { text: String },
-    /// A line does not start with a keyword.
-    #[error(
-        "{text:?} is not a line of a PLY header: use format, comment, obj_info, element, property or end_header"
-    )]
-    UnknownKeyword { text: String },
-    /// An `element` line is not a name and a number.
-    #[error("{text:?} is not an element: write `element`, a name and a count")]
-    Element { text: String },
-    /// A `property` line is not a type and a name.
-    #[error("{text:?} is not a property: write `property float x` or `property list uchar int x`")]
-    Property { text: String },
-    /// A `property` line precedes all elements.
-    #[error("the property {name:?} precedes all elements: move it below its element")]
-    PropertyWithoutElement { name: String },
-    /// Two elements or two properties have one name.
-    #[error("{name:?} is declared twice: remove one of the declarations")]
-    Repeated { name: String },
-    /// The numbers of a list property are counted by a type with fractions.
-    #[error("the length of list {name:?} has a type with fractions: use an integer type")]
-    ListLength { name: String },
-    /// There is no `vertex` element.
-    #[error("the header declares no vertices: add `element vertex` and a count")]
-    NoVertices,
-    /// The vertices have no coordinate with this name.
-    #[error("vertices have no number {coordinate:?}: declare `property float {coordinate}`")]
-    NoCoordinate { coordinate: &'static str },
-    /// The faces have no list of vertices.
-    #[error(
-        "the element {element:?} has no list of vertices: declare `property list uchar int vertex_indices`"
-    )]
-    NoIndices { element: String },
-}
 
 /// The header of a file.
 pub(super) struct Header {

@@ -1,7 +1,8 @@
 //! What the elements of a PLY file are for, and the parts of their records.
 
 use super::Scalar;
-use super::header::{Element, PlyHeaderFault, Property, PropertyKind};
+use super::header::{Element, Property, PropertyKind};
+use crate::faults::PlyHeaderFault;
 use crate::notice::{IgnoredKind, Notices};
 use crate::place::Place;
 

@@ -4,7 +4,8 @@ use std::io::Read;
 
 use super::Facets;
 use crate::byte_source::{ByteSource, words};
-use crate::error::{ReadError, shortened};
+use crate::error::ReadError;
+use crate::excerpt::shortened;
 use crate::notice::IgnoredKind;
 use crate::number::{Coordinate, parse_coordinate};
 use crate::place::Place;

@@ -41,32 +41,66 @@ pub(super) fn write(
         out.write_all(after.as_bytes())?;
         return Ok(writeln!(out)?);
     }
-    // The lengths of a binary file have 32 bits. All data is a multiple of four bytes.
-    let padding = json.len().next_multiple_of(4) - json.len();
-    let json_length = (json.len() + padding) as u64;
-    let data_length = layout.bytes();
-    let chunks = if data_length > 0 { 2 } else { 1 };
-    let bytes = 12 + 8 * chunks + json_length + data_length;
-    let too_large = |_| WriteError::TooLarge {
-        format,
-        bytes,
-        limit: u64::from(u32::MAX),
-    };
-    let total = u32::try_from(bytes).map_err(too_large)?;
+    let Glb {
+        padding,
+        json_length,
+        data_length,
+        total,
+    } = Glb::new(&json, &layout)?;
     out.write_all(b"glTF")?;
     out.write_all(&2_u32.to_le_bytes())?;
     out.write_all(&total.to_le_bytes())?;
-    // Both are smaller than the whole.
-    out.write_all(&(json_length as u32).to_le_bytes())?;
+    out.write_all(&json_length.to_le_bytes())?;
     out.write_all(b"JSON")?;
     out.write_all(json.as_bytes())?;
     out.write_all(&b"   "[..padding])?;
     if data_length > 0 {
-        out.write_all(&(data_length as u32).to_le_bytes())?;
+        out.write_all(&data_length.to_le_bytes())?;
         out.write_all(b"BIN\0")?;
         write_data(polygons, normals, out)?;
     }
     Ok(())
+}
+
+/// Checks that the lengths of a binary file fit into 32 bits.
+pub(super) fn check_size(
+    polygons: &PolygonMesh,
+    normals: &[Option<Point>],
+) -> Result<(), WriteError> {
+    let layout = Layout::new(polygons, normals);
+    let json = layout.document(polygons, Format::Glb).to_string();
+    Glb::new(&json, &layout).map(|_| ())
+}
+
+/// The lengths in a binary file, in bytes. All data is a multiple of four bytes.
+struct Glb {
+    padding: usize,
+    json_length: u32,
+    data_length: u32,
+    total: u32,
+}
+
+impl Glb {
+    fn new(json: &str, layout: &Layout) -> Result<Self, WriteError> {
+        let padding = json.len().next_multiple_of(4) - json.len();
+        let json_length = (json.len() + padding) as u64;
+        let data_length = layout.bytes();
+        let chunks = if data_length > 0 { 2 } else { 1 };
+        let bytes = 12 + 8 * chunks + json_length + data_length;
+        let too_large = |_| WriteError::TooLarge {
+            format: Format::Glb,
+            bytes,
+            limit: u64::from(u32::MAX),
+        };
+        let total = u32::try_from(bytes).map_err(too_large)?;
+        Ok(Self {
+            padding,
+            // Both are smaller than the whole.
+            json_length: json_length as u32,
+            data_length: data_length as u32,
+            total,
+        })
+    }
 }
 
 /// Writes positions, normals and indices.

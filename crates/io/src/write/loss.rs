@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use sixfold_core::Point;
+use sixfold_core::{Point, PolygonMesh};
 
-use super::MeshWriter;
+use super::WriteOptions;
 use crate::format::Format;
 use crate::welder::for_each_equal;
 
@@ -85,72 +85,70 @@ impl Loss {
     }
 }
 
-impl MeshWriter<'_> {
-    /// Returns what `format` cannot keep of this mesh; O(corners) expected.
-    pub fn losses(&self, format: Format) -> Vec<Loss> {
-        let mut losses = Vec::new();
-        let is_stl = format.is_stl();
-        let mut used = Vec::new();
-        if is_stl {
-            losses.push(Loss::SharedVertices);
-            used = self.used_vertices();
-            losses.push(Loss::EqualPositions(self.repeated_positions(&used)));
-        }
-        if is_stl || matches!(format, Format::Gltf | Format::Glb) {
-            let faces = self.polygons.faces().iter();
-            losses.push(Loss::Polygons(
-                faces.filter(|(_, face)| face.len() > 3).count(),
-            ));
-        }
-        if is_stl {
-            losses.push(Loss::IsolatedVertices(
-                used.iter().filter(|used| !**used).count(),
-            ));
-        }
-        let normals = self.normals.iter().flatten().count();
-        let keeps_normals = match format {
-            Format::Obj => true,
-            Format::Stl | Format::StlAscii | Format::Off => false,
-            _ => normals == self.normals.len(),
-        };
-        if !keeps_normals {
-            losses.push(Loss::Normals(normals));
-        }
-        if let (false, Some(creases)) = (format == Format::Obj, self.creases) {
-            let count = creases.edges().len() + creases.corners().len();
-            losses.push(Loss::Creases(count));
-        }
-        let is_empty = |loss: &Loss| {
-            matches!(
-                loss,
-                Loss::EqualPositions(0)
-                    | Loss::Polygons(0)
-                    | Loss::IsolatedVertices(0)
-                    | Loss::Normals(0)
-                    | Loss::Creases(0)
-            )
-        };
-        losses.retain(|loss| !is_empty(loss));
-        losses
+/// Returns what `format` cannot keep of `polygons` and of the data in `options`; O(corners) expected.
+pub fn losses(polygons: &PolygonMesh, format: Format, options: &WriteOptions<'_>) -> Vec<Loss> {
+    let mut losses = Vec::new();
+    let is_stl = format.is_stl();
+    let mut used = Vec::new();
+    if is_stl {
+        losses.push(Loss::SharedVertices);
+        used = used_vertices(polygons);
+        losses.push(Loss::EqualPositions(repeated_positions(polygons, &used)));
     }
+    if is_stl || matches!(format, Format::Gltf | Format::Glb) {
+        let faces = polygons.faces().iter();
+        losses.push(Loss::Polygons(
+            faces.filter(|(_, face)| face.len() > 3).count(),
+        ));
+    }
+    if is_stl {
+        losses.push(Loss::IsolatedVertices(
+            used.iter().filter(|used| !**used).count(),
+        ));
+    }
+    let normals = options.normals.iter().flatten().count();
+    let keeps_normals = match format {
+        Format::Obj => true,
+        Format::Stl | Format::StlAscii | Format::Off => false,
+        _ => normals == options.normals.len(),
+    };
+    if !keeps_normals {
+        losses.push(Loss::Normals(normals));
+    }
+    if let (false, Some(creases)) = (format == Format::Obj, options.creases) {
+        let count = creases.edges().len() + creases.corners().len();
+        losses.push(Loss::Creases(count));
+    }
+    let is_empty = |loss: &Loss| {
+        matches!(
+            loss,
+            Loss::EqualPositions(0)
+                | Loss::Polygons(0)
+                | Loss::IsolatedVertices(0)
+                | Loss::Normals(0)
+                | Loss::Creases(0)
+        )
+    };
+    losses.retain(|loss| !is_empty(loss));
+    losses
+}
 
-    /// Returns for each vertex whether it has a face.
-    fn used_vertices(&self) -> Vec<bool> {
-        let mut used = vec![false; self.polygons.vertex_count()];
-        for v in self.polygons.faces().corners() {
-            used[v.index()] = true;
-        }
-        used
+/// Returns for each vertex whether it has a face.
+fn used_vertices(polygons: &PolygonMesh) -> Vec<bool> {
+    let mut used = vec![false; polygons.vertex_count()];
+    for v in polygons.faces().corners() {
+        used[v.index()] = true;
     }
+    used
+}
 
-    /// Returns the number of `used` vertices minus the number of their different positions.
-    fn repeated_positions(&self, used: &[bool]) -> usize {
-        let positions = self.polygons.positions().iter().zip(used);
-        let positions: Vec<Point> = positions
-            .filter_map(|(&position, &used)| used.then_some(position))
-            .collect();
-        let mut repeated = 0;
-        for_each_equal(&positions, |_, _| repeated += 1);
-        repeated
-    }
+/// Returns the number of `used` vertices minus the number of their different positions.
+fn repeated_positions(polygons: &PolygonMesh, used: &[bool]) -> usize {
+    let positions = polygons.positions().iter().zip(used);
+    let positions: Vec<Point> = positions
+        .filter_map(|(&position, &used)| used.then_some(position))
+        .collect();
+    let mut repeated = 0;
+    for_each_equal(&positions, |_, _| repeated += 1);
+    repeated
 }

@@ -5,49 +5,7 @@ use std::io::{self, Write};
 
 use sixfold_core::{Creases, Point, PolygonMesh, VertexId};
 
-use super::{MeshWriter, Numbers};
-use crate::format::Format;
-
-/// Writes `polygons` as OBJ text; O(corners). Reading the text gives the same mesh, bit for bit.
-///
-/// This function buffers the output. If OBJ cannot represent the mesh, nothing is written.
-///
-/// # Errors
-///
-/// Returns any error of `out`, and [`io::ErrorKind::InvalidInput`] if a coordinate is not finite.
-///
-/// # Examples
-///
-/// ```
-/// use sixfold_core::{Point, PolygonMesh};
-///
-/// let corners = [Point::ZERO, Point::X, Point::new(0.1, 1e-30, -0.0)];
-/// let triangle = PolygonMesh::new(corners, [[0, 1, 2]])?;
-/// let mut text = Vec::new();
-/// sixfold_io::write_obj(&triangle, &mut text)?;
-/// let expected = "# vertices: 3, faces: 1\nv 0 0 0\nv 1 0 0\nv 0.1 1e-30 -0\nf 1 2 3\n";
-/// assert_eq!(text, expected.as_bytes());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn write_obj(polygons: &PolygonMesh, out: impl Write) -> io::Result<()> {
-    Ok(super::write(polygons, Format::Obj, out)?)
-}
-
-/// Writes `polygons` like [`write_obj`], with the normals of vertices. A face is written without
-/// normals if one of its corners has no normal.
-///
-/// # Errors
-///
-/// Returns the same errors as [`write_obj`], and [`io::ErrorKind::InvalidInput`] if the numbers of
-/// vertices and normals differ.
-pub fn write_obj_with_normals(
-    polygons: &PolygonMesh,
-    normals: &[Option<Point>],
-    out: impl Write,
-) -> io::Result<()> {
-    let writer = MeshWriter::new(polygons).with_normals(normals)?;
-    Ok(writer.write(Format::Obj, out)?)
-}
+use super::Numbers;
 
 /// Writes the text; a face is written without normals if one of its corners has no normal.
 pub(super) fn write_text(
@@ -117,6 +75,12 @@ impl fmt::Display for ShortestDecimal {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::format::Format;
+    use crate::write::{WriteError, WriteOptions, write_to};
+
+    fn written(mesh: &PolygonMesh, out: impl Write) -> Result<(), WriteError> {
+        write_to(mesh, Format::Obj, &WriteOptions::default(), out)
+    }
 
     #[test]
     fn normals_are_written_if_all_corners_of_a_face_have_them() {
@@ -124,13 +88,15 @@ mod tests {
         let mesh = PolygonMesh::new(corners, [[0, 1, 2], [1, 3, 2]]).expect("valid");
         let normals = [Some(Point::Z), Some(Point::Z), Some(Point::Z), None];
         let mut text = Vec::new();
-        write_obj_with_normals(&mesh, &normals, &mut text).expect("memory does not fail");
+        let options = WriteOptions::default().with_normals(&normals);
+        write_to(&mesh, Format::Obj, &options, &mut text).expect("memory does not fail");
         let text = String::from_utf8(text).expect("ASCII");
         assert!(
             text.ends_with("vn 0 0 1\nf 1//1 2//2 3//3\nf 2 4 3\n"),
             "{text}"
         );
-        assert!(write_obj_with_normals(&mesh, &normals[1..], &mut Vec::new()).is_err());
+        let too_few = WriteOptions::default().with_normals(&normals[1..]);
+        assert!(write_to(&mesh, Format::Obj, &too_few, &mut Vec::new()).is_err());
     }
 
     #[test]
@@ -142,7 +108,7 @@ mod tests {
         ];
         let mesh = PolygonMesh::new(positions, [[2, 1, 0]]).expect("valid");
         let mut text = Vec::new();
-        write_obj(&mesh, &mut text).expect("memory does not fail");
+        written(&mesh, &mut text).expect("memory does not fail");
         let expected = "# vertices: 3, faces: 1\nv 0.1 -0 100\nv 1e-30 3.4028235e38 -1e-45\n\
                     v 0.00001 999999940 1e9\nf 3 2 1\n";
         assert_eq!(String::from_utf8(text).expect("text"), expected);
@@ -154,11 +120,11 @@ mod tests {
             let positions = [Point::ZERO, Point::new(0.0, bad, 0.0)];
             let mesh = PolygonMesh::new(positions, [[0_u32; 0]; 0]).expect("valid");
             let mut text = Vec::new();
-            let error = write_obj(&mesh, &mut text).expect_err("not finite");
-            assert_eq!(error.kind(), io::ErrorKind::InvalidInput);
+            let error = written(&mesh, &mut text).expect_err("not finite");
             let message = "the position of vertex v1 is not finite, so OBJ cannot store it: \
                            correct the position";
             assert_eq!(error.to_string(), message);
+            assert_eq!(io::Error::from(error).kind(), io::ErrorKind::InvalidInput);
             assert!(text.is_empty());
         }
     }
@@ -174,7 +140,7 @@ mod tests {
                 Ok(())
             }
         }
-        let error = write_obj(&PolygonMesh::default(), Full).expect_err("full");
-        assert_eq!(error.kind(), io::ErrorKind::StorageFull);
+        let error = written(&PolygonMesh::default(), Full).expect_err("full");
+        assert_eq!(io::Error::from(error).kind(), io::ErrorKind::StorageFull);
     }
 }

@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use sixfold_core::{Creases, Pair, Point, PolygonMesh, VertexId};
 use sixfold_io::{
-    CreaseFileError, FileMesh, parse_creases, parse_obj, read_creases, read_obj, write_creases,
+    CreaseFileError, FileMesh, parse_creases, parse_obj, read_creases, write_creases,
 };
 
 /// Two squares side by side.
@@ -367,7 +367,7 @@ fn the_torus_with_creases_is_read_completely() {
         return;
     };
     let path = folder.join("fetched/catmark_torus_creases0.obj");
-    let obj = read_obj(path).unwrap_or_else(|error| panic!("{error}"));
+    let obj = sixfold_io::read(path).unwrap_or_else(|error| panic!("{error}"));
     let notices: Vec<String> = obj.notices.iter().map(ToString::to_string).collect();
     assert_eq!(
         notices,

@@ -4,7 +4,9 @@ use std::fs;
 
 use serde_json::{Value, json};
 use sixfold_core::{Point, PolygonMesh};
-use sixfold_io::{FileMesh, Format, GltfFault, ReadError, ReadOptions, read, read_from, write};
+use sixfold_io::{
+    FileMesh, Format, GltfFault, ReadError, ReadOptions, WriteOptions, read_from, write_to,
+};
 
 /// A document in parts, so that tests can change one of them.
 struct Parts {
@@ -361,7 +363,7 @@ fn buffers_in_one_file_share_its_data() {
     let path = folder.path().join("a.gltf");
     fs::write(&path, parts.document.to_string()).expect("writable");
     fs::write(folder.path().join("a.bin"), &parts.data).expect("writable");
-    let mesh = read(&path, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}"));
+    let mesh = sixfold_io::read(&path).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(faces(&mesh), [[0, 1, 2], [0, 2, 3]]);
 }
 
@@ -467,13 +469,11 @@ fn buffers_in_other_files_are_read() {
     let path = folder.path().join("a.gltf");
     fs::write(&path, &text).expect("writable");
     fs::write(folder.path().join("the data.bin"), &parts.data).expect("writable");
-    let mesh = read(&path, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}"));
+    let mesh = sixfold_io::read(&path).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((mesh.format, mesh.faces.len()), (Format::Gltf, 2));
 
     fs::write(folder.path().join("the data.bin"), &parts.data[1..]).expect("writable");
-    let error = read(&path, &ReadOptions::default())
-        .expect_err("too short")
-        .to_string();
+    let error = sixfold_io::read(&path).expect_err("too short").to_string();
     let rest = "buffer 0: it has 53 bytes, expected 54: copy the file again, with its .bin files";
     assert!(error.ends_with(rest), "{error}");
     let error = read_from("-", text.as_bytes(), &ReadOptions::default()).expect_err("no folder");
@@ -517,7 +517,8 @@ fn points_without_faces_are_kept() {
     let mesh = PolygonMesh::new([Point::ONE, Point::X], [[0_u32; 0]; 0]).expect("valid");
     for format in [Format::Gltf, Format::Glb] {
         let mut bytes = Vec::new();
-        write(&mesh, format, &mut bytes).expect("memory does not fail");
+        write_to(&mesh, format, &WriteOptions::default(), &mut bytes)
+            .expect("memory does not fail");
         let file = read_from("a", bytes.as_slice(), &ReadOptions::default()).expect("valid");
         assert_eq!(file.into_polygons().0, mesh);
     }

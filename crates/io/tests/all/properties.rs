@@ -6,7 +6,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{select, subsequence};
 use sixfold_core::{FaceList, Point, PolygonMesh};
-use sixfold_io::{FileMesh, Place, parse_obj, write_obj};
+use sixfold_io::{FileMesh, Format, Place, WriteOptions, parse_obj, write_to};
 
 fn coordinate() -> impl Strategy<Value = f32> {
     let any = any::<u32>()
@@ -39,7 +39,7 @@ fn mesh() -> impl Strategy<Value = PolygonMesh> {
 
 fn written(mesh: &PolygonMesh) -> String {
     let mut text = Vec::new();
-    write_obj(mesh, &mut text).expect("memory does not fail");
+    write_to(mesh, Format::Obj, &WriteOptions::default(), &mut text).expect("memory does not fail");
     String::from_utf8(text).expect("OBJ is text")
 }
 

@@ -10,7 +10,9 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 use sixfold_core::{Distribution, FaceList, Facts, PolygonMesh};
-use sixfold_io::{FileMesh, Format, ReadOptions, Welding, read, read_from, write};
+use sixfold_io::{
+    FileMesh, Format, ReadOptions, Welding, WriteOptions, read_from, read_with, write_to,
+};
 
 const FOLDERS: [&str; 3] = ["tiny", "fetched", "derived"];
 
@@ -39,7 +41,7 @@ fn load(folder: &Path, name: &str) -> FileMesh {
 
 fn load_as(folder: &Path, name: &str, welding: Welding) -> FileMesh {
     let options = ReadOptions::default().with_welding(welding);
-    read(folder.join(name), &options).unwrap_or_else(|error| panic!("{error}"))
+    read_with(folder.join(name), &options).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn spread(spread: &Option<Distribution>) -> Value {
@@ -165,7 +167,8 @@ fn every_mesh_survives_every_format() {
                 continue;
             }
             let mut bytes = Vec::new();
-            write(&mesh, format, &mut bytes).expect("memory does not fail");
+            write_to(&mesh, format, &WriteOptions::default(), &mut bytes)
+                .expect("memory does not fail");
             let again = read_from(&name, bytes.as_slice(), &ReadOptions::default());
             let again = again.unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(again.format, format, "{name}");

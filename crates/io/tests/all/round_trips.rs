@@ -7,7 +7,8 @@ use proptest::prelude::*;
 use proptest::sample::subsequence;
 use sixfold_core::{Creases, Point, PolygonMesh};
 use sixfold_io::{
-    FileMesh, Format, Loss, MeshWriter, ReadOptions, Welding, WriteError, read_from, write,
+    FileMesh, Format, Loss, ReadOptions, Welding, WriteError, WriteOptions, losses, read_from,
+    write, write_to, write_with,
 };
 
 /// Generates any finite `f32`, including those with extreme exponents.
@@ -35,7 +36,7 @@ fn mesh() -> impl Strategy<Value = PolygonMesh> {
 
 fn written(mesh: &PolygonMesh, format: Format) -> Vec<u8> {
     let mut bytes = Vec::new();
-    write(mesh, format, &mut bytes).expect("memory does not fail");
+    write_to(mesh, format, &WriteOptions::default(), &mut bytes).expect("memory does not fail");
     bytes
 }
 
@@ -60,7 +61,7 @@ fn soup(mesh: &PolygonMesh) -> Vec<[u32; 3]> {
 
 /// Checks that `format` gives `mesh` back, except for what it cannot keep.
 fn check(mesh: &PolygonMesh, format: Format) -> Result<(), TestCaseError> {
-    let losses = MeshWriter::new(mesh).losses(format);
+    let losses = losses(mesh, format, &WriteOptions::default());
     let bytes = written(mesh, format);
     let is_stl = matches!(format, Format::Stl | Format::StlAscii);
     prop_assert_eq!(losses.contains(&Loss::SharedVertices), is_stl);
@@ -163,38 +164,34 @@ fn losses_are_counted() {
     let mesh = PolygonMesh::new(positions, [[0, 1, 2, 3]]).expect("valid");
     let some = [Some(Point::Z), None, None, None, None];
     let all = [Some(Point::Z); 5];
-    let with_some = MeshWriter::new(&mesh)
-        .with_normals(&some)
-        .expect("one for each");
-    let with_all = MeshWriter::new(&mesh)
-        .with_normals(&all)
-        .expect("one for each");
+    let plain = WriteOptions::default();
+    let with_some = plain.with_normals(&some);
+    let with_all = plain.with_normals(&all);
+    let lost = |format, options| losses(&mesh, format, options);
     let stl = [
         Loss::SharedVertices,
         Loss::Polygons(1),
         Loss::IsolatedVertices(1),
     ];
     for format in [Format::Stl, Format::StlAscii] {
-        assert_eq!(MeshWriter::new(&mesh).losses(format), stl);
+        assert_eq!(lost(format, &plain), stl);
     }
-    assert_eq!(with_some.losses(Format::Obj), []);
-    assert_eq!(with_some.losses(Format::Ply), [Loss::Normals(1)]);
-    assert_eq!(with_all.losses(Format::Ply), []);
-    assert_eq!(with_all.losses(Format::Off), [Loss::Normals(5)]);
-    assert_eq!(with_all.losses(Format::Glb), [Loss::Polygons(1)]);
+    assert_eq!(lost(Format::Obj, &with_some), []);
+    assert_eq!(lost(Format::Ply, &with_some), [Loss::Normals(1)]);
+    assert_eq!(lost(Format::Ply, &with_all), []);
+    assert_eq!(lost(Format::Off, &with_all), [Loss::Normals(5)]);
+    assert_eq!(lost(Format::Glb, &with_all), [Loss::Polygons(1)]);
     let creases = Creases::new(&mesh, [([0, 1], 1.0)], [(4, 2.0)]).expect("valid");
-    let sharp = MeshWriter::new(&mesh).with_creases(&creases);
-    assert_eq!(sharp.losses(Format::Obj), []);
-    assert_eq!(sharp.losses(Format::Ply), [Loss::Creases(2)]);
+    let sharp = plain.with_creases(&creases);
+    assert_eq!(lost(Format::Obj, &sharp), []);
+    assert_eq!(lost(Format::Ply, &sharp), [Loss::Creases(2)]);
 }
 
 #[test]
 fn normals_are_written_and_reported_when_read() {
     let mesh = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]]).expect("valid");
     let normals = [Some(Point::Z); 3];
-    let writer = MeshWriter::new(&mesh)
-        .with_normals(&normals)
-        .expect("one for each");
+    let options = WriteOptions::default().with_normals(&normals);
     for format in [
         Format::Obj,
         Format::Ply,
@@ -203,9 +200,7 @@ fn normals_are_written_and_reported_when_read() {
         Format::Glb,
     ] {
         let mut bytes = Vec::new();
-        writer
-            .write(format, &mut bytes)
-            .expect("memory does not fail");
+        write_to(&mesh, format, &options, &mut bytes).expect("memory does not fail");
         let file = read_again(&bytes, &ReadOptions::default());
         let notices: Vec<String> = file.notices.iter().map(ToString::to_string).collect();
         assert_eq!(notices.len(), 1, "{format}: {notices:?}");
@@ -215,9 +210,8 @@ fn normals_are_written_and_reported_when_read() {
         );
         assert_eq!(file.into_polygons().0, mesh, "{format}");
     }
-    let error = MeshWriter::new(&mesh)
-        .with_normals(&normals[1..])
-        .expect_err("one is missing");
+    let too_few = WriteOptions::default().with_normals(&normals[1..]);
+    let error = write_to(&mesh, Format::Obj, &too_few, Vec::new()).expect_err("one is missing");
     assert_eq!(
         error.to_string(),
         "2 normals do not fit 3 vertices: give one normal for each vertex"
@@ -229,7 +223,8 @@ fn a_mesh_that_is_not_finite_is_not_written() {
     let mesh = PolygonMesh::new([Point::ZERO, Point::NAN], [[0_u32; 0]; 0]).expect("valid");
     for format in Format::ALL {
         let mut bytes = Vec::new();
-        let error = write(&mesh, format, &mut bytes).expect_err("not finite");
+        let options = WriteOptions::default();
+        let error = write_to(&mesh, format, &options, &mut bytes).expect_err("not finite");
         assert!(matches!(error, WriteError::NotFinite { .. }));
         let expected = format!(
             "the position of vertex v1 is not finite, so {format} cannot store it: correct the position"
@@ -237,4 +232,62 @@ fn a_mesh_that_is_not_finite_is_not_written() {
         assert_eq!(error.to_string(), expected);
         assert!(bytes.is_empty());
     }
+}
+
+#[test]
+fn the_name_decides_the_format_of_a_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    let mesh = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]]).expect("valid");
+    for (name, format) in [
+        ("a.stl", Format::Stl),
+        ("a.PLY", Format::Ply),
+        ("a.off", Format::Off),
+        ("a.gltf", Format::Gltf),
+        ("a.glb", Format::Glb),
+        ("a.obj", Format::Obj),
+    ] {
+        let lost = write(path(name), &mesh).expect(name);
+        assert_eq!(
+            lost,
+            losses(&mesh, format, &WriteOptions::default()),
+            "{name}"
+        );
+        let file = sixfold_io::read(path(name)).expect(name);
+        assert_eq!(
+            (file.format, file.into_polygons().0),
+            (format, mesh.clone()),
+            "{name}"
+        );
+    }
+    let options = WriteOptions::default().with_format(Format::PlyAscii);
+    assert_eq!(
+        write_with(path("a.mesh"), &mesh, &options).expect("a file"),
+        []
+    );
+    let file = sixfold_io::read(path("a.mesh")).expect("a mesh");
+    assert_eq!(file.format, Format::PlyAscii);
+}
+
+#[test]
+fn a_mesh_that_cannot_be_written_does_not_change_the_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.obj");
+    let mesh = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]]).expect("valid");
+    write(&path, &mesh).expect("a file");
+    let before = std::fs::read(&path).expect("the file");
+    let broken = PolygonMesh::new([Point::ZERO, Point::NAN], [[0_u32; 0]; 0]).expect("valid");
+    let error = write(&path, &broken).expect_err("not finite");
+    assert!(matches!(error, WriteError::NotFinite { .. }), "{error}");
+    let normals = [Some(Point::Z)];
+    let options = WriteOptions::default().with_normals(&normals);
+    let error = write_with(&path, &mesh, &options).expect_err("one normal");
+    assert!(matches!(error, WriteError::NormalCount { .. }), "{error}");
+    assert_eq!(std::fs::read(&path).expect("the file"), before);
+
+    let error = write(folder.path().join("a.3mf"), &mesh).expect_err("unknown");
+    assert!(matches!(error, WriteError::UnknownEnding { .. }), "{error}");
+    assert!(!folder.path().join("a.3mf").exists());
+    let error = write(folder.path().join("no/folder.ply"), &mesh).expect_err("no folder");
+    assert!(error.to_string().contains("folder.ply: "), "{error}");
 }

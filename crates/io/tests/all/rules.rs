@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, BufReader, Read};
 
 use sixfold_core::{FaceId, Point, VertexId};
-use sixfold_io::{FileMesh, LeftOutReason, Place, ReadError, parse_obj, read_obj};
+use sixfold_io::{FileMesh, LeftOutReason, Place, ReadError, parse_obj};
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
@@ -300,13 +300,13 @@ fn white_space_outside_ascii_separates_words_as_in_the_parser() {
 #[test]
 fn errors_name_a_path_that_cannot_be_read() {
     let directory = std::env::temp_dir();
-    let error = read_obj(&directory).expect_err("a directory");
+    let error = sixfold_io::read(&directory).expect_err("a directory");
     let shown = directory.display();
     assert_eq!(
         error.to_string(),
         format!("{shown}: is a directory: choose a file in it")
     );
-    let error = read_obj("no/such/mesh.obj").expect_err("no such file");
+    let error = sixfold_io::read("no/such/mesh.obj").expect_err("no such file");
     let message = error.to_string();
     assert!(
         message.starts_with("no/such/mesh.obj: cannot be opened ("),
@@ -321,10 +321,10 @@ fn errors_name_a_file_by_its_path() {
     let folder = tempfile::tempdir().expect("the temporary folder is writable");
     let good = folder.path().join("good.obj");
     fs::write(&good, format!("{TRIANGLE}f 1 2 3")).expect("writable");
-    assert_eq!(faces(&read_obj(&good).expect("valid")), [[1, 2, 3]]);
+    assert_eq!(faces(&sixfold_io::read(&good).expect("valid")), [[1, 2, 3]]);
     let bad = folder.path().join("bad.obj");
     fs::write(&bad, "v 0 0\n").expect("writable");
-    let message = read_obj(&bad).expect_err("short").to_string();
+    let message = sixfold_io::read(&bad).expect_err("short").to_string();
     let place = format!("{}:1: vertex 1 has 2 ", bad.display());
     assert!(message.starts_with(&place), "{message}");
 }

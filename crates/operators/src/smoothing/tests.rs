@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use sixfold_conformance::strategy::manifold_mesh;
-use sixfold_core::{FaceId, MoveError, PolygonMesh, Representation};
+use sixfold_core::{FaceId, MeshMove, MoveError, PolygonMesh, Representation};
 use sixfold_half_edge::HalfEdgeMesh;
 use sixfold_indexed_face_set::IndexedFaceSet;
 use sixfold_polygon_soup::PolygonSoup;

@@ -36,7 +36,7 @@ fn for_each_mesh(test: impl Fn(&str, &PolygonMesh)) {
     let files = obj_files(&folder);
     assert!(!files.is_empty(), "no OBJ file below {}", folder.display());
     for file in files {
-        let obj = sixfold_io::read_obj(&file).expect("a valid file");
+        let obj = sixfold_io::read(&file).expect("a valid file");
         let (polygons, _) = obj.into_polygons();
         test(&file.display().to_string(), &polygons);
     }

@@ -8,7 +8,9 @@ use clap::Args;
 use sixfold::shapes::Order;
 use sixfold_study::{Effort, GrowthSettings, Operation};
 
-use super::{MemoryState, ResultFiles, backend, duration, effort, operation, rounds, seed};
+use super::{
+    MemoryState, ReadFiles, ResultFiles, backend, duration, effort, operation, rounds, seed,
+};
 
 /// Text after the options in `orders --help`; the lists of names follow it.
 pub(crate) const ORDERS_EXAMPLES: &str = "Examples:
@@ -61,6 +63,8 @@ pub(crate) struct Orders {
     pub(crate) triangulate: bool,
     #[command(flatten)]
     pub(crate) files: ResultFiles,
+    #[command(flatten)]
+    pub(crate) read: ReadFiles,
 }
 
 impl Orders {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::seed;
+use super::{ReadPolygons, seed};
 
 const EXAMPLES: &str = "Examples:
   sixfold distance scan.obj small.obj
@@ -37,6 +37,8 @@ pub(crate) struct Distance {
     /// Write the distances as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) read: ReadPolygons,
 }
 
 fn samples(text: &str) -> Result<usize, String> {

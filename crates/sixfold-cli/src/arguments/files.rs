@@ -1,9 +1,12 @@
-//! Options of mesh files, for all commands that read or write meshes.
+//! Options of mesh files, for the commands that read or write meshes.
 
-use clap::{Arg, ArgMatches, Args};
+use clap::Args;
 use sixfold::io::Format;
 
-// How meshes are read. Not a doc comment, because clap would print it as the help of each command.
+// The comments of these structs are not doc comments, because clap would print them as the help of
+// each command.
+
+// How meshes are read.
 #[derive(Clone, Copy, Debug, Default, Args)]
 #[command(next_help_heading = "Mesh files")]
 pub(crate) struct ReadFiles {
@@ -15,13 +18,15 @@ pub(crate) struct ReadFiles {
     pub(crate) recentre: bool,
 }
 
-// How polygons are read, for commands without an option of this name.
+// How meshes are read by commands that can cut polygons first.
 #[derive(Clone, Copy, Debug, Default, Args)]
 #[command(next_help_heading = "Mesh files")]
-pub(crate) struct CutPolygons {
+pub(crate) struct ReadPolygons {
     /// Cut every polygon into a fan of triangles first
-    #[arg(id = "cut_polygons", long = "triangulate")]
+    #[arg(long)]
     pub(crate) triangulate: bool,
+    #[command(flatten)]
+    pub(crate) files: ReadFiles,
 }
 
 // How meshes are written.
@@ -32,51 +37,4 @@ pub(crate) struct WriteFiles {
     /// [default: from the file name, or obj]
     #[arg(long, value_name = "NAME", verbatim_doc_comment)]
     pub(crate) format: Option<Format>,
-}
-
-/// Adds the options of mesh files to a subcommand that reads or writes meshes: the names and value
-/// names of its arguments show whether it does.
-pub(crate) fn with_file_options(mut command: clap::Command) -> clap::Command {
-    let is_mesh =
-        |argument: &Arg| ["mesh", "meshes", "first"].contains(&argument.get_id().as_str());
-    let is_written = |argument: &Arg| {
-        let names = argument.get_value_names().unwrap_or_default();
-        names.iter().any(|name| name == "OUT")
-    };
-    let reads = command.get_arguments().any(is_mesh);
-    let has_own = command
-        .get_arguments()
-        .any(|argument| argument.get_id() == "triangulate");
-    let triangulates = command.get_name() == "triangulate";
-    if command.get_arguments().any(is_written) {
-        command = WriteFiles::augment_args(command);
-    }
-    if reads && !has_own && !triangulates {
-        command = CutPolygons::augment_args(command);
-    }
-    match reads {
-        true => ReadFiles::augment_args(command),
-        false => command,
-    }
-}
-
-/// The options of mesh files of a subcommand.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct FileOptions {
-    pub(crate) read: ReadFiles,
-    pub(crate) write: WriteFiles,
-    pub(crate) cut: CutPolygons,
-}
-
-/// Returns the options of mesh files of a subcommand; the defaults if it does not have them.
-pub(crate) fn file_options(matches: &ArgMatches) -> FileOptions {
-    let mut options = FileOptions::default();
-    if let Some((_, matches)) = matches.subcommand() {
-        let is_set = |name| matches.try_get_one(name).ok().flatten() == Some(&true);
-        options.read.as_stored = is_set("as_stored");
-        options.read.recentre = is_set("recentre");
-        options.write.format = matches.try_get_one("format").ok().flatten().copied();
-        options.cut.triangulate = is_set("cut_polygons");
-    }
-    options
 }

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::ReadFiles;
+
 const EXAMPLES: &str = "Examples:
   sixfold inspect bunny.obj
   sixfold inspect scans part.stl             all meshes in a folder, and one more
@@ -29,4 +31,6 @@ pub(crate) struct Inspect {
     /// Write the facts, verdicts and faults as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) read: ReadFiles,
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{ResultFiles, backend};
+use super::{ReadFiles, ResultFiles, backend};
 
 const EXAMPLES: &str = "Examples:
   sixfold memory
@@ -44,4 +44,6 @@ pub(crate) struct Memory {
     pub(crate) triangulate: bool,
     #[command(flatten)]
     pub(crate) files: ResultFiles,
+    #[command(flatten)]
+    pub(crate) read: ReadFiles,
 }

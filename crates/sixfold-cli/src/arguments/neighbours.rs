@@ -7,7 +7,7 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 use sixfold_study::{Effort, QueryPoints, neighbour_indices};
 
-use super::{ResultFiles, duration, effort, rounds, seed};
+use super::{ReadFiles, ResultFiles, duration, effort, rounds, seed};
 
 const EXAMPLES: &str = "Examples:
   sixfold neighbours                             the built-in mesh
@@ -60,6 +60,8 @@ pub(crate) struct Neighbours {
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) files: ResultFiles,
+    #[command(flatten)]
+    pub(crate) read: ReadFiles,
 }
 
 impl Neighbours {

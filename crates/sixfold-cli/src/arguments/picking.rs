@@ -7,7 +7,7 @@ use std::time::Duration;
 use clap::Args;
 use sixfold_study::{Effort, Need, Policy};
 
-use super::{ResultFiles, backend, duration, effort, rounds, seed};
+use super::{ReadFiles, ResultFiles, backend, duration, effort, rounds, seed};
 
 const PICK_EXAMPLES: &str = "Examples:
   sixfold pick bunny.obj
@@ -80,6 +80,8 @@ pub(crate) struct Pick {
     pub(crate) triangulate: bool,
     #[command(flatten)]
     pub(crate) files: ResultFiles,
+    #[command(flatten)]
+    pub(crate) read: ReadFiles,
 }
 
 impl Pick {

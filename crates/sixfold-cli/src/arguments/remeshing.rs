@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use sixfold::remeshing::{DecimationBoundary, Target};
 
-use super::backend;
 use super::reshaping::iterations;
 use super::subdivision::parse_name;
+use super::{ReadPolygons, WriteFiles, backend};
 
 const DECIMATE_EXAMPLES: &str = "Examples:
   sixfold decimate --faces 5000 scan.obj -o small.obj
@@ -51,6 +51,10 @@ pub(crate) struct Decimate {
     /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "corner-table", value_parser = backend)]
     pub(crate) backend: String,
+    #[command(flatten)]
+    pub(crate) write: WriteFiles,
+    #[command(flatten)]
+    pub(crate) read: ReadPolygons,
 }
 
 /// The target size, given in one of two ways.
@@ -127,6 +131,10 @@ pub(crate) struct Remesh {
     /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "corner-table", value_parser = backend)]
     pub(crate) backend: String,
+    #[command(flatten)]
+    pub(crate) write: WriteFiles,
+    #[command(flatten)]
+    pub(crate) read: ReadPolygons,
 }
 
 const EDITS_EXAMPLES: &str = "Examples:

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use sixfold_render::{Shading, Size, Up, View};
 
+use super::ReadPolygons;
+
 const EXAMPLES: &str = "Examples:
   sixfold render bunny.obj -o bunny.png
   sixfold render cage.obj level1.obj level2.obj -o row.svg --edges --size 1200x400
@@ -62,6 +64,8 @@ pub(crate) struct Render {
     /// Shading: smooth or flat
     #[arg(long, value_name = "KIND", default_value = "smooth", value_parser = shading)]
     pub(crate) shade: Shading,
+    #[command(flatten)]
+    pub(crate) read: ReadPolygons,
 }
 
 /// Parses `640x480`.

@@ -8,9 +8,9 @@ use sixfold::repair::{
     Components, FillHoles, HoleFilling, OppositeFaces, Step, Tolerance, Weld, WeldMethod,
 };
 
-use super::backend;
 use super::reshaping::facing;
 use super::subdivision::parse_name;
+use super::{ReadFiles, WriteFiles, backend};
 
 const EXAMPLES: &str = "Examples:
   sixfold repair scan.obj --for half-edge -o repaired.obj     all that this structure needs
@@ -80,6 +80,10 @@ pub(crate) struct Repair {
     /// Write the report as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) write: WriteFiles,
+    #[command(flatten)]
+    pub(crate) read: ReadFiles,
 }
 
 impl Repair {

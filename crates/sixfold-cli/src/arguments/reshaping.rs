@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use sixfold::operators::{Facing, SmoothingBoundary, Triangulation, Weights};
 
-use super::backend;
 use super::subdivision::parse_name;
+use super::{ReadFiles, ReadPolygons, WriteFiles, backend};
 
 const SMOOTH_EXAMPLES: &str = "Examples:
   sixfold smooth scan.obj -o smooth.obj
@@ -51,6 +51,10 @@ pub(crate) struct Smooth {
     /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
     pub(crate) backend: String,
+    #[command(flatten)]
+    pub(crate) write: WriteFiles,
+    #[command(flatten)]
+    pub(crate) read: ReadPolygons,
 }
 
 const DUAL_EXAMPLES: &str = "Examples:
@@ -74,6 +78,10 @@ pub(crate) struct Dual {
     /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
     pub(crate) backend: String,
+    #[command(flatten)]
+    pub(crate) write: WriteFiles,
+    #[command(flatten)]
+    pub(crate) read: ReadPolygons,
 }
 
 const TRIANGULATE_EXAMPLES: &str = "Examples:
@@ -102,6 +110,10 @@ pub(crate) struct Triangulate {
     /// Flip faces to one orientation: majority (of the faces) or outward
     #[arg(long, value_name = "RULE", value_parser = facing)]
     pub(crate) orient: Option<Facing>,
+    #[command(flatten)]
+    pub(crate) write: WriteFiles,
+    #[command(flatten)]
+    pub(crate) read: ReadFiles,
 }
 
 pub(super) fn iterations(text: &str) -> Result<usize, String> {

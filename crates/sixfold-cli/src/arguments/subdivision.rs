@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use sixfold::subdivision::{BoundaryRule, Creasing, LoopWeights, Method, Scheme};
 
-use super::backend;
+use super::{ReadPolygons, WriteFiles, backend};
 
 const EXAMPLES: &str = "Examples:
   sixfold subdivide --scheme catmull-clark --levels 3 cage.obj -o smooth.obj
@@ -96,6 +96,10 @@ pub(crate) struct Subdivide {
     /// Continue even if the result takes more than the free memory
     #[arg(long)]
     pub(crate) force: bool,
+    #[command(flatten)]
+    pub(crate) write: WriteFiles,
+    #[command(flatten)]
+    pub(crate) read: ReadPolygons,
 }
 
 /// The faces to refine.

@@ -9,7 +9,7 @@ use sixfold::Relation;
 use sixfold_study::Effort;
 
 use super::subdivision::parse_name;
-use super::{ResultFiles, backend, duration, effort, rounds};
+use super::{ReadFiles, ResultFiles, backend, duration, effort, rounds};
 
 const WHY_EXAMPLES: &str = "Examples:
   sixfold why --counts-only                                counts on the built-in mesh, no times
@@ -64,6 +64,8 @@ pub(crate) struct Why {
     pub(crate) rounds: Option<NonZeroU32>,
     #[command(flatten)]
     pub(crate) files: ResultFiles,
+    #[command(flatten)]
+    pub(crate) read: ReadFiles,
 }
 
 impl Why {

@@ -15,7 +15,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use sixfold_report::ReportPage;
-use sixfold_study::{Finding, Results, RunSettings, Settings};
+use sixfold_study::{Finding, Results, RunSettings, Settings, sha256_of};
 
 use super::meshes::Mesh;
 use crate::arguments::Study;
@@ -131,9 +131,9 @@ impl Folder {
             }
         };
         let stem: String = stem.to_string_lossy().chars().map(safe).take(40).collect();
-        // The checksum of the full name distinguishes meshes with the same stem.
-        let name = crc32fast::hash(mesh.as_bytes());
-        let path = self.studies().join(format!("{stem}-{name:08x}.json"));
+        // The hash of the full name distinguishes meshes with the same stem.
+        let hash = sha256_of(mesh.as_bytes()).map_err(|cause| cannot_write(mesh, &cause))?;
+        let path = self.studies().join(format!("{stem}-{}.json", &hash[..8]));
         Output::open(&path)?.finish(|writer| study.write_json(writer))
     }
 

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use sixfold::io::WriteOptions;
 use sixfold::subdivision::{LimitPoint, NoLimit, Step, Subdivision};
 use sixfold::{FaceVertexMesh, MeshQuery, Point, PolygonMesh, Representation};
 
 use crate::failure::Failure;
-use crate::mesh_files::write_mesh;
-use crate::output::Output;
+use crate::mesh_files::MeshOutput;
 use crate::text::sanitize;
 use sixfold_study::numbers::counted;
 
@@ -58,9 +58,12 @@ impl Limits {
         })
     }
 
-    /// Writes the limits to `output`, which was opened at `path`.
-    pub(super) fn write(&self, output: Output, path: &Path) -> Result<(), Failure> {
-        write_mesh(output, path, &self.moved, &self.normals)
+    /// Writes the limits.
+    pub(super) fn write(&self, output: MeshOutput) -> Result<(), Failure> {
+        output.write(
+            &self.moved,
+            &WriteOptions::default().with_normals(&self.normals),
+        )
     }
 
     /// Describes the limits in lines. `path` is the file of the limits.

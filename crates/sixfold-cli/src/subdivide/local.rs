@@ -4,13 +4,14 @@ use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
+use sixfold::io::WriteOptions;
 use sixfold::subdivision::{LocalError, LocalMesh, Scheme, Selection};
 use sixfold::{FaceId, Point, PolygonMesh, Representation, Visitor, visit};
 
 use crate::arguments::{Select, Subdivide};
 use crate::failure::Failure;
 use crate::load;
-use crate::mesh_files::{open_mesh, shown, write_mesh};
+use crate::mesh_files::{MeshOutput, shown};
 use crate::output::{check_not_overwritten, is_stdout};
 use crate::progress::Spinner;
 use crate::text::{TextOutput, sanitize};
@@ -25,7 +26,7 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
         let outputs = [("--output", Some(&arguments.output))];
         check_not_overwritten("the list of faces", path, &outputs)?;
     }
-    let (polygons, creases) = load::with_creases(&arguments.mesh)?;
+    let (polygons, creases) = load::with_creases(&arguments.mesh, arguments.read)?;
     check_tags(arguments, &creases)?;
     let selection = selection(select)?;
     selection
@@ -34,7 +35,7 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
             Select::Faces(path) => Failure::usage(format!("{}: {error}", path.display())),
             _ => Failure::usage(error),
         })?;
-    let output = open_mesh(&arguments.output)?;
+    let output = MeshOutput::open(&arguments.output, arguments.write)?;
     let spinner = Spinner::start(format!("refining {}", shown(&arguments.mesh)));
     let mut work = LocalRefinement {
         polygons: &polygons,
@@ -47,7 +48,7 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
     let refined = refined
         .ok_or_else(|| Failure::usage(format!("no backend is called `{}`", arguments.backend)))??;
     let mesh = refined.polygons();
-    write_mesh(output, &arguments.output, mesh, &[])?;
+    output.write(mesh, &WriteOptions::default())?;
     let mut text = TextOutput::new(!is_stdout(&arguments.output));
     let place = sanitize(&arguments.output.display().to_string());
     let vertices = counted(mesh.vertex_count(), "vertex", "vertices");

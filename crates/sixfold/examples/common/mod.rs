@@ -1,17 +1,15 @@
 //! Code that all examples share: reads the mesh to work on.
 
 use std::error::Error;
-use std::path::Path;
 
-use sixfold::PolygonMesh;
-use sixfold::io::read_obj;
+use sixfold::{PolygonMesh, io};
 
-/// Reads the OBJ file that is the first argument of the program, or returns `default`.
+/// Reads the mesh file that is the first argument of the program, or returns `default`.
 pub(crate) fn mesh_argument(default: PolygonMesh) -> Result<PolygonMesh, Box<dyn Error>> {
     let Some(path) = std::env::args().nth(1) else {
         return Ok(default);
     };
-    let (polygons, left_out) = read_obj(Path::new(&path))?.into_polygons();
+    let (polygons, left_out) = io::read(&path)?.into_polygons();
     for face in left_out {
         eprintln!("{path}: {face}");
     }

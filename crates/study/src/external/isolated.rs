@@ -228,16 +228,12 @@ fn described(run: &Run, times: u32) -> serde_json::Value {
 /// Limits the address space of this process.
 #[cfg(unix)]
 fn limit_memory(limit: Option<u64>) -> io::Result<()> {
-    use rustix::process::{Resource, Rlimit, setrlimit};
+    use nix::sys::resource::{Resource, setrlimit};
 
     let Some(limit) = limit else {
         return Ok(());
     };
-    let limit = Rlimit {
-        current: Some(limit),
-        maximum: Some(limit),
-    };
-    setrlimit(Resource::As, limit).map_err(io::Error::from)
+    setrlimit(Resource::RLIMIT_AS, limit, limit).map_err(io::Error::from)
 }
 
 /// Does nothing, because this platform has no limit of the address space.

@@ -277,8 +277,11 @@ impl<'a> Program<'a> {
         self.input = None;
         #[cfg(unix)]
         {
-            use rustix::process::{Pid, Signal, kill_process_group};
-            let _ = kill_process_group(Pid::from_child(&self.child), Signal::KILL);
+            use nix::sys::signal::{Signal, killpg};
+            use nix::unistd::Pid;
+            if let Ok(id) = i32::try_from(self.child.id()) {
+                let _ = killpg(Pid::from_raw(id), Signal::SIGKILL);
+            }
         }
         let _ = self.child.kill();
         let _ = self.child.wait();

@@ -1,8 +1,8 @@
 //! Tests of the records, the panic messages and the memory.
 
 use sixfold_core::{
-    EdgeId, EditError, FaceId, MeshEdit, MeshQuery, Point, PolygonMesh, Representation, RowId,
-    VertexId,
+    EdgeId, EditError, FaceId, MeshEdit, MeshMove, MeshQuery, Point, PolygonMesh, Representation,
+    RowId, VertexId,
 };
 
 use crate::EditableWingedEdgeMesh;

@@ -9,8 +9,8 @@ use crate::operation::ElementKind;
 use crate::trace::{EditCall, NONE, Trace, affected_faces};
 use sixfold::{
     BuildError, Capabilities, Edit, EditLog, EditRecord, FaceId, Handle, InvariantError,
-    MemoryFootprint, MeshEdit, MeshQuery, MoveError, OrientedWalk, Point, PolygonMesh, QueryCost,
-    Refusal, Relation, Representation, VertexId, VertexMap,
+    MemoryFootprint, MeshEdit, MeshMove, MeshQuery, MoveError, OrientedWalk, Point, PolygonMesh,
+    QueryCost, Refusal, Relation, Representation, VertexId, VertexMap,
 };
 
 /// How often a program asks each relation, reads positions and edits, in one run.
@@ -266,19 +266,26 @@ impl<M: Representation> Representation for Recorded<M> {
         M::face_handle(polygons, f)
     }
 
-    fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError> {
-        if let Some(tape) = &self.tape {
-            tape.lock().set_positions();
-        }
-        self.mesh.set_positions(positions)
-    }
-
     fn memory(&self) -> MemoryFootprint {
         self.mesh.memory()
     }
 
     fn validate(&self) -> Result<(), InvariantError> {
         self.mesh.validate()
+    }
+}
+
+impl<M: Representation> MeshMove for Recorded<M> {
+    fn set_positions_logged(
+        &mut self,
+        positions: &VertexMap<Self, Point>,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), MoveError> {
+        if let Some(tape) = &self.tape {
+            tape.lock().set_positions();
+        }
+        self.mesh
+            .set_positions_logged(positions, &mut PassedOn(log))
     }
 }
 

@@ -236,7 +236,7 @@ fn access(visits: &[Visits; 3], polygons: &PolygonMesh) -> Access {
 
 #[cfg(test)]
 mod tests {
-    use sixfold::{FaceVertexMesh, MeshQuery, Representation, shapes};
+    use sixfold::{FaceVertexMesh, MeshMove, MeshQuery, Representation, shapes};
 
     use super::*;
     use crate::program::Recorded;

@@ -3,8 +3,9 @@
 use std::marker::PhantomData;
 
 use sixfold_core::{
-    BuildError, Capabilities, Counts, FaceId, InvariantError, Measured, MemoryFootprint, MeshQuery,
-    MoveError, Point, PolygonMesh, Probe, QueryCost, Relation, Representation, VertexId, VertexMap,
+    BuildError, Capabilities, Counts, EditLog, FaceId, InvariantError, Measured, MemoryFootprint,
+    MeshMove, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Relation, Representation,
+    VertexId, VertexMap,
 };
 
 use super::{Flaw, FlawKind, Flawed};
@@ -91,20 +92,6 @@ impl<F: Flaw> Representation for Flawed<F> {
         }
     }
 
-    fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError> {
-        self.moves += 1;
-        let mut positions = positions.clone();
-        if self.is(FlawKind::SecondMoveIgnored) && self.moves > 1 {
-            return Ok(());
-        }
-        if let Some(last) = self.inner.vertices().last()
-            && self.is(FlawKind::LastVertexNotMoved)
-        {
-            positions[last] = self.inner.position(last);
-        }
-        self.inner.set_positions(&positions)
-    }
-
     fn memory(&self) -> MemoryFootprint {
         let mut memory = self.inner.memory();
         if self.is(FlawKind::MemoryTooLarge) {
@@ -118,6 +105,31 @@ impl<F: Flaw> Representation for Flawed<F> {
             return Err(InvariantError::new("I9", "always fails"));
         }
         self.inner.validate()
+    }
+}
+
+impl<F: Flaw> MeshMove for Flawed<F> {
+    fn set_positions_logged(
+        &mut self,
+        positions: &VertexMap<Self, Point>,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), MoveError> {
+        if let Some(first) = self.inner.vertices().next()
+            && self.is(FlawKind::MoveReportsRemoval)
+        {
+            log.removed_vertex(first);
+        }
+        self.moves += 1;
+        let mut positions = positions.clone();
+        if self.is(FlawKind::SecondMoveIgnored) && self.moves > 1 {
+            return Ok(());
+        }
+        if let Some(last) = self.inner.vertices().last()
+            && self.is(FlawKind::LastVertexNotMoved)
+        {
+            positions[last] = self.inner.position(last);
+        }
+        self.inner.set_positions(&positions)
     }
 }
 

@@ -2,9 +2,10 @@
 
 use super::super::accessor::{Elements, elements};
 use super::super::document::Primitive;
-use super::super::{GltfFault, fault};
+use super::super::fault;
 use super::SceneReader;
 use crate::error::ReadError;
+use crate::faults::GltfFault;
 use crate::notice::IgnoredKind;
 use crate::place::Place;
 

@@ -101,14 +101,21 @@ impl<const SLOW: bool> Representation for Ticking<SLOW> {
     fn face_handle(polygons: &PolygonMesh, f: FaceId) -> Self::Face {
         FaceVertexMesh::face_handle(polygons, f)
     }
-    fn set_positions(&mut self, positions: &VertexMap<Self, Point>) -> Result<(), MoveError> {
-        self.0.set_positions(positions)
-    }
     fn memory(&self) -> MemoryFootprint {
         self.0.memory()
     }
     fn validate(&self) -> Result<(), InvariantError> {
         self.0.validate()
+    }
+}
+
+impl<const SLOW: bool> MeshMove for Ticking<SLOW> {
+    fn set_positions_logged(
+        &mut self,
+        positions: &VertexMap<Self, Point>,
+        _: &mut impl EditLog<Self>,
+    ) -> Result<(), MoveError> {
+        self.0.set_positions(positions)
     }
 }
 

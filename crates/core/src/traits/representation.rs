@@ -1,0 +1,165 @@
+//! The trait of all mesh data structures.
+
+use std::fmt;
+
+use crate::handles::row_id::{FaceId, VertexId};
+use crate::polygons::error::{BuildError, InvariantError};
+use crate::polygons::polygon_mesh::PolygonMesh;
+use crate::tables::memory::MemoryFootprint;
+use crate::traits::mesh_move::MeshMove;
+
+/// One of the nine relations of [`MeshQuery`](crate::MeshQuery).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Deserialize, serde::Serialize),
+    serde(rename_all = "snake_case")
+)]
+#[expect(
+    missing_docs,
+    reason = "the names are those of the methods of MeshQuery"
+)]
+pub enum Relation {
+    VertexVertices,
+    VertexEdges,
+    VertexFaces,
+    EdgeVertices,
+    EdgeEdges,
+    EdgeFaces,
+    FaceVertices,
+    FaceEdges,
+    FaceFaces,
+}
+
+impl Relation {
+    /// All nine relations, in the order of the table in
+    /// [`MeshQuery`](crate::MeshQuery).
+    pub const ALL: [Self; 9] = [
+        Self::VertexVertices,
+        Self::VertexEdges,
+        Self::VertexFaces,
+        Self::EdgeVertices,
+        Self::EdgeEdges,
+        Self::EdgeFaces,
+        Self::FaceVertices,
+        Self::FaceEdges,
+        Self::FaceFaces,
+    ];
+
+    /// Returns the name of the method, for example `vertex_vertices`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::VertexVertices => "vertex_vertices",
+            Self::VertexEdges => "vertex_edges",
+            Self::VertexFaces => "vertex_faces",
+            Self::EdgeVertices => "edge_vertices",
+            Self::EdgeEdges => "edge_edges",
+            Self::EdgeFaces => "edge_faces",
+            Self::FaceVertices => "face_vertices",
+            Self::FaceEdges => "face_edges",
+            Self::FaceFaces => "face_faces",
+        }
+    }
+}
+
+impl fmt::Display for Relation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// How much of a mesh one query reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Deserialize, serde::Serialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum QueryCost {
+    /// The query reads O(1) rows for each element that it yields.
+    Constant,
+    /// The query reads the faces around the element. The cost does not depend on the size of the
+    /// mesh.
+    Local,
+    /// The query reads all faces.
+    Scan,
+}
+
+impl QueryCost {
+    /// Returns true if none of `costs` is [`Scan`](Self::Scan).
+    pub const fn are_local(costs: &[Self; 9]) -> bool {
+        let mut i = 0;
+        while i < costs.len() {
+            if matches!(costs[i], Self::Scan) {
+                return false;
+            }
+            i += 1;
+        }
+        true
+    }
+}
+
+/// A mesh data structure: its name, its construction, and its memory.
+///
+/// # Contract
+///
+/// - `from_polygons` and [`CAPABILITIES`](crate::MeshQuery::CAPABILITIES)`.check` agree: both succeed, or
+///   both return the same error. The results may differ only if the mesh has too many elements for
+///   the handles of the structure.
+/// - `faces()` and `vertices()` keep the order of the input. If vertices are identified by
+///   coordinates, `vertices()` has the order in which the faces first name the vertices.
+/// - `to_polygons(from_polygons(m))` equals `m`, except that a face may start at another corner. If
+///   vertices are identified by coordinates, vertices with equal coordinates become one vertex, and
+///   the vertices of the result are in the order of `vertices()`.
+pub trait Representation: MeshMove + Clone + Sized + Send + Sync {
+    /// The name of the structure for users, for example `half-edge`.
+    const NAME: &'static str;
+
+    /// How much of the mesh each relation reads, in the order of [`Relation::ALL`].
+    const COSTS: [QueryCost; 9];
+
+    /// Returns how much of the mesh `relation` reads.
+    fn cost(relation: Relation) -> QueryCost {
+        Self::COSTS[relation as usize]
+    }
+
+    /// Returns true if no relation scans all faces.
+    ///
+    /// The trait bound [`LocalQueries`](crate::LocalQueries) requires at compile time that no
+    /// relation scans.
+    fn is_local() -> bool {
+        QueryCost::are_local(&Self::COSTS)
+    }
+
+    /// Returns the path of the type, for example `sixfold_half_edge::HalfEdgeMesh`. The first part
+    /// of the path is the name of the crate.
+    fn type_path() -> &'static str {
+        std::any::type_name::<Self>()
+    }
+
+    /// Builds the structure.
+    ///
+    /// # Errors
+    ///
+    /// Returns the fault that [`Capabilities::check`](crate::Capabilities::check) finds.
+    fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError>;
+
+    /// Returns the mesh as positions and polygons; O(corners) expected.
+    fn to_polygons(&self) -> PolygonMesh;
+
+    /// Returns the handle that vertex `v` of `polygons` has in `from_polygons(polygons)`; O(1).
+    fn vertex_handle(polygons: &PolygonMesh, v: VertexId) -> Self::Vertex;
+
+    /// Returns the handle that face `f` of `polygons` has in `from_polygons(polygons)`; O(1).
+    fn face_handle(polygons: &PolygonMesh, f: FaceId) -> Self::Face;
+
+    /// Returns the number of bytes that each table allocates on the heap.
+    fn memory(&self) -> MemoryFootprint;
+
+    /// Checks all numbered invariants of the structure; O(corners) expected.
+    ///
+    /// # Errors
+    ///
+    /// Returns the number of the first invariant that fails, and the element at which it fails.
+    fn validate(&self) -> Result<(), InvariantError>;
+}
