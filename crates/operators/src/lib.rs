@@ -21,7 +21,7 @@
 //! differ in the last bits of a coordinate.
 //! ```
 //! use sixfold_half_edge::HalfEdgeMesh;
-//! use sixfold_core::{MeshQuery, Representation};
+//! use sixfold_core::{MeshMove, MeshQuery, Representation};
 //! use sixfold_operators::{Smoothing, Triangulation, oriented, smoothed, triangulated};
 //!
 //! let repaired = oriented(&sixfold_shapes::cube(), Default::default())?;

@@ -32,7 +32,7 @@ use crate::error::SphereError;
 /// use std::collections::BTreeMap;
 ///
 /// use sixfold_indexed_face_set::IndexedFaceSet;
-/// use sixfold_core::{MeshQuery, Point, PolygonMesh, Representation};
+/// use sixfold_core::{MeshMove, MeshQuery, Point, PolygonMesh, Representation};
 /// use sixfold_operators::projected_to_sphere;
 ///
 /// let icosahedron = sixfold_shapes::icosahedron();

@@ -109,7 +109,7 @@ program_kind! {
 
 program_kind! {
     /// A program that moves the vertices of a mesh with
-    /// [`set_positions`](MeshMove::set_positions).
+    /// [`set_positions`](sixfold::MeshMove::set_positions).
     ///
     /// Each run gets a fresh copy of the mesh and of the scratch data. Copying is not timed.
     MovingProgram, Representation, &mut
