@@ -215,7 +215,7 @@ pub trait HoleSet<P: Probe>: Clone + Debug + Send + Sync {
     fn check(&self, end: usize) -> Result<(), String>;
 }
 
-/// The holes of a [`Compact`] mesh: an empty set, known at compile time.
+/// The holes of a [`Compact`](crate::Compact) mesh: an empty set, known at compile time.
 #[derive(Clone, Copy, Debug)]
 pub struct NoHoles;
 
