@@ -5,7 +5,7 @@ use std::error::Error;
 use std::fs::{self, File};
 use std::path::PathBuf;
 
-use sixfold::io::{Format, write};
+use sixfold::io::{Format, WriteOptions, write_to};
 use sixfold::shapes;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let file = folder
                 .join(target)
                 .join(format!("{name}.{}", format.name()));
-            write(mesh, format, File::create(file)?)?;
+            write_to(mesh, format, &WriteOptions::default(), File::create(file)?)?;
         }
     }
     fs::create_dir_all(folder.join("creases"))?;
