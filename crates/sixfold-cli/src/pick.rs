@@ -301,6 +301,10 @@ fn ranking(report: &PickReport) -> String {
             right(pays_after(report, ranked)),
         ]);
     }
+    // With this padding, also the largest figures fit into 100 columns of text.
+    for (i, column) in rows.column_iter_mut().enumerate() {
+        column.set_padding((u16::from(i > 0), 0));
+    }
     let mut text = rows.trim_fmt();
     let legend = [
         "~ measured on a sample of the elements, because each query scans all faces",

@@ -9,6 +9,8 @@ use sixfold_workload::ElementSample;
 /// Minimum number of elements that the runs of a sample visit. At 1 ns for each element, these runs
 /// take 100 µs.
 const ELEMENTS_PER_SAMPLE: f64 = 100_000.0;
+/// The number of visits that take as long as a run has in addition, such as a call and its result.
+const VISITS_PER_RUN: f64 = 20.0;
 /// The number of visits that take as long as making, moving or removing one element.
 const VISITS_PER_MADE_ELEMENT: f64 = 50.0;
 /// Maximum number of faces that a sample of a scanning operation visits.
@@ -58,7 +60,7 @@ fn runs_per_sample(entry: &Entry, scans: bool, faces: usize) -> u32 {
         (true, false) => VISITS_PER_MADE_ELEMENT,
         (false, false) => 1.0,
     };
-    (ELEMENTS_PER_SAMPLE / (elements * each))
+    (ELEMENTS_PER_SAMPLE / (elements * each + VISITS_PER_RUN))
         .ceil()
         .clamp(1.0, MAX_RUNS) as u32
 }

@@ -232,6 +232,11 @@ fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget()
     );
     // A long rebuild leaves no time for another rebuild.
     assert_eq!(placed(1e8).2, 1);
+    // The last round does not begin with a rebuild that would exceed the budget.
+    for ms in 2..=20 {
+        let (_, elapsed, _) = placed(1e6 * f64::from(ms));
+        assert!(elapsed <= budget, "{ms} ms each: {elapsed:?}");
+    }
 }
 
 #[test]

@@ -1,0 +1,6 @@
+//! Tests that run on each structure. They are here, so that the unit tests need not compile what the
+//! library has compiled for each structure.
+
+mod edits;
+mod mix;
+mod subdivision;
