@@ -234,7 +234,7 @@ pub(crate) struct Study {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
     /// Run only these operations, by name
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = operation)]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub(crate) operations: Vec<Operation>,
     /// Total time of all meshes and labs [default: 20s each]
     #[arg(long, value_name = "TIME", value_parser = duration, allow_hyphen_values = true)]
@@ -394,11 +394,6 @@ fn backend(name: &str) -> Result<String, String> {
         Ok(_) => Ok(name.trim().into()),
         Err(error) => Err(error.to_string()),
     }
-}
-
-fn operation(name: &str) -> Result<Operation, String> {
-    let parsed: Result<Operation, _> = name.trim().parse();
-    parsed.map_err(|error| error.to_string())
 }
 
 /// Parses `20s`, `500ms` or `2m`: above 0 and at most a week.

@@ -22,7 +22,7 @@ pub(crate) fn run(arguments: &Neighbours) -> Result<ExitCode, Failure> {
     let mesh = arguments.mesh.as_deref();
     let settings = NeighboursSettings {
         indices: arguments.indices.clone(),
-        points: arguments.points.into(),
+        points: arguments.points,
         effort: arguments.effort(),
         seed: arguments.seed,
         heap: Policy::Kept,

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use serde_json::json;
+use sixfold::UnknownName;
 use sixfold_study::{Action, Workload, built_in, built_ins};
 
 use crate::arguments::Workloads;
@@ -67,9 +68,8 @@ pub(crate) fn workload(word: &str) -> Result<Workload, Failure> {
 }
 
 fn unknown(name: &str) -> Failure {
-    let names: Vec<&str> = built_ins().map(|(name, _)| name).collect();
-    let message = sixfold_study::unknown("workload", name, &names);
-    Failure::usage(format!("{message}, or name a file that ends in .toml"))
+    let error = UnknownName::new("workload", name, built_ins().map(|(name, _)| name));
+    Failure::usage(format!("{error}, or name a file that ends in .toml"))
 }
 
 fn list() -> String {

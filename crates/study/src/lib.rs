@@ -56,8 +56,7 @@ pub use labs::growth::{
 pub use labs::memory::{Audit, BackendAudit, OperationBytes, audit, count_allocations};
 pub use labs::neighbours::{
     Cheapest, CheapestIndices, IndexReport, NeighbourRow, NeighboursError, NeighboursReport,
-    NeighboursSettings, QueryPoints, SpatialTask, UnknownSpatialTask, neighbour_indices,
-    neighbours,
+    NeighboursSettings, QueryPoints, SpatialTask, neighbour_indices, neighbours,
 };
 pub use labs::orders::{
     Comparison, DEFAULT_OPERATIONS, Factor, Larger, OrderEffect, OrderRow, OrdersError,
@@ -66,8 +65,7 @@ pub use labs::orders::{
 pub use labs::pick::{
     AskedCount, BreakEven, Choice, EQUAL_UP_TO, Excluded, MeshRanking, Need, PartCost, PickError,
     PickReport, PickSettings, Predicted, Prediction, ProgramReport, ProgramSettings, Ranked,
-    RecordError, RecordedProgram, TurningPoint, UnknownNeed, pick, pick_for_programs, predict,
-    record_program,
+    RecordError, RecordedProgram, TurningPoint, pick, pick_for_programs, predict, record_program,
 };
 pub use labs::study::{Report, Settings, StudyError, study};
 pub use labs::why::{Bound, Model, Timed, Timing, Why, WhyRow, WhySettings, why};
@@ -89,9 +87,7 @@ pub use results::rows::{
 pub use results::run::{Run, RunSettings, Start as RunStart};
 pub use runner::{BackendRun, BackendRunner};
 pub use sanitize::sanitize;
-pub use sixfold_workload::pages::{
-    self, HeapGuard, HeapPolicyConflict, HeapReport, Policy, UnknownPolicy,
-};
+pub use sixfold_workload::pages::{self, HeapGuard, HeapPolicyConflict, HeapReport, Policy};
 pub use sixfold_workload::{
     Access, Action, Amount, EditPlaceError, OwnBytes, OwnData, Part, Workload, WorkloadError,
     built_in, built_ins,
@@ -100,7 +96,7 @@ pub use sixfold_workload::{
     Allocated, AllocationCounter, Backend, BufferSpeed, Cache, CacheFlusher, Clock, EditPass,
     Editor, Edits, ElementKind, Heap, MAX_SCANNED_FACES, MachineClock, MeasuredMemory, MemorySpeed,
     NotCounted, Operation, Reads, Refiner, Series, SingleEdit, Start, SubdivisionJob, TableReads,
-    Time, UnknownOperation, Way, caches, timed, unknown,
+    Time, Way, caches, timed,
 };
 pub use sixfold_workload::{
     Asked, EditProgram, MovingProgram, Outcome, Program, ProgramRefusal, Recorded, Recording,

@@ -4,10 +4,10 @@ use std::fmt;
 use std::ops::Range;
 
 use serde::de::{self, Deserialize, Deserializer, MapAccess, Visitor};
+use sixfold::UnknownName;
 use toml::Spanned;
 
 use crate::operation::ElementKind;
-use crate::unknown::unknown;
 use crate::workload::{Access, Action, Amount, OwnData, Part, Workload};
 
 /// An error in a workload file, with the number of the line.
@@ -137,14 +137,8 @@ impl Workload {
         };
         let access = match &parsed.access {
             None => Access::Sequential,
-            Some(word) => Access::ALL
-                .into_iter()
-                .find(|access| access.name() == word.get_ref())
-                .ok_or_else(|| {
-                    let allowed = Access::ALL.map(Access::name);
-                    let message = unknown("access pattern", word.get_ref(), &allowed);
-                    at(parsed.access.as_ref().map_or(0..0, Spanned::span), message)
-                })?,
+            Some(word) => (word.get_ref().parse())
+                .map_err(|error: UnknownName| at(word.span(), error.to_string()))?,
         };
         let Some(operations) = &parsed.operations else {
             let message = "missing key `operations`: give the number of operations of the program, as in `operations = \"20 per face\"`";

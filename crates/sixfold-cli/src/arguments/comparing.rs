@@ -8,9 +8,7 @@ use clap::Args;
 use sixfold::shapes::Order;
 use sixfold_study::{Effort, GrowthSettings, Operation};
 
-use super::{
-    MemoryState, ReadFiles, ResultFiles, backend, duration, effort, operation, rounds, seed,
-};
+use super::{MemoryState, ReadFiles, ResultFiles, backend, duration, effort, rounds, seed};
 
 /// Text after the options in `orders --help`; the lists of names follow it.
 pub(crate) const ORDERS_EXAMPLES: &str = "Examples:
@@ -45,7 +43,7 @@ pub(crate) struct Orders {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
     /// Run these operations instead of the default operations
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = operation)]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub(crate) operations: Vec<Operation>,
     /// Total time to measure, such as 20s, 500ms or 2m
     #[arg(long, value_name = "TIME", default_value = "25s", value_parser = duration, allow_hyphen_values = true)]
@@ -173,7 +171,7 @@ pub(crate) struct Growth {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
     /// Run these operations instead of the default operations
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = operation)]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub(crate) operations: Vec<Operation>,
     /// Order: given, shuffled, morton, breadth-first
     #[arg(long, value_name = "ORDER", default_value = "given")]

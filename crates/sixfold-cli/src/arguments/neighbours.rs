@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use sixfold_study::{Effort, QueryPoints, neighbour_indices};
 
 use super::{ReadFiles, ResultFiles, duration, effort, rounds, seed};
@@ -46,9 +46,9 @@ pub(crate) struct Neighbours {
     /// Measure only these indices, by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = index)]
     pub(crate) indices: Vec<String>,
-    /// Where the query points are: near the surface, or anywhere in the bounding box
+    /// Query points: near (the surface), or box (anywhere in the bounding box)
     #[arg(long, value_name = "WHERE", default_value = "near")]
-    pub(crate) points: Points,
+    pub(crate) points: QueryPoints,
     /// Total time to measure, such as 20s, 500ms or 2m
     #[arg(long, value_name = "TIME", default_value = "10s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) budget: Duration,
@@ -68,22 +68,6 @@ impl Neighbours {
     /// Returns how much to measure.
     pub(crate) fn effort(&self) -> Effort {
         effort(self.budget, self.rounds)
-    }
-}
-
-/// The values of `--points`.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Points {
-    Near,
-    Box,
-}
-
-impl From<Points> for QueryPoints {
-    fn from(points: Points) -> Self {
-        match points {
-            Points::Near => Self::Near,
-            Points::Box => Self::Box,
-        }
     }
 }
 

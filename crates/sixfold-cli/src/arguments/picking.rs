@@ -58,7 +58,7 @@ pub(crate) struct Pick {
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     pub(crate) max_memory: Option<u64>,
     /// Abilities that the structure must have, from the list below
-    #[arg(long, value_name = "NEED,…", value_delimiter = ',', value_parser = need)]
+    #[arg(long, value_name = "NEED,…", value_delimiter = ',')]
     pub(crate) needs: Vec<Need>,
     /// Use only these data structures (backends), by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
@@ -104,11 +104,6 @@ pub(crate) struct Workloads {
     /// Write the workloads as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
-}
-
-fn need(name: &str) -> Result<Need, String> {
-    let parsed: Result<Need, _> = name.trim().parse();
-    parsed.map_err(|error| error.to_string())
 }
 
 /// Parses `2GiB`, `500MB` or `1000000`: at least 1 byte.

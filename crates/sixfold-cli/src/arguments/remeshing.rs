@@ -6,7 +6,6 @@ use clap::Args;
 use sixfold::remeshing::{DecimationBoundary, Target};
 
 use super::reshaping::iterations;
-use super::subdivision::parse_name;
 use super::{ReadPolygons, WriteFiles, backend};
 
 const DECIMATE_EXAMPLES: &str = "Examples:
@@ -46,7 +45,7 @@ pub(crate) struct Decimate {
     #[command(flatten)]
     pub(crate) goal: Goal,
     /// Boundary: follow (simplify the boundary too) or fixed
-    #[arg(long, value_name = "RULE", default_value = "follow", value_parser = boundary)]
+    #[arg(long, value_name = "RULE", default_value = "follow")]
     pub(crate) boundary: DecimationBoundary,
     /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "corner-table", value_parser = backend)]
@@ -169,18 +168,6 @@ fn edge_length(text: &str) -> Result<f64, String> {
         Ok(length) if length.is_finite() && length > 0.0 => Ok(length),
         _ => Err("the edge length must be finite and above 0".to_owned()),
     }
-}
-
-fn boundary(text: &str) -> Result<DecimationBoundary, String> {
-    let name = |boundary| match boundary {
-        DecimationBoundary::Follow => "follow",
-        DecimationBoundary::Fixed => "fixed",
-    };
-    parse_name(
-        &[DecimationBoundary::Follow, DecimationBoundary::Fixed],
-        name,
-        text,
-    )
 }
 
 #[cfg(test)]

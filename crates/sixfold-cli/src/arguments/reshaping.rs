@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use clap::Args;
 use sixfold::operators::{Facing, SmoothingBoundary, Triangulation, Weights};
 
-use super::subdivision::parse_name;
 use super::{ReadFiles, ReadPolygons, WriteFiles, backend};
 
 const SMOOTH_EXAMPLES: &str = "Examples:
@@ -29,10 +28,10 @@ pub(crate) struct Smooth {
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
     /// Weights of the neighbours: uniform or cotangent
-    #[arg(long, value_name = "WHICH", default_value = "uniform", value_parser = weights)]
+    #[arg(long, value_name = "WHICH", default_value = "uniform")]
     pub(crate) weights: Weights,
     /// Boundary: fixed, or curve (smoothed as a curve)
-    #[arg(long, value_name = "RULE", default_value = "fixed", value_parser = boundary)]
+    #[arg(long, value_name = "RULE", default_value = "fixed")]
     pub(crate) boundary: SmoothingBoundary,
     /// Number of iterations
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = iterations, allow_hyphen_values = true)]
@@ -105,10 +104,10 @@ pub(crate) struct Triangulate {
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
     /// ears (for any simple polygon) or fan (for convex polygons)
-    #[arg(long, value_name = "NAME", default_value = "ears", value_parser = triangulation)]
+    #[arg(long, value_name = "NAME", default_value = "ears")]
     pub(crate) method: Triangulation,
     /// Flip faces to one orientation: majority (of the faces) or outward
-    #[arg(long, value_name = "RULE", value_parser = facing)]
+    #[arg(long, value_name = "RULE")]
     pub(crate) orient: Option<Facing>,
     #[command(flatten)]
     pub(crate) write: WriteFiles,
@@ -119,41 +118,4 @@ pub(crate) struct Triangulate {
 pub(super) fn iterations(text: &str) -> Result<usize, String> {
     let parsed = text.trim().parse();
     parsed.map_err(|_| format!("the number of iterations must be from 0 to {}", usize::MAX))
-}
-
-fn weights(text: &str) -> Result<Weights, String> {
-    let name = |weights| match weights {
-        Weights::Uniform => "uniform",
-        Weights::Cotangent => "cotangent",
-    };
-    parse_name(&[Weights::Uniform, Weights::Cotangent], name, text)
-}
-
-fn boundary(text: &str) -> Result<SmoothingBoundary, String> {
-    let name = |boundary| match boundary {
-        SmoothingBoundary::Fixed => "fixed",
-        SmoothingBoundary::Curve => "curve",
-    };
-    parse_name(
-        &[SmoothingBoundary::Fixed, SmoothingBoundary::Curve],
-        name,
-        text,
-    )
-}
-
-fn triangulation(text: &str) -> Result<Triangulation, String> {
-    let name = |method| match method {
-        Triangulation::EarClipping => "ears",
-        Triangulation::Fan => "fan",
-    };
-    let all = [Triangulation::EarClipping, Triangulation::Fan];
-    parse_name(&all, name, text)
-}
-
-pub(super) fn facing(text: &str) -> Result<Facing, String> {
-    let name = |facing| match facing {
-        Facing::Majority => "majority",
-        Facing::Outward => "outward",
-    };
-    parse_name(&[Facing::Majority, Facing::Outward], name, text)
 }

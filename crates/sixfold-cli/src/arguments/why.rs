@@ -8,7 +8,6 @@ use clap::Args;
 use sixfold::Relation;
 use sixfold_study::Effort;
 
-use super::subdivision::parse_name;
 use super::{ReadFiles, ResultFiles, backend, duration, effort, rounds};
 
 const WHY_EXAMPLES: &str = "Examples:
@@ -48,7 +47,7 @@ pub(crate) struct Why {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
     /// Query only these relations, by name
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = relation)]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub(crate) relations: Vec<Relation>,
     /// First cut every polygon into a fan of triangles
     #[arg(long)]
@@ -73,8 +72,4 @@ impl Why {
     pub(crate) fn effort(&self) -> Effort {
         effort(self.budget, self.rounds)
     }
-}
-
-fn relation(text: &str) -> Result<Relation, String> {
-    parse_name(&Relation::ALL, Relation::name, text)
 }

@@ -14,13 +14,14 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
+use sixfold::UnknownName;
 use sixfold::spatial::SpatialError;
 use sixfold_workload::pages::Policy;
 use sixfold_workload::{ElementSample, MachineClock, Task, Time, TimedBackend};
 
 pub use cheapest::Cheapest;
 pub use queries::QueryPoints;
-pub use tasks::{SpatialTask, UnknownSpatialTask};
+pub use tasks::SpatialTask;
 
 use crate::engine::agreement::compare_checksums;
 use crate::engine::effort::{Budget, Effort};
@@ -269,13 +270,7 @@ impl LabFinding for NeighboursReport {
 impl NeighboursSettings {
     /// Returns the requested kinds of indices.
     fn chosen(&self) -> Result<Vec<IndexKind>, StudyError> {
-        let unknown = |name: &&String| KINDS.iter().all(|kind| kind.name != **name);
-        if let Some(name) = self.indices.iter().find(unknown) {
-            return Err(StudyError::UnknownBackend {
-                name: name.clone(),
-                known: neighbour_indices().to_vec(),
-            });
-        }
+        UnknownName::check("index", &self.indices, neighbour_indices())?;
         let is_chosen = |kind: &IndexKind| {
             self.indices.is_empty() || self.indices.iter().any(|n| n == kind.name)
         };

@@ -7,7 +7,7 @@ pub(crate) mod sentences;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use sixfold::{Distribution, Facts, PolygonMesh, QueryCost, Relation};
+use sixfold::{Distribution, Facts, PolygonMesh, QueryCost, Relation, UnknownName};
 use sixfold_core::Counts;
 
 use crate::engine::agreement::compare_checksums;
@@ -35,7 +35,6 @@ use sixfold_workload::Draw;
 use sixfold_workload::Operation;
 use sixfold_workload::TimedBackend;
 use sixfold_workload::pages::{HeapPolicyConflict, Policy};
-use sixfold_workload::unknown;
 use sixfold_workload::{MachineClock, Time};
 
 /// Maximum valence or degree of a mesh that counts as not skewed.
@@ -90,11 +89,8 @@ impl Default for Settings {
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum StudyError {
     /// No backend has the requested name.
-    #[error("{}", unknown("backend", .name, .known))]
-    UnknownBackend {
-        name: String,
-        known: Vec<&'static str>,
-    },
+    #[error(transparent)]
+    UnknownBackend(#[from] UnknownName),
     /// Two structures have the same name.
     #[error("two backends are called `{name}`: give each backend its own name")]
     RepeatedBackend { name: String },
@@ -145,13 +141,7 @@ impl Settings {
             }
             all.push(extra);
         }
-        let unknown = |name: &&String| all.iter().all(|backend| backend.name() != **name);
-        if let Some(name) = self.backends.iter().find(unknown) {
-            return Err(StudyError::UnknownBackend {
-                name: name.clone(),
-                known: all.iter().map(Backend::name).collect(),
-            });
-        }
+        UnknownName::check("backend", &self.backends, all.iter().map(Backend::name))?;
         let requested = |backend: &Backend| {
             self.backends.is_empty() || self.backends.iter().any(|name| name == backend.name())
         };

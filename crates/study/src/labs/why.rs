@@ -148,16 +148,16 @@ pub struct Timed {
     pub bound: Bound,
 }
 
-/// The factor that limits the speed of a sweep (querying a relation at all elements).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Bound {
-    /// The transfer of bytes from memory limits the speed.
-    Bandwidth,
-    /// The wait for cache lines that a prefetcher cannot predict limits the speed.
-    Latency,
-    /// Computation on data in the cache limits the speed.
-    Work,
+sixfold_core::named! {
+    /// The factor that limits the speed of a sweep (querying a relation at all elements).
+    pub enum Bound: "limiting factor" {
+        /// The transfer of bytes from memory limits the speed.
+        Bandwidth = "bandwidth",
+        /// The wait for cache lines that a prefetcher cannot predict limits the speed.
+        Latency = "latency",
+        /// Computation on data in the cache limits the speed.
+        Work = "work",
+    }
 }
 
 impl Bound {
@@ -176,15 +176,6 @@ impl Bound {
             Self::Latency
         } else {
             Self::Work
-        }
-    }
-
-    /// Returns the name of the factor in files: `bandwidth`, `latency` or `work`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Bandwidth => "bandwidth",
-            Self::Latency => "latency",
-            Self::Work => "work",
         }
     }
 }

@@ -33,31 +33,19 @@ pub struct SuiteProgram {
     own_ns: f64,
 }
 
-/// What a program needs of a structure.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum ProgramKind {
-    /// The program is a [`Program`].
-    Queries,
-    /// The program is a [`WalkProgram`].
-    Walks,
-    /// The program is a [`MovingProgram`].
-    Moves,
-    /// The program is an [`EditProgram`].
-    Edits,
-    /// The program is a [`RefineProgram`].
-    Refines,
-}
-
-impl ProgramKind {
-    /// Returns the verb that describes the program in text and in results.
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Queries => "queries",
-            Self::Walks => "walks",
-            Self::Moves => "moves",
-            Self::Edits => "edits",
-            Self::Refines => "refines",
-        }
+sixfold_core::named! {
+    /// What a program needs of a structure.
+    enum ProgramKind: "kind of program" {
+        /// The program is a [`Program`].
+        Queries = "queries",
+        /// The program is a [`WalkProgram`].
+        Walks = "walks",
+        /// The program is a [`MovingProgram`].
+        Moves = "moves",
+        /// The program is an [`EditProgram`].
+        Edits = "edits",
+        /// The program is a [`RefineProgram`].
+        Refines = "refines",
     }
 }
 

@@ -2,11 +2,10 @@
 
 use std::io::{self, BufRead, Write};
 
-use sixfold::{Edit, Point, Relation};
+use sixfold::{Edit, Point, Relation, UnknownName};
 
 use super::{ALL, Call, EditCall, NONE, Op, Trace, is_at_edge};
 use crate::operation::ElementKind;
-use crate::unknown::unknown;
 
 /// The first line of a trace.
 const FIRST_LINE: &str = "sixfold-trace 1";
@@ -322,14 +321,13 @@ impl Reader {
                 nothing_more(words)
             }
             _ => {
-                let mut relations = Relation::ALL.into_iter();
-                if let Some(relation) = relations.find(|r| r.name() == word) {
+                if let Ok(relation) = word.parse::<Relation>() {
                     let kind = ElementKind::queried_by(relation);
                     return self.elements(Op::Query(relation), kind, words);
                 }
-                let edit = Edit::ALL.into_iter().find(|e| e.name() == word);
-                let edit = edit.ok_or_else(|| unknown("call", word, &self::words()))?;
-                self.edit(edit, words)
+                let edit = word.parse();
+                let unknown = |_| UnknownName::new("call", word, self::words()).to_string();
+                self.edit(edit.map_err(unknown)?, words)
             }
         }
     }

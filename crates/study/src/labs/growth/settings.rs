@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use sixfold::Facts;
 use sixfold::shapes::{Order, ShapeError};
+use sixfold::{Facts, UnknownName};
 
 use super::BackendRefusal;
 use super::shapes::{SCALABLE_SHAPES, ScalableShape};
@@ -12,7 +12,7 @@ use crate::inspect::{StudyMesh, inspect};
 use crate::labs::orders::{chosen_operations, draw_bytes, prepared_bytes};
 use crate::labs::study::{Settings, StudyError};
 use crate::results::rows::BackendReport;
-use sixfold_workload::{Backend, Operation, unknown};
+use sixfold_workload::{Backend, Operation};
 
 /// Minimum number of faces. Smaller meshes are too short to time.
 const MIN_FACES: usize = 100;
@@ -70,8 +70,8 @@ pub enum GrowthError {
     #[error(transparent)]
     Shape(#[from] ShapeError),
     /// The name of the shape is unknown.
-    #[error("{}", unknown("scalable shape", .name, &SCALABLE_SHAPES.iter().map(|shape| shape.name).collect::<Vec<_>>()))]
-    UnknownShape { name: String },
+    #[error(transparent)]
+    UnknownShape(#[from] UnknownName),
     /// The largest size is not larger than the smallest size.
     #[error(
         "the first size ({from} faces) is not smaller than the last size ({to} faces): give the \
@@ -124,9 +124,9 @@ impl GrowthSettings {
             ..
         } = self;
         let (from, to, steps) = (*from, *to, *steps);
-        let name = || self.shape.clone();
-        let shape = ScalableShape::from_name(&self.shape);
-        let shape = shape.ok_or_else(|| GrowthError::UnknownShape { name: name() })?;
+        let known = || SCALABLE_SHAPES.iter().map(|shape| shape.name);
+        let unknown = || UnknownName::new("scalable shape", &self.shape, known());
+        let shape = ScalableShape::from_name(&self.shape).ok_or_else(unknown)?;
         for faces in [from, to] {
             if !(MIN_FACES..=MAX_FACES).contains(&faces) {
                 return Err(GrowthError::SizeOutOfRange { faces });
