@@ -6,8 +6,8 @@ use std::sync::atomic::AtomicBool;
 use comfy_table::{Attribute, Cell, CellAlignment, Table};
 use sixfold::shapes::Order;
 use sixfold_study::{
-    Agreement, Comparison, DEFAULT_OPERATIONS, OrderRow, OrdersError, OrdersReport, Settings,
-    Standing, StudyError, StudyMesh,
+    Agreement, Comparison, DEFAULT_OPERATIONS, OrderRow, OrdersReport, Settings, Standing,
+    StudyError, StudyMesh,
 };
 
 use crate::arguments::{ORDERS_EXAMPLES, Orders};
@@ -62,7 +62,7 @@ pub(crate) fn measure(
     let report = sixfold_study::orders(study_mesh, settings, stop, &mut |at| bar.show(at));
     bar.clear();
     report.map_err(|error| match error {
-        OrdersError::Study(StudyError::NoneHolds { .. }) => Failure::unsupported(error),
+        StudyError::NoneHolds { .. } => Failure::unsupported(error),
         error => Failure::usage(error),
     })
 }

@@ -98,14 +98,7 @@ fn refusals(study_mesh: &StudyMesh, settings: &Settings) -> Result<Report, Failu
         run: Run::start(RunSettings::of_study(settings)),
         mesh: inspection.mesh,
         backends: inspection.backends,
-        results: Vec::new(),
-        refusals: Vec::new(),
-        control: None,
-        sentences: Vec::new(),
-        warnings: Vec::new(),
-        samples: Vec::new(),
-        timer: None,
-        interrupted: false,
+        ..Report::default()
     })
 }
 

@@ -50,8 +50,8 @@ pub use external::{EXTERNAL_TIMEOUT, External, ExternalError, ExternalReport};
 pub use inspect::{Inspection, StudyMesh, inspect, inspect_diagnosed, sha256_of};
 pub use labs::Slope;
 pub use labs::growth::{
-    BackendBytes, BackendRefusal, CacheLimit, Fit, GrowthError, GrowthReport, GrowthSettings,
-    SCALABLE_SHAPES, ScalableShape, SizeReport, growth, growth_bytes, growth_plan,
+    BackendBytes, CacheLimit, Fit, GrowthError, GrowthReport, GrowthSettings, SCALABLE_SHAPES,
+    ScalableShape, SizeReport, growth, growth_bytes, growth_plan,
 };
 pub use labs::memory::{Audit, BackendAudit, OperationBytes, audit, count_allocations};
 pub use labs::neighbours::{
@@ -59,8 +59,8 @@ pub use labs::neighbours::{
     NeighboursSettings, QueryPoints, SpatialTask, neighbour_indices, neighbours,
 };
 pub use labs::orders::{
-    Comparison, DEFAULT_OPERATIONS, Factor, Larger, OrderEffect, OrderRow, OrdersError,
-    OrdersReport, SamplesInOrder, StructureEffect, orders, orders_bytes,
+    Comparison, DEFAULT_OPERATIONS, Factor, Larger, OrderEffect, OrderRow, OrdersReport,
+    SamplesInOrder, StructureEffect, orders, orders_bytes,
 };
 pub use labs::pick::{
     AskedCount, BreakEven, Choice, EQUAL_UP_TO, Excluded, MeshRanking, Need, PartCost, PickError,
@@ -81,8 +81,8 @@ pub use results::merge::MergeError;
 pub use results::pool::{Group, Holding, Overall, Pool, Pooled, Purpose};
 pub use results::read::ReadError;
 pub use results::rows::{
-    Agreement, BackendReport, Control, ControlRow, FIRST_TIME_SHOWN, MeshReport, Refusal,
-    RefusalKind, ResultRow, Samples, Standing,
+    Agreement, BackendRefusal, BackendReport, Control, ControlRow, FIRST_TIME_SHOWN, MeshReport,
+    Refusal, RefusalKind, ResultRow, Samples, Standing,
 };
 pub use results::run::{Run, RunSettings, Start as RunStart};
 pub use runner::{BackendRun, BackendRunner};

@@ -20,7 +20,7 @@ use crate::engine::ranking::rank;
 use crate::external::{self, EXTERNAL_TIMEOUT, External, MeshFile};
 use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::labs::orders::prepared_bytes;
-use crate::results::rows::{Agreement, BackendReport, Control, Refusal, ResultRow};
+use crate::results::rows::{Agreement, BackendRefusal, BackendReport, Control, Refusal, ResultRow};
 use crate::results::run::{Run, RunSettings};
 pub use report::Report;
 
@@ -111,18 +111,25 @@ pub enum StudyError {
         "none of the selected backends can hold the mesh: {}; `sixfold repair --for NAME` makes a \
          mesh that the structure NAME can hold", reasons(.refusals)
     )]
-    NoneHolds { refusals: Vec<(String, String)> },
+    NoneHolds { refusals: Vec<BackendRefusal> },
     /// A measurement with another heap policy is active in this process.
     #[error(transparent)]
     HeapPolicy(#[from] HeapPolicyConflict),
 }
 
-fn reasons(refusals: &[(String, String)]) -> String {
-    let reasons: Vec<String> = refusals
-        .iter()
-        .map(|(backend, reason)| format!("{backend}: {reason}"))
-        .collect();
-    reasons.join("; ")
+impl StudyError {
+    /// Returns the error for a mesh that no backend can hold, with the reasons.
+    pub(crate) fn none_holds(backends: impl IntoIterator<Item: Into<BackendRefusal>>) -> Self {
+        let refusals = backends.into_iter().map(Into::into);
+        Self::NoneHolds {
+            refusals: refusals.collect(),
+        }
+    }
+}
+
+fn reasons(refusals: &[BackendRefusal]) -> String {
+    let reasons = (refusals.iter()).map(|r| format!("{}: {}", r.backend, r.reason));
+    reasons.collect::<Vec<_>>().join("; ")
 }
 
 impl Settings {
@@ -250,12 +257,7 @@ pub(crate) fn study_on(
         programs.extend(subject);
     }
     if subjects.is_empty() {
-        let refusals = backends
-            .into_iter()
-            .map(|b| (b.name, b.reason.unwrap_or_default()));
-        return Err(StudyError::NoneHolds {
-            refusals: refusals.collect(),
-        });
+        return Err(StudyError::none_holds(backends));
     }
 
     let names: Vec<String> = subjects.iter().map(|s| s.name().to_owned()).collect();

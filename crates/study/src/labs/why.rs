@@ -25,7 +25,7 @@ use crate::labs::study::{Settings, StudyError, study_on};
 use crate::numbers::bytes;
 use crate::refusal::Candidate;
 use crate::results::figure::{Figure, FigureRow, Status, samples_of};
-use crate::results::finding::{Common, LabFinding, only_mesh};
+use crate::results::finding::{Common, LabFinding, Meshes};
 use crate::results::read::ReadError;
 use crate::results::rows::{Agreement, BackendReport, MeshReport, Samples, check_samples};
 use crate::results::run::{Run, RunSettings};
@@ -191,13 +191,8 @@ impl LabFinding for Why {
         }
     }
 
-    fn run_mut(&mut self) -> &mut Run {
-        &mut self.run
-    }
-
-    fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
-        self.mesh = only_mesh(meshes)?;
-        Ok(())
+    fn parts_mut(&mut self) -> (&mut Run, Meshes<'_>) {
+        (&mut self.run, Meshes::One(&mut self.mesh))
     }
 
     fn mismatches(&self) -> usize {
@@ -208,7 +203,6 @@ impl LabFinding for Why {
     }
 
     fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
-        let facts = &self.mesh.facts;
         let figure = |row: &'s WhyRow| {
             let operation = Operation::Relation(row.reads.relation).name();
             let status = match row.timed.map(|timed| timed.sampled) {
@@ -218,24 +212,21 @@ impl LabFinding for Why {
             };
             let elements = row.reads.elements;
             let samples = samples_of(&self.samples, operation, &row.backend);
+            let figure_row = FigureRow {
+                ns: row
+                    .timed
+                    .map(|timed| timed.ns_per_element * elements as f64),
+                elements: Some(elements),
+                unit: row.per.clone(),
+                agreement: row.timed.map(|timed| timed.agreement),
+                reads: Some(&row.reads),
+                samples: samples.map_or(0, |samples| samples.rounds.len()),
+                ..FigureRow::new(operation.into(), &row.backend, status)
+            };
+            let bytes = bytes_of(&self.backends, &row.backend);
             Figure {
-                mesh: Some(&self.mesh),
-                elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
-                case: String::new(),
-                backend_bytes: bytes_of(&self.backends, &row.backend),
-                row: FigureRow {
-                    ns: row
-                        .timed
-                        .map(|timed| timed.ns_per_element * elements as f64),
-                    elements: Some(elements),
-                    unit: row.per.clone(),
-                    agreement: row.timed.map(|timed| timed.agreement),
-                    reads: Some(&row.reads),
-                    samples: samples.map_or(0, |samples| samples.rounds.len()),
-                    ..FigureRow::new(operation.into(), &row.backend, status)
-                },
                 samples,
-                noise: 1.0,
+                ..Figure::new(&self.mesh, bytes, figure_row)
             }
         };
         self.rows.iter().map(figure).collect()
@@ -346,12 +337,7 @@ fn count_all(
         backends.push(unbuilt(backend, &candidate, verdict));
     }
     if backends.iter().all(|backend| !backend.holds) {
-        let refusals = backends
-            .into_iter()
-            .map(|b| (b.name, b.reason.unwrap_or_default()));
-        return Err(StudyError::NoneHolds {
-            refusals: refusals.collect(),
-        });
+        return Err(StudyError::none_holds(backends));
     }
     Ok((backends, rows))
 }

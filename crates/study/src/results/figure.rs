@@ -175,7 +175,25 @@ impl<'r> FigureRow<'r> {
     }
 }
 
-impl Figure<'_> {
+impl<'r> Figure<'r> {
+    /// Returns a figure of a mesh, without a case, without samples and without noise.
+    pub(crate) fn new(
+        mesh: &'r MeshReport,
+        backend_bytes: Option<usize>,
+        row: FigureRow<'r>,
+    ) -> Self {
+        let facts = &mesh.facts;
+        Self {
+            mesh: Some(mesh),
+            elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
+            case: String::new(),
+            backend_bytes,
+            row,
+            samples: None,
+            noise: 1.0,
+        }
+    }
+
     /// Returns the times of all samples that count, in nanoseconds. See [`Samples::counted_ns`].
     pub fn counted_ns(&self) -> Vec<f64> {
         self.samples.map_or_else(Vec::new, Samples::counted_ns)

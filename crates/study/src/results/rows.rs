@@ -129,6 +129,34 @@ pub struct BackendReport {
     pub external: Option<ExternalReport>,
 }
 
+/// A backend that cannot hold the mesh.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct BackendRefusal {
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+    /// Why the backend cannot hold the mesh.
+    pub reason: String,
+}
+
+impl BackendReport {
+    /// Returns why the backend cannot hold the mesh; `None` if the mesh is not refused.
+    pub(crate) fn refusal(&self) -> Option<BackendRefusal> {
+        Some(BackendRefusal {
+            backend: self.name.clone(),
+            reason: self.reason.clone()?,
+        })
+    }
+}
+
+impl From<BackendReport> for BackendRefusal {
+    fn from(report: BackendReport) -> Self {
+        Self {
+            backend: report.name,
+            reason: report.reason.unwrap_or_default(),
+        }
+    }
+}
+
 /// The result of one operation on one backend. All times are times of one run on the whole mesh, in
 /// nanoseconds.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]

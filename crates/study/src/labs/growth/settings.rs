@@ -5,13 +5,12 @@ use std::time::Duration;
 use sixfold::shapes::{Order, ShapeError};
 use sixfold::{Facts, UnknownName};
 
-use super::BackendRefusal;
 use super::shapes::{SCALABLE_SHAPES, ScalableShape};
 use crate::engine::effort::Effort;
 use crate::inspect::{StudyMesh, inspect};
 use crate::labs::orders::{chosen_operations, draw_bytes, prepared_bytes};
 use crate::labs::study::{Settings, StudyError};
-use crate::results::rows::BackendReport;
+use crate::results::rows::{BackendRefusal, BackendReport};
 use sixfold_workload::{Backend, Operation};
 
 /// Minimum number of faces. Smaller meshes are too short to time.
@@ -177,18 +176,13 @@ pub fn growth_plan(
         &StudyMesh::new(settings.shape.clone(), small),
         &plan.backends,
     );
-    let refusal = |backend: BackendReport| {
-        Some(BackendRefusal {
-            backend: backend.name,
-            reason: backend.reason?,
-        })
-    };
-    let refused = inspection.backends.into_iter().filter_map(refusal);
+    let refused = inspection
+        .backends
+        .iter()
+        .filter_map(BackendReport::refusal);
     let refused: Vec<BackendRefusal> = refused.collect();
     if refused.len() == plan.backends.len() {
-        let refusals = refused.into_iter().map(|r| (r.backend, r.reason));
-        let refusals = refusals.collect();
-        return Err(StudyError::NoneHolds { refusals }.into());
+        return Err(StudyError::none_holds(refused).into());
     }
     Ok((plan.sizes, refused))
 }
