@@ -34,9 +34,10 @@ impl ElementKind {
 ///
 /// An operation visits the elements in the order in which the structure stores them. The operation
 /// uses every handle that a query yields, so the compiler cannot omit the computation of a handle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Operation {
     /// Builds the structure from a polygon mesh.
+    #[default]
     Build,
     /// Queries one relation at every element of one kind.
     Relation(Relation),
