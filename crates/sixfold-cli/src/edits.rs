@@ -18,16 +18,7 @@ pub(crate) fn run(arguments: &Edits) -> Result<ExitCode, Failure> {
     text.print_line(&matrix());
     text.print_line("");
     text.print_line(&legend());
-    let mut done = text.finish();
-    if let Some(output) = json {
-        let rows = Edit::ALL.map(row);
-        done = done.and(output.finish(|writer| {
-            serde_json::to_writer_pretty(&mut *writer, &rows)?;
-            writeln!(writer)
-        }));
-    }
-    done?;
-    Ok(ExitCode::SUCCESS)
+    text.finish_with_json(json, &Edit::ALL.map(row))
 }
 
 /// Returns the table with a row per edit and a column per backend.

@@ -30,16 +30,8 @@ pub(crate) fn run(arguments: &Workloads) -> Result<ExitCode, Failure> {
         true => operations(),
         false => list(),
     });
-    let mut done = text.finish();
-    if let Some(output) = json {
-        let all: Vec<Workload> = built_ins().filter_map(|(name, _)| built_in(name)).collect();
-        done = done.and(output.finish(|writer| {
-            serde_json::to_writer_pretty(&mut *writer, &json!(all))?;
-            writeln!(writer)
-        }));
-    }
-    done?;
-    Ok(ExitCode::SUCCESS)
+    let all: Vec<Workload> = built_ins().filter_map(|(name, _)| built_in(name)).collect();
+    text.finish_with_json(json, &json!(all))
 }
 
 /// Returns the built-in workload with the name `word`. If no built-in workload has this name, reads

@@ -8,7 +8,7 @@ use sixfold::repair::{
     Components, FillHoles, HoleFilling, OppositeFaces, Step, Tolerance, Weld, WeldMethod,
 };
 
-use super::{ReadFiles, WriteFiles, backend};
+use super::{MeshInOut, ReadFiles, backend};
 
 const EXAMPLES: &str = "Examples:
   sixfold repair scan.obj --for half-edge -o repaired.obj     all that this structure needs
@@ -30,12 +30,8 @@ usage or unusable input; 3 the mesh cannot be repaired in this way; 4 interrupte
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Repair {
-    /// The mesh (- for standard input)
-    #[arg(value_name = "MESH")]
-    pub(crate) mesh: PathBuf,
-    /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT")]
-    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) files: MeshInOut,
     /// Merge vertices within 0.01, or 0.01% of the diagonal; default 0
     #[arg(long, value_name = "DISTANCE", num_args = 0..=1, require_equals = true, default_missing_value = "0", value_parser = tolerance)]
     pub(crate) weld: Option<Tolerance>,
@@ -78,8 +74,6 @@ pub(crate) struct Repair {
     /// Write the report as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
-    #[command(flatten)]
-    pub(crate) write: WriteFiles,
     #[command(flatten)]
     pub(crate) read: ReadFiles,
 }

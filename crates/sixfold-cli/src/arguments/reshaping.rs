@@ -1,11 +1,9 @@
 //! Arguments of `sixfold smooth`, `dual` and `triangulate`.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use sixfold::operators::{Facing, SmoothingBoundary, Triangulation, Weights};
 
-use super::{ReadFiles, ReadPolygons, WriteFiles, backend};
+use super::{MeshInOut, ReadFiles, ReadPolygons, backend};
 
 const SMOOTH_EXAMPLES: &str = "Examples:
   sixfold smooth scan.obj -o smooth.obj
@@ -21,12 +19,8 @@ support the mesh; 4 interrupted, nothing written.";
 #[derive(Debug, Args)]
 #[command(after_help = SMOOTH_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Smooth {
-    /// The mesh (- for standard input)
-    #[arg(value_name = "MESH")]
-    pub(crate) mesh: PathBuf,
-    /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT")]
-    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) files: MeshInOut,
     /// Weights of the neighbours: uniform or cotangent
     #[arg(long, value_name = "WHICH", default_value = "uniform")]
     pub(crate) weights: Weights,
@@ -51,8 +45,6 @@ pub(crate) struct Smooth {
     #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
     pub(crate) backend: String,
     #[command(flatten)]
-    pub(crate) write: WriteFiles,
-    #[command(flatten)]
     pub(crate) read: ReadPolygons,
 }
 
@@ -68,17 +60,11 @@ cannot hold it; 4 interrupted, nothing written.";
 #[derive(Debug, Args)]
 #[command(after_help = DUAL_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Dual {
-    /// The mesh (- for standard input)
-    #[arg(value_name = "MESH")]
-    pub(crate) mesh: PathBuf,
-    /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT")]
-    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) files: MeshInOut,
     /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
     pub(crate) backend: String,
-    #[command(flatten)]
-    pub(crate) write: WriteFiles,
     #[command(flatten)]
     pub(crate) read: ReadPolygons,
 }
@@ -97,20 +83,14 @@ Exit codes: 0 success; 2 wrong usage or unusable input; 3 the mesh cannot be ori
 #[derive(Debug, Args)]
 #[command(after_help = TRIANGULATE_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Triangulate {
-    /// The mesh (- for standard input)
-    #[arg(value_name = "MESH")]
-    pub(crate) mesh: PathBuf,
-    /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT")]
-    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) files: MeshInOut,
     /// ears (for any simple polygon) or fan (for convex polygons)
     #[arg(long, value_name = "NAME", default_value = "ears")]
     pub(crate) method: Triangulation,
     /// Flip faces to one orientation: majority (of the faces) or outward
     #[arg(long, value_name = "RULE")]
     pub(crate) orient: Option<Facing>,
-    #[command(flatten)]
-    pub(crate) write: WriteFiles,
     #[command(flatten)]
     pub(crate) read: ReadFiles,
 }

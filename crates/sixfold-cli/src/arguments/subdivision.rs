@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use sixfold::subdivision::{BoundaryRule, Creasing, LoopWeights, Method, Scheme};
 
-use super::{ReadPolygons, WriteFiles, backend};
+use super::{MeshInOut, ReadPolygons, backend};
 
 const EXAMPLES: &str = "Examples:
   sixfold subdivide --scheme catmull-clark --levels 3 cage.obj -o smooth.obj
@@ -51,12 +51,8 @@ pub(crate) struct Schemes {
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Subdivide {
-    /// The mesh (- for standard input)
-    #[arg(value_name = "MESH")]
-    pub(crate) mesh: PathBuf,
-    /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT")]
-    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) files: MeshInOut,
     /// The scheme, from the list below
     #[arg(long, value_name = "NAME", default_value = "catmull-clark")]
     pub(crate) scheme: Scheme,
@@ -96,8 +92,6 @@ pub(crate) struct Subdivide {
     /// Continue even if the result takes more than the free memory
     #[arg(long)]
     pub(crate) force: bool,
-    #[command(flatten)]
-    pub(crate) write: WriteFiles,
     #[command(flatten)]
     pub(crate) read: ReadPolygons,
 }

@@ -12,7 +12,7 @@ use super::folder::Folder;
 use crate::failure::Failure;
 use crate::measure::with_command;
 use crate::progress::Bar;
-use crate::text::{TextOutput, hanging_indent, print_stderr, sanitize};
+use crate::text::{TextOutput, print_stderr, sanitize};
 use crate::{growth, orders, why};
 
 sixfold_core::named! {
@@ -192,8 +192,6 @@ pub(super) fn print(results: &Results, text: &mut TextOutput) {
     for (title, sentences) in orders.chain(growth) {
         text.print_line("");
         text.print_line(&title);
-        for sentence in sentences {
-            text.print_line(&hanging_indent("- ", sentence));
-        }
+        text.print_list("- ", sentences);
     }
 }
