@@ -27,19 +27,11 @@ fn matrix() -> String {
     let mut costs = table_of_backends("visits");
     for edit in Edit::ALL {
         let offered = backends.iter().map(|backend| backend.edits[edit as usize]);
-        let words = offered.map(|cost| Cell::new(cost.map_or("–", word)));
+        let words = offered.map(|cost| Cell::new(cost.map_or("–", QueryCost::name)));
         let name = Cell::new(edit.name());
         costs.add_row([name].into_iter().chain(words).collect::<Vec<_>>());
     }
     costs.trim_fmt()
-}
-
-fn word(cost: QueryCost) -> &'static str {
-    match cost {
-        QueryCost::Constant => "constant",
-        QueryCost::Local => "local",
-        QueryCost::Scan => "scan",
-    }
 }
 
 /// Explains the words in the table, and lists the structures that hold only oriented manifolds.

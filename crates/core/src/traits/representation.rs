@@ -25,21 +25,17 @@ crate::named! {
     }
 }
 
-/// How much of a mesh one query reads.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Deserialize, serde::Serialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum QueryCost {
-    /// The query reads O(1) rows for each element that it yields.
-    Constant,
-    /// The query reads the faces around the element. The cost does not depend on the size of the
-    /// mesh.
-    Local,
-    /// The query reads all faces.
-    Scan,
+crate::named! {
+    /// How much of a mesh one query reads.
+    pub enum QueryCost: "cost" {
+        /// The query reads O(1) rows for each element that it yields.
+        Constant = "constant",
+        /// The query reads the faces around the element. The cost does not depend on the size of
+        /// the mesh.
+        Local = "local",
+        /// The query reads all faces.
+        Scan = "scan",
+    }
 }
 
 impl QueryCost {
