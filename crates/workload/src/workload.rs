@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use serde::de::{Deserializer, Error as _};
+use serde::de::{self, Deserializer, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
 use sixfold::{Edit, Relation};
 use sixfold_core::Counts;
@@ -183,16 +183,55 @@ impl Serialize for Amount {
 
 impl<'de> Deserialize<'de> for Amount {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(untagged)]
-        enum NumberOrText {
-            Number(f64),
-            Text(String),
+        let parsed = NumberOrText::deserialize(deserializer)?.amount();
+        parsed.map_err(de::Error::custom)
+    }
+}
+
+/// The form of an amount in a file.
+pub(crate) enum NumberOrText {
+    Number(f64),
+    Text(String),
+}
+
+impl<'de> Deserialize<'de> for NumberOrText {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Value;
+
+        impl Visitor<'_> for Value {
+            type Value = NumberOrText;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number such as `20`, or a text such as `\"2 per face\"`")
+            }
+
+            fn visit_i64<E: de::Error>(self, number: i64) -> Result<NumberOrText, E> {
+                Ok(NumberOrText::Number(number as f64))
+            }
+
+            fn visit_u64<E: de::Error>(self, number: u64) -> Result<NumberOrText, E> {
+                Ok(NumberOrText::Number(number as f64))
+            }
+
+            fn visit_f64<E: de::Error>(self, number: f64) -> Result<NumberOrText, E> {
+                Ok(NumberOrText::Number(number))
+            }
+
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<NumberOrText, E> {
+                Ok(NumberOrText::Text(text.into()))
+            }
         }
 
-        match NumberOrText::deserialize(deserializer)? {
-            NumberOrText::Number(number) => Ok(Self::Number(number)),
-            NumberOrText::Text(text) => text.parse().map_err(D::Error::custom),
+        deserializer.deserialize_any(Value)
+    }
+}
+
+impl NumberOrText {
+    /// Parses the text, if it is one.
+    pub(crate) fn amount(&self) -> Result<Amount, ParseAmountError> {
+        match self {
+            Self::Number(number) => Ok(Amount::Number(*number)),
+            Self::Text(text) => text.parse(),
         }
     }
 }
