@@ -27,6 +27,7 @@
 //!   the mesh also updates the values.
 //! - [`Creases`]: the edges and vertices that stay sharp under subdivision, and for how many
 //!   levels.
+//! - [`named!`]: enums whose values have names; [`UnknownName`]: the error for an unknown name.
 //! - [`Facts`]: topological properties of a list of faces, such as the genus and the number of
 //!   components.
 //!
@@ -63,6 +64,7 @@
 
 mod edit;
 mod handles;
+mod named;
 mod polygons;
 mod scanning;
 mod tables;
@@ -84,6 +86,7 @@ pub use handles::handle::{Handle, HandleMap, HashHandleMap, RowMap};
 pub use handles::numbering::Numbers;
 pub use handles::pair::Pair;
 pub use handles::row_id::{EdgeId, FaceId, VertexId};
+pub use named::UnknownName;
 pub use polygons::capability::Capabilities;
 pub use polygons::counts::Counts;
 pub use polygons::creases::{Creases, SHARPNESS_INFINITE};
@@ -94,6 +97,9 @@ pub use polygons::face_list::FaceList;
 pub use polygons::facts::{Distribution, Facts};
 pub use polygons::incidence::EdgeUse;
 pub use polygons::polygon_mesh::PolygonMesh;
+#[cfg(feature = "serde")]
+#[doc(hidden)]
+pub use serde;
 pub use tables::memory::{MemoryFootprint, TableBytes};
 pub use traits::boundary::BoundaryLoop;
 #[doc(hidden)]

@@ -1,67 +1,38 @@
 //! The formats, and how a file's format is recognised.
 
-use std::fmt;
 use std::path::Path;
-use std::str::FromStr;
 
 use crate::byte_source::words;
 use crate::off_keyword::OffKeyword;
 
-/// A file format. Formats with a text form and a binary form have one entry for each.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Format {
-    /// Wavefront OBJ.
-    Obj,
-    /// STL with little-endian binary facets.
-    Stl,
-    /// STL as text.
-    StlAscii,
-    /// PLY with little-endian binary data.
-    Ply,
-    /// PLY with big-endian binary data.
-    PlyBigEndian,
-    /// PLY as text.
-    PlyAscii,
-    /// Geomview OFF as text.
-    Off,
-    /// glTF 2.0 in JSON.
-    Gltf,
-    /// glTF 2.0 in one binary file.
-    Glb,
+sixfold_core::named! {
+    /// A file format. Formats with a text form and a binary form have one entry for each.
+    #[non_exhaustive]
+    pub enum Format: "format", shown by title {
+        /// Wavefront OBJ.
+        Obj = "obj",
+        /// STL with little-endian binary facets.
+        Stl = "stl",
+        /// STL as text.
+        StlAscii = "stl-ascii",
+        /// PLY with little-endian binary data.
+        Ply = "ply",
+        /// PLY with big-endian binary data.
+        PlyBigEndian = "ply-big-endian",
+        /// PLY as text.
+        PlyAscii = "ply-ascii",
+        /// Geomview OFF as text.
+        Off = "off",
+        /// glTF 2.0 in JSON.
+        Gltf = "gltf",
+        /// glTF 2.0 in one binary file.
+        Glb = "glb",
+    }
 }
 
 impl Format {
-    /// All formats.
-    pub const ALL: [Self; 9] = [
-        Self::Obj,
-        Self::Stl,
-        Self::StlAscii,
-        Self::Ply,
-        Self::PlyBigEndian,
-        Self::PlyAscii,
-        Self::Off,
-        Self::Gltf,
-        Self::Glb,
-    ];
-
     /// The endings of file names, without the dot, in lower case.
     pub const EXTENSIONS: [&str; 6] = ["obj", "stl", "ply", "off", "gltf", "glb"];
-
-    /// Returns the name that [`FromStr`] accepts: `stl-ascii`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Obj => "obj",
-            Self::Stl => "stl",
-            Self::StlAscii => "stl-ascii",
-            Self::Ply => "ply",
-            Self::PlyBigEndian => "ply-big-endian",
-            Self::PlyAscii => "ply-ascii",
-            Self::Off => "off",
-            Self::Gltf => "gltf",
-            Self::Glb => "glb",
-        }
-    }
 
     /// Returns the name for readers: `ASCII STL`.
     pub const fn title(self) -> &'static str {
@@ -135,29 +106,6 @@ impl Format {
             Self::Obj => 1,
             _ => 0,
         }
-    }
-}
-
-impl fmt::Display for Format {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.title())
-    }
-}
-
-/// A name is not the name of a format.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{name:?} is not a format: use one of {}", Format::ALL.map(Format::name).join(", "))]
-pub struct UnknownFormatName {
-    name: String,
-}
-
-impl FromStr for Format {
-    type Err = UnknownFormatName;
-
-    fn from_str(name: &str) -> Result<Self, Self::Err> {
-        let format = Self::ALL.into_iter().find(|format| format.name() == name);
-        let name = name.to_owned();
-        format.ok_or(UnknownFormatName { name })
     }
 }
 
@@ -280,11 +228,11 @@ mod tests {
             let found = Format::from_path(&path).expect("an ending");
             assert_eq!(found.extension(), format.extension());
         }
-        let error = Format::from_str("step").expect_err("unknown");
+        let error = "step".parse::<Format>().expect_err("unknown");
         assert!(
             error
                 .to_string()
-                .starts_with("\"step\" is not a format: use one of obj, stl,")
+                .starts_with("no format is called `step`: choose from obj, stl,")
         );
         assert_eq!(Format::from_path("stl"), None);
         assert_eq!(Format::from_path("a.stl-ascii"), None);

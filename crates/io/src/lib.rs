@@ -135,7 +135,7 @@ pub use crease_file::{CreaseFileError, parse_creases, read_creases, write_crease
 pub use error::ReadError;
 pub use faults::{GltfFault, PlyHeaderFault, TagFault};
 pub use file_mesh::{FileMesh, LeftOut, LeftOutReason, ShortFace};
-pub use format::{Format, UnknownFormatName};
+pub use format::Format;
 pub use narrowing::Narrowing;
 pub use notice::{IgnoredKind, Notice};
 pub use obj::parse_obj;

@@ -6,17 +6,19 @@ use sixfold_core::{Classes, FaceId, FaceList, Incidence, PolygonMesh, VertexId, 
 
 use crate::error::OrientationError;
 
-/// The rule that chooses one of the two possible orientations of each component (faces that are
-/// connected by edges with two faces).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Facing {
-    /// The orientation that most faces of the component have. In a tie, the first face keeps its
-    /// orientation.
-    #[default]
-    Majority,
-    /// The faces of a closed component that encloses a volume face outward. For other components,
-    /// the rule [`Majority`](Self::Majority) applies.
-    Outward,
+sixfold_core::named! {
+    /// The rule that chooses one of the two possible orientations of each component (faces that are
+    /// connected by edges with two faces).
+    #[derive(Default)]
+    pub enum Facing: "orientation rule" {
+        /// The orientation that most faces of the component have. In a tie, the first face keeps
+        /// its orientation.
+        #[default]
+        Majority = "majority",
+        /// The faces of a closed component that encloses a volume face outward. For other
+        /// components, the rule [`Majority`](Self::Majority) applies.
+        Outward = "outward",
+    }
 }
 
 /// The components that [`oriented_components`] may reverse.

@@ -6,27 +6,33 @@ use sixfold_core::{MeshQuery, Point, VertexMap};
 use crate::error::SmoothingError;
 use crate::laplacian::{Laplacian, WeightedSum};
 
-/// The weights of the neighbours of a vertex.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Weights {
-    /// Equal weights for all neighbours (Field 1988). Uniform weights also make the shapes of the
-    /// faces more even.
-    #[default]
-    Uniform,
-    /// Weights from the two angles opposite to the edge (Pinkall & Polthier 1993). With cotangent
-    /// weights, the inner vertices of a flat mesh do not move. All faces must be triangles.
-    Cotangent,
+sixfold_core::named! {
+    /// The weights of the neighbours of a vertex.
+    #[derive(Default)]
+    pub enum Weights: "set of weights" {
+        /// Equal weights for all neighbours (Field 1988). Uniform weights also make the shapes of
+        /// the faces more even.
+        #[default]
+        Uniform = "uniform",
+        /// Weights from the two angles opposite to the edge (Pinkall & Polthier 1993). With
+        /// cotangent weights, the inner vertices of a flat mesh do not move. All faces must be
+        /// triangles.
+        Cotangent = "cotangent",
+    }
 }
 
-/// The treatment of vertices on boundary edges.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum SmoothingBoundary {
-    /// Boundary vertices do not move.
-    #[default]
-    Fixed,
-    /// A boundary vertex with exactly two boundary edges moves towards the mean of its two
-    /// neighbours on the boundary. A vertex with another number of boundary edges does not move.
-    Curve,
+sixfold_core::named! {
+    /// The treatment of vertices on boundary edges.
+    #[derive(Default)]
+    pub enum SmoothingBoundary: "boundary rule" {
+        /// Boundary vertices do not move.
+        #[default]
+        Fixed = "fixed",
+        /// A boundary vertex with exactly two boundary edges moves towards the mean of its two
+        /// neighbours on the boundary. A vertex with another number of boundary edges does not
+        /// move.
+        Curve = "curve",
+    }
 }
 
 /// The options of [`smoothed`].

@@ -5,15 +5,17 @@ use sixfold_core::{FaceList, HandleMap, HashHandleMap, Pair, PolygonError, Polyg
 
 use crate::ear_clipping::EarClipping;
 
-/// The method that cuts a polygon into triangles.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Triangulation {
-    /// A fan of triangles from the first corner. This method is fast, but correct only for convex
-    /// faces.
-    Fan,
-    /// Ear clipping (Meisters 1975). This method is correct for every simple polygon.
-    #[default]
-    EarClipping,
+sixfold_core::named! {
+    /// The method that cuts a polygon into triangles.
+    #[derive(Default)]
+    pub enum Triangulation: "triangulation method" {
+        /// A fan of triangles from the first corner. This method is fast, but correct only for
+        /// convex faces.
+        Fan = "fan",
+        /// Ear clipping (Meisters 1975). This method is correct for every simple polygon.
+        #[default]
+        EarClipping = "ears",
+    }
 }
 
 /// Returns the mesh in which each polygon of `n` corners is replaced by `n − 2` triangles.

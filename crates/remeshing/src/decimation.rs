@@ -45,15 +45,17 @@ impl Target {
     }
 }
 
-/// The treatment of vertices on boundary edges.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum DecimationBoundary {
-    /// The boundary is simplified like the surface. Planes perpendicular to the surface preserve
-    /// the shape of the boundary.
-    #[default]
-    Follow,
-    /// Boundary vertices do not move.
-    Fixed,
+sixfold_core::named! {
+    /// The treatment of vertices on boundary edges.
+    #[derive(Default)]
+    pub enum DecimationBoundary: "boundary rule" {
+        /// The boundary is simplified like the surface. Planes perpendicular to the surface
+        /// preserve the shape of the boundary.
+        #[default]
+        Follow = "follow",
+        /// Boundary vertices do not move.
+        Fixed = "fixed",
+    }
 }
 
 /// The options of a decimation. By default, half of the faces remain and the boundary is

@@ -73,14 +73,16 @@ impl Size {
     }
 }
 
-/// The axis that points up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Up {
-    /// The y axis, as in most OBJ files.
-    #[default]
-    Y,
-    /// The z axis, as in many scans and CAD models.
-    Z,
+sixfold_core::named! {
+    /// The axis that points up.
+    #[derive(Default)]
+    pub enum Up: "upward axis" {
+        /// The y axis, as in most OBJ files.
+        #[default]
+        Y = "y",
+        /// The z axis, as in many scans and CAD models.
+        Z = "z",
+    }
 }
 
 /// The direction of view. The projection is parallel, without perspective.
@@ -135,15 +137,17 @@ impl View {
     }
 }
 
-/// The normals that the lighting uses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Shading {
-    /// The lighting uses the normal of each face, so that every face looks flat.
-    Flat,
-    /// The lighting uses smooth normals. Two adjacent faces at an angle of at most 40° look like
-    /// one smooth surface, except at a crease.
-    #[default]
-    Smooth,
+sixfold_core::named! {
+    /// The normals that the lighting uses.
+    #[derive(Default)]
+    pub enum Shading: "shading" {
+        /// The lighting uses the normal of each face, so that every face looks flat.
+        Flat = "flat",
+        /// The lighting uses smooth normals. Two adjacent faces at an angle of at most 40° look
+        /// like one smooth surface, except at a crease.
+        #[default]
+        Smooth = "smooth",
+    }
 }
 
 /// How to draw a picture.

@@ -28,16 +28,19 @@ pub struct FillHoles {
     pub method: HoleFilling,
 }
 
-/// The method by which a hole is triangulated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum HoleFilling {
-    /// The triangulation with the smallest area, by dynamic programming in O(n³) time and O(n²)
-    /// memory for n edges (Barequet & Sharir 1995, as in the first part of Liepa 2003). Holes with
-    /// more than 400 edges are filled by ear clipping.
-    #[default]
-    MinimumArea,
-    /// Ear clipping of the projection along the axis nearest to the normal; O(n²) (Meisters 1975).
-    EarClipping,
+sixfold_core::named! {
+    /// The method by which a hole is triangulated.
+    #[derive(Default)]
+    pub enum HoleFilling: "hole filling method" {
+        /// The triangulation with the smallest area, by dynamic programming in O(n³) time and O(n²)
+        /// memory for n edges (Barequet & Sharir 1995, as in the first part of Liepa 2003). Holes
+        /// with more than 400 edges are filled by ear clipping.
+        #[default]
+        MinimumArea = "smallest",
+        /// Ear clipping of the projection along the axis nearest to the normal; O(n²) (Meisters
+        /// 1975).
+        EarClipping = "ears",
+    }
 }
 
 /// The largest number of edges for [`HoleFilling::MinimumArea`]: some 11 million triangles are

@@ -47,14 +47,16 @@ pub enum Tolerance {
     Relative(f64),
 }
 
-/// How vertices within the tolerance are found; all methods give the same result.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum WeldMethod {
-    /// A hashed grid with cells as long as the tolerance: O(1) expected per search.
-    #[default]
-    Grid,
-    /// A balanced kd-tree (Bentley 1975): O(log n) per search.
-    KdTree,
+sixfold_core::named! {
+    /// How vertices within the tolerance are found; all methods give the same result.
+    #[derive(Default)]
+    pub enum WeldMethod: "weld method" {
+        /// A hashed grid with cells as long as the tolerance: O(1) expected per search.
+        #[default]
+        Grid = "grid",
+        /// A balanced kd-tree (Bentley 1975): O(log n) per search.
+        KdTree = "kd-tree",
+    }
 }
 
 /// A search for points near a point.

@@ -9,6 +9,7 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::io::Write as _;
 
+use sixfold_core::glam::DVec3;
 use sixfold_core::{Facts, PolygonMesh, VertexId};
 use sixfold_shapes::{GENERATORS, Generator, Order};
 
@@ -175,31 +176,8 @@ fn hex(colour: [f64; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-type Vector = [f64; 3];
-
-fn dot(a: Vector, b: Vector) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn minus(a: Vector, b: Vector) -> Vector {
-    std::array::from_fn(|i| a[i] - b[i])
-}
-
-fn cross([a, b, c]: Vector, [x, y, z]: Vector) -> Vector {
-    [b * z - c * y, c * x - a * z, a * y - b * x]
-}
-
-fn unit(a: Vector) -> Vector {
-    let length = dot(a, a).sqrt();
-    if length > 0.0 {
-        a.map(|x| x / length)
-    } else {
-        a
-    }
-}
-
 /// The view: the directions right, up, and towards the viewer.
-struct View([Vector; 3]);
+struct View([DVec3; 3]);
 
 impl View {
     /// Flat meshes are seen from above, other meshes from a corner and above.
@@ -209,19 +187,19 @@ impl View {
             .next()
             .is_none_or(|first| heights.all(|z| z == first));
         if flat {
-            return Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+            return Self(DVec3::AXES);
         }
         // Pythagorean triples give rational cosines and sines: an azimuth of about 62° and an
         // elevation of about 37°.
         let [ca, sa] = [8.0 / 17.0, 15.0 / 17.0];
         let [ce, se] = [4.0 / 5.0, 3.0 / 5.0];
-        let towards = [ce * ca, ce * sa, se];
-        let right = [-sa, ca, 0.0];
-        Self([right, cross(towards, right), towards])
+        let towards = DVec3::new(ce * ca, ce * sa, se);
+        let right = DVec3::new(-sa, ca, 0.0);
+        Self([right, towards.cross(right), towards])
     }
 
-    fn project(&self, p: Vector) -> Vector {
-        self.0.map(|axis| dot(axis, p))
+    fn project(&self, p: DVec3) -> DVec3 {
+        DVec3::from(self.0.map(|axis| axis.dot(p)))
     }
 }
 
@@ -268,35 +246,32 @@ fn cell(name: &str, settings: &str, mesh: &PolygonMesh, colouring: Colouring) ->
 /// face away.
 fn project_faces(mesh: &PolygonMesh, closed: bool, colouring: Colouring) -> Vec<ProjectedFace> {
     let view = View::new(mesh);
-    let points: Vec<Vector> = mesh
-        .positions()
-        .iter()
-        .map(|p| view.project(p.as_dvec3().to_array()))
-        .collect();
+    let points = mesh.positions().iter().map(|p| view.project(p.as_dvec3()));
+    let points: Vec<DVec3> = points.collect();
     let (middle, scale) = fit(&points);
-    let light = unit([-0.45, 0.6, 0.75]);
+    let light = unit(DVec3::new(-0.45, 0.6, 0.75));
     let mut faces = Vec::new();
     for (f, face) in mesh.faces().iter() {
         let corner = |v: &VertexId| points[v.index()];
         let normal = unit(area(face.iter().map(corner)));
-        let front = normal[2] >= 0.0;
-        if closed && normal[2] <= 0.0 {
+        let front = normal.z >= 0.0;
+        if closed && normal.z <= 0.0 {
             continue;
         }
-        let towards_viewer = if front { normal } else { normal.map(|x| -x) };
+        let towards_viewer = if front { normal } else { -normal };
         let (ramp, brightness) = match colouring {
             Colouring::Light => {
-                let lit = dot(towards_viewer, light).max(0.0);
+                let lit = towards_viewer.dot(light).max(0.0);
                 (if front { 'a' } else { 'b' }, 0.15 + 0.85 * lit)
             }
             Colouring::Order => ('c', 1.0 - f.index() as f64 / mesh.face_count() as f64),
         };
-        let depth: f64 = face.iter().map(|v| corner(v)[2]).sum();
+        let depth: f64 = face.iter().map(|v| corner(v).z).sum();
         faces.push(ProjectedFace {
             corners: face
                 .iter()
                 .map(|v| {
-                    let [x, y, _] = corner(v);
+                    let [x, y, _] = corner(v).to_array();
                     let tenths = |x: f64| (10.0 * scale * x).round() as i64;
                     [tenths(x - middle[0]), tenths(middle[1] - y)]
                 })
@@ -311,7 +286,7 @@ fn project_faces(mesh: &PolygonMesh, closed: bool, colouring: Colouring) -> Vec<
 }
 
 /// Returns the centre of the points, and the scale that fills the picture.
-fn fit(points: &[Vector]) -> ([f64; 2], f64) {
+fn fit(points: &[DVec3]) -> ([f64; 2], f64) {
     let side = |i: usize| {
         let low = points.iter().map(|p| p[i]).fold(f64::INFINITY, f64::min);
         let high = points
@@ -324,18 +299,20 @@ fn fit(points: &[Vector]) -> ([f64; 2], f64) {
     ([x, y], PICTURE / width.max(high))
 }
 
-/// Returns the Newell vector of a polygon, whose length is twice the area.
-fn area(mut corners: impl Iterator<Item = Vector>) -> Vector {
-    let Some(first) = corners.next() else {
-        return [0.0; 3];
-    };
-    let spokes: Vec<Vector> = corners.map(|p| minus(p, first)).collect();
-    let mut sum = [0.0; 3];
-    for pair in spokes.windows(2) {
-        let part = cross(pair[0], pair[1]);
-        sum = std::array::from_fn(|i| sum[i] + part[i]);
+/// Returns the vector in the direction of `a` with the length 1, or 0 for the vector 0.
+fn unit(a: DVec3) -> DVec3 {
+    match a.length() {
+        length if length > 0.0 => a / length,
+        _ => a,
     }
-    sum
+}
+
+/// Returns the Newell vector of a polygon, whose length is twice the area.
+fn area(mut corners: impl Iterator<Item = DVec3>) -> DVec3 {
+    let first = corners.next().unwrap_or_default();
+    let spokes: Vec<DVec3> = corners.map(|p| p - first).collect();
+    let triangles = spokes.windows(2).map(|pair| pair[0].cross(pair[1]));
+    triangles.sum()
 }
 
 /// Formats a face as a path in tenths of a pixel, with relative coordinates.

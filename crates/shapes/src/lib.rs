@@ -64,7 +64,7 @@ pub use error::ShapeError;
 pub use generator::{GENERATORS, Generator, Parameter, generator};
 pub use genus::genus;
 pub use geodesic::geodesic;
-pub use order::{Order, Reordered, UnknownOrder, breadth_first, morton, shuffled};
+pub use order::{Order, Reordered, breadth_first, morton, shuffled};
 pub use patch::{ControlNet, b_spline_patch, bezier_patch};
 pub use planar::{
     grid, grid_with_hole, grid_with_holes, hexagon_tiling, mixed_grid, triangle_grid,

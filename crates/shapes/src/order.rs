@@ -1,49 +1,26 @@
 //! Reordering of the vertices and faces of a mesh. The shape of the mesh does not change.
 
-use std::fmt;
-use std::str::FromStr;
-
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use sixfold_core::{FaceId, FaceList, Point, PolygonMesh, VertexId, row};
 
-/// An order of the vertices and faces of a mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde_with::DeserializeFromStr, serde_with::SerializeDisplay)
-)]
-pub enum Order {
-    /// The given order: the mesh is not reordered.
-    #[default]
-    Given,
-    /// Random order. See [`shuffled`].
-    Shuffled,
-    /// The order of a space-filling curve. See [`morton`].
-    Morton,
-    /// The order of a breadth-first walk over the faces. See [`breadth_first`].
-    BreadthFirst,
+sixfold_core::named! {
+    /// An order of the vertices and faces of a mesh.
+    #[derive(Default)]
+    pub enum Order: "order" {
+        /// The given order: the mesh is not reordered.
+        #[default]
+        Given = "given",
+        /// Random order. See [`shuffled`].
+        Shuffled = "shuffled",
+        /// The order of a space-filling curve. See [`morton`].
+        Morton = "morton",
+        /// The order of a breadth-first walk over the faces. See [`breadth_first`].
+        BreadthFirst = "breadth-first",
+    }
 }
 
 impl Order {
-    /// All orders.
-    pub const ALL: [Self; 4] = [
-        Self::Given,
-        Self::Shuffled,
-        Self::Morton,
-        Self::BreadthFirst,
-    ];
-
-    /// Returns the name of the order on the command line, for example `breadth-first`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Given => "given",
-            Self::Shuffled => "shuffled",
-            Self::Morton => "morton",
-            Self::BreadthFirst => "breadth-first",
-        }
-    }
-
     /// Returns the mesh in this order. Only [`Shuffled`](Self::Shuffled) uses `seed`.
     pub fn apply(self, mesh: &PolygonMesh, seed: u64) -> PolygonMesh {
         self.apply_with_handles(mesh, seed).mesh
@@ -73,31 +50,6 @@ pub struct Reordered {
     pub vertices: Vec<VertexId>,
     /// The new handle of each face. Index i is for the face with the old number i.
     pub faces: Vec<FaceId>,
-}
-
-impl fmt::Display for Order {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-/// The error for a name that no order has.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown order {given:?}: choose from {}", Order::ALL.map(Order::name).join(", "))]
-pub struct UnknownOrder {
-    /// The unknown name.
-    pub given: String,
-}
-
-impl FromStr for Order {
-    type Err = UnknownOrder;
-
-    fn from_str(given: &str) -> Result<Self, UnknownOrder> {
-        let found = Self::ALL.into_iter().find(|order| order.name() == given);
-        found.ok_or_else(|| UnknownOrder {
-            given: given.to_owned(),
-        })
-    }
 }
 
 /// Returns the mesh with its vertices and faces in random order. Each face starts at a random

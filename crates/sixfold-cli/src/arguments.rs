@@ -28,7 +28,7 @@ use sixfold_study::{CacheState, Effort, External, Operation, Policy, Settings};
 
 pub(crate) use comparing::{Compare, GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders};
 pub(crate) use distance::Distance;
-pub(crate) use files::{ReadFiles, ReadPolygons, WriteFiles};
+pub(crate) use files::{MeshInOut, ReadFiles, ReadPolygons, WriteFiles};
 pub(crate) use inspect::Inspect;
 pub(crate) use memory::Memory;
 pub(crate) use neighbours::Neighbours;
@@ -234,7 +234,7 @@ pub(crate) struct Study {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
     /// Run only these operations, by name
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = operation)]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub(crate) operations: Vec<Operation>,
     /// Total time of all meshes and labs [default: 20s each]
     #[arg(long, value_name = "TIME", value_parser = duration, allow_hyphen_values = true)]
@@ -275,6 +275,25 @@ pub(crate) struct Study {
     pub(crate) shard: Option<Shard>,
     #[command(flatten)]
     pub(crate) read: ReadFiles,
+}
+
+// How much to measure. The commands differ in the default of `budget`.
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct EffortArgs {
+    /// Total time to measure, such as 20s, 500ms or 2m
+    #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration, allow_hyphen_values = true)]
+    budget: Duration,
+    /// Measure exactly N rounds of everything, without a time limit
+    #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
+    rounds: Option<NonZeroU32>,
+}
+
+impl EffortArgs {
+    /// Returns the number of rounds, or else the time.
+    pub(crate) fn effort(self) -> Effort {
+        self.rounds
+            .map_or(Effort::Budget(self.budget), Effort::Rounds)
+    }
 }
 
 /// How freed pages and the caches are treated while times are measured.
@@ -339,26 +358,12 @@ impl Study {
 }
 
 impl Default for Study {
+    /// Returns the arguments of `sixfold study` without options.
     fn default() -> Self {
-        let settings = Settings::default();
-        Self {
-            meshes: Vec::new(),
-            backends: Vec::new(),
-            operations: Vec::new(),
-            budget: None,
-            rounds: None,
-            seed: settings.seed,
-            memory: MemoryState::default(),
-            externals: Vec::new(),
-            external_timeout: settings.external_timeout,
-            triangulate: false,
-            strict: false,
-            files: ResultFiles::default(),
-            report: None,
-            labs: None,
-            resume: false,
-            shard: None,
-            read: ReadFiles::default(),
+        let arguments = Arguments::parse_from(["sixfold", "study"]);
+        match arguments.command {
+            Some(Command::Study(study)) => study,
+            _ => unreachable!("the command is `study`"),
         }
     }
 }
@@ -396,11 +401,6 @@ fn backend(name: &str) -> Result<String, String> {
     }
 }
 
-fn operation(name: &str) -> Result<Operation, String> {
-    let parsed: Result<Operation, _> = name.trim().parse();
-    parsed.map_err(|error| error.to_string())
-}
-
 /// Parses `20s`, `500ms` or `2m`: above 0 and at most a week.
 fn duration(text: &str) -> Result<Duration, String> {
     const MAX_S: f64 = 7.0 * 24.0 * 3600.0;
@@ -420,11 +420,6 @@ fn duration(text: &str) -> Result<Duration, String> {
 fn rounds(text: &str) -> Result<NonZeroU32, String> {
     let parsed = text.trim().parse();
     parsed.map_err(|_| format!("write a whole number of rounds from 1 to {}", u32::MAX))
-}
-
-/// Returns the number of rounds, or else the time.
-fn effort(budget: Duration, rounds: Option<NonZeroU32>) -> Effort {
-    rounds.map_or(Effort::Budget(budget), Effort::Rounds)
 }
 
 fn seed(text: &str) -> Result<u64, String> {

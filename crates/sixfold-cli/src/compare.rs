@@ -70,9 +70,7 @@ fn print(changes: &Changes, all: bool, text: &mut TextOutput) {
         text.print_line(&changes_table(&rows));
         text.print_line("");
     }
-    for sentence in &changes.sentences {
-        text.print_line(&hanging_indent("- ", sentence));
-    }
+    text.print_list("- ", &changes.sentences);
     for (which, only) in [
         ("first", &changes.only_before),
         ("second", &changes.only_after),

@@ -51,15 +51,7 @@ pub(crate) fn run(arguments: &Distance) -> Result<ExitCode, Failure> {
     let rows = rows(arguments, &distance, diagonal(&first));
     let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
     text.print_line(&rows_text(&rows));
-    // Text is printed first, so that it is not lost if a file fails.
-    let mut done = text.finish();
-    if let Some(output) = json {
-        done = done.and(output.finish(|writer| {
-            serde_json::to_writer_pretty(&mut *writer, &rows)?;
-            writeln!(writer)
-        }));
-    }
-    done.map(|()| ExitCode::SUCCESS)
+    text.finish_with_json(json, &rows)
 }
 
 fn rows(arguments: &Distance, distance: &MeshDistance, diagonal: f64) -> [Row; 3] {

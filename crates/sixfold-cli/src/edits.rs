@@ -18,16 +18,7 @@ pub(crate) fn run(arguments: &Edits) -> Result<ExitCode, Failure> {
     text.print_line(&matrix());
     text.print_line("");
     text.print_line(&legend());
-    let mut done = text.finish();
-    if let Some(output) = json {
-        let rows = Edit::ALL.map(row);
-        done = done.and(output.finish(|writer| {
-            serde_json::to_writer_pretty(&mut *writer, &rows)?;
-            writeln!(writer)
-        }));
-    }
-    done?;
-    Ok(ExitCode::SUCCESS)
+    text.finish_with_json(json, &Edit::ALL.map(row))
 }
 
 /// Returns the table with a row per edit and a column per backend.
@@ -36,19 +27,11 @@ fn matrix() -> String {
     let mut costs = table_of_backends("visits");
     for edit in Edit::ALL {
         let offered = backends.iter().map(|backend| backend.edits[edit as usize]);
-        let words = offered.map(|cost| Cell::new(cost.map_or("–", word)));
+        let words = offered.map(|cost| Cell::new(cost.map_or("–", QueryCost::name)));
         let name = Cell::new(edit.name());
         costs.add_row([name].into_iter().chain(words).collect::<Vec<_>>());
     }
     costs.trim_fmt()
-}
-
-fn word(cost: QueryCost) -> &'static str {
-    match cost {
-        QueryCost::Constant => "constant",
-        QueryCost::Local => "local",
-        QueryCost::Scan => "scan",
-    }
 }
 
 /// Explains the words in the table, and lists the structures that hold only oriented manifolds.

@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use sixfold::UnknownName;
 use sixfold::io::WriteOptions;
 use sixfold::shapes::{GENERATORS, Generator, Parameter, generator};
 
@@ -12,14 +13,13 @@ use crate::output::is_stdout;
 use crate::progress::exit_on_interrupt;
 use crate::text::{TextOutput, hanging_indent, sanitize};
 use sixfold_study::numbers::counted;
-use sixfold_study::unknown;
 
 pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
     exit_on_interrupt();
     let shape = &arguments.shape;
     let generator = generator(shape).ok_or_else(|| {
-        let names: Vec<&str> = GENERATORS.iter().map(|generator| generator.name).collect();
-        Failure::usage(unknown("shape", shape, &names))
+        let names = GENERATORS.iter().map(|generator| generator.name);
+        Failure::usage(UnknownName::new("shape", shape, names))
     })?;
     let settings = arguments.settings.iter();
     let settings: Vec<(&str, f64)> = settings

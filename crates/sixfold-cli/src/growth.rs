@@ -16,7 +16,7 @@ use crate::left_out::refusal_notes;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::orders::{default_operations, short_figure};
 use crate::progress::Bar;
-use crate::study::{describe_run, name_lists};
+use crate::study::{name_lists, print_end};
 use crate::tables::{stacked, styled, unbroken};
 use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::{counted, grouped};
@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
         study: Settings {
             backends: arguments.backends.clone(),
             operations: arguments.operations.clone(),
-            effort: arguments.effort(),
+            effort: arguments.effort.effort(),
             seed: arguments.seed,
             heap: arguments.memory.heap,
             caches: arguments.memory.caches,
@@ -124,20 +124,11 @@ fn print(report: &GrowthReport, text: &mut TextOutput) {
         text.print_line(&cache_table(report, text.bold()));
     }
     text.print_line("");
-    for sentence in &report.sentences {
-        text.print_line(&hanging_indent("- ", sentence));
-    }
-    for warning in &report.warnings {
-        text.print_line(&hanging_indent("! ", warning));
-    }
-    for note in refusal_notes(report.sizes.iter().flat_map(|size| &size.refusals)) {
-        text.print_line(&hanging_indent("", &note));
-    }
-    text.print_line("");
     let rows = report.sizes.iter().flat_map(|size| &size.results);
-    let most = rows.map(|row| row.samples).max();
-    let settings = describe_run(&report.run, most.unwrap_or(0));
-    text.print_line(&hanging_indent("", &settings));
+    let samples = rows.map(|row| row.samples);
+    let (sentences, warnings) = (&report.sentences, &report.warnings);
+    let notes = refusal_notes(report.sizes.iter().flat_map(|size| &size.refusals));
+    print_end(sentences, warnings, notes, &report.run, samples, text);
 }
 
 const LEGEND: &str = "Each cell has the ns per element, and the smallest cache that can hold the \

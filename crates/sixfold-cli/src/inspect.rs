@@ -63,20 +63,12 @@ pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
             }
         }
     }
-    // Print the text first, so that it is not lost if writing a file fails.
-    let mut done = text.finish();
-    if let Some(output) = json {
-        done = done.and(output.finish(|writer| {
-            match &inspected[..] {
-                [only] if paths.len() == 1 => serde_json::to_writer_pretty(&mut *writer, only)?,
-                all => serde_json::to_writer_pretty(&mut *writer, all)?,
-            }
-            writeln!(writer)
-        }));
-    }
-    done?;
+    let code = match &inspected[..] {
+        [only] if paths.len() == 1 => text.finish_with_json(json, only)?,
+        all => text.finish_with_json(json, &all)?,
+    };
     match failed {
-        0 => Ok(ExitCode::SUCCESS),
+        0 => Ok(code),
         _ => Err(Failure::usage(format!(
             "{failed} of {} meshes could not be read: correct the files that the messages above \
              name",

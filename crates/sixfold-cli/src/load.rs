@@ -210,6 +210,19 @@ pub(crate) fn read_results(place: &Path) -> Result<Results, Failure> {
     Results::read_json(&text).map_err(|error| Failure::usage(format!("{file}: {error}")))
 }
 
+/// Reads a mesh for a study as [`for_study`] does. Without a path, returns the built-in mesh.
+pub(crate) fn mesh_or_built_in(
+    path: Option<&Path>,
+    files: ReadFiles,
+    strict: bool,
+    triangulate: bool,
+) -> Result<StudyMesh, Failure> {
+    match path {
+        Some(path) => for_study(path, files, strict, triangulate),
+        None => Ok(built_in()),
+    }
+}
+
 pub(crate) fn built_in() -> StudyMesh {
     StudyMesh::new("default study (built in)", shapes::default_study())
 }

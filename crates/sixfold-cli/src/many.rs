@@ -232,15 +232,12 @@ impl Run<'_> {
 }
 
 fn load_mesh(mesh: &Mesh, arguments: &Study) -> Result<StudyMesh, Failure> {
-    match &mesh.path {
-        None => Ok(load::built_in()),
-        Some(path) => load::for_study(
-            path,
-            arguments.read,
-            arguments.strict,
-            arguments.triangulate,
-        ),
-    }
+    load::mesh_or_built_in(
+        mesh.path.as_deref(),
+        arguments.read,
+        arguments.strict,
+        arguments.triangulate,
+    )
 }
 
 /// Removes the path from a message, because the list already shows the path.
@@ -313,9 +310,7 @@ fn print_all(results: &Results, text: &mut TextOutput) {
             text.print_line(&groups);
             text.print_line("");
         }
-        for sentence in &pool.sentences {
-            text.print_line(&hanging_indent("- ", sentence));
-        }
+        text.print_list("- ", &pool.sentences);
         for warning in &pool.warnings {
             text.print_line(&hanging_indent("! ", &sanitize(warning)));
         }

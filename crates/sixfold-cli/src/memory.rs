@@ -16,7 +16,7 @@ use crate::load;
 use crate::measure::{Session, with_command};
 use crate::progress::{StatusLine, exit_on_interrupt};
 use crate::tables::table;
-use crate::text::{TextOutput, hanging_indent, print_stderr};
+use crate::text::{TextOutput, print_stderr};
 use sixfold_study::numbers::{counted, grouped};
 
 /// The exit code if two of the three counts differ.
@@ -30,10 +30,7 @@ pub(crate) fn run(
     let mut session = Session::open(mesh, &arguments.files, Policy::System)?;
     // Counting cannot be resumed, so Ctrl-C ends it at once.
     exit_on_interrupt();
-    let study_mesh = match mesh {
-        Some(path) => load::for_study(path, arguments.read, false, arguments.triangulate)?,
-        None => load::built_in(),
-    };
+    let study_mesh = load::mesh_or_built_in(mesh, arguments.read, false, arguments.triangulate)?;
     let settings = Settings {
         backends: arguments.backends.clone(),
         ..Settings::default()
@@ -92,9 +89,7 @@ fn print(audit: &Audit, text: &mut TextOutput) {
         text.print_line(&table);
         text.print_line("");
     }
-    for sentence in sentences(audit) {
-        text.print_line(&hanging_indent("- ", &sentence));
-    }
+    text.print_list("- ", sentences(audit));
 }
 
 /// Returns the three counts of each backend that holds the mesh, with a row for each table below.

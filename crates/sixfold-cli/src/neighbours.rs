@@ -14,7 +14,7 @@ use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::orders::short_figure;
 use crate::progress::Bar;
-use crate::study::describe_run;
+use crate::study::print_end;
 use crate::tables::styled;
 use crate::text::{TextOutput, hanging_indent};
 
@@ -22,16 +22,13 @@ pub(crate) fn run(arguments: &Neighbours) -> Result<ExitCode, Failure> {
     let mesh = arguments.mesh.as_deref();
     let settings = NeighboursSettings {
         indices: arguments.indices.clone(),
-        points: arguments.points.into(),
-        effort: arguments.effort(),
+        points: arguments.points,
+        effort: arguments.effort.effort(),
         seed: arguments.seed,
         heap: Policy::Kept,
     };
     let mut session = Session::open(mesh, &arguments.files, settings.heap)?;
-    let study_mesh = match mesh {
-        Some(path) => load::for_study(path, arguments.read, false, false)?,
-        None => load::built_in(),
-    };
+    let study_mesh = load::mesh_or_built_in(mesh, arguments.read, false, false)?;
     warn_of_debug_build();
     session.text.print_line(&facts_text(&study_mesh.report()));
     let bar = Bar::new();
@@ -50,16 +47,9 @@ fn print(report: &NeighboursReport, text: &mut TextOutput) {
     text.print_line("");
     text.print_line(&hanging_indent("", LEGEND));
     text.print_line("");
-    for sentence in &report.sentences {
-        text.print_line(&hanging_indent("- ", sentence));
-    }
-    for warning in &report.warnings {
-        text.print_line(&hanging_indent("! ", warning));
-    }
-    text.print_line("");
-    let most = report.results.iter().map(|row| row.samples).max();
-    let settings = describe_run(&report.run, most.unwrap_or(0));
-    text.print_line(&hanging_indent("", &settings));
+    let samples = report.results.iter().map(|row| row.samples);
+    let (sentences, warnings) = (&report.sentences, &report.warnings);
+    print_end(sentences, warnings, Vec::new(), &report.run, samples, text);
 }
 
 const LEGEND: &str = "* fastest; = tied with the fastest; ~ measured on some of the queries; \

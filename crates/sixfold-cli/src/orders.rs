@@ -6,8 +6,8 @@ use std::sync::atomic::AtomicBool;
 use comfy_table::{Attribute, Cell, CellAlignment, Table};
 use sixfold::shapes::Order;
 use sixfold_study::{
-    Agreement, Comparison, DEFAULT_OPERATIONS, OrderRow, OrdersError, OrdersReport, Settings,
-    Standing, StudyError, StudyMesh,
+    Agreement, Comparison, DEFAULT_OPERATIONS, OrderRow, OrdersReport, Settings, Standing,
+    StudyError, StudyMesh,
 };
 
 use crate::arguments::{ORDERS_EXAMPLES, Orders};
@@ -18,7 +18,7 @@ use crate::left_out::refusal_notes;
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::progress::Bar;
-use crate::study::{describe_run, name_lists};
+use crate::study::{name_lists, print_end};
 use crate::tables::styled;
 use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::figure;
@@ -26,14 +26,11 @@ use sixfold_study::numbers::figure;
 pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     let mesh = arguments.mesh.as_deref();
     let mut session = Session::open(mesh, &arguments.files, arguments.memory.heap)?;
-    let study_mesh = match mesh {
-        Some(path) => load::for_study(path, arguments.read, false, arguments.triangulate)?,
-        None => load::built_in(),
-    };
+    let study_mesh = load::mesh_or_built_in(mesh, arguments.read, false, arguments.triangulate)?;
     let settings = Settings {
         backends: arguments.backends.clone(),
         operations: arguments.operations.clone(),
-        effort: arguments.effort(),
+        effort: arguments.effort.effort(),
         seed: arguments.seed,
         heap: arguments.memory.heap,
         caches: arguments.memory.caches,
@@ -62,7 +59,7 @@ pub(crate) fn measure(
     let report = sixfold_study::orders(study_mesh, settings, stop, &mut |at| bar.show(at));
     bar.clear();
     report.map_err(|error| match error {
-        OrdersError::Study(StudyError::NoneHolds { .. }) => Failure::unsupported(error),
+        StudyError::NoneHolds { .. } => Failure::unsupported(error),
         error => Failure::usage(error),
     })
 }
@@ -91,19 +88,10 @@ fn print(report: &OrdersReport, text: &mut TextOutput) {
     text.print_line("");
     text.print_line(&hanging_indent("", LEGEND));
     text.print_line("");
-    for sentence in &report.sentences {
-        text.print_line(&hanging_indent("- ", sentence));
-    }
-    for warning in &report.warnings {
-        text.print_line(&hanging_indent("! ", warning));
-    }
-    for note in refusal_notes(&report.refusals) {
-        text.print_line(&hanging_indent("", &note));
-    }
-    text.print_line("");
-    let most = report.results.iter().map(|row| row.row.samples).max();
-    let settings = describe_run(&report.run, most.unwrap_or(0));
-    text.print_line(&hanging_indent("", &settings));
+    let samples = report.results.iter().map(|row| row.row.samples);
+    let (sentences, warnings) = (&report.sentences, &report.warnings);
+    let notes = refusal_notes(&report.refusals);
+    print_end(sentences, warnings, notes, &report.run, samples, text);
 }
 
 const LEGEND: &str = "Each cell has the ns per element, and the ratio to the best order of the \

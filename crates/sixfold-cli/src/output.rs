@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::exit;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use serde::Serialize;
+
 use crate::failure::Failure;
 
 /// Drafts that are not renamed or deleted yet. A thread must hold the lock to rename or delete a
@@ -158,6 +160,14 @@ impl Output {
 
     pub(crate) fn open_if(path: Option<&PathBuf>) -> Result<Option<Self>, Failure> {
         path.map(|path| Self::open(path)).transpose()
+    }
+
+    /// Writes `value` as JSON, with a line break at the end.
+    pub(crate) fn write_json(self, value: &impl Serialize) -> Result<(), Failure> {
+        self.finish(|writer| {
+            serde_json::to_writer_pretty(&mut *writer, value)?;
+            writeln!(writer)
+        })
     }
 
     /// Writes the data with `write`, then renames the draft.

@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
         extra: Vec::new(),
         needs: arguments.needs.clone(),
         max_memory: arguments.max_memory,
-        effort: arguments.effort(),
+        effort: arguments.effort.effort(),
         seed: arguments.seed,
         heap: arguments.heap,
     };
@@ -79,7 +79,7 @@ fn run_trace(path: &Path, arguments: &Pick) -> Result<ExitCode, Failure> {
         backends: arguments.backends.clone(),
         runs: 1,
         max_memory: arguments.max_memory,
-        effort: arguments.effort(),
+        effort: arguments.effort.effort(),
         seed: arguments.seed,
         heap: arguments.heap,
         isolation: None,
@@ -106,9 +106,8 @@ pub(crate) fn study_meshes(
     triangulate: bool,
 ) -> Result<Vec<StudyMesh>, Failure> {
     let read = |mesh: &Mesh| match (&mesh.path, &mesh.problem) {
-        (Some(path), _) => load::for_study(path, files, false, triangulate),
         (None, Some(problem)) => Err(Failure::usage(format!("{}: {problem}", mesh.name))),
-        (None, None) => Ok(load::built_in()),
+        (path, _) => load::mesh_or_built_in(path.as_deref(), files, false, triangulate),
     };
     if let [only] = meshes {
         return Ok(vec![read(only)?]);
@@ -243,16 +242,11 @@ pub(crate) fn print(report: &PickReport, text: &mut TextOutput) {
         text.print_line(&ranking(report));
         text.print_line("");
     }
-    for sentence in &report.sentences {
-        text.print_line(&hanging_indent("- ", sentence));
-    }
-    for excluded in &report.excluded {
-        let line = format!("{} is excluded: {}.", excluded.backend, excluded.reason);
-        text.print_line(&hanging_indent("- ", &line));
-    }
-    for warning in &report.warnings {
-        text.print_line(&hanging_indent("! ", warning));
-    }
+    text.print_list("- ", &report.sentences);
+    let excluded = report.excluded.iter();
+    let excluded = excluded.map(|e| format!("{} is excluded: {}.", e.backend, e.reason));
+    text.print_list("- ", excluded);
+    text.print_list("! ", &report.warnings);
 }
 
 /// Returns the table of backends, the fastest first.

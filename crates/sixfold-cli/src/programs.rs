@@ -79,7 +79,7 @@ pub(crate) fn run(suite: Suite) -> Result<ExitCode, Failure> {
         backends: arguments.backends.clone(),
         runs: arguments.runs,
         max_memory: arguments.max_memory,
-        effort: arguments.effort(),
+        effort: arguments.effort.effort(),
         seed: arguments.seed,
         heap: arguments.heap,
     };
@@ -93,7 +93,7 @@ pub(crate) fn run(suite: Suite) -> Result<ExitCode, Failure> {
             &arguments.files,
             Limits {
                 sample: arguments.time_limit.filter(|_| !arguments.isolate),
-                ..Limits::new(arguments.effort(), memory_limit)
+                ..Limits::new(arguments.effort.effort(), memory_limit)
             },
         ),
     }
@@ -104,7 +104,7 @@ fn isolation(arguments: &Programs, memory_limit: Option<u64>) -> Result<Isolatio
     let executable = std::env::current_exe().map_err(|error| {
         Failure::usage(format!("--isolate: the executable is unknown: {error}"))
     })?;
-    let quarter = match arguments.effort().budget() {
+    let quarter = match arguments.effort.effort().budget() {
         Some(budget) => (budget / 4).max(LEAST_TIME_LIMIT),
         None => NO_TIME_LIMIT,
     };

@@ -11,9 +11,8 @@ use sixfold::{
     Edit, MeshEdit, PolygonMesh, QueryCost, Representation, for_each_editable, structure_infos,
 };
 
-use crate::arguments::{Decimate, Remesh};
+use crate::arguments::{Decimate, MeshInOut, ReadPolygons, Remesh};
 use crate::failure::Failure;
-use crate::files::Files;
 use crate::output::is_stdout;
 use crate::progress::StepBar;
 use crate::text::{TextOutput, print_stderr, sanitize};
@@ -27,13 +26,12 @@ pub(crate) fn decimate(arguments: &Decimate) -> Result<ExitCode, Failure> {
         target: arguments.goal.target(),
         boundary: arguments.boundary,
     };
-    let files = Files {
-        from: &arguments.mesh,
-        to: &arguments.output,
-        read: arguments.read,
-        write: arguments.write,
-    };
-    edit_file(files, &arguments.backend, &decimation)
+    edit_file(
+        &arguments.files,
+        arguments.read,
+        &arguments.backend,
+        &decimation,
+    )
 }
 
 pub(crate) fn remesh(arguments: &Remesh) -> Result<ExitCode, Failure> {
@@ -42,23 +40,27 @@ pub(crate) fn remesh(arguments: &Remesh) -> Result<ExitCode, Failure> {
         iterations: arguments.iterations,
         max_faces: arguments.max_faces,
     };
-    let files = Files {
-        from: &arguments.mesh,
-        to: &arguments.output,
-        read: arguments.read,
-        write: arguments.write,
-    };
-    edit_file(files, &arguments.backend, &remeshing)
+    edit_file(
+        &arguments.files,
+        arguments.read,
+        &arguments.backend,
+        &remeshing,
+    )
 }
 
-fn edit_file(files: Files<'_>, backend: &str, work: &impl Work) -> Result<ExitCode, Failure> {
+fn edit_file(
+    files: &MeshInOut,
+    read: ReadPolygons,
+    backend: &str,
+    work: &impl Work,
+) -> Result<ExitCode, Failure> {
     // Check here, because the error of a structure would not name the command that helps.
-    let (polygons, output) = files.open(check_triangles)?;
+    let (polygons, output) = files.open(read, check_triangles)?;
     let done = edited_by(backend, &polygons, work);
     let (polygons, EditSummary { edits, shortfall }) =
         done.ok_or_else(|| Failure::unsupported(not_editable(backend)))??;
     output.write(&polygons, &WriteOptions::default())?;
-    let to = files.to;
+    let to = &files.output;
     if let Some(shortfall) = shortfall {
         print_stderr(&format!("note: {}: {shortfall}", to.display()));
     }

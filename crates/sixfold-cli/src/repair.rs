@@ -25,10 +25,10 @@ const SHOWN: usize = 5;
 /// Repairs the mesh and writes it.
 pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
     let outputs = [
-        ("--output", Some(&arguments.output)),
+        ("--output", Some(&arguments.files.output)),
         ("--json", arguments.json.as_ref()),
     ];
-    check_outputs(Some(&arguments.mesh), &outputs)?;
+    check_outputs(Some(&arguments.files.mesh), &outputs)?;
     let steps = arguments.steps();
     if steps.is_empty() && arguments.structure.is_none() {
         return Err(Failure::usage(
@@ -36,10 +36,10 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
         ));
     }
     exit_on_interrupt();
-    let read = load::for_repair(&arguments.mesh, arguments.read)?;
+    let read = load::for_repair(&arguments.files.mesh, arguments.read)?;
     let polygons = &read.polygons;
     // The outputs are opened before the work, so that an unusable place gives an error at once.
-    let output = MeshOutput::open(&arguments.output, arguments.write)?;
+    let output = MeshOutput::open(&arguments.files.output, arguments.files.write)?;
     let json = Output::open_if(arguments.json.as_ref())?;
     let faces = counted(polygons.face_count(), "face", "faces");
     let spinner = Spinner::start(format!("repairing {faces}"));
@@ -58,7 +58,7 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
             "sharp edge or vertex is",
             "sharp edges and vertices are",
         );
-        let file = shown(&arguments.mesh);
+        let file = shown(&arguments.files.mesh);
         print_stderr(&format!(
             "note: {file}: {elements} not in the repaired mesh"
         ));
@@ -69,17 +69,14 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
     if let Some(json) = json {
         let losses = losses(&repaired.polygons, format, &options);
         let report = Report::new(&read, &repaired, lost, &losses);
-        json.finish(|writer| {
-            serde_json::to_writer_pretty(&mut *writer, &report)?;
-            writeln!(writer)
-        })?;
+        json.write_json(&report)?;
     }
     let data_on_stdout =
-        is_stdout(&arguments.output) || arguments.json.as_deref().is_some_and(is_stdout);
+        is_stdout(&arguments.files.output) || arguments.json.as_deref().is_some_and(is_stdout);
     let mut text = TextOutput::new(!data_on_stdout);
     print_reading(&read, &mut text);
     print_steps(&repaired.steps, &mut text);
-    let place = sanitize(&arguments.output.display().to_string());
+    let place = sanitize(&arguments.files.output.display().to_string());
     text.print_line(&format!("{place}: {}", repaired.polygons));
     text.finish()?;
     let refusing = arguments.structure.as_deref();
@@ -87,7 +84,7 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
         print_stderr(&format!(
             "warning: {}: readers of STL join vertices at equal positions, and {name} refuses the \
              mesh that results: write PLY or OBJ, which keep the cut",
-            arguments.output.display()
+            arguments.files.output.display()
         ));
         return Ok(ExitCode::from(NOT_KEPT));
     }

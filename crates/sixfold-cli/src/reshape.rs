@@ -6,9 +6,8 @@ use sixfold::io::WriteOptions;
 use sixfold::operators::{Smoothing, SmoothingError, dual, oriented, smoothed, triangulated};
 use sixfold::{PolygonMesh, Representation, Visitor, visit};
 
-use crate::arguments::{Dual, ReadPolygons, Smooth, Triangulate};
+use crate::arguments::{Dual, MeshInOut, ReadPolygons, Smooth, Triangulate};
 use crate::failure::Failure;
-use crate::files::Files;
 use crate::output::is_stdout;
 use crate::progress::Spinner;
 use crate::text::{TextOutput, sanitize};
@@ -22,40 +21,23 @@ pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
         step_back: arguments.step_back,
         iterations: arguments.iterations,
     });
-    let files = Files {
-        from: &arguments.mesh,
-        to: &arguments.output,
-        read: arguments.read,
-        write: arguments.write,
-    };
-    reshape_file(files, "smoothed", |polygons| {
+    reshape_file(&arguments.files, arguments.read, "smoothed", |polygons| {
         on_backend(&arguments.backend, polygons, &work)
     })
 }
 
 pub(crate) fn make_dual(arguments: &Dual) -> Result<ExitCode, Failure> {
-    let files = Files {
-        from: &arguments.mesh,
-        to: &arguments.output,
-        read: arguments.read,
-        write: arguments.write,
-    };
-    reshape_file(files, "the dual", |polygons| {
+    reshape_file(&arguments.files, arguments.read, "the dual", |polygons| {
         on_backend(&arguments.backend, polygons, &DualWork)
     })
 }
 
 pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> {
-    let files = Files {
-        from: &arguments.mesh,
-        to: &arguments.output,
-        read: ReadPolygons {
-            triangulate: false, // the command itself cuts polygons
-            files: arguments.read,
-        },
-        write: arguments.write,
+    let read = ReadPolygons {
+        triangulate: false, // the command itself cuts polygons
+        files: arguments.read,
     };
-    reshape_file(files, "triangles", |polygons| {
+    reshape_file(&arguments.files, read, "triangles", |polygons| {
         let polygons = match arguments.orient {
             Some(facing) => {
                 oriented(polygons, facing)
@@ -69,18 +51,19 @@ pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> 
 }
 
 fn reshape_file(
-    files: Files<'_>,
+    files: &MeshInOut,
+    read: ReadPolygons,
     what: &str,
     change: impl FnOnce(&PolygonMesh) -> Result<PolygonMesh, Failure>,
 ) -> Result<ExitCode, Failure> {
-    let (polygons, output) = files.open(|_| Ok(()))?;
+    let (polygons, output) = files.open(read, |_| Ok(()))?;
     let faces = counted(polygons.face_count(), "face", "faces");
     let spinner = Spinner::start(format!("working on {faces}"));
     let changed = change(&polygons);
     spinner.clear();
     let changed = changed?;
     output.write(&changed, &WriteOptions::default())?;
-    let to = files.to;
+    let to = &files.output;
     let mut text = TextOutput::new(!is_stdout(to));
     let place = sanitize(&to.display().to_string());
     let vertices = counted(changed.vertex_count(), "vertex", "vertices");

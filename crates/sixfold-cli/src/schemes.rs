@@ -19,18 +19,10 @@ pub(crate) fn run(arguments: &Schemes) -> Result<ExitCode, Failure> {
     text.print_line(&classification());
     text.print_line("");
     text.print_line(&matrix());
-    let mut done = text.finish();
-    if let Some(output) = json {
-        let rows = Scheme::ALL.map(|scheme| {
-            json!({ "scheme": scheme, "kind": scheme.properties(), "backends": support(scheme) })
-        });
-        done = done.and(output.finish(|writer| {
-            serde_json::to_writer_pretty(&mut *writer, &rows)?;
-            writeln!(writer)
-        }));
-    }
-    done?;
-    Ok(ExitCode::SUCCESS)
+    let rows = Scheme::ALL.map(|scheme| {
+        json!({ "scheme": scheme, "kind": scheme.properties(), "backends": support(scheme) })
+    });
+    text.finish_with_json(json, &rows)
 }
 
 /// Returns the tables that classify the schemes, with a row per scheme.

@@ -38,15 +38,12 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     }
     let mesh = arguments.meshes.first().map(PathBuf::as_path);
     let mut session = Session::open(mesh, &arguments.files, settings.heap)?;
-    let study_mesh = match mesh {
-        Some(path) => load::for_study(
-            path,
-            arguments.read,
-            arguments.strict,
-            arguments.triangulate,
-        )?,
-        None => load::built_in(),
-    };
+    let study_mesh = load::mesh_or_built_in(
+        mesh,
+        arguments.read,
+        arguments.strict,
+        arguments.triangulate,
+    )?;
     warn_of_debug_build();
     print_before_measuring(&study_mesh, &settings, &mut session.text);
     let bar = Bar::new();
@@ -98,14 +95,7 @@ fn refusals(study_mesh: &StudyMesh, settings: &Settings) -> Result<Report, Failu
         run: Run::start(RunSettings::of_study(settings)),
         mesh: inspection.mesh,
         backends: inspection.backends,
-        results: Vec::new(),
-        refusals: Vec::new(),
-        control: None,
-        sentences: Vec::new(),
-        warnings: Vec::new(),
-        samples: Vec::new(),
-        timer: None,
-        interrupted: false,
+        ..Report::default()
     })
 }
 
@@ -120,19 +110,10 @@ pub(crate) fn print(report: &Report, text: &mut TextOutput) {
     text.print_line("");
     text.print_line(&results_table(report, text.bold()));
     text.print_line("");
-    for sentence in &report.sentences {
-        text.print_line(&hanging_indent("- ", sentence));
-    }
-    for warning in &report.warnings {
-        text.print_line(&hanging_indent("! ", warning));
-    }
-    for note in left_out_notes(report) {
-        text.print_line(&hanging_indent("", &note));
-    }
-    text.print_line("");
-    let most = report.results.iter().map(|row| row.samples).max();
-    let settings = describe_run(&report.run, most.unwrap_or(0));
-    text.print_line(&hanging_indent("", &settings));
+    let samples = report.results.iter().map(|row| row.samples);
+    let (sentences, warnings) = (&report.sentences, &report.warnings);
+    let notes = left_out_notes(report);
+    print_end(sentences, warnings, notes, &report.run, samples, text);
     if let Some(timer) = report.timer {
         text.print_line(&hanging_indent("", &clock_text(timer)));
     }
@@ -147,6 +128,23 @@ fn clock_text(timer: Timer) -> String {
          {error}.",
         timer.overhead_ns
     )
+}
+
+/// Prints the end of the results: sentences, warnings, notes, and how the times were measured.
+/// `samples` has the number of samples of each time.
+pub(crate) fn print_end(
+    sentences: &[String],
+    warnings: &[String],
+    notes: Vec<String>,
+    run: &Run,
+    samples: impl Iterator<Item = usize>,
+    text: &mut TextOutput,
+) {
+    text.print_list("- ", sentences);
+    text.print_list("! ", warnings);
+    text.print_list("", notes);
+    text.print_line("");
+    text.print_list("", [describe_run(run, samples.max().unwrap_or(0))]);
 }
 
 /// Describes the machine and the settings in one line.

@@ -33,11 +33,11 @@ use sixfold_study::numbers::{counted, duration, figure, grouped};
 pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     exit_on_interrupt();
     let places = [
-        ("--output", Some(&arguments.output)),
+        ("--output", Some(&arguments.files.output)),
         ("--limit", arguments.limit.as_ref()),
         ("--creases-left", arguments.creases_left.as_ref()),
     ];
-    check_outputs(Some(&arguments.mesh), &places)?;
+    check_outputs(Some(&arguments.files.mesh), &places)?;
     if let Some(creases) = &arguments.creases {
         check_not_overwritten("the crease file", creases, &places)?;
     }
@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         return local::run(arguments, select);
     }
     let method = method(arguments)?;
-    let (polygons, mut creases) = load::with_creases(&arguments.mesh, arguments.read)?;
+    let (polygons, mut creases) = load::with_creases(&arguments.files.mesh, arguments.read)?;
     check_tags(arguments, &creases)?;
     if let Some(path) = &arguments.creases {
         let listed = read_creases(path, &polygons).map_err(Failure::usage)?;
@@ -64,8 +64,8 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     )?;
     forecast.check(arguments.force)?;
     // Open the output before the work, so that an unusable path gives an error at once.
-    let open = |path: &PathBuf| MeshOutput::open(path, arguments.write);
-    let output = open(&arguments.output)?;
+    let open = |path: &PathBuf| MeshOutput::open(path, arguments.files.write);
+    let output = open(&arguments.files.output)?;
     let limit = arguments.limit.as_ref().map(open).transpose()?;
     let left = Output::open_if(arguments.creases_left.as_ref())?;
     text.print_line(&forecast.describe());
@@ -98,7 +98,7 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
             .iter()
             .for_each(|line| text.print_line(line));
     }
-    let place = sanitize(&arguments.output.display().to_string());
+    let place = sanitize(&arguments.files.output.display().to_string());
     let vertices = counted(step.polygons.vertex_count(), "vertex", "vertices");
     let faces = counted(step.polygons.face_count(), "face", "faces");
     let (scheme, backend) = (subdivision.scheme, &arguments.backend);
@@ -157,7 +157,7 @@ fn check_tags(arguments: &Subdivide, creases: &Creases) -> Result<(), Failure> {
     Err(Failure::unsupported(format!(
         "{}: the file has sharp edges or vertices, but {scheme} has no rule for sharpness: remove \
          the lines `t crease` and `t corner`, or choose catmull-clark or loop",
-        shown(&arguments.mesh)
+        shown(&arguments.files.mesh)
     )))
 }
 

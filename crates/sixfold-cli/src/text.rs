@@ -2,9 +2,12 @@
 
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
+use std::process::ExitCode;
+
+use serde::Serialize;
 
 use crate::failure::Failure;
-use crate::output::cannot_write;
+use crate::output::{Output, cannot_write};
 
 pub(crate) use sixfold_study::sanitize;
 
@@ -55,6 +58,29 @@ impl TextOutput {
             self.enabled = false;
             self.failed = Some(cause);
         }
+    }
+
+    /// Prints each of `lines` behind `mark`, broken into lines that are not too wide.
+    pub(crate) fn print_list<L: AsRef<str>>(
+        &mut self,
+        mark: &str,
+        lines: impl IntoIterator<Item = L>,
+    ) {
+        for line in lines {
+            self.print_line(&hanging_indent(mark, line.as_ref()));
+        }
+    }
+
+    /// Prints the remaining text, so that it is not lost if a file cannot be written. Then writes
+    /// `value` as JSON, if there is an output for it.
+    pub(crate) fn finish_with_json(
+        self,
+        json: Option<Output>,
+        value: &impl Serialize,
+    ) -> Result<ExitCode, Failure> {
+        let printed = self.finish();
+        let written = json.map_or(Ok(()), |json| json.write_json(value));
+        printed.and(written).map(|()| ExitCode::SUCCESS)
     }
 
     /// Returns an error if some text could not be printed.

@@ -1,5 +1,6 @@
 //! The option `--triangulate`: cuts polygons into triangles.
 
+use sixfold::glam::DVec3;
 use sixfold::{Facts, PolygonMesh, VertexId};
 use sixfold_study::StudyMesh;
 
@@ -89,7 +90,7 @@ fn folded_fans(mesh: &PolygonMesh) -> usize {
 }
 
 fn folds(mesh: &PolygonMesh, face: &[VertexId]) -> bool {
-    let at = |v: VertexId| mesh.position(v).to_array().map(f64::from);
+    let at = |v: VertexId| mesh.position(v).as_dvec3();
     let Some((&first, rest)) = face.split_first() else {
         return false;
     };
@@ -98,22 +99,9 @@ fn folds(mesh: &PolygonMesh, face: &[VertexId]) -> bool {
     // the area.
     let triangles = || {
         rest.windows(2)
-            .map(|pair| cross(minus(at(pair[0]), first), minus(at(pair[1]), first)))
+            .map(|pair| (at(pair[0]) - first).cross(at(pair[1]) - first))
     };
-    let normal = triangles().fold([0.0; 3], |sum, n| [0, 1, 2].map(|i| sum[i] + n[i]));
-    let squared_length = dot(normal, normal);
+    let normal: DVec3 = triangles().sum();
     // Collinear corners give triangles with area 0. The tolerance allows for rounding errors.
-    triangles().any(|triangle| dot(triangle, normal) < -1e-6 * squared_length)
-}
-
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|i| a[i] - b[i])
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| a[i] * b[j] - a[j] * b[i])
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    triangles().any(|triangle| triangle.dot(normal) < -1e-6 * normal.length_squared())
 }

@@ -17,11 +17,8 @@ use crate::why_text::{legend, memory_text, relation_text, sentence};
 pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     let mesh = arguments.mesh.as_deref();
     let mut session = Session::open(mesh, &arguments.files, Policy::Kept)?;
-    let study_mesh = match mesh {
-        Some(path) => load::for_study(path, arguments.read, false, arguments.triangulate)?,
-        None => load::built_in(),
-    };
-    let effort = (!arguments.counts_only).then(|| arguments.effort());
+    let study_mesh = load::mesh_or_built_in(mesh, arguments.read, false, arguments.triangulate)?;
+    let effort = (!arguments.counts_only).then(|| arguments.effort.effort());
     if effort.is_some() {
         warn_of_debug_build();
     }
@@ -75,9 +72,7 @@ fn print(why: &sixfold_study::Why, with_sentences: bool, text: &mut TextOutput) 
             }
         }
     }
-    for warning in &why.warnings {
-        text.print_line(&hanging_indent("! ", warning));
-    }
+    text.print_list("! ", &why.warnings);
     text.print_line("");
     text.print_line(&legend(why));
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use serde_json::json;
+use sixfold::UnknownName;
 use sixfold_study::{Action, Workload, built_in, built_ins};
 
 use crate::arguments::Workloads;
@@ -29,16 +30,8 @@ pub(crate) fn run(arguments: &Workloads) -> Result<ExitCode, Failure> {
         true => operations(),
         false => list(),
     });
-    let mut done = text.finish();
-    if let Some(output) = json {
-        let all: Vec<Workload> = built_ins().filter_map(|(name, _)| built_in(name)).collect();
-        done = done.and(output.finish(|writer| {
-            serde_json::to_writer_pretty(&mut *writer, &json!(all))?;
-            writeln!(writer)
-        }));
-    }
-    done?;
-    Ok(ExitCode::SUCCESS)
+    let all: Vec<Workload> = built_ins().filter_map(|(name, _)| built_in(name)).collect();
+    text.finish_with_json(json, &json!(all))
 }
 
 /// Returns the built-in workload with the name `word`. If no built-in workload has this name, reads
@@ -67,9 +60,8 @@ pub(crate) fn workload(word: &str) -> Result<Workload, Failure> {
 }
 
 fn unknown(name: &str) -> Failure {
-    let names: Vec<&str> = built_ins().map(|(name, _)| name).collect();
-    let message = sixfold_study::unknown("workload", name, &names);
-    Failure::usage(format!("{message}, or name a file that ends in .toml"))
+    let error = UnknownName::new("workload", name, built_ins().map(|(name, _)| name));
+    Failure::usage(format!("{error}, or name a file that ends in .toml"))
 }
 
 fn list() -> String {

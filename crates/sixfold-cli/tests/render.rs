@@ -116,7 +116,7 @@ fn invalid_input_gives_one_error_and_no_picture() {
         (&["mesh.obj", "-o", "out.png", "--up", "x"], "y, z"),
         (
             &["mesh.obj", "-o", "out.png", "--shade", "phong"],
-            "smooth, flat",
+            "flat, smooth",
         ),
         (
             &["mesh.obj", "-o", "out.png", "--creases", "bad.creases"],

@@ -265,7 +265,7 @@ pub use sixfold_core::{
 #[doc(inline)]
 pub use sixfold_core::{
     BuildError, CreaseError, EditError, InvariantError, MoveError, PolygonError, RefineError,
-    Refusal,
+    Refusal, UnknownName,
 };
 
 // The six structures.

@@ -136,7 +136,7 @@ fn run(arguments: &Arguments) -> Result<(), String> {
 /// Returns the scheme and the number of steps of a name such as `catmull_clark_2`.
 fn subdivision(name: &str) -> Option<(Scheme, u32)> {
     let (scheme, levels) = name.rsplit_once('_')?;
-    let scheme = Scheme::from_name(&scheme.replace('_', "-"))?;
+    let scheme = scheme.replace('_', "-").parse().ok()?;
     let levels = levels.parse().ok()?;
     (1..=16).contains(&levels).then_some((scheme, levels))
 }

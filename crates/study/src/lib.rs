@@ -50,24 +50,22 @@ pub use external::{EXTERNAL_TIMEOUT, External, ExternalError, ExternalReport};
 pub use inspect::{Inspection, StudyMesh, inspect, inspect_diagnosed, sha256_of};
 pub use labs::Slope;
 pub use labs::growth::{
-    BackendBytes, BackendRefusal, CacheLimit, Fit, GrowthError, GrowthReport, GrowthSettings,
-    SCALABLE_SHAPES, ScalableShape, SizeReport, growth, growth_bytes, growth_plan,
+    BackendBytes, CacheLimit, Fit, GrowthError, GrowthReport, GrowthSettings, SCALABLE_SHAPES,
+    ScalableShape, SizeReport, growth, growth_bytes, growth_plan,
 };
 pub use labs::memory::{Audit, BackendAudit, OperationBytes, audit, count_allocations};
 pub use labs::neighbours::{
     Cheapest, CheapestIndices, IndexReport, NeighbourRow, NeighboursError, NeighboursReport,
-    NeighboursSettings, QueryPoints, SpatialTask, UnknownSpatialTask, neighbour_indices,
-    neighbours,
+    NeighboursSettings, QueryPoints, SpatialTask, neighbour_indices, neighbours,
 };
 pub use labs::orders::{
-    Comparison, DEFAULT_OPERATIONS, Factor, Larger, OrderEffect, OrderRow, OrdersError,
-    OrdersReport, SamplesInOrder, StructureEffect, orders, orders_bytes,
+    Comparison, DEFAULT_OPERATIONS, Factor, Larger, OrderEffect, OrderRow, OrdersReport,
+    SamplesInOrder, StructureEffect, orders, orders_bytes,
 };
 pub use labs::pick::{
     AskedCount, BreakEven, Choice, EQUAL_UP_TO, Excluded, MeshRanking, Need, PartCost, PickError,
     PickReport, PickSettings, Predicted, Prediction, ProgramReport, ProgramSettings, Ranked,
-    RecordError, RecordedProgram, TurningPoint, UnknownNeed, pick, pick_for_programs, predict,
-    record_program,
+    RecordError, RecordedProgram, TurningPoint, pick, pick_for_programs, predict, record_program,
 };
 pub use labs::study::{Report, Settings, StudyError, study};
 pub use labs::why::{Bound, Model, Timed, Timing, Why, WhyRow, WhySettings, why};
@@ -83,15 +81,13 @@ pub use results::merge::MergeError;
 pub use results::pool::{Group, Holding, Overall, Pool, Pooled, Purpose};
 pub use results::read::ReadError;
 pub use results::rows::{
-    Agreement, BackendReport, Control, ControlRow, FIRST_TIME_SHOWN, MeshReport, Refusal,
-    RefusalKind, ResultRow, Samples, Standing,
+    Agreement, BackendRefusal, BackendReport, Control, ControlRow, FIRST_TIME_SHOWN, MeshReport,
+    Refusal, RefusalKind, ResultRow, Samples, Standing,
 };
 pub use results::run::{Run, RunSettings, Start as RunStart};
 pub use runner::{BackendRun, BackendRunner};
 pub use sanitize::sanitize;
-pub use sixfold_workload::pages::{
-    self, HeapGuard, HeapPolicyConflict, HeapReport, Policy, UnknownPolicy,
-};
+pub use sixfold_workload::pages::{self, HeapGuard, HeapPolicyConflict, HeapReport, Policy};
 pub use sixfold_workload::{
     Access, Action, Amount, EditPlaceError, OwnBytes, OwnData, Part, Workload, WorkloadError,
     built_in, built_ins,
@@ -100,7 +96,7 @@ pub use sixfold_workload::{
     Allocated, AllocationCounter, Backend, BufferSpeed, Cache, CacheFlusher, Clock, EditPass,
     Editor, Edits, ElementKind, Heap, MAX_SCANNED_FACES, MachineClock, MeasuredMemory, MemorySpeed,
     NotCounted, Operation, Reads, Refiner, Series, SingleEdit, Start, SubdivisionJob, TableReads,
-    Time, UnknownOperation, Way, caches, timed, unknown,
+    Time, Way, caches, timed,
 };
 pub use sixfold_workload::{
     Asked, EditProgram, MovingProgram, Outcome, Program, ProgramRefusal, Recorded, Recording,

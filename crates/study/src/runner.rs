@@ -70,10 +70,7 @@ impl<'a> BackendRunner<'a> {
         let facts = Facts::from_polygons(polygons);
         let candidate = Candidate::with_facts(polygons, &facts);
         let (report, subject) = prepare(backend, &candidate, draw);
-        let refusals = || vec![(report.name, report.reason.unwrap_or_default())];
-        let subject = subject.ok_or_else(|| StudyError::NoneHolds {
-            refusals: refusals(),
-        })?;
+        let subject = subject.ok_or_else(|| StudyError::none_holds([report]))?;
         Ok(Self {
             subject,
             last: None,

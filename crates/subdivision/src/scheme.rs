@@ -1,27 +1,27 @@
 //! The subdivision schemes and their properties.
 
-use std::fmt;
-
 use sixfold_core::Split;
 
-/// A subdivision scheme.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[non_exhaustive]
-pub enum Scheme {
-    /// The scheme of Catmull & Clark (1978).
-    CatmullClark,
-    /// The scheme of Loop (1987).
-    Loop,
-    /// The √3 scheme of Kobbelt (2000).
-    Sqrt3,
-    /// The modified butterfly scheme of Zorin, Schröder & Sweldens (1996).
-    Butterfly,
-    /// The scheme of Doo & Sabin (1978).
-    DooSabin,
-    /// Splits every triangle into four at the midpoints of its edges.
-    Midpoint,
-    /// Splits every polygon into quads at the midpoints of its edges and the mean of its corners.
-    Bilinear,
+sixfold_core::named! {
+    /// A subdivision scheme.
+    #[non_exhaustive]
+    pub enum Scheme: "subdivision scheme" {
+        /// The scheme of Catmull & Clark (1978).
+        CatmullClark = "catmull-clark",
+        /// The scheme of Loop (1987).
+        Loop = "loop",
+        /// The √3 scheme of Kobbelt (2000).
+        Sqrt3 = "sqrt3",
+        /// The modified butterfly scheme of Zorin, Schröder & Sweldens (1996).
+        Butterfly = "butterfly",
+        /// The scheme of Doo & Sabin (1978).
+        DooSabin = "doo-sabin",
+        /// Splits every triangle into four at the midpoints of its edges.
+        Midpoint = "midpoint",
+        /// Splits every polygon into quads at the midpoints of its edges and the mean of its
+        /// corners.
+        Bilinear = "bilinear",
+    }
 }
 
 /// The elements that a step splits.
@@ -38,36 +38,15 @@ pub enum Primitive {
     VertexSplit,
 }
 
-/// The faces that a scheme accepts or makes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize),
-    serde(rename_all = "kebab-case")
-)]
-pub enum FaceKind {
-    /// All faces are triangles.
-    Triangles,
-    /// All faces have four corners.
-    Quads,
-    /// Faces can have any number of corners.
-    Polygons,
-}
-
-impl FaceKind {
-    /// Returns the name in text and in files, for example `triangles`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Triangles => "triangles",
-            Self::Quads => "quads",
-            Self::Polygons => "polygons",
-        }
-    }
-}
-
-impl fmt::Display for FaceKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+sixfold_core::named! {
+    /// The faces that a scheme accepts or makes.
+    pub enum FaceKind: "kind of faces" {
+        /// All faces are triangles.
+        Triangles = "triangles",
+        /// All faces have four corners.
+        Quads = "quads",
+        /// Faces can have any number of corners.
+        Polygons = "polygons",
     }
 }
 
@@ -103,36 +82,6 @@ pub struct SchemeProperties {
 }
 
 impl Scheme {
-    /// All schemes.
-    pub const ALL: [Self; 7] = [
-        Self::CatmullClark,
-        Self::Loop,
-        Self::Sqrt3,
-        Self::Butterfly,
-        Self::DooSabin,
-        Self::Midpoint,
-        Self::Bilinear,
-    ];
-
-    /// Returns the name of the scheme on the command line and in files, for example
-    /// `catmull-clark`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::CatmullClark => "catmull-clark",
-            Self::Loop => "loop",
-            Self::Sqrt3 => "sqrt3",
-            Self::Butterfly => "butterfly",
-            Self::DooSabin => "doo-sabin",
-            Self::Midpoint => "midpoint",
-            Self::Bilinear => "bilinear",
-        }
-    }
-
-    /// Returns the scheme with this [`name`](Self::name), or `None` if the name is unknown.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|scheme| scheme.name() == name)
-    }
-
     /// Returns the properties of the scheme.
     pub const fn properties(self) -> SchemeProperties {
         const BASE: SchemeProperties = SchemeProperties {
@@ -208,53 +157,16 @@ impl Scheme {
     }
 }
 
-impl fmt::Display for Scheme {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-#[cfg(feature = "serde")]
-impl serde::Serialize for Scheme {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name())
-    }
-}
-
-/// A way to run a scheme. All methods give the same mesh, except for the order of its elements.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize),
-    serde(rename_all = "kebab-case")
-)]
-pub enum Method {
-    /// Computes each new point with queries of its neighbourhood (VV, VF and EF).
-    Gather,
-    /// Runs one pass over the faces and adds the values of each face to its vertices and edges.
-    /// Queries only the vertices and edges of each face (queries FV and FE).
-    Scatter,
-    /// Computes each new point with queries. The structure splits its own tables, and no new
-    /// structure is built.
-    Native,
-}
-
-impl Method {
-    /// All methods.
-    pub const ALL: [Self; 3] = [Self::Gather, Self::Scatter, Self::Native];
-
-    /// Returns the name of the method on the command line and in files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Gather => "gather",
-            Self::Scatter => "scatter",
-            Self::Native => "native",
-        }
-    }
-}
-
-impl fmt::Display for Method {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+sixfold_core::named! {
+    /// A way to run a scheme. All methods give the same mesh, except for the order of its elements.
+    pub enum Method: "subdivision method" {
+        /// Computes each new point with queries of its neighbourhood (VV, VF and EF).
+        Gather = "gather",
+        /// Runs one pass over the faces and adds the values of each face to its vertices and edges.
+        /// Queries only the vertices and edges of each face (queries FV and FE).
+        Scatter = "scatter",
+        /// Computes each new point with queries. The structure splits its own tables, and no new
+        /// structure is built.
+        Native = "native",
     }
 }

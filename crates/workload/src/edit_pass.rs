@@ -1,7 +1,5 @@
 //! Passes of edits over a whole mesh, on one structure.
 
-use std::fmt;
-
 use sixfold::remeshing::{Decimation, Target, decimate};
 use sixfold::{EdgeMap, EditLog, HandleMap, MeshEdit, MeshQuery, PolygonMesh, Representation};
 
@@ -9,43 +7,26 @@ use crate::backend::Backend;
 use crate::clock::Time;
 use crate::series::{ReusedCopies, Series};
 
-/// A series of edits over a whole triangle mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum EditPass {
-    /// Inserts a vertex into the centre of every face, then collapses each new vertex into a
-    /// neighbour. Removes the deleted elements from the tables. The resulting mesh has the original
-    /// faces.
-    SplitCollapse,
-    /// Flips every edge whose flip is legal, then flips the same edges again on the changed mesh.
-    /// The edges are flipped in the order of their first occurrence in the faces.
-    FlipAll,
-    /// Repeatedly collapses the edge with the least quadric error, until half of the faces are
-    /// left.
-    DecimateHalf,
-    /// Repeatedly collapses the edge with the least quadric error, until a tenth of the faces is
-    /// left.
-    DecimateTenth,
+sixfold_core::named! {
+    /// A series of edits over a whole triangle mesh.
+    pub enum EditPass: "edit pass" {
+        /// Inserts a vertex into the centre of every face, then collapses each new vertex into a
+        /// neighbour. Removes the deleted elements from the tables. The resulting mesh has the
+        /// original faces.
+        SplitCollapse = "split_collapse",
+        /// Flips every edge whose flip is legal, then flips the same edges again on the changed
+        /// mesh. The edges are flipped in the order of their first occurrence in the faces.
+        FlipAll = "flip_all",
+        /// Repeatedly collapses the edge with the least quadric error, until half of the faces are
+        /// left.
+        DecimateHalf = "decimate_half",
+        /// Repeatedly collapses the edge with the least quadric error, until a tenth of the faces
+        /// is left.
+        DecimateTenth = "decimate_tenth",
+    }
 }
 
 impl EditPass {
-    /// All four passes of edits.
-    pub const ALL: [Self; 4] = [
-        Self::SplitCollapse,
-        Self::FlipAll,
-        Self::DecimateHalf,
-        Self::DecimateTenth,
-    ];
-
-    /// Returns the name that users write for the pass, such as `split_collapse`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::SplitCollapse => "split_collapse",
-            Self::FlipAll => "flip_all",
-            Self::DecimateHalf => "decimate_half",
-            Self::DecimateTenth => "decimate_tenth",
-        }
-    }
-
     /// Prepares the pass for the structure of `backend`. Returns `None` if the structure has no
     /// edits.
     ///
@@ -79,12 +60,6 @@ pub(crate) fn prepare_pass<M: Representation + MeshEdit + 'static>(
         mesh,
         copies: ReusedCopies::default(),
     }))
-}
-
-impl fmt::Display for EditPass {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
 }
 
 /// Edits that can run repeatedly. Each run starts with the initial mesh.

@@ -29,7 +29,6 @@ mod sweeps;
 mod tables;
 mod timed_structure;
 mod trace;
-mod unknown;
 mod workload;
 mod workload_file;
 
@@ -46,7 +45,7 @@ pub use memory_speed::{BufferSpeed, MemorySpeed};
 pub use mix::{
     EditPlaceError, MixBackend, MixRefusal, PreparedMix, Route, Schedule, prepare_mix, tabulate,
 };
-pub use operation::{ElementKind, Operation, UnknownOperation};
+pub use operation::{ElementKind, Operation};
 pub use program::{
     Asked, Contestant, EditProgram, MovingProgram, Program, ProgramRefusal, Recorded, Recording,
     RefineProgram, Suite, SuiteProgram, Visits, WalkProgram,
@@ -59,8 +58,5 @@ pub use subdivide::patch;
 pub use subdivision_job::{PreparedRefiner, Refiner, SubdivisionJob, Way};
 pub use sweeps::field_sum;
 pub use trace::{Trace, TraceError};
-pub use unknown::unknown;
-pub use workload::{
-    Access, Action, Amount, OwnBytes, OwnData, ParseAmountError, Part, UnknownAction, Workload,
-};
+pub use workload::{Access, Action, Amount, OwnBytes, OwnData, ParseAmountError, Part, Workload};
 pub use workload_file::WorkloadError;

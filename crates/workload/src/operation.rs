@@ -1,31 +1,24 @@
 //! The operations that a study times, with names, queried relations and visited elements.
 
-use std::fmt;
-use std::str::FromStr;
-
-use serde_with::{DeserializeFromStr, SerializeDisplay};
 use sixfold::subdivision::{Method, Scheme};
 use sixfold::{PolygonMesh, QueryCost, Relation};
 
 use crate::edit_pass::EditPass;
 use crate::subdivision_job::{SubdivisionJob, Way};
-use crate::unknown::unknown;
 
-/// One kind of element.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum ElementKind {
-    /// Vertices.
-    Vertex,
-    /// Edges.
-    Edge,
-    /// Faces.
-    Face,
+sixfold_core::named! {
+    /// One kind of element.
+    pub enum ElementKind: "kind of element" {
+        /// Vertices.
+        Vertex = "vertex",
+        /// Edges.
+        Edge = "edge",
+        /// Faces.
+        Face = "face",
+    }
 }
 
 impl ElementKind {
-    /// All three kinds of elements, in the order of [`ElementKind::index`].
-    pub const ALL: [Self; 3] = [Self::Vertex, Self::Edge, Self::Face];
-
     /// Returns the index of the kind in [`ElementKind::ALL`].
     pub const fn index(self) -> usize {
         self as usize
@@ -35,26 +28,16 @@ impl ElementKind {
     pub const fn queried_by(relation: Relation) -> Self {
         Self::ALL[relation as usize / 3]
     }
-
-    /// Returns the name of the kind in the singular: `vertex`, `edge` or `face`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Vertex => "vertex",
-            Self::Edge => "edge",
-            Self::Face => "face",
-        }
-    }
 }
 
 /// An operation that a study times.
 ///
 /// An operation visits the elements in the order in which the structure stores them. The operation
 /// uses every handle that a query yields, so the compiler cannot omit the computation of a handle.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, DeserializeFromStr, SerializeDisplay,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Operation {
     /// Builds the structure from a polygon mesh.
+    #[default]
     Build,
     /// Queries one relation at every element of one kind.
     Relation(Relation),
@@ -330,29 +313,7 @@ impl Operation {
     }
 }
 
-impl fmt::Display for Operation {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-/// The error for an unknown name of an operation.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}", unknown("operation", .name, &Operation::ALL.map(Operation::name)))]
-pub struct UnknownOperation {
-    /// The unknown name.
-    pub name: String,
-}
-
-impl FromStr for Operation {
-    type Err = UnknownOperation;
-
-    fn from_str(name: &str) -> Result<Self, UnknownOperation> {
-        let mut all = Self::ALL.into_iter();
-        all.find(|operation| operation.name() == name)
-            .ok_or_else(|| UnknownOperation { name: name.into() })
-    }
-}
+sixfold_core::named!(impl Operation: "operation" in Operation::ALL);
 
 #[cfg(test)]
 mod tests {

@@ -25,10 +25,8 @@
 
 mod guard;
 
-use std::fmt;
 use std::hint::black_box;
 use std::mem::MaybeUninit;
-use std::str::FromStr;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use rand::SeedableRng;
@@ -38,52 +36,16 @@ use serde::{Deserialize, Serialize};
 
 pub use guard::{HeapGuard, HeapPolicyConflict};
 
-/// A rule for the memory pages of freed blocks.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Policy {
-    /// Freed pages stay in the process. Later allocations use the freed pages again, without page
-    /// faults.
-    #[default]
-    Kept,
-    /// The allocator decides by its own rules which freed pages it keeps.
-    System,
-}
-
-impl Policy {
-    /// Both policies for freed pages.
-    pub const ALL: [Self; 2] = [Self::Kept, Self::System];
-
-    /// Returns the name that users write: `kept` or `system`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Kept => "kept",
-            Self::System => "system",
-        }
-    }
-}
-
-impl fmt::Display for Policy {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-/// The error for an unknown name of a policy.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no heap policy `{name}`: choose `kept` or `system`")]
-pub struct UnknownPolicy {
-    /// The unknown name.
-    pub name: String,
-}
-
-impl FromStr for Policy {
-    type Err = UnknownPolicy;
-
-    fn from_str(name: &str) -> Result<Self, UnknownPolicy> {
-        let mut all = Self::ALL.into_iter();
-        all.find(|policy| policy.name() == name)
-            .ok_or_else(|| UnknownPolicy { name: name.into() })
+sixfold_core::named! {
+    /// A rule for the memory pages of freed blocks.
+    #[derive(Default)]
+    pub enum Policy: "heap policy" {
+        /// Freed pages stay in the process. Later allocations use the freed pages again, without
+        /// page faults.
+        #[default]
+        Kept = "kept",
+        /// The allocator decides by its own rules which freed pages it keeps.
+        System = "system",
     }
 }
 

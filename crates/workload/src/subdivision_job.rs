@@ -1,8 +1,5 @@
 //! A subdivision that can be timed: a scheme, a way to run the scheme, and a number of levels.
 
-use std::fmt;
-
-use serde::{Serialize, Serializer};
 use sixfold::subdivision::{
     Method, Scheme, Subdivision, SubdivisionError, build_level, renumbered,
 };
@@ -10,36 +7,24 @@ use sixfold::{Creases, Point, PolygonMesh, Refine, Representation};
 
 use crate::backend::Backend;
 
-/// A way to compute and store the levels of a subdivision.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Way {
-    /// Queries the mesh for the points around each new point, and rebuilds the structure for each
-    /// level.
-    Gather,
-    /// Adds the contributions of each face to the new points in one pass over the faces, and
-    /// rebuilds the structure for each level.
-    Scatter,
-    /// Splits the tables of the structure, and stores each level in a newly allocated mesh.
-    NativeFresh,
-    /// Splits the tables of the structure, and stores each level in the mesh of the previous run.
-    Native,
+sixfold_core::named! {
+    /// A way to compute and store the levels of a subdivision.
+    pub enum Way: "way to subdivide" {
+        /// Queries the mesh for the points around each new point, and rebuilds the structure for
+        /// each level.
+        Gather = "gather",
+        /// Adds the contributions of each face to the new points in one pass over the faces, and
+        /// rebuilds the structure for each level.
+        Scatter = "scatter",
+        /// Splits the tables of the structure, and stores each level in a newly allocated mesh.
+        NativeFresh = "native_fresh",
+        /// Splits the tables of the structure, and stores each level in the mesh of the previous
+        /// run.
+        Native = "native",
+    }
 }
 
 impl Way {
-    /// All four ways to compute a subdivision.
-    pub const ALL: [Self; 4] = [Self::Gather, Self::Scatter, Self::NativeFresh, Self::Native];
-
-    /// Returns the name that users write for this way: `gather`, `scatter`, `native_fresh` or
-    /// `native`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Gather => "gather",
-            Self::Scatter => "scatter",
-            Self::NativeFresh => "native_fresh",
-            Self::Native => "native",
-        }
-    }
-
     /// Returns the subdivision method of this way.
     pub const fn method(self) -> Method {
         match self {
@@ -47,18 +32,6 @@ impl Way {
             Self::Scatter => Method::Scatter,
             Self::NativeFresh | Self::Native => Method::Native,
         }
-    }
-}
-
-impl fmt::Display for Way {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl Serialize for Way {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name())
     }
 }
 

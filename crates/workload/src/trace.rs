@@ -142,14 +142,43 @@ impl Trace {
     }
 }
 
-/// Returns whether an edit is done at an edge.
-const fn is_at_edge(edit: Edit) -> bool {
-    matches!(
-        edit,
-        Edit::SplitEdge
-            | Edit::BisectEdge
-            | Edit::DissolveEdge
-            | Edit::FlipEdge
-            | Edit::CollapseEdge
-    )
+/// An argument of an edit, as a line of a trace has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Argument {
+    /// An edge: `A-B`.
+    Edge,
+    /// A face.
+    Face,
+    /// A vertex.
+    Vertex,
+    /// A vertex, or `-` if it is absent. The text is for messages.
+    VertexIfAny(&'static str),
+    /// All remaining words are vertices.
+    Vertices,
+    /// Three coordinates.
+    Position,
+}
+
+/// Returns the arguments of an edit, in their order on a line.
+pub(crate) const fn arguments(edit: Edit) -> &'static [Argument] {
+    use Argument::{Edge, Face, Position, Vertex, VertexIfAny, Vertices};
+    match edit {
+        Edit::SetPosition => &[Vertex, Position],
+        Edit::AddVertex => &[Position],
+        Edit::AddFace => &[Vertices],
+        Edit::RemoveFace => &[Face],
+        Edit::RemoveVertex => &[Vertex],
+        Edit::RemoveIsolatedVertices | Edit::Compact => &[],
+        Edit::SplitEdge | Edit::BisectEdge => &[Edge, Position],
+        Edit::PokeFace => &[Face, Position],
+        Edit::SplitFace => &[Face, Vertex, Vertex],
+        Edit::DissolveEdge | Edit::FlipEdge => &[Edge],
+        Edit::CollapseEdge => &[Edge, Vertex, Position],
+        Edit::SplitVertex => &[
+            Vertex,
+            VertexIfAny("LEFT|-"),
+            VertexIfAny("RIGHT|-"),
+            Position,
+        ],
+    }
 }

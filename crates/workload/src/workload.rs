@@ -3,14 +3,12 @@
 use std::fmt;
 use std::str::FromStr;
 
-use serde::de::{Deserializer, Error as _};
+use serde::de::{self, Deserializer, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
-use serde_with::{DeserializeFromStr, SerializeDisplay};
 use sixfold::{Edit, Relation};
 use sixfold_core::Counts;
 
 use crate::operation::{ElementKind, Operation};
-use crate::unknown::unknown;
 
 /// The operations that a program performs on a mesh.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
@@ -91,9 +89,7 @@ pub struct Part {
 }
 
 /// An operation of a program on a mesh.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, DeserializeFromStr, SerializeDisplay,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Action {
     /// Queries one relation of one element, such as the faces at a vertex.
     Relation(Relation),
@@ -116,27 +112,27 @@ pub enum Action {
     Subdivide,
 }
 
-/// The order in which a workload visits the elements.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Access {
-    /// The order in which the structure stores the elements, repeated if necessary.
-    Sequential,
-    /// A random order of all elements. The same order is repeated if necessary.
-    Random,
-    /// Patch by patch. A patch contains the faces around a random face, and the vertices and edges
-    /// of these faces.
-    Patches,
-    /// A front that grows: breadth first from face to face, as in region growing and in the
-    /// computation of distances. The vertices and edges follow in the order in which the front
-    /// reaches them.
-    Front,
-    /// Face by face: the faces in their order in the mesh file, the vertices and edges in the order
-    /// in which the faces name them. A vertex is visited once for each of its faces.
-    ByFace,
-    /// Edge by edge: the edges in the order in which the faces name them first, the ends of each
-    /// edge, and the faces of each edge. A vertex is visited once for each of its edges.
-    ByEdge,
+sixfold_core::named! {
+    /// The order in which a workload visits the elements.
+    pub enum Access: "access pattern" {
+        /// The order in which the structure stores the elements, repeated if necessary.
+        Sequential = "sequential",
+        /// A random order of all elements. The same order is repeated if necessary.
+        Random = "random",
+        /// Patch by patch. A patch contains the faces around a random face, and the vertices and
+        /// edges of these faces.
+        Patches = "patches",
+        /// A front that grows: breadth first from face to face, as in region growing and in the
+        /// computation of distances. The vertices and edges follow in the order in which the front
+        /// reaches them.
+        Front = "front",
+        /// Face by face: the faces in their order in the mesh file, the vertices and edges in the
+        /// order in which the faces name them. A vertex is visited once for each of its faces.
+        ByFace = "by_face",
+        /// Edge by edge: the edges in the order in which the faces name them first, the ends of
+        /// each edge, and the faces of each edge. A vertex is visited once for each of its edges.
+        ByEdge = "by_edge",
+    }
 }
 
 /// A fixed number, or a number for each vertex, edge or face of a mesh.
@@ -187,16 +183,55 @@ impl Serialize for Amount {
 
 impl<'de> Deserialize<'de> for Amount {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(untagged)]
-        enum NumberOrText {
-            Number(f64),
-            Text(String),
+        let parsed = NumberOrText::deserialize(deserializer)?.amount();
+        parsed.map_err(de::Error::custom)
+    }
+}
+
+/// The form of an amount in a file.
+pub(crate) enum NumberOrText {
+    Number(f64),
+    Text(String),
+}
+
+impl<'de> Deserialize<'de> for NumberOrText {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Value;
+
+        impl Visitor<'_> for Value {
+            type Value = NumberOrText;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number such as `20`, or a text such as `\"2 per face\"`")
+            }
+
+            fn visit_i64<E: de::Error>(self, number: i64) -> Result<NumberOrText, E> {
+                Ok(NumberOrText::Number(number as f64))
+            }
+
+            fn visit_u64<E: de::Error>(self, number: u64) -> Result<NumberOrText, E> {
+                Ok(NumberOrText::Number(number as f64))
+            }
+
+            fn visit_f64<E: de::Error>(self, number: f64) -> Result<NumberOrText, E> {
+                Ok(NumberOrText::Number(number))
+            }
+
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<NumberOrText, E> {
+                Ok(NumberOrText::Text(text.into()))
+            }
         }
 
-        match NumberOrText::deserialize(deserializer)? {
-            NumberOrText::Number(number) => Ok(Self::Number(number)),
-            NumberOrText::Text(text) => text.parse().map_err(D::Error::custom),
+        deserializer.deserialize_any(Value)
+    }
+}
+
+impl NumberOrText {
+    /// Parses the text, if it is one.
+    pub(crate) fn amount(&self) -> Result<Amount, ParseAmountError> {
+        match self {
+            Self::Number(number) => Ok(Amount::Number(*number)),
+            Self::Text(text) => text.parse(),
         }
     }
 }
@@ -221,40 +256,10 @@ impl FromStr for Amount {
         let Some((amount, per)) = text.split_once(" per ") else {
             return Ok(Self::Number(number(text)?));
         };
-        let kind = ElementKind::ALL
-            .into_iter()
-            .find(|kind| kind.name() == per.trim());
-        Ok(Self::Per(number(amount)?, kind.ok_or_else(wrong)?))
-    }
-}
-
-impl Access {
-    /// All access orders.
-    pub const ALL: [Self; 6] = [
-        Self::Sequential,
-        Self::Random,
-        Self::Patches,
-        Self::Front,
-        Self::ByFace,
-        Self::ByEdge,
-    ];
-
-    /// Returns the name that users write for the order, such as `sequential` or `by_face`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Sequential => "sequential",
-            Self::Random => "random",
-            Self::Patches => "patches",
-            Self::Front => "front",
-            Self::ByFace => "by_face",
-            Self::ByEdge => "by_edge",
-        }
-    }
-}
-
-impl fmt::Display for Access {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+        Ok(Self::Per(
+            number(amount)?,
+            per.parse().map_err(|_| wrong())?,
+        ))
     }
 }
 
@@ -360,29 +365,7 @@ impl Action {
     }
 }
 
-/// The error for an unknown name of an action.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}", unknown("operation", .name, &Action::all().iter().map(|a| a.name()).collect::<Vec<_>>()))]
-pub struct UnknownAction {
-    /// The unknown name.
-    pub name: String,
-}
-
-impl FromStr for Action {
-    type Err = UnknownAction;
-
-    fn from_str(name: &str) -> Result<Self, UnknownAction> {
-        let mut all = Self::all().into_iter();
-        all.find(|action| action.name() == name)
-            .ok_or_else(|| UnknownAction { name: name.into() })
-    }
-}
-
-impl fmt::Display for Action {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
+sixfold_core::named!(impl Action: "operation" in Action::all());
 
 impl Workload {
     /// Returns the number of operations on one mesh with the given element counts; at least 1.

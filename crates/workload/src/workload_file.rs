@@ -3,12 +3,12 @@
 use std::fmt;
 use std::ops::Range;
 
-use serde::de::{self, Deserialize, Deserializer, MapAccess, Visitor};
+use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+use sixfold::UnknownName;
 use toml::Spanned;
 
 use crate::operation::ElementKind;
-use crate::unknown::unknown;
-use crate::workload::{Access, Action, Amount, OwnData, Part, Workload};
+use crate::workload::{Access, Action, Amount, NumberOrText, OwnData, Part, Workload};
 
 /// An error in a workload file, with the number of the line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -34,44 +34,6 @@ struct WorkloadFile {
     own_ns: Option<Spanned<f64>>,
     own_data: Option<Spanned<OwnData>>,
     mix: Option<Spanned<Mix>>,
-}
-
-/// An amount or a weight before the checks.
-enum NumberOrText {
-    Number(f64),
-    Text(String),
-}
-
-impl<'de> Deserialize<'de> for NumberOrText {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Value;
-
-        impl Visitor<'_> for Value {
-            type Value = NumberOrText;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a number such as `20`, or a text such as `\"2 per face\"`")
-            }
-
-            fn visit_i64<E: de::Error>(self, number: i64) -> Result<NumberOrText, E> {
-                Ok(NumberOrText::Number(number as f64))
-            }
-
-            fn visit_u64<E: de::Error>(self, number: u64) -> Result<NumberOrText, E> {
-                Ok(NumberOrText::Number(number as f64))
-            }
-
-            fn visit_f64<E: de::Error>(self, number: f64) -> Result<NumberOrText, E> {
-                Ok(NumberOrText::Number(number))
-            }
-
-            fn visit_str<E: de::Error>(self, text: &str) -> Result<NumberOrText, E> {
-                Ok(NumberOrText::Text(text.into()))
-            }
-        }
-
-        deserializer.deserialize_any(Value)
-    }
 }
 
 /// The table of the mix, in file order.
@@ -137,14 +99,8 @@ impl Workload {
         };
         let access = match &parsed.access {
             None => Access::Sequential,
-            Some(word) => Access::ALL
-                .into_iter()
-                .find(|access| access.name() == word.get_ref())
-                .ok_or_else(|| {
-                    let allowed = Access::ALL.map(Access::name);
-                    let message = unknown("access pattern", word.get_ref(), &allowed);
-                    at(parsed.access.as_ref().map_or(0..0, Spanned::span), message)
-                })?,
+            Some(word) => (word.get_ref().parse())
+                .map_err(|error: UnknownName| at(word.span(), error.to_string()))?,
         };
         let Some(operations) = &parsed.operations else {
             let message = "missing key `operations`: give the number of operations of the program, as in `operations = \"20 per face\"`";
@@ -249,10 +205,7 @@ fn is_positive(amount: Amount) -> bool {
 }
 
 fn amount(loose: &NumberOrText) -> Result<Amount, String> {
-    match loose {
-        NumberOrText::Number(number) => Ok(Amount::Number(*number)),
-        NumberOrText::Text(text) => text.parse().map_err(|error| format!("{error}")),
-    }
+    loose.amount().map_err(|error| error.to_string())
 }
 
 /// Returns the message of the parser on one line.

@@ -1,58 +1,33 @@
 //! The kinds of edits.
 
-use std::fmt;
-
 use crate::traits::representation::QueryCost;
 
-/// A kind of edit: one method of [`MeshEdit`](crate::MeshEdit).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize),
-    serde(rename_all = "snake_case")
-)]
-#[expect(
-    missing_docs,
-    reason = "the names are those of the methods of MeshEdit"
-)]
-pub enum Edit {
-    SetPosition,
-    AddVertex,
-    AddFace,
-    RemoveFace,
-    RemoveVertex,
-    RemoveIsolatedVertices,
-    SplitEdge,
-    BisectEdge,
-    PokeFace,
-    SplitFace,
-    DissolveEdge,
-    FlipEdge,
-    CollapseEdge,
-    SplitVertex,
-    Compact,
+crate::named! {
+    /// A kind of edit: one method of [`MeshEdit`](crate::MeshEdit).
+    #[expect(
+        missing_docs,
+        reason = "the names are those of the methods of MeshEdit"
+    )]
+    pub enum Edit: "edit" {
+        SetPosition = "set_position",
+        AddVertex = "add_vertex",
+        AddFace = "add_face",
+        RemoveFace = "remove_face",
+        RemoveVertex = "remove_vertex",
+        RemoveIsolatedVertices = "remove_isolated_vertices",
+        SplitEdge = "split_edge",
+        BisectEdge = "bisect_edge",
+        PokeFace = "poke_face",
+        SplitFace = "split_face",
+        DissolveEdge = "dissolve_edge",
+        FlipEdge = "flip_edge",
+        CollapseEdge = "collapse_edge",
+        SplitVertex = "split_vertex",
+        Compact = "compact",
+    }
 }
 
 impl Edit {
-    /// All edits, in the order of [`MeshEdit::EDITS`](crate::MeshEdit::EDITS).
-    pub const ALL: [Self; 15] = [
-        Self::SetPosition,
-        Self::AddVertex,
-        Self::AddFace,
-        Self::RemoveFace,
-        Self::RemoveVertex,
-        Self::RemoveIsolatedVertices,
-        Self::SplitEdge,
-        Self::BisectEdge,
-        Self::PokeFace,
-        Self::SplitFace,
-        Self::DissolveEdge,
-        Self::FlipEdge,
-        Self::CollapseEdge,
-        Self::SplitVertex,
-        Self::Compact,
-    ];
-
     /// The costs of the edits in a structure that stores adjacency. `set_position` and `add_vertex`
     /// read O(1) rows. `remove_isolated_vertices` and `compact` read whole tables. All other edits
     /// read the faces around the edited element.
@@ -76,33 +51,6 @@ impl Edit {
         costs[Self::SplitFace as usize] = Some(QueryCost::Local);
         costs
     };
-
-    /// Returns the name of the method, for example `flip_edge`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::SetPosition => "set_position",
-            Self::AddVertex => "add_vertex",
-            Self::AddFace => "add_face",
-            Self::RemoveFace => "remove_face",
-            Self::RemoveVertex => "remove_vertex",
-            Self::RemoveIsolatedVertices => "remove_isolated_vertices",
-            Self::SplitEdge => "split_edge",
-            Self::BisectEdge => "bisect_edge",
-            Self::PokeFace => "poke_face",
-            Self::SplitFace => "split_face",
-            Self::DissolveEdge => "dissolve_edge",
-            Self::FlipEdge => "flip_edge",
-            Self::CollapseEdge => "collapse_edge",
-            Self::SplitVertex => "split_vertex",
-            Self::Compact => "compact",
-        }
-    }
-}
-
-impl fmt::Display for Edit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
 }
 
 #[cfg(test)]

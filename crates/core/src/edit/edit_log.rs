@@ -73,6 +73,38 @@ pub trait EditLog<M: MeshQuery> {
     fn renamed_face(&mut self, _old: M::Face, _new: M::Face) {}
 }
 
+/// Implements the methods of [`EditLog<M>`](EditLog): each passes its report on to fields. A field
+/// with `if` gets the reports only under this condition.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! pass_reports_on {
+    (@all $fields:tt $($report:ident $handles:tt $parameters:tt)+) => {
+        $($crate::pass_reports_on! { @one $fields $report $handles $parameters })+
+    };
+    (@one [$($field:tt $(if $condition:expr)?),+] $report:ident $handles:tt
+        [$($handle:ident: $element:ident),+]) => {
+        #[inline]
+        fn $report(&mut self, $($handle: M::$element),+) {
+            $($(if $condition)? {
+                self.$field.$report $handles;
+            })+
+        }
+    };
+    ($($fields:tt)+) => {
+        $crate::pass_reports_on! { @all [$($fields)+]
+            created_vertex(v) [v: Vertex]
+            removed_vertex(v) [v: Vertex]
+            renamed_vertex(old, new) [old: Vertex, new: Vertex]
+            created_edge(e) [e: Edge]
+            removed_edge(e) [e: Edge]
+            renamed_edge(old, new) [old: Edge, new: Edge]
+            created_face(f) [f: Face]
+            removed_face(f) [f: Face]
+            renamed_face(old, new) [old: Face, new: Face]
+        }
+    };
+}
+
 /// Returns [`EditLog::USES_REPORTS`] of the type of `log`, for code that cannot name this type.
 pub const fn uses_reports<M: MeshQuery, L: EditLog<M>>(_log: &L) -> bool {
     L::USES_REPORTS

@@ -160,19 +160,6 @@ struct Reports<'a, M: MeshQuery, D, L> {
     data: PhantomData<D>,
 }
 
-/// Implements the methods of [`EditLog`].
-macro_rules! reports {
-    ($($report:ident($($handle:ident: $element:ident),+);)+) => {$(
-        #[inline]
-        fn $report(&mut self, $($handle: M::$element),+) {
-            if D::USES_CHANGES {
-                self.changes.$report($($handle),+);
-            }
-            self.log.$report($($handle),+);
-        }
-    )+};
-}
-
 impl<M, D, L> EditLog<M> for Reports<'_, M, D, L>
 where
     M: MeshQuery,
@@ -181,17 +168,7 @@ where
 {
     const USES_REPORTS: bool = D::USES_CHANGES || L::USES_REPORTS;
 
-    reports! {
-        created_vertex(v: Vertex);
-        removed_vertex(v: Vertex);
-        renamed_vertex(old: Vertex, new: Vertex);
-        created_edge(e: Edge);
-        removed_edge(e: Edge);
-        renamed_edge(old: Edge, new: Edge);
-        created_face(f: Face);
-        removed_face(f: Face);
-        renamed_face(old: Face, new: Face);
-    }
+    crate::pass_reports_on!(changes if D::USES_CHANGES, log);
 }
 
 /// Forwards each query or step to the mesh.

@@ -92,13 +92,25 @@ pub struct Distribution {
     pub mean: f64,
     /// The number of times that each value occurs. `None` if there are more than 64 different
     /// values.
-    #[cfg_attr(feature = "serde", serde(default, with = "Histogram"))]
+    #[cfg_attr(feature = "serde", serde(default, deserialize_with = "histogram"))]
     pub hist: Option<BTreeMap<usize, usize>>,
 }
 
-/// The form of a histogram in files. The values are strings, because JSON requires strings as keys.
+/// Reads a histogram. In files its values are strings, because JSON requires strings as keys.
 #[cfg(feature = "serde")]
-type Histogram = serde_with::As<Option<BTreeMap<serde_with::DisplayFromStr, serde_with::Same>>>;
+fn histogram<'de, D>(deserializer: D) -> Result<Option<BTreeMap<usize, usize>>, D::Error>
+where
+    D: serde::Deserializer<'de>,
+{
+    let hist: Option<BTreeMap<String, usize>> = serde::Deserialize::deserialize(deserializer)?;
+    let parsed = hist.map(|hist| {
+        hist.iter()
+            .map(|(value, n)| Ok((value.parse()?, *n)))
+            .collect()
+    });
+    let parsed: Result<_, std::num::ParseIntError> = parsed.transpose();
+    parsed.map_err(serde::de::Error::custom)
+}
 
 impl Distribution {
     fn from_values(values: impl Iterator<Item = usize>) -> Option<Self> {

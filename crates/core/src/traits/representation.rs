@@ -1,88 +1,41 @@
 //! The trait of all mesh data structures.
 
-use std::fmt;
-
 use crate::handles::row_id::{FaceId, VertexId};
 use crate::polygons::error::{BuildError, InvariantError};
 use crate::polygons::polygon_mesh::PolygonMesh;
 use crate::tables::memory::MemoryFootprint;
 use crate::traits::mesh_move::MeshMove;
 
-/// One of the nine relations of [`MeshQuery`](crate::MeshQuery).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Deserialize, serde::Serialize),
-    serde(rename_all = "snake_case")
-)]
-#[expect(
-    missing_docs,
-    reason = "the names are those of the methods of MeshQuery"
-)]
-pub enum Relation {
-    VertexVertices,
-    VertexEdges,
-    VertexFaces,
-    EdgeVertices,
-    EdgeEdges,
-    EdgeFaces,
-    FaceVertices,
-    FaceEdges,
-    FaceFaces,
-}
-
-impl Relation {
-    /// All nine relations, in the order of the table in
-    /// [`MeshQuery`](crate::MeshQuery).
-    pub const ALL: [Self; 9] = [
-        Self::VertexVertices,
-        Self::VertexEdges,
-        Self::VertexFaces,
-        Self::EdgeVertices,
-        Self::EdgeEdges,
-        Self::EdgeFaces,
-        Self::FaceVertices,
-        Self::FaceEdges,
-        Self::FaceFaces,
-    ];
-
-    /// Returns the name of the method, for example `vertex_vertices`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::VertexVertices => "vertex_vertices",
-            Self::VertexEdges => "vertex_edges",
-            Self::VertexFaces => "vertex_faces",
-            Self::EdgeVertices => "edge_vertices",
-            Self::EdgeEdges => "edge_edges",
-            Self::EdgeFaces => "edge_faces",
-            Self::FaceVertices => "face_vertices",
-            Self::FaceEdges => "face_edges",
-            Self::FaceFaces => "face_faces",
-        }
+crate::named! {
+    /// One of the nine relations of [`MeshQuery`](crate::MeshQuery).
+    #[expect(
+        missing_docs,
+        reason = "the names are those of the methods of MeshQuery"
+    )]
+    pub enum Relation: "relation" {
+        VertexVertices = "vertex_vertices",
+        VertexEdges = "vertex_edges",
+        VertexFaces = "vertex_faces",
+        EdgeVertices = "edge_vertices",
+        EdgeEdges = "edge_edges",
+        EdgeFaces = "edge_faces",
+        FaceVertices = "face_vertices",
+        FaceEdges = "face_edges",
+        FaceFaces = "face_faces",
     }
 }
 
-impl fmt::Display for Relation {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+crate::named! {
+    /// How much of a mesh one query reads.
+    pub enum QueryCost: "cost" {
+        /// The query reads O(1) rows for each element that it yields.
+        Constant = "constant",
+        /// The query reads the faces around the element. The cost does not depend on the size of
+        /// the mesh.
+        Local = "local",
+        /// The query reads all faces.
+        Scan = "scan",
     }
-}
-
-/// How much of a mesh one query reads.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Deserialize, serde::Serialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum QueryCost {
-    /// The query reads O(1) rows for each element that it yields.
-    Constant,
-    /// The query reads the faces around the element. The cost does not depend on the size of the
-    /// mesh.
-    Local,
-    /// The query reads all faces.
-    Scan,
 }
 
 impl QueryCost {

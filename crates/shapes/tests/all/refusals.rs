@@ -109,7 +109,7 @@ fn messages_name_parameter_value_and_range() {
     let orders = "choose from given, shuffled, morton, breadth-first";
     assert_eq!(
         error.to_string(),
-        format!("unknown order \"spiral\": {orders}")
+        format!("no order is called `spiral`: {orders}")
     );
 }
 

@@ -1,16 +1,12 @@
 //! Arguments of `sixfold orders`, `growth` and `compare`.
 
-use std::num::NonZeroU32;
 use std::path::PathBuf;
-use std::time::Duration;
 
 use clap::Args;
 use sixfold::shapes::Order;
-use sixfold_study::{Effort, GrowthSettings, Operation};
+use sixfold_study::{GrowthSettings, Operation};
 
-use super::{
-    MemoryState, ReadFiles, ResultFiles, backend, duration, effort, operation, rounds, seed,
-};
+use super::{EffortArgs, MemoryState, ReadFiles, ResultFiles, backend, seed};
 
 /// Text after the options in `orders --help`; the lists of names follow it.
 pub(crate) const ORDERS_EXAMPLES: &str = "Examples:
@@ -36,7 +32,7 @@ usage or unusable input; 3 none of the selected backends can hold the mesh, or t
 /// Measures the mesh in four orders. Shows which order is best. Shows whether the choice of the
 /// order changes the times more than the choice of the backend.
 #[derive(Debug, Args)]
-#[command(verbatim_doc_comment)]
+#[command(verbatim_doc_comment, mut_arg("budget", |arg| arg.default_value("25s")))]
 pub(crate) struct Orders {
     /// The mesh (- for standard input); without it, a built-in mesh of 20,000 triangles
     #[arg(value_name = "MESH")]
@@ -45,14 +41,10 @@ pub(crate) struct Orders {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
     /// Run these operations instead of the default operations
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = operation)]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub(crate) operations: Vec<Operation>,
-    /// Total time to measure, such as 20s, 500ms or 2m
-    #[arg(long, value_name = "TIME", default_value = "25s", value_parser = duration, allow_hyphen_values = true)]
-    pub(crate) budget: Duration,
-    /// Measure exactly N rounds of everything, without a time limit
-    #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
-    pub(crate) rounds: Option<NonZeroU32>,
+    #[command(flatten)]
+    pub(crate) effort: EffortArgs,
     /// Seed of the order `shuffled` and of random samples
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
@@ -65,13 +57,6 @@ pub(crate) struct Orders {
     pub(crate) files: ResultFiles,
     #[command(flatten)]
     pub(crate) read: ReadFiles,
-}
-
-impl Orders {
-    /// Returns how much to measure.
-    pub(crate) fn effort(&self) -> Effort {
-        effort(self.budget, self.rounds)
-    }
 }
 
 const COMPARE_EXAMPLES: &str = "Examples:
@@ -155,7 +140,7 @@ sizes are kept.";
 /// and how the time grows with the number of faces. Shows the sizes at which the structures become
 /// larger than each cache of this machine.
 #[derive(Debug, Args)]
-#[command(verbatim_doc_comment)]
+#[command(verbatim_doc_comment, mut_arg("budget", |arg| arg.default_value("60s")))]
 pub(crate) struct Growth {
     /// The shape, from the list below
     #[arg(long, value_name = "SHAPE", default_value_t = GrowthSettings::default().shape)]
@@ -173,17 +158,13 @@ pub(crate) struct Growth {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
     /// Run these operations instead of the default operations
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = operation)]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub(crate) operations: Vec<Operation>,
     /// Order: given, shuffled, morton, breadth-first
     #[arg(long, value_name = "ORDER", default_value = "given")]
     pub(crate) order: Order,
-    /// Total time to measure, such as 60s, 500ms or 2m
-    #[arg(long, value_name = "TIME", default_value = "60s", value_parser = duration, allow_hyphen_values = true)]
-    pub(crate) budget: Duration,
-    /// Measure exactly N rounds of everything, without a time limit
-    #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
-    pub(crate) rounds: Option<NonZeroU32>,
+    #[command(flatten)]
+    pub(crate) effort: EffortArgs,
     /// Seed of the order `shuffled` and of random samples
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
@@ -191,13 +172,6 @@ pub(crate) struct Growth {
     pub(crate) memory: MemoryState,
     #[command(flatten)]
     pub(crate) files: ResultFiles,
-}
-
-impl Growth {
-    /// Returns how much to measure.
-    pub(crate) fn effort(&self) -> Effort {
-        effort(self.budget, self.rounds)
-    }
 }
 
 fn count(text: &str) -> Result<usize, String> {

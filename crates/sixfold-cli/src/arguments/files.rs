@@ -1,5 +1,7 @@
 //! Options of mesh files, for the commands that read or write meshes.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use sixfold::io::Format;
 
@@ -29,12 +31,30 @@ pub(crate) struct ReadPolygons {
     pub(crate) files: ReadFiles,
 }
 
-// How meshes are written.
+// The mesh to read and the file to write.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct MeshInOut {
+    /// The mesh (- for standard input)
+    #[arg(value_name = "MESH")]
+    pub(crate) mesh: PathBuf,
+    /// The file to write (- for standard output)
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) write: WriteFiles,
+}
+
+// How meshes are written. The heading is that of one option: a heading for the next options would
+// also be that of the options after a [`MeshInOut`].
 #[derive(Clone, Copy, Debug, Default, Args)]
-#[command(next_help_heading = "Mesh files")]
 pub(crate) struct WriteFiles {
     /// Format of written meshes: obj, stl, stl-ascii, ply, ply-ascii, off, gltf, glb
     /// [default: from the file name, or obj]
-    #[arg(long, value_name = "NAME", verbatim_doc_comment)]
+    #[arg(
+        long,
+        value_name = "NAME",
+        verbatim_doc_comment,
+        help_heading = "Mesh files"
+    )]
     pub(crate) format: Option<Format>,
 }

@@ -1,13 +1,11 @@
 //! Arguments of `sixfold neighbours`.
 
-use std::num::NonZeroU32;
 use std::path::PathBuf;
-use std::time::Duration;
 
-use clap::{Args, ValueEnum};
-use sixfold_study::{Effort, QueryPoints, neighbour_indices};
+use clap::Args;
+use sixfold_study::{QueryPoints, neighbour_indices};
 
-use super::{ReadFiles, ResultFiles, duration, effort, rounds, seed};
+use super::{EffortArgs, ReadFiles, ResultFiles, seed};
 
 const EXAMPLES: &str = "Examples:
   sixfold neighbours                             the built-in mesh
@@ -38,7 +36,11 @@ unusable input; 4 interrupted, finished results are kept.";
 /// Shows the time of each kind of query, and which index takes the least time for a number of
 /// queries, building included.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES, verbatim_doc_comment)]
+#[command(
+    after_help = EXAMPLES,
+    verbatim_doc_comment,
+    mut_arg("budget", |arg| arg.default_value("10s"))
+)]
 pub(crate) struct Neighbours {
     /// The mesh (- for standard input); without it, a built-in mesh of 20,000 triangles
     #[arg(value_name = "MESH")]
@@ -46,15 +48,11 @@ pub(crate) struct Neighbours {
     /// Measure only these indices, by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = index)]
     pub(crate) indices: Vec<String>,
-    /// Where the query points are: near the surface, or anywhere in the bounding box
+    /// Query points: near (the surface), or box (anywhere in the bounding box)
     #[arg(long, value_name = "WHERE", default_value = "near")]
-    pub(crate) points: Points,
-    /// Total time to measure, such as 20s, 500ms or 2m
-    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = duration, allow_hyphen_values = true)]
-    pub(crate) budget: Duration,
-    /// Measure exactly N rounds of everything, without a time limit
-    #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
-    pub(crate) rounds: Option<NonZeroU32>,
+    pub(crate) points: QueryPoints,
+    #[command(flatten)]
+    pub(crate) effort: EffortArgs,
     /// Seed of the query points and of the order of measurements
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
@@ -62,29 +60,6 @@ pub(crate) struct Neighbours {
     pub(crate) files: ResultFiles,
     #[command(flatten)]
     pub(crate) read: ReadFiles,
-}
-
-impl Neighbours {
-    /// Returns how much to measure.
-    pub(crate) fn effort(&self) -> Effort {
-        effort(self.budget, self.rounds)
-    }
-}
-
-/// The values of `--points`.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Points {
-    Near,
-    Box,
-}
-
-impl From<Points> for QueryPoints {
-    fn from(points: Points) -> Self {
-        match points {
-            Points::Near => Self::Near,
-            Points::Box => Self::Box,
-        }
-    }
 }
 
 fn index(name: &str) -> Result<String, String> {

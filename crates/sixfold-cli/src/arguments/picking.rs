@@ -1,13 +1,11 @@
 //! Arguments of `sixfold pick` and `workloads`.
 
-use std::num::NonZeroU32;
 use std::path::PathBuf;
-use std::time::Duration;
 
 use clap::Args;
-use sixfold_study::{Effort, Need, Policy};
+use sixfold_study::{Need, Policy};
 
-use super::{ReadFiles, ResultFiles, backend, duration, effort, rounds, seed};
+use super::{EffortArgs, ReadFiles, ResultFiles, backend, seed};
 
 const PICK_EXAMPLES: &str = "Examples:
   sixfold pick bunny.obj
@@ -58,17 +56,13 @@ pub(crate) struct Pick {
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     pub(crate) max_memory: Option<u64>,
     /// Abilities that the structure must have, from the list below
-    #[arg(long, value_name = "NEED,…", value_delimiter = ',', value_parser = need)]
+    #[arg(long, value_name = "NEED,…", value_delimiter = ',')]
     pub(crate) needs: Vec<Need>,
     /// Use only these data structures (backends), by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
-    /// Total time to measure, such as 20s, 500ms or 2m
-    #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration, allow_hyphen_values = true)]
-    pub(crate) budget: Duration,
-    /// Measure exactly N rounds of everything, without a time limit
-    #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
-    pub(crate) rounds: Option<NonZeroU32>,
+    #[command(flatten)]
+    pub(crate) effort: EffortArgs,
     /// Seed of all random orders
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
@@ -84,13 +78,6 @@ pub(crate) struct Pick {
     pub(crate) read: ReadFiles,
 }
 
-impl Pick {
-    /// Returns how much to measure.
-    pub(crate) fn effort(&self) -> Effort {
-        effort(self.budget, self.rounds)
-    }
-}
-
 /// List the built-in workloads and the programs they model.
 #[derive(Debug, Args)]
 #[command(after_help = WORKLOADS_EXAMPLES, verbatim_doc_comment)]
@@ -104,11 +91,6 @@ pub(crate) struct Workloads {
     /// Write the workloads as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
-}
-
-fn need(name: &str) -> Result<Need, String> {
-    let parsed: Result<Need, _> = name.trim().parse();
-    parsed.map_err(|error| error.to_string())
 }
 
 /// Parses `2GiB`, `500MB` or `1000000`: at least 1 byte.

@@ -1,14 +1,13 @@
 //! Arguments of a command line that measures programs of a user.
 
-use std::num::NonZeroU32;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Parser;
-use sixfold_study::{Effort, Policy};
+use sixfold_study::Policy;
 
 use super::picking::bytes;
-use super::{ReadFiles, ResultFiles, duration, effort, rounds, seed};
+use super::{EffortArgs, ReadFiles, ResultFiles, duration, seed};
 
 /// Measures programs on every mesh data structure, and ranks the structures.
 ///
@@ -33,12 +32,8 @@ pub(crate) struct Programs {
     /// Memory limit for the structure, such as 2GiB or 500MB
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     pub(crate) max_memory: Option<u64>,
-    /// Total time to measure, such as 20s, 500ms or 2m
-    #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration, allow_hyphen_values = true)]
-    pub(crate) budget: Duration,
-    /// Measure exactly N rounds of everything, without a time limit
-    #[arg(long, value_name = "N", conflicts_with = "budget", value_parser = rounds, allow_hyphen_values = true)]
-    pub(crate) rounds: Option<NonZeroU32>,
+    #[command(flatten)]
+    pub(crate) effort: EffortArgs,
     /// Seed of the random order of the measurements
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
@@ -74,11 +69,4 @@ pub(crate) struct Programs {
     pub(crate) files: ResultFiles,
     #[command(flatten)]
     pub(crate) read: ReadFiles,
-}
-
-impl Programs {
-    /// Returns how much to measure.
-    pub(crate) fn effort(&self) -> Effort {
-        effort(self.budget, self.rounds)
-    }
 }

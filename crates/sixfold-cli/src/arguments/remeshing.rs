@@ -6,8 +6,7 @@ use clap::Args;
 use sixfold::remeshing::{DecimationBoundary, Target};
 
 use super::reshaping::iterations;
-use super::subdivision::parse_name;
-use super::{ReadPolygons, WriteFiles, backend};
+use super::{MeshInOut, ReadPolygons, backend};
 
 const DECIMATE_EXAMPLES: &str = "Examples:
   sixfold decimate --faces 5000 scan.obj -o small.obj
@@ -34,25 +33,20 @@ written.";
 #[command(
     after_help = DECIMATE_EXAMPLES,
     verbatim_doc_comment,
-    override_usage = "sixfold decimate [OPTIONS] -o <OUT> <--faces <N>|--ratio <PART>> <MESH>"
+    override_usage = "sixfold decimate [OPTIONS] -o <OUT> <--faces <N>|--ratio <PART>> <MESH>",
+    mut_arg("mesh", |arg| arg.help("The mesh, with triangles only (- for standard input)"))
 )]
 pub(crate) struct Decimate {
-    /// The mesh, with triangles only (- for standard input)
-    #[arg(value_name = "MESH")]
-    pub(crate) mesh: PathBuf,
-    /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT")]
-    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) files: MeshInOut,
     #[command(flatten)]
     pub(crate) goal: Goal,
     /// Boundary: follow (simplify the boundary too) or fixed
-    #[arg(long, value_name = "RULE", default_value = "follow", value_parser = boundary)]
+    #[arg(long, value_name = "RULE", default_value = "follow")]
     pub(crate) boundary: DecimationBoundary,
     /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "corner-table", value_parser = backend)]
     pub(crate) backend: String,
-    #[command(flatten)]
-    pub(crate) write: WriteFiles,
     #[command(flatten)]
     pub(crate) read: ReadPolygons,
 }
@@ -111,14 +105,14 @@ needs too many faces; 4 interrupted, nothing written.";
 /// order of vertices and faces. The result of polygon-soup differs if two vertices move to the same
 /// position.
 #[derive(Debug, Args)]
-#[command(after_help = REMESH_EXAMPLES, verbatim_doc_comment)]
+#[command(
+    after_help = REMESH_EXAMPLES,
+    verbatim_doc_comment,
+    mut_arg("mesh", |arg| arg.help("The mesh, with triangles only (- for standard input)"))
+)]
 pub(crate) struct Remesh {
-    /// The mesh, with triangles only (- for standard input)
-    #[arg(value_name = "MESH")]
-    pub(crate) mesh: PathBuf,
-    /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT")]
-    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) files: MeshInOut,
     /// Target edge length, in the units of the file
     #[arg(long, value_name = "LENGTH", value_parser = edge_length, allow_hyphen_values = true)]
     pub(crate) edge_length: f64,
@@ -131,8 +125,6 @@ pub(crate) struct Remesh {
     /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "corner-table", value_parser = backend)]
     pub(crate) backend: String,
-    #[command(flatten)]
-    pub(crate) write: WriteFiles,
     #[command(flatten)]
     pub(crate) read: ReadPolygons,
 }
@@ -169,18 +161,6 @@ fn edge_length(text: &str) -> Result<f64, String> {
         Ok(length) if length.is_finite() && length > 0.0 => Ok(length),
         _ => Err("the edge length must be finite and above 0".to_owned()),
     }
-}
-
-fn boundary(text: &str) -> Result<DecimationBoundary, String> {
-    let name = |boundary| match boundary {
-        DecimationBoundary::Follow => "follow",
-        DecimationBoundary::Fixed => "fixed",
-    };
-    parse_name(
-        &[DecimationBoundary::Follow, DecimationBoundary::Fixed],
-        name,
-        text,
-    )
 }
 
 #[cfg(test)]

@@ -44,7 +44,7 @@ pub(crate) struct Render {
     #[arg(long, value_name = "AZIMUTH,ELEVATION", default_value = "30,22", value_parser = view, allow_hyphen_values = true)]
     pub(crate) view: [f64; 2],
     /// The axis that points up: y or z
-    #[arg(long, value_name = "AXIS", default_value = "y", value_parser = up)]
+    #[arg(long, value_name = "AXIS", default_value = "y")]
     pub(crate) up: Up,
     /// Also draw the edges that are not sharp
     #[arg(long)]
@@ -62,7 +62,7 @@ pub(crate) struct Render {
     #[arg(long, value_name = "FILE")]
     pub(crate) creases: Vec<PathBuf>,
     /// Shading: smooth or flat
-    #[arg(long, value_name = "KIND", default_value = "smooth", value_parser = shading)]
+    #[arg(long, value_name = "KIND", default_value = "smooth")]
     pub(crate) shade: Shading,
     #[command(flatten)]
     pub(crate) read: ReadPolygons,
@@ -92,22 +92,6 @@ fn view(text: &str) -> Result<[f64; 2], String> {
     let checked = View::new(azimuth, elevation, Up::Y);
     checked.map_err(|error| error.to_string())?;
     Ok([azimuth, elevation])
-}
-
-fn up(text: &str) -> Result<Up, String> {
-    match text.trim() {
-        "y" => Ok(Up::Y),
-        "z" => Ok(Up::Z),
-        _ => Err("choose from y, z".into()),
-    }
-}
-
-fn shading(text: &str) -> Result<Shading, String> {
-    match text.trim() {
-        "smooth" => Ok(Shading::Smooth),
-        "flat" => Ok(Shading::Flat),
-        _ => Err("choose from smooth, flat".into()),
-    }
 }
 
 #[cfg(test)]

@@ -8,9 +8,7 @@ use sixfold::repair::{
     Components, FillHoles, HoleFilling, OppositeFaces, Step, Tolerance, Weld, WeldMethod,
 };
 
-use super::reshaping::facing;
-use super::subdivision::parse_name;
-use super::{ReadFiles, WriteFiles, backend};
+use super::{MeshInOut, ReadFiles, backend};
 
 const EXAMPLES: &str = "Examples:
   sixfold repair scan.obj --for half-edge -o repaired.obj     all that this structure needs
@@ -32,17 +30,13 @@ usage or unusable input; 3 the mesh cannot be repaired in this way; 4 interrupte
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Repair {
-    /// The mesh (- for standard input)
-    #[arg(value_name = "MESH")]
-    pub(crate) mesh: PathBuf,
-    /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT")]
-    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) files: MeshInOut,
     /// Merge vertices within 0.01, or 0.01% of the diagonal; default 0
     #[arg(long, value_name = "DISTANCE", num_args = 0..=1, require_equals = true, default_missing_value = "0", value_parser = tolerance)]
     pub(crate) weld: Option<Tolerance>,
     /// How --weld finds vertices: grid or kd-tree
-    #[arg(long, value_name = "NAME", default_value = "grid", value_parser = weld_method)]
+    #[arg(long, value_name = "NAME", default_value = "grid")]
     pub(crate) weld_method: WeldMethod,
     /// Remove faces that repeat another face
     #[arg(long)]
@@ -60,7 +54,7 @@ pub(crate) struct Repair {
     #[arg(long)]
     pub(crate) triangulate: bool,
     /// Flip faces until they agree: majority (like most faces) or outward
-    #[arg(long, value_name = "RULE", value_parser = facing)]
+    #[arg(long, value_name = "RULE")]
     pub(crate) orient: Option<Facing>,
     /// Cut non-manifold edges and vertices
     #[arg(long)]
@@ -69,7 +63,7 @@ pub(crate) struct Repair {
     #[arg(long, value_name = "EDGES", num_args = 0..=1, require_equals = true)]
     pub(crate) fill_holes: Option<Option<usize>>,
     /// Triangles in holes: smallest (area) or ears
-    #[arg(long, value_name = "NAME", default_value = "smallest", value_parser = hole_filling)]
+    #[arg(long, value_name = "NAME", default_value = "smallest")]
     pub(crate) hole_method: HoleFilling,
     /// Remove vertices without a face
     #[arg(long)]
@@ -80,8 +74,6 @@ pub(crate) struct Repair {
     /// Write the report as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
-    #[command(flatten)]
-    pub(crate) write: WriteFiles,
     #[command(flatten)]
     pub(crate) read: ReadFiles,
 }
@@ -158,26 +150,6 @@ fn tolerance(text: &str) -> Result<Tolerance, String> {
         Ok(value) => Ok(Tolerance::Absolute(value)),
         Err(_) => Err("write a distance, such as 0.01, or a percentage of the diagonal of the bounding box, such as 0.01%".into()),
     }
-}
-
-fn weld_method(text: &str) -> Result<WeldMethod, String> {
-    let name = |method| match method {
-        WeldMethod::Grid => "grid",
-        WeldMethod::KdTree => "kd-tree",
-    };
-    parse_name(&[WeldMethod::Grid, WeldMethod::KdTree], name, text)
-}
-
-fn hole_filling(text: &str) -> Result<HoleFilling, String> {
-    let name = |method| match method {
-        HoleFilling::MinimumArea => "smallest",
-        HoleFilling::EarClipping => "ears",
-    };
-    parse_name(
-        &[HoleFilling::MinimumArea, HoleFilling::EarClipping],
-        name,
-        text,
-    )
 }
 
 #[cfg(test)]

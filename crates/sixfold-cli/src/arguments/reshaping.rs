@@ -1,12 +1,9 @@
 //! Arguments of `sixfold smooth`, `dual` and `triangulate`.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use sixfold::operators::{Facing, SmoothingBoundary, Triangulation, Weights};
 
-use super::subdivision::parse_name;
-use super::{ReadFiles, ReadPolygons, WriteFiles, backend};
+use super::{MeshInOut, ReadFiles, ReadPolygons, backend};
 
 const SMOOTH_EXAMPLES: &str = "Examples:
   sixfold smooth scan.obj -o smooth.obj
@@ -22,17 +19,13 @@ support the mesh; 4 interrupted, nothing written.";
 #[derive(Debug, Args)]
 #[command(after_help = SMOOTH_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Smooth {
-    /// The mesh (- for standard input)
-    #[arg(value_name = "MESH")]
-    pub(crate) mesh: PathBuf,
-    /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT")]
-    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) files: MeshInOut,
     /// Weights of the neighbours: uniform or cotangent
-    #[arg(long, value_name = "WHICH", default_value = "uniform", value_parser = weights)]
+    #[arg(long, value_name = "WHICH", default_value = "uniform")]
     pub(crate) weights: Weights,
     /// Boundary: fixed, or curve (smoothed as a curve)
-    #[arg(long, value_name = "RULE", default_value = "fixed", value_parser = boundary)]
+    #[arg(long, value_name = "RULE", default_value = "fixed")]
     pub(crate) boundary: SmoothingBoundary,
     /// Number of iterations
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = iterations, allow_hyphen_values = true)]
@@ -52,8 +45,6 @@ pub(crate) struct Smooth {
     #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
     pub(crate) backend: String,
     #[command(flatten)]
-    pub(crate) write: WriteFiles,
-    #[command(flatten)]
     pub(crate) read: ReadPolygons,
 }
 
@@ -69,17 +60,11 @@ cannot hold it; 4 interrupted, nothing written.";
 #[derive(Debug, Args)]
 #[command(after_help = DUAL_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Dual {
-    /// The mesh (- for standard input)
-    #[arg(value_name = "MESH")]
-    pub(crate) mesh: PathBuf,
-    /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT")]
-    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) files: MeshInOut,
     /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
     pub(crate) backend: String,
-    #[command(flatten)]
-    pub(crate) write: WriteFiles,
     #[command(flatten)]
     pub(crate) read: ReadPolygons,
 }
@@ -98,20 +83,14 @@ Exit codes: 0 success; 2 wrong usage or unusable input; 3 the mesh cannot be ori
 #[derive(Debug, Args)]
 #[command(after_help = TRIANGULATE_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Triangulate {
-    /// The mesh (- for standard input)
-    #[arg(value_name = "MESH")]
-    pub(crate) mesh: PathBuf,
-    /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT")]
-    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) files: MeshInOut,
     /// ears (for any simple polygon) or fan (for convex polygons)
-    #[arg(long, value_name = "NAME", default_value = "ears", value_parser = triangulation)]
+    #[arg(long, value_name = "NAME", default_value = "ears")]
     pub(crate) method: Triangulation,
     /// Flip faces to one orientation: majority (of the faces) or outward
-    #[arg(long, value_name = "RULE", value_parser = facing)]
+    #[arg(long, value_name = "RULE")]
     pub(crate) orient: Option<Facing>,
-    #[command(flatten)]
-    pub(crate) write: WriteFiles,
     #[command(flatten)]
     pub(crate) read: ReadFiles,
 }
@@ -119,41 +98,4 @@ pub(crate) struct Triangulate {
 pub(super) fn iterations(text: &str) -> Result<usize, String> {
     let parsed = text.trim().parse();
     parsed.map_err(|_| format!("the number of iterations must be from 0 to {}", usize::MAX))
-}
-
-fn weights(text: &str) -> Result<Weights, String> {
-    let name = |weights| match weights {
-        Weights::Uniform => "uniform",
-        Weights::Cotangent => "cotangent",
-    };
-    parse_name(&[Weights::Uniform, Weights::Cotangent], name, text)
-}
-
-fn boundary(text: &str) -> Result<SmoothingBoundary, String> {
-    let name = |boundary| match boundary {
-        SmoothingBoundary::Fixed => "fixed",
-        SmoothingBoundary::Curve => "curve",
-    };
-    parse_name(
-        &[SmoothingBoundary::Fixed, SmoothingBoundary::Curve],
-        name,
-        text,
-    )
-}
-
-fn triangulation(text: &str) -> Result<Triangulation, String> {
-    let name = |method| match method {
-        Triangulation::EarClipping => "ears",
-        Triangulation::Fan => "fan",
-    };
-    let all = [Triangulation::EarClipping, Triangulation::Fan];
-    parse_name(&all, name, text)
-}
-
-pub(super) fn facing(text: &str) -> Result<Facing, String> {
-    let name = |facing| match facing {
-        Facing::Majority => "majority",
-        Facing::Outward => "outward",
-    };
-    parse_name(&[Facing::Majority, Facing::Outward], name, text)
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use sixfold::subdivision::{BoundaryRule, Creasing, LoopWeights, Method, Scheme};
 
-use super::{ReadPolygons, WriteFiles, backend};
+use super::{MeshInOut, ReadPolygons, backend};
 
 const EXAMPLES: &str = "Examples:
   sixfold subdivide --scheme catmull-clark --levels 3 cage.obj -o smooth.obj
@@ -51,14 +51,10 @@ pub(crate) struct Schemes {
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Subdivide {
-    /// The mesh (- for standard input)
-    #[arg(value_name = "MESH")]
-    pub(crate) mesh: PathBuf,
-    /// The file to write (- for standard output)
-    #[arg(short, long, value_name = "OUT")]
-    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) files: MeshInOut,
     /// The scheme, from the list below
-    #[arg(long, value_name = "NAME", default_value = "catmull-clark", value_parser = scheme)]
+    #[arg(long, value_name = "NAME", default_value = "catmull-clark")]
     pub(crate) scheme: Scheme,
     /// Number of levels
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = levels, allow_hyphen_values = true)]
@@ -70,7 +66,7 @@ pub(crate) struct Subdivide {
     #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
     pub(crate) backend: String,
     /// gather, scatter or native [default: the last supported method]
-    #[arg(long, value_name = "NAME", value_parser = method)]
+    #[arg(long, value_name = "NAME")]
     pub(crate) method: Option<Method>,
     /// Number of threads of a native step; 0: one per processor
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
@@ -79,13 +75,13 @@ pub(crate) struct Subdivide {
     #[arg(long, value_name = "FILE")]
     pub(crate) creases: Option<PathBuf>,
     /// Rule for the boundary: edge-and-corner, edge-only or none
-    #[arg(long, value_name = "RULE", value_parser = boundary)]
+    #[arg(long, value_name = "RULE")]
     pub(crate) boundary: Option<BoundaryRule>,
     /// How sharpness decreases: uniform or chaikin
-    #[arg(long, value_name = "RULE", value_parser = creasing)]
+    #[arg(long, value_name = "RULE")]
     pub(crate) creasing: Option<Creasing>,
     /// Weights of the Loop scheme: loop or warren
-    #[arg(long, value_name = "WHOSE", value_parser = loop_weights)]
+    #[arg(long, value_name = "WHOSE")]
     pub(crate) loop_weights: Option<LoopWeights>,
     /// Also write limit positions and normals to this file
     #[arg(long, value_name = "LIMIT")]
@@ -96,8 +92,6 @@ pub(crate) struct Subdivide {
     /// Continue even if the result takes more than the free memory
     #[arg(long)]
     pub(crate) force: bool,
-    #[command(flatten)]
-    pub(crate) write: WriteFiles,
     #[command(flatten)]
     pub(crate) read: ReadPolygons,
 }
@@ -140,39 +134,6 @@ fn select(text: &str) -> Result<Select, String> {
         },
         _ => Err(wrong()),
     }
-}
-
-/// Returns the item of `all` with the name `text`.
-pub(super) fn parse_name<T: Copy>(
-    all: &[T],
-    name: impl Fn(T) -> &'static str,
-    text: &str,
-) -> Result<T, String> {
-    let found = all.iter().find(|&&item| name(item) == text.trim());
-    let names = || all.iter().map(|&item| name(item)).collect::<Vec<_>>();
-    found
-        .copied()
-        .ok_or_else(|| format!("choose from {}", names().join(", ")))
-}
-
-fn scheme(text: &str) -> Result<Scheme, String> {
-    parse_name(&Scheme::ALL, Scheme::name, text)
-}
-
-fn method(text: &str) -> Result<Method, String> {
-    parse_name(&Method::ALL, Method::name, text)
-}
-
-fn boundary(text: &str) -> Result<BoundaryRule, String> {
-    parse_name(&BoundaryRule::ALL, BoundaryRule::name, text)
-}
-
-fn creasing(text: &str) -> Result<Creasing, String> {
-    parse_name(&Creasing::ALL, Creasing::name, text)
-}
-
-fn loop_weights(text: &str) -> Result<LoopWeights, String> {
-    parse_name(&LoopWeights::ALL, LoopWeights::name, text)
 }
 
 /// Parses a number of levels. The limit is larger than the number of times that a 32-bit coordinate

@@ -1,15 +1,11 @@
 //! Arguments of `sixfold why`.
 
-use std::num::NonZeroU32;
 use std::path::PathBuf;
-use std::time::Duration;
 
 use clap::Args;
 use sixfold::Relation;
-use sixfold_study::Effort;
 
-use super::subdivision::parse_name;
-use super::{ReadFiles, ResultFiles, backend, duration, effort, rounds};
+use super::{EffortArgs, ReadFiles, ResultFiles, backend};
 
 const WHY_EXAMPLES: &str = "Examples:
   sixfold why --counts-only                                counts on the built-in mesh, no times
@@ -48,33 +44,18 @@ pub(crate) struct Why {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
     /// Query only these relations, by name
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = relation)]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub(crate) relations: Vec<Relation>,
     /// First cut every polygon into a fan of triangles
     #[arg(long)]
     pub(crate) triangulate: bool,
     /// Count the reads only, and measure no times
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["budget", "rounds"])]
     pub(crate) counts_only: bool,
-    /// Total time to measure, such as 20s, 500ms or 2m
-    #[arg(long, value_name = "TIME", default_value = "20s", value_parser = duration, allow_hyphen_values = true, conflicts_with = "counts_only")]
-    pub(crate) budget: Duration,
-    /// Measure exactly N rounds of everything, without a time limit
-    #[arg(long, value_name = "N", conflicts_with_all = ["budget", "counts_only"], value_parser = rounds, allow_hyphen_values = true)]
-    pub(crate) rounds: Option<NonZeroU32>,
+    #[command(flatten)]
+    pub(crate) effort: EffortArgs,
     #[command(flatten)]
     pub(crate) files: ResultFiles,
     #[command(flatten)]
     pub(crate) read: ReadFiles,
-}
-
-impl Why {
-    /// Returns how much to measure.
-    pub(crate) fn effort(&self) -> Effort {
-        effort(self.budget, self.rounds)
-    }
-}
-
-fn relation(text: &str) -> Result<Relation, String> {
-    parse_name(&Relation::ALL, Relation::name, text)
 }

@@ -3,7 +3,7 @@
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use sixfold_study::unknown;
+use sixfold::UnknownName;
 use sixfold_study::{
     Finding, GrowthSettings, Operation, Results, Settings, StudyMesh, WhySettings,
 };
@@ -12,28 +12,17 @@ use super::folder::Folder;
 use crate::failure::Failure;
 use crate::measure::with_command;
 use crate::progress::Bar;
-use crate::text::{TextOutput, hanging_indent, print_stderr, sanitize};
+use crate::text::{TextOutput, print_stderr, sanitize};
 use crate::{growth, orders, why};
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Lab {
-    /// The mesh in several orders, as in `sixfold orders`.
-    Orders,
-    /// A shape in several sizes, as in `sixfold growth`.
-    Growth,
-    /// The reads of queries, as in `sixfold why`.
-    Why,
-}
-
-impl Lab {
-    const ALL: [Self; 3] = [Self::Orders, Self::Growth, Self::Why];
-
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Orders => "orders",
-            Self::Growth => "growth",
-            Self::Why => "why",
-        }
+sixfold_core::named! {
+    pub(super) enum Lab: "lab" {
+        /// The mesh in several orders, as in `sixfold orders`.
+        Orders = "orders",
+        /// A shape in several sizes, as in `sixfold growth`.
+        Growth = "growth",
+        /// The reads of queries, as in `sixfold why`.
+        Why = "why",
     }
 }
 
@@ -41,18 +30,14 @@ impl Lab {
 pub(crate) struct LabSelection(Vec<Lab>);
 
 impl FromStr for LabSelection {
-    type Err = String;
+    type Err = UnknownName;
 
     /// Parses `all`, `none`, or names separated by commas.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let named = |name: &str| {
-            let lab = Lab::ALL.into_iter().find(|lab| lab.name() == name.trim());
-            lab.ok_or_else(|| unknown("lab", name.trim(), &Lab::ALL.map(Lab::name)))
-        };
+    fn from_str(text: &str) -> Result<Self, UnknownName> {
         let labs = match text.trim() {
             "all" => Lab::ALL.into(),
             "none" => Vec::new(),
-            names => names.split(',').map(named).collect::<Result<_, _>>()?,
+            names => names.split(',').map(str::parse).collect::<Result<_, _>>()?,
         };
         Ok(Self(labs))
     }
@@ -207,8 +192,6 @@ pub(super) fn print(results: &Results, text: &mut TextOutput) {
     for (title, sentences) in orders.chain(growth) {
         text.print_line("");
         text.print_line(&title);
-        for sentence in sentences {
-            text.print_line(&hanging_indent("- ", sentence));
-        }
+        text.print_list("- ", sentences);
     }
 }

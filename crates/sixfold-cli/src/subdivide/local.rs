@@ -23,10 +23,10 @@ use super::forecast::check_memory;
 pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Failure> {
     check_options(arguments)?;
     if let Select::Faces(path) = select {
-        let outputs = [("--output", Some(&arguments.output))];
+        let outputs = [("--output", Some(&arguments.files.output))];
         check_not_overwritten("the list of faces", path, &outputs)?;
     }
-    let (polygons, creases) = load::with_creases(&arguments.mesh, arguments.read)?;
+    let (polygons, creases) = load::with_creases(&arguments.files.mesh, arguments.read)?;
     check_tags(arguments, &creases)?;
     let selection = selection(select)?;
     selection
@@ -35,8 +35,8 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
             Select::Faces(path) => Failure::usage(format!("{}: {error}", path.display())),
             _ => Failure::usage(error),
         })?;
-    let output = MeshOutput::open(&arguments.output, arguments.write)?;
-    let spinner = Spinner::start(format!("refining {}", shown(&arguments.mesh)));
+    let output = MeshOutput::open(&arguments.files.output, arguments.files.write)?;
+    let spinner = Spinner::start(format!("refining {}", shown(&arguments.files.mesh)));
     let mut work = LocalRefinement {
         polygons: &polygons,
         selection: &selection,
@@ -49,8 +49,8 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
         .ok_or_else(|| Failure::usage(format!("no backend is called `{}`", arguments.backend)))??;
     let mesh = refined.polygons();
     output.write(mesh, &WriteOptions::default())?;
-    let mut text = TextOutput::new(!is_stdout(&arguments.output));
-    let place = sanitize(&arguments.output.display().to_string());
+    let mut text = TextOutput::new(!is_stdout(&arguments.files.output));
+    let place = sanitize(&arguments.files.output.display().to_string());
     let vertices = counted(mesh.vertex_count(), "vertex", "vertices");
     let faces = counted(mesh.face_count(), "face", "faces");
     let all = mesh.faces().iter();

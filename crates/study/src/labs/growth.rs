@@ -40,11 +40,11 @@ use crate::inspect::StudyMesh;
 use crate::labs::study::{StudyError, is_skewed, prepare, refusals, results, scans};
 use crate::refusal::Candidate;
 use crate::results::figure::{Figure, FigureRow, samples_of};
-use crate::results::finding::{Common, LabFinding};
+use crate::results::finding::{Common, LabFinding, Meshes};
 use crate::results::read::ReadError;
 use crate::results::rows::{
-    Agreement, Control, MeshReport, Refusal, ResultRow, Samples, check_control, check_results,
-    check_samples,
+    Agreement, BackendRefusal, Control, MeshReport, Refusal, ResultRow, Samples, check_control,
+    check_results, check_samples,
 };
 use crate::results::run::{Run, RunSettings};
 use budgets::SizeBudgets;
@@ -94,15 +94,6 @@ pub struct GrowthReport {
     pub timer: Timer,
 }
 
-/// A backend that cannot hold the shape.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
-pub struct BackendRefusal {
-    /// The name of the backend, such as `half-edge`.
-    pub backend: String,
-    /// Why the backend cannot hold the shape.
-    pub reason: String,
-}
-
 /// The results at one size of the shape.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct SizeReport {
@@ -148,19 +139,8 @@ impl LabFinding for GrowthReport {
         }
     }
 
-    fn run_mut(&mut self) -> &mut Run {
-        &mut self.run
-    }
-
-    fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
-        let [count, sizes] = [meshes.len(), self.sizes.len()];
-        if count != 0 && count != sizes {
-            return Err(ReadError::Malformed {
-                cause: format!("a finding of the kind `growth` has {count} meshes, not {sizes}"),
-            });
-        }
-        self.meshes = meshes;
-        Ok(())
+    fn parts_mut(&mut self) -> (&mut Run, Meshes<'_>) {
+        (&mut self.run, Meshes::Any(&mut self.meshes))
     }
 
     fn mismatches(&self) -> usize {
@@ -197,6 +177,12 @@ impl LabFinding for GrowthReport {
     }
 
     fn check(&self) -> Result<(), ReadError> {
+        let [count, sizes] = [self.meshes.len(), self.sizes.len()];
+        if count != 0 && count != sizes {
+            return Err(ReadError::Malformed {
+                cause: format!("a finding of the kind `growth` has {count} meshes, not {sizes}"),
+            });
+        }
         self.sizes.iter().try_for_each(|size| {
             check_samples(&size.samples)?;
             check_results(&size.results)?;
@@ -386,18 +372,11 @@ impl Sweep<'_> {
                         .push(self.bytes_with_cache(report.name, report.bytes.unwrap_or(0)));
                     subjects.push(self.machine.host(subject, &counts));
                 }
-                None => refused_by.push(BackendRefusal {
-                    backend: report.name,
-                    reason: report.reason.unwrap_or_default(),
-                }),
+                None => refused_by.push(report.into()),
             }
         }
         if subjects.is_empty() {
-            let refusals = refused_by
-                .into_iter()
-                .map(|u| (u.backend, u.reason))
-                .collect();
-            return Err(StudyError::NoneHolds { refusals }.into());
+            return Err(StudyError::none_holds(refused_by).into());
         }
         self.refused_by = refused_by;
         let names: Vec<String> = subjects.iter().map(|s| s.name().to_owned()).collect();

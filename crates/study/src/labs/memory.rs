@@ -16,8 +16,7 @@ use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::labs::study::StudyError;
 use crate::refusal::Candidate;
 use crate::results::figure::{Figure, FigureRow, SizeBytes, Status};
-use crate::results::finding::{Common, LabFinding, only_mesh};
-use crate::results::read::ReadError;
+use crate::results::finding::{Common, LabFinding, Meshes};
 use crate::results::rows::{BackendReport, MeshReport};
 use crate::results::run::{Run, RunSettings};
 
@@ -213,12 +212,9 @@ impl Audit {
     /// Returns the error for a mesh that no backend can hold; `None` if some backend can hold the
     /// mesh.
     pub fn refusal_error(&self) -> Option<StudyError> {
-        let refusal = |BackendAudit { backend, .. }: &BackendAudit| {
-            let reason = backend.reason.clone()?;
-            Some((backend.name.clone(), reason))
-        };
+        let refusal = |BackendAudit { backend, .. }: &BackendAudit| backend.refusal();
         let refusals: Option<Vec<_>> = self.backends.iter().map(refusal).collect();
-        refusals.map(|refusals| StudyError::NoneHolds { refusals })
+        refusals.map(StudyError::none_holds)
     }
 }
 
@@ -233,13 +229,8 @@ impl LabFinding for Audit {
         }
     }
 
-    fn run_mut(&mut self) -> &mut Run {
-        &mut self.run
-    }
-
-    fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
-        self.mesh = only_mesh(meshes)?;
-        Ok(())
+    fn parts_mut(&mut self) -> (&mut Run, Meshes<'_>) {
+        (&mut self.run, Meshes::One(&mut self.mesh))
     }
 
     fn mismatches(&self) -> usize {
@@ -247,55 +238,35 @@ impl LabFinding for Audit {
     }
 
     fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
-        let facts = &self.mesh.facts;
         let of_backend = |audited: &'s BackendAudit| {
             let backend = &audited.backend;
-            let figure = |counted: &'s OperationBytes| Figure {
-                mesh: Some(&self.mesh),
-                elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
-                case: String::new(),
-                backend_bytes: audited.counted_bytes,
-                row: FigureRow {
+            let row =
+                |operation: &str, status| FigureRow::new(operation.into(), &backend.name, status);
+            let operation = |counted: &'s OperationBytes| {
+                let status = match (counted.allocated_bytes, counted.scans) {
+                    (Some(_), _) => Status::Counted,
+                    (None, true) => Status::NotRun,
+                    (None, false) => Status::Refused,
+                };
+                FigureRow {
                     allocated_bytes: counted.allocated_bytes,
-                    ..FigureRow::new(
-                        counted.operation.name().into(),
-                        &backend.name,
-                        match (counted.allocated_bytes, counted.scans) {
-                            (Some(_), _) => Status::Counted,
-                            (None, true) => Status::NotRun,
-                            (None, false) => Status::Refused,
-                        },
-                    )
-                },
-                samples: None,
-                noise: 1.0,
+                    ..row(counted.operation.name(), status)
+                }
             };
-            let structure = Figure {
-                mesh: Some(&self.mesh),
-                elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
-                case: String::new(),
-                backend_bytes: audited.counted_bytes,
-                row: FigureRow {
-                    size: audited.counted_bytes.map(|counted| SizeBytes {
-                        layout: backend.layout_bytes,
-                        counted: Some(counted),
-                        peak: audited.peak_bytes,
-                    }),
-                    ..FigureRow::new(
-                        STRUCTURE.into(),
-                        &backend.name,
-                        match backend.holds {
-                            true => Status::Counted,
-                            false => Status::Refused,
-                        },
-                    )
-                },
-                samples: None,
-                noise: 1.0,
+            let status = match backend.holds {
+                true => Status::Counted,
+                false => Status::Refused,
             };
-            let operations = audited.operations.iter().map(figure);
-            std::iter::once(structure)
-                .chain(operations)
+            let structure = FigureRow {
+                size: audited.counted_bytes.map(|counted| SizeBytes {
+                    layout: backend.layout_bytes,
+                    counted: Some(counted),
+                    peak: audited.peak_bytes,
+                }),
+                ..row(STRUCTURE, status)
+            };
+            let rows = std::iter::once(structure).chain(audited.operations.iter().map(operation));
+            rows.map(|row| Figure::new(&self.mesh, audited.counted_bytes, row))
                 .collect::<Vec<_>>()
         };
         self.backends.iter().flat_map(of_backend).collect()

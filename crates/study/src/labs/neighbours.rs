@@ -14,13 +14,14 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
+use sixfold::UnknownName;
 use sixfold::spatial::SpatialError;
 use sixfold_workload::pages::Policy;
 use sixfold_workload::{ElementSample, MachineClock, Task, Time, TimedBackend};
 
 pub use cheapest::Cheapest;
 pub use queries::QueryPoints;
-pub use tasks::{SpatialTask, UnknownSpatialTask};
+pub use tasks::SpatialTask;
 
 use crate::engine::agreement::compare_checksums;
 use crate::engine::effort::{Budget, Effort};
@@ -35,7 +36,7 @@ use crate::engine::warnings::machine_warnings;
 use crate::inspect::StudyMesh;
 use crate::labs::study::StudyError;
 use crate::results::figure::{Figure, FigureRow, Status, samples_of};
-use crate::results::finding::{Common, LabFinding, only_mesh};
+use crate::results::finding::{Common, LabFinding, Meshes};
 use crate::results::read::ReadError;
 use crate::results::rows::{Agreement, MeshReport, Samples, Standing, check_samples};
 use crate::results::run::{Run, RunSettings};
@@ -199,13 +200,8 @@ impl LabFinding for NeighboursReport {
         }
     }
 
-    fn run_mut(&mut self) -> &mut Run {
-        &mut self.run
-    }
-
-    fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
-        self.mesh = only_mesh(meshes)?;
-        Ok(())
+    fn parts_mut(&mut self) -> (&mut Run, Meshes<'_>) {
+        (&mut self.run, Meshes::One(&mut self.mesh))
     }
 
     fn mismatches(&self) -> usize {
@@ -214,41 +210,37 @@ impl LabFinding for NeighboursReport {
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {
-        let facts = &self.mesh.facts;
         let figure = |row| {
             let row: &NeighbourRow = row;
             let name = row.operation.name();
             let mut backends = self.backends.iter();
             let backend = backends.find(|backend| backend.name == row.backend);
+            let bytes = backend.map(|backend| backend.bytes);
             let status = match row.sample_size {
                 Some(_) => Status::Sampled,
                 None => Status::Measured,
             };
+            let pair = |low: Option<f64>, high: Option<f64>| low.zip(high).map(<[f64; 2]>::from);
+            let figure_row = FigureRow {
+                ns: Some(row.median_ns),
+                min_ns: Some(row.min_ns),
+                interval_ns: pair(row.ci_low_ns, row.ci_high_ns),
+                elements: Some(row.elements),
+                unit: row.per.clone(),
+                ratio_to_best: row.ratio_to_best,
+                ratio_interval: pair(row.ratio_ci_low, row.ratio_ci_high),
+                standing: row.standing,
+                agreement: Some(row.agreement),
+                samples: row.samples,
+                checksum: row.checksum,
+                sample_size: row.sample_size,
+                ..FigureRow::new(name.into(), &row.backend, status)
+            };
             Figure {
-                mesh: Some(&self.mesh),
-                elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
                 case: self.points.name().into(),
-                backend_bytes: backend.map(|backend| backend.bytes),
-                row: FigureRow {
-                    ns: Some(row.median_ns),
-                    min_ns: Some(row.min_ns),
-                    interval_ns: row.ci_low_ns.zip(row.ci_high_ns).map(<[f64; 2]>::from),
-                    elements: Some(row.elements),
-                    unit: row.per.clone(),
-                    ratio_to_best: row.ratio_to_best,
-                    ratio_interval: row
-                        .ratio_ci_low
-                        .zip(row.ratio_ci_high)
-                        .map(<[f64; 2]>::from),
-                    standing: row.standing,
-                    agreement: Some(row.agreement),
-                    samples: row.samples,
-                    checksum: row.checksum,
-                    sample_size: row.sample_size,
-                    ..FigureRow::new(name.into(), &row.backend, status)
-                },
                 samples: samples_of(&self.samples, name, &row.backend),
                 noise: self.noise.unwrap_or(1.0),
+                ..Figure::new(&self.mesh, bytes, figure_row)
             }
         };
         self.results.iter().map(figure).collect()
@@ -269,13 +261,7 @@ impl LabFinding for NeighboursReport {
 impl NeighboursSettings {
     /// Returns the requested kinds of indices.
     fn chosen(&self) -> Result<Vec<IndexKind>, StudyError> {
-        let unknown = |name: &&String| KINDS.iter().all(|kind| kind.name != **name);
-        if let Some(name) = self.indices.iter().find(unknown) {
-            return Err(StudyError::UnknownBackend {
-                name: name.clone(),
-                known: neighbour_indices().to_vec(),
-            });
-        }
+        UnknownName::check("index", &self.indices, neighbour_indices())?;
         let is_chosen = |kind: &IndexKind| {
             self.indices.is_empty() || self.indices.iter().any(|n| n == kind.name)
         };

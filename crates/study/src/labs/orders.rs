@@ -33,7 +33,7 @@ use crate::labs::study::report::bytes_of;
 use crate::labs::study::{Settings, StudyError, is_skewed, prepare, refusals, results, scans};
 use crate::refusal::Candidate;
 use crate::results::figure::{Figure, FigureRow};
-use crate::results::finding::{Common, LabFinding, only_mesh};
+use crate::results::finding::{Common, LabFinding, Meshes};
 use crate::results::read::ReadError;
 use crate::results::rows::{
     Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, Samples, check_control,
@@ -53,15 +53,6 @@ pub const DEFAULT_OPERATIONS: [&str; 6] = [
     "vertex_normal",
     "ff_bfs",
 ];
-
-/// The reason why a mesh cannot be measured in several orders.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum OrdersError {
-    /// The settings are invalid, or no requested backend can hold the mesh.
-    #[error(transparent)]
-    Study(#[from] StudyError),
-}
 
 /// The results of one mesh with its elements in several orders.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -145,13 +136,8 @@ impl LabFinding for OrdersReport {
         }
     }
 
-    fn run_mut(&mut self) -> &mut Run {
-        &mut self.run
-    }
-
-    fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
-        self.mesh = only_mesh(meshes)?;
-        Ok(())
+    fn parts_mut(&mut self) -> (&mut Run, Meshes<'_>) {
+        (&mut self.run, Meshes::One(&mut self.mesh))
     }
 
     fn mismatches(&self) -> usize {
@@ -160,15 +146,9 @@ impl LabFinding for OrdersReport {
     }
 
     fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
-        let facts = &self.mesh.facts;
         let figure = |case: String, row: FigureRow<'s>| Figure {
-            mesh: Some(&self.mesh),
-            elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
             case,
-            backend_bytes: bytes_of(&self.backends, row.backend),
-            row,
-            samples: None,
-            noise: 1.0,
+            ..Figure::new(&self.mesh, bytes_of(&self.backends, row.backend), row)
         };
         let timed = self.results.iter().map(|OrderRow { order, row }| Figure {
             samples: self.samples_of(*order, row),
@@ -217,7 +197,7 @@ pub fn orders(
     settings: &Settings,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Progress<'_>),
-) -> Result<OrdersReport, OrdersError> {
+) -> Result<OrdersReport, StudyError> {
     orders_on(&MachineClock::start(), study_mesh, settings, stop, progress)
 }
 
@@ -228,21 +208,19 @@ pub(crate) fn orders_on(
     settings: &Settings,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(Progress<'_>),
-) -> Result<OrdersReport, OrdersError> {
+) -> Result<OrdersReport, StudyError> {
     let clock = machine.clock();
     let budget = Budget::start(settings.effort, clock);
     let chosen = settings.chosen_backends()?;
     let operations = chosen_operations(settings);
     let polygons = &study_mesh.polygons;
     if polygons.face_count() == 0 {
-        return Err(StudyError::NoFaces.into());
+        return Err(StudyError::NoFaces);
     }
     let run = Run::start(RunSettings::of_study(settings));
     let counts = polygons.counts(study_mesh.facts.edges);
     let needed = orders_bytes(study_mesh, settings)?;
-    let mut memory = machine
-        .start_memory(settings.heap, settings.caches, needed)
-        .map_err(StudyError::from)?;
+    let mut memory = machine.start_memory(settings.heap, settings.caches, needed)?;
     let skewed = is_skewed(&study_mesh.facts);
     let needs_draw = chosen.iter().any(|b| skewed || scans(b, &operations));
     let meshes = OrderedMeshes::new(polygons, settings.seed, needs_draw);
@@ -269,9 +247,7 @@ pub(crate) fn orders_on(
         }
     }
     if subjects.is_empty() {
-        let reason = |b: BackendReport| (b.name, b.reason.unwrap_or_default());
-        let refusals = backends.into_iter().map(reason).collect();
-        return Err(StudyError::NoneHolds { refusals }.into());
+        return Err(StudyError::none_holds(backends));
     }
     // The control is a structure in the given order, which comes first.
     let mut measured = Columns::new(subjects, Vec::new(), |first| {

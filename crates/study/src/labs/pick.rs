@@ -32,7 +32,7 @@ use sixfold_workload::{
 };
 
 pub use choice::{Choice, EQUAL_UP_TO, TurningPoint};
-pub use needs::{Need, UnknownNeed};
+pub use needs::Need;
 pub use prediction::{Predicted, Prediction, predict};
 pub(crate) use programs::Qualification;
 pub use programs::{ProgramSettings, pick_for_programs};

@@ -7,7 +7,7 @@ pub(crate) mod sentences;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use sixfold::{Distribution, Facts, PolygonMesh, QueryCost, Relation};
+use sixfold::{Distribution, Facts, PolygonMesh, QueryCost, Relation, UnknownName};
 use sixfold_core::Counts;
 
 use crate::engine::agreement::compare_checksums;
@@ -20,7 +20,7 @@ use crate::engine::ranking::rank;
 use crate::external::{self, EXTERNAL_TIMEOUT, External, MeshFile};
 use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::labs::orders::prepared_bytes;
-use crate::results::rows::{Agreement, BackendReport, Control, Refusal, ResultRow};
+use crate::results::rows::{Agreement, BackendRefusal, BackendReport, Control, Refusal, ResultRow};
 use crate::results::run::{Run, RunSettings};
 pub use report::Report;
 
@@ -35,7 +35,6 @@ use sixfold_workload::Draw;
 use sixfold_workload::Operation;
 use sixfold_workload::TimedBackend;
 use sixfold_workload::pages::{HeapPolicyConflict, Policy};
-use sixfold_workload::unknown;
 use sixfold_workload::{MachineClock, Time};
 
 /// Maximum valence or degree of a mesh that counts as not skewed.
@@ -90,11 +89,8 @@ impl Default for Settings {
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum StudyError {
     /// No backend has the requested name.
-    #[error("{}", unknown("backend", .name, .known))]
-    UnknownBackend {
-        name: String,
-        known: Vec<&'static str>,
-    },
+    #[error(transparent)]
+    UnknownBackend(#[from] UnknownName),
     /// Two structures have the same name.
     #[error("two backends are called `{name}`: give each backend its own name")]
     RepeatedBackend { name: String },
@@ -115,18 +111,25 @@ pub enum StudyError {
         "none of the selected backends can hold the mesh: {}; `sixfold repair --for NAME` makes a \
          mesh that the structure NAME can hold", reasons(.refusals)
     )]
-    NoneHolds { refusals: Vec<(String, String)> },
+    NoneHolds { refusals: Vec<BackendRefusal> },
     /// A measurement with another heap policy is active in this process.
     #[error(transparent)]
     HeapPolicy(#[from] HeapPolicyConflict),
 }
 
-fn reasons(refusals: &[(String, String)]) -> String {
-    let reasons: Vec<String> = refusals
-        .iter()
-        .map(|(backend, reason)| format!("{backend}: {reason}"))
-        .collect();
-    reasons.join("; ")
+impl StudyError {
+    /// Returns the error for a mesh that no backend can hold, with the reasons.
+    pub(crate) fn none_holds(backends: impl IntoIterator<Item: Into<BackendRefusal>>) -> Self {
+        let refusals = backends.into_iter().map(Into::into);
+        Self::NoneHolds {
+            refusals: refusals.collect(),
+        }
+    }
+}
+
+fn reasons(refusals: &[BackendRefusal]) -> String {
+    let reasons = (refusals.iter()).map(|r| format!("{}: {}", r.backend, r.reason));
+    reasons.collect::<Vec<_>>().join("; ")
 }
 
 impl Settings {
@@ -145,13 +148,7 @@ impl Settings {
             }
             all.push(extra);
         }
-        let unknown = |name: &&String| all.iter().all(|backend| backend.name() != **name);
-        if let Some(name) = self.backends.iter().find(unknown) {
-            return Err(StudyError::UnknownBackend {
-                name: name.clone(),
-                known: all.iter().map(Backend::name).collect(),
-            });
-        }
+        UnknownName::check("backend", &self.backends, all.iter().map(Backend::name))?;
         let requested = |backend: &Backend| {
             self.backends.is_empty() || self.backends.iter().any(|name| name == backend.name())
         };
@@ -260,12 +257,7 @@ pub(crate) fn study_on(
         programs.extend(subject);
     }
     if subjects.is_empty() {
-        let refusals = backends
-            .into_iter()
-            .map(|b| (b.name, b.reason.unwrap_or_default()));
-        return Err(StudyError::NoneHolds {
-            refusals: refusals.collect(),
-        });
+        return Err(StudyError::none_holds(backends));
     }
 
     let names: Vec<String> = subjects.iter().map(|s| s.name().to_owned()).collect();

@@ -25,7 +25,7 @@ use crate::labs::study::{Settings, StudyError, study_on};
 use crate::numbers::bytes;
 use crate::refusal::Candidate;
 use crate::results::figure::{Figure, FigureRow, Status, samples_of};
-use crate::results::finding::{Common, LabFinding, only_mesh};
+use crate::results::finding::{Common, LabFinding, Meshes};
 use crate::results::read::ReadError;
 use crate::results::rows::{Agreement, BackendReport, MeshReport, Samples, check_samples};
 use crate::results::run::{Run, RunSettings};
@@ -148,16 +148,16 @@ pub struct Timed {
     pub bound: Bound,
 }
 
-/// The factor that limits the speed of a sweep (querying a relation at all elements).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Bound {
-    /// The transfer of bytes from memory limits the speed.
-    Bandwidth,
-    /// The wait for cache lines that a prefetcher cannot predict limits the speed.
-    Latency,
-    /// Computation on data in the cache limits the speed.
-    Work,
+sixfold_core::named! {
+    /// The factor that limits the speed of a sweep (querying a relation at all elements).
+    pub enum Bound: "limiting factor" {
+        /// The transfer of bytes from memory limits the speed.
+        Bandwidth = "bandwidth",
+        /// The wait for cache lines that a prefetcher cannot predict limits the speed.
+        Latency = "latency",
+        /// Computation on data in the cache limits the speed.
+        Work = "work",
+    }
 }
 
 impl Bound {
@@ -178,15 +178,6 @@ impl Bound {
             Self::Work
         }
     }
-
-    /// Returns the name of the factor in files: `bandwidth`, `latency` or `work`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Bandwidth => "bandwidth",
-            Self::Latency => "latency",
-            Self::Work => "work",
-        }
-    }
 }
 
 impl LabFinding for Why {
@@ -200,13 +191,8 @@ impl LabFinding for Why {
         }
     }
 
-    fn run_mut(&mut self) -> &mut Run {
-        &mut self.run
-    }
-
-    fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
-        self.mesh = only_mesh(meshes)?;
-        Ok(())
+    fn parts_mut(&mut self) -> (&mut Run, Meshes<'_>) {
+        (&mut self.run, Meshes::One(&mut self.mesh))
     }
 
     fn mismatches(&self) -> usize {
@@ -217,7 +203,6 @@ impl LabFinding for Why {
     }
 
     fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
-        let facts = &self.mesh.facts;
         let figure = |row: &'s WhyRow| {
             let operation = Operation::Relation(row.reads.relation).name();
             let status = match row.timed.map(|timed| timed.sampled) {
@@ -227,24 +212,21 @@ impl LabFinding for Why {
             };
             let elements = row.reads.elements;
             let samples = samples_of(&self.samples, operation, &row.backend);
+            let figure_row = FigureRow {
+                ns: row
+                    .timed
+                    .map(|timed| timed.ns_per_element * elements as f64),
+                elements: Some(elements),
+                unit: row.per.clone(),
+                agreement: row.timed.map(|timed| timed.agreement),
+                reads: Some(&row.reads),
+                samples: samples.map_or(0, |samples| samples.rounds.len()),
+                ..FigureRow::new(operation.into(), &row.backend, status)
+            };
+            let bytes = bytes_of(&self.backends, &row.backend);
             Figure {
-                mesh: Some(&self.mesh),
-                elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
-                case: String::new(),
-                backend_bytes: bytes_of(&self.backends, &row.backend),
-                row: FigureRow {
-                    ns: row
-                        .timed
-                        .map(|timed| timed.ns_per_element * elements as f64),
-                    elements: Some(elements),
-                    unit: row.per.clone(),
-                    agreement: row.timed.map(|timed| timed.agreement),
-                    reads: Some(&row.reads),
-                    samples: samples.map_or(0, |samples| samples.rounds.len()),
-                    ..FigureRow::new(operation.into(), &row.backend, status)
-                },
                 samples,
-                noise: 1.0,
+                ..Figure::new(&self.mesh, bytes, figure_row)
             }
         };
         self.rows.iter().map(figure).collect()
@@ -355,12 +337,7 @@ fn count_all(
         backends.push(unbuilt(backend, &candidate, verdict));
     }
     if backends.iter().all(|backend| !backend.holds) {
-        let refusals = backends
-            .into_iter()
-            .map(|b| (b.name, b.reason.unwrap_or_default()));
-        return Err(StudyError::NoneHolds {
-            refusals: refusals.collect(),
-        });
+        return Err(StudyError::none_holds(backends));
     }
     Ok((backends, rows))
 }

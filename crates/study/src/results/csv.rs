@@ -10,7 +10,7 @@ use crate::results::figure::{Figure, Status};
 use crate::results::rows::{Agreement, Standing};
 
 /// One row of the table of times.
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 struct TimeRow<'r> {
     mesh: &'r str,
     vertices: usize,
@@ -51,7 +51,7 @@ struct TimeRow<'r> {
 }
 
 /// One row of the table of samples.
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 struct SampleRow<'r> {
     mesh: &'r str,
     kind: &'r str,
@@ -65,58 +65,6 @@ struct SampleRow<'r> {
     slowdown: Option<f64>,
 }
 
-const TIME_COLUMNS: [&str; 36] = [
-    "mesh",
-    "vertices",
-    "edges",
-    "faces",
-    "closed",
-    "largest_valence",
-    "largest_face_degree",
-    "kind",
-    "case",
-    "operation",
-    "backend",
-    "backend_bytes",
-    "status",
-    "unit",
-    "elements",
-    "allocated_bytes",
-    "layout_bytes",
-    "counted_bytes",
-    "peak_bytes",
-    "reads",
-    "read_bytes",
-    "lines",
-    "fetched",
-    "jumps",
-    "moved_bytes",
-    "ns",
-    "ns_per_element",
-    "min_ns",
-    "ci_low_ns",
-    "ci_high_ns",
-    "ratio_to_best",
-    "ratio_ci_low",
-    "ratio_ci_high",
-    "standing",
-    "agreement",
-    "samples",
-];
-
-const SAMPLE_COLUMNS: [&str; 10] = [
-    "mesh",
-    "kind",
-    "case",
-    "operation",
-    "backend",
-    "round",
-    "cpu_ns",
-    "wall_ns",
-    "faults",
-    "slowdown",
-];
-
 impl Results {
     /// Writes the times as CSV: a header, and one row for each mesh, case, operation and backend of
     /// each finding.
@@ -125,7 +73,7 @@ impl Results {
     ///
     /// Returns the errors of `writer`.
     pub fn write_csv(&self, writer: impl io::Write) -> io::Result<()> {
-        self.write_lines(writer, &TIME_COLUMNS, |lines, kind, figure| {
+        self.write_lines(writer, header::<TimeRow>()?, |lines, kind, figure| {
             lines.serialize(time_row(kind, figure))
         })
     }
@@ -137,7 +85,7 @@ impl Results {
     ///
     /// Returns the errors of `writer`.
     pub fn write_samples_csv(&self, writer: impl io::Write) -> io::Result<()> {
-        self.write_lines(writer, &SAMPLE_COLUMNS, |lines, kind, figure| {
+        self.write_lines(writer, header::<SampleRow>()?, |lines, kind, figure| {
             sample_rows(kind, figure).try_for_each(|row| lines.serialize(row))
         })
     }
@@ -145,14 +93,14 @@ impl Results {
     /// Writes the header, and the rows that `write` writes for each figure.
     fn write_lines<W: io::Write>(
         &self,
-        writer: W,
-        header: &[&str],
+        mut writer: W,
+        header: Vec<u8>,
         write: impl Fn(&mut Writer<W>, &str, &Figure<'_>) -> csv::Result<()>,
     ) -> io::Result<()> {
+        writer.write_all(&header)?;
         let mut lines = csv::WriterBuilder::new()
             .has_headers(false)
             .from_writer(writer);
-        lines.write_record(header).map_err(into_io_error)?;
         for finding in &self.findings {
             for figure in finding.figures() {
                 write(&mut lines, finding.kind(), &figure).map_err(into_io_error)?;
@@ -160,6 +108,16 @@ impl Results {
         }
         lines.flush()
     }
+}
+
+/// Returns the line with the names of the columns.
+fn header<R: Default + Serialize>() -> io::Result<Vec<u8>> {
+    let mut lines = Writer::from_writer(Vec::new());
+    lines.serialize(R::default()).map_err(into_io_error)?;
+    let mut header = lines.into_inner().map_err(|error| error.into_error())?;
+    let end = header.iter().position(|&byte| byte == b'\n');
+    header.truncate(end.map_or(header.len(), |end| end + 1));
+    Ok(header)
 }
 
 fn mesh_name<'r>(figure: &Figure<'r>) -> &'r str {

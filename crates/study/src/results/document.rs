@@ -7,13 +7,7 @@ use std::io;
 
 use serde::{Deserialize, Serialize};
 
-use crate::labs::growth::GrowthReport;
-use crate::labs::memory::Audit;
-use crate::labs::neighbours::NeighboursReport;
-use crate::labs::orders::OrdersReport;
-use crate::labs::pick::PickReport;
 use crate::labs::study::Report;
-use crate::labs::why::Why;
 use crate::results::finding::Finding;
 use crate::results::json::write_json;
 use crate::results::pool::Pool;
@@ -168,62 +162,6 @@ impl Results {
             _ => Some(usize::MAX),
         });
         self.failures.sort_by_key(|failed| place(&failed.mesh));
-    }
-
-    /// Iterates over the studies.
-    pub fn studies(&self) -> impl Iterator<Item = &Report> {
-        self.findings.iter().filter_map(|finding| match finding {
-            Finding::Study(study) => Some(&**study),
-            _ => None,
-        })
-    }
-
-    /// Iterates over the measurements of a mesh in several orders.
-    pub fn orders(&self) -> impl Iterator<Item = &OrdersReport> {
-        self.findings.iter().filter_map(|finding| match finding {
-            Finding::Orders(orders) => Some(&**orders),
-            _ => None,
-        })
-    }
-
-    /// Iterates over the measurements of a shape in several sizes.
-    pub fn growth(&self) -> impl Iterator<Item = &GrowthReport> {
-        self.findings.iter().filter_map(|finding| match finding {
-            Finding::Growth(growth) => Some(&**growth),
-            _ => None,
-        })
-    }
-
-    /// Iterates over the explanations of query times by the memory that the queries read.
-    pub fn why(&self) -> impl Iterator<Item = &Why> {
-        self.findings.iter().filter_map(|finding| match finding {
-            Finding::Why(why) => Some(&**why),
-            _ => None,
-        })
-    }
-
-    /// Iterates over the counts of the bytes of each backend.
-    pub fn memory(&self) -> impl Iterator<Item = &Audit> {
-        self.findings.iter().filter_map(|finding| match finding {
-            Finding::Memory(audit) => Some(&**audit),
-            _ => None,
-        })
-    }
-
-    /// Iterates over the measurements of spatial indices.
-    pub fn neighbours(&self) -> impl Iterator<Item = &NeighboursReport> {
-        self.findings.iter().filter_map(|finding| match finding {
-            Finding::Neighbours(neighbours) => Some(&**neighbours),
-            _ => None,
-        })
-    }
-
-    /// Iterates over the rankings for workloads.
-    pub fn picks(&self) -> impl Iterator<Item = &PickReport> {
-        self.findings.iter().filter_map(|finding| match finding {
-            Finding::Pick(pick) => Some(&**pick),
-            _ => None,
-        })
     }
 
     /// Iterates over the names of the planned meshes that have neither a study nor a failure.

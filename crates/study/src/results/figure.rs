@@ -28,7 +28,7 @@ pub struct Figure<'r> {
 }
 
 /// The time or the bytes of an operation on a backend, without the mesh.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FigureRow<'r> {
     /// The name of the operation. In a pick, `mix` is the whole mix, and the other names are the
     /// parts of the mix and `build`.
@@ -85,7 +85,7 @@ pub struct SizeBytes {
 }
 
 /// How a time or a count of bytes was obtained.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
     /// Whole runs were measured.
@@ -99,6 +99,7 @@ pub enum Status {
     /// There is no value, because the backend cannot do the operation on this mesh.
     Refused,
     /// There is no value, because the operation would take too long, or because the budget ended.
+    #[default]
     NotRun,
 }
 
@@ -109,21 +110,7 @@ impl<'r> FigureRow<'r> {
             operation,
             backend,
             status,
-            ns: None,
-            allocated_bytes: None,
-            min_ns: None,
-            interval_ns: None,
-            elements: None,
-            unit: String::new(),
-            ratio_to_best: None,
-            ratio_interval: None,
-            standing: None,
-            agreement: None,
-            samples: 0,
-            checksum: None,
-            sample_size: None,
-            size: None,
-            reads: None,
+            ..Self::default()
         }
     }
 
@@ -175,7 +162,25 @@ impl<'r> FigureRow<'r> {
     }
 }
 
-impl Figure<'_> {
+impl<'r> Figure<'r> {
+    /// Returns a figure of a mesh, without a case, without samples and without noise.
+    pub(crate) fn new(
+        mesh: &'r MeshReport,
+        backend_bytes: Option<usize>,
+        row: FigureRow<'r>,
+    ) -> Self {
+        let facts = &mesh.facts;
+        Self {
+            mesh: Some(mesh),
+            elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
+            case: String::new(),
+            backend_bytes,
+            row,
+            samples: None,
+            noise: 1.0,
+        }
+    }
+
     /// Returns the times of all samples that count, in nanoseconds. See [`Samples::counted_ns`].
     pub fn counted_ns(&self) -> Vec<f64> {
         self.samples.map_or_else(Vec::new, Samples::counted_ns)

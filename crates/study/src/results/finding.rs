@@ -9,42 +9,108 @@ use crate::labs::orders::OrdersReport;
 use crate::labs::pick::PickReport;
 use crate::labs::study::Report;
 use crate::labs::why::Why;
+use crate::results::document::Results;
 use crate::results::figure::Figure;
 use crate::results::read::ReadError;
 use crate::results::rows::MeshReport;
 use crate::results::run::Run;
 
-/// The result of one measuring command. In JSON, the field `kind` has the name of the command.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
-#[non_exhaustive]
-pub enum Finding {
-    /// `sixfold study`: the times of operations on one mesh.
-    Study(Box<Report>),
-    /// `sixfold orders`: one mesh with its elements in several orders.
-    Orders(Box<OrdersReport>),
-    /// `sixfold growth`: one shape in several sizes.
-    Growth(Box<GrowthReport>),
-    /// `sixfold why`: the memory that queries read, compared with the times of the queries.
-    Why(Box<Why>),
-    /// `sixfold memory`: the bytes of each backend, counted in three ways.
-    Memory(Box<Audit>),
-    /// `sixfold neighbours`: the times of spatial indices on one mesh.
-    Neighbours(Box<NeighboursReport>),
-    /// `sixfold pick`: the backends, ranked for a workload.
-    Pick(Box<PickReport>),
+/// Defines [`Finding`] and what differs only in the lab: the conversions, and the iterators of
+/// [`Results`].
+macro_rules! findings {
+    ($(
+        $(#[$about:meta])*
+        $kind:ident($finding:ty) = $name:literal,
+        $(#[$items_about:meta])*
+        $items:ident;
+    )+) => {
+        /// The result of one measuring command. In JSON, the field `kind` has the name of the
+        /// command.
+        #[derive(Clone, Debug, Deserialize, Serialize)]
+        #[serde(tag = "kind")]
+        #[non_exhaustive]
+        pub enum Finding {
+            $($(#[$about])* #[serde(rename = $name)] $kind(Box<$finding>),)+
+        }
+
+        /// The names of the commands that measure findings, in the order of [`Finding`].
+        pub(crate) const KINDS: [&str; [$($name),+].len()] = [$($name),+];
+
+        impl Finding {
+            fn lab(&self) -> &dyn LabFinding {
+                match self {
+                    $(Self::$kind(finding) => &**finding,)+
+                }
+            }
+
+            fn lab_mut(&mut self) -> &mut dyn LabFinding {
+                match self {
+                    $(Self::$kind(finding) => &mut **finding,)+
+                }
+            }
+
+            /// Returns the name of the command that measured this finding, such as `study`.
+            pub const fn kind(&self) -> &'static str {
+                match self {
+                    $(Self::$kind(_) => $name,)+
+                }
+            }
+        }
+
+        $(impl From<$finding> for Finding {
+            fn from(finding: $finding) -> Self {
+                Self::$kind(finding.into())
+            }
+        })+
+
+        impl Results {
+            $($(#[$items_about])*
+            pub fn $items(&self) -> impl Iterator<Item = &$finding> {
+                self.findings.iter().filter_map(|finding| match finding {
+                    Finding::$kind(finding) => Some(&**finding),
+                    _ => None,
+                })
+            })+
+        }
+    };
 }
 
-/// The names of the commands that measure findings, in the order of [`Finding`].
-pub(crate) const KINDS: [&str; 7] = [
-    "study",
-    "orders",
-    "growth",
-    "why",
-    "memory",
-    "neighbours",
-    "pick",
-];
+findings! {
+    /// `sixfold study`: the times of operations on one mesh.
+    Study(Report) = "study",
+    /// Iterates over the studies.
+    studies;
+
+    /// `sixfold orders`: one mesh with its elements in several orders.
+    Orders(OrdersReport) = "orders",
+    /// Iterates over the measurements of a mesh in several orders.
+    orders;
+
+    /// `sixfold growth`: one shape in several sizes.
+    Growth(GrowthReport) = "growth",
+    /// Iterates over the measurements of a shape in several sizes.
+    growth;
+
+    /// `sixfold why`: the memory that queries read, compared with the times of the queries.
+    Why(Why) = "why",
+    /// Iterates over the explanations of query times by the memory that the queries read.
+    why;
+
+    /// `sixfold memory`: the bytes of each backend, counted in three ways.
+    Memory(Audit) = "memory",
+    /// Iterates over the counts of the bytes of each backend.
+    memory;
+
+    /// `sixfold neighbours`: the times of spatial indices on one mesh.
+    Neighbours(NeighboursReport) = "neighbours",
+    /// Iterates over the measurements of spatial indices.
+    neighbours;
+
+    /// `sixfold pick`: the backends, ranked for a workload.
+    Pick(PickReport) = "pick",
+    /// Iterates over the rankings for workloads.
+    picks;
+}
 
 /// The parts that the findings of all labs have.
 pub(crate) struct Common<'f> {
@@ -57,14 +123,20 @@ pub(crate) struct Common<'f> {
     pub(crate) interrupted: bool,
 }
 
+/// The meshes of a finding, so that they can be changed.
+pub(crate) enum Meshes<'f> {
+    /// The lab measures one mesh.
+    One(&'f mut MeshReport),
+    /// The lab measures any number of meshes.
+    Any(&'f mut Vec<MeshReport>),
+}
+
 /// The common interface of the findings of all labs.
 pub(crate) trait LabFinding {
     /// Returns the parts that all findings have.
     fn common(&self) -> Common<'_>;
-    /// Returns the run, so that it can be changed.
-    fn run_mut(&mut self) -> &mut Run;
-    /// Sets the meshes after reading. Returns an error if their number is wrong.
-    fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError>;
+    /// Returns the run and the meshes, so that they can be changed.
+    fn parts_mut(&mut self) -> (&mut Run, Meshes<'_>);
     /// Counts the results that differ, for no known reason, from the results of other backends of
     /// Sixfold.
     fn mismatches(&self) -> usize;
@@ -77,43 +149,6 @@ pub(crate) trait LabFinding {
 }
 
 impl Finding {
-    fn lab(&self) -> &dyn LabFinding {
-        match self {
-            Self::Study(finding) => &**finding,
-            Self::Orders(finding) => &**finding,
-            Self::Growth(finding) => &**finding,
-            Self::Why(finding) => &**finding,
-            Self::Memory(finding) => &**finding,
-            Self::Neighbours(finding) => &**finding,
-            Self::Pick(finding) => &**finding,
-        }
-    }
-
-    fn lab_mut(&mut self) -> &mut dyn LabFinding {
-        match self {
-            Self::Study(finding) => &mut **finding,
-            Self::Orders(finding) => &mut **finding,
-            Self::Growth(finding) => &mut **finding,
-            Self::Why(finding) => &mut **finding,
-            Self::Memory(finding) => &mut **finding,
-            Self::Neighbours(finding) => &mut **finding,
-            Self::Pick(finding) => &mut **finding,
-        }
-    }
-
-    /// Returns the name of the command that measured this finding, such as `study`.
-    pub const fn kind(&self) -> &'static str {
-        KINDS[match self {
-            Self::Study(_) => 0,
-            Self::Orders(_) => 1,
-            Self::Growth(_) => 2,
-            Self::Why(_) => 3,
-            Self::Memory(_) => 4,
-            Self::Neighbours(_) => 5,
-            Self::Pick(_) => 6,
-        }]
-    }
-
     /// Returns how the finding was measured.
     pub fn run(&self) -> &Run {
         self.lab().common().run
@@ -121,7 +156,7 @@ impl Finding {
 
     /// Returns the run, so that it can be changed. For example, the command line adds `command`.
     pub fn run_mut(&mut self) -> &mut Run {
-        self.lab_mut().run_mut()
+        self.lab_mut().parts_mut().0
     }
 
     /// Returns the measured meshes. The list is empty for a lab that makes its own meshes.
@@ -159,34 +194,18 @@ impl Finding {
     /// Adds the run and the meshes to a finding that was read from a file, and checks its values.
     pub(crate) fn complete(&mut self, run: Run, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
         let lab = self.lab_mut();
-        *lab.run_mut() = run;
-        lab.set_meshes(meshes)?;
+        let (old_run, old_meshes) = lab.parts_mut();
+        *old_run = run;
+        match old_meshes {
+            Meshes::One(mesh) => *mesh = only_mesh(meshes)?,
+            Meshes::Any(all) => *all = meshes,
+        }
         lab.check()
     }
 }
 
-macro_rules! from_lab {
-    ($($lab:ty => $kind:ident),*) => {$(
-        impl From<$lab> for Finding {
-            fn from(finding: $lab) -> Self {
-                Self::$kind(finding.into())
-            }
-        }
-    )*};
-}
-
-from_lab!(
-    Report => Study,
-    OrdersReport => Orders,
-    GrowthReport => Growth,
-    Why => Why,
-    Audit => Memory,
-    NeighboursReport => Neighbours,
-    PickReport => Pick
-);
-
 /// Returns the only mesh of a finding. Returns an error if the number of meshes is not 1.
-pub(crate) fn only_mesh(meshes: Vec<MeshReport>) -> Result<MeshReport, ReadError> {
+fn only_mesh(meshes: Vec<MeshReport>) -> Result<MeshReport, ReadError> {
     let count = meshes.len();
     let only: Result<[MeshReport; 1], _> = meshes.try_into();
     only.map(|[mesh]| mesh).map_err(|_| ReadError::Malformed {

@@ -129,9 +129,37 @@ pub struct BackendReport {
     pub external: Option<ExternalReport>,
 }
 
+/// A backend that cannot hold the mesh.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub struct BackendRefusal {
+    /// The name of the backend, such as `half-edge`.
+    pub backend: String,
+    /// Why the backend cannot hold the mesh.
+    pub reason: String,
+}
+
+impl BackendReport {
+    /// Returns why the backend cannot hold the mesh; `None` if the mesh is not refused.
+    pub(crate) fn refusal(&self) -> Option<BackendRefusal> {
+        Some(BackendRefusal {
+            backend: self.name.clone(),
+            reason: self.reason.clone()?,
+        })
+    }
+}
+
+impl From<BackendReport> for BackendRefusal {
+    fn from(report: BackendReport) -> Self {
+        Self {
+            backend: report.name,
+            reason: report.reason.unwrap_or_default(),
+        }
+    }
+}
+
 /// The result of one operation on one backend. All times are times of one run on the whole mesh, in
 /// nanoseconds.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct ResultRow {
     /// The name of the backend, such as `half-edge`.
     pub backend: String,
@@ -210,34 +238,9 @@ impl ResultRow {
         Self {
             backend: backend.into(),
             operation,
-            median_ns: None,
-            min_ns: None,
-            ci_low_ns: None,
-            ci_high_ns: None,
-            elements: None,
             per: operation.unit().into(),
-            ns_per_element: None,
-            wall_median_ns: None,
-            wall_min_ns: None,
-            sampled: false,
-            sample_size: None,
-            estimated_ns: None,
-            checksum: None,
-            agreement: Agreement::Unchecked,
-            standing: None,
-            ratio_to_best: None,
-            ratio_ci_low: None,
-            ratio_ci_high: None,
-            samples: 0,
             runs_per_sample: 1,
-            warm_up_only: false,
-            by_name_only: false,
-            faults: None,
-            retaken: 0,
-            disturbed: 0,
-            first_ns: None,
-            first_samples: 0,
-            first_faults: None,
+            ..Self::default()
         }
     }
 
@@ -351,7 +354,7 @@ impl From<WrittenRefusal> for Refusal {
 }
 
 /// The result of comparing the checksums of one operation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Agreement {
     /// The checksum is the same as on another backend, so both backends did the same work.
@@ -364,6 +367,7 @@ pub enum Agreement {
     /// The checksum differs for no known reason, so at least one result is wrong.
     Mismatch,
     /// The checksum was not compared, for example because no other backend has a result.
+    #[default]
     Unchecked,
 }
 

@@ -336,56 +336,17 @@ impl<M: OrientedWalk> OrientedWalk for Recorded<M> {
 /// Passes reports of the structure on to the log of the program.
 struct PassedOn<'l, L>(&'l mut L);
 
-/// Passes reports on.
-macro_rules! passed_on {
-    ($($report:ident($($argument:ident: $handle:ident),+);)+) => {
-        $(fn $report(&mut self, $($argument: M::$handle),+) {
-            self.0.$report($($argument),+);
-        })+
-    };
-}
-
 impl<M: MeshQuery, L: EditLog<Recorded<M>>> EditLog<M> for PassedOn<'_, L> {
     const USES_REPORTS: bool = L::USES_REPORTS;
 
-    passed_on! {
-        created_vertex(v: Vertex);
-        removed_vertex(v: Vertex);
-        renamed_vertex(old: Vertex, new: Vertex);
-        created_edge(e: Edge);
-        removed_edge(e: Edge);
-        renamed_edge(old: Edge, new: Edge);
-        created_face(f: Face);
-        removed_face(f: Face);
-        renamed_face(old: Face, new: Face);
-    }
+    sixfold_core::pass_reports_on!(0);
 }
 
 /// Passes reports on to the log of the program, and keeps them in a record.
 struct BothLogs<'l, L, M: MeshQuery>(&'l mut L, &'l mut EditRecord<M>);
 
-/// Passes reports on to two logs.
-macro_rules! both {
-    ($($report:ident($($argument:ident: $handle:ident),+);)+) => {
-        $(fn $report(&mut self, $($argument: M::$handle),+) {
-            self.0.$report($($argument),+);
-            self.1.$report($($argument),+);
-        })+
-    };
-}
-
 impl<M: MeshQuery, L: EditLog<Recorded<M>>> EditLog<M> for BothLogs<'_, L, M> {
-    both! {
-        created_vertex(v: Vertex);
-        removed_vertex(v: Vertex);
-        renamed_vertex(old: Vertex, new: Vertex);
-        created_edge(e: Edge);
-        removed_edge(e: Edge);
-        renamed_edge(old: Edge, new: Edge);
-        created_face(f: Face);
-        removed_face(f: Face);
-        renamed_face(old: Face, new: Face);
-    }
+    sixfold_core::pass_reports_on!(0, 1);
 }
 
 /// The handles of the arguments of an edit.

@@ -33,31 +33,19 @@ pub struct SuiteProgram {
     own_ns: f64,
 }
 
-/// What a program needs of a structure.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum ProgramKind {
-    /// The program is a [`Program`].
-    Queries,
-    /// The program is a [`WalkProgram`].
-    Walks,
-    /// The program is a [`MovingProgram`].
-    Moves,
-    /// The program is an [`EditProgram`].
-    Edits,
-    /// The program is a [`RefineProgram`].
-    Refines,
-}
-
-impl ProgramKind {
-    /// Returns the verb that describes the program in text and in results.
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Queries => "queries",
-            Self::Walks => "walks",
-            Self::Moves => "moves",
-            Self::Edits => "edits",
-            Self::Refines => "refines",
-        }
+sixfold_core::named! {
+    /// What a program needs of a structure.
+    enum ProgramKind: "kind of program" {
+        /// The program is a [`Program`].
+        Queries = "queries",
+        /// The program is a [`WalkProgram`].
+        Walks = "walks",
+        /// The program is a [`MovingProgram`].
+        Moves = "moves",
+        /// The program is an [`EditProgram`].
+        Edits = "edits",
+        /// The program is a [`RefineProgram`].
+        Refines = "refines",
     }
 }
 
@@ -97,145 +85,6 @@ impl Suite {
         self
     }
 
-    /// Adds a program that only queries the mesh. It also runs on flat tables of the relations that
-    /// it queries.
-    #[must_use]
-    pub fn program<P: Program + 'static>(self, program: P) -> Self {
-        let name = program.name().to_owned();
-        let program = Arc::new(program);
-        let mut contestants = Vec::new();
-        for_each_representation!(M => {
-            contestants.push(Contestant::new::<Queries<P, M>>(&program).recorded::<Queries<P, Recorded<M>>, M>(&name, &program));
-        });
-        contestants.push(Contestant::on_tables(&program));
-        self.with(name, ProgramKind::Queries, contestants)
-    }
-
-    /// Lets a program that only queries the mesh also run on `M`, a structure of another crate. If
-    /// the suite has no program of the same name, the program is added, and runs only on `M`. The
-    /// other kinds of programs have methods of the same form:
-    /// [`walk_program_on`](Self::walk_program_on), [`moving_program_on`](Self::moving_program_on),
-    /// [`edit_program_on`](Self::edit_program_on) and
-    /// [`refine_program_on`](Self::refine_program_on).
-    #[must_use]
-    pub fn on_structure<P, M>(self, program: P) -> Self
-    where
-        P: Program + 'static,
-        M: Representation + 'static,
-    {
-        let name = program.name().to_owned();
-        let program = Arc::new(program);
-        let contestant = Contestant::new::<Queries<P, M>>(&program)
-            .recorded::<Queries<P, Recorded<M>>, M>(&name, &program);
-        self.with(name, ProgramKind::Queries, vec![contestant])
-    }
-
-    /// Lets a program that walks along the sides of faces also run on `M`, a structure of another
-    /// crate, like [`on_structure`](Self::on_structure).
-    #[must_use]
-    pub fn walk_program_on<P, M>(self, program: P) -> Self
-    where
-        P: WalkProgram + 'static,
-        M: Representation + OrientedWalk + 'static,
-    {
-        let name = program.name().to_owned();
-        let program = Arc::new(program);
-        let contestant = Contestant::new::<Walks<P, M>>(&program)
-            .recorded::<Walks<P, Recorded<M>>, M>(&name, &program);
-        self.with(name, ProgramKind::Walks, vec![contestant])
-    }
-
-    /// Lets a program that moves the vertices also run on `M`, a structure of another crate, like
-    /// [`on_structure`](Self::on_structure).
-    #[must_use]
-    pub fn moving_program_on<P, M>(self, program: P) -> Self
-    where
-        P: MovingProgram + 'static,
-        M: Representation + 'static,
-    {
-        let name = program.name().to_owned();
-        let program = Arc::new(program);
-        let contestant = Contestant::new::<Moves<P, M>>(&program)
-            .recorded::<Moves<P, Recorded<M>>, M>(&name, &program);
-        self.with(name, ProgramKind::Moves, vec![contestant])
-    }
-
-    /// Lets a program that edits the mesh also run on `M`, the editable type of a structure of
-    /// another crate, like [`on_structure`](Self::on_structure).
-    #[must_use]
-    pub fn edit_program_on<P, M>(self, program: P) -> Self
-    where
-        P: EditProgram + 'static,
-        M: Representation + MeshEdit + 'static,
-    {
-        let name = program.name().to_owned();
-        let program = Arc::new(program);
-        let contestant = Contestant::new::<Edits<P, M>>(&program)
-            .recorded::<Edits<P, Recorded<M>>, M>(&name, &program);
-        self.with(name, ProgramKind::Edits, vec![contestant])
-    }
-
-    /// Lets a program that splits all faces also run on `M`, a structure of another crate, like
-    /// [`on_structure`](Self::on_structure).
-    #[must_use]
-    pub fn refine_program_on<P, M>(self, program: P) -> Self
-    where
-        P: RefineProgram + 'static,
-        M: Refine + 'static,
-    {
-        let name = program.name().to_owned();
-        let contestant = Contestant::new::<Refinements<P, M>>(&Arc::new(program));
-        self.with(name, ProgramKind::Refines, vec![contestant])
-    }
-
-    /// Adds a program that walks along the sides of faces.
-    #[must_use]
-    pub fn walk_program<P: WalkProgram + 'static>(self, program: P) -> Self {
-        let name = program.name().to_owned();
-        let program = Arc::new(program);
-        let mut contestants = Vec::new();
-        for_each_walkable!(M => {
-            contestants.push(Contestant::new::<Walks<P, M>>(&program).recorded::<Walks<P, Recorded<M>>, M>(&name, &program));
-        });
-        self.with(name, ProgramKind::Walks, contestants)
-    }
-
-    /// Adds a program that moves the vertices.
-    #[must_use]
-    pub fn moving_program<P: MovingProgram + 'static>(self, program: P) -> Self {
-        let name = program.name().to_owned();
-        let program = Arc::new(program);
-        let mut contestants = Vec::new();
-        for_each_representation!(M => {
-            contestants.push(Contestant::new::<Moves<P, M>>(&program).recorded::<Moves<P, Recorded<M>>, M>(&name, &program));
-        });
-        self.with(name, ProgramKind::Moves, contestants)
-    }
-
-    /// Adds a program that edits the mesh.
-    #[must_use]
-    pub fn edit_program<P: EditProgram + 'static>(self, program: P) -> Self {
-        let name = program.name().to_owned();
-        let program = Arc::new(program);
-        let mut contestants = Vec::new();
-        for_each_editable!(M => {
-            contestants.push(Contestant::new::<Edits<P, M>>(&program).recorded::<Edits<P, Recorded<M>>, M>(&name, &program));
-        });
-        self.with(name, ProgramKind::Edits, contestants)
-    }
-
-    /// Adds a program that splits all faces.
-    #[must_use]
-    pub fn refine_program<P: RefineProgram + 'static>(self, program: P) -> Self {
-        let name = program.name().to_owned();
-        let program = Arc::new(program);
-        let mut contestants = Vec::new();
-        for_each_refinable!(M => {
-            contestants.push(Contestant::new::<Refinements<P, M>>(&program));
-        });
-        self.with(name, ProgramKind::Refines, contestants)
-    }
-
     /// Adds a trace, which runs on every structure that supports its calls.
     #[must_use]
     pub fn trace(self, trace: Trace) -> Self {
@@ -243,27 +92,25 @@ impl Suite {
         let own_ns = trace.own_ns;
         let trace = Arc::new(trace);
         let mut contestants = Vec::new();
-        match kind {
+        let kind = match kind {
             TraceKind::Queries => {
                 for_each_representation!(M => {
                     contestants.push(Contestant::new::<QueryReplay<M>>(&trace));
                 });
+                ProgramKind::Queries
             }
             TraceKind::Moves => {
                 for_each_representation!(M => {
                     contestants.push(Contestant::new::<MoveReplay<M>>(&trace));
                 });
+                ProgramKind::Moves
             }
             TraceKind::Edits => {
                 for_each_editable!(M => {
                     contestants.push(Contestant::new::<EditReplay<M>>(&trace));
                 });
+                ProgramKind::Edits
             }
-        }
-        let kind = match kind {
-            TraceKind::Queries => ProgramKind::Queries,
-            TraceKind::Moves => ProgramKind::Moves,
-            TraceKind::Edits => ProgramKind::Edits,
         };
         let mut suite = self.with(name, kind, contestants);
         if let Some(program) = suite.programs.last_mut() {
@@ -286,6 +133,90 @@ impl Suite {
         }
         self
     }
+}
+
+/// Defines two methods for each kind of program: one adds a program on all structures of Sixfold,
+/// the other lets a program also run on a structure of another crate. `recorded` are the kinds that
+/// can be recorded, and `and` adds a contestant that is not a structure.
+macro_rules! kinds_of_programs {
+    ($(
+        $kind:ident: $program:ident as $form:ident $(, recorded as $recorded:ident)?;
+        $(#[$about:meta])*
+        fn $add:ident in $each:ident $(and $other:ident)?;
+        $(#[$about_on:meta])*
+        fn $add_on:ident on $($bound:ident),+;
+    )+) => {
+        impl Suite {$(
+            $(#[$about])*
+            #[must_use]
+            pub fn $add<P: $program + 'static>(self, program: P) -> Self {
+                let (name, program) = (program.name().to_owned(), Arc::new(program));
+                let mut contestants = Vec::new();
+                $each!(M => {
+                    let contestant = Contestant::new::<$form<P, M>>(&program);
+                    $(let contestant = contestant.recorded::<$recorded<P, Recorded<M>>, M>(&name, &program);)?
+                    contestants.push(contestant);
+                });
+                $(contestants.push(Contestant::$other(&program));)?
+                self.with(name, ProgramKind::$kind, contestants)
+            }
+
+            $(#[$about_on])*
+            #[must_use]
+            pub fn $add_on<P, M>(self, program: P) -> Self
+            where
+                P: $program + 'static,
+                M: $($bound +)+ 'static,
+            {
+                let (name, program) = (program.name().to_owned(), Arc::new(program));
+                let contestant = Contestant::new::<$form<P, M>>(&program);
+                $(let contestant = contestant.recorded::<$recorded<P, Recorded<M>>, M>(&name, &program);)?
+                self.with(name, ProgramKind::$kind, vec![contestant])
+            }
+        )+}
+    };
+}
+
+kinds_of_programs! {
+    Queries: Program as Queries, recorded as Queries;
+    /// Adds a program that only queries the mesh. It also runs on flat tables of the relations that
+    /// it queries.
+    fn program in for_each_representation and on_tables;
+    /// Lets a program that only queries the mesh also run on `M`, a structure of another crate. If
+    /// the suite has no program of the same name, the program is added, and runs only on `M`. The
+    /// other kinds of programs have methods of the same form:
+    /// [`walk_program_on`](Self::walk_program_on), [`moving_program_on`](Self::moving_program_on),
+    /// [`edit_program_on`](Self::edit_program_on) and
+    /// [`refine_program_on`](Self::refine_program_on).
+    fn on_structure on Representation;
+
+    Walks: WalkProgram as Walks, recorded as Walks;
+    /// Adds a program that walks along the sides of faces.
+    fn walk_program in for_each_walkable;
+    /// Lets a program that walks along the sides of faces also run on `M`, a structure of another
+    /// crate, like [`on_structure`](Self::on_structure).
+    fn walk_program_on on Representation, OrientedWalk;
+
+    Moves: MovingProgram as Moves, recorded as Moves;
+    /// Adds a program that moves the vertices.
+    fn moving_program in for_each_representation;
+    /// Lets a program that moves the vertices also run on `M`, a structure of another crate, like
+    /// [`on_structure`](Self::on_structure).
+    fn moving_program_on on Representation;
+
+    Edits: EditProgram as Edits, recorded as Edits;
+    /// Adds a program that edits the mesh.
+    fn edit_program in for_each_editable;
+    /// Lets a program that edits the mesh also run on `M`, the editable type of a structure of
+    /// another crate, like [`on_structure`](Self::on_structure).
+    fn edit_program_on on Representation, MeshEdit;
+
+    Refines: RefineProgram as Refinements;
+    /// Adds a program that splits all faces.
+    fn refine_program in for_each_refinable;
+    /// Lets a program that splits all faces also run on `M`, a structure of another crate, like
+    /// [`on_structure`](Self::on_structure).
+    fn refine_program_on on Refine;
 }
 
 impl<P: Program + 'static> From<P> for Suite {

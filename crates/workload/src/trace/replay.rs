@@ -10,7 +10,7 @@ use sixfold::{
     VertexMap,
 };
 
-use super::{ALL, Call, EditCall, NONE, Names, Op, Trace, is_at_edge};
+use super::{ALL, Argument, Call, EditCall, NONE, Names, Op, Trace, arguments};
 use crate::job::Outcome;
 use crate::operation::ElementKind;
 use crate::program::Form;
@@ -498,7 +498,10 @@ fn edit_handles<M: MeshEdit>(
             Some(f.ok_or_else(|| missing(nth, &format!("face {number}")))?)
         }
     };
-    let edge = match (is_at_edge(call.edit), &vertices[..]) {
+    let edge = match (
+        arguments(call.edit).contains(&Argument::Edge),
+        &vertices[..],
+    ) {
         (true, &[Some(a), Some(b), ..]) => {
             let e = mesh.edge_between(a, b);
             let [a, b] = [call.vertices[0], call.vertices[1]];

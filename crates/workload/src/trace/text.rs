@@ -2,11 +2,10 @@
 
 use std::io::{self, BufRead, Write};
 
-use sixfold::{Edit, Point, Relation};
+use sixfold::{Edit, Point, Relation, UnknownName};
 
-use super::{ALL, Call, EditCall, NONE, Op, Trace, is_at_edge};
+use super::{ALL, Argument, Call, EditCall, NONE, Op, Trace, arguments};
 use crate::operation::ElementKind;
-use crate::unknown::unknown;
 
 /// The first line of a trace.
 const FIRST_LINE: &str = "sixfold-trace 1";
@@ -196,27 +195,39 @@ fn write_name(to: &mut dyn Write, kind: ElementKind, [a, b]: [u32; 2]) -> io::Re
 
 fn write_edit(to: &mut dyn Write, call: &EditCall) -> io::Result<()> {
     write!(to, "{}", call.edit.name())?;
-    let mut vertices = &call.vertices[..];
-    if let (true, &[a, b, ref others @ ..]) = (is_at_edge(call.edit), vertices) {
-        write!(to, " {a}-{b}")?;
-        vertices = others;
-    }
-    if let Some(face) = call.face {
-        write!(to, " {face}")?;
-    }
-    for &v in vertices {
-        match v {
-            NONE => write!(to, " -")?,
-            v => write!(to, " {v}")?,
+    let mut vertices = call.vertices.iter();
+    for argument in arguments(call.edit) {
+        match argument {
+            Argument::Edge => {
+                for (v, before) in vertices.by_ref().take(2).zip([' ', '-']) {
+                    write!(to, "{before}{v}")?;
+                }
+            }
+            Argument::Face => call.face.iter().try_for_each(|f| write!(to, " {f}"))?,
+            Argument::Vertex | Argument::VertexIfAny(_) => {
+                write_vertices(to, vertices.by_ref().take(1))?;
+            }
+            Argument::Vertices => write_vertices(to, vertices.by_ref())?,
+            Argument::Position => {
+                (call.at.iter()).try_for_each(|at| write!(to, " {} {} {}", at.x, at.y, at.z))?;
+            }
         }
-    }
-    if let Some(at) = call.at {
-        write!(to, " {} {} {}", at.x, at.y, at.z)?;
     }
     match call.refused {
         true => write!(to, " refused"),
         false => Ok(()),
     }
+}
+
+/// Writes vertices, or `-` for an absent vertex.
+fn write_vertices<'v>(
+    to: &mut dyn Write,
+    mut vertices: impl Iterator<Item = &'v u32>,
+) -> io::Result<()> {
+    vertices.try_for_each(|&v| match v {
+        NONE => write!(to, " -"),
+        v => write!(to, " {v}"),
+    })
 }
 
 /// The state while a trace is read.
@@ -322,14 +333,13 @@ impl Reader {
                 nothing_more(words)
             }
             _ => {
-                let mut relations = Relation::ALL.into_iter();
-                if let Some(relation) = relations.find(|r| r.name() == word) {
+                if let Ok(relation) = word.parse::<Relation>() {
                     let kind = ElementKind::queried_by(relation);
                     return self.elements(Op::Query(relation), kind, words);
                 }
-                let edit = Edit::ALL.into_iter().find(|e| e.name() == word);
-                let edit = edit.ok_or_else(|| unknown("call", word, &self::words()))?;
-                self.edit(edit, words)
+                let edit = word.parse();
+                let unknown = |_| UnknownName::new("call", word, self::words()).to_string();
+                self.edit(edit.map_err(unknown)?, words)
             }
         }
     }
@@ -398,38 +408,30 @@ impl Reader {
         let mut call = EditCall::new(edit);
         call.refused = words.pop_if(|word| *word == "refused").is_some();
         let mut words = words.into_iter();
-        let usage = || format!("{}: expected {}", edit.name(), arguments(edit));
-        if is_at_edge(edit) {
-            call.vertices = self.edge(words.next().ok_or_else(usage)?)?.to_vec();
-        }
-        match edit {
-            Edit::RemoveFace | Edit::PokeFace | Edit::SplitFace => {
-                call.face = Some(self.face(words.next().ok_or_else(usage)?)?);
+        for argument in arguments(edit) {
+            let mut next = || words.next().ok_or_else(|| usage(edit));
+            match argument {
+                Argument::Edge => call.vertices.extend(self.edge(next()?)?),
+                Argument::Face => call.face = Some(self.face(next()?)?),
+                Argument::Vertex => call.vertices.push(self.vertex(next()?)?),
+                Argument::VertexIfAny(_) => call.vertices.push(match next()? {
+                    "-" => NONE,
+                    word => self.vertex(word)?,
+                }),
+                Argument::Vertices => {
+                    for word in words.by_ref() {
+                        call.vertices.push(self.vertex(word)?);
+                    }
+                }
+                Argument::Position => {
+                    let mut coordinate = || one(words.next(), "a coordinate");
+                    let at = Point::new(coordinate()?, coordinate()?, coordinate()?);
+                    if !at.is_finite() {
+                        return Err(format!("{edit}: a coordinate is not finite"));
+                    }
+                    call.at = Some(at);
+                }
             }
-            _ => {}
-        }
-        let vertices = match edit {
-            Edit::SetPosition | Edit::RemoveVertex | Edit::CollapseEdge => 1,
-            Edit::SplitFace => 2,
-            Edit::SplitVertex => 3,
-            Edit::AddFace => words.len(),
-            _ => 0,
-        };
-        for i in 0..vertices {
-            let word = words.next().ok_or_else(usage)?;
-            let optional = edit == Edit::SplitVertex && i > 0;
-            call.vertices.push(match word {
-                "-" if optional => NONE,
-                word => self.vertex(word)?,
-            });
-        }
-        if has_position(edit) {
-            let mut coordinate = || one(words.next(), "a coordinate");
-            let at = Point::new(coordinate()?, coordinate()?, coordinate()?);
-            if !at.is_finite() {
-                return Err(format!("{}: a coordinate is not finite", edit.name()));
-            }
-            call.at = Some(at);
         }
         nothing_more(words)?;
         if !call.refused {
@@ -500,34 +502,15 @@ fn nothing_more<'w>(mut words: impl Iterator<Item = &'w str>) -> Result<(), Stri
     }
 }
 
-/// Returns whether an edit has a position among its arguments.
-const fn has_position(edit: Edit) -> bool {
-    matches!(
-        edit,
-        Edit::SetPosition
-            | Edit::AddVertex
-            | Edit::SplitEdge
-            | Edit::BisectEdge
-            | Edit::PokeFace
-            | Edit::CollapseEdge
-            | Edit::SplitVertex
-    )
-}
-
 /// Returns the arguments of an edit, for messages.
-const fn arguments(edit: Edit) -> &'static str {
-    match edit {
-        Edit::SetPosition => "VERTEX X Y Z",
-        Edit::AddVertex => "X Y Z",
-        Edit::AddFace => "VERTEX VERTEX VERTEX…",
-        Edit::RemoveFace => "FACE",
-        Edit::RemoveVertex => "VERTEX",
-        Edit::RemoveIsolatedVertices | Edit::Compact => "no argument",
-        Edit::SplitEdge | Edit::BisectEdge => "A-B X Y Z",
-        Edit::PokeFace => "FACE X Y Z",
-        Edit::SplitFace => "FACE VERTEX VERTEX",
-        Edit::DissolveEdge | Edit::FlipEdge => "A-B",
-        Edit::CollapseEdge => "A-B VERTEX X Y Z",
-        Edit::SplitVertex => "VERTEX LEFT|- RIGHT|- X Y Z",
-    }
+fn usage(edit: Edit) -> String {
+    let names = arguments(edit).iter().map(|argument| match argument {
+        Argument::Edge => "A-B",
+        Argument::Face => "FACE",
+        Argument::Vertex => "VERTEX",
+        Argument::VertexIfAny(name) => name,
+        Argument::Vertices => "VERTEX…",
+        Argument::Position => "X Y Z",
+    });
+    format!("{edit}: expected {}", names.collect::<Vec<_>>().join(" "))
 }

@@ -2,17 +2,16 @@
 
 use std::time::Duration;
 
-use sixfold::Facts;
 use sixfold::shapes::{Order, ShapeError};
+use sixfold::{Facts, UnknownName};
 
-use super::BackendRefusal;
 use super::shapes::{SCALABLE_SHAPES, ScalableShape};
 use crate::engine::effort::Effort;
 use crate::inspect::{StudyMesh, inspect};
 use crate::labs::orders::{chosen_operations, draw_bytes, prepared_bytes};
 use crate::labs::study::{Settings, StudyError};
-use crate::results::rows::BackendReport;
-use sixfold_workload::{Backend, Operation, unknown};
+use crate::results::rows::{BackendRefusal, BackendReport};
+use sixfold_workload::{Backend, Operation};
 
 /// Minimum number of faces. Smaller meshes are too short to time.
 const MIN_FACES: usize = 100;
@@ -70,8 +69,8 @@ pub enum GrowthError {
     #[error(transparent)]
     Shape(#[from] ShapeError),
     /// The name of the shape is unknown.
-    #[error("{}", unknown("scalable shape", .name, &SCALABLE_SHAPES.iter().map(|shape| shape.name).collect::<Vec<_>>()))]
-    UnknownShape { name: String },
+    #[error(transparent)]
+    UnknownShape(#[from] UnknownName),
     /// The largest size is not larger than the smallest size.
     #[error(
         "the first size ({from} faces) is not smaller than the last size ({to} faces): give the \
@@ -124,9 +123,9 @@ impl GrowthSettings {
             ..
         } = self;
         let (from, to, steps) = (*from, *to, *steps);
-        let name = || self.shape.clone();
-        let shape = ScalableShape::from_name(&self.shape);
-        let shape = shape.ok_or_else(|| GrowthError::UnknownShape { name: name() })?;
+        let known = || SCALABLE_SHAPES.iter().map(|shape| shape.name);
+        let unknown = || UnknownName::new("scalable shape", &self.shape, known());
+        let shape = ScalableShape::from_name(&self.shape).ok_or_else(unknown)?;
         for faces in [from, to] {
             if !(MIN_FACES..=MAX_FACES).contains(&faces) {
                 return Err(GrowthError::SizeOutOfRange { faces });
@@ -177,18 +176,13 @@ pub fn growth_plan(
         &StudyMesh::new(settings.shape.clone(), small),
         &plan.backends,
     );
-    let refusal = |backend: BackendReport| {
-        Some(BackendRefusal {
-            backend: backend.name,
-            reason: backend.reason?,
-        })
-    };
-    let refused = inspection.backends.into_iter().filter_map(refusal);
+    let refused = inspection
+        .backends
+        .iter()
+        .filter_map(BackendReport::refusal);
     let refused: Vec<BackendRefusal> = refused.collect();
     if refused.len() == plan.backends.len() {
-        let refusals = refused.into_iter().map(|r| (r.backend, r.reason));
-        let refusals = refusals.collect();
-        return Err(StudyError::NoneHolds { refusals }.into());
+        return Err(StudyError::none_holds(refused).into());
     }
     Ok((plan.sizes, refused))
 }

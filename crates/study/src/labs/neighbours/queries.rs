@@ -3,7 +3,6 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use serde::{Deserialize, Serialize};
 use sixfold::glam::DVec3;
 use sixfold::spatial::{
     FaceTriangle, Ray, SpatialError, VertexPoint, polygon_points, polygon_triangles,
@@ -22,27 +21,18 @@ const RADIUS: f64 = 2.0;
 pub(crate) type Vertex = VertexPoint<VertexId>;
 pub(crate) type Triangle = FaceTriangle<FaceId>;
 
-/// Where the query points are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
-#[serde(rename_all = "snake_case")]
-#[non_exhaustive]
-pub enum QueryPoints {
-    /// Near the surface: vertices, each moved by up to 1 % of the diagonal of the bounding box, in
-    /// the order of the mesh. Registration and the distance between similar meshes have such
-    /// queries.
-    #[default]
-    Near,
-    /// Anywhere in the bounding box, in random order. Signed distance fields have such queries.
-    Box,
-}
-
-impl QueryPoints {
-    /// Returns the name that users write: `near` or `box`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Near => "near",
-            Self::Box => "box",
-        }
+sixfold_core::named! {
+    /// Where the query points are.
+    #[derive(Default)]
+    #[non_exhaustive]
+    pub enum QueryPoints: "set of query points" {
+        /// Near the surface: vertices, each moved by up to 1 % of the diagonal of the bounding box,
+        /// in the order of the mesh. Registration and the distance between similar meshes have such
+        /// queries.
+        #[default]
+        Near = "near",
+        /// Anywhere in the bounding box, in random order. Signed distance fields have such queries.
+        Box = "box",
     }
 }
 

@@ -1,7 +1,7 @@
 //! Measurements of spatial indices on a simulated machine: the answers are real, and the times are
 //! known.
 
-use sixfold::PolygonMesh;
+use sixfold::{PolygonMesh, UnknownName};
 use sixfold_workload::Task;
 
 use super::*;
@@ -173,10 +173,11 @@ fn unusable_settings_and_meshes_are_refused() {
     unknown.indices = vec!["quadtree".into()];
     assert_eq!(
         refusal(&ball(2), &unknown),
-        NeighboursError::Study(StudyError::UnknownBackend {
-            name: "quadtree".into(),
-            known: neighbour_indices().to_vec(),
-        })
+        NeighboursError::Study(StudyError::UnknownBackend(UnknownName::new(
+            "index",
+            "quadtree",
+            neighbour_indices()
+        )))
     );
     let empty = StudyMesh::new("empty", PolygonMesh::default());
     let no_faces = NeighboursError::Study(StudyError::NoFaces);

@@ -13,7 +13,7 @@ fn blobs() -> PolygonMesh {
     generator.build(&[("faces", 1500.0)]).expect("a valid size")
 }
 
-fn quick(mesh: PolygonMesh, settings: &Settings) -> Result<OrdersReport, OrdersError> {
+fn quick(mesh: PolygonMesh, settings: &Settings) -> Result<OrdersReport, StudyError> {
     quick_on(&SimulatedMachine::usual(), mesh, settings)
 }
 
@@ -21,7 +21,7 @@ fn quick_on(
     machine: &SimulatedMachine,
     mesh: PolygonMesh,
     settings: &Settings,
-) -> Result<OrdersReport, OrdersError> {
+) -> Result<OrdersReport, StudyError> {
     let study_mesh = StudyMesh::new("test", mesh);
     let stop = AtomicBool::new(false);
     orders_on(machine, &study_mesh, settings, &stop, &mut |_| ())
@@ -173,14 +173,11 @@ fn unsuitable_meshes_are_refused() {
     let one_round = |names: &[&str]| settings(Effort::of_rounds(1), names);
     let points = PolygonMesh::new([sixfold::Point::ZERO], [[0; 0]; 0]).expect("a point");
     let empty = refusal(points, &one_round(&[]));
-    assert_eq!(empty, OrdersError::Study(StudyError::NoFaces));
+    assert_eq!(empty, StudyError::NoFaces);
     let mut triangles_only = one_round(&[]);
     triangles_only.backends = vec!["corner-table".into()];
     let refused = refusal(shapes::cube(), &triangles_only);
-    assert!(matches!(
-        refused,
-        OrdersError::Study(StudyError::NoneHolds { .. })
-    ));
+    assert!(matches!(refused, StudyError::NoneHolds { .. }));
     let report = quick(shapes::cube(), &one_round(&["face_vertices"])).expect("five hold it");
     assert_eq!(report.results.len(), 5 * 4);
     assert!(

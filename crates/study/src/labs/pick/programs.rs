@@ -1,9 +1,10 @@
 //! Ranks the backends for a program: an algorithm of a user, which runs on every structure.
 
+use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use sixfold::QueryCost;
+use sixfold::{QueryCost, UnknownName};
 use sixfold_workload::pages::Policy;
 use sixfold_workload::{
     Access, Amount, Contestant, Job, MachineClock, Operation, OwnData, ProgramRefusal, Series,
@@ -228,21 +229,8 @@ impl ProgramSettings {
 
     fn check_names(&self, suite: &Suite) -> Result<(), StudyError> {
         let contestants = suite.programs().iter().flat_map(SuiteProgram::contestants);
-        let mut known: Vec<&'static str> = contestants.map(Contestant::name).collect();
-        known.dedup();
-        known.sort_unstable();
-        known.dedup();
-        match self
-            .backends
-            .iter()
-            .find(|name| !known.contains(&name.as_str()))
-        {
-            None => Ok(()),
-            Some(name) => Err(StudyError::UnknownBackend {
-                name: name.clone(),
-                known,
-            }),
-        }
+        let known: BTreeSet<&str> = contestants.map(Contestant::name).collect();
+        Ok(UnknownName::check("backend", &self.backends, known)?)
     }
 
     fn run_settings(&self) -> RunSettings {

@@ -8,7 +8,7 @@ use crate::labs::pick::choice::Choice;
 use crate::labs::pick::needs::Need;
 use crate::numbers::grouped;
 use crate::results::figure::{Figure, FigureRow, Status, samples_of};
-use crate::results::finding::{Common, LabFinding};
+use crate::results::finding::{Common, LabFinding, Meshes};
 use crate::results::read::ReadError;
 use crate::results::rows::{MeshReport, Samples, check_samples};
 use crate::results::run::Run;
@@ -256,13 +256,8 @@ impl LabFinding for PickReport {
         }
     }
 
-    fn run_mut(&mut self) -> &mut Run {
-        &mut self.run
-    }
-
-    fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
-        self.meshes = meshes;
-        Ok(())
+    fn parts_mut(&mut self) -> (&mut Run, Meshes<'_>) {
+        (&mut self.run, Meshes::Any(&mut self.meshes))
     }
 
     fn mismatches(&self) -> usize {
@@ -322,7 +317,6 @@ impl PickReport {
             (false, true) => Status::Sampled,
             (false, false) => Status::Measured,
         };
-        let facts = &mesh.facts;
         let figure = |row: FigureRow<'r>| {
             let samples = samples_of(samples, &row.operation, row.backend);
             let count = samples.map_or(0, |samples| samples.rounds.len());
@@ -331,13 +325,10 @@ impl PickReport {
                 ..row
             };
             Figure {
-                mesh: Some(mesh),
-                elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
                 case: self.workload.name.clone(),
-                backend_bytes: Some(ranked.bytes),
-                row,
                 samples,
                 noise,
+                ..Figure::new(mesh, Some(ranked.bytes), row)
             }
         };
         let row = |operation: &str, unit: &str, ns: f64| FigureRow {

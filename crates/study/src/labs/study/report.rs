@@ -6,7 +6,7 @@ use sixfold_workload::Operation;
 use crate::engine::control::noise;
 use crate::engine::timer::Timer;
 use crate::results::figure::{Figure, FigureRow, samples_of};
-use crate::results::finding::{Common, LabFinding, only_mesh};
+use crate::results::finding::{Common, LabFinding, Meshes};
 use crate::results::read::ReadError;
 use crate::results::rows::{
     Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, Samples, check_control,
@@ -15,7 +15,7 @@ use crate::results::rows::{
 use crate::results::run::Run;
 
 /// The result of a study.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Report {
     /// How the study was measured. In JSON, the finding has the place of the run in `runs`.
     #[serde(skip)]
@@ -90,13 +90,8 @@ impl LabFinding for Report {
         }
     }
 
-    fn run_mut(&mut self) -> &mut Run {
-        &mut self.run
-    }
-
-    fn set_meshes(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
-        self.mesh = only_mesh(meshes)?;
-        Ok(())
+    fn parts_mut(&mut self) -> (&mut Run, Meshes<'_>) {
+        (&mut self.run, Meshes::One(&mut self.mesh))
     }
 
     fn mismatches(&self) -> usize {
@@ -104,15 +99,10 @@ impl LabFinding for Report {
     }
 
     fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
-        let facts = &self.mesh.facts;
         let figure = |row: FigureRow<'s>, noise| Figure {
-            mesh: Some(&self.mesh),
-            elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
-            case: String::new(),
-            backend_bytes: bytes_of(&self.backends, row.backend),
             samples: samples_of(&self.samples, &row.operation, row.backend),
-            row,
             noise,
+            ..Figure::new(&self.mesh, bytes_of(&self.backends, row.backend), row)
         };
         let timed = self.results.iter().map(|row| {
             let noise = noise(self.control.as_ref(), row.operation);
