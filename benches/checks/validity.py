@@ -38,7 +38,7 @@ SHAPES = {
     "ball": ["geodesic", "frequency=45"],
     "torus-shuffled": ["triangle-torus", "m=200", "n=150", "--order", "shuffled"],
     "blobs": ["blobs"],
-    "default-study": ["default-study"],
+    "built-in-mesh": ["built-in-mesh"],
 }
 METHODS = ["built-in workload", "recorded workload", "trace", "first answer, built-in", "first answer, recorded"]
 # Two structures count as equally fast up to this ratio of their true times.

@@ -30,6 +30,9 @@ pub enum ReadError {
         "{file}: the format is not recognised: use a file in STL, PLY, OFF, glTF or OBJ, whose name ends in its format"
     )]
     UnknownFormat { file: String },
+    /// The file is glTF, and this crate was built without its feature `gltf`.
+    #[error("{file}: glTF is not read, because sixfold-io was built without its feature gltf: enable it")]
+    NoGltf { file: String },
     /// The name or the options say STL, but the content is another text.
     #[error(
         "{file}: neither ASCII STL, which begins with `solid`, nor binary STL, whose size follows from its number of facets: export the file again, or rename it if it has another format"

@@ -10,11 +10,8 @@ use crate::tags::Tag;
 #[expect(missing_docs, reason = "the message shows the meaning of each field")]
 pub enum GltfFault {
     /// The JSON text is invalid, or a member has another type than glTF says.
-    #[error(
-        "the JSON text is not glTF ({}): export the file again",
-        shown_cause(cause)
-    )]
-    Json { cause: serde_json::Error },
+    #[error("the JSON text is not glTF ({message}): export the file again")]
+    Json { message: String },
     /// The version is not 2.
     #[error("the file has glTF version {version:?}: export it as version 2.0")]
     Version { version: String },
@@ -144,16 +141,4 @@ pub enum TagFault {
     /// The file does not have this vertex or edge.
     #[error("tag {tag}: {cause}")]
     Mesh { tag: Tag, cause: CreaseError },
-}
-
-/// Returns the message of an error, without the middle of long values that it quotes.
-fn shown_cause(cause: &serde_json::Error) -> String {
-    const MAX_CHARS: usize = 80;
-    let message = cause.to_string();
-    let chars: Vec<char> = message.chars().collect();
-    if chars.len() <= 2 * MAX_CHARS {
-        return message;
-    }
-    let (start, end) = (&chars[..MAX_CHARS], &chars[chars.len() - MAX_CHARS..]);
-    format!("{}…{}", String::from_iter(start), String::from_iter(end))
 }

@@ -16,6 +16,8 @@
 //! | glTF | JSON and binary; triangles, strips, fans; the default scene with its transforms; 8, 16 and 32-bit indices; sparse, quantised and embedded data | Draco, meshopt |
 //! | OBJ | see below | |
 //!
+//! glTF needs the feature `gltf`, which is on by default. The others need neither `serde` nor JSON.
+//!
 //! The content decides the format, and the ending of the name only if the content has no sign of
 //! one. A binary STL has no such sign but its size, which is 84 bytes and 50 for each facet. On a
 //! stream, whose size is not known, the unit normal of the first facet is the sign; without it, the
@@ -113,6 +115,7 @@ mod excerpt;
 mod faults;
 mod file_mesh;
 mod format;
+#[cfg(feature = "gltf")]
 mod gltf;
 mod lines;
 mod narrowing;

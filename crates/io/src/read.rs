@@ -10,7 +10,9 @@ use crate::file_mesh::FileMesh;
 use crate::format::{DETECTION_BYTES, Format, detect, is_text, may_be_binary_stl};
 use crate::options::ReadOptions;
 use crate::place::{Location, Place};
-use crate::{gltf, obj, off, ply, stl};
+#[cfg(feature = "gltf")]
+use crate::gltf;
+use crate::{obj, off, ply, stl};
 
 /// Reads the mesh file at `path`, whose format is recognised by its content; O(bytes) expected.
 ///
@@ -127,7 +129,12 @@ fn read_any(
         Format::StlAscii => stl::read_ascii(name, source, options),
         Format::Ply | Format::PlyBigEndian | Format::PlyAscii => ply::read(name, source, options),
         Format::Off => off::read(name, source, options),
+        #[cfg(feature = "gltf")]
         Format::Gltf | Format::Glb => gltf::read(name, path, source, options),
+        #[cfg(not(feature = "gltf"))]
+        Format::Gltf | Format::Glb => Err(ReadError::NoGltf {
+            file: name.to_owned(),
+        }),
     }
 }
 

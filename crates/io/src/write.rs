@@ -1,5 +1,6 @@
 //! Writes meshes in any format.
 
+#[cfg(feature = "gltf")]
 mod gltf;
 mod loss;
 mod obj;
@@ -39,6 +40,9 @@ pub enum WriteError {
         bytes: u64,
         limit: u64,
     },
+    /// The format is glTF, and this crate was built without its feature `gltf`.
+    #[error("glTF is not written, because sixfold-io was built without its feature gltf: enable it")]
+    NoGltf,
     /// The ending of the name is not that of a format.
     #[error(
         "{file}: the ending names no format for meshes: use stl, ply, off, gltf, glb or obj, or set a format"
@@ -169,9 +173,12 @@ pub fn write_to(
             ply::write(polygons, options.complete_normals(), format, &mut out)?;
         }
         Format::Off => off::write(polygons, &mut out)?,
+        #[cfg(feature = "gltf")]
         Format::Gltf | Format::Glb => {
             gltf::write(polygons, options.complete_normals(), format, &mut out)?;
         }
+        #[cfg(not(feature = "gltf"))]
+        Format::Gltf | Format::Glb => return Err(WriteError::NoGltf),
     }
     Ok(out.flush()?)
 }
@@ -236,7 +243,10 @@ impl<'a> WriteOptions<'a> {
             return Err(WriteError::NotFinite { vertex, format });
         }
         match format {
+            #[cfg(feature = "gltf")]
             Format::Glb => gltf::check_size(polygons, self.complete_normals()),
+            #[cfg(not(feature = "gltf"))]
+            Format::Gltf | Format::Glb => Err(WriteError::NoGltf),
             _ => Ok(()),
         }
     }

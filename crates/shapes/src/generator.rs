@@ -7,7 +7,7 @@ use crate::fitting::{MAX_FACES, MIN_FACES};
 use crate::geodesic::MAX_FREQUENCY;
 use crate::implicit::{Blob, Field};
 use crate::patch::{MAX_CONTROL_POINTS, MAX_DEGREE};
-use crate::{ControlNet, genus, geodesic, planar, platonic, solids, study, surfaces};
+use crate::{ControlNet, built_in_mesh, genus, geodesic, planar, platonic, solids, surfaces};
 use crate::{b_spline_patch, bezier_patch};
 
 /// A shape that can be selected by name.
@@ -358,10 +358,10 @@ pub const GENERATORS: &[Generator] = &[
         build: |v| smooth_union(v[1])?.polygonised(count(v[0])),
     },
     Generator {
-        name: "default-study",
+        name: "built-in-mesh",
         summary: "the irregular mesh that a study uses if no file is given",
         parameters: NONE,
-        build: |_| Ok(study::default_study()),
+        build: |_| Ok(built_in_mesh::built_in_mesh()),
     },
 ];
 

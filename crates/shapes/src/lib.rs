@@ -22,7 +22,7 @@
 //! | [`hexagon_tiling`] | 2(m + 1)(n + 1) − 2 | 3mn + 2m + 2n − 1 | mn | 1 |
 //! | [`grid_with_hole`], a = ⌊m/3⌋, b = ⌊n/3⌋ | (m + 1)(n + 1) − (a − 1)(b − 1) | 2mn + m + n − 2ab + a + b | mn − ab | 0 |
 //! | [`grid_with_holes`], h holes | (m + 1)(n + 1) | 2mn + m + n | mn − h | 1 − h |
-//! | [`implicit`] surfaces, [`default_study`] | F/2 + χ | 3F/2 | F | by topology |
+//! | [`implicit`] surfaces, [`built_in_mesh`] | F/2 + χ | 3F/2 | F | by topology |
 //!
 //! Faces of closed shapes are oriented outward. Faces of flat shapes run counter-clockwise as seen
 //! from above. No two vertices have the same position, except in some patches. A shape is the same
@@ -44,6 +44,7 @@
 mod arithmetic;
 mod bounds;
 mod builder;
+mod built_in_mesh;
 mod error;
 mod fitting;
 mod generator;
@@ -57,9 +58,9 @@ mod patch;
 mod planar;
 mod platonic;
 mod solids;
-mod study;
 mod surfaces;
 
+pub use built_in_mesh::built_in_mesh;
 pub use error::ShapeError;
 pub use generator::{GENERATORS, Generator, Parameter, generator};
 pub use genus::genus;
@@ -72,5 +73,4 @@ pub use planar::{
 };
 pub use platonic::{cube, dodecahedron, icosahedron, octahedron, tetrahedron};
 pub use solids::{antiprism, prism, uv_sphere};
-pub use study::default_study;
 pub use surfaces::{moebius, torus, triangle_torus};

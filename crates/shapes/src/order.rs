@@ -1,7 +1,7 @@
 //! Reordering of the vertices and faces of a mesh. The shape of the mesh does not change.
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use rand::rngs::ChaCha8Rng;
+use rand::{Rng, SeedableRng};
 use sixfold_core::{FaceId, FaceList, Point, PolygonMesh, VertexId, row};
 
 sixfold_core::named! {

@@ -224,7 +224,7 @@ pub(crate) fn mesh_or_built_in(
 }
 
 pub(crate) fn built_in() -> StudyMesh {
-    StudyMesh::new("default study (built in)", shapes::default_study())
+    StudyMesh::new("built-in mesh", shapes::built_in_mesh())
 }
 
 /// Returns the SHA-256 of a regular file; `None` if there is no such file. A pipe can be read only

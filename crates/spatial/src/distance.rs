@@ -1,8 +1,8 @@
 //! The distance between two surfaces.
 
 use glam::DVec3;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
 use sixfold_core::{MAX_ROWS, PolygonMesh, for_each_chunk};
 
 use crate::error::DistanceError;

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use glam::DVec3;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use rand::rngs::ChaCha8Rng;
+use rand::{Rng, SeedableRng};
 
 use crate::item::FaceTriangle;
 

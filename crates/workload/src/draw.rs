@@ -1,8 +1,8 @@
 //! A random order of the elements of a mesh. The order depends only on the mesh and on a seed.
 
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use sixfold::{FaceId, PolygonMesh, VertexId};
 
 /// An edge of a face, given by the face and by the two ends of the edge.
@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn every_edge_is_drawn_once_as_a_side_of_one_of_its_faces() {
-        let mesh = shapes::default_study();
+        let mesh = shapes::built_in_mesh();
         let draw = Draw::new(&mesh, 7);
         assert_eq!(draw.edges.len() * 2, mesh.corner_count(), "closed");
         for side in &draw.edges {
@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn the_seed_determines_the_order() {
-        let mesh = shapes::default_study();
+        let mesh = shapes::built_in_mesh();
         assert_eq!(Draw::new(&mesh, 7), Draw::new(&mesh, 7));
         assert_ne!(Draw::new(&mesh, 7), Draw::new(&mesh, 8));
     }

@@ -207,6 +207,17 @@ pub(super) fn decode(data: &str) -> Option<Vec<u8>> {
     BASE64.decode(encoded.trim()).ok()
 }
 
+/// Returns `message` without the middle of long values that it quotes.
+fn shown(message: &str) -> String {
+    const MAX_CHARS: usize = 80;
+    let chars: Vec<char> = message.chars().collect();
+    if chars.len() <= 2 * MAX_CHARS {
+        return message.to_owned();
+    }
+    let (start, end) = (&chars[..MAX_CHARS], &chars[chars.len() - MAX_CHARS..]);
+    format!("{}…{}", String::from_iter(start), String::from_iter(end))
+}
+
 impl Document {
     /// Parses the JSON text.
     pub(super) fn parse(json: &[u8], builder: &MeshBuilder) -> Result<Self, ReadError> {
@@ -214,7 +225,8 @@ impl Document {
         let document = serde_json::from_slice::<Self>(json).map_err(|cause| {
             let line = u32::try_from(cause.line()).unwrap_or(u32::MAX);
             let at = builder.at(Place::Line(line.max(1)));
-            let fault = GltfFault::Json { cause };
+            let message = shown(&cause.to_string());
+            let fault = GltfFault::Json { message };
             ReadError::Gltf { at, fault }
         })?;
         if document.asset.version.split('.').next() == Some("2") {

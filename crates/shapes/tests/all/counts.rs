@@ -403,14 +403,14 @@ fn tori_surfaces_of_any_genus_and_the_moebius_strip() {
 }
 
 #[test]
-fn the_default_study_is_the_same_on_every_machine() {
-    let mesh = sixfold_shapes::default_study();
+fn the_built_in_mesh_is_the_same_on_every_machine() {
+    let mesh = sixfold_shapes::built_in_mesh();
     let (v, e, f) = (
         mesh.vertex_count(),
         3 * mesh.face_count() / 2,
         mesh.face_count(),
     );
-    let facts = check("default-study", &mesh, &Expected::closed(v, e, f, 7));
+    let facts = check("built-in-mesh", &mesh, &Expected::closed(v, e, f, 7));
     let valence = facts.valence.expect("a mesh");
     assert!(valence.min <= 4 && valence.max >= 9, "{valence:?}");
     let common = valence.hist.iter().flat_map(|hist| hist.values()).max();

@@ -98,7 +98,7 @@ fn shuffling_depends_only_on_the_seed() {
 
 #[test]
 fn morton_and_breadth_first_improve_a_shuffled_order() {
-    let mesh = sixfold_shapes::default_study();
+    let mesh = sixfold_shapes::built_in_mesh();
     let sorted = morton(&shuffled(&mesh, 1));
     assert_eq!(sorted.positions(), morton(&mesh).positions());
     // The mean distance between the rows of the two ends of a side.

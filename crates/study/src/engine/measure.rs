@@ -16,8 +16,8 @@ use std::num::NonZeroU32;
 use std::sync::atomic::Ordering;
 
 use rand::RngExt;
+use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
-use rand_chacha::ChaCha8Rng;
 
 use crate::engine::disturbance::{DisturbanceDetector, Verdict, undisturbed};
 use crate::engine::effort::Effort;

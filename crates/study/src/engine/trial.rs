@@ -3,8 +3,8 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
 use sixfold::QueryCost;
 use sixfold_core::Counts;
 use sixfold_workload::{Clock, Operation, TimedBackend};

@@ -3,9 +3,8 @@
 
 use std::collections::{HashMap, HashSet};
 
-use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
 use sixfold::{FaceId, FaceVertexMesh, MeshQuery, PolygonMesh, Representation, VertexId};
 
 use crate::draw::{Draw, Side};
@@ -327,7 +326,7 @@ mod tests {
 
     #[test]
     fn a_random_route_has_every_element_once() {
-        let mesh = shapes::default_study();
+        let mesh = shapes::built_in_mesh();
         let route = Route::new(Access::Random, &mesh, 3);
         assert_eq!(route.faces.len(), mesh.face_count());
         assert_eq!(route.edges.len() * 2, mesh.corner_count());

@@ -1,8 +1,7 @@
 //! The vertices, triangles, query points and rays of the lab.
 
-use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
 use sixfold::glam::DVec3;
 use sixfold::spatial::{
     FaceTriangle, Ray, SpatialError, VertexPoint, polygon_points, polygon_triangles,

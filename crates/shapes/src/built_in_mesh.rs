@@ -31,7 +31,7 @@ const SPACING: f64 = 0.091_83;
 /// # Panics
 ///
 /// Never panics: the parameters are fixed, and a test builds this mesh.
-pub fn default_study() -> PolygonMesh {
+pub fn built_in_mesh() -> PolygonMesh {
     let mesh = rings_and_balls().and_then(|field| field.polygonised_at(SPACING));
     mesh.expect("the fixed parameters are within all ranges")
 }
