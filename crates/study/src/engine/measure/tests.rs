@@ -197,8 +197,7 @@ fn the_control_shows_a_difference_of_its_two_entries() {
 #[test]
 fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget() {
     let budget = Duration::from_secs(2);
-    let placed = |rebuild_ns: f64| {
-        let machine = SimulatedMachine::default();
+    let placed = |machine: SimulatedMachine, rebuild_ns: f64| {
         let rebuilt: [Rc<Cell<u32>>; 2] = Default::default();
         let subject = |i: usize, slowdowns: [f64; 2]| {
             Box::new(Synthetic {
@@ -214,7 +213,7 @@ fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget()
         let (entries, elapsed) = run(&machine, subjects, budget, false, false);
         (entries, elapsed, rebuilt[0].get())
     };
-    let (entries, elapsed, rebuilt) = placed(100_000.0);
+    let (entries, elapsed, rebuilt) = placed(SimulatedMachine::default(), 100_000.0);
     assert!(elapsed <= budget);
     assert!(
         rebuilt >= 15 && f64::from(rebuilt) * 200_000.0 <= 0.05 * 2e9,
@@ -231,10 +230,10 @@ fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget()
         "{slower} of {all}"
     );
     // A long rebuild leaves no time for another rebuild.
-    assert_eq!(placed(1e8).2, 1);
+    assert_eq!(placed(SimulatedMachine::default(), 1e8).2, 1);
     // The last round does not begin with a rebuild that would exceed the budget.
     for ms in 2..=20 {
-        let (_, elapsed, _) = placed(1e6 * f64::from(ms));
+        let (_, elapsed, _) = placed(SimulatedMachine::steady(), 1e6 * f64::from(ms));
         assert!(elapsed <= budget, "{ms} ms each: {elapsed:?}");
     }
 }
