@@ -194,6 +194,10 @@ pub trait MeshQuery {
 
     /// Returns a number that is larger than every vertex row; 0 if vertex handles are not rows.
     /// O(1).
+    ///
+    /// Programs use [`vertex_map`](Self::vertex_map) and [`vertex_numbers`](Self::vertex_numbers).
+    /// The number is a method of its own because only the structure knows how its handles are
+    /// stored: where handles are rows, a map is a vector of this length, otherwise a hash table.
     fn vertex_rows(&self) -> usize;
     /// Returns a number that is larger than every edge row; 0 if edge handles are not rows. O(1).
     fn edge_rows(&self) -> usize;
