@@ -31,7 +31,9 @@ pub enum ReadError {
     )]
     UnknownFormat { file: String },
     /// The file is glTF, and this crate was built without its feature `gltf`.
-    #[error("{file}: glTF is not read, because sixfold-io was built without its feature gltf: enable it")]
+    #[error(
+        "{file}: glTF is not read, because sixfold-io was built without its feature gltf: enable it"
+    )]
     NoGltf { file: String },
     /// The name or the options say STL, but the content is another text.
     #[error(

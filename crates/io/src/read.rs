@@ -8,10 +8,10 @@ use crate::byte_source::ByteSource;
 use crate::error::ReadError;
 use crate::file_mesh::FileMesh;
 use crate::format::{DETECTION_BYTES, Format, detect, is_text, may_be_binary_stl};
-use crate::options::ReadOptions;
-use crate::place::{Location, Place};
 #[cfg(feature = "gltf")]
 use crate::gltf;
+use crate::options::ReadOptions;
+use crate::place::{Location, Place};
 use crate::{obj, off, ply, stl};
 
 /// Reads the mesh file at `path`, whose format is recognised by its content; O(bytes) expected.

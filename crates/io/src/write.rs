@@ -41,7 +41,9 @@ pub enum WriteError {
         limit: u64,
     },
     /// The format is glTF, and this crate was built without its feature `gltf`.
-    #[error("glTF is not written, because sixfold-io was built without its feature gltf: enable it")]
+    #[error(
+        "glTF is not written, because sixfold-io was built without its feature gltf: enable it"
+    )]
     NoGltf,
     /// The ending of the name is not that of a format.
     #[error(

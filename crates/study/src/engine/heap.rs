@@ -146,16 +146,14 @@ impl Memory {
 
     /// Returns `bytes`, or less if there is little memory. Returns `None` if pages are not kept.
     fn reservable(&self, bytes: u64) -> Option<usize> {
-        let free = free_memory().filter(|_| self.keeps_pages())?;
-        let most = free.saturating_sub(min_free_bytes()) / RESERVE_PART;
-        Some(usize::try_from(bytes.min(most)).unwrap_or(0))
+        let room = self.keeps_pages().then(Room::now)?;
+        Some(usize::try_from(room.reservable(bytes)?).unwrap_or(0))
     }
 
     /// Returns whether enough memory stays free after an allocation of `bytes`. Returns true if the
     /// free memory is unknown.
     pub(crate) fn has_room_for(&self, bytes: u64) -> bool {
-        self.guard.is_none()
-            || free_memory().is_none_or(|free| free > min_free_bytes().saturating_add(bytes))
+        self.guard.is_none() || Room::now().holds(bytes)
     }
 
     /// Returns the pages of freed blocks to the kernel. Allocations then get fresh pages until
@@ -171,7 +169,7 @@ impl Memory {
         let Some(guard) = self.guard.as_ref().filter(|guard| guard.keeps_pages()) else {
             return;
         };
-        if let Some(free) = free_memory().filter(|&free| free < min_free_bytes()) {
+        if let Some(free) = Room::now().shortage() {
             guard.stop_keeping(format!(
                 "only {} of memory were free while pages were kept, so later samples use the system's heap",
                 shown(free)
@@ -204,6 +202,40 @@ fn shortage_reason(needed: u64, free: Option<u64>) -> Option<String> {
 
 fn shown(amount: u64) -> String {
     bytes(usize::try_from(amount).unwrap_or(usize::MAX))
+}
+
+/// The memory that this program can still allocate (`None` if unknown), and the bytes of it that must
+/// stay free.
+#[derive(Clone, Copy)]
+struct Room {
+    free: Option<u64>,
+    least: u64,
+}
+
+impl Room {
+    fn now() -> Self {
+        Self {
+            free: free_memory(),
+            least: min_free_bytes(),
+        }
+    }
+
+    /// Returns whether enough memory stays free after an allocation of `bytes`.
+    fn holds(self, bytes: u64) -> bool {
+        let needed = self.least.saturating_add(bytes);
+        self.free.is_none_or(|free| free > needed)
+    }
+
+    /// Returns `bytes`, or a quarter of what need not stay free if this is less.
+    fn reservable(self, bytes: u64) -> Option<u64> {
+        let most = self.free?.saturating_sub(self.least) / RESERVE_PART;
+        Some(bytes.min(most))
+    }
+
+    /// Returns the free bytes if they are fewer than must stay free.
+    fn shortage(self) -> Option<u64> {
+        self.free.filter(|&free| free < self.least)
+    }
 }
 
 fn min_free_bytes() -> u64 {
@@ -245,6 +277,19 @@ mod tests {
         assert_eq!(shortage_reason(2 << 30, Some(5 << 30)), None);
         assert_eq!(shortage_reason(u64::MAX, None), None, "nothing is known");
         assert!(shortage_reason(u64::MAX, Some(1 << 40)).is_some());
+    }
+
+    #[test]
+    fn a_part_of_the_memory_stays_free() {
+        let room = |free| Room { free, least: 100 };
+        assert!(room(Some(151)).holds(50) && !room(Some(150)).holds(50));
+        assert!(room(None).holds(u64::MAX) && !room(Some(u64::MAX)).holds(u64::MAX));
+        assert_eq!(room(Some(140)).reservable(8), Some(8));
+        assert_eq!(room(Some(140)).reservable(11), Some(10), "a quarter of 40");
+        assert_eq!(room(Some(99)).reservable(11), Some(0));
+        assert_eq!(room(None).reservable(11), None);
+        assert_eq!(room(Some(99)).shortage(), Some(99));
+        assert_eq!([room(Some(100)), room(None)].map(Room::shortage), [None; 2]);
     }
 
     #[test]
