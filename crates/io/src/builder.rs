@@ -110,6 +110,7 @@ impl<'a> MeshBuilder<'a> {
     }
 
     /// Returns the number of vertices.
+    #[cfg(feature = "gltf")]
     pub(crate) fn vertex_count(&self) -> usize {
         self.positions.len()
     }

@@ -83,6 +83,7 @@ pub(crate) enum FacePlaces {
     /// The byte of each face.
     Bytes(Vec<u64>),
     /// Faces without a place of their own: their numbers.
+    #[cfg_attr(not(feature = "gltf"), expect(dead_code))]
     Numbers,
 }
 

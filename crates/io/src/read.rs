@@ -88,6 +88,7 @@ pub fn read_from(
 }
 
 /// Reads a mesh; `path` is the place of the file, if it has one.
+#[cfg_attr(not(feature = "gltf"), expect(unused_variables))]
 fn read_any(
     name: &str,
     path: Option<&Path>,
