@@ -39,6 +39,9 @@
 //! - [`Holes`]: the rows of deleted elements; [`NewRows`]: the new rows of all other elements after
 //!   the rows of deleted elements are removed.
 //! - [`check_rows`], [`check_corners`], [`check_cut`]: checks that an edit is allowed.
+//! - [`mesh_tables!`]: the code that treats all tables of a structure alike, from a list of the
+//!   tables; [`vertex_rows!`], [`edge_rows!`] and [`face_rows!`]: the lists of elements that are rows.
+//! - [`invariant_checks`]: checks of invariants that several structures share.
 //! - [`FaceSpans`]: the range of corners of each face in a flat table.
 //! - [`TwinPairs`]: the half-edges of a list of faces in pairs, found without hashing.
 //! - [`Incidence`]: the sides of any list of faces by edge; [`Fans`]: the fans of all vertices;
@@ -135,6 +138,7 @@ pub use tables::pairing::{LinkFaces, SideRows, TwinPairs, pair_triangle_sides};
 pub use tables::ranks::Ranks;
 pub use tables::table::Table;
 pub use tables::threads::join;
+pub use traits::invariant_checks;
 pub use traits::refine::{
     CHUNK_ROWS, all_rows, check_split, chunk_starts, for_each_chunk, map_chunks, rows_of_chunk,
 };

@@ -2,8 +2,8 @@
 //! vertices.
 
 use sixfold_core::{
-    Compact, Edit, EditError, EditLog, Editable, FaceId, MAX_ROWS, MeshEdit, MeshQuery, NewRows,
-    NoHoles, Pair, Point, Probe, QueryCost, Refusal, VertexId, check_rows, row, uses_reports,
+    Edit, EditError, EditLog, Editable, FaceId, MAX_ROWS, MeshEdit, MeshQuery, NewRows, Pair,
+    Point, Probe, QueryCost, Refusal, VertexId, check_rows, row, uses_reports,
 };
 
 use crate::mesh::IndexedFaceSet;
@@ -16,20 +16,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         costs
     };
 
-    type Compact = IndexedFaceSet<Compact, P>;
-
-    fn into_compact(mut self) -> IndexedFaceSet<Compact, P> {
-        self.compact();
-        IndexedFaceSet {
-            positions: self.positions,
-            faces: self.faces.into_compact().expect("compacted"),
-            vertex_holes: NoHoles,
-        }
-    }
-
-    fn from_compact(compact: IndexedFaceSet<Compact, P>) -> Self {
-        compact.into()
-    }
+    sixfold_core::compact_conversions!(IndexedFaceSet);
 
     /// Takes O(1) time.
     fn set_position_logged(
@@ -145,7 +132,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
 
 impl<P: Probe> IndexedFaceSet<Editable, P> {
     fn check_vertex(&self, v: VertexId) -> Result<(), Refusal<Self>> {
-        match self.has(v) {
+        match self.contains_vertex(v) {
             true => Ok(()),
             false => Err(EditError::NoSuchVertex { vertex: v }),
         }

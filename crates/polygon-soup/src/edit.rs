@@ -2,8 +2,8 @@
 //! faces.
 
 use sixfold_core::{
-    Compact, Edit, EditError, EditLog, Editable, FaceId, MeshEdit, Pair, Point, Probe, QueryCost,
-    Refusal, Representation,
+    Edit, EditError, EditLog, Editable, FaceId, MeshEdit, Pair, Point, Probe, QueryCost, Refusal,
+    Representation,
 };
 
 use crate::EditablePolygonSoup;
@@ -21,18 +21,7 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         costs
     };
 
-    type Compact = PolygonSoup<Compact, P>;
-
-    fn into_compact(mut self) -> PolygonSoup<Compact, P> {
-        self.compact();
-        PolygonSoup {
-            faces: self.faces.into_compact().expect("compacted"),
-        }
-    }
-
-    fn from_compact(compact: PolygonSoup<Compact, P>) -> Self {
-        compact.into()
-    }
+    sixfold_core::compact_conversions!(PolygonSoup);
 
     /// Takes one scan. The vertex and its edges get new handles.
     fn set_position_logged(

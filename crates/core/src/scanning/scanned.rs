@@ -233,6 +233,11 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
         }
     }
 
+    /// Returns the probe of the tables.
+    pub fn probe(&self) -> P {
+        self.corners.probe()
+    }
+
     /// Returns the number of faces; O(1).
     #[inline]
     pub fn len(&self) -> usize {
