@@ -2,9 +2,10 @@
 
 use sixfold_core::{
     BuildError, Counts, Editing, FaceList, FaceSpans, HoleSet, InvariantError, Measured,
-    MemoryFootprint, NewRows, Point, PolygonMesh, Probe, QueryCost, Representation, ScannedFaces,
-    Table, Untraced, VERTEX_HOLES, VertexId,
+    MemoryFootprint, NewRows, Point, PolygonMesh, Probe, QueryCost, Representation, Table,
+    Untraced, VERTEX_HOLES, VertexId,
 };
+use sixfold_scanning::ScannedFaces;
 
 use crate::mesh::IndexedFaceSet;
 

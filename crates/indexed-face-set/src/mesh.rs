@@ -1,9 +1,9 @@
 //! The tables, their invariants, and access to them.
 
 use sixfold_core::{
-    Compact, Editing, FaceId, FaceSpans, HoleSet, Point, Probe, ScannedFaces, Table, Untraced,
-    VertexId,
+    Compact, Editing, FaceId, FaceSpans, HoleSet, Point, Probe, Table, Untraced, VertexId,
 };
+use sixfold_scanning::ScannedFaces;
 
 /// A mesh with the position of each vertex and the vertices of each face.
 ///

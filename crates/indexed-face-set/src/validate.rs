@@ -37,9 +37,9 @@ impl<P: Probe, E: Editing> IndexedFaceSet<E, P> {
 #[cfg(test)]
 mod tests {
     use sixfold_core::{
-        FaceId, FaceSpans, MeshEdit, Point, PolygonMesh, Representation, ScannedVertex, Table,
-        VertexId,
+        FaceId, FaceSpans, MeshEdit, Point, PolygonMesh, Representation, Table, VertexId,
     };
+    use sixfold_scanning::ScannedVertex;
 
     use crate::EditableIndexedFaceSet;
 

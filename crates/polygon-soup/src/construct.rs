@@ -4,9 +4,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use sixfold_core::{
     BuildError, Counts, EditLog, Editing, FaceId, FaceList, Handle, InvariantError, IteratorExt,
     Measured, MemoryFootprint, MeshMove, MeshQuery, MoveError, Pair, Point, PolygonMesh, Probe,
-    QueryCost, Representation, ScannedFaces, ScannedVertex, ShortVec, VertexId, VertexMap, row,
-    uses_reports,
+    QueryCost, Representation, ShortVec, VertexId, VertexMap, row, uses_reports,
 };
+use sixfold_scanning::{ScannedFaces, ScannedVertex};
 
 use crate::mesh::PolygonSoup;
 use crate::vertex::SoupVertex;

@@ -1,6 +1,7 @@
 //! The table, its invariants, and access to it.
 
-use sixfold_core::{Compact, Editing, FaceId, FaceSpans, Point, Probe, ScannedFaces, Untraced};
+use sixfold_core::{Compact, Editing, FaceId, FaceSpans, Point, Probe, Untraced};
+use sixfold_scanning::ScannedFaces;
 
 use crate::vertex::SoupVertex;
 

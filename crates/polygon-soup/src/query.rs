@@ -105,7 +105,8 @@ impl<P: Probe, E: Editing> MeshQuery for PolygonSoup<E, P> {
 
 #[cfg(test)]
 mod tests {
-    use sixfold_core::{Measured, PolygonMesh, Representation, SearchSet, Traced, VertexId};
+    use sixfold_core::{Measured, PolygonMesh, Representation, Traced, VertexId};
+    use sixfold_scanning::SearchSet;
 
     use super::*;
     use crate::PolygonSoup;

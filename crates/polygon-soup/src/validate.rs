@@ -1,7 +1,8 @@
 //! One check for each invariant.
 
 use sixfold_core::invariant_checks::fails;
-use sixfold_core::{Editing, InvariantError, IteratorExt, MeshQuery, Probe, ScannedVertex};
+use sixfold_core::{Editing, InvariantError, IteratorExt, MeshQuery, Probe};
+use sixfold_scanning::ScannedVertex;
 
 use crate::mesh::PolygonSoup;
 use crate::vertex::SoupVertex;
