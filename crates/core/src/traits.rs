@@ -2,7 +2,6 @@
 
 pub(crate) mod boundary;
 pub(crate) mod convert;
-pub mod invariant_checks;
 pub(crate) mod local_queries;
 pub(crate) mod measured;
 pub(crate) mod mesh_move;
@@ -10,5 +9,4 @@ pub(crate) mod oriented_walk;
 pub(crate) mod query;
 pub(crate) mod refine;
 pub(crate) mod representation;
-pub(crate) mod row_handles;
 pub(crate) mod split;

@@ -33,8 +33,8 @@ mod split;
 mod tests;
 
 use sixfold_core::{
-    Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit, Point, Probe,
-    QueryCost, Representation, RowId, Slot, VertexId, check_rows, row,
+    Compact, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit, NoHoles,
+    Point, Probe, QueryCost, Representation, RowId, Slot, VertexId, check_rows, row,
 };
 
 use crate::EditableCornerTable;
@@ -56,7 +56,23 @@ impl<P: Probe> MeshEdit for CornerTable<Editable, P> {
         costs
     };
 
-    sixfold_core::compact_conversions!(CornerTable);
+    type Compact = CornerTable<Compact, P>;
+
+    fn into_compact(mut self) -> CornerTable<Compact, P> {
+        self.compact();
+        CornerTable {
+            positions: self.positions,
+            corner: self.corner,
+            vertex: self.vertex,
+            opposite: self.opposite,
+            vertex_holes: NoHoles,
+            face_holes: NoHoles,
+        }
+    }
+
+    fn from_compact(compact: CornerTable<Compact, P>) -> Self {
+        compact.into()
+    }
 
     /// O(1); writes one row of `positions`.
     #[inline]

@@ -1,11 +1,10 @@
 //! Building from polygons, and conversion to polygons.
 
 use sixfold_core::{
-    BuildError, Counts, Editing, FaceList, FaceSpans, HoleSet, InvariantError, Measured,
-    MemoryFootprint, NewRows, Point, PolygonMesh, Probe, QueryCost, Representation, Table,
-    Untraced, VERTEX_HOLES, VertexId,
+    BuildError, Counts, EditLog, Editing, FaceId, FaceList, FaceSpans, HoleSet, InvariantError,
+    Measured, MemoryFootprint, MeshMove, MoveError, NewRows, Point, PolygonMesh, Probe, QueryCost,
+    Representation, ScannedFaces, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap,
 };
-use sixfold_scanning::ScannedFaces;
 
 use crate::mesh::IndexedFaceSet;
 
@@ -19,7 +18,12 @@ impl<E: Editing> Representation for IndexedFaceSet<E> {
         ]
     };
 
-    sixfold_core::type_path!(IndexedFaceSet);
+    fn type_path() -> &'static str {
+        match E::CAN_DELETE {
+            true => "sixfold_indexed_face_set::EditableIndexedFaceSet",
+            false => "sixfold_indexed_face_set::IndexedFaceSet",
+        }
+    }
 
     /// Copies positions and corners; O(corners + vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
@@ -44,10 +48,17 @@ impl<E: Editing> Representation for IndexedFaceSet<E> {
         rows.polygons(self, positions, corners.len())
     }
 
-    sixfold_core::row_handles!();
+    fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {
+        v
+    }
+
+    fn face_handle(_: &PolygonMesh, f: FaceId) -> FaceId {
+        f
+    }
 
     fn memory(&self) -> MemoryFootprint {
-        self.table_bytes()
+        let by_vertex = std::iter::once(self.positions.bytes()).chain(self.vertex_holes.bytes());
+        by_vertex.chain(self.faces.bytes()).collect()
     }
 
     fn validate(&self) -> Result<(), InvariantError> {
@@ -55,7 +66,15 @@ impl<E: Editing> Representation for IndexedFaceSet<E> {
     }
 }
 
-sixfold_core::moving_positions!(IndexedFaceSet);
+impl<E: Editing> MeshMove for IndexedFaceSet<E> {
+    fn set_positions_logged(
+        &mut self,
+        positions: &VertexMap<Self, Point>,
+        _: &mut impl EditLog<Self>,
+    ) -> Result<(), MoveError> {
+        self.positions.set_positions(positions)
+    }
+}
 
 impl<E: Editing> Measured for IndexedFaceSet<E> {
     type Probed<P: Probe> = IndexedFaceSet<E, P>;
@@ -66,6 +85,10 @@ impl<E: Editing> Measured for IndexedFaceSet<E> {
     }
 
     fn probed<P: Probe>(self, probe: P) -> IndexedFaceSet<E, P> {
-        self.with_probe(probe)
+        IndexedFaceSet {
+            positions: self.positions.probed(probe.clone()),
+            vertex_holes: E::probed_holes(self.vertex_holes, probe.clone()),
+            faces: self.faces.probed(probe),
+        }
     }
 }

@@ -4,9 +4,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use sixfold_core::{
     BuildError, Counts, EditLog, Editing, FaceId, FaceList, Handle, InvariantError, IteratorExt,
     Measured, MemoryFootprint, MeshMove, MeshQuery, MoveError, Pair, Point, PolygonMesh, Probe,
-    QueryCost, Representation, ShortVec, VertexId, VertexMap, row, uses_reports,
+    QueryCost, Representation, ScannedFaces, ScannedVertex, ShortVec, VertexId, VertexMap, row,
+    uses_reports,
 };
-use sixfold_scanning::{ScannedFaces, ScannedVertex};
 
 use crate::mesh::PolygonSoup;
 use crate::vertex::SoupVertex;
@@ -21,7 +21,12 @@ impl<E: Editing> Representation for PolygonSoup<E> {
         ]
     };
 
-    sixfold_core::type_path!(PolygonSoup);
+    fn type_path() -> &'static str {
+        match E::CAN_DELETE {
+            true => "sixfold_polygon_soup::EditablePolygonSoup",
+            false => "sixfold_polygon_soup::PolygonSoup",
+        }
+    }
 
     /// Copies the position of every corner; O(corners).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
@@ -70,7 +75,7 @@ impl<E: Editing> Representation for PolygonSoup<E> {
     }
 
     fn memory(&self) -> MemoryFootprint {
-        self.table_bytes()
+        self.faces.bytes().collect()
     }
 
     fn validate(&self) -> Result<(), InvariantError> {
@@ -180,7 +185,9 @@ impl<E: Editing> Measured for PolygonSoup<E> {
     }
 
     fn probed<P: Probe>(self, probe: P) -> PolygonSoup<E, P> {
-        self.with_probe(probe)
+        PolygonSoup {
+            faces: self.faces.probed(probe),
+        }
     }
 }
 
