@@ -6,10 +6,11 @@ use crate::engine::measure::{Entry, MAX_RUNS, Measurement};
 use crate::engine::plan::{MIN_ELEMENTS, record_warm_up};
 use sixfold_workload::ElementSample;
 
-/// Minimum number of elements that the runs of a sample visit. At 1 ns for each element, these runs
+/// Minimum cost of the runs of a sample, in visits of an element. At 1 ns for each visit, these runs
 /// take 100 µs.
-const ELEMENTS_PER_SAMPLE: f64 = 100_000.0;
-/// The number of visits that take as long as a run has in addition, such as a call and its result.
+const VISITS_PER_SAMPLE: f64 = 100_000.0;
+/// Cost of a run that visits nothing, in visits of an element. Without it, a sample of a mesh with a
+/// few elements would consist of tens of thousands of runs.
 const VISITS_PER_RUN: f64 = 20.0;
 /// The number of visits that take as long as making, moving or removing one element.
 const VISITS_PER_MADE_ELEMENT: f64 = 50.0;
@@ -50,8 +51,8 @@ impl Measurement<'_, '_, '_> {
     }
 }
 
-/// Returns the number of runs of an entry that was run once on all elements. The mesh has `faces`
-/// faces.
+/// Returns the number of runs in a sample of an entry that was run once on all elements. The mesh has
+/// `faces` faces.
 fn runs_per_sample(entry: &Entry, scans: bool, faces: usize) -> u32 {
     let elements = entry.outcome.map_or(1, |outcome| outcome.elements).max(1) as f64;
     let makes = entry.job.task.creates_mesh() || entry.job.task.allocates() || entry.pauses_clock;
@@ -60,7 +61,31 @@ fn runs_per_sample(entry: &Entry, scans: bool, faces: usize) -> u32 {
         (true, false) => VISITS_PER_MADE_ELEMENT,
         (false, false) => 1.0,
     };
-    (ELEMENTS_PER_SAMPLE / (elements * each + VISITS_PER_RUN))
+    (VISITS_PER_SAMPLE / (elements * each + VISITS_PER_RUN))
         .ceil()
         .clamp(1.0, MAX_RUNS) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sixfold::Relation;
+    use sixfold_workload::{Operation, Outcome};
+
+    #[test]
+    fn runs_of_a_sample_follow_from_the_elements() {
+        let runs = |elements: u64, scans: bool, pauses_clock: bool| {
+            let mut entry = Entry::new(0, Operation::Relation(Relation::VertexVertices));
+            entry.outcome = Some(Outcome::new(1.0, elements));
+            entry.pauses_clock = pauses_clock;
+            runs_per_sample(&entry, scans, 10)
+        };
+        assert_eq!(runs(99_980, false, false), 1);
+        assert_eq!(runs(99_979, false, false), 2);
+        assert_eq!(runs(1_000_000, false, false), 1);
+        assert_eq!(runs(4, false, false), 4_167, "24 visits for each run");
+        assert_eq!(runs(4, true, false), 1_667, "each element visits 10 faces");
+        assert_eq!(runs(4, false, true), 455, "making an element counts 50");
+        assert_eq!(runs(4, true, true), 1_667);
+    }
 }
