@@ -39,13 +39,15 @@
 //! - [`Holes`]: the rows of deleted elements; [`NewRows`]: the new rows of all other elements after
 //!   the rows of deleted elements are removed.
 //! - [`check_rows`], [`check_corners`], [`check_cut`]: checks that an edit is allowed.
+//! - [`mesh_tables!`]: the code that treats all tables of a structure alike, from a list of the
+//!   tables; [`vertex_rows!`], [`edge_rows!`] and [`face_rows!`]: the lists of elements that are rows.
+//! - [`invariant_checks`]: checks of invariants that several structures share.
 //! - [`FaceSpans`]: the range of corners of each face in a flat table.
 //! - [`TwinPairs`]: the half-edges of a list of faces in pairs, found without hashing.
 //! - [`Incidence`]: the sides of any list of faces by edge; [`Fans`]: the fans of all vertices;
 //!   [`FacesByLowest`]: the search for faces that have the same vertices.
 //! - [`Classes`]: union–find; [`Partition`]: union–find with parities and sizes.
-//! - [`ScannedFaces`]: queries and edits of structures that scan all corners to find the faces at a
-//!   vertex.
+//! - [`ring`]: the vertices around a vertex, in order, from the faces at this vertex.
 //! - [`Distinct`], [`ShortVec`], [`Lookup`]: an iterator without repeated items, short lists, and
 //!   search in short lists.
 //! - [`Ranks`], [`for_each_chunk`], [`map_chunks`], [`check_split`]: helpers for refinement, some
@@ -66,7 +68,6 @@ mod edit;
 mod handles;
 mod named;
 mod polygons;
-mod scanning;
 mod tables;
 mod traits;
 
@@ -125,9 +126,6 @@ pub use polygons::faces_by_lowest::FacesByLowest;
 pub use polygons::fans::Fans;
 pub use polygons::incidence::{EdgeSides, Incidence, Side};
 pub use polygons::partition::Partition;
-pub use scanning::scan::hits_in;
-pub use scanning::scan_edit::ScannedMesh;
-pub use scanning::scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};
 pub use tables::editing::{Compact, Editable, Editing, NoScatteredFaces};
 pub use tables::face_spans::{FaceSpans, ScatteredFaces};
 pub use tables::holes::{EDGE_HOLES, FACE_HOLES, HoleSet, Holes, NoHoles, VERTEX_HOLES};
@@ -135,6 +133,8 @@ pub use tables::pairing::{LinkFaces, SideRows, TwinPairs, pair_triangle_sides};
 pub use tables::ranks::Ranks;
 pub use tables::table::Table;
 pub use tables::threads::join;
+pub use traits::invariant_checks;
+pub use traits::query::ring;
 pub use traits::refine::{
     CHUNK_ROWS, all_rows, check_split, chunk_starts, for_each_chunk, map_chunks, rows_of_chunk,
 };

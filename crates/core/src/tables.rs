@@ -5,6 +5,7 @@ pub(crate) mod editing;
 pub(crate) mod face_spans;
 pub(crate) mod holes;
 pub(crate) mod memory;
+pub(crate) mod mesh_tables;
 pub(crate) mod pairing;
 pub(crate) mod probe;
 pub(crate) mod ranks;

@@ -2,6 +2,7 @@
 
 pub(crate) mod boundary;
 pub(crate) mod convert;
+pub mod invariant_checks;
 pub(crate) mod local_queries;
 pub(crate) mod measured;
 pub(crate) mod mesh_move;
@@ -9,4 +10,5 @@ pub(crate) mod oriented_walk;
 pub(crate) mod query;
 pub(crate) mod refine;
 pub(crate) mod representation;
+pub(crate) mod row_handles;
 pub(crate) mod split;

@@ -1,10 +1,9 @@
 //! Building from polygons, and conversion to polygons.
 
 use sixfold_core::{
-    BuildError, Counts, EditLog, Editing, FACE_HOLES, FaceId, FaceList, HoleSet, InvariantError,
-    Measured, MemoryFootprint, MeshMove, MeshQuery, MoveError, Point, PolygonMesh, Probe,
-    QueryCost, Representation, RowId, RowMap, Slot, Table, Untraced, VERTEX_HOLES, VertexId,
-    pair_triangle_sides,
+    BuildError, Counts, Editing, FACE_HOLES, FaceList, HoleSet, InvariantError, Measured,
+    MemoryFootprint, MeshQuery, PolygonMesh, Probe, QueryCost, Representation, RowId, Slot, Table,
+    Untraced, VERTEX_HOLES, VertexId, pair_triangle_sides,
 };
 
 use crate::mesh::{CornerId, CornerTable};
@@ -14,12 +13,7 @@ impl<E: Editing> Representation for CornerTable<E> {
 
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
 
-    fn type_path() -> &'static str {
-        match E::CAN_DELETE {
-            true => "sixfold_corner_table::EditableCornerTable",
-            false => "sixfold_corner_table::CornerTable",
-        }
-    }
+    sixfold_core::type_path!(CornerTable);
 
     /// Pairs the sides, links the corners that face a pair, then sets `corner` of each vertex;
     /// O(corners + vertices).
@@ -61,34 +55,10 @@ impl<E: Editing> Representation for CornerTable<E> {
         PolygonMesh::from_faces(positions, faces).expect("I1")
     }
 
-    fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {
-        v
-    }
-
-    fn face_handle(_: &PolygonMesh, f: FaceId) -> FaceId {
-        f
-    }
+    sixfold_core::row_handles!();
 
     fn memory(&self) -> MemoryFootprint {
-        let Self {
-            positions,
-            corner,
-            vertex,
-            opposite,
-            vertex_holes,
-            face_holes,
-        } = self;
-        let tables = [
-            positions.bytes(),
-            corner.bytes(),
-            vertex.bytes(),
-            opposite.bytes(),
-        ];
-        let holes = [vertex_holes.bytes(), face_holes.bytes()];
-        tables
-            .into_iter()
-            .chain(holes.into_iter().flatten())
-            .collect()
+        self.table_bytes()
     }
 
     fn validate(&self) -> Result<(), InvariantError> {
@@ -96,16 +66,7 @@ impl<E: Editing> Representation for CornerTable<E> {
     }
 }
 
-impl<E: Editing> MeshMove for CornerTable<E> {
-    fn set_positions_logged(
-        &mut self,
-        positions: &RowMap<VertexId, Point>,
-        _: &mut impl EditLog<Self>,
-    ) -> Result<(), MoveError> {
-        self.positions.set_positions(positions)
-    }
-}
-
+sixfold_core::moving_positions!(CornerTable);
 sixfold_core::local_queries!(crate::CornerTable, crate::EditableCornerTable);
 
 impl<E: Editing> Measured for CornerTable<E> {
@@ -116,14 +77,7 @@ impl<E: Editing> Measured for CornerTable<E> {
     }
 
     fn probed<P: Probe>(self, probe: P) -> CornerTable<E, P> {
-        CornerTable {
-            positions: self.positions.probed(probe.clone()),
-            corner: self.corner.probed(probe.clone()),
-            vertex: self.vertex.probed(probe.clone()),
-            opposite: self.opposite.probed(probe.clone()),
-            vertex_holes: E::probed_holes(self.vertex_holes, probe.clone()),
-            face_holes: E::probed_holes(self.face_holes, probe),
-        }
+        self.with_probe(probe)
     }
 }
 

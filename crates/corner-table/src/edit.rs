@@ -33,8 +33,8 @@ mod split;
 mod tests;
 
 use sixfold_core::{
-    Compact, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit, NoHoles,
-    Point, Probe, QueryCost, Representation, RowId, Slot, VertexId, check_rows, row,
+    Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit, Point, Probe,
+    QueryCost, Representation, RowId, Slot, VertexId, check_rows, row,
 };
 
 use crate::EditableCornerTable;
@@ -56,23 +56,7 @@ impl<P: Probe> MeshEdit for CornerTable<Editable, P> {
         costs
     };
 
-    type Compact = CornerTable<Compact, P>;
-
-    fn into_compact(mut self) -> CornerTable<Compact, P> {
-        self.compact();
-        CornerTable {
-            positions: self.positions,
-            corner: self.corner,
-            vertex: self.vertex,
-            opposite: self.opposite,
-            vertex_holes: NoHoles,
-            face_holes: NoHoles,
-        }
-    }
-
-    fn from_compact(compact: CornerTable<Compact, P>) -> Self {
-        compact.into()
-    }
+    sixfold_core::compact_conversions!(CornerTable);
 
     /// O(1); writes one row of `positions`.
     #[inline]

@@ -1,8 +1,7 @@
 //! The tables, their invariants, and the corner operators.
 
 use sixfold_core::{
-    Compact, Editable, Editing, FACE_HOLES, FaceId, HoleSet, Point, Probe, Slot, Table, Untraced,
-    VERTEX_HOLES, VertexId, row_id,
+    Compact, Editing, FaceId, HoleSet, Point, Probe, Slot, Table, Untraced, VertexId, row_id,
 };
 
 row_id! {
@@ -104,22 +103,11 @@ pub struct CornerTable<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) face_holes: E::Holes<P>,
 }
 
-sixfold_core::clone_by_field!(CornerTable<E: Editing, P: Probe> { positions, corner, vertex, opposite, vertex_holes, face_holes });
+sixfold_core::mesh_tables!(CornerTable {
+    tables: positions, corner, vertex, opposite;
+    holes: vertex_holes, face_holes;
+});
 sixfold_core::polygon_conversions!(CornerTable);
-
-impl<P: Probe> From<CornerTable<Compact, P>> for CornerTable<Editable, P> {
-    fn from(mesh: CornerTable<Compact, P>) -> Self {
-        let probe = mesh.positions.probe();
-        Self {
-            positions: mesh.positions,
-            corner: mesh.corner,
-            vertex: mesh.vertex,
-            opposite: mesh.opposite,
-            vertex_holes: Editable::no_holes(VERTEX_HOLES, probe.clone()),
-            face_holes: Editable::no_holes(FACE_HOLES, probe),
-        }
-    }
-}
 
 /// The vertex row of the corners of a deleted triangle.
 pub(crate) const NO_VERTEX: VertexId = VertexId::new(u32::MAX);

@@ -17,24 +17,18 @@ impl<P: Probe, E: Editing> MeshQuery for CornerTable<E, P> {
         ..Capabilities::ORIENTED_MANIFOLDS
     };
 
-    #[inline]
-    fn vertices(&self) -> impl Iterator<Item = VertexId> {
-        self.vertex_holes.handles(self.positions.len())
-    }
+    sixfold_core::vertex_rows!(self, self.positions.len(), self.vertex_holes);
+    sixfold_core::face_rows!(
+        #[inline]
+        self,
+        self.vertex.len() / 3,
+        self.face_holes
+    );
 
     /// Lists the handles of all edges. Reads `opposite` once.
     #[inline]
     fn edges(&self) -> impl Iterator<Item = EdgeCorner> {
         Edges::new(self)
-    }
-
-    #[inline]
-    fn faces(&self) -> impl Iterator<Item = FaceId> {
-        self.face_holes.handles(self.vertex.len() / 3)
-    }
-
-    fn vertex_count(&self) -> usize {
-        self.positions.len() - self.vertex_holes.len()
     }
 
     /// Counts the boundary edges to compute the number of edges; O(corners).
@@ -43,11 +37,6 @@ impl<P: Probe, E: Editing> MeshQuery for CornerTable<E, P> {
         let boundary = opposite.iter().filter(|across| across.get().is_none());
         let boundary = boundary.count();
         boundary + (self.corner_count() - boundary) / 2
-    }
-
-    #[inline]
-    fn face_count(&self) -> usize {
-        self.vertex.len() / 3 - self.face_holes.len()
     }
 
     #[inline]
@@ -117,11 +106,6 @@ impl<P: Probe, E: Editing> MeshQuery for CornerTable<E, P> {
     }
 
     #[inline]
-    fn contains_vertex(&self, v: VertexId) -> bool {
-        self.vertex_holes.contains(v, self.vertex_rows())
-    }
-
-    #[inline]
     fn contains_edge(&self, e: EdgeCorner) -> bool {
         let c = e.corner();
         if c.index() >= self.opposite.len() || self.face_holes.has(c.triangle().index()) {
@@ -130,21 +114,8 @@ impl<P: Probe, E: Editing> MeshQuery for CornerTable<E, P> {
         edge_between(c, *self.opposite.read(c.index())) == e
     }
 
-    #[inline]
-    fn contains_face(&self, f: FaceId) -> bool {
-        self.face_holes.contains(f, self.face_rows())
-    }
-
-    fn vertex_rows(&self) -> usize {
-        self.positions.len()
-    }
-
     fn edge_rows(&self) -> usize {
         self.opposite.len()
-    }
-
-    fn face_rows(&self) -> usize {
-        self.vertex.len() / 3
     }
 
     /// Returns `vertex_vertices`, whose order is counter-clockwise from the boundary.

@@ -1,7 +1,8 @@
 //! One check for each invariant.
 
-use std::collections::HashSet;
-
+use sixfold_core::invariant_checks::{
+    check_corners_of_face, check_distinct_edges, check_fans, check_holes, fails,
+};
 use sixfold_core::{Editing, HoleSet, InvariantError, MeshQuery, Slot, VertexId, row};
 
 use crate::mesh::{CornerId, CornerTable, NO_VERTEX};
@@ -9,18 +10,18 @@ use crate::mesh::{CornerId, CornerTable, NO_VERTEX};
 /// Checks the lengths of the tables, the holes, and I1 to I7. Later checks rely on earlier checks.
 pub(crate) fn validate<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
     check_table_lengths(mesh)?;
-    check_holes(mesh)?;
-    check_triangles(mesh)?;
+    check_deleted(mesh)?;
+    mesh.faces().try_for_each(|t| {
+        check_corners_of_face("I1", t, &mesh.vertices_of(t), |v| mesh.contains_vertex(v))
+    })?;
     check_opposites(mesh)?;
     check_sides(mesh)?;
     check_vertex_corners(mesh)?;
     check_first_corners(mesh)?;
-    check_fans(mesh)?;
-    check_distinct_edges(mesh)
-}
-
-fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> {
-    Err(InvariantError::new(invariant, detail))
+    let vertices = corners(mesh).map(|c| mesh.vertex(c));
+    let walk = |v| mesh.corners_at(v).count();
+    check_fans("I6", mesh, "corners", vertices, walk)?;
+    check_distinct_edges("I7", mesh)
 }
 
 fn corners<E: Editing>(mesh: &CornerTable<E>) -> impl Iterator<Item = CornerId> {
@@ -40,16 +41,12 @@ fn check_table_lengths<E: Editing>(mesh: &CornerTable<E>) -> Result<(), Invarian
     Ok(())
 }
 
-fn check_holes<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
-    let rows = [
-        (&mesh.vertex_holes, mesh.positions().len()),
-        (&mesh.face_holes, mesh.corner_vertices().len() / 3),
+fn check_deleted<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
+    let kinds = [
+        (&mesh.vertex_holes, mesh.vertex_rows()),
+        (&mesh.face_holes, mesh.face_rows()),
     ];
-    for (holes, end) in rows {
-        if let Err(detail) = holes.check(end) {
-            return fails("I8", detail);
-        }
-    }
+    check_holes("I8", kinds)?;
     for c in (0..row(mesh.corner_vertices().len())).map(CornerId::new) {
         let deleted = mesh.face_holes.has(c.triangle().index());
         let marks = [mesh.vertex(c) == NO_VERTEX, mesh.opposite(c) == Some(c)];
@@ -63,21 +60,6 @@ fn check_holes<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> 
     for v in (0..row(mesh.positions().len())).map(VertexId::new) {
         if mesh.vertex_holes.has(v.index()) && mesh.vertex_corners()[v.index()] != Slot::NONE {
             return fails("I8", format!("{v} was deleted but has a corner"));
-        }
-    }
-    Ok(())
-}
-
-fn check_triangles<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
-    for t in mesh.faces() {
-        let [a, b, c] = mesh.vertices_of(t);
-        if a == b || b == c || c == a {
-            return fails("I1", format!("{t} has a repeated vertex: {a}, {b} and {c}"));
-        }
-        let is_there =
-            |v: &VertexId| v.index() < mesh.positions().len() && !mesh.vertex_holes.has(v.index());
-        if let Some(v) = [a, b, c].into_iter().find(|v| !is_there(v)) {
-            return fails("I1", format!("{t} has vertex {v}, which does not exist"));
         }
     }
     Ok(())
@@ -141,37 +123,6 @@ fn check_first_corners<E: Editing>(mesh: &CornerTable<E>) -> Result<(), Invarian
         if let Some(before) = entered {
             let detail = format!("the fan of {v} starts at {c}, but corner({v}) follows {before}");
             return fails("I5", detail);
-        }
-    }
-    Ok(())
-}
-
-fn check_fans<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
-    let mut all = vec![0_usize; mesh.positions().len()];
-    for c in corners(mesh) {
-        all[mesh.vertex(c).index()] += 1;
-    }
-    for v in mesh.vertices() {
-        let (visited, all) = (mesh.corners_at(v).count(), all[v.index()]);
-        if visited != all {
-            return fails(
-                "I6",
-                format!("swinging around {v} visits {visited} of {all} corners"),
-            );
-        }
-    }
-    Ok(())
-}
-
-fn check_distinct_edges<E: Editing>(mesh: &CornerTable<E>) -> Result<(), InvariantError> {
-    let mut ends = HashSet::new();
-    for e in mesh.edges() {
-        let [a, b] = mesh.edge_vertices(e);
-        if !ends.insert((a.min(b), a.max(b))) {
-            return fails(
-                "I7",
-                format!("{e} and another edge have the same ends {a} and {b}"),
-            );
         }
     }
     Ok(())

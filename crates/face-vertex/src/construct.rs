@@ -1,9 +1,9 @@
 //! Building from polygons, and conversion to polygons.
 
 use sixfold_core::{
-    BuildError, Counts, EditLog, Editing, FACE_HOLES, FaceId, FaceList, FaceSpans, HoleSet,
-    InvariantError, Measured, MemoryFootprint, MeshMove, MoveError, NewRows, Point, PolygonMesh,
-    Probe, QueryCost, Representation, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap, row,
+    BuildError, Counts, Editing, FACE_HOLES, FaceId, FaceList, FaceSpans, HoleSet, InvariantError,
+    Measured, MemoryFootprint, NewRows, Point, PolygonMesh, Probe, QueryCost, Representation,
+    Table, Untraced, VERTEX_HOLES, VertexId, row,
 };
 
 use crate::mesh::{FaceVertexMesh, Fan};
@@ -18,12 +18,7 @@ impl<E: Editing> Representation for FaceVertexMesh<E> {
         ]
     };
 
-    fn type_path() -> &'static str {
-        match E::CAN_DELETE {
-            true => "sixfold_face_vertex::EditableFaceVertexMesh",
-            false => "sixfold_face_vertex::FaceVertexMesh",
-        }
-    }
+    sixfold_core::type_path!(FaceVertexMesh);
 
     /// Copies the face list and collects the faces of each vertex; O(corners + vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
@@ -53,25 +48,10 @@ impl<E: Editing> Representation for FaceVertexMesh<E> {
         rows.polygons(self, positions, corners.len())
     }
 
-    fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {
-        v
-    }
-
-    fn face_handle(_: &PolygonMesh, f: FaceId) -> FaceId {
-        f
-    }
+    sixfold_core::row_handles!();
 
     fn memory(&self) -> MemoryFootprint {
-        let tables = [
-            self.positions.bytes(),
-            self.corners.bytes(),
-            self.fans.bytes(),
-            self.pool.bytes(),
-        ];
-        let spans = self.spans.bytes();
-        let holes = self.vertex_holes.bytes().into_iter();
-        let holes = holes.chain(self.face_holes.bytes());
-        tables.into_iter().chain(spans).chain(holes).collect()
+        self.table_bytes()
     }
 
     fn validate(&self) -> Result<(), InvariantError> {
@@ -79,16 +59,7 @@ impl<E: Editing> Representation for FaceVertexMesh<E> {
     }
 }
 
-impl<E: Editing> MeshMove for FaceVertexMesh<E> {
-    fn set_positions_logged(
-        &mut self,
-        positions: &VertexMap<Self, Point>,
-        _: &mut impl EditLog<Self>,
-    ) -> Result<(), MoveError> {
-        self.positions.set_positions(positions)
-    }
-}
-
+sixfold_core::moving_positions!(FaceVertexMesh);
 sixfold_core::local_queries!(crate::FaceVertexMesh, crate::EditableFaceVertexMesh);
 
 impl<E: Editing> Measured for FaceVertexMesh<E> {
@@ -101,15 +72,7 @@ impl<E: Editing> Measured for FaceVertexMesh<E> {
     }
 
     fn probed<P: Probe>(self, probe: P) -> FaceVertexMesh<E, P> {
-        FaceVertexMesh {
-            positions: self.positions.probed(probe.clone()),
-            corners: self.corners.probed(probe.clone()),
-            spans: self.spans.probed(probe.clone()),
-            fans: self.fans.probed(probe.clone()),
-            pool: self.pool.probed(probe.clone()),
-            vertex_holes: E::probed_holes(self.vertex_holes, probe.clone()),
-            face_holes: E::probed_holes(self.face_holes, probe),
-        }
+        self.with_probe(probe)
     }
 }
 
@@ -158,7 +121,7 @@ fn add_uniform<const DEGREE: usize>(corners: &[VertexId], mut add: impl FnMut(Fa
 
 #[cfg(test)]
 mod tests {
-    use sixfold_core::MeshQuery;
+    use sixfold_core::{MeshMove, MeshQuery, MoveError};
 
     use super::*;
     use crate::FaceVertexMesh;

@@ -16,8 +16,8 @@ mod split_vertex;
 mod tests;
 
 use sixfold_core::{
-    Compact, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MeshEdit, NoHoles, Pair, Point,
-    Probe, QueryCost, Refusal, ShortVec, VertexId, check_corners, check_cut, row, uses_reports,
+    Edit, EditError, EditLog, Editable, FaceId, HoleSet, MeshEdit, Pair, Point, Probe, QueryCost,
+    Refusal, ShortVec, VertexId, check_corners, check_cut, row, uses_reports,
 };
 
 use self::corners::{corners_from, sides, third_corner};
@@ -28,24 +28,7 @@ type Edge = Pair<VertexId>;
 impl<P: Probe> MeshEdit for FaceVertexMesh<Editable, P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
 
-    type Compact = FaceVertexMesh<Compact, P>;
-
-    fn into_compact(mut self) -> FaceVertexMesh<Compact, P> {
-        self.compact();
-        FaceVertexMesh {
-            positions: self.positions,
-            corners: self.corners,
-            spans: self.spans.into_compact().expect("compacted"),
-            fans: self.fans,
-            pool: self.pool,
-            vertex_holes: NoHoles,
-            face_holes: NoHoles,
-        }
-    }
-
-    fn from_compact(compact: FaceVertexMesh<Compact, P>) -> Self {
-        compact.into()
-    }
+    sixfold_core::compact_conversions!(FaceVertexMesh);
 
     #[inline]
     fn set_position_logged(

@@ -2,10 +2,7 @@
 
 use std::ops::Range;
 
-use sixfold_core::{
-    Compact, Editable, Editing, FACE_HOLES, FaceId, FaceSpans, Point, Probe, Table, Untraced,
-    VERTEX_HOLES, VertexId,
-};
+use sixfold_core::{Compact, Editing, FaceId, FaceSpans, Point, Probe, Table, Untraced, VertexId};
 
 /// A mesh with the vertices of each face and the faces of each vertex; edges are not stored.
 ///
@@ -125,23 +122,12 @@ pub struct FaceVertexMesh<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) face_holes: E::Holes<P>,
 }
 
-sixfold_core::clone_by_field!(FaceVertexMesh<E: Editing, P: Probe> { positions, corners, spans, fans, pool, vertex_holes, face_holes });
+sixfold_core::mesh_tables!(FaceVertexMesh {
+    tables: positions, corners, fans, pool;
+    faces: spans;
+    holes: vertex_holes, face_holes;
+});
 sixfold_core::polygon_conversions!(FaceVertexMesh);
-
-impl<P: Probe> From<FaceVertexMesh<Compact, P>> for FaceVertexMesh<Editable, P> {
-    fn from(mesh: FaceVertexMesh<Compact, P>) -> Self {
-        let probe = mesh.positions.probe();
-        Self {
-            positions: mesh.positions,
-            corners: mesh.corners,
-            spans: mesh.spans.into(),
-            fans: mesh.fans,
-            pool: mesh.pool,
-            vertex_holes: Editable::no_holes(VERTEX_HOLES, probe.clone()),
-            face_holes: Editable::no_holes(FACE_HOLES, probe),
-        }
-    }
-}
 
 /// The vertex in a blank corner.
 pub(crate) const BLANK_CORNER: VertexId = VertexId::new(u32::MAX);

@@ -13,31 +13,24 @@ impl<P: Probe, E: Editing> MeshQuery for FaceVertexMesh<E, P> {
 
     const CAPABILITIES: Capabilities = Capabilities::ALL;
 
-    #[inline]
-    fn vertices(&self) -> impl Iterator<Item = VertexId> {
-        self.vertex_holes.handles(self.fans.len())
-    }
+    sixfold_core::vertex_rows!(
+        #[inline]
+        self,
+        self.fans.len(),
+        self.vertex_holes
+    );
+    sixfold_core::face_rows!(
+        #[inline]
+        self,
+        self.spans.len(),
+        self.face_holes
+    );
 
     /// Lists the edges, sorted by their lower ends.
     #[inline]
     fn edges(&self) -> impl Iterator<Item = Pair<VertexId>> {
         self.spans
             .edges(&self.corners, &self.face_holes, self.fans.len())
-    }
-
-    #[inline]
-    fn faces(&self) -> impl Iterator<Item = FaceId> {
-        self.face_holes.handles(self.spans.len())
-    }
-
-    #[inline]
-    fn vertex_count(&self) -> usize {
-        self.fans.len() - self.vertex_holes.len()
-    }
-
-    #[inline]
-    fn face_count(&self) -> usize {
-        self.spans.len() - self.face_holes.len()
     }
 
     #[inline]
@@ -99,34 +92,14 @@ impl<P: Probe, E: Editing> MeshQuery for FaceVertexMesh<E, P> {
     }
 
     #[inline]
-    fn contains_vertex(&self, v: VertexId) -> bool {
-        self.vertex_holes.contains(v, self.vertex_rows())
-    }
-
-    #[inline]
     fn contains_edge(&self, e: Pair<VertexId>) -> bool {
         let [a, b] = e.ends();
         self.contains_vertex(a) && self.contains_vertex(b) && self.edge_faces(e).next().is_some()
     }
 
     #[inline]
-    fn contains_face(&self, f: FaceId) -> bool {
-        self.face_holes.contains(f, self.face_rows())
-    }
-
-    #[inline]
-    fn vertex_rows(&self) -> usize {
-        self.fans.len()
-    }
-
-    #[inline]
     fn edge_rows(&self) -> usize {
         0
-    }
-
-    #[inline]
-    fn face_rows(&self) -> usize {
-        self.spans.len()
     }
 }
 

@@ -1,8 +1,7 @@
 //! One check for each invariant.
 
-use sixfold_core::{
-    Editing, FaceId, HoleSet, InvariantError, IteratorExt, MeshQuery, Probe, VertexId, row,
-};
+use sixfold_core::invariant_checks::{check_corners_of_face, check_holes, fails};
+use sixfold_core::{Editing, FaceId, HoleSet, InvariantError, MeshQuery, Probe, VertexId, row};
 
 use crate::mesh::{BLANK_CORNER, BLANK_PLACE, FaceVertexMesh, Fan};
 
@@ -19,30 +18,19 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
     /// I1, first part: the faces share no corners, and each face has at least three corners.
     fn check_spans(&self) -> Result<(), InvariantError> {
         let checked = self.spans.check(self.corners.len());
-        checked.map_err(|detail| InvariantError::new("I1", detail))
+        checked.or_else(|detail| fails("I1", detail))
     }
 
     /// I1, second part: the vertices of a face exist and are distinct.
     fn check_faces(&self) -> Result<(), InvariantError> {
-        let fails = |detail: String| Err(InvariantError::new("I1", detail));
-        for f in self.faces() {
-            let face = self.known_face(f);
-            let is_there =
-                |v: VertexId| v.index() < self.positions.len() && !self.vertex_holes.has(v.index());
-            if let Some(v) = face.iter().find(|&&v| !is_there(v)) {
-                return fails(format!("{f} has vertex {v}, which does not exist"));
-            }
-            let mut once = face.iter().distinct();
-            if let Some(v) = face.iter().find(|&v| once.next() != Some(v)) {
-                return fails(format!("{f} has vertex {v} twice"));
-            }
-        }
-        Ok(())
+        let exists = |v| self.vertex_holes.contains(v, self.positions.len());
+        let mut faces = self.faces();
+        faces.try_for_each(|f| check_corners_of_face("I1", f, self.known_face(f), exists))
     }
 
     /// I2: every fan is inside the pool, and no two fans overlap.
     fn check_pool(&self) -> Result<(), InvariantError> {
-        let fails = |detail: String| Err(InvariantError::new("I2", detail));
+        let fails = |detail: String| fails("I2", detail);
         if self.fans.len() != self.positions.len() {
             let (fans, vertices) = (self.fans.len(), self.positions.len());
             return fails(format!("there are {fans} fans for {vertices} vertices"));
@@ -86,29 +74,32 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
             } else {
                 continue;
             };
-            return Err(InvariantError::new("I3", format!("the fan of {v} {fault}")));
+            return fails("I3", format!("the fan of {v} {fault}"));
         }
         Ok(())
     }
 
     /// I4, first part: exactly the holes are marked as deleted.
     fn check_holes(&self) -> Result<(), InvariantError> {
-        let fails = |detail: String| InvariantError::new("I4", detail);
-        self.vertex_holes.check(self.fans.len()).map_err(fails)?;
-        self.face_holes.check(self.spans.len()).map_err(fails)?;
+        let fails = |detail: String| fails("I4", detail);
+        let kinds = [
+            (&self.vertex_holes, self.vertex_rows()),
+            (&self.face_holes, self.face_rows()),
+        ];
+        check_holes("I4", kinds)?;
         for (v, fan) in (0..row(self.fans.len())).zip(self.fans.rows()) {
             if (*fan == Fan::DELETED) != self.vertex_holes.has(v as usize) {
                 let v = VertexId::new(v);
-                return Err(fails(format!(
+                return fails(format!(
                     "vertex holes and {fan:?} disagree on whether {v} was deleted"
-                )));
+                ));
             }
         }
         let faces = (0..row(self.spans.len())).map(FaceId::new);
         for f in faces.filter(|f| self.face_holes.has(f.index())) {
             let face = self.known_face(f);
             if let Some(v) = face.iter().find(|&&v| v != BLANK_CORNER) {
-                return Err(fails(format!("{f} was deleted but has the corner {v}")));
+                return fails(format!("{f} was deleted but has the corner {v}"));
             }
         }
         Ok(())
@@ -116,7 +107,7 @@ impl<P: Probe, E: Editing> FaceVertexMesh<E, P> {
 
     /// I4, second part: all entries outside faces and fans are blank.
     fn check_blanks(&self) -> Result<(), InvariantError> {
-        let fails = |detail: String| Err(InvariantError::new("I4", detail));
+        let fails = |detail: String| fails("I4", detail);
         let corners: usize = self.faces().map(|f| self.known_face(f).len()).sum();
         let named = self.corners.rows().iter().filter(|&&v| v != BLANK_CORNER);
         let named = named.count();

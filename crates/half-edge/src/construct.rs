@@ -1,9 +1,9 @@
 //! Building from polygons, and conversion to polygons.
 
 use sixfold_core::{
-    BuildError, Counts, EditLog, Editing, FaceId, FaceList, HoleSet, InvariantError, LinkFaces,
-    Measured, MemoryFootprint, MeshMove, MeshQuery, MoveError, NewRows, Point, PolygonMesh, Probe,
-    QueryCost, Representation, RowId, RowMap, SideRows, Slot, TwinPairs, VertexId, row,
+    BuildError, Counts, Editing, FaceId, FaceList, InvariantError, LinkFaces, Measured,
+    MemoryFootprint, MeshQuery, NewRows, PolygonMesh, Probe, QueryCost, Representation, RowId,
+    SideRows, Slot, TwinPairs, VertexId, row,
 };
 
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh};
@@ -13,12 +13,7 @@ impl<E: Editing> Representation for HalfEdgeMesh<E> {
 
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
 
-    fn type_path() -> &'static str {
-        match E::CAN_DELETE {
-            true => "sixfold_half_edge::EditableHalfEdgeMesh",
-            false => "sixfold_half_edge::HalfEdgeMesh",
-        }
-    }
+    sixfold_core::type_path!(HalfEdgeMesh);
 
     /// Pairs the sides, links the half-edges of each face, then links the boundary loops.
     /// O(corners + vertices).
@@ -48,35 +43,10 @@ impl<E: Editing> Representation for HalfEdgeMesh<E> {
         rows.polygons(self, self.positions(), self.half_edge_count())
     }
 
-    fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {
-        v
-    }
-
-    fn face_handle(_: &PolygonMesh, f: FaceId) -> FaceId {
-        f
-    }
+    sixfold_core::row_handles!();
 
     fn memory(&self) -> MemoryFootprint {
-        let Self {
-            positions,
-            leaving,
-            halves,
-            first,
-            vertex_holes,
-            edge_holes,
-            face_holes,
-        } = self;
-        let tables = [
-            positions.bytes(),
-            leaving.bytes(),
-            halves.bytes(),
-            first.bytes(),
-        ];
-        let holes = [vertex_holes, edge_holes, face_holes];
-        tables
-            .into_iter()
-            .chain(holes.into_iter().filter_map(|holes| holes.bytes()))
-            .collect()
+        self.table_bytes()
     }
 
     fn validate(&self) -> Result<(), InvariantError> {
@@ -84,16 +54,7 @@ impl<E: Editing> Representation for HalfEdgeMesh<E> {
     }
 }
 
-impl<E: Editing> MeshMove for HalfEdgeMesh<E> {
-    fn set_positions_logged(
-        &mut self,
-        positions: &RowMap<VertexId, Point>,
-        _: &mut impl EditLog<Self>,
-    ) -> Result<(), MoveError> {
-        self.positions.set_positions(positions)
-    }
-}
-
+sixfold_core::moving_positions!(HalfEdgeMesh);
 sixfold_core::local_queries!(crate::HalfEdgeMesh, crate::EditableHalfEdgeMesh);
 
 impl<E: Editing> Measured for HalfEdgeMesh<E> {
@@ -104,15 +65,7 @@ impl<E: Editing> Measured for HalfEdgeMesh<E> {
     }
 
     fn probed<P: Probe>(self, probe: P) -> HalfEdgeMesh<E, P> {
-        HalfEdgeMesh {
-            positions: self.positions.probed(probe.clone()),
-            leaving: self.leaving.probed(probe.clone()),
-            halves: self.halves.probed(probe.clone()),
-            first: self.first.probed(probe.clone()),
-            vertex_holes: E::probed_holes(self.vertex_holes, probe.clone()),
-            edge_holes: E::probed_holes(self.edge_holes, probe.clone()),
-            face_holes: E::probed_holes(self.face_holes, probe),
-        }
+        self.with_probe(probe)
     }
 }
 

@@ -11,8 +11,8 @@ mod split_vertex;
 mod tests;
 
 use sixfold_core::{
-    Compact, EdgeId, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit,
-    MeshQuery, NoHoles, Point, Probe, QueryCost, Slot, VertexId, check_rows, row,
+    EdgeId, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit, MeshQuery,
+    Point, Probe, QueryCost, Slot, VertexId, check_rows, row,
 };
 
 use crate::EditableHalfEdgeMesh;
@@ -29,24 +29,7 @@ type Refusal = sixfold_core::Refusal<EditableHalfEdgeMesh>;
 impl<P: Probe> MeshEdit for HalfEdgeMesh<Editable, P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
 
-    type Compact = HalfEdgeMesh<Compact, P>;
-
-    fn into_compact(mut self) -> HalfEdgeMesh<Compact, P> {
-        self.compact();
-        HalfEdgeMesh {
-            positions: self.positions,
-            leaving: self.leaving,
-            halves: self.halves,
-            first: self.first,
-            vertex_holes: NoHoles,
-            edge_holes: NoHoles,
-            face_holes: NoHoles,
-        }
-    }
-
-    fn from_compact(compact: HalfEdgeMesh<Compact, P>) -> Self {
-        compact.into()
-    }
+    sixfold_core::compact_conversions!(HalfEdgeMesh);
 
     fn set_position_logged(
         &mut self,

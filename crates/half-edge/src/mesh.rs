@@ -3,8 +3,8 @@
 use std::fmt::Debug;
 
 use sixfold_core::{
-    Compact, EDGE_HOLES, EdgeId, Editable, Editing, FACE_HOLES, FaceId, HoleSet, MeshQuery, Point,
-    Probe, Slot, Table, Untraced, VERTEX_HOLES, VertexId, row_id,
+    Compact, EDGE_HOLES, EdgeId, Editing, FACE_HOLES, FaceId, HoleSet, MeshQuery, Point, Probe,
+    Slot, Table, Untraced, VERTEX_HOLES, VertexId, row_id,
 };
 
 row_id! {
@@ -109,23 +109,11 @@ pub struct HalfEdgeMesh<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) face_holes: E::Holes<P>,
 }
 
-sixfold_core::clone_by_field!(HalfEdgeMesh<E: Editing, P: Probe> { positions, leaving, halves, first, vertex_holes, edge_holes, face_holes });
+sixfold_core::mesh_tables!(HalfEdgeMesh {
+    tables: positions, leaving, halves, first;
+    holes: vertex_holes, edge_holes, face_holes;
+});
 sixfold_core::polygon_conversions!(HalfEdgeMesh);
-
-impl<P: Probe> From<HalfEdgeMesh<Compact, P>> for HalfEdgeMesh<Editable, P> {
-    fn from(mesh: HalfEdgeMesh<Compact, P>) -> Self {
-        let probe = mesh.positions.probe();
-        Self {
-            positions: mesh.positions,
-            leaving: mesh.leaving,
-            halves: mesh.halves,
-            first: mesh.first,
-            vertex_holes: Editable::no_holes(VERTEX_HOLES, probe.clone()),
-            edge_holes: Editable::no_holes(EDGE_HOLES, probe.clone()),
-            face_holes: Editable::no_holes(FACE_HOLES, probe),
-        }
-    }
-}
 
 impl<E: Editing> HalfEdgeMesh<E> {
     pub(crate) fn from_tables(

@@ -15,32 +15,9 @@ impl<P: Probe, E: Editing> MeshQuery for HalfEdgeMesh<E, P> {
 
     const CAPABILITIES: Capabilities = Capabilities::ORIENTED_MANIFOLDS;
 
-    #[inline]
-    fn vertices(&self) -> impl Iterator<Item = VertexId> {
-        self.vertex_holes.handles(self.vertex_rows())
-    }
-
-    #[inline]
-    fn edges(&self) -> impl Iterator<Item = EdgeId> {
-        self.edge_holes.handles(self.edge_rows())
-    }
-
-    #[inline]
-    fn faces(&self) -> impl Iterator<Item = FaceId> {
-        self.face_holes.handles(self.face_rows())
-    }
-
-    fn vertex_count(&self) -> usize {
-        self.vertex_rows() - self.vertex_holes.len()
-    }
-
-    fn edge_count(&self) -> usize {
-        self.edge_rows() - self.edge_holes.len()
-    }
-
-    fn face_count(&self) -> usize {
-        self.face_rows() - self.face_holes.len()
-    }
+    sixfold_core::vertex_rows!(self, self.positions.len(), self.vertex_holes);
+    sixfold_core::edge_rows!(self, self.halves.len() / 2, self.edge_holes);
+    sixfold_core::face_rows!(self, self.first.len(), self.face_holes);
 
     #[inline]
     fn position(&self, v: VertexId) -> Point {
@@ -99,33 +76,6 @@ impl<P: Probe, E: Editing> MeshQuery for HalfEdgeMesh<E, P> {
     #[inline]
     fn face_faces(&self, f: FaceId) -> impl Iterator<Item = FaceId> {
         DistinctWalk::new(self.across(f))
-    }
-
-    #[inline]
-    fn contains_vertex(&self, v: VertexId) -> bool {
-        self.vertex_holes.contains(v, self.vertex_rows())
-    }
-
-    #[inline]
-    fn contains_edge(&self, e: EdgeId) -> bool {
-        self.edge_holes.contains(e, self.edge_rows())
-    }
-
-    #[inline]
-    fn contains_face(&self, f: FaceId) -> bool {
-        self.face_holes.contains(f, self.face_rows())
-    }
-
-    fn vertex_rows(&self) -> usize {
-        self.positions.len()
-    }
-
-    fn edge_rows(&self) -> usize {
-        self.halves.len() / 2
-    }
-
-    fn face_rows(&self) -> usize {
-        self.first.len()
     }
 
     /// Collects the walk around `v`, which is clockwise, and reverses its order.

@@ -1,28 +1,27 @@
 //! One check for each invariant.
 
-use std::collections::HashSet;
-
-use sixfold_core::{Editing, FaceId, HoleSet, InvariantError, MeshQuery, RowId, VertexId};
+use sixfold_core::invariant_checks::{
+    check_distinct_edges, check_fans, check_holes, check_walks_along_faces, fails,
+};
+use sixfold_core::{Editing, FaceId, HoleSet, InvariantError, MeshQuery, VertexId};
 
 use crate::mesh::{Half, HalfEdgeId, HalfEdgeMesh, NO_HALF};
 
 /// Checks the pairs of half-edges, then I9, then I1 to I8. Each check relies on the earlier checks.
 pub(crate) fn validate<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     check_pairs(mesh)?;
-    check_holes(mesh)?;
+    check_deleted(mesh)?;
     check_handles(mesh)?;
     check_edge_faces(mesh)?;
     check_permutation(mesh)?;
     check_cycle_faces(mesh)?;
     check_ends(mesh)?;
     check_leaving(mesh)?;
-    check_fans(mesh)?;
+    let origins = halves(mesh).map(|h| mesh.origin(h));
+    let walk = |v| mesh.leaving(v).count();
+    check_fans("I6", mesh, "half-edges", origins, walk)?;
     check_faces(mesh)?;
-    check_distinct_edges(mesh)
-}
-
-fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> {
-    Err(InvariantError::new(invariant, detail))
+    check_distinct_edges("I8", mesh)
 }
 
 fn halves<E: Editing>(mesh: &HalfEdgeMesh<E>) -> impl Iterator<Item = HalfEdgeId> {
@@ -37,17 +36,13 @@ fn check_pairs<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError>
 }
 
 /// Checks that exactly the deleted elements are marked as deleted.
-fn check_holes<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
+fn check_deleted<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
     let kinds = [
         (&mesh.vertex_holes, mesh.vertex_rows()),
         (&mesh.edge_holes, mesh.edge_rows()),
         (&mesh.face_holes, mesh.face_rows()),
     ];
-    for (holes, rows) in kinds {
-        if let Err(detail) = holes.check(rows) {
-            return fails("I9", detail);
-        }
-    }
+    check_holes("I9", kinds)?;
     for (v, leaving) in mesh.leaving_rows().iter().enumerate() {
         if mesh.vertex_holes.has(v) && leaving.get().is_some() {
             return fails("I9", format!("v{v} is deleted, but {leaving:?} leaves it"));
@@ -76,13 +71,9 @@ fn check_holes<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError>
 /// Checks that every handle in the tables refers to an existing element. The later checks rely on
 /// this check.
 fn check_handles<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
-    let is_vertex =
-        |v: VertexId| v.index() < mesh.vertex_rows() && !mesh.vertex_holes.has(v.index());
-    let is_half = |h: HalfEdgeId| {
-        let e = h.edge().index();
-        e < mesh.edge_rows() && !mesh.edge_holes.has(e)
-    };
-    let is_face = |f: FaceId| f.index() < mesh.face_rows() && !mesh.face_holes.has(f.index());
+    let is_vertex = |v: VertexId| mesh.contains_vertex(v);
+    let is_half = |h: HalfEdgeId| mesh.contains_edge(h.edge());
+    let is_face = |f: FaceId| mesh.contains_face(f);
     for h in halves(mesh) {
         let half = mesh.half_edge_rows()[h.index()];
         if !is_half(half.next) || !is_vertex(half.origin) || !half.face.get().is_none_or(is_face) {
@@ -159,60 +150,15 @@ fn check_leaving<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantErro
     Ok(())
 }
 
-fn check_fans<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
-    let mut leaving = vec![0_usize; mesh.vertex_rows()];
-    for h in halves(mesh) {
-        leaving[mesh.origin(h).index()] += 1;
-    }
-    for v in mesh.vertices() {
-        let walked = mesh.leaving(v).count();
-        if walked != leaving[v.index()] {
-            let all = leaving[v.index()];
-            return fails(
-                "I6",
-                format!("the walk around {v} visits {walked} of {all} half-edges"),
-            );
-        }
-    }
-    Ok(())
-}
-
 fn check_faces<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
-    let mut along = 0;
     for f in mesh.faces() {
         let h = mesh.face_half_edge(f);
         if mesh.face(h) != Some(f) {
             return fails("I7", format!("{h} does not run along {f}"));
         }
-        let corners: Vec<VertexId> = mesh.face_vertices(f).collect();
-        let distinct: HashSet<u32> = corners.iter().map(|v| v.row()).collect();
-        if corners.len() < 3 || distinct.len() < corners.len() {
-            return fails("I7", format!("{f} has invalid corners: {corners:?}"));
-        }
-        along += corners.len();
     }
     let with_face = halves(mesh).filter(|&h| !mesh.is_boundary(h)).count();
-    if along != with_face {
-        return fails(
-            "I7",
-            format!("{with_face} half-edges have a face, but the walks along faces visit {along}"),
-        );
-    }
-    Ok(())
-}
-
-fn check_distinct_edges<E: Editing>(mesh: &HalfEdgeMesh<E>) -> Result<(), InvariantError> {
-    let mut ends = HashSet::new();
-    for e in mesh.edges() {
-        let [a, b] = mesh.edge_vertices(e);
-        if a == b || !ends.insert((a.min(b), a.max(b))) {
-            return fails(
-                "I8",
-                format!("{e} and another edge have the same ends, {a} and {b}"),
-            );
-        }
-    }
-    Ok(())
+    check_walks_along_faces("I7", mesh, with_face)
 }
 
 #[cfg(test)]
@@ -350,7 +296,7 @@ mod tests {
             .expect_err("v2 has two fans and two edges to each end");
         assert!(["I6", "I8"].contains(&broken.invariant), "{broken}");
         assert_eq!(
-            check_distinct_edges(&mesh)
+            check_distinct_edges("I8", &mesh)
                 .expect_err("two pairs of equal edges")
                 .invariant,
             "I8"

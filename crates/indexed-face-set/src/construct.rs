@@ -1,10 +1,11 @@
 //! Building from polygons, and conversion to polygons.
 
 use sixfold_core::{
-    BuildError, Counts, EditLog, Editing, FaceId, FaceList, FaceSpans, HoleSet, InvariantError,
-    Measured, MemoryFootprint, MeshMove, MoveError, NewRows, Point, PolygonMesh, Probe, QueryCost,
-    Representation, ScannedFaces, Table, Untraced, VERTEX_HOLES, VertexId, VertexMap,
+    BuildError, Counts, Editing, FaceList, FaceSpans, HoleSet, InvariantError, Measured,
+    MemoryFootprint, NewRows, Point, PolygonMesh, Probe, QueryCost, Representation, Table,
+    Untraced, VERTEX_HOLES, VertexId,
 };
+use sixfold_scanning::ScannedFaces;
 
 use crate::mesh::IndexedFaceSet;
 
@@ -18,12 +19,7 @@ impl<E: Editing> Representation for IndexedFaceSet<E> {
         ]
     };
 
-    fn type_path() -> &'static str {
-        match E::CAN_DELETE {
-            true => "sixfold_indexed_face_set::EditableIndexedFaceSet",
-            false => "sixfold_indexed_face_set::IndexedFaceSet",
-        }
-    }
+    sixfold_core::type_path!(IndexedFaceSet);
 
     /// Copies positions and corners; O(corners + vertices).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
@@ -48,17 +44,10 @@ impl<E: Editing> Representation for IndexedFaceSet<E> {
         rows.polygons(self, positions, corners.len())
     }
 
-    fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {
-        v
-    }
-
-    fn face_handle(_: &PolygonMesh, f: FaceId) -> FaceId {
-        f
-    }
+    sixfold_core::row_handles!();
 
     fn memory(&self) -> MemoryFootprint {
-        let by_vertex = std::iter::once(self.positions.bytes()).chain(self.vertex_holes.bytes());
-        by_vertex.chain(self.faces.bytes()).collect()
+        self.table_bytes()
     }
 
     fn validate(&self) -> Result<(), InvariantError> {
@@ -66,15 +55,7 @@ impl<E: Editing> Representation for IndexedFaceSet<E> {
     }
 }
 
-impl<E: Editing> MeshMove for IndexedFaceSet<E> {
-    fn set_positions_logged(
-        &mut self,
-        positions: &VertexMap<Self, Point>,
-        _: &mut impl EditLog<Self>,
-    ) -> Result<(), MoveError> {
-        self.positions.set_positions(positions)
-    }
-}
+sixfold_core::moving_positions!(IndexedFaceSet);
 
 impl<E: Editing> Measured for IndexedFaceSet<E> {
     type Probed<P: Probe> = IndexedFaceSet<E, P>;
@@ -85,10 +66,6 @@ impl<E: Editing> Measured for IndexedFaceSet<E> {
     }
 
     fn probed<P: Probe>(self, probe: P) -> IndexedFaceSet<E, P> {
-        IndexedFaceSet {
-            positions: self.positions.probed(probe.clone()),
-            vertex_holes: E::probed_holes(self.vertex_holes, probe.clone()),
-            faces: self.faces.probed(probe),
-        }
+        self.with_probe(probe)
     }
 }

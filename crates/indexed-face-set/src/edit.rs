@@ -1,10 +1,11 @@
-//! Edits. [`ScannedFaces`](sixfold_core::ScannedFaces) edits the faces; this file edits the
+//! Edits. [`ScannedFaces`](sixfold_scanning::ScannedFaces) edits the faces; this file edits the
 //! vertices.
 
 use sixfold_core::{
-    Compact, Edit, EditError, EditLog, Editable, FaceId, MAX_ROWS, MeshEdit, MeshQuery, NewRows,
-    NoHoles, Pair, Point, Probe, QueryCost, Refusal, VertexId, check_rows, row, uses_reports,
+    Edit, EditError, EditLog, Editable, FaceId, MAX_ROWS, MeshEdit, MeshQuery, NewRows, Pair,
+    Point, Probe, QueryCost, Refusal, VertexId, check_rows, row, uses_reports,
 };
+use sixfold_scanning::ScannedFaces;
 
 use crate::mesh::IndexedFaceSet;
 
@@ -16,20 +17,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         costs
     };
 
-    type Compact = IndexedFaceSet<Compact, P>;
-
-    fn into_compact(mut self) -> IndexedFaceSet<Compact, P> {
-        self.compact();
-        IndexedFaceSet {
-            positions: self.positions,
-            faces: self.faces.into_compact().expect("compacted"),
-            vertex_holes: NoHoles,
-        }
-    }
-
-    fn from_compact(compact: IndexedFaceSet<Compact, P>) -> Self {
-        compact.into()
-    }
+    sixfold_core::compact_conversions!(IndexedFaceSet);
 
     /// Takes O(1) time.
     fn set_position_logged(
@@ -49,8 +37,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         at: Point,
         log: &mut impl EditLog<Self>,
     ) -> Result<VertexId, Refusal<Self>> {
-        let v = self.next_vertex(at)?;
-        self.store_vertex(at);
+        let v = self.adding_vertex(at, |_, v| Ok(v))?;
         log.created_vertex(v);
         Ok(v)
     }
@@ -65,7 +52,72 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         self.faces.add_face(corners, log)
     }
 
-    sixfold_core::scanned_edits!();
+    /// Takes O(degree) time, and one scan if the log records edits.
+    fn remove_face_logged(
+        &mut self,
+        f: FaceId,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal<Self>> {
+        self.faces.remove_face(f, log)
+    }
+
+    /// Takes one scan.
+    fn split_edge_logged(
+        &mut self,
+        e: Pair<VertexId>,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        self.adding_vertex(at, |faces, m| faces.split_edge(e, m, log))
+    }
+
+    /// Takes one scan.
+    fn bisect_edge_logged(
+        &mut self,
+        e: Pair<VertexId>,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        self.adding_vertex(at, |faces, m| faces.bisect_edge(e, m, log))
+    }
+
+    /// Takes O(degree) time.
+    fn poke_face_logged(
+        &mut self,
+        f: FaceId,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<VertexId, Refusal<Self>> {
+        self.adding_vertex(at, |faces, m| faces.poke_face(f, m, log))
+    }
+
+    /// Takes O(degree) time, and one scan if the log records edits.
+    fn split_face_logged(
+        &mut self,
+        f: FaceId,
+        ends: [VertexId; 2],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<Pair<VertexId>, Refusal<Self>> {
+        self.faces.split_face(f, ends, log)
+    }
+
+    /// Takes one scan.
+    fn dissolve_edge_logged(
+        &mut self,
+        e: Pair<VertexId>,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<FaceId, Refusal<Self>> {
+        self.faces.dissolve_edge(e, log)
+    }
+
+    /// Takes two scans.
+    fn flip_edge_logged(
+        &mut self,
+        e: Pair<VertexId>,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<Pair<VertexId>, Refusal<Self>> {
+        self.faces.flip_edge(e, log)
+    }
 
     /// Takes one scan, or two scans if the log records edits.
     fn remove_vertex_logged(
@@ -120,10 +172,7 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
         log: &mut impl EditLog<Self>,
     ) -> Result<VertexId, Refusal<Self>> {
         self.check_vertex(v)?;
-        let n = self.next_vertex(at)?;
-        self.faces.split_vertex(v, left, right, n, log)?;
-        self.store_vertex(at);
-        Ok(n)
+        self.adding_vertex(at, |faces, n| faces.split_vertex(v, left, right, n, log))
     }
 
     fn compact_logged(&mut self, log: &mut impl EditLog<Self>) {
@@ -145,27 +194,33 @@ impl<P: Probe> MeshEdit for IndexedFaceSet<Editable, P> {
 
 impl<P: Probe> IndexedFaceSet<Editable, P> {
     fn check_vertex(&self, v: VertexId) -> Result<(), Refusal<Self>> {
-        match self.has(v) {
+        match self.contains_vertex(v) {
             true => Ok(()),
             false => Err(EditError::NoSuchVertex { vertex: v }),
         }
     }
 
-    /// Returns the handle of the next new vertex, or an error if all handles are in use.
-    fn next_vertex(&self, _: Point) -> Result<VertexId, Refusal<Self>> {
+    /// Adds a vertex at `at` after `edit`, which gets and returns the handle of this vertex. Adds
+    /// nothing if all handles are in use, or if the edit is refused.
+    fn adding_vertex(
+        &mut self,
+        at: Point,
+        edit: impl FnOnce(
+            &mut ScannedFaces<VertexId, P, Editable>,
+            VertexId,
+        ) -> Result<VertexId, Refusal<Self>>,
+    ) -> Result<VertexId, Refusal<Self>> {
         check_rows("vertices", self.positions.len() + 1, MAX_ROWS)?;
-        Ok(VertexId::new(row(self.positions.len())))
-    }
-
-    /// Adds the vertex with the handle that [`next_vertex`](Self::next_vertex) returned.
-    fn store_vertex(&mut self, at: Point) {
+        let v = edit(&mut self.faces, VertexId::new(row(self.positions.len())))?;
         self.positions.push(at);
+        Ok(v)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use sixfold_core::{EditRecord, PolygonMesh, Representation, ScannedVertex};
+    use sixfold_core::{EditRecord, PolygonMesh, Representation};
+    use sixfold_scanning::ScannedVertex;
 
     use super::*;
     use crate::EditableIndexedFaceSet;

@@ -27,7 +27,7 @@
 //! All edits are supported. All edits except `set_position`, `add_vertex` and edits of a single
 //! face scan all corners. An edge flip needs two scans. Use the structure to edit a few elements,
 //! or to add and remove faces, which takes O(1) per corner. For many edits of edges, use a
-//! structure that stores neighbours. [`ScannedFaces`](sixfold_core::ScannedFaces) implements the
+//! structure that stores neighbours. [`ScannedFaces`](sixfold_scanning::ScannedFaces) implements the
 //! scan and the face edits of the indexed face set and of the polygon soup.
 //!
 //! # Examples

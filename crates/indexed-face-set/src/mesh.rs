@@ -1,9 +1,9 @@
 //! The tables, their invariants, and access to them.
 
 use sixfold_core::{
-    Compact, Editable, Editing, FaceId, FaceSpans, HoleSet, Point, Probe, ScannedFaces, Table,
-    Untraced, VERTEX_HOLES, VertexId,
+    Compact, Editing, FaceId, FaceSpans, HoleSet, Point, Probe, Table, Untraced, VertexId,
 };
+use sixfold_scanning::ScannedFaces;
 
 /// A mesh with the position of each vertex and the vertices of each face.
 ///
@@ -77,19 +77,12 @@ pub struct IndexedFaceSet<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) faces: ScannedFaces<VertexId, P, E>,
 }
 
-sixfold_core::clone_by_field!(IndexedFaceSet<E: Editing, P: Probe> { positions, vertex_holes, faces });
+sixfold_core::mesh_tables!(IndexedFaceSet {
+    tables: positions;
+    holes: vertex_holes;
+    faces: faces;
+});
 sixfold_core::polygon_conversions!(IndexedFaceSet);
-
-impl<P: Probe> From<IndexedFaceSet<Compact, P>> for IndexedFaceSet<Editable, P> {
-    fn from(mesh: IndexedFaceSet<Compact, P>) -> Self {
-        let probe = mesh.positions.probe();
-        Self {
-            positions: mesh.positions,
-            faces: mesh.faces.into(),
-            vertex_holes: Editable::no_holes(VERTEX_HOLES, probe),
-        }
-    }
-}
 
 impl<P: Probe, E: Editing> IndexedFaceSet<E, P> {
     /// Returns the position of each vertex, including deleted vertices.
@@ -115,11 +108,6 @@ impl<P: Probe, E: Editing> IndexedFaceSet<E, P> {
     #[inline]
     pub fn face(&self, f: FaceId) -> &[VertexId] {
         self.faces.face(f)
-    }
-
-    #[inline]
-    pub(crate) fn has(&self, v: VertexId) -> bool {
-        v.index() < self.positions.len() && !self.vertex_holes.has(v.index())
     }
 
     /// Returns `v` if `v` exists.

@@ -1,7 +1,7 @@
 //! The nine relations.
 
 use sixfold_core::{
-    Capabilities, Editing, FaceId, HoleSet, IteratorExt, MeshQuery, Pair, Point, Probe, VertexId,
+    Capabilities, Editing, FaceId, IteratorExt, MeshQuery, Pair, Point, Probe, VertexId,
 };
 
 use crate::mesh::IndexedFaceSet;
@@ -13,31 +13,24 @@ impl<P: Probe, E: Editing> MeshQuery for IndexedFaceSet<E, P> {
 
     const CAPABILITIES: Capabilities = Capabilities::ALL;
 
-    #[inline]
-    fn vertices(&self) -> impl Iterator<Item = VertexId> {
-        self.vertex_holes.handles(self.positions.len())
-    }
+    sixfold_core::vertex_rows!(
+        #[inline]
+        self,
+        self.positions.len(),
+        self.vertex_holes
+    );
+    sixfold_core::face_rows!(
+        #[inline]
+        self,
+        self.faces.spans.len(),
+        self.faces.holes
+    );
 
     /// Lists the edges, sorted by their lower ends.
     fn edges(&self) -> impl Iterator<Item = Pair<VertexId>> {
         let faces = &self.faces;
         let vertices = self.positions.len();
         faces.spans.edges(&faces.corners, &faces.holes, vertices)
-    }
-
-    #[inline]
-    fn faces(&self) -> impl Iterator<Item = FaceId> {
-        self.faces.handles()
-    }
-
-    #[inline]
-    fn vertex_count(&self) -> usize {
-        self.positions.len() - self.vertex_holes.len()
-    }
-
-    #[inline]
-    fn face_count(&self) -> usize {
-        self.faces.len()
     }
 
     #[inline]
@@ -94,34 +87,14 @@ impl<P: Probe, E: Editing> MeshQuery for IndexedFaceSet<E, P> {
     }
 
     #[inline]
-    fn contains_vertex(&self, v: VertexId) -> bool {
-        self.vertex_holes.contains(v, self.vertex_rows())
-    }
-
-    #[inline]
     fn contains_edge(&self, e: Pair<VertexId>) -> bool {
         let [a, b] = e.ends();
         self.contains_vertex(a) && self.contains_vertex(b) && self.edge_faces(e).next().is_some()
     }
 
     #[inline]
-    fn contains_face(&self, f: FaceId) -> bool {
-        self.faces.holes.contains(f, self.face_rows())
-    }
-
-    #[inline]
-    fn vertex_rows(&self) -> usize {
-        self.positions.len()
-    }
-
-    #[inline]
     fn edge_rows(&self) -> usize {
         0
-    }
-
-    #[inline]
-    fn face_rows(&self) -> usize {
-        self.faces.spans.len()
     }
 }
 

@@ -1,6 +1,7 @@
 //! One check for each invariant.
 
-use sixfold_core::{Editing, HoleSet, InvariantError, IteratorExt, MeshQuery, Probe};
+use sixfold_core::invariant_checks::{check_corners_of_face, fails};
+use sixfold_core::{Editing, HoleSet, InvariantError, MeshQuery, Probe};
 
 use crate::mesh::IndexedFaceSet;
 
@@ -15,39 +16,30 @@ impl<P: Probe, E: Editing> IndexedFaceSet<E, P> {
     /// I1: the faces share no corners, and each face has at least three corners.
     fn check_spans(&self) -> Result<(), InvariantError> {
         let checked = self.spans().check(self.corners().len());
-        checked.map_err(|detail| InvariantError::new("I1", detail))
+        checked.or_else(|detail| fails("I1", detail))
     }
 
     /// I3: holes are rows, and exactly the corners of no face are blank.
     fn check_holes(&self) -> Result<(), InvariantError> {
         let checked = self.vertex_holes.check(self.positions.len());
         let checked = checked.and_then(|()| self.faces.check_holes());
-        checked.map_err(|detail| InvariantError::new("I3", detail))
+        checked.or_else(|detail| fails("I3", detail))
     }
 
     /// I2: the vertices of a face exist and are distinct.
     fn check_faces(&self) -> Result<(), InvariantError> {
-        let fails = |detail: String| Err(InvariantError::new("I2", detail));
-        for f in self.faces() {
-            let face = self.face(f);
-            if let Some(v) = face.iter().find(|v| !self.has(**v)) {
-                return fails(format!("{f} has vertex {v}, which does not exist"));
-            }
-            let mut once = face.iter().distinct();
-            if let Some(v) = face.iter().find(|&v| once.next() != Some(v)) {
-                return fails(format!("{f} has vertex {v} twice"));
-            }
-        }
-        Ok(())
+        let exists = |v| self.contains_vertex(v);
+        let mut faces = self.faces();
+        faces.try_for_each(|f| check_corners_of_face("I2", f, self.face(f), exists))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use sixfold_core::{
-        FaceId, FaceSpans, MeshEdit, Point, PolygonMesh, Representation, ScannedVertex, Table,
-        VertexId,
+        FaceId, FaceSpans, MeshEdit, Point, PolygonMesh, Representation, Table, VertexId,
     };
+    use sixfold_scanning::ScannedVertex;
 
     use crate::EditableIndexedFaceSet;
 

@@ -4,9 +4,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use sixfold_core::{
     BuildError, Counts, EditLog, Editing, FaceId, FaceList, Handle, InvariantError, IteratorExt,
     Measured, MemoryFootprint, MeshMove, MeshQuery, MoveError, Pair, Point, PolygonMesh, Probe,
-    QueryCost, Representation, ScannedFaces, ScannedVertex, ShortVec, VertexId, VertexMap, row,
-    uses_reports,
+    QueryCost, Representation, ShortVec, VertexId, VertexMap, row, uses_reports,
 };
+use sixfold_scanning::{ScannedFaces, ScannedVertex};
 
 use crate::mesh::PolygonSoup;
 use crate::vertex::SoupVertex;
@@ -21,12 +21,7 @@ impl<E: Editing> Representation for PolygonSoup<E> {
         ]
     };
 
-    fn type_path() -> &'static str {
-        match E::CAN_DELETE {
-            true => "sixfold_polygon_soup::EditablePolygonSoup",
-            false => "sixfold_polygon_soup::PolygonSoup",
-        }
-    }
+    sixfold_core::type_path!(PolygonSoup);
 
     /// Copies the position of every corner; O(corners).
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
@@ -75,7 +70,7 @@ impl<E: Editing> Representation for PolygonSoup<E> {
     }
 
     fn memory(&self) -> MemoryFootprint {
-        self.faces.bytes().collect()
+        self.table_bytes()
     }
 
     fn validate(&self) -> Result<(), InvariantError> {
@@ -185,9 +180,7 @@ impl<E: Editing> Measured for PolygonSoup<E> {
     }
 
     fn probed<P: Probe>(self, probe: P) -> PolygonSoup<E, P> {
-        PolygonSoup {
-            faces: self.faces.probed(probe),
-        }
+        self.with_probe(probe)
     }
 }
 

@@ -1,9 +1,9 @@
-//! Edits. [`ScannedFaces`](sixfold_core::ScannedFaces) does the edits, because a soup has only
+//! Edits. [`ScannedFaces`](sixfold_scanning::ScannedFaces) does the edits, because a soup has only
 //! faces.
 
 use sixfold_core::{
-    Compact, Edit, EditError, EditLog, Editable, FaceId, MeshEdit, Pair, Point, Probe, QueryCost,
-    Refusal, Representation,
+    Edit, EditError, EditLog, Editable, FaceId, MeshEdit, Pair, Point, Probe, QueryCost, Refusal,
+    Representation,
 };
 
 use crate::EditablePolygonSoup;
@@ -21,18 +21,7 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         costs
     };
 
-    type Compact = PolygonSoup<Compact, P>;
-
-    fn into_compact(mut self) -> PolygonSoup<Compact, P> {
-        self.compact();
-        PolygonSoup {
-            faces: self.faces.into_compact().expect("compacted"),
-        }
-    }
-
-    fn from_compact(compact: PolygonSoup<Compact, P>) -> Self {
-        compact.into()
-    }
+    sixfold_core::compact_conversions!(PolygonSoup);
 
     /// Takes one scan. The vertex and its edges get new handles.
     fn set_position_logged(
@@ -68,7 +57,72 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         self.faces.add_face(corners, log)
     }
 
-    sixfold_core::scanned_edits!();
+    /// Takes O(degree) time, and one scan if the log records edits.
+    fn remove_face_logged(
+        &mut self,
+        f: FaceId,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<(), Refusal<Self>> {
+        self.faces.remove_face(f, log)
+    }
+
+    /// Takes one scan.
+    fn split_edge_logged(
+        &mut self,
+        e: Pair<SoupVertex>,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<SoupVertex, Refusal<Self>> {
+        self.faces.split_edge(e, SoupVertex::at(at), log)
+    }
+
+    /// Takes one scan.
+    fn bisect_edge_logged(
+        &mut self,
+        e: Pair<SoupVertex>,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<SoupVertex, Refusal<Self>> {
+        self.faces.bisect_edge(e, SoupVertex::at(at), log)
+    }
+
+    /// Takes one scan, to check that the position is free.
+    fn poke_face_logged(
+        &mut self,
+        f: FaceId,
+        at: Point,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<SoupVertex, Refusal<Self>> {
+        self.faces.poke_face(f, SoupVertex::at(at), log)
+    }
+
+    /// Takes O(degree) time, and one scan if the log records edits.
+    fn split_face_logged(
+        &mut self,
+        f: FaceId,
+        ends: [SoupVertex; 2],
+        log: &mut impl EditLog<Self>,
+    ) -> Result<Pair<SoupVertex>, Refusal<Self>> {
+        self.faces.split_face(f, ends, log)
+    }
+
+    /// Takes one scan.
+    fn dissolve_edge_logged(
+        &mut self,
+        e: Pair<SoupVertex>,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<FaceId, Refusal<Self>> {
+        self.faces.dissolve_edge(e, log)
+    }
+
+    /// Takes two scans.
+    fn flip_edge_logged(
+        &mut self,
+        e: Pair<SoupVertex>,
+        log: &mut impl EditLog<Self>,
+    ) -> Result<Pair<SoupVertex>, Refusal<Self>> {
+        self.faces.flip_edge(e, log)
+    }
 
     /// Takes one scan, or two scans if the log records edits.
     fn remove_vertex_logged(
@@ -108,30 +162,13 @@ impl<P: Probe> MeshEdit for PolygonSoup<Editable, P> {
         log: &mut impl EditLog<Self>,
     ) -> Result<SoupVertex, Refusal<Self>> {
         let n = SoupVertex::at(at);
-        self.faces.split_vertex(v, left, right, n, log)?;
-        Ok(n)
+        self.faces.split_vertex(v, left, right, n, log)
     }
 
     /// Keeps the handles of vertices and edges.
     fn compact_logged(&mut self, log: &mut impl EditLog<Self>) {
         self.faces.compact(log);
     }
-}
-
-impl<P: Probe> PolygonSoup<Editable, P> {
-    /// Returns the handle of a new vertex. Each edit itself checks that the position is free.
-    #[expect(
-        clippy::unused_self,
-        clippy::unnecessary_wraps,
-        reason = "scanned_edits! calls it"
-    )]
-    fn next_vertex(&self, at: Point) -> Result<SoupVertex, Refusal<Self>> {
-        Ok(SoupVertex::at(at))
-    }
-
-    /// Does nothing, because the corners of faces are the only places of vertices.
-    #[expect(clippy::unused_self, reason = "scanned_edits! calls it")]
-    fn store_vertex(&mut self, _: Point) {}
 }
 
 #[cfg(test)]

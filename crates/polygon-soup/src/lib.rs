@@ -13,7 +13,7 @@
 //!
 //! Adding and removing faces takes O(1) per corner. Nearly every edit of vertices and edges begins
 //! with a scan of all corners. For many edits, use a structure that stores neighbours.
-//! [`ScannedFaces`](sixfold_core::ScannedFaces) implements the scan and the edits of the polygon
+//! [`ScannedFaces`](sixfold_scanning::ScannedFaces) implements the scan and the edits of the polygon
 //! soup and of the indexed face set.
 
 mod construct;

@@ -1,8 +1,7 @@
 //! The table, its invariants, and access to it.
 
-use sixfold_core::{
-    Compact, Editable, Editing, FaceId, FaceSpans, Point, Probe, ScannedFaces, Untraced,
-};
+use sixfold_core::{Compact, Editing, FaceId, FaceSpans, Point, Probe, Untraced};
+use sixfold_scanning::ScannedFaces;
 
 use crate::vertex::SoupVertex;
 
@@ -95,16 +94,10 @@ pub struct PolygonSoup<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) faces: ScannedFaces<SoupVertex, P, E>,
 }
 
-sixfold_core::clone_by_field!(PolygonSoup<E: Editing, P: Probe> { faces });
+sixfold_core::mesh_tables!(PolygonSoup {
+    faces: faces;
+});
 sixfold_core::polygon_conversions!(PolygonSoup);
-
-impl<P: Probe> From<PolygonSoup<Compact, P>> for PolygonSoup<Editable, P> {
-    fn from(mesh: PolygonSoup<Compact, P>) -> Self {
-        Self {
-            faces: mesh.faces.into(),
-        }
-    }
-}
 
 impl<P: Probe, E: Editing> PolygonSoup<E, P> {
     /// Returns the position of each corner, face by face, including blank corners.

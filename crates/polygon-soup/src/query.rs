@@ -1,8 +1,6 @@
 //! The nine relations.
 
-use sixfold_core::{
-    Capabilities, Editing, FaceId, HoleSet, IteratorExt, MeshQuery, Pair, Point, Probe,
-};
+use sixfold_core::{Capabilities, Editing, FaceId, IteratorExt, MeshQuery, Pair, Point, Probe};
 
 use crate::mesh::PolygonSoup;
 use crate::vertex::SoupVertex;
@@ -18,6 +16,13 @@ impl<P: Probe, E: Editing> MeshQuery for PolygonSoup<E, P> {
         ..Capabilities::ALL
     };
 
+    sixfold_core::face_rows!(
+        #[inline]
+        self,
+        self.faces.spans.len(),
+        self.faces.holes
+    );
+
     /// Lists the vertices in the order in which the faces first contain them.
     fn vertices(&self) -> impl Iterator<Item = SoupVertex> {
         self.faces().flat_map(|f| self.face_vertices(f)).distinct()
@@ -26,16 +31,6 @@ impl<P: Probe, E: Editing> MeshQuery for PolygonSoup<E, P> {
     /// Lists the edges in the order in which the faces first contain them.
     fn edges(&self) -> impl Iterator<Item = Pair<SoupVertex>> {
         self.faces().flat_map(|f| self.face_edges(f)).distinct()
-    }
-
-    #[inline]
-    fn faces(&self) -> impl Iterator<Item = FaceId> {
-        self.faces.handles()
-    }
-
-    #[inline]
-    fn face_count(&self) -> usize {
-        self.faces.len()
     }
 
     #[inline]
@@ -99,11 +94,6 @@ impl<P: Probe, E: Editing> MeshQuery for PolygonSoup<E, P> {
         self.edge_faces(e).next().is_some()
     }
 
-    #[inline]
-    fn contains_face(&self, f: FaceId) -> bool {
-        self.faces.holes.contains(f, self.face_rows())
-    }
-
     fn vertex_rows(&self) -> usize {
         0
     }
@@ -111,15 +101,12 @@ impl<P: Probe, E: Editing> MeshQuery for PolygonSoup<E, P> {
     fn edge_rows(&self) -> usize {
         0
     }
-
-    fn face_rows(&self) -> usize {
-        self.faces.spans.len()
-    }
 }
 
 #[cfg(test)]
 mod tests {
-    use sixfold_core::{Measured, PolygonMesh, Representation, SearchSet, Traced, VertexId};
+    use sixfold_core::{Measured, PolygonMesh, Representation, Traced, VertexId};
+    use sixfold_scanning::SearchSet;
 
     use super::*;
     use crate::PolygonSoup;

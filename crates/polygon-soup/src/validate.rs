@@ -1,6 +1,8 @@
 //! One check for each invariant.
 
-use sixfold_core::{Editing, InvariantError, IteratorExt, MeshQuery, Probe, ScannedVertex};
+use sixfold_core::invariant_checks::fails;
+use sixfold_core::{Editing, InvariantError, IteratorExt, MeshQuery, Probe};
+use sixfold_scanning::ScannedVertex;
 
 use crate::mesh::PolygonSoup;
 use crate::vertex::SoupVertex;
@@ -17,13 +19,13 @@ impl<P: Probe, E: Editing> PolygonSoup<E, P> {
     /// I1: the faces share no corners, and each face has at least three corners.
     fn check_spans(&self) -> Result<(), InvariantError> {
         let checked = self.spans().check(self.corners().len());
-        checked.map_err(|detail| InvariantError::new("I1", detail))
+        checked.or_else(|detail| fails("I1", detail))
     }
 
     /// I4: holes are faces, and exactly the corners of no face are blank.
     fn check_holes(&self) -> Result<(), InvariantError> {
         let checked = self.faces.check_holes();
-        checked.map_err(|detail| InvariantError::new("I4", detail))
+        checked.or_else(|detail| fails("I4", detail))
     }
 
     /// I2: no coordinate is −0, and only blank corners have the x of a blank corner.
@@ -33,7 +35,7 @@ impl<P: Probe, E: Editing> PolygonSoup<E, P> {
         match stored.find(|(_, p)| !SoupVertex::at(**p).is_at(p)) {
             Some((corner, point)) => {
                 let detail = format!("corner {corner} is at {point}, with a negative zero");
-                Err(InvariantError::new("I2", detail))
+                fails("I2", detail)
             }
             None => Ok(()),
         }
@@ -45,7 +47,7 @@ impl<P: Probe, E: Editing> PolygonSoup<E, P> {
             let mut once = self.face_vertices(f).distinct();
             if let Some(v) = self.face_vertices(f).find(|&v| once.next() != Some(v)) {
                 let detail = format!("two corners of {f} are at {v}");
-                return Err(InvariantError::new("I3", detail));
+                return fails("I3", detail);
             }
         }
         Ok(())

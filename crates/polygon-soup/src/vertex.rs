@@ -5,7 +5,8 @@ use std::fmt;
 use std::hash::{Hash, Hasher};
 
 use rustc_hash::FxHashSet;
-use sixfold_core::{Handle, HashHandleMap, Point, ScannedVertex};
+use sixfold_core::{Handle, HashHandleMap, Point};
+use sixfold_scanning::ScannedVertex;
 
 /// The handle of a vertex of a polygon soup: the bits of its coordinates. A coordinate −0 is stored
 /// as 0.

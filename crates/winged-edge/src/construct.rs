@@ -1,10 +1,9 @@
 //! Building from polygons, and conversion to polygons.
 
 use sixfold_core::{
-    BuildError, Counts, EDGE_HOLES, EdgeId, EditLog, Editing, FACE_HOLES, FaceId, FaceList,
-    HoleSet, InvariantError, LinkFaces, Measured, MemoryFootprint, MeshMove, MeshQuery, MoveError,
-    NewRows, Point, PolygonMesh, Probe, QueryCost, Representation, RowMap, Slot, Table, TwinPairs,
-    Untraced, VERTEX_HOLES, VertexId, row,
+    BuildError, Counts, EDGE_HOLES, EdgeId, Editing, FACE_HOLES, FaceId, FaceList, InvariantError,
+    LinkFaces, Measured, MemoryFootprint, MeshQuery, NewRows, Point, PolygonMesh, Probe, QueryCost,
+    Representation, Slot, Table, TwinPairs, Untraced, VERTEX_HOLES, VertexId, row,
 };
 
 use crate::edge::{Edge, Run};
@@ -16,12 +15,7 @@ impl<E: Editing> Representation for WingedEdgeMesh<E> {
 
     const COSTS: [QueryCost; 9] = [QueryCost::Constant; 9];
 
-    fn type_path() -> &'static str {
-        match E::CAN_DELETE {
-            true => "sixfold_winged_edge::EditableWingedEdgeMesh",
-            false => "sixfold_winged_edge::WingedEdgeMesh",
-        }
-    }
+    sixfold_core::type_path!(WingedEdgeMesh);
 
     /// Pairs the sides, writes each side into the record of its edge, then links the boundary
     /// loops. O(corners + vertices).
@@ -50,34 +44,10 @@ impl<E: Editing> Representation for WingedEdgeMesh<E> {
         rows.polygons(self, self.positions(), 2 * self.edge_count())
     }
 
-    fn vertex_handle(_: &PolygonMesh, v: VertexId) -> VertexId {
-        v
-    }
-
-    fn face_handle(_: &PolygonMesh, f: FaceId) -> FaceId {
-        f
-    }
+    sixfold_core::row_handles!();
 
     fn memory(&self) -> MemoryFootprint {
-        let Self {
-            positions,
-            spokes,
-            edges,
-            sides,
-            vertex_holes,
-            edge_holes,
-            face_holes,
-        } = self;
-        let holes = [vertex_holes, edge_holes, face_holes];
-        [
-            positions.bytes(),
-            spokes.bytes(),
-            edges.bytes(),
-            sides.bytes(),
-        ]
-        .into_iter()
-        .chain(holes.into_iter().filter_map(|holes| holes.bytes()))
-        .collect()
+        self.table_bytes()
     }
 
     fn validate(&self) -> Result<(), InvariantError> {
@@ -85,16 +55,7 @@ impl<E: Editing> Representation for WingedEdgeMesh<E> {
     }
 }
 
-impl<E: Editing> MeshMove for WingedEdgeMesh<E> {
-    fn set_positions_logged(
-        &mut self,
-        positions: &RowMap<VertexId, Point>,
-        _: &mut impl EditLog<Self>,
-    ) -> Result<(), MoveError> {
-        self.positions.set_positions(positions)
-    }
-}
-
+sixfold_core::moving_positions!(WingedEdgeMesh);
 sixfold_core::local_queries!(crate::WingedEdgeMesh, crate::EditableWingedEdgeMesh);
 
 impl<E: Editing> Measured for WingedEdgeMesh<E> {
@@ -105,15 +66,7 @@ impl<E: Editing> Measured for WingedEdgeMesh<E> {
     }
 
     fn probed<P: Probe>(self, probe: P) -> WingedEdgeMesh<E, P> {
-        WingedEdgeMesh {
-            positions: self.positions.probed(probe.clone()),
-            spokes: self.spokes.probed(probe.clone()),
-            edges: self.edges.probed(probe.clone()),
-            sides: self.sides.probed(probe.clone()),
-            vertex_holes: E::probed_holes(self.vertex_holes, probe.clone()),
-            edge_holes: E::probed_holes(self.edge_holes, probe.clone()),
-            face_holes: E::probed_holes(self.face_holes, probe),
-        }
+        self.with_probe(probe)
     }
 }
 

@@ -8,8 +8,8 @@
 //! between `a` and `b`, along the side where the edge runs from `a` to `b`.
 
 use sixfold_core::{
-    Compact, EdgeId, Edit, EditLog, Editable, FaceId, MeshEdit, NoHoles, Point, Probe, QueryCost,
-    Refusal, Slot, VertexId,
+    EdgeId, Edit, EditLog, Editable, FaceId, MeshEdit, Point, Probe, QueryCost, Refusal, Slot,
+    VertexId,
 };
 
 use crate::mesh::WingedEdgeMesh;
@@ -29,24 +29,7 @@ mod tests;
 impl<P: Probe> MeshEdit for WingedEdgeMesh<Editable, P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = Edit::LOCAL_COSTS;
 
-    type Compact = WingedEdgeMesh<Compact, P>;
-
-    fn into_compact(mut self) -> WingedEdgeMesh<Compact, P> {
-        self.compact();
-        WingedEdgeMesh {
-            positions: self.positions,
-            spokes: self.spokes,
-            edges: self.edges,
-            sides: self.sides,
-            vertex_holes: NoHoles,
-            edge_holes: NoHoles,
-            face_holes: NoHoles,
-        }
-    }
-
-    fn from_compact(compact: WingedEdgeMesh<Compact, P>) -> Self {
-        compact.into()
-    }
+    sixfold_core::compact_conversions!(WingedEdgeMesh);
 
     /// O(1).
     #[inline]

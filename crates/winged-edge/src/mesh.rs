@@ -1,8 +1,7 @@
 //! The tables of a winged-edge mesh, their invariants, and the classic operators.
 
 use sixfold_core::{
-    Compact, EDGE_HOLES, EdgeId, Editable, Editing, FACE_HOLES, FaceId, HoleSet, Point, Probe,
-    Slot, Table, Untraced, VERTEX_HOLES, VertexId,
+    Compact, EdgeId, Editing, FaceId, HoleSet, Point, Probe, Slot, Table, Untraced, VertexId,
 };
 
 use crate::edge::{Edge, NO_EDGE, Run};
@@ -66,23 +65,11 @@ pub struct WingedEdgeMesh<E: Editing = Compact, P: Probe = Untraced> {
     pub(crate) face_holes: E::Holes<P>,
 }
 
-sixfold_core::clone_by_field!(WingedEdgeMesh<E: Editing, P: Probe> { positions, spokes, edges, sides, vertex_holes, edge_holes, face_holes });
+sixfold_core::mesh_tables!(WingedEdgeMesh {
+    tables: positions, spokes, edges, sides;
+    holes: vertex_holes, edge_holes, face_holes;
+});
 sixfold_core::polygon_conversions!(WingedEdgeMesh);
-
-impl<P: Probe> From<WingedEdgeMesh<Compact, P>> for WingedEdgeMesh<Editable, P> {
-    fn from(mesh: WingedEdgeMesh<Compact, P>) -> Self {
-        let probe = mesh.positions.probe();
-        Self {
-            positions: mesh.positions,
-            spokes: mesh.spokes,
-            edges: mesh.edges,
-            sides: mesh.sides,
-            vertex_holes: Editable::no_holes(VERTEX_HOLES, probe.clone()),
-            edge_holes: Editable::no_holes(EDGE_HOLES, probe.clone()),
-            face_holes: Editable::no_holes(FACE_HOLES, probe),
-        }
-    }
-}
 
 /// Access to the fields of edges, vertices and faces. Each function takes O(1) time, and panics if
 /// its argument does not exist or was deleted.

@@ -15,32 +15,9 @@ impl<P: Probe, E: Editing> MeshQuery for WingedEdgeMesh<E, P> {
 
     const CAPABILITIES: Capabilities = Capabilities::ORIENTED_MANIFOLDS;
 
-    #[inline]
-    fn vertices(&self) -> impl Iterator<Item = VertexId> {
-        self.vertex_holes.handles(self.positions.len())
-    }
-
-    #[inline]
-    fn edges(&self) -> impl Iterator<Item = EdgeId> {
-        self.edge_holes.handles(self.edges.len())
-    }
-
-    #[inline]
-    fn faces(&self) -> impl Iterator<Item = FaceId> {
-        self.face_holes.handles(self.sides.len())
-    }
-
-    fn vertex_count(&self) -> usize {
-        self.positions.len() - self.vertex_holes.len()
-    }
-
-    fn edge_count(&self) -> usize {
-        self.edges.len() - self.edge_holes.len()
-    }
-
-    fn face_count(&self) -> usize {
-        self.sides.len() - self.face_holes.len()
-    }
+    sixfold_core::vertex_rows!(self, self.positions.len(), self.vertex_holes);
+    sixfold_core::edge_rows!(self, self.edges.len(), self.edge_holes);
+    sixfold_core::face_rows!(self, self.sides.len(), self.face_holes);
 
     #[inline]
     fn position(&self, v: VertexId) -> Point {
@@ -103,33 +80,6 @@ impl<P: Probe, E: Editing> MeshQuery for WingedEdgeMesh<E, P> {
     fn edge_between(&self, a: VertexId, b: VertexId) -> Option<EdgeId> {
         let mut runs = self.runs_from(a);
         runs.find_map(|(e, run)| (run.target() == b).then_some(e))
-    }
-
-    #[inline]
-    fn contains_vertex(&self, v: VertexId) -> bool {
-        self.vertex_holes.contains(v, self.vertex_rows())
-    }
-
-    #[inline]
-    fn contains_edge(&self, e: EdgeId) -> bool {
-        self.edge_holes.contains(e, self.edge_rows())
-    }
-
-    #[inline]
-    fn contains_face(&self, f: FaceId) -> bool {
-        self.face_holes.contains(f, self.face_rows())
-    }
-
-    fn vertex_rows(&self) -> usize {
-        self.positions.len()
-    }
-
-    fn edge_rows(&self) -> usize {
-        self.edges.len()
-    }
-
-    fn face_rows(&self) -> usize {
-        self.sides.len()
     }
 
     /// Returns the walk around `v`, which is counter-clockwise and starts on the boundary.

@@ -3,8 +3,9 @@
 #[cfg(test)]
 mod tests;
 
-use std::collections::HashSet;
-
+use sixfold_core::invariant_checks::{
+    check_distinct_edges, check_fans, check_holes, check_walks_along_faces, fails,
+};
 use sixfold_core::{EdgeId, Editing, HoleSet, InvariantError, MeshQuery, Slot};
 
 use crate::edge::{Edge, NO_EDGE, Run};
@@ -12,20 +13,18 @@ use crate::mesh::WingedEdgeMesh;
 
 /// Checks I9, then I1 to I8. Each check relies on the earlier checks.
 pub(crate) fn validate<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
-    check_holes(mesh)?;
+    check_deleted(mesh)?;
     check_handles(mesh)?;
     check_edge_sides(mesh)?;
     check_ends(mesh)?;
     check_cycle_faces(mesh)?;
     check_inverse_wings(mesh)?;
     check_spokes(mesh)?;
-    check_fans(mesh)?;
+    let origins = runs(mesh).map(|(_, run)| run.origin());
+    let walk = |v| mesh.vertex_edges(v).count();
+    check_fans("I6", mesh, "edges", origins, walk)?;
     check_faces(mesh)?;
-    check_distinct_edges(mesh)
-}
-
-fn fails(invariant: &'static str, detail: String) -> Result<(), InvariantError> {
-    Err(InvariantError::new(invariant, detail))
+    check_distinct_edges("I8", mesh)
 }
 
 fn runs<E: Editing>(mesh: &WingedEdgeMesh<E>) -> impl Iterator<Item = (EdgeId, Run<'_>)> {
@@ -40,17 +39,14 @@ fn records<E: Editing>(mesh: &WingedEdgeMesh<E>) -> impl Iterator<Item = (EdgeId
 }
 
 /// Checks the first part of I9: exactly the deleted elements are marked as deleted.
-fn check_holes<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
+fn check_deleted<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
     let [vertices, edges, faces] = [mesh.spokes.len(), mesh.edges.len(), mesh.sides.len()];
-    for (holes, rows) in [
+    let kinds = [
         (&mesh.vertex_holes, vertices),
         (&mesh.edge_holes, edges),
         (&mesh.face_holes, faces),
-    ] {
-        if let Err(detail) = holes.check(rows) {
-            return fails("I9", detail);
-        }
-    }
+    ];
+    check_holes("I9", kinds)?;
     let spoke_kept = |&v: &usize| mesh.vertex_holes.has(v) && mesh.spoke_rows()[v] != Slot::NONE;
     if let Some(v) = (0..vertices).find(spoke_kept) {
         return fails("I9", format!("v{v} is deleted, but has a spoke"));
@@ -185,58 +181,13 @@ fn check_spokes<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantErr
     Ok(())
 }
 
-fn check_fans<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
-    let mut edges = vec![0_usize; mesh.vertex_rows()];
-    for (_, run) in runs(mesh) {
-        edges[run.origin().index()] += 1;
-    }
-    for v in mesh.vertices() {
-        let (walked, all) = (mesh.vertex_edges(v).count(), edges[v.index()]);
-        if walked != all {
-            return fails(
-                "I6",
-                format!("the walk around {v} visits {walked} of {all} edges"),
-            );
-        }
-    }
-    Ok(())
-}
-
 fn check_faces<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
-    let mut along = 0;
     for f in mesh.faces() {
         let e = mesh.side(f);
         if !mesh.edge(e).faces().contains(&Some(f)) {
             return fails("I7", format!("{f} is not a face of its side {e}"));
         }
-        let corners: Vec<_> = mesh.face_vertices(f).collect();
-        let distinct: HashSet<_> = corners.iter().collect();
-        if corners.len() < 3 || distinct.len() < corners.len() {
-            return fails("I7", format!("{f} has invalid corners: {corners:?}"));
-        }
-        along += corners.len();
     }
-    let with_face = runs(mesh)
-        .filter(|(_, run)| run.face() != Slot::NONE)
-        .count();
-    if along != with_face {
-        let detail =
-            format!("{with_face} sides have a face, but the walks along faces visit {along}");
-        return fails("I7", detail);
-    }
-    Ok(())
-}
-
-fn check_distinct_edges<E: Editing>(mesh: &WingedEdgeMesh<E>) -> Result<(), InvariantError> {
-    let mut ends = HashSet::new();
-    for e in mesh.edges() {
-        let [a, b] = mesh.edge_vertices(e);
-        if !ends.insert([a.min(b), a.max(b)]) {
-            return fails(
-                "I8",
-                format!("{e} and another edge have the same ends, {a} and {b}"),
-            );
-        }
-    }
-    Ok(())
+    let with_face = runs(mesh).filter(|(_, run)| run.face() != Slot::NONE);
+    check_walks_along_faces("I7", mesh, with_face.count())
 }

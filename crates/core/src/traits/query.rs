@@ -325,9 +325,10 @@ fn spoke<V: Eq + Copy>(corners: impl Iterator<Item = V>, v: V) -> [V; 2] {
         .expect("a face has corners")
 }
 
-/// Chains spokes `[after, before]` into one ring; `None` if the spokes form more than one chain or
-/// cycle.
-pub(crate) fn ring<V: Ord + Copy>(mut spokes: Vec<[V; 2]>) -> Option<Vec<V>> {
+/// Chains spokes into one ring around a vertex; O(n log n). There is one spoke for each face at the
+/// vertex: `[after, before]` are the vertices after and before the vertex in the face. An open ring
+/// starts and ends on the boundary. Returns `None` if the spokes form more than one chain or cycle.
+pub fn ring<V: Ord + Copy>(mut spokes: Vec<[V; 2]>) -> Option<Vec<V>> {
     let Some(&[any, _]) = spokes.first() else {
         return Some(Vec::new());
     };

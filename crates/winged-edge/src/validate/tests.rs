@@ -173,7 +173,7 @@ fn a_face_that_is_not_at_its_side_breaks_i7() {
 fn edges_with_the_same_ends_break_i8() {
     let mut mesh = mesh(4, &[&[0, 1, 2], &[1, 0, 3]]);
     merge(&mut mesh, 2, 3);
-    let parallel = check_distinct_edges(&mesh).expect_err("parallel edges");
+    let parallel = check_distinct_edges("I8", &mesh).expect_err("parallel edges");
     assert_eq!(parallel.invariant, "I8");
 }
 

@@ -3,18 +3,12 @@
 #[cfg(test)]
 mod tests;
 
-use crate::clone_by_field;
-use crate::handles::handle::Handle;
-use crate::handles::iterator_ext::IteratorExt;
-use crate::handles::pair::Pair;
-use crate::handles::row_id::{FaceId, VertexId};
-use crate::scanning::scan::hits_in;
-use crate::tables::editing::{Compact, Editable, Editing};
-use crate::tables::face_spans::FaceSpans;
-use crate::tables::holes::{FACE_HOLES, HoleSet, NoHoles};
-use crate::tables::memory::TableBytes;
-use crate::tables::probe::{Probe, Untraced};
-use crate::tables::table::Table;
+use sixfold_core::{
+    Compact, Editable, Editing, FACE_HOLES, FaceId, FaceSpans, Handle, HoleSet, IteratorExt,
+    NoHoles, Pair, Probe, Table, TableBytes, Untraced, VertexId,
+};
+
+use crate::scan::{hits_in, scan};
 
 /// The handle of a vertex in a structure that scans all corners. Each row of the table of corners
 /// stores the vertex of one corner as a [`Corner`](Self::Corner).
@@ -184,7 +178,7 @@ pub struct ScannedFaces<V: ScannedVertex, P: Probe = Untraced, E: Editing = Comp
     pub holes: E::Holes<P>,
 }
 
-clone_by_field!(ScannedFaces<V: ScannedVertex, P: Probe, E: Editing> { corners, spans, holes });
+sixfold_core::clone_by_field!(ScannedFaces<V: ScannedVertex, P: Probe, E: Editing> { corners, spans, holes });
 
 impl<V: ScannedVertex, E: Editing> ScannedFaces<V, Untraced, E> {
     /// Builds the faces from a table of corners and the ranges of the corners of each face.
@@ -231,6 +225,11 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
             spans: self.spans.probed(probe.clone()),
             holes: E::probed_holes(self.holes, probe),
         }
+    }
+
+    /// Returns the probe of the tables.
+    pub fn probe(&self) -> P {
+        self.corners.probe()
     }
 
     /// Returns the number of faces; O(1).
@@ -292,7 +291,7 @@ impl<V: ScannedVertex, P: Probe, E: Editing> ScannedFaces<V, P, E> {
         &self,
         set: SearchSet<V, V::Set>,
     ) -> impl Iterator<Item = usize> + use<'_, V, P, E> {
-        self.corners.scan(move |block| set.hits(block))
+        scan(&self.corners, move |block| set.hits(block))
     }
 
     /// Scans like [`scan`](Self::scan), but yields each corner with its face and with the vertices

@@ -1,18 +1,15 @@
 //! Splitting a vertex.
 
+use sixfold_core::{EditError, EditLog, Editable, Pair, Probe, ring};
+
 use super::{Refusal, ScannedMesh};
-use crate::edit::edit_error::EditError;
-use crate::edit::edit_log::EditLog;
-use crate::handles::pair::Pair;
-use crate::scanning::scanned::{ScannedFaces, ScannedVertex};
-use crate::tables::editing::Editable;
-use crate::tables::probe::Probe;
-use crate::traits::query::ring;
+use crate::scanned::{ScannedFaces, ScannedVertex};
 
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
-    /// Splits `v`; one scan of all corners. The new vertex `n` gets the faces that follow
-    /// counter-clockwise around `v` from `right` to `left`. If `right` is `None`, the faces of `n`
-    /// start at the boundary. If `left` is `None`, the faces of `n` end at the boundary.
+    /// Splits `v`, and returns the new vertex `n`; one scan of all corners. The vertex `n` gets the
+    /// faces that follow counter-clockwise around `v` from `right` to `left`. If `right` is `None`,
+    /// the faces of `n` start at the boundary. If `left` is `None`, the faces of `n` end at the
+    /// boundary.
     ///
     /// ```text
     ///              left
@@ -25,7 +22,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`MeshEdit::split_vertex`](crate::MeshEdit::split_vertex).
+    /// Returns the errors of [`MeshEdit::split_vertex`](sixfold_core::MeshEdit::split_vertex).
     pub fn split_vertex<M: ScannedMesh<V>>(
         &mut self,
         v: V,
@@ -33,7 +30,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         right: Option<V>,
         n: V,
         log: &mut impl EditLog<M>,
-    ) -> Result<(), Refusal<V>> {
+    ) -> Result<V, Refusal<V>> {
         let mut hits = self.hits_at(v, n)?;
         let spokes = hits.iter().map(|hit| [hit.after, hit.before]);
         let ring = ring(spokes.collect()).filter(|ring| !ring.is_empty());
@@ -76,6 +73,6 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
             log.created_face(self.push_triangle(triangle));
             log.created_edge(Pair::new(n, side));
         }
-        Ok(())
+        Ok(n)
     }
 }

@@ -1,15 +1,12 @@
 //! Edits of whole faces.
 
+use sixfold_core::{
+    EditError, EditLog, Editable, FaceId, Pair, Probe, ShortVec, check_corners, check_cut,
+    uses_reports,
+};
+
 use super::{Refusal, ScannedMesh, sorted_once};
-use crate::edit::edit_check::{check_corners, check_cut};
-use crate::edit::edit_error::EditError;
-use crate::edit::edit_log::{EditLog, uses_reports};
-use crate::handles::pair::Pair;
-use crate::handles::row_id::FaceId;
-use crate::handles::short_vec::ShortVec;
-use crate::scanning::scanned::{ScannedFaces, ScannedVertex, SearchSet};
-use crate::tables::editing::Editable;
-use crate::tables::probe::Probe;
+use crate::scanned::{ScannedFaces, ScannedVertex, SearchSet};
 
 impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     /// Adds a face with the given `corners`, which are existing vertices or positions of new
@@ -124,8 +121,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         (vertices, sides)
     }
 
-    /// Cuts `f` into triangles around the new vertex `m`; `f` becomes the triangle at its first
-    /// side. O(degree); if vertices are identified by coordinates, a scan of all corners searches
+    /// Cuts `f` into triangles around the new vertex `m`, and returns `m`; `f` becomes the triangle at
+    /// its first side. O(degree); if vertices are identified by coordinates, a scan of all corners searches
     /// for `m`.
     ///
     /// # Errors
@@ -137,7 +134,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         f: FaceId,
         m: V,
         log: &mut impl EditLog<M>,
-    ) -> Result<(), Refusal<V>> {
+    ) -> Result<V, Refusal<V>> {
         let corners = self.spans.range(self.check_face(f)?);
         if V::IS_POSITION && self.has_vertex(m) {
             return Err(EditError::Occupied { vertex: m });
@@ -159,7 +156,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         log.created_edge(Pair::new(a, m));
         self.rewrite(f, &[first, second, m].map(V::corner));
         log.created_edge(Pair::new(first, m));
-        Ok(())
+        Ok(m)
     }
 
     /// Cuts `f` into two faces by an edge between `ends`. The handle `f` stays the handle of the

@@ -1,34 +1,35 @@
 //! The scan of a whole table.
 
-use crate::tables::probe::Probe;
-use crate::tables::table::Table;
+use sixfold_core::{Probe, Table};
 
 /// The number of rows that one step of a scan reads.
 const BLOCK: usize = 64;
 
-impl<T, P: Probe> Table<T, P> {
-    /// Scans the whole table in blocks, and yields in order the rows that `hits` selects.
-    ///
-    /// `hits` gets a block of up to 64 rows and returns one bit for each row of the block. The bit
-    /// is 1 if the row is selected; the lowest bit belongs to the first row. [`hits_in`] computes
-    /// these bits for one condition. Each row is read once, immediately before `hits` is called
-    /// with the block of the row.
-    ///
-    /// ```
-    /// use sixfold_core::{Table, hits_in};
-    /// let table = Table::new("vertex", "corner", vec![7, 0, 7, 3]);
-    /// let sevens = table.scan(|block| hits_in(block, |&v| v == 7));
-    /// assert!(sevens.eq([0, 2]));
-    /// ```
-    #[inline]
-    pub fn scan(&self, hits: impl Fn(&[T]) -> u64) -> impl Iterator<Item = usize> {
-        Scan {
-            table: self,
-            find: hits,
-            block: 0,
-            next: 0,
-            hits: 0,
-        }
+/// Scans a whole table in blocks, and yields in order the rows that `hits` selects.
+///
+/// `hits` gets a block of up to 64 rows and returns one bit for each row of the block. The bit
+/// is 1 if the row is selected; the lowest bit belongs to the first row. [`hits_in`] computes
+/// these bits for one condition. Each row is read once, immediately before `hits` is called
+/// with the block of the row.
+///
+/// ```
+/// use sixfold_core::Table;
+/// use sixfold_scanning::{hits_in, scan};
+/// let table = Table::new("vertex", "corner", vec![7, 0, 7, 3]);
+/// let sevens = scan(&table, |block| hits_in(block, |&v| v == 7));
+/// assert!(sevens.eq([0, 2]));
+/// ```
+#[inline]
+pub fn scan<T, P: Probe>(
+    table: &Table<T, P>,
+    hits: impl Fn(&[T]) -> u64,
+) -> impl Iterator<Item = usize> {
+    Scan {
+        table,
+        find: hits,
+        block: 0,
+        next: 0,
+        hits: 0,
     }
 }
 
@@ -84,8 +85,9 @@ impl<T, P: Probe, F: Fn(&[T]) -> u64> Iterator for Scan<'_, T, P, F> {
 
 #[cfg(test)]
 mod tests {
+    use sixfold_core::Traced;
+
     use super::*;
-    use crate::tables::probe::Traced;
 
     #[test]
     fn a_scan_finds_what_a_search_finds_at_every_block_boundary() {
@@ -94,18 +96,18 @@ mod tests {
             let probe = Traced::default();
             let table = Table::new("values", "row", values.clone()).probed(probe.clone());
             for wanted in 0..8 {
-                let found = table.scan(|block| hits_in(block, |&value| value == wanted));
+                let found = scan(&table, |block| hits_in(block, |&value| value == wanted));
                 let expected = (0..rows).filter(|&row| values[row] == wanted);
                 assert!(found.eq(expected), "{wanted} in {rows} rows");
                 let read = probe.take().into_iter().map(|access| access.row);
                 assert!(read.eq(0..rows), "each of {rows} rows once, in order");
             }
-            let all: Vec<usize> = table.scan(|block| hits_in(block, |_| true)).collect();
+            let all: Vec<usize> = scan(&table, |block| hits_in(block, |_| true)).collect();
             assert!(all.into_iter().eq(0..rows));
             let ends = [0, 63, 64, rows.saturating_sub(1)];
             let ends = |row: &usize| ends.contains(row);
             let rows_as_values = Table::new("rows", "row", (0..rows).collect());
-            let found = rows_as_values.scan(|block| hits_in(block, ends));
+            let found = scan(&rows_as_values, |block| hits_in(block, ends));
             assert!(found.eq((0..rows).filter(ends)), "{rows} rows");
         }
     }

@@ -1,16 +1,12 @@
 //! Edits of an edge and its faces.
 
+use sixfold_core::{
+    EditError, EditLog, Editable, FaceId, IteratorExt, Pair, Probe, ShortVec, check_corners,
+    uses_reports,
+};
+
 use super::{Refusal, ScannedMesh};
-use crate::edit::edit_error::EditError;
-use crate::edit::edit_log::{EditLog, uses_reports};
-use crate::handles::iterator_ext::IteratorExt;
-use crate::handles::pair::Pair;
-use crate::handles::row_id::FaceId;
-use crate::handles::short_vec::ShortVec;
-use crate::polygons::polygon_mesh::repeated;
-use crate::scanning::scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};
-use crate::tables::editing::Editable;
-use crate::tables::probe::Probe;
+use crate::scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};
 
 /// A side: an edge together with one face that runs along it.
 #[derive(Clone, Copy)]
@@ -96,7 +92,8 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         }
     }
 
-    /// Inserts the new vertex `m` into `e` and into each face of `e`; one scan of all corners.
+    /// Inserts the new vertex `m` into `e` and into each face of `e`, and returns `m`; one scan of all
+    /// corners.
     ///
     /// # Errors
     ///
@@ -107,7 +104,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         e: Pair<V>,
         m: V,
         log: &mut impl EditLog<M>,
-    ) -> Result<(), Refusal<V>> {
+    ) -> Result<V, Refusal<V>> {
         let along = self.along(e, Some(m))?;
         let grown = along.iter().map(|side| self.degree(side.face) + 1);
         self.check_capacity(0, grown.sum())?;
@@ -122,11 +119,11 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         let [a, b] = e.ends();
         log.renamed_edge(e, Pair::new(a, m));
         log.created_edge(Pair::new(m, b));
-        Ok(())
+        Ok(m)
     }
 
-    /// Inserts the new vertex `m` into `e` and cuts each triangle of `e` in two at `m`; one scan of
-    /// all corners.
+    /// Inserts the new vertex `m` into `e`, cuts each triangle of `e` in two at `m`, and returns `m`;
+    /// one scan of all corners.
     ///
     /// # Errors
     ///
@@ -137,7 +134,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         e: Pair<V>,
         m: V,
         log: &mut impl EditLog<M>,
-    ) -> Result<(), Refusal<V>> {
+    ) -> Result<V, Refusal<V>> {
         let along = self.along(e, Some(m))?;
         for side in along.iter() {
             self.check_triangle(side.face)?;
@@ -156,7 +153,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
                 log.created_edge(Pair::new(m, end));
             }
         }
-        Ok(())
+        Ok(m)
     }
 
     /// Removes `e` and merges its two faces into the face that comes first in the table; one scan
@@ -164,7 +161,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`MeshEdit::dissolve_edge`](crate::MeshEdit::dissolve_edge).
+    /// Returns the errors of [`MeshEdit::dissolve_edge`](sixfold_core::MeshEdit::dissolve_edge).
     pub fn dissolve_edge<M: ScannedMesh<V>>(
         &mut self,
         e: Pair<V>,
@@ -180,9 +177,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
         let beyond = self.corners_from(second.face, second.corners[1]);
         let between = self.degree(second.face) - 2;
         merged.extend(beyond.map(V::from_corner).skip(1).take(between));
-        if let Some(vertex) = repeated(&merged) {
-            return Err(EditError::RepeatedVertex { vertex });
-        }
+        check_corners(&merged, |_| Ok(()))?;
         self.check_capacity(0, merged.len())?;
         let merged: ShortVec<V::Corner> = merged.iter().map(|v| v.corner()).collect();
         self.rewrite(first.face, &merged);
@@ -205,7 +200,7 @@ impl<V: ScannedVertex, P: Probe> ScannedFaces<V, P, Editable> {
     ///
     /// # Errors
     ///
-    /// Returns the errors of [`MeshEdit::flip_edge`](crate::MeshEdit::flip_edge).
+    /// Returns the errors of [`MeshEdit::flip_edge`](sixfold_core::MeshEdit::flip_edge).
     pub fn flip_edge<M: ScannedMesh<V>>(
         &mut self,
         e: Pair<V>,

@@ -1,5 +1,6 @@
+use sixfold_core::FaceList;
+
 use super::*;
-use crate::polygons::face_list::FaceList;
 
 fn faces(lists: &[&[u32]]) -> ScannedFaces<VertexId> {
     let mut faces = FaceList::default();

@@ -1,15 +1,11 @@
 //! Collapsing an edge, and moving a vertex in structures that identify vertices by coordinates.
 
+use sixfold_core::{
+    EditError, EditLog, Editable, FaceId, IteratorExt, Pair, Probe, ShortVec, uses_reports,
+};
+
 use super::{Refusal, ScannedMesh, sorted_once};
-use crate::edit::edit_error::EditError;
-use crate::edit::edit_log::{EditLog, uses_reports};
-use crate::handles::iterator_ext::IteratorExt;
-use crate::handles::pair::Pair;
-use crate::handles::row_id::FaceId;
-use crate::handles::short_vec::ShortVec;
-use crate::scanning::scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};
-use crate::tables::editing::Editable;
-use crate::tables::probe::Probe;
+use crate::scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};
 
 /// The corners at the two ends of an edge to be collapsed.
 struct Star<V> {

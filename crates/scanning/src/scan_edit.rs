@@ -12,16 +12,12 @@ mod edges;
 mod faces;
 mod split_vertex;
 
-use crate::edit::edit_check::check_rows;
-use crate::edit::edit_error::EditError;
-use crate::edit::edit_log::{EditLog, uses_reports};
-use crate::handles::pair::Pair;
-use crate::handles::row_id::{FaceId, MAX_ROWS};
-use crate::handles::short_vec::ShortVec;
-use crate::scanning::scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};
-use crate::tables::editing::Editable;
-use crate::tables::probe::Probe;
-use crate::traits::query::MeshQuery;
+use sixfold_core::{
+    EditError, EditLog, Editable, FaceId, MAX_ROWS, MeshQuery, Pair, Probe, ShortVec, check_rows,
+    uses_reports,
+};
+
+use crate::scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};
 
 type Refusal<V> = EditError<V, Pair<V>, FaceId>;
 
@@ -131,92 +127,4 @@ fn sorted_once<T: Ord>(items: impl Iterator<Item = T>) -> Vec<T> {
     items.sort_unstable();
     items.dedup();
     items
-}
-
-/// Implements the methods of [`MeshEdit`](crate::MeshEdit) that are the same on all structures that
-/// scan. Call it in the `impl` of the trait: `sixfold_core::scanned_edits!();`
-///
-/// The structure has its faces in the field `faces`, a [`ScannedFaces`]. It has two private methods:
-/// `next_vertex(&self, at)` returns the handle of a new vertex, or an error if there cannot be one
-/// more; `store_vertex(&mut self, at)` adds this vertex after the edit of the faces.
-#[macro_export]
-macro_rules! scanned_edits {
-    () => {
-        /// Takes O(degree) time, and one scan if the log records edits.
-        fn remove_face_logged(
-            &mut self,
-            f: $crate::FaceId,
-            log: &mut impl $crate::EditLog<Self>,
-        ) -> Result<(), $crate::Refusal<Self>> {
-            self.faces.remove_face(f, log)
-        }
-
-        /// Takes one scan.
-        fn split_edge_logged(
-            &mut self,
-            e: Self::Edge,
-            at: $crate::Point,
-            log: &mut impl $crate::EditLog<Self>,
-        ) -> Result<Self::Vertex, $crate::Refusal<Self>> {
-            let m = self.next_vertex(at)?;
-            self.faces.split_edge(e, m, log)?;
-            self.store_vertex(at);
-            Ok(m)
-        }
-
-        /// Takes one scan.
-        fn bisect_edge_logged(
-            &mut self,
-            e: Self::Edge,
-            at: $crate::Point,
-            log: &mut impl $crate::EditLog<Self>,
-        ) -> Result<Self::Vertex, $crate::Refusal<Self>> {
-            let m = self.next_vertex(at)?;
-            self.faces.bisect_edge(e, m, log)?;
-            self.store_vertex(at);
-            Ok(m)
-        }
-
-        /// Takes O(degree) time. If vertices are positions, also takes one scan, to check that the
-        /// position is free.
-        fn poke_face_logged(
-            &mut self,
-            f: $crate::FaceId,
-            at: $crate::Point,
-            log: &mut impl $crate::EditLog<Self>,
-        ) -> Result<Self::Vertex, $crate::Refusal<Self>> {
-            let m = self.next_vertex(at)?;
-            self.faces.poke_face(f, m, log)?;
-            self.store_vertex(at);
-            Ok(m)
-        }
-
-        /// Takes O(degree) time, and one scan if the log records edits.
-        fn split_face_logged(
-            &mut self,
-            f: $crate::FaceId,
-            ends: [Self::Vertex; 2],
-            log: &mut impl $crate::EditLog<Self>,
-        ) -> Result<Self::Edge, $crate::Refusal<Self>> {
-            self.faces.split_face(f, ends, log)
-        }
-
-        /// Takes one scan.
-        fn dissolve_edge_logged(
-            &mut self,
-            e: Self::Edge,
-            log: &mut impl $crate::EditLog<Self>,
-        ) -> Result<$crate::FaceId, $crate::Refusal<Self>> {
-            self.faces.dissolve_edge(e, log)
-        }
-
-        /// Takes two scans.
-        fn flip_edge_logged(
-            &mut self,
-            e: Self::Edge,
-            log: &mut impl $crate::EditLog<Self>,
-        ) -> Result<Self::Edge, $crate::Refusal<Self>> {
-            self.faces.flip_edge(e, log)
-        }
-    };
 }
