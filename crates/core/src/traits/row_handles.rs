@@ -11,17 +11,17 @@ macro_rules! element_rows {
     ) => {
         #[inline]
         fn $list(&$mesh) -> impl Iterator<Item = $crate::$handle> {
-            $crate::HoleSet::handles(&$holes, $rows)
+            $crate::HoleSet::handles(&$holes, $mesh.$row_count())
         }
 
         $(#[$inline])?
         fn $count(&$mesh) -> usize {
-            $rows - $crate::HoleSet::len(&$holes)
+            $mesh.$row_count() - $crate::HoleSet::len(&$holes)
         }
 
         #[inline]
         fn $contains(&$mesh, handle: $crate::$handle) -> bool {
-            $crate::HoleSet::contains(&$holes, handle, $rows)
+            $crate::HoleSet::contains(&$holes, handle, $mesh.$row_count())
         }
 
         $(#[$inline])?
