@@ -15,6 +15,7 @@ mod edit;
 mod edit_data;
 mod elements;
 mod inverse_edits;
+mod limits;
 mod refine;
 mod relations;
 mod scripts;
@@ -28,6 +29,7 @@ pub use edit_data::{ElementNumbers, data_follows_edits, numbers_follow_edits};
 pub(crate) use elements::check_numbers;
 pub use elements::{elements, maps, missing_handles, names, numbers, positions};
 pub use inverse_edits::inverse_edits;
+pub use limits::{build_limits, edit_limits};
 pub use refine::{refine, refine_in_parallel};
 pub use relations::{
     boundary_loops, edge_edges, edge_faces, edge_vertices, face_edges, face_faces, face_vertices,
@@ -50,7 +52,7 @@ macro_rules! for_each_law {
                 face_vertices face_edges face_faces
                 symmetry one_ring predicates boundary_loops folds
                 elements names positions maps numbers missing_handles
-                verdict round_trip set_positions invariants probed
+                verdict build_limits round_trip set_positions invariants probed
             ]
             [corner_cases costs memory]
             $($arguments)*

@@ -72,6 +72,11 @@ macro_rules! edit_suite {
         }
 
         #[test]
+        fn edit_limits() {
+            $crate::law::edit_limits::<$mesh>();
+        }
+
+        #[test]
         fn inverse_edits() {
             $crate::law::inverse_edits::<$mesh>();
         }

@@ -3,6 +3,7 @@
 pub(crate) mod distinct;
 pub(crate) mod handle;
 pub(crate) mod iterator_ext;
+pub(crate) mod limits;
 pub(crate) mod numbering;
 pub(crate) mod pair;
 pub(crate) mod row_id;

@@ -119,6 +119,9 @@ pub use edit::edit_log::uses_reports;
 pub use edit::new_rows::NewRows;
 pub use handles::distinct::{Distinct, DistinctWalk};
 pub use handles::iterator_ext::{IteratorExt, MapInline};
+#[cfg(feature = "lower-limits")]
+pub use handles::limits::with_lower_limits;
+pub use handles::limits::{MAX_CORNERS, MAX_EDGES};
 pub use handles::row_id::{MAX_ROWS, RowId, Slot, row};
 pub use handles::short_vec::{Lookup, ShortVec};
 pub use polygons::classes::Classes;

@@ -33,7 +33,7 @@ mod split;
 mod tests;
 
 use sixfold_core::{
-    Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit, Point, Probe,
+    Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_CORNERS, MAX_ROWS, MeshEdit, Point, Probe,
     QueryCost, Representation, RowId, Slot, VertexId, check_rows, row,
 };
 
@@ -42,9 +42,6 @@ use crate::mesh::{CornerId, CornerTable, EdgeCorner, NO_VERTEX, names_edge};
 
 /// The error of an edit, without the type of the probe.
 type Refusal = sixfold_core::Refusal<EditableCornerTable>;
-
-/// Maximum number of corners.
-const MAX_CORNERS: usize = MAX_ROWS / 2;
 
 impl<P: Probe> MeshEdit for CornerTable<Editable, P> {
     const EDITS: [Option<QueryCost>; Edit::ALL.len()] = {

@@ -11,7 +11,7 @@ mod split_vertex;
 mod tests;
 
 use sixfold_core::{
-    EdgeId, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, MeshEdit, MeshQuery,
+    EdgeId, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_EDGES, MAX_ROWS, MeshEdit, MeshQuery,
     Point, Probe, QueryCost, Slot, VertexId, check_rows, row,
 };
 
@@ -209,7 +209,7 @@ impl<P: Probe> HalfEdgeMesh<Editable, P> {
     #[inline]
     fn check_room(&self, vertices: usize, edges: usize, faces: usize) -> Result<(), Refusal> {
         check_rows("vertices", self.vertex_rows() + vertices, MAX_ROWS)?;
-        check_rows("edges", self.edge_rows() + edges, MAX_ROWS / 2)?;
+        check_rows("edges", self.edge_rows() + edges, MAX_EDGES)?;
         check_rows("faces", self.face_rows() + faces, MAX_ROWS)
     }
 }

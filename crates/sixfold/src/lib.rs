@@ -169,6 +169,9 @@
 //! `sixfold pick` measures a workload on your mesh. [`structures!`] lists all structures, and
 //! [`visit`] selects one structure at run time.
 //!
+//! If a program queries a few relations many times and does not change the connectivity, make flat
+//! tables of these relations from any structure, with the crate `sixfold-relation-table`.
+//!
 //! # Require local queries
 //!
 //! Polygon soups and indexed face sets scan all faces for most queries. The trait bound
@@ -200,7 +203,7 @@
 //! # Walk in order
 //!
 //! Most queries yield elements in no particular order. [`OrientedWalk`] steps from side to side; a
-//! side is an edge as one face runs along it. A walk can follow a face, turn around a vertex, or
+//! side is a pair of an edge and one of its faces. A walk can follow a face, turn around a vertex, or
 //! run straight across quads as in the example below. All structures except polygon soups and
 //! indexed face sets implement [`OrientedWalk`].
 //!
@@ -231,6 +234,7 @@
 //! - `rayon` (default): subdivision steps in a structure's own tables use all threads. Spatial
 //!   indices are built on all threads, and all threads share batches of spatial queries. Facts and
 //!   diagnoses use several threads.
+//! - `gltf` (default): [`io`] reads and writes glTF.
 //! - `serde`: [`Facts`], [`Capabilities`], [`MemoryFootprint`], diagnoses, reports of repairs,
 //!   subdivision schemes and mesh orders can be serialised.
 //! - `mint`: [`PolygonMesh::new`] takes points and vectors of the crate `mint`, and a [`Point`]

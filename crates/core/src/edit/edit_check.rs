@@ -4,10 +4,11 @@ use std::fmt::Debug;
 
 use crate::edit::edit_error::EditError;
 use crate::handles::handle::Handle;
+use crate::handles::limits;
 use crate::handles::row_id::FaceId;
 use crate::polygons::polygon_mesh::repeated;
 
-/// Checks that a table has at most `limit` rows. `rows` is the number of rows after the edit.
+/// Checks that a table has at most `limit` rows, or fewer within `with_lower_limits`. `rows` is the number of rows after the edit.
 ///
 /// # Errors
 ///
@@ -18,6 +19,7 @@ pub fn check_rows<V: Debug, E: Debug, F: Debug>(
     rows: usize,
     limit: usize,
 ) -> Result<(), EditError<V, E, F>> {
+    let limit = limits::current(limit);
     if rows > limit {
         return Err(EditError::TooMany { elements, limit });
     }

@@ -3,12 +3,13 @@
 use rustc_hash::FxHashMap;
 
 use crate::Point;
+use crate::handles::limits::{self, MAX_CORNERS, MAX_EDGES};
+use crate::handles::row_id::MAX_ROWS;
 use crate::polygons::error::BuildError;
 use crate::polygons::facts::Facts;
 use crate::polygons::fans::Fans;
 use crate::polygons::incidence::Incidence;
 use crate::polygons::polygon_mesh::PolygonMesh;
-use crate::tables::pairing::{MAX_CORNERS, MAX_EDGES};
 
 /// The kinds of meshes that a structure can hold. Every structure can hold oriented triangle
 /// manifolds, with or without a boundary. A field is true if the structure can also hold meshes
@@ -64,26 +65,22 @@ impl Capabilities {
         if !self.polygons {
             check_triangles(polygons)?;
         }
-        let oriented = !self.inconsistent_orientation;
-        if oriented || !self.non_manifold_edges || !self.non_manifold_vertices {
-            if polygons.corner_count() > MAX_CORNERS {
-                return Err(BuildError::TooMany {
-                    elements: "corners",
-                    limit: MAX_CORNERS,
-                });
+        if self.pairs_sides() {
+            let [most_edges, limit] = self.edge_and_corner_limits();
+            if polygons.corner_count() > limit {
+                let elements = "corners";
+                return Err(BuildError::TooMany { elements, limit });
             }
             let faces = polygons.faces();
             let incidence = Incidence::new(polygons.vertex_count(), faces, |_| true);
-            if incidence.edges().nth(MAX_EDGES).is_some() {
-                return Err(BuildError::TooMany {
-                    elements: "edges",
-                    limit: MAX_EDGES,
-                });
+            if incidence.edges().nth(most_edges).is_some() {
+                let (elements, limit) = ("edges", most_edges);
+                return Err(BuildError::TooMany { elements, limit });
             }
             if !self.non_manifold_edges {
                 check_edges(&incidence)?;
             }
-            if oriented {
+            if !self.inconsistent_orientation {
                 check_orientation(&incidence)?;
             }
             if !self.non_manifold_vertices {
@@ -117,9 +114,23 @@ impl Capabilities {
     /// Returns whether a structure with these capabilities has enough handles for `edges` edges and
     /// their sides; O(1). Each edge must have at most two faces.
     pub fn can_name_edges(&self, edges: usize) -> bool {
-        let is_unlimited =
-            self.inconsistent_orientation && self.non_manifold_edges && self.non_manifold_vertices;
-        is_unlimited || (edges <= MAX_EDGES && 2 * edges <= MAX_CORNERS)
+        let [most_edges, most_corners] = self.edge_and_corner_limits();
+        !self.pairs_sides() || (edges <= most_edges && 2 * edges <= most_corners)
+    }
+
+    /// Returns the maximum numbers of edges and of corners.
+    pub(crate) fn edge_and_corner_limits(&self) -> [usize; 2] {
+        let limits = if self.pairs_sides() {
+            [MAX_EDGES, MAX_CORNERS]
+        } else {
+            [MAX_ROWS; 2]
+        };
+        limits.map(limits::current)
+    }
+
+    /// Returns whether a structure with these capabilities stores which two sides share an edge.
+    fn pairs_sides(&self) -> bool {
+        !(self.inconsistent_orientation && self.non_manifold_edges && self.non_manifold_vertices)
     }
 
     /// Returns the error for a constructor that has found a fault in `polygons`.

@@ -1,16 +1,9 @@
 //! Twin pairs: the two half-edges of each edge of an oriented manifold, found without hashing.
 
+use crate::handles::limits::{self, MAX_CORNERS, MAX_EDGES};
 use crate::handles::row_id::{FaceId, RowId, VertexId};
 use crate::polygons::face_list::FaceList;
 use crate::tables::sides::{Sides, bucket_starts, fill_buckets};
-
-/// Maximum number of corners for [`TwinPairs`]. A corner and one bit for the direction share 32
-/// bits.
-pub(crate) const MAX_CORNERS: usize = (u32::MAX / 2) as usize;
-
-/// Maximum number of edges for [`TwinPairs`]. An edge and two bits for the directions share 32
-/// bits.
-pub(crate) const MAX_EDGES: usize = (u32::MAX / 4) as usize;
 
 /// The half-edges of a list of faces, numbered in pairs: two half-edges for each edge.
 ///
@@ -58,7 +51,7 @@ impl TwinPairs {
         rows: &mut R,
     ) -> Option<Self> {
         let corners = faces.corners().len();
-        if corners > MAX_CORNERS {
+        if corners > limits::current(MAX_CORNERS) {
             return None;
         }
         let (mut ends, _) = bucket_starts(vertices, faces);
@@ -70,6 +63,7 @@ impl TwinPairs {
         let mut last = vec![0_u32; vertices];
         let mut half_of_corner = vec![0_u32; corners];
         let (mut edges, mut conflict, mut start) = (0_u32, 0, 0);
+        let max_edges = limits::current(MAX_EDGES);
         for end in ends {
             let end = end as usize;
             let first = (edges << 2).max(1);
@@ -87,7 +81,7 @@ impl TwinPairs {
                 half_of_corner[corner as usize] = known >> 2 << 1 | direction;
             }
             start = end;
-            if edges as usize > MAX_EDGES {
+            if edges as usize > max_edges {
                 return None;
             }
         }
@@ -185,7 +179,7 @@ pub fn pair_triangle_sides(
     mut pair: impl FnMut(u32, u32),
 ) -> Option<(Vec<u32>, usize)> {
     let corners = faces.corners();
-    if corners.len() > MAX_CORNERS {
+    if corners.len() > limits::current(MAX_CORNERS) {
         return None;
     }
     assert!(faces.is_empty() || faces.uniform_degree() == Some(3));
@@ -219,7 +213,7 @@ pub fn pair_triangle_sides(
         }
         start = end;
     }
-    (!conflict && edges <= MAX_EDGES).then_some((tags, edges))
+    (!conflict && edges <= limits::current(MAX_EDGES)).then_some((tags, edges))
 }
 
 /// The tag of the first side of an edge after its second side was found. All other tags are

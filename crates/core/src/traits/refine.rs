@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::Point;
+use crate::handles::limits;
 use crate::handles::row_id::{FaceId, MAX_ROWS, VertexId, row};
 use crate::polygons::counts::Counts;
 use crate::polygons::error::RefineError;
@@ -104,9 +105,8 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
     fn position_rows(&self) -> &[Point];
 }
 
-/// Checks that the structure `M` supports `split`, and that the refined mesh has at most
-/// [`MAX_ROWS`](crate::MAX_ROWS) vertices, half-edges and corners. Returns the sizes of the refined
-/// mesh. Every [`Refine::split_into`] calls this function first.
+/// Checks that the structure `M` supports `split`, and that `M` can number the vertices, edges and
+/// corners of the refined mesh. Returns the sizes of the refined mesh. Every [`Refine::split_into`] calls this function first.
 ///
 /// # Errors
 ///
@@ -123,17 +123,17 @@ pub fn check_split<M: Refine>(
         return Err(RefineError::Unsupported { structure, split });
     }
     let refined = split.refined_counts(counts, boundary);
-    // The limit applies to half-edges and corners, too.
-    for (elements, number) in [
-        ("vertices", refined.vertices),
-        ("half-edges", refined.edges.saturating_mul(2)),
-        ("corners", refined.corners),
+    let [edges, corners] = M::CAPABILITIES.edge_and_corner_limits();
+    for (elements, number, limit) in [
+        ("vertices", refined.vertices, limits::current(MAX_ROWS)),
+        ("edges", refined.edges, edges),
+        ("corners", refined.corners, corners),
     ] {
-        if number > MAX_ROWS {
+        if number > limit {
             return Err(RefineError::TooMany {
                 elements,
                 number,
-                limit: MAX_ROWS,
+                limit,
             });
         }
     }

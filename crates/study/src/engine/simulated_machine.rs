@@ -50,6 +50,10 @@ impl Work<'_> {
     }
 }
 
+/// The time of the clock at the start. It is not 0, so that tests notice code that takes a time of
+/// the clock for a duration.
+const START_NS: f64 = (1_u64 << 33) as f64;
+
 /// Returns the time of a run on a machine of speed 1 without disturbances, in nanoseconds.
 type Costs = dyn Fn(&Work<'_>) -> f64 + Send + Sync;
 
@@ -157,6 +161,7 @@ impl SimulatedMachine {
         state.hosted - 1
     }
 
+    /// Returns the time since the start, in nanoseconds.
     pub(crate) fn ns(&self) -> f64 {
         self.state().ns
     }
@@ -179,7 +184,7 @@ fn disturbance(step: u64) -> f64 {
 
 impl Clock for SimulatedMachine {
     fn now(&self) -> Time {
-        Time::from_wall_ns(self.ns())
+        Time::from_wall_ns(START_NS + self.ns())
     }
 }
 

@@ -1,16 +1,13 @@
 //! Steps that several edits share: checks of handles, runs, links, new rows and holes.
 
 use sixfold_core::{
-    EdgeId, EditError, EditLog, Editable, FaceId, HoleSet, MAX_ROWS, Point, Probe, Refusal, Slot,
+    EdgeId, EditError, EditLog, Editable, FaceId, HoleSet, MAX_EDGES, MAX_ROWS, Point, Probe, Refusal, Slot,
     VertexId, check_rows, row,
 };
 
 use crate::edge::{Edge, NO_EDGE, Run, RunId};
 use crate::mesh::WingedEdgeMesh;
 use crate::wings::Side;
-
-/// Maximum number of edges, so that every corner also has a number.
-const MAX_EDGES: usize = MAX_ROWS / 4;
 
 /// Checks that elements exist and that there is room for new elements.
 impl<P: Probe> WingedEdgeMesh<Editable, P> {
