@@ -303,14 +303,8 @@ pub(crate) struct MemoryState {
     #[arg(long, value_name = "POLICY", default_value = "kept")]
     pub(crate) heap: Policy,
     /// Caches before each timed run: warm or cold
-    #[arg(long, value_name = "STATE", default_value = "warm", value_parser = cache_state)]
+    #[arg(long, value_name = "STATE", default_value = "warm")]
     pub(crate) caches: CacheState,
-}
-
-fn cache_state(name: &str) -> Result<CacheState, String> {
-    let mut all = CacheState::ALL.into_iter();
-    all.find(|state| state.name() == name)
-        .ok_or_else(|| format!("unknown cache state `{name}`: choose `warm` or `cold`"))
 }
 
 /// Merge results into one file or report.

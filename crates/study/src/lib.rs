@@ -27,7 +27,9 @@
 //!
 //! The file `reports/SCHEMA.md` explains the values in the document. This crate has no command line
 //! and prints nothing. The measuring functions report the progress to a closure, and stop early
-//! when a flag is set.
+//! when a flag is set. The flag is not the return value of the closure, as in the algorithms,
+//! because a signal handler sets it, and because it is also read where no progress is reported:
+//! between the runs of a sample, and while an external program works.
 
 mod engine;
 mod external;

@@ -15,27 +15,16 @@ const KEPT_FACTOR: u64 = 2;
 /// Divisor of the resident memory that gives the number of bytes to touch in advance.
 const RESERVE_PART: u64 = 4;
 
-/// The state of the processor caches when a sample (a timed series of runs) begins.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum CacheState {
-    /// The caches keep the data of the previous runs.
-    #[default]
-    Warm,
-    /// The caches hold other data than the mesh. With cold caches, only one run is timed at once.
-    Cold,
-}
-
-impl CacheState {
-    /// Both states of the caches.
-    pub const ALL: [Self; 2] = [Self::Warm, Self::Cold];
-
-    /// Returns the name of the state in command-line options: `warm` or `cold`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Warm => "warm",
-            Self::Cold => "cold",
-        }
+sixfold_core::named! {
+    /// The state of the processor caches when a sample (a timed series of runs) begins.
+    #[derive(Default)]
+    pub enum CacheState: "cache state" {
+        /// The caches keep the data of the previous runs.
+        #[default]
+        Warm = "warm",
+        /// The caches hold other data than the mesh. With cold caches, only one run is timed at
+        /// once.
+        Cold = "cold",
     }
 }
 
