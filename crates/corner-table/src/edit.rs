@@ -33,8 +33,8 @@ mod split;
 mod tests;
 
 use sixfold_core::{
-    Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_CORNERS, MAX_ROWS, MeshEdit, Point, Probe,
-    QueryCost, Representation, RowId, Slot, VertexId, check_rows, row,
+    Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_CORNERS, MAX_ROWS, MeshEdit, Point,
+    Probe, QueryCost, Representation, RowId, Slot, VertexId, check_rows, row,
 };
 
 use crate::EditableCornerTable;

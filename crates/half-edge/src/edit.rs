@@ -11,8 +11,8 @@ mod split_vertex;
 mod tests;
 
 use sixfold_core::{
-    EdgeId, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_EDGES, MAX_ROWS, MeshEdit, MeshQuery,
-    Point, Probe, QueryCost, Slot, VertexId, check_rows, row,
+    EdgeId, Edit, EditError, EditLog, Editable, FaceId, HoleSet, MAX_EDGES, MAX_ROWS, MeshEdit,
+    MeshQuery, Point, Probe, QueryCost, Slot, VertexId, check_rows, row,
 };
 
 use crate::EditableHalfEdgeMesh;

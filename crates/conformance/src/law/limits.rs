@@ -4,8 +4,8 @@ use std::any::TypeId;
 use std::fmt::Debug;
 
 use sixfold_core::{
-    EdgeId, EditError, EditRecord, MAX_CORNERS, MAX_EDGES, MAX_ROWS, MeshEdit, MeshQuery,
-    PolygonMesh, Representation, with_lower_limits,
+    EdgeId, EditError, EditRecord, MAX_CORNERS, MAX_EDGES, MAX_ROWS, MeshEdit, PolygonMesh, Refine,
+    RefineError, Representation, Split, with_lower_limits,
 };
 
 use super::scripts::on_random_scripts;
@@ -19,8 +19,7 @@ pub fn build_limits<M: Representation>(polygons: &PolygonMesh) {
     if capabilities.check(polygons).is_err() {
         return;
     }
-    let pairs_sides = !capabilities.can_name_edges(usize::MAX / 2);
-    let needed = if pairs_sides {
+    let needed = if pairs_sides::<M>() {
         let edges = sides_by_edge(polygons).len();
         rows_for(polygons.corner_count(), MAX_CORNERS).max(rows_for(edges, MAX_EDGES))
     } else {
@@ -42,6 +41,44 @@ pub fn build_limits<M: Representation>(polygons: &PolygonMesh) {
             "{name}: with at most {rows} rows, from_polygons returns {built:?}"
         );
     }
+}
+
+/// Returns whether the limits on edges and corners apply to `M`.
+fn pairs_sides<M: Representation>() -> bool {
+    !M::CAPABILITIES.can_name_edges(usize::MAX / 2)
+}
+
+/// A refined mesh with too many elements is refused; a mesh that just reaches the limits is not.
+/// `refined` is the result of `split` on `mesh`.
+pub(super) fn check_split_limits<M: Refine>(
+    mesh: &M,
+    numbers: &M::EdgeNumbers,
+    split: Split,
+    refined: &M,
+) {
+    let [most_edges, most_corners] = match pairs_sides::<M>() {
+        true => [MAX_EDGES, MAX_CORNERS],
+        false => [MAX_ROWS; 2],
+    };
+    let corners = refined.faces().map(|f| refined.face_vertices(f).count());
+    let needed = rows_for(refined.vertex_count(), MAX_ROWS)
+        .max(rows_for(refined.edge_count(), most_edges))
+        .max(rows_for(corners.sum(), most_corners));
+    let with_rows =
+        |rows| with_lower_limits(rows, || mesh.split_into(split, numbers, &mut M::empty()));
+    let name = M::NAME;
+    assert_eq!(
+        with_rows(needed),
+        Ok(()),
+        "{name}: {split} with at most {needed} rows"
+    );
+    let fewer = needed.saturating_sub(1);
+    let refusal = with_rows(fewer);
+    assert!(
+        needed == 0
+            || matches!(refusal, Err(RefineError::TooMany { number, limit, .. }) if number > limit),
+        "{name}: {split} with at most {fewer} rows: {refusal:?}"
+    );
 }
 
 /// Returns the lowest limit on rows for which `limit`, in proportion, allows `number` elements.
@@ -111,7 +148,12 @@ fn check_edit<M: Representation + MeshEdit + Debug>(test: &ModelTest<M>, action:
         }
     }
     let mut tables = vec![
-        ("vertices", test.mesh.vertex_rows(), free.vertex_rows(), MAX_ROWS),
+        (
+            "vertices",
+            test.mesh.vertex_rows(),
+            free.vertex_rows(),
+            MAX_ROWS,
+        ),
         ("faces", test.mesh.face_rows(), free.face_rows(), MAX_ROWS),
     ];
     if TypeId::of::<M::Edge>() == TypeId::of::<EdgeId>() {

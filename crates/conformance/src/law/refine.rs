@@ -5,6 +5,7 @@ mod expected_child;
 use sixfold_core::{Point, PolygonMesh, Refine, RefineError, Split};
 
 use self::expected_child::ExpectedChild;
+use super::limits::check_split_limits;
 use crate::subject::Subject;
 
 /// Returns all splits of the structure, including both values of `trisect`.
@@ -22,7 +23,7 @@ fn splits<M: Refine>() -> Vec<Split> {
 }
 
 /// The refined mesh of every split is valid, and has the expected faces, edges and parent faces. An
-/// impossible split returns the error that describes the reason. Edges are numbered in the order of
+/// impossible split, or one with too many elements, returns the error that describes the reason. Edges are numbered in the order of
 /// `edges()`.
 pub fn refine<M: Refine>(polygons: &PolygonMesh) {
     let Some(Subject { mesh, input, .. }) = Subject::<M>::from_polygons(polygons) else {
@@ -71,6 +72,7 @@ pub fn refine<M: Refine>(polygons: &PolygonMesh) {
         }
         result.unwrap_or_else(|e| panic!("{}: {split} refused: {e}", M::NAME));
         expected.check(&mesh, &numbers, &mut used, split);
+        check_split_limits(&mesh, &numbers, split, &used);
         let mut fresh = M::empty();
         let result = mesh.split_into(split, &numbers, &mut fresh);
         result.expect("the same split succeeded before");

@@ -120,6 +120,7 @@ detects! {
         TooFewRows => maps, "no e";
         EmptyForMissingRow => missing_handles, "vertex_vertices of a missing element";
         MessageWithoutHandle => missing_handles, "vertex_vertices of a missing element";
+        LimitsIgnored => build_limits, "CAPABILITIES.check (right) with at most 0 rows";
         AcceptsEverything => verdict, "from_polygons (left) and CAPABILITIES.check (right)";
         RejectsIsolated => verdict, "IsolatedVertex";
         WrongError => verdict, "NonManifoldVertex";

@@ -80,6 +80,7 @@ pub(crate) enum FlawKind {
     EmptyForMissingRow,
     MessageWithoutHandle,
     AcceptsEverything,
+    LimitsIgnored,
     RejectsIsolated,
     WrongError,
     FaceReversedOnExport,

@@ -49,9 +49,13 @@ macro_rules! mesh_tables {
     (@probed faces $value:expr, $probe:ident) => { $value.probed($probe.clone()) };
     (@probed holes $value:expr, $probe:ident) => { E::probed_holes($value, $probe.clone()) };
 
-    (@bytes tables $value:expr) => { [$value.bytes()] };
-    (@bytes faces $value:expr) => { $value.bytes() };
-    (@bytes holes $value:expr) => { $crate::HoleSet::bytes(&$value) };
+    (@bytes tables $value:expr, $to:ident) => { $to.push($value.bytes()) };
+    (@bytes faces $value:expr, $to:ident) => { $to.extend($value.bytes()) };
+    (@bytes holes $value:expr, $to:ident) => {
+        if let Some(bytes) = $crate::HoleSet::bytes(&$value) {
+            $to.push(bytes);
+        }
+    };
 
     ($mesh:ident { $($kind:ident: $($field:ident),+;)+ }) => {
         $crate::clone_by_field!(
@@ -77,9 +81,9 @@ macro_rules! mesh_tables {
         impl<E: $crate::Editing, P: $crate::Probe> $mesh<E, P> {
             /// Returns the bytes of each table.
             pub(crate) fn table_bytes(&self) -> $crate::MemoryFootprint {
-                std::iter::empty()
-                    $($(.chain($crate::mesh_tables!(@bytes $kind self.$field)))+)+
-                    .collect()
+                let mut tables = Vec::with_capacity([$($(stringify!($field)),+),+].len());
+                $($($crate::mesh_tables!(@bytes $kind self.$field, tables);)+)+
+                $crate::MemoryFootprint { tables }
             }
 
             /// Returns the same mesh in tables that report their reads and writes to `probe`.

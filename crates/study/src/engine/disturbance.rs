@@ -250,7 +250,9 @@ mod tests {
 
     #[test]
     fn the_fixed_work_reads_a_word_at_the_place_that_each_word_names() {
-        let words: Vec<u64> = (0..WORDS as u64).map(|i| i * i + 7 * WORDS as u64).collect();
+        let words: Vec<u64> = (0..WORDS as u64)
+            .map(|i| i * i + 7 * WORDS as u64)
+            .collect();
         let read = |&word: &u64| words[(word % WORDS as u64) as usize] ^ word;
         assert_eq!(sum(&words), words.iter().map(read).sum::<u64>());
     }

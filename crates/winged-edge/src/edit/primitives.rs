@@ -1,8 +1,8 @@
 //! Steps that several edits share: checks of handles, runs, links, new rows and holes.
 
 use sixfold_core::{
-    EdgeId, EditError, EditLog, Editable, FaceId, HoleSet, MAX_EDGES, MAX_ROWS, Point, Probe, Refusal, Slot,
-    VertexId, check_rows, row,
+    EdgeId, EditError, EditLog, Editable, FaceId, HoleSet, MAX_EDGES, MAX_ROWS, Point, Probe,
+    Refusal, Slot, VertexId, check_rows, row,
 };
 
 use crate::edge::{Edge, NO_EDGE, Run, RunId};

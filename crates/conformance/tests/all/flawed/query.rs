@@ -13,7 +13,9 @@ impl<F: Flaw, P: Probe> MeshQuery for Flawed<F, P> {
     type Face = FaceId;
 
     const CAPABILITIES: Capabilities = match F::KIND {
-        FlawKind::AcceptsEverything | FlawKind::WrongError => Capabilities::ORIENTED_MANIFOLDS,
+        FlawKind::AcceptsEverything | FlawKind::LimitsIgnored | FlawKind::WrongError => {
+            Capabilities::ORIENTED_MANIFOLDS
+        }
         _ => Capabilities::ALL,
     };
 

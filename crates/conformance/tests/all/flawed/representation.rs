@@ -3,9 +3,9 @@
 use std::marker::PhantomData;
 
 use sixfold_core::{
-    BuildError, Capabilities, Counts, EditLog, FaceId, InvariantError, Measured, MemoryFootprint,
-    MeshMove, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost, Relation, Representation,
-    VertexId, VertexMap,
+    BuildError, Capabilities, Counts, EditLog, FaceId, InvariantError, MAX_ROWS, Measured,
+    MemoryFootprint, MeshMove, MeshQuery, MoveError, Point, PolygonMesh, Probe, QueryCost,
+    Relation, Representation, VertexId, VertexMap, with_lower_limits,
 };
 
 use super::{Flaw, FlawKind, Flawed};
@@ -35,6 +35,9 @@ impl<F: Flaw> Representation for Flawed<F> {
     fn from_polygons(polygons: &PolygonMesh) -> Result<Self, BuildError> {
         match F::KIND {
             FlawKind::AcceptsEverything => {}
+            FlawKind::LimitsIgnored => {
+                with_lower_limits(MAX_ROWS, || Self::CAPABILITIES.check(polygons))?;
+            }
             FlawKind::RejectsIsolated => {
                 let strict = Capabilities {
                     isolated_vertices: false,

@@ -123,10 +123,23 @@ fn measure_all(
 /// The limits of a trial on a mesh with 10,000 elements of each kind.
 #[derive(Clone, Copy)]
 struct Limits {
-    budget: Duration,
+    effort: Effort,
+    caches: CacheState,
     stop: bool,
     skewed: bool,
     named: bool,
+}
+
+impl Limits {
+    fn of(effort: Effort) -> Self {
+        Self {
+            effort,
+            caches: CacheState::Warm,
+            stop: false,
+            skewed: false,
+            named: false,
+        }
+    }
 }
 
 fn run_trial(
@@ -134,6 +147,16 @@ fn run_trial(
     subjects: Vec<Box<dyn TimedBackend>>,
     operations: &[Operation],
     limits: Limits,
+) -> Vec<Entry> {
+    watch_trial(machine, subjects, operations, limits, &mut |_| ())
+}
+
+fn watch_trial(
+    machine: &SimulatedMachine,
+    subjects: Vec<Box<dyn TimedBackend>>,
+    operations: &[Operation],
+    limits: Limits,
+    progress: &mut dyn FnMut(Progress<'_>),
 ) -> Vec<Entry> {
     let mut columns = Columns::new(subjects, Vec::new(), |_| None);
     let entries = columns.entries(operations);
@@ -147,12 +170,12 @@ fn run_trial(
         },
         skewed: limits.skewed,
         machine,
-        memory: &mut Memory::simulated(CacheState::Warm),
-        effort: limits.budget.into(),
+        memory: &mut Memory::simulated(limits.caches),
+        effort: limits.effort,
         named: limits.named,
         seed: 3,
         stop: &AtomicBool::new(limits.stop),
-        progress: &mut |_| (),
+        progress,
     };
     trial.run(&mut columns, entries).entries
 }
@@ -166,10 +189,9 @@ fn run(
 ) -> (Vec<Entry>, Duration) {
     let operations = [VV, Operation::Circulate, Operation::FfBfs];
     let limits = Limits {
-        budget,
         stop,
         skewed,
-        named: false,
+        ..Limits::of(budget.into())
     };
     let entries = run_trial(machine, subjects, &operations, limits);
     (entries, Duration::from_nanos(machine.ns() as u64))
@@ -236,6 +258,99 @@ fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget()
         let (_, elapsed, _) = placed(SimulatedMachine::steady(), 1e6 * f64::from(ms));
         assert!(elapsed <= budget, "{ms} ms each: {elapsed:?}");
     }
+    // The second rebuild may begin when both rebuilds take their share of the time until then. It
+    // is left out if not even one round would fit after it.
+    let second_at = |ms: f64| {
+        let rebuild_ns = 1e6 * ms * REBUILDING_SHARE / 2.0;
+        placed(SimulatedMachine::steady(), rebuild_ns / 2.0).2
+    };
+    let last = 1999.0 / (1.0 + REBUILDING_SHARE / 2.0);
+    assert_eq!([0.9 * last, last].map(second_at), [2, 1]);
+}
+
+#[test]
+fn progress_is_the_part_of_the_time_or_of_the_rounds() {
+    let subjects = |machine: &SimulatedMachine| -> Vec<Box<dyn TimedBackend>> {
+        vec![Box::new(Synthetic::new(machine, 7.0, QueryCost::Local))]
+    };
+    let machine = SimulatedMachine::steady();
+    let limits = Limits::of(Duration::from_millis(400).into());
+    let mut seen = Vec::new();
+    let entries = watch_trial(&machine, subjects(&machine), &[VV], limits, &mut |p| {
+        if p.stage == "measuring" {
+            seen.push((p.done, machine.ns() / 400e6));
+        }
+    });
+    assert!(
+        entries[0].samples.len() < MAX_ROUNDS as usize,
+        "ended by time"
+    );
+    let by_rounds = |round: usize| round as f64 / f64::from(MAX_ROUNDS);
+    for (round, (done, by_time)) in seen.iter().enumerate() {
+        let expected = by_time.max(by_rounds(round)).clamp(0.1, 1.0);
+        assert!(
+            (done - expected).abs() < 1e-9,
+            "{done} in round {round}: {expected}"
+        );
+    }
+    assert!(
+        seen.last()
+            .is_some_and(|(done, _)| (0.9..1.0).contains(done)),
+        "{seen:?}"
+    );
+
+    let machine = SimulatedMachine::steady();
+    let limits = Limits::of(Effort::of_rounds(20));
+    let mut seen = Vec::new();
+    watch_trial(&machine, subjects(&machine), &[VV], limits, &mut |p| {
+        if p.stage == "measuring" {
+            seen.push(p.done);
+        }
+    });
+    let expected: Vec<f64> = (0..20)
+        .map(|round| (f64::from(round) / 20.0).max(0.1))
+        .collect();
+    assert_eq!(seen, expected);
+}
+
+#[test]
+fn first_times_take_a_part_of_the_budget_if_pages_can_be_new() {
+    let budget = Duration::from_secs(2);
+    let build = Operation::Build;
+    let measured = |operation: Operation, caches: CacheState| {
+        let machine = SimulatedMachine::steady();
+        let subject = Synthetic::new(&machine, 7.0, QueryCost::Local);
+        let limits = Limits {
+            caches,
+            ..Limits::of(budget.into())
+        };
+        // Several entries, so that the time ends before the rounds do.
+        let operations = [operation; 4];
+        let mut in_rounds = 0.0;
+        let subjects: Vec<Box<dyn TimedBackend>> = vec![Box::new(subject)];
+        let entries = watch_trial(&machine, subjects, &operations, limits, &mut |p| {
+            if p.stage == "measuring" {
+                in_rounds = machine.ns() / 2e9;
+            }
+        });
+        (in_rounds, entries[0].first_times.len())
+    };
+    let (whole, part) = (0.95..1.0, 0.85..0.9);
+    let (in_rounds, first_times) = measured(VV, CacheState::Warm);
+    assert!(
+        whole.contains(&in_rounds) && first_times == 0,
+        "{in_rounds}, {first_times}"
+    );
+    let (in_rounds, first_times) = measured(build, CacheState::Warm);
+    match pages::can_release_pages() {
+        true => assert!(
+            part.contains(&in_rounds) && first_times > 0,
+            "{in_rounds}, {first_times}"
+        ),
+        false => assert!(whole.contains(&in_rounds) && first_times == 0),
+    }
+    let (_, first_times) = measured(build, CacheState::Cold);
+    assert_eq!(first_times, 0);
 }
 
 #[test]
@@ -425,10 +540,8 @@ fn a_long_subdivision_is_only_estimated_unless_requested_by_name() {
         })];
         let operations = [Operation::CatmullClark(Method::Gather)];
         let limits = Limits {
-            budget: Duration::from_secs(2),
-            stop: false,
-            skewed: false,
             named,
+            ..Limits::of(Duration::from_secs(2).into())
         };
         let entries = run_trial(&machine, subjects, &operations, limits);
         (entries[0].clone(), most_run.get())
