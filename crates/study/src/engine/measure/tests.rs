@@ -24,6 +24,8 @@ struct Synthetic {
     costs: [QueryCost; 9],
     most_run: Rc<Cell<usize>>,
     placement: Placement,
+    /// Time of each series outside its runs, in nanoseconds.
+    outside_ns: f64,
 }
 
 impl Synthetic {
@@ -36,9 +38,13 @@ impl Synthetic {
             costs: [cost; 9],
             most_run: Rc::default(),
             placement: Placement::default(),
+            outside_ns: 0.0,
         }
     }
 }
+
+/// Slowdown of a run on fresh pages.
+const FRESH: f64 = 3.0;
 
 #[derive(Clone, Default)]
 struct Placement {
@@ -81,7 +87,12 @@ impl TimedBackend for Synthetic {
             .sample
             .map_or(self.elements, |s| s.size.min(self.elements));
         self.most_run.set(self.most_run.get().max(size));
-        let ns = self.ns_per_element * size as f64 * self.placement.slowdown();
+        let fresh = match series.start {
+            Start::FreshPages => FRESH,
+            _ => 1.0,
+        };
+        let ns = self.ns_per_element * size as f64 * self.placement.slowdown() * fresh;
+        self.machine.work(self.outside_ns);
         for _ in 0..series.untimed {
             self.machine.work(ns);
         }
@@ -333,7 +344,11 @@ fn first_times_take_a_part_of_the_budget_if_pages_can_be_new() {
                 in_rounds = machine.ns() / 2e9;
             }
         });
-        (in_rounds, entries[0].first_times.len())
+        let first_times = &entries[0].first_times;
+        for [first, later] in first_times {
+            assert_eq!(first.ns(), FRESH * later.ns());
+        }
+        (in_rounds, first_times.len())
     };
     let (whole, part) = (0.95..1.0, 0.85..0.9);
     let (in_rounds, first_times) = measured(VV, CacheState::Warm);
@@ -566,4 +581,48 @@ fn a_long_subdivision_is_only_estimated_unless_requested_by_name() {
         let (entry, _) = planned(1e6, QueryCost::Local, named);
         assert!(entry.estimate.is_some() && !entry.by_name_only);
     }
+}
+
+#[test]
+fn the_cost_of_a_sample_includes_the_time_outside_its_runs() {
+    for (ns_per_element, operation) in [(7.0, VV), (40.0, VV), (40.0, Operation::Build)] {
+        let machine = SimulatedMachine::steady();
+        let subject = Synthetic {
+            outside_ns: 1e6,
+            ..Synthetic::new(&machine, ns_per_element, QueryCost::Local)
+        };
+        let limits = Limits::of(Duration::from_secs(2).into());
+        let entries = run_trial(&machine, vec![Box::new(subject)], &[operation], limits);
+        let [entry] = &entries[..] else {
+            panic!("{entries:?}");
+        };
+        let runs = f64::from(entry.untimed + entry.runs);
+        let expected = 1e4 * ns_per_element * runs + 1e6;
+        assert!((entry.cost_ns / expected - 1.0).abs() < 1e-9, "{entry:?}");
+    }
+}
+
+#[test]
+fn operations_without_scans_leave_a_quarter_of_the_time_to_scans() {
+    let machine = SimulatedMachine::steady();
+    let subject = |ns_per_element: f64, cost: QueryCost| {
+        Box::new(Synthetic::new(&machine, ns_per_element, cost)) as Box<dyn TimedBackend>
+    };
+    // A run of the first backend takes 1.6 s of a budget of 4 s, so a third run would begin after
+    // 3.2 s.
+    let subjects = vec![
+        subject(160_000.0, QueryCost::Local),
+        subject(1_000.0, QueryCost::Scan),
+    ];
+    let (entries, _) = run(&machine, subjects, Duration::from_secs(4), false, false);
+    let runs: Vec<usize> = entries.iter().step_by(2).map(|e| e.times().len()).collect();
+    assert_eq!(runs, [1, 1, 0]);
+    assert_eq!(entries[4].refusal_kind, RefusalKind::BudgetEnded);
+    assert!(
+        entries
+            .iter()
+            .skip(1)
+            .step_by(2)
+            .all(|e| !e.times().is_empty())
+    );
 }
