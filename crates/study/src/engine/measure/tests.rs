@@ -92,7 +92,9 @@ impl TimedBackend for Synthetic {
             _ => 1.0,
         };
         let ns = self.ns_per_element * size as f64 * self.placement.slowdown() * fresh;
-        self.machine.work(self.outside_ns);
+        if self.outside_ns > 0.0 {
+            self.machine.work(self.outside_ns);
+        }
         for _ in 0..series.untimed {
             self.machine.work(ns);
         }
@@ -275,7 +277,12 @@ fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget()
         let rebuild_ns = 1e6 * ms * REBUILDING_SHARE / 2.0;
         placed(SimulatedMachine::steady(), rebuild_ns / 2.0).2
     };
-    let last = 1999.0 / (1.0 + REBUILDING_SHARE / 2.0);
+    // The third operation allocates.
+    let for_rounds_ms = match pages::can_release_pages() {
+        true => (1.0 - FIRST_TIMES_SHARE) * 2000.0,
+        false => 2000.0,
+    };
+    let last = (for_rounds_ms - 1.0) / (1.0 + REBUILDING_SHARE / 2.0);
     assert_eq!([0.9 * last, last].map(second_at), [2, 1]);
 }
 
