@@ -208,3 +208,24 @@ fn growth_of_a_quad_shape_excludes_corner_tables() {
         Some(GrowthError::OneSize { from: 400, to: 401 })
     );
 }
+
+#[test]
+fn a_document_with_missing_meshes_or_impossible_times_is_refused() {
+    let report = quick(&small(Effort::of_rounds(1))).expect("a measurement");
+    assert_eq!(report.meshes.len(), report.sizes.len());
+    let refusal = |change: &dyn Fn(&mut GrowthReport)| {
+        let mut changed = report.clone();
+        change(&mut changed);
+        changed.check().err().map(|error| error.to_string())
+    };
+    // Older versions wrote no meshes.
+    assert_eq!(
+        [refusal(&|_| ()), refusal(&|r| r.meshes.clear())],
+        [None, None]
+    );
+    let missing = refusal(&|r| r.meshes.truncate(3)).expect("a mesh is missing");
+    assert!(missing.contains("has 3 meshes, not 4"), "{missing}");
+    let negative = refusal(&|r| r.sizes[1].results[0].median_ns = Some(-1.0));
+    let negative = negative.expect("a negative time");
+    assert!(negative.contains("invalid time"), "{negative}");
+}
