@@ -415,6 +415,20 @@ mod tests {
             Backend::new::<HalfEdgeMesh>(),
             &Scripted::new([[BYTES, 2 * BYTES]]),
         );
+        let figures = audit.figures();
+        let (structure, operations) = figures.split_first().expect("the structure comes first");
+        let size = SizeBytes {
+            layout: Some(BYTES),
+            counted: Some(BYTES),
+            peak: Some(2 * BYTES),
+        };
+        assert_eq!(
+            (structure.row.size, structure.backend_bytes),
+            (Some(size), Some(BYTES))
+        );
+        let allocated = operations.iter().map(|figure| figure.row.allocated_bytes);
+        let expected = audit.backends[0].operations.iter();
+        assert!(allocated.eq(expected.map(|counted| counted.allocated_bytes)));
         assert_eq!(audit.faults(), Vec::<String>::new());
         let one = &audit.backends[0];
         assert_eq!(one.agrees, Some(true));

@@ -491,6 +491,31 @@ mod tests {
         assert_eq!(timed.waits_ns, row.reads.jumps * timed.speed.latency_ns);
         assert!((timed.ns_per_element - 10_000.0 / vertices).abs() < 1e-6);
         assert_eq!(why.mismatches(), 0);
+        let [figure] = &why.figures()[..] else {
+            panic!("one figure");
+        };
+        let FigureRow {
+            ns,
+            elements,
+            unit,
+            agreement,
+            reads,
+            ..
+        } = &figure.row;
+        let ns = ns.expect("measured");
+        assert!((ns - 10_000.0).abs() < 1e-6, "the time of a run: {ns}");
+        assert_eq!(
+            (*elements, unit.as_str()),
+            (Some(vertices as u64), "vertex")
+        );
+        assert_eq!(
+            (*agreement, *reads),
+            (Some(timed.agreement), Some(&row.reads))
+        );
+        assert_eq!(
+            figure.row.samples,
+            figure.samples.expect("samples").rounds.len()
+        );
         assert_eq!(why.memory.as_deref(), Some(memory.speeds()));
         assert_eq!(why.run.settings.budget_s, Some(0.02), "the whole budget");
         // The simulated machine has only the speed of the smallest buffer.

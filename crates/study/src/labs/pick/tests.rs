@@ -457,3 +457,20 @@ fn an_interrupted_measurement_keeps_its_samples() {
     let report = report.expect("the finished part");
     assert!(report.interrupted && !report.ranking.is_empty());
 }
+
+#[test]
+fn a_run_has_the_settings_of_its_pick() {
+    let settings = PickSettings {
+        backends: vec!["half-edge".into()],
+        seed: 9,
+        heap: Policy::System,
+        ..settings(Effort::of_rounds(3))
+    };
+    let expected = RunSettings {
+        backends: vec!["half-edge".into()],
+        seed: 9,
+        heap: Policy::System,
+        ..RunSettings::of_effort(Effort::of_rounds(3))
+    };
+    assert_eq!(settings.run_settings(), expected);
+}

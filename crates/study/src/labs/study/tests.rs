@@ -465,3 +465,20 @@ fn one_backend_is_measured_twice_to_show_the_noise() {
     let shown = |sentence: &String| sentence.starts_with("Noise: face-vertex was measured twice");
     assert!(report.sentences.iter().any(shown), "{:?}", report.sentences);
 }
+
+#[test]
+fn a_study_on_this_machine_measures_what_its_settings_name() {
+    let chosen = Settings {
+        backends: vec!["half-edge".into(), "corner-table".into()],
+        operations: vec![Operation::Boundary],
+        ..settings(Effort::of_rounds(2))
+    };
+    let stop = AtomicBool::new(false);
+    let report = study(&grid(4, 4), &chosen, &stop, &mut |_| ()).expect("both hold a grid");
+    let rows: Vec<(&str, Operation, bool)> = (report.results.iter())
+        .map(|row| (row.backend.as_str(), row.operation, row.median_ns.is_some()))
+        .collect();
+    let expected = ["half-edge", "corner-table"].map(|name| (name, Operation::Boundary, true));
+    assert_eq!(rows, expected);
+    assert_eq!(report.run.settings.seed, 5);
+}
