@@ -299,4 +299,21 @@ mod tests {
         );
         assert!(fastest(&sizes[4..]).is_empty());
     }
+
+    #[test]
+    fn estimates_are_counted_over_all_lines() {
+        let fit = |estimated| Fit {
+            backend: "polygon-soup".into(),
+            operation: Operation::Boundary,
+            scans: true,
+            all: None,
+            in_cache: None,
+            beyond: None,
+            estimated,
+        };
+        let sentence = estimates(&[fit(2), fit(0), fit(3)]);
+        let sentence = sentence.expect("five estimates");
+        assert!(sentence.starts_with("5 of the times"), "{sentence}");
+        assert_eq!(estimates(&[fit(0)]), None);
+    }
 }
