@@ -203,8 +203,8 @@
 //! # Walk in order
 //!
 //! Most queries yield elements in no particular order. [`OrientedWalk`] steps from side to side; a
-//! side is a pair of an edge and one of its faces. A walk can follow a face, turn around a vertex, or
-//! run straight across quads as in the example below. All structures except polygon soups and
+//! side is a pair of an edge and one of its faces. A walk can follow a face, turn around a vertex,
+//! or run straight across quads as in the example below. All structures except polygon soups and
 //! indexed face sets implement [`OrientedWalk`].
 //!
 //! ```

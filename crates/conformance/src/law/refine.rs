@@ -23,8 +23,8 @@ fn splits<M: Refine>() -> Vec<Split> {
 }
 
 /// The refined mesh of every split is valid, and has the expected faces, edges and parent faces. An
-/// impossible split, or one with too many elements, returns the error that describes the reason. Edges are numbered in the order of
-/// `edges()`.
+/// impossible split, or one with too many elements, returns the error that describes the reason.
+/// Edges are numbered in the order of `edges()`.
 pub fn refine<M: Refine>(polygons: &PolygonMesh) {
     let Some(Subject { mesh, input, .. }) = Subject::<M>::from_polygons(polygons) else {
         return;

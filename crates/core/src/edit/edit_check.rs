@@ -8,7 +8,8 @@ use crate::handles::limits;
 use crate::handles::row_id::FaceId;
 use crate::polygons::polygon_mesh::repeated;
 
-/// Checks that a table has at most `limit` rows, or fewer within `with_lower_limits`. `rows` is the number of rows after the edit.
+/// Checks that a table has at most `limit` rows, or fewer within `with_lower_limits`. `rows` is the
+/// number of rows after the edit.
 ///
 /// # Errors
 ///

@@ -10,8 +10,8 @@ pub const MAX_CORNERS: usize = MAX_ROWS / 2;
 /// directions share 32 bits.
 pub const MAX_EDGES: usize = MAX_ROWS / 4;
 
-/// Returns `limit`, or a lower limit within [`with_lower_limits`]. Every check of a number of
-/// elements in a build, a refinement or an edit calls this function.
+/// Returns `limit`, or a lower limit within `with_lower_limits`. Structures check the numbers of
+/// elements of builds, refinements and edits with this function; polygon meshes do not.
 #[inline(always)]
 pub(crate) fn current(limit: usize) -> usize {
     #[cfg(feature = "lower-limits")]

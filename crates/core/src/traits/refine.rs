@@ -106,7 +106,8 @@ pub trait Refine: Representation<Vertex = VertexId, Face = FaceId> {
 }
 
 /// Checks that the structure `M` supports `split`, and that `M` can number the vertices, edges and
-/// corners of the refined mesh. Returns the sizes of the refined mesh. Every [`Refine::split_into`] calls this function first.
+/// corners of the refined mesh. Returns the sizes of the refined mesh. Every
+/// [`Refine::split_into`] calls this function first.
 ///
 /// # Errors
 ///

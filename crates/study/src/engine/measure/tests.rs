@@ -41,6 +41,14 @@ impl Synthetic {
             outside_ns: 0.0,
         }
     }
+
+    fn boxed(
+        machine: &SimulatedMachine,
+        ns_per_element: f64,
+        cost: QueryCost,
+    ) -> Box<dyn TimedBackend> {
+        Box::new(Self::new(machine, ns_per_element, cost))
+    }
 }
 
 /// Slowdown of a run on fresh pages.
@@ -126,9 +134,7 @@ fn measure_all(
     } else {
         QueryCost::Local
     };
-    let subject = |&ns_per_element: &f64| {
-        Box::new(Synthetic::new(&machine, ns_per_element, cost)) as Box<dyn TimedBackend>
-    };
+    let subject = |&ns: &f64| Synthetic::boxed(&machine, ns, cost);
     let subjects: Vec<_> = costs_ns.iter().map(subject).collect();
     run(&machine, subjects, budget, stop, skewed)
 }
@@ -484,13 +490,10 @@ fn scans_are_sampled_or_estimated_to_fit_the_budget() {
 #[test]
 fn long_runs_of_other_backends_leave_time_for_scans() {
     let machine = SimulatedMachine::default();
-    let subject = |ns_per_element: f64, cost: QueryCost| {
-        Box::new(Synthetic::new(&machine, ns_per_element, cost)) as Box<dyn TimedBackend>
-    };
     // The three first runs of the local backend take almost half of the budget.
     let subjects = vec![
-        subject(60_000.0, QueryCost::Local),
-        subject(1_000.0, QueryCost::Scan),
+        Synthetic::boxed(&machine, 60_000.0, QueryCost::Local),
+        Synthetic::boxed(&machine, 1_000.0, QueryCost::Scan),
     ];
     let (entries, _) = run(&machine, subjects, Duration::from_secs(4), false, false);
     assert!(entries.iter().all(|entry| entry.refusal.is_none()));
@@ -612,14 +615,11 @@ fn the_cost_of_a_sample_includes_the_time_outside_its_runs() {
 #[test]
 fn operations_without_scans_leave_a_quarter_of_the_time_to_scans() {
     let machine = SimulatedMachine::steady();
-    let subject = |ns_per_element: f64, cost: QueryCost| {
-        Box::new(Synthetic::new(&machine, ns_per_element, cost)) as Box<dyn TimedBackend>
-    };
     // A run of the first backend takes 1.6 s of a budget of 4 s, so a third run would begin after
     // 3.2 s.
     let subjects = vec![
-        subject(160_000.0, QueryCost::Local),
-        subject(1_000.0, QueryCost::Scan),
+        Synthetic::boxed(&machine, 160_000.0, QueryCost::Local),
+        Synthetic::boxed(&machine, 1_000.0, QueryCost::Scan),
     ];
     let (entries, _) = run(&machine, subjects, Duration::from_secs(4), false, false);
     let runs: Vec<usize> = entries.iter().step_by(2).map(|e| e.times().len()).collect();

@@ -60,6 +60,25 @@ fn all_indices_give_the_same_answers() {
         let report = measure(&mesh, &settings);
         assert_eq!(report.queries, mesh.polygons.vertex_count());
         assert_eq!(report.results.len(), 7 * 5);
+        for (figure, row) in report.figures().iter().zip(&report.results) {
+            let expected = FigureRow {
+                ns: Some(row.median_ns),
+                min_ns: Some(row.min_ns),
+                elements: Some(row.elements),
+                unit: row.per.clone(),
+                ratio_to_best: row.ratio_to_best,
+                standing: row.standing,
+                agreement: Some(row.agreement),
+                samples: 1,
+                checksum: row.checksum,
+                sample_size: row.sample_size,
+                // One round has no interval of a time, and the best has the ratio 1.
+                ratio_interval: figure.row.ratio_interval.filter(|ends| *ends == [1.0; 2]),
+                ..FigureRow::new(row.operation.name().into(), &row.backend, figure.row.status)
+            };
+            assert_eq!(figure.row, expected);
+            assert_eq!(figure.case, points.name());
+        }
         for row in &report.results {
             let context = format!("{} {}", row.operation, row.backend);
             assert_eq!(row.agreement, Agreement::Same, "{context}");
