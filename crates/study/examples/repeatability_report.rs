@@ -60,7 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let each = start.elapsed().as_secs_f64() / runs as f64;
     let text = report_text(&reports, &now, seconds, each);
     fs::create_dir_all(&folder)?;
-    fs::write(format!("{folder}/README.md"), &text)?;
+    fs::write(format!("{folder}/output.md"), &text)?;
     print!("{text}");
     Ok(())
 }
