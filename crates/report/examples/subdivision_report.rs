@@ -39,11 +39,9 @@ const CONCLUSIONS: &str = "
 The method `gather` queries the relations EF (faces of an edge) and VV (neighbours of a vertex) for every new point. A
 polygon soup and an indexed face set must search all faces for the answers, so their time per new face grows with the
 size of the mesh. The method `scatter` avoids the searches, because `scatter` uses only relations that every structure
-stores. The indexed face set takes little time to build. Therefore the indexed face set is the fastest structure with
-`scatter`. Of the structures that store adjacent elements, only structures with expensive walks are faster with
-`scatter` than with `gather`. With `gather` and `scatter`, most of the time is the time to build the structure again.
-The method `native` does not build the structure again. If `native` writes into the tables of the previous run, the run
-also needs no new memory pages.
+stores. Both methods build the structure again. The indexed face set is the fastest structure with `scatter`. The method
+`native` does not build the structure again. For half-edge, winged-edge and corner table, `native` is the fastest method
+at every level.
 ";
 
 /// A scheme, a method and a structure.
