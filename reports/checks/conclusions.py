@@ -1,0 +1,402 @@
+"""The claims of reports/README.md."""
+
+import math
+
+from checks import data, figures, repeatability, workload_table
+from checks.claims import Claims
+from checks.data import BUILT_IN, ENOUGH, LOCAL, RELATIONS, SCANNING, SHUFFLED, STRUCTURES, WALKING
+
+STUDY = "reports/built-in-mesh/results.json"
+BESIDE = "reports/beside/results.json"
+ORDERS = "reports/orders/orders.json"
+GROWTH = {order: f"reports/growth/{name}.json" for order, name in (("given", "growth"), ("shuffled", "growth-shuffled"))}
+# Operations whose rows of the elements do not hold the answer.
+AROUND_VERTICES = ("vertex_vertices", "vertex_faces", "vertex_normal")
+
+page = Claims(
+    "reports/README.md",
+    definitions="""
+        conclusions 1 and 3 to 6
+        two letters (V vertex, E edge, F face)
+        quotient of two median times
+        95 % intervals
+        the nine relations
+        two columns for each mesh
+        one of the six structures
+        has the four backends
+        times of two structures are close
+        ignores ratios up to 1.2
+        two schemes by three methods
+        five spatial indices
+        eight programs
+        the best of four orders
+        a million triangles in four orders
+        from a thousand to four million triangles
+        from a thousand to a million faces
+        fourteen workloads on two meshes
+        ## The fourteen workloads
+        between two backends
+    """,
+)
+
+
+def study():
+    return data.study(STUDY)
+
+
+def relations(letters):
+    return [RELATIONS[pair] for pair in letters.split()]
+
+
+def on(mesh):
+    return {name: data.workload(name, mesh) for name in data.workload_names()}
+
+
+# The introduction.
+
+
+@page.says("an irregular mesh of {} triangles that is part of Sixfold")
+def triangles():
+    return figures.count(data.document(STUDY)["meshes"][0]["faces"])
+
+
+@page.says("were measured on a virtual machine with {} cores of an {}. All other times were measured on a virtual machine "
+           "with {} cores of an {}, which has {} MiB of last-level cache")
+def machines():
+    intel, amd = data.environment(STUDY), data.environment(GROWTH["given"])
+    others = [data.environment(path) for path in (ORDERS, BESIDE, GROWTH["shuffled"])]
+    others += [read["runs"][0]["environment"] for read in data.workload_documents()]
+    data.require(all((e["cpu_model"], e["caches"]) == (amd["cpu_model"], amd["caches"]) for e in others), "other machines")
+    cache = max(amd["caches"], key=lambda cache: cache["level"])["bytes"] / 2**20
+    name = "Intel Xeon" if "Xeon" in intel["cpu_model"] else intel["cpu_model"]
+    return figures.word(intel["cores"]), name, figures.word(amd["cores"]), amd["cpu_model"], f"{cache:.0f}"
+
+
+@page.says("Two measurements of one backend differ by up to {} in the report on orders, typically by up to {} at one size in "
+           "the report on growth, and by up to {} in the workloads")
+def noise():
+    growth = [size["control"]["typical"] for order in GROWTH for size in data.sizes(order)]
+    picked = [workload.found["noise"] for workload in data.workloads().values()]
+    orders = data.finding(ORDERS, "orders")["control"]["worst"]
+    return figures.percent(orders), figures.percent(max(growth)), figures.percent(max(picked), 1)
+
+
+@page.says("A row with fewer than {} samples of its fastest backend has no winner.")
+def enough():
+    return figures.word(ENOUGH)
+
+
+# The conclusions.
+
+
+def scanned():
+    """Returns the relations for which both structures scan."""
+    both = lambda relation: all(study().rows[relation, name]["sampled"] for name in SCANNING)
+    return [relation for relation in RELATIONS.values() if both(relation)]
+
+
+@page.says("On the built-in mesh, they take {} to {} times the time of the fastest structure for {} of the nine relations")
+def scans():
+    ratios = [study().to_best(relation, name) for relation in scanned() for name in SCANNING]
+    return *figures.span(ratios), figures.word(len(scanned()))
+
+
+@page.says("In the report on growth, their total time grows with the number of faces to the power of {} to {}.")
+def exponents():
+    fits = [fit for path in GROWTH.values() for fit in data.finding(path, "growth")["fits"]]
+    return figures.exponent_span(fit["all"]["exponent"] for fit in fits if fit["scans"] and not fit["estimated"])
+
+
+@page.says(
+    "choose the indexed face set: it needs {} bytes per vertex, and every other backend takes at least {} times its time in "
+    "the workload `one-shot-conversion`"
+)
+def conversion():
+    rows = [data.workload("one-shot-conversion", mesh) for mesh in (BUILT_IN, SHUFFLED)]
+    ratios = [w.ratio(name, "indexed-face-set") for w in rows for name in w.rows if name != "indexed-face-set"]
+    return study().bytes_per_vertex("indexed-face-set"), figures.at_least(ratios)
+
+
+def tables_lead(mesh):
+    return [workload for workload in on(mesh).values() if "relation-tables" in workload.leaders()]
+
+
+@page.says("On the built-in mesh, they are fastest, or tied with the fastest structure, in {} of the {} workloads, and on the "
+           "larger mesh in random order in {}. In these workloads, the fastest structure takes {} to {} times their time")
+def tables():
+    led = {mesh: tables_lead(mesh) for mesh in (BUILT_IN, SHUFFLED)}
+    ratios = [w.ratio(w.fastest_structure(), "relation-tables") for rows in led.values() for w in rows]
+    counts = [figures.word(len(rows)) for rows in led.values()]
+    return counts[0], figures.word(len(data.workload_names())), counts[1], *figures.span(ratios)
+
+
+@page.says("Including the time to build, they are the cheapest for one use in {}, on both meshes")
+def tables_once():
+    cheap = [[name for name, w in on(mesh).items() if w.cheapest() == "relation-tables"] for mesh in (BUILT_IN, SHUFFLED)]
+    data.require(set(cheap[0]) == set(cheap[1]), f"the workloads differ between the meshes: {cheap}")
+    return figures.code_names(sorted(cheap[0]))
+
+
+def editing():
+    return [data.workload("remeshing", BUILT_IN), data.workload("remeshing", SHUFFLED), data.workload("decimation", BUILT_IN)]
+
+
+@page.says(
+    "The corner table holds only triangles and needs {} bytes per vertex. In the workload `remeshing` on both meshes and in "
+    "`decimation` on the built-in mesh, no backend is faster, and half-edge takes {} to {} times its time"
+)
+def corner_table():
+    data.require(all("corner-table" in workload.leaders() for workload in editing()), "another backend is faster")
+    return study().bytes_per_vertex("corner-table"), *figures.span(w.ratio("half-edge", "corner-table") for w in editing())
+
+
+@page.says(
+    "On the built-in mesh, it is also the fastest for the relations FV, FE and FF and for a breadth-first search over faces"
+)
+def corner_table_relations():
+    led = {operation: study().leaders(operation) for operation in [*relations("FV FE FF"), "ff_bfs"]}
+    data.require(all(names == ["corner-table"] for names in led.values()), f"the fastest are {led}")
+
+
+@page.says("for VV, VE, VF, EV, EE and EF, it takes {} to {} times the time of half-edge")
+def corner_table_elsewhere():
+    return figures.span(study().ratios("corner-table", "half-edge", relations("VV VE VF EV EE EF")))
+
+
+@page.says("On the built-in mesh, half-edge is the single fastest in {} of {} operations, including VV, VE and EE, and in the "
+           "workloads {}.")
+def half_edge():
+    won = study().won("half-edge")
+    picked = [name for name, workload in on(BUILT_IN).items() if workload.leaders() == ["half-edge"]]
+    data.require(set(relations("VV VE EE")) <= set(won), f"half-edge is the fastest in {won}")
+    return figures.count(len(won)), figures.count(len(study().operations)), figures.code_names(sorted(picked))
+
+
+@page.says("In {} of the {} workloads on this mesh (all except {}), it takes at most {} times the time of the fastest backend")
+def half_edge_at_most():
+    ratios = {name: workload.ratio("half-edge") for name, workload in on(BUILT_IN).items()}
+    usual = {name: ratio for name, ratio in ratios.items() if ratio <= 3}
+    others = figures.code_names(name for name in ratios if name not in usual)
+    return figures.word(len(usual)), figures.word(len(ratios)), others, figures.at_most(usual.values())
+
+
+@page.says("Half-edge needs {} bytes per vertex")
+def half_edge_bytes():
+    return study().bytes_per_vertex("half-edge")
+
+
+@page.says(
+    "a query of VF takes {} to {} ns at every size and in both orders of the report on growth. Half-edge, winged-edge and "
+    "corner table walk around the vertex, which takes {} to {} ns in the original order and {} to {} ns in random order"
+)
+def vertex_faces():
+    times = lambda order, names: [ns for line in data.per_element(order, "vertex_faces", names) for ns in line]
+    stored = times("given", ["face-vertex"]) + times("shuffled", ["face-vertex"])
+    walks = [figures.ns_span(times(order, WALKING)) for order in GROWTH]
+    return *figures.ns_span(stored), *walks[0], *walks[1]
+
+
+@page.says("Face-vertex is fastest, or tied with relation tables, in the workload `vertex-normals` on both meshes")
+def vertex_normals():
+    led = [data.workload("vertex-normals", mesh).leaders() for mesh in (BUILT_IN, SHUFFLED)]
+    fits = all("face-vertex" in names and {*names} <= {"face-vertex", "relation-tables"} for names in led)
+    data.require(fits, f"the fastest are {led}")
+
+
+@page.says("EV, EE, EF and FF take {} to {} times the time of half-edge on the built-in mesh")
+def face_vertex_searches():
+    return figures.span(study().ratios("face-vertex", "half-edge", relations("EV EE EF FF")))
+
+
+@page.says("Winged-edge needs {} bytes per vertex. On the built-in mesh, it takes {} to {} times the time of half-edge for the "
+           "nine relations, and is the single fastest in {} of {} operations: {}.")
+def winged_edge():
+    won, ratios = study().won("winged-edge"), study().ratios("winged-edge", "half-edge", RELATIONS.values())
+    counts = figures.word(len(won)), figures.count(len(study().operations))
+    return study().bytes_per_vertex("winged-edge"), *figures.span(ratios), *counts, figures.code_names(won)
+
+
+def ordered_ns(operation, backend):
+    """Returns the times of a structure in the four orders."""
+    rows = [r for r in data.finding(ORDERS, "orders")["results"] if (r["operation"], r["backend"]) == (operation, backend)]
+    return {row["order"]: row["median_ns"] for row in rows}
+
+
+def disorder(names):
+    """Returns the times in random order, relative to the best order."""
+    times = [ordered_ns(operation, name) for operation in AROUND_VERTICES for name in names]
+    return [ns["shuffled"] / min(ns.values()) for ns in times]
+
+
+@page.says(
+    "On {} triangles in random order, half-edge, winged-edge and corner table take {} to {} times their time in the best of "
+    "four orders (for VV, VF and vertex normals), and face-vertex takes at most {} times"
+)
+def random_order():
+    faces = data.document(ORDERS)["meshes"][0]["faces"]
+    return figures.count(faces), *figures.span(disorder(WALKING)), figures.at_most(disorder(["face-vertex"]))
+
+
+@page.says(
+    "If each of these structures has its best order, the slowest takes {} to {} times the time of the fastest, depending on "
+    "the operation"
+)
+def best_orders():
+    operations = dict.fromkeys(row["operation"] for row in data.finding(ORDERS, "orders")["results"])
+    best = [[min(ordered_ns(operation, name).values()) for name in LOCAL] for operation in operations]
+    return figures.span(max(times) / min(times) for times in best)
+
+
+@page.says("The report has at most {} samples of each time, so it names no best order")
+def few_samples():
+    most = max(row["samples"] for row in data.finding(ORDERS, "orders")["results"])
+    data.require(most < ENOUGH, f"the report has {most} samples of a time, enough to name a best order")
+    return figures.word(most)
+
+
+def growths(order, operations):
+    lines = [line for operation in operations for line in data.per_element(order, operation, WALKING)]
+    return [line[-1] / line[0] for line in lines]
+
+
+@page.says(
+    "From {} to {} triangles in the original order, the time per element of half-edge, winged-edge and corner table grows "
+    "by a factor of {} to {}, and in a breadth-first search over faces by a factor of {} to {}."
+)
+def growth():
+    faces = [size["faces"] for size in data.sizes("given")]
+    operations = [fit["operation"] for fit in data.finding(GROWTH["given"], "growth")["fits"]]
+    others = [operation for operation in dict.fromkeys(operations) if operation != "ff_bfs"]
+    factors = *figures.span(growths("given", others)), *figures.span(growths("given", ["ff_bfs"]))
+    return figures.count(faces[0]), figures.count(faces[-1]), *factors
+
+
+@page.says("For meshes in random order, the factor for VV, VF and vertex normals is {} to {}.")
+def growth_shuffled():
+    return figures.span(growths("shuffled", AROUND_VERTICES))
+
+
+@page.says("Half-edge is larger than the last-level cache from {} triangles on, the corner table from {} triangles on")
+def cache_limits():
+    found = data.finding(GROWTH["given"], "growth")
+    last = max(limit["level"] for limit in found["cache_limits"])
+    faces = {limit["backend"]: limit["faces"] for limit in found["cache_limits"] if limit["level"] == last}
+    return figures.count(faces["half-edge"]), figures.count(faces["corner-table"])
+
+
+def libraries():
+    return [name for name in data.study(BESIDE).backends if name not in STRUCTURES]
+
+
+def mean_ratio(library):
+    """Returns the geometric mean over the relations, relative to half-edge."""
+    return data.geometric_mean(data.study(BESIDE).ratios(library, "half-edge", RELATIONS.values()))
+
+
+def library_mean(library):
+    return figures.ratio(mean_ratio(library))
+
+
+@page.says("**Of {} other libraries, only {} is faster than half-edge on average.**")
+def faster():
+    names = {"opensubdiv": "OpenSubdiv", "cgal": "CGAL", "openmesh": "OpenMesh"}
+    fast = [names.get(name, name) for name in libraries() if mean_ratio(name) < 1]
+    return figures.word(len(libraries())), figures.names(fast)
+
+
+@page.says("Relative to half-edge on the built-in mesh (geometric mean over the nine relations), OpenSubdiv takes {} times the "
+           "time, parry3d {}, CGAL's Surface_mesh {}, OpenMesh {}, lox {}, alum {} and tri-mesh {}.")
+def beside_means():
+    return tuple(map(library_mean, ("opensubdiv", "parry3d", "cgal", "openmesh", "lox", "alum", "tri-mesh")))
+
+
+def beside_ratios(library, *letters):
+    ratios = data.study(BESIDE).ratios(library, "half-edge", [RELATIONS[pair] for pair in letters])
+    return tuple(figures.ratio(ratio) for ratio in ratios)
+
+
+@page.says(
+    "OpenSubdiv stores relations as flat tables that cannot be edited: it takes {} times the time of half-edge for VE, {} "
+    "for VF and {} for EF"
+)
+def opensubdiv():
+    return beside_ratios("opensubdiv", "VE", "VF", "EF")
+
+
+@page.says("To build a mesh, the libraries take {} times ({}) to {} times ({}) the time of half-edge")
+def builds():
+    ratios = {name: data.study(BESIDE).ratios(name, "half-edge", ["build"])[0] for name in libraries()}
+    low, high = min(ratios, key=ratios.get), max(ratios, key=ratios.get)
+    return figures.ratio(ratios[low], math.floor), low, figures.ratio(ratios[high], math.ceil), high
+
+
+# The table of workloads.
+
+
+@page.says("built-in mesh: {} triangles in the original order | cheapest for one use | {} triangles in random order")
+def meshes():
+    faces = {mesh["name"]: mesh["faces"] for mesh in workload_table.meshes()}
+    return figures.count(faces[BUILT_IN]), figures.count(faces[SHUFFLED])
+
+
+@page.says("All workloads were measured at commit {}.")
+def workload_commit():
+    return figures.names(sorted({read["runs"][0]["environment"]["commit"][:7] for read in data.workload_documents()}))
+
+
+for workload_name in workload_table.NAMES:
+    page.row(f"| {workload_name} | {{}} | {{}} | {{}} | {{}} |", workload_table.cells, workload_name)
+
+
+@page.says("The table has all {} workloads")
+def all_workloads():
+    data.require(set(data.workload_names()) == set(workload_table.NAMES), "the names differ from checks/workload_table.py")
+    return figures.word(len(workload_table.NAMES))
+
+
+# The list of reports.
+
+
+@page.says("every edit on every structure, from a thousand to a million faces; measured at commit {} |")
+def editing_commit():
+    return data.document("reports/editing/editing.json")["environment"]["commit"][:7]
+
+
+@page.says(
+    "the libraries OpenMesh, CGAL, OpenSubdiv, lox, alum, parry3d and tri-mesh, compared with Sixfold; orders, growth and "
+    "beside were measured at commit {} |"
+)
+def earlier_commit():
+    return figures.names(sorted({data.commit(path) for path in (ORDERS, BESIDE, *GROWTH.values())}))
+
+
+# Repeatability.
+
+
+@page.says(
+    "A torus of {} triangles in random order was studied {} times, for {} seconds each time, on a machine that was not "
+    "idle."
+)
+def repeated():
+    return repeatability.triangles(), *repeatability.runs()
+
+
+@page.says("For each of the nine relations, one structure is best or tied with the best in all studies.")
+def same_leader():
+    repeatability.require_same_leader()
+
+
+@page.says(
+    "From study to study, a time varies by {} (the standard deviation divided by the mean; median over all times), but two "
+    "times of one structure in the same study differ by {} (median)."
+)
+def variation():
+    return repeatability.variation("time")[0], repeatability.within_study()[0]
+
+
+@page.says("So only {} of the 95 % intervals of times, and {} of those of ratios, contain the median of all studies.")
+def coverage():
+    return repeatability.coverage("the time")[0], repeatability.coverage("the ratio to the best")[0]
+
+
+TEXTS = [page]

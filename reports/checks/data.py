@@ -1,0 +1,201 @@
+"""The committed measurements. Ratios are quotients of two times of the same document (see SCHEMA.md)."""
+
+import functools
+import json
+import math
+import pathlib
+import re
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCANNING = ("polygon-soup", "indexed-face-set")
+WALKING = ("winged-edge", "half-edge", "corner-table")
+LOCAL = ("face-vertex", *WALKING)
+STRUCTURES = (*SCANNING, *LOCAL)
+RELATIONS = {
+    f"{a[0]}{b[0]}".upper(): f"{a}_{plural}"
+    for a in ("vertex", "edge", "face")
+    for b, plural in (("vertex", "vertices"), ("edge", "edges"), ("face", "faces"))
+}
+# The fewest samples from which a winner is named.
+ENOUGH = 4
+BUILT_IN, SHUFFLED = "built-in mesh", "shuffled.obj"
+
+
+class Missing(Exception):
+    """A file or a value that a claim needs is missing."""
+
+
+class Contradicted(Exception):
+    """The data say the opposite of a sentence."""
+
+
+def require(true, otherwise):
+    """Raises `Contradicted` with the reason, unless the condition is true."""
+    if not true:
+        raise Contradicted(otherwise)
+
+
+def use(root):
+    """Reads the data of another checkout from now on."""
+    global ROOT
+    ROOT = pathlib.Path(root)
+    for cached in (content, document, study, workloads):
+        cached.cache_clear()
+
+
+@functools.cache
+def content(path):
+    try:
+        return (ROOT / path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise Missing(f"cannot read {path}: {error.strerror}") from error
+
+
+@functools.cache
+def document(path):
+    try:
+        return json.loads(content(path))
+    except ValueError as error:
+        raise Missing(f"{path} is not JSON: {error}") from error
+
+
+def finding(path, kind):
+    return next(f for f in document(path)["findings"] if f["kind"] == kind)
+
+
+def environment(path):
+    return document(path)["runs"][0]["environment"]
+
+
+def commit(path):
+    return environment(path)["commit"][:7]
+
+
+def quoted(path, pattern):
+    """Returns the groups of a pattern in printed output."""
+    found = re.search(pattern, " ".join(content(path).split()))
+    if not found:
+        raise Missing(f"{path} has no text that matches {pattern}")
+    return found.groups()
+
+
+def geometric_mean(values):
+    values = list(values)
+    return math.exp(sum(map(math.log, values)) / len(values))
+
+
+class Study:
+    """The times of a finding by operation and backend."""
+
+    def __init__(self, found):
+        self.backends = {backend["name"]: backend for backend in found["backends"]}
+        self.rows = {(row["operation"], row["backend"]): row for row in found["results"]}
+        self.operations = list(dict.fromkeys(operation for operation, _ in self.rows))
+
+    def ns(self, operation, backend):
+        """Returns the time of one run; None if there is none."""
+        row = self.rows.get((operation, backend), {"median_ns": None, "estimated_ns": None})
+        return row["median_ns"] or row["estimated_ns"]
+
+    def ratios(self, backend, other, operations):
+        return [self.ns(operation, backend) / self.ns(operation, other) for operation in operations]
+
+    def to_best(self, operation, backend):
+        times = [self.ns(operation, name) for name in self.backends]
+        return self.ns(operation, backend) / min(ns for ns in times if ns)
+
+    def leaders(self, operation):
+        """Returns the backends that are best or tied, from enough samples."""
+        led = lambda row: row and row["standing"] in ("best", "tied") and row["samples"] >= ENOUGH
+        return [name for name in self.backends if led(self.rows.get((operation, name)))]
+
+    def won(self, backend):
+        """Returns the operations in which the backend is the single fastest."""
+        return [operation for operation in self.operations if self.leaders(operation) == [backend]]
+
+    def bytes_per_vertex(self, backend):
+        return f"{self.backends[backend]['bytes_per_vertex']:.0f}"
+
+
+@functools.cache
+def study(path):
+    return Study(finding(path, "study"))
+
+
+def sizes(order):
+    """Returns the sizes of a growth document."""
+    path = {"given": "reports/growth/growth.json", "shuffled": "reports/growth/growth-shuffled.json"}[order]
+    return finding(path, "growth")["sizes"]
+
+
+def per_element(order, operation, backends):
+    """Returns the times per element at each size, one list for each backend."""
+    every = lambda backend: [
+        row["median_ns"] / row["elements"]
+        for size in sizes(order)
+        for row in size["results"]
+        if (row["operation"], row["backend"]) == (operation, backend) and row["median_ns"]
+    ]
+    return [every(backend) for backend in backends]
+
+
+class Workload:
+    """The answer of `pick` for one workload and one mesh."""
+
+    def __init__(self, found):
+        self.found = found
+        self.rows = {row["backend"]: row for row in found["ranking"]}
+        self.fastest = min(self.rows, key=self.ns)
+
+    def ns(self, backend):
+        return self.rows[backend]["ns_per_operation"]
+
+    def ratio(self, backend, other=None):
+        return self.ns(backend) / self.ns(other or self.fastest)
+
+    def enough(self, backend):
+        return self.rows[backend]["samples"] >= ENOUGH
+
+    def leaders(self):
+        """Returns the backends that are fastest or tied. Empty if there are too few samples for a winner."""
+        if not self.enough(self.fastest):
+            return []
+        return [name for name, row in self.rows.items() if row["tied_with_best"] and self.enough(name)]
+
+    def fastest_structure(self):
+        return min((name for name in self.rows if name in STRUCTURES), key=self.ns)
+
+    def once_ns(self, backend):
+        """Returns the time of one use: building the backend from an indexed face set, and all operations."""
+        row = self.rows[backend]
+        build_ns = 0 if backend == "indexed-face-set" else row["first_build_ns"] or row["build_ns"]
+        return build_ns + self.found["operations"] * self.ns(backend)
+
+    def cheapest(self):
+        return min(self.rows, key=self.once_ns)
+
+
+def workload_documents():
+    """Returns all documents in `reports/workloads`."""
+    paths = sorted((ROOT / "reports/workloads").glob("*.json"))
+    return [document(path.relative_to(ROOT).as_posix()) for path in paths]
+
+
+@functools.cache
+def workloads():
+    """Returns the measured workloads by name and mesh."""
+    found = {}
+    for read in workload_documents():
+        for each in read["findings"]:
+            found[each["workload"]["name"], read["meshes"][each["meshes"][0]]["name"]] = Workload(each)
+    return found
+
+
+def workload(name, mesh):
+    if (name, mesh) not in workloads():
+        raise Missing(f"reports/workloads has no measurement of {name} on {mesh}")
+    return workloads()[name, mesh]
+
+
+def workload_names():
+    return list(dict.fromkeys(name for name, _ in workloads()))

@@ -1,0 +1,168 @@
+"""The claims of README.md and docs/measuring.md."""
+
+import math
+
+from checks import data, figures, repeatability, workload_table
+from checks.claims import Claims
+from checks.conclusions import STUDY, library_mean
+from checks.data import BUILT_IN, SHUFFLED
+
+SMOOTHING = ("smoothing", BUILT_IN)
+
+page = Claims(
+    "README.md",
+    definitions="""
+        library of six mesh data structures
+        behind one query trait
+        complete the six
+        Rust 1.88
+        has the six structures
+        eight example programs
+        seven [subdivision]
+        the fifteen [edits]
+        intervals are 95 %
+        If two structures are close
+        32-bit floats
+        with 32 bits
+        Apache License 2.0
+        nine relations
+        1st build
+    """,
+)
+
+
+def both(name):
+    return [data.workload(name, mesh) for mesh in (BUILT_IN, SHUFFLED)]
+
+
+def bytes_of(name):
+    return data.study(STUDY).bytes_per_vertex(name)
+
+
+@page.says("every operation on the built-in mesh of {} triangles. [{} workloads]")
+def built_in_mesh():
+    faces = data.document(STUDY)["meshes"][0]["faces"]
+    return figures.count(faces), figures.word(len(data.workload_names())).capitalize()
+
+
+@page.says("and on {} triangles in random order, give this advice")
+def shuffled_mesh():
+    return figures.count({mesh["name"]: mesh["faces"] for mesh in workload_table.meshes()}[SHUFFLED])
+
+
+@page.says("half-edge takes {}× their time for smoothing, in random order {}× |")
+def smoothing():
+    return tuple(figures.ratio(workload.ratio("half-edge", "relation-tables")) for workload in both("smoothing"))
+
+
+@page.says("on the built-in mesh, no structure is faster for either; {} bytes per vertex, half-edge needs {} |")
+def corner_table():
+    led = [name for name in ("remeshing", "decimation") if "corner-table" in data.workload(name, BUILT_IN).leaders()]
+    data.require(led == ["remeshing", "decimation"], f"the corner table leads only in {led}")
+    return bytes_of("corner-table"), bytes_of("half-edge")
+
+
+@page.says("on the built-in mesh, at most {}× the time of the fastest in {} of {} workloads |")
+def half_edge():
+    ratios = sorted(data.workload(name, BUILT_IN).ratio("half-edge") for name in data.workload_names())
+    usual = [ratio for ratio in ratios if ratio <= 3]
+    return figures.at_most(usual), str(len(usual)), str(len(ratios))
+
+
+@page.says("for vertex normals, half-edge takes {}× its time, in random order {}× |")
+def vertex_normals():
+    return tuple(figures.ratio(workload.ratio("half-edge", "face-vertex")) for workload in both("vertex-normals"))
+
+
+@page.says("| {} bytes per vertex; converting takes {}× its time or more on all others |")
+def conversion():
+    found = both("one-shot-conversion")
+    data.require(all(each.leaders() == ["indexed-face-set"] for each in found), "another backend converts as fast")
+    ratios = [each.ratio(name) for each in found for name in each.rows if name != "indexed-face-set"]
+    return bytes_of("indexed-face-set"), figures.at_least(ratios)
+
+
+@page.says("On {} cores of an {} (commit {}), it measured [these times](reports/workloads/pick-smoothing.json), shortened:")
+def machine():
+    documents = [read for read in data.workload_documents() if read["findings"][0] is data.workload(*SMOOTHING).found]
+    environment = documents[0]["runs"][0]["environment"]
+    return figures.word(environment["cores"]), environment["cpu_model"], environment["commit"][:7]
+
+
+def printed_row(backend):
+    """Returns the row that the command prints for a backend, after its name."""
+    workload = data.workload(*SMOOTHING)
+    row, ratio = workload.rows[backend], workload.ratio(backend)
+    data.require(row["ci_low"] <= ratio <= row["ci_high"], f"the quotient {ratio} is outside of the interval")
+    time = figures.time(row["ns_per_operation"]) + ("~" if row["sampled"] else "")
+    relative = figures.three_digits(ratio) + (" *" if backend == workload.fastest else "")
+    interval = f"{figures.three_digits(row['ci_low'])} to {figures.three_digits(row['ci_high'])}"
+    builds = figures.time(row["first_build_ns"]), figures.time(row["build_ns"])
+    size = f"{row['bytes_per_vertex']:.1f}"
+    cells = zip((time, relative, interval, *builds, size, pays_after(workload, backend)), (0, 8, 16, 11, 9, 10, 12))
+    return "".join(cell.rjust(width) for cell, width in cells)
+
+
+def pays_after(workload, backend):
+    paid = {each["backend"]: each["operations"] for each in workload.found["break_even"]}
+    if backend not in paid:
+        return "–"
+    return "never" if paid[backend] is None else figures.count(math.ceil(paid[backend]))
+
+
+PRINTED = ("relation-tables", "half-edge", "winged-edge", "corner-table", "face-vertex", "indexed-face-set", "polygon-soup")
+
+
+@page.says(" ".join(f"{name} {{}}" for name in PRINTED) + " - For smoothing,")
+def printed_rows():
+    return tuple(map(printed_row, PRINTED))
+
+
+@page.says("- For smoothing, {} is fastest: {} per operation; {} takes {} × that time (95 %: {} to {}).")
+def sentence():
+    workload = data.workload(*SMOOTHING)
+    first, second = sorted(workload.rows, key=workload.ns)[:2]
+    made_from, row = workload.rows[first]["made_from"], workload.rows[second]
+    best = f"{first} (made from {made_from})" if made_from else first
+    interval = figures.three_digits(row["ci_low"]), figures.three_digits(row["ci_high"])
+    return best, figures.time(workload.ns(first)), second, figures.rounded(workload.ratio(second), 2), *interval
+
+
+@page.says(
+    "In {} studies on a busy shared machine, times varied by {}, and {} of the intervals of times contained the median of "
+    "all studies"
+)
+def repeated():
+    runs = int(repeatability.runs()[0])
+    between = figures.rounded(float(repeatability.variation("time")[0].rstrip(" %")), 2)
+    return {20: "twenty"}.get(runs, str(runs)), f"{between} %", repeatability.coverage("the time")[0]
+
+
+@page.says("OpenSubdiv takes {}× the time of Sixfold's half-edge (with tables that cannot be edited), parry3d {}×, CGAL's "
+           "Surface_mesh {}×, OpenMesh {}×, lox {}×, alum {}×, tri-mesh {}× (")
+def beside():
+    return tuple(map(library_mean, ("opensubdiv", "parry3d", "cgal", "openmesh", "lox", "alum", "tri-mesh")))
+
+
+measuring = Claims(
+    "docs/measuring.md",
+    definitions="""
+        is one of the six structures
+        and one of them a second time
+        the two times of one structure
+        A 95 % interval
+        (standard deviation 1 %)
+        Two structures are tied
+        contains 1.
+        rounded to 32 bits
+        one JSON object per line
+        refuses to compare two studies
+        and one more
+        exit code 1.
+        exactly 20 rounds
+        how far two surfaces
+        1 edge with three or more faces: v0–v1 (line 7)
+    """,
+)
+
+TEXTS = [page, measuring]

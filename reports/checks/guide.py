@@ -1,0 +1,73 @@
+"""The claims of reports/guide/your-own-program.md, from the printed answer on the same page."""
+
+import re
+
+from checks import data, figures
+from checks.claims import Claims
+
+PATH = "reports/guide/your-own-program.md"
+
+page = Claims(
+    PATH,
+    definitions="""
+        guess these three points
+        exit code 1.
+        Dijkstra's algorithm (1959)
+        takes two numbers
+        is 0, Sixfold refuses
+        more than a tenth of the budget
+        two cores of an AMD EPYC
+        which of the two is faster
+        the six access orders
+        measured times of eight programs
+        prints two lines
+    """,
+    printed=True,
+)
+
+
+def answer():
+    """Returns the cells of each backend in the printed table: times in milliseconds, and the interval of the ratio."""
+    ms = lambda text: float(text.split()[0]) * {"ms": 1, "µs": 1e-3}[text.split()[1]]
+    cell = r"([\d.]+ (?:ms|µs))"
+    pattern = rf"^ ([a-z-]+) +{cell} +[\d.]+ (?:\* )? *([\d.]+) to ([\d.]+) +{cell} "
+    rows = re.findall(pattern, data.content(PATH), re.MULTILINE)
+    return {name: (ms(run), float(low), float(high), ms(build)) for name, run, low, high, build in rows}
+
+
+def counted(pattern):
+    return [int(number.replace(",", "")) for number in data.quoted(PATH, pattern)]
+
+
+@page.says("The mesh is a scan with {} triangles (the Stanford bunny).")
+def triangles():
+    return figures.rounded(counted(r"vertices, ([\d,]+) faces")[0], 1)
+
+
+@page.says(
+    "The intervals of corner table and half-edge overlap, so the measurement does not show which of the two is faster. Both "
+    "are faster than winged-edge and face-vertex."
+)
+def intervals():
+    low, high = ({name: row[side] for name, row in answer().items()} for side in (1, 2))
+    near, far = ("corner-table", "half-edge"), ("winged-edge", "face-vertex")
+    data.require(max(low[name] for name in near) <= min(high[name] for name in near), "the intervals do not overlap")
+    data.require(max(high[name] for name in near) <= min(low[name] for name in far), "the intervals overlap")
+
+
+@page.says("For a single run, building this structure and the tables takes more time than the tables save.")
+def single_run():
+    once = {name: row[0] + row[3] for name, row in answer().items()}
+    data.require(once["face-vertex"] < once["relation-tables"], f"run and build take {once} ms")
+
+
+@page.says("Here, the program queries the neighbours of each vertex once, and reads {} positions for each neighbour.")
+def calls():
+    positions, queries = counted(r"One run asks for ([\d,]+) position and ([\d,]+) vertex_vertices")
+    vertices, faces = counted(r"([\d,]+) vertices, ([\d,]+) faces")
+    data.require(queries == vertices, f"{queries} queries on {vertices} vertices")
+    # A closed mesh of triangles has three edges for two faces, and each edge makes two neighbours.
+    return figures.word(round(positions / (3 * faces)))
+
+
+TEXTS = [page]

@@ -1,0 +1,39 @@
+"""Texts without measured figures: each number in them is a definition."""
+
+from checks.claims import Claims
+
+CRITERION = """
+    measure two things
+    two times of one run
+"""
+HEAP = """
+    measures one structure twice
+    between two copies of one structure
+    in two programs
+"""
+NEIGHBOURS = """
+    writes four results
+    a geodesic sphere of 499,280 triangles
+    the eight nearest vertices
+"""
+CLUSTER = """
+    Slurm array of eight jobs
+    between two machines
+"""
+ALGORITHMS = """
+    Each of the seven subdivision schemes
+    three methods
+    √3
+    A bar with two holes
+    sharp for two levels
+    if two vertices move
+    Three algorithms use
+"""
+
+TEXTS = [
+    Claims("reports/criterion/README.md", CRITERION),
+    Claims("reports/heap/README.md", HEAP),
+    Claims("reports/neighbours/README.md", NEIGHBOURS),
+    Claims("reports/cluster/README.md", CLUSTER),
+    Claims("docs/algorithms.md", ALGORITHMS),
+]
