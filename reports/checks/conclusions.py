@@ -65,7 +65,7 @@ def triangles():
 def machines():
     intel, amd = data.environment(STUDY), data.environment(GROWTH["given"])
     others = [data.environment(path) for path in (ORDERS, BESIDE, GROWTH["shuffled"])]
-    others += [read["runs"][0]["environment"] for read in data.workload_documents()]
+    others += data.workload_environments()
     data.require(all((e["cpu_model"], e["caches"]) == (amd["cpu_model"], amd["caches"]) for e in others), "other machines")
     cache = max(amd["caches"], key=lambda cache: cache["level"])["bytes"] / 2**20
     name = "Intel Xeon" if "Xeon" in intel["cpu_model"] else intel["cpu_model"]
@@ -95,6 +95,11 @@ def scanned():
     return [relation for relation in RELATIONS.values() if both(relation)]
 
 
+@page.says("**For queries, do not choose a structure that scans.** Polygon soup and indexed face set scan all faces")
+def scanning():
+    data.require(scanned(), "they scan for no relation")
+
+
 @page.says("On the built-in mesh, they take {} to {} times the time of the fastest structure for {} of the nine relations")
 def scans():
     ratios = [study().to_best(relation, name) for relation in scanned() for name in SCANNING]
@@ -121,6 +126,13 @@ def tables_lead(mesh):
     return [workload for workload in on(mesh).values() if "relation-tables" in workload.leaders()]
 
 
+@page.says("**For a program that only queries a few known relations, choose relation tables.**")
+def tables_first():
+    for mesh in (BUILT_IN, SHUFFLED):
+        measured = [workload for workload in on(mesh).values() if "relation-tables" in workload.rows]
+        data.require(2 * len(tables_lead(mesh)) > len(measured), f"they lead in fewer than half of the workloads on {mesh}")
+
+
 @page.says("On the built-in mesh, they are fastest, or tied with the fastest structure, in {} of the {} workloads, and on the "
            "larger mesh in random order in {}. In these workloads, the fastest structure takes {} to {} times their time")
 def tables():
@@ -137,6 +149,11 @@ def tables_once():
     return figures.code_names(sorted(cheap[0]))
 
 
+@page.says("**To edit triangle meshes, choose the corner table.**")
+def corner_table_first():
+    data.require(all("corner-table" in workload.leaders() for workload in editing()), "another backend is faster")
+
+
 def editing():
     return [data.workload("remeshing", BUILT_IN), data.workload("remeshing", SHUFFLED), data.workload("decimation", BUILT_IN)]
 
@@ -146,7 +163,7 @@ def editing():
     "`decimation` on the built-in mesh, no backend is faster, and half-edge takes {} to {} times its time"
 )
 def corner_table():
-    data.require(all("corner-table" in workload.leaders() for workload in editing()), "another backend is faster")
+    corner_table_first()
     return study().bytes_per_vertex("corner-table"), *figures.span(w.ratio("half-edge", "corner-table") for w in editing())
 
 
@@ -170,6 +187,12 @@ def half_edge():
     picked = [name for name, workload in on(BUILT_IN).items() if workload.leaders() == ["half-edge"]]
     data.require(set(relations("VV VE EE")) <= set(won), f"half-edge is the fastest in {won}")
     return figures.count(len(won)), figures.count(len(study().operations)), figures.code_names(sorted(picked))
+
+
+@page.says("**To edit polygon meshes, or to query vertices and edges, choose half-edge.**")
+def half_edge_first():
+    won = {name: len(study().won(name)) for name in STRUCTURES}
+    data.require(max(won, key=won.get) == "half-edge", f"the numbers of fastest operations are {won}")
 
 
 @page.says("In {} of the {} workloads on this mesh (all except {}), it takes at most {} times the time of the fastest backend")
@@ -196,6 +219,12 @@ def vertex_faces():
     return *figures.ns_span(stored), *walks[0], *walks[1]
 
 
+@page.says("**To collect the faces around vertices, choose face-vertex.**")
+def face_vertex_first():
+    led = study().leaders("vertex_faces")
+    data.require(led == ["face-vertex"], f"the fastest are {led}")
+
+
 @page.says("Face-vertex is fastest, or tied with relation tables, in the workload `vertex-normals` on both meshes")
 def vertex_normals():
     led = [data.workload("vertex-normals", mesh).leaders() for mesh in (BUILT_IN, SHUFFLED)]
@@ -208,8 +237,10 @@ def face_vertex_searches():
     return figures.span(study().ratios("face-vertex", "half-edge", relations("EV EE EF FF")))
 
 
-@page.says("Winged-edge needs {} bytes per vertex. On the built-in mesh, it takes {} to {} times the time of half-edge for the "
-           "nine relations, and is the single fastest in {} of {} operations: {}.")
+@page.says(
+    "**Winged-edge is almost never the best choice.** Winged-edge needs {} bytes per vertex. On the built-in mesh, it takes "
+    "{} to {} times the time of half-edge for the nine relations, and is the single fastest in {} of {} operations: {}."
+)
 def winged_edge():
     won, ratios = study().won("winged-edge"), study().ratios("winged-edge", "half-edge", RELATIONS.values())
     counts = figures.word(len(won)), figures.count(len(study().operations))
@@ -341,7 +372,7 @@ def meshes():
 
 @page.says("All workloads were measured at commit {}.")
 def workload_commit():
-    return figures.names(sorted({read["runs"][0]["environment"]["commit"][:7] for read in data.workload_documents()}))
+    return figures.names(sorted({found["commit"][:7] for found in data.workload_environments()}))
 
 
 for workload_name in workload_table.NAMES:

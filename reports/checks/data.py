@@ -181,6 +181,10 @@ def workload_documents():
     return [document(path.relative_to(ROOT).as_posix()) for path in paths]
 
 
+def workload_environments():
+    return [run["environment"] for read in workload_documents() for run in read["runs"]]
+
+
 @functools.cache
 def workloads():
     """Returns the measured workloads by name and mesh."""

@@ -142,7 +142,8 @@ def require_between(found, low, high):
     data.require(not wrong, f"not between {low} and {high}: {wrong}")
 
 
-@page.says("the time of an edit hardly depends on the size of the mesh while the structure fits into the cache: the first "
+@page.says("Half-edge, winged-edge, corner table and face-vertex store which elements are adjacent. On these four structures, "
+           "the time of an edit hardly depends on the size of the mesh while the structure fits into the cache: the first "
            "exponents are about 0. The exceptions are `remove_isolated_vertices` and `compact`, which visit the whole mesh.")
 def constant():
     require_between(all_exponents(set(EDITS) - set(WHOLE_MESH), LOCAL, False), -0.3, 0.3)
@@ -158,8 +159,8 @@ def beyond():
 
 
 @page.says(
-    "an edit that must find the faces at a vertex or an edge scans all faces, with exponents of about 1 on large meshes. On "
-    "the indexed face set, an edit of a given face does not scan."
+    "On the indexed face set and the polygon soup, an edit that must find the faces at a vertex or an edge scans all faces, "
+    "with exponents of about 1 on large meshes. On the indexed face set, an edit of a given face does not scan."
 )
 def searching():
     require_between(all_exponents(SEARCHING, SCANNING, True), 0.9, 1.3)

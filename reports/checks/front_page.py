@@ -50,31 +50,43 @@ def shuffled_mesh():
     return figures.count({mesh["name"]: mesh["faces"] for mesh in workload_table.meshes()}[SHUFFLED])
 
 
-@page.says("half-edge takes {}× their time for smoothing, in random order {}× |")
+@page.says(
+    "[relation tables](crates/relation-table), made once from a structure | half-edge takes {}× their time for smoothing, "
+    "in random order {}× |"
+)
 def smoothing():
     return tuple(figures.ratio(workload.ratio("half-edge", "relation-tables")) for workload in both("smoothing"))
 
 
-@page.says("on the built-in mesh, no structure is faster for either; {} bytes per vertex, half-edge needs {} |")
+@page.says(
+    "[corner table](crates/corner-table) | on the built-in mesh, no structure is faster for either; {} bytes per vertex, "
+    "half-edge needs {} |"
+)
 def corner_table():
     led = [name for name in ("remeshing", "decimation") if "corner-table" in data.workload(name, BUILT_IN).leaders()]
     data.require(led == ["remeshing", "decimation"], f"the corner table leads only in {led}")
     return bytes_of("corner-table"), bytes_of("half-edge")
 
 
-@page.says("on the built-in mesh, at most {}× the time of the fastest in {} of {} workloads |")
+@page.says("[half-edge](crates/half-edge) | on the built-in mesh, at most {}× the time of the fastest in {} of {} workloads |")
 def half_edge():
     ratios = sorted(data.workload(name, BUILT_IN).ratio("half-edge") for name in data.workload_names())
     usual = [ratio for ratio in ratios if ratio <= 3]
     return figures.at_most(usual), str(len(usual)), str(len(ratios))
 
 
-@page.says("for vertex normals, half-edge takes {}× its time, in random order {}× |")
+@page.says(
+    "[face-vertex](crates/face-vertex) | holds every mesh; for vertex normals, half-edge takes {}× its time, in random "
+    "order {}× |"
+)
 def vertex_normals():
     return tuple(figures.ratio(workload.ratio("half-edge", "face-vertex")) for workload in both("vertex-normals"))
 
 
-@page.says("| {} bytes per vertex; converting takes {}× its time or more on all others |")
+@page.says(
+    "[indexed face set](crates/indexed-face-set) | {} bytes per vertex; converting takes {}× its time or more on all others "
+    "|"
+)
 def conversion():
     found = both("one-shot-conversion")
     data.require(all(each.leaders() == ["indexed-face-set"] for each in found), "another backend converts as fast")
@@ -84,8 +96,9 @@ def conversion():
 
 @page.says("On {} cores of an {} (commit {}), it measured [these times](reports/workloads/pick-smoothing.json), shortened:")
 def machine():
-    documents = [read for read in data.workload_documents() if read["findings"][0] is data.workload(*SMOOTHING).found]
-    environment = documents[0]["runs"][0]["environment"]
+    found = data.workload(*SMOOTHING).found
+    read = next(read for read in data.workload_documents() if any(each is found for each in read["findings"]))
+    environment = read["runs"][found["run"]]["environment"]
     return figures.word(environment["cores"]), environment["cpu_model"], environment["commit"][:7]
 
 

@@ -55,8 +55,13 @@ def intervals():
     data.require(max(high[name] for name in near) <= min(low[name] for name in far), "the intervals overlap")
 
 
-@page.says("For a single run, building this structure and the tables takes more time than the tables save.")
+@page.says(
+    "The relation tables take the least time for a run, but relation tables are made from another structure. For a single "
+    "run, building this structure and the tables takes more time than the tables save."
+)
 def single_run():
+    fastest = min(answer(), key=lambda name: answer()[name][0])
+    data.require(fastest == "relation-tables", f"{fastest} takes the least time")
     once = {name: row[0] + row[3] for name, row in answer().items()}
     data.require(once["face-vertex"] < once["relation-tables"], f"run and build take {once} ms")
 

@@ -65,7 +65,10 @@ def control_mesh():
 # The conclusions have no values, because the program that makes the report also writes them for other machines.
 
 
-@page.says("their time per new face grows with the size of the mesh.")
+@page.says(
+    "A polygon soup and an indexed face set must search all faces for the answers, so their time per new face grows with "
+    "the size of the mesh."
+)
 def searches():
     grows = lambda found: all(found[level + 1] > 2 * found[level] for level in found if level + 1 in found)
     each = [times(scheme, "gather", backend) for scheme in SCHEMES for backend in ("polygon-soup", "indexed-face-set")]

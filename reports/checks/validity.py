@@ -116,6 +116,13 @@ def program_count():
     return figures.word(len(PROGRAMS))
 
 
+@page.says("The compared structures are the four structures whose queries do not scan all faces: face-vertex, winged-edge, "
+           "half-edge and corner table.")
+def structures():
+    found = {tuple(sorted(row["ns"])) for row in data.document(DATA)}
+    data.require(found == {tuple(sorted(STRUCTURES))}, f"{DATA} has the structures {found}")
+
+
 @page.says("The {} meshes are a ball")
 def mesh_count():
     return figures.word(len({row["mesh"] for row in data.document(DATA)}))
