@@ -78,7 +78,7 @@ def noise():
     growth = [size["control"]["typical"] for order in GROWTH for size in data.sizes(order)]
     picked = [workload.found["noise"] for workload in data.workloads().values()]
     orders = data.finding(ORDERS, "orders")["control"]["worst"]
-    return figures.percent(orders), figures.percent(max(growth)), figures.percent(max(picked), 1)
+    return figures.percent_at_most([orders]), figures.percent_at_most(growth), figures.percent_at_most(picked)
 
 
 @page.says("A row with fewer than {} samples of its fastest backend has no winner.")

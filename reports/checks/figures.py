@@ -51,9 +51,9 @@ def ns_span(values):
     return rounded(min(values), 2, math.floor), rounded(max(values), 2, math.ceil)
 
 
-def percent(ratio_of_two, digits=2):
-    """Returns the difference of a ratio from 1."""
-    return rounded(100 * (ratio_of_two - 1), digits) + " %"
+def percent_at_most(ratios):
+    """Returns the largest difference of the ratios from 1, in whole percent."""
+    return f"{math.ceil(round(100 * (max(ratios) - 1), 6))} %"
 
 
 def count(number):
