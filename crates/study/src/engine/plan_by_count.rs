@@ -87,5 +87,13 @@ mod tests {
         assert_eq!(runs(4, true, false), 1_667, "each element visits 10 faces");
         assert_eq!(runs(4, false, true), 455, "making an element counts 50");
         assert_eq!(runs(4, true, true), 1_667);
+        let of = |name: &str| {
+            let mut entry = Entry::new(0, name.parse().expect("an operation"));
+            entry.outcome = Some(Outcome::new(1.0, 4));
+            runs_per_sample(&entry, false, 10)
+        };
+        // A build allocates, a refinement makes a mesh, and an edit changes one.
+        let runs = ["build", "loop_gather", "flip_all", "edge_length"].map(of);
+        assert_eq!(runs, [455, 455, 455, 4_167]);
     }
 }

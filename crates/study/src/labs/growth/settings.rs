@@ -236,6 +236,25 @@ mod tests {
     }
 
     #[test]
+    fn a_plan_has_the_sizes_and_the_backends_that_refuse_the_shape() {
+        let mut settings = GrowthSettings {
+            shape: "grid".into(),
+            from: 1000,
+            to: 100_000,
+            steps: 3,
+            ..GrowthSettings::default()
+        };
+        let (sizes, refused) = growth_plan(&settings).expect("most backends hold it");
+        assert_eq!(sizes, [1000, 10_000, 100_000]);
+        let names: Vec<&str> = refused.iter().map(|r| r.backend.as_str()).collect();
+        assert_eq!(names, ["corner-table"], "a grid has quads");
+        settings.study.backends = vec!["corner-table".into()];
+        let error = growth_plan(&settings).expect_err("no backend holds it");
+        let expected = GrowthError::Study(StudyError::none_holds(refused));
+        assert_eq!(error, expected);
+    }
+
+    #[test]
     fn invalid_settings_are_refused_with_a_specific_error() {
         let refused = |change: fn(&mut GrowthSettings)| {
             let mut settings = GrowthSettings::default();

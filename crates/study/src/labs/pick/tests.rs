@@ -9,6 +9,7 @@ use sixfold_workload::{
 use super::*;
 use crate::engine::simulated_machine::{SimulatedMachine, Work};
 use crate::labs::pick::measurement::Outcome;
+use crate::results::finding::LabFinding;
 
 struct KnownBackend {
     name: &'static str,
@@ -456,6 +457,57 @@ fn an_interrupted_measurement_keeps_its_samples() {
     );
     let report = report.expect("the finished part");
     assert!(report.interrupted && !report.ranking.is_empty());
+}
+
+#[test]
+fn each_fault_of_a_pick_has_a_warning() {
+    let mut report =
+        quick(&settings(Effort::of_rounds(8)), &[shapes::octahedron()]).expect("a report");
+    let of_machine = reasons::warnings(&report);
+    assert!(
+        !of_machine.iter().any(|w| w.contains("not significant")),
+        "{of_machine:?}"
+    );
+    report.noise = Some(1.2);
+    report.preliminary = true;
+    report.mismatches = vec!["half-edge".into()];
+    let warnings = reasons::warnings(&report);
+    let added = &warnings[of_machine.len()..];
+    assert_eq!(added.len(), 3, "{added:?}");
+    for (warning, part) in added
+        .iter()
+        .zip(["by 20 %", "only 8 samples", "half-edge gives"])
+    {
+        assert!(warning.contains(part), "{warning}");
+    }
+}
+
+#[test]
+fn the_figures_of_a_pick_are_its_times() {
+    let report = quick(&settings(Effort::of_rounds(3)), &[shapes::octahedron()]).expect("a report");
+    let figures = report.figures();
+    let mut figures = figures.iter();
+    for ranked in &report.ranking {
+        let mix = figures.next().expect("the mix");
+        assert_eq!(mix.case, report.workload.name);
+        assert_eq!(mix.row.operation, "mix");
+        assert_eq!(mix.row.ns, Some(ranked.ns_per_operation));
+        assert_eq!(mix.row.samples, 3);
+        let rounds = mix.samples.map(|samples| samples.rounds.len());
+        // The samples of a mix on some of the elements are those of its parts.
+        let expected = (!ranked.sampled).then_some(3);
+        assert_eq!(rounds, expected, "{}", ranked.backend);
+        for part in ranked.parts.iter().filter(|part| part.ns.is_some()) {
+            let figure = figures.next().expect("a part");
+            assert_eq!(figure.row.operation, part.operation.to_string());
+            assert_eq!(figure.row.ns, part.ns);
+        }
+        let build = figures.next().expect("the build");
+        assert_eq!(build.row.operation, "build");
+        assert_eq!(build.row.ns, Some(ranked.build_ns));
+        assert_eq!(build.case, report.workload.name);
+    }
+    assert!(figures.next().is_none());
 }
 
 #[test]

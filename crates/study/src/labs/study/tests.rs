@@ -6,6 +6,7 @@ use sixfold::{PolygonMesh, shapes};
 use super::*;
 use crate::engine::simulated_machine::{SimulatedMachine, Work};
 use crate::results::document::Results;
+use crate::results::finding::LabFinding;
 use crate::results::rows::{RefusalKind, Standing};
 use sixfold_workload::{ElementKind, Task};
 
@@ -83,6 +84,51 @@ fn shortened(report: &Report) -> [usize; 3] {
         rows().filter(|row| row.estimated_ns.is_some()).count(),
         ended.filter(|r| r.kind == RefusalKind::BudgetEnded).count(),
     ]
+}
+
+#[test]
+fn rounds_sample_scans_by_the_number_of_faces() {
+    // A sample of a scan visits a million faces: 667 of the vertices of 1,500 faces.
+    let study_mesh = grid(30, 25);
+    let faces = study_mesh.facts.faces;
+    assert_eq!(faces, 1500);
+    let mut settings = settings(Effort::of_rounds(1));
+    settings.operations = ["vertex_faces", "edge_faces", "edge_length"]
+        .map(|name| name.parse().expect("an operation"))
+        .to_vec();
+    for (caches, is_one_run) in [(CacheState::Warm, false), (CacheState::Cold, true)] {
+        settings.caches = caches;
+        let mut warming = Vec::new();
+        let machine = SimulatedMachine::usual();
+        let stop = AtomicBool::new(false);
+        let report = study_on(&machine, &study_mesh, &settings, &stop, &mut |at| {
+            if at.stage == "warming up" {
+                warming.push(at.done);
+            }
+        });
+        let report = report.expect("all backends hold it");
+        for row in &report.results {
+            let scans = ["polygon-soup", "indexed-face-set"].contains(&row.backend.as_str())
+                && row.operation != Operation::EdgeLength;
+            let context = format!("{} on {}, {caches:?}", row.operation, row.backend);
+            assert_eq!(
+                row.sample_size,
+                scans.then_some(1_000_000 / faces),
+                "{context}"
+            );
+            let one_run = scans || is_one_run;
+            assert_eq!(row.runs_per_sample == 1, one_run, "{context}: {row:?}");
+        }
+        // On this machine, a backend that is measured twice has equal times.
+        let figures = report.figures();
+        assert!(figures.iter().all(|figure| figure.noise == 1.02));
+        // The tasks are warmed up in the first tenth of the work. One backend is measured twice.
+        let tasks = 3.0 * 7.0;
+        assert_eq!(warming.len(), 21);
+        for (i, done) in warming.into_iter().enumerate() {
+            assert!((done - i as f64 / tasks * 0.1).abs() < 1e-12, "{i}: {done}");
+        }
+    }
 }
 
 #[test]

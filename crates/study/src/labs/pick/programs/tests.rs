@@ -215,6 +215,42 @@ fn a_planted_slow_relation_loses_the_programs_that_query_it() {
 }
 
 #[test]
+fn programs_are_measured_on_this_machine_with_the_settings_that_were_asked_for() {
+    let mesh = [StudyMesh::new("cube", shapes::cube())];
+    let suite = Suite::from(Queries(Relation::VertexVertices));
+    let stop = AtomicBool::new(false);
+    let measure = |settings: &ProgramSettings| {
+        let (progress, finished) = (&mut |_: f64, _: &str| (), &mut |_: &PickReport| ());
+        pick_for_programs(&mesh, &suite, settings, &stop, progress, finished)
+    };
+    let mut settings = ProgramSettings {
+        backends: vec!["half-edge".into(), "winged-edge".into()],
+        effort: Effort::of_rounds(1),
+        seed: 9,
+        heap: Policy::System,
+        ..ProgramSettings::default()
+    };
+    let reports = measure(&settings).expect("both hold a cube");
+    let [report] = &reports[..] else {
+        panic!("one program")
+    };
+    assert_eq!(report.ranking.len(), 2);
+    let expected = RunSettings {
+        backends: settings.backends.clone(),
+        seed: 9,
+        heap: Policy::System,
+        ..RunSettings::of_effort(settings.effort)
+    };
+    assert_eq!(report.run.settings, expected);
+    settings.backends.push("abacus".into());
+    let error = measure(&settings).expect_err("an unknown backend");
+    assert!(
+        matches!(error, PickError::Study(StudyError::UnknownBackend(_))),
+        "{error}"
+    );
+}
+
+#[test]
 fn a_scanning_structure_that_would_take_too_long_is_excluded() {
     let costs = |work: &Work<'_>| {
         let faces = work.counts.faces as f64;
