@@ -33,7 +33,7 @@ pub(crate) use inspect::Inspect;
 pub(crate) use memory::Memory;
 pub(crate) use neighbours::Neighbours;
 pub(crate) use new::New;
-pub(crate) use picking::{Pick, Workloads};
+pub(crate) use picking::{Operations, Pick, Workloads};
 pub(crate) use programs::Programs;
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
 pub(crate) use render::Render;
@@ -149,6 +149,8 @@ pub(crate) enum Command {
     Pick(Pick),
     /// List the built-in workloads and the programs they model
     Workloads(Workloads),
+    /// List the operations of a study, and what each operation does
+    Operations(Operations),
     /// Write a package that measures your own program on every data structure
     New(New),
     /// Explain the time of queries by the memory that the queries read

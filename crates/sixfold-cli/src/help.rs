@@ -17,7 +17,7 @@ use crate::{generate, growth, orders, study};
 const GROUPS: [(&str, &[&str]); 5] = [
     (
         "Choose a structure",
-        &["pick", "new", "workloads", "study", "inspect"],
+        &["pick", "new", "workloads", "study", "operations", "inspect"],
     ),
     (
         "Explain the costs",

@@ -69,6 +69,7 @@ mod memory;
 mod mesh_files;
 mod neighbours;
 mod new;
+mod operations;
 mod orders;
 mod output;
 mod pick;
@@ -129,6 +130,7 @@ pub fn sixfold(counters: &dyn AllocatorCounters) -> ExitCode {
         Ok(Some(Command::Study(arguments))) => study::run(&arguments),
         Ok(Some(Command::Pick(arguments))) => pick::run(&arguments),
         Ok(Some(Command::Workloads(arguments))) => workloads::run(&arguments),
+        Ok(Some(Command::Operations(arguments))) => operations::run(&arguments),
         Ok(Some(Command::Why(arguments))) => why::run(&arguments),
         Ok(Some(Command::Orders(arguments))) => orders::run(&arguments),
         Ok(Some(Command::Growth(arguments))) => growth::run(&arguments),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use sixfold_study::{
-    BackendReport, Environment, Finding, Operation, Report, Run, RunSettings, Settings, StudyError,
+    BackendReport, Environment, Finding, Report, Run, RunSettings, Settings, StudyError,
     StudyMesh, Timer,
 };
 
@@ -81,9 +81,8 @@ pub(crate) fn help() -> String {
 pub(crate) fn name_lists() -> String {
     let backends = sixfold::structure_infos();
     let backends: Vec<&str> = backends.iter().map(|backend| backend.name).collect();
-    let operations = Operation::ALL.map(Operation::name).join(", ");
     let backends = hanging_indent("Backends:    ", &backends.join(", "));
-    let operations = hanging_indent("Operations:  ", &operations);
+    let operations = "Operations:  see `sixfold operations`";
     format!("{backends}\n{operations}")
 }
 

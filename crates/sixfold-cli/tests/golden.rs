@@ -42,6 +42,7 @@ fn help() {
         ("help_pick.txt", &["pick", "--help"]),
         ("help_new.txt", &["new", "--help"]),
         ("help_workloads.txt", &["workloads", "--help"]),
+        ("help_operations.txt", &["operations", "--help"]),
         ("help_inspect.txt", &["inspect", "--help"]),
         ("help_distance.txt", &["distance", "--help"]),
         ("help_memory.txt", &["memory", "--help"]),
@@ -84,6 +85,11 @@ fn workloads() {
         "workload_operations.txt",
         &printed(&sixfold, &["workloads", "--operations"]),
     );
+}
+
+#[test]
+fn operations() {
+    golden("operations.txt", &printed(&Sixfold::new(), &["operations"]));
 }
 
 #[test]

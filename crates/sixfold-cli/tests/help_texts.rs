@@ -40,12 +40,14 @@ fn text_is_not_wider_than_the_terminal() {
         vec!["schemes"],
         vec!["edits"],
         vec!["workloads"],
+        vec!["operations"],
         vec!["--help"],
     ];
     let all = [
         "study",
         "pick",
         "workloads",
+        "operations",
         "new",
         "why",
         "orders",

@@ -197,8 +197,87 @@ impl Operation {
         }
     }
 
-    /// Returns the unit of work by which the time of the operation is divided: `vertex`, `edge`, `face`, `visit`
-    /// or `new face`.
+    /// Returns the group of the operation in lists: `build`, `queries`, `traversals`, `edits` or
+    /// `subdivision`.
+    pub const fn group(self) -> &'static str {
+        match self {
+            Self::Build => "build",
+            Self::Relation(_) | Self::Circulate | Self::AllQueries => "queries",
+            Self::FaceBarycenter
+            | Self::VertexNormal
+            | Self::VvSmooth
+            | Self::EdgeLength
+            | Self::Boundary
+            | Self::FfBfs => "traversals",
+            Self::EditPass(_) => "edits",
+            Self::CatmullClark(_) | Self::Loop(_) => "subdivision",
+        }
+    }
+
+    /// Returns what one run of the operation does, for users.
+    pub const fn about(self) -> &'static str {
+        match self {
+            Self::Build => "builds the structure from a polygon mesh",
+            Self::Relation(relation) => match relation {
+                Relation::VertexVertices => "the other ends of the edges at each vertex",
+                Relation::VertexEdges => "the edges that end at each vertex",
+                Relation::VertexFaces => "the faces around each vertex",
+                Relation::EdgeVertices => "the two ends of each edge",
+                Relation::EdgeEdges => "the edges that share an end with each edge",
+                Relation::EdgeFaces => "the faces along each edge",
+                Relation::FaceVertices => "the corners of each face",
+                Relation::FaceEdges => "the sides of each face",
+                Relation::FaceFaces => "the faces that share an edge with each face",
+            },
+            Self::Circulate => "vertex_faces, then face_vertices",
+            Self::AllQueries => "all nine relations",
+            Self::FaceBarycenter => "stores the mean of the corners of each face",
+            Self::VertexNormal => "stores the normals of all faces, then of all vertices",
+            Self::VvSmooth => "moves each vertex to the mean of its neighbours",
+            Self::EdgeLength => "sums the lengths of all edges",
+            Self::Boundary => "counts the edges with one face",
+            Self::FfBfs => "visits all faces breadth first, from face to face",
+            Self::CatmullClark(Method::Gather) => {
+                "one step of Catmull–Clark; each new point queries its neighbours"
+            }
+            Self::CatmullClark(Method::Scatter) => {
+                "one step of Catmull–Clark; one pass over the faces adds to the new points"
+            }
+            Self::CatmullClark(Method::Native) => {
+                "one step of Catmull–Clark; the structure splits its own tables"
+            }
+            Self::Loop(Method::Gather) => "one step of Loop; each new point queries its neighbours",
+            Self::Loop(Method::Scatter) => {
+                "one step of Loop; one pass over the faces adds to the new points"
+            }
+            Self::Loop(Method::Native) => "one step of Loop; the structure splits its own tables",
+            Self::EditPass(EditPass::SplitCollapse) => {
+                "puts a vertex into each face, then collapses each new vertex into a neighbour; \
+                 the mesh is then as before"
+            }
+            Self::EditPass(EditPass::FlipAll) => {
+                "flips each edge if the flip is legal, then flips the same edges again"
+            }
+            Self::EditPass(EditPass::DecimateHalf) => {
+                "collapses the edge with the least error, until half of the faces are left"
+            }
+            Self::EditPass(EditPass::DecimateTenth) => {
+                "collapses the edge with the least error, until a tenth of the faces is left"
+            }
+        }
+    }
+
+    /// The units that are not elements of the mesh, and their meaning for users.
+    pub const UNITS: [(&'static str, &'static str); 2] = [
+        (
+            "visit",
+            "one element that a query returns; in flip_all, one visit of an edge",
+        ),
+        ("new face", "a face of the refined mesh"),
+    ];
+
+    /// Returns the unit of work by which the time of the operation is divided: `vertex`, `edge`,
+    /// `face`, or one of [`UNITS`](Self::UNITS).
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Relation(relation) => ElementKind::queried_by(relation).name(),
@@ -329,6 +408,24 @@ mod tests {
             error.contains("vv_smoth") && error.contains("vv_smooth"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn every_operation_and_unit_is_described() {
+        let mut groups: Vec<&str> = Operation::ALL.map(Operation::group).into();
+        groups.sort_unstable();
+        groups.dedup();
+        let expected = ["build", "edits", "queries", "subdivision", "traversals"];
+        assert_eq!(groups, expected);
+        for operation in Operation::ALL {
+            let about = operation.about();
+            let same = |other: &&Operation| other.about() == about;
+            assert_eq!(Operation::ALL.iter().filter(same).count(), 1, "{about}");
+            let unit = operation.unit();
+            let is_element = ElementKind::ALL.iter().any(|kind| kind.name() == unit);
+            let is_described = Operation::UNITS.iter().any(|(name, _)| *name == unit);
+            assert!(is_element != is_described, "{operation}: {unit}");
+        }
     }
 
     #[test]

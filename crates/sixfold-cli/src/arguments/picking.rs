@@ -1,4 +1,4 @@
-//! Arguments of `sixfold pick` and `workloads`.
+//! Arguments of `sixfold pick`, `workloads` and `operations`.
 
 use std::path::PathBuf;
 
@@ -32,6 +32,12 @@ const WORKLOADS_EXAMPLES: &str = "Examples:
   sixfold workloads
   sixfold workloads --show smoothing > mine.toml     a file to edit
   sixfold workloads --operations                     operations that a workload may contain
+
+Exit codes: 0 success; 2 wrong usage.";
+
+const OPERATIONS_EXAMPLES: &str = "Examples:
+  sixfold operations
+  sixfold study --operations circulate,flip_all     measure only these
 
 Exit codes: 0 success; 2 wrong usage.";
 
@@ -89,6 +95,15 @@ pub(crate) struct Workloads {
     #[arg(long, conflicts_with = "json")]
     pub(crate) operations: bool,
     /// Write the workloads as JSON (- for standard output)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
+}
+
+/// List the operations of a study, and what each operation does.
+#[derive(Debug, Args)]
+#[command(after_help = OPERATIONS_EXAMPLES, verbatim_doc_comment)]
+pub(crate) struct Operations {
+    /// Write the operations as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
 }
