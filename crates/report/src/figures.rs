@@ -153,7 +153,7 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
         sections.push(Section {
             title: format!("{title} on {}", why.mesh.name),
             facts: facts(&why.mesh),
-            sentences: why.warnings.clone(),
+            sentences: [&why.sentences[..], &why.warnings].concat(),
             tables: match figure {
                 Some(_) => Vec::new(),
                 None => vec![reads::table(why)],
@@ -165,7 +165,11 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
         sections.push(Section {
             title: format!("Memory: {}", audit.mesh.name),
             facts: facts(&audit.mesh),
-            sentences: audit.faults(),
+            // The sentences name the faults. Older documents have no sentences.
+            sentences: match audit.sentences.is_empty() {
+                true => audit.faults(),
+                false => audit.sentences.clone(),
+            },
             figures: Vec::new(),
             tables: audit::tables(audit),
         });

@@ -30,17 +30,27 @@ pub(crate) fn print_before_measuring(
     let inspection = sixfold_study::inspect(study_mesh, &chosen);
     text.print_line(&verdicts_text(&inspection.mesh, &inspection.backends));
     let mut refusing = inspection.backends.iter().filter(|b| !b.holds);
-    if let Some(first) = refusing.find(|b| structure_infos().iter().any(|info| info.name == b.name))
+    if let Some(BackendReport { name, .. }) =
+        refusing.find(|b| structure_infos().iter().any(|info| info.name == b.name))
     {
-        let note = format!(
-            "`sixfold repair --for {}` makes a mesh that this structure can hold",
-            first.name
-        );
+        let note = format!("`sixfold repair --for {name}` makes a mesh that {name} can hold");
         text.print_line(&hanging_indent("repair       ", &note));
     }
 }
 
+/// Returns the facts of a mesh, and the numbers of its faults.
 pub(crate) fn facts_text(mesh: &MeshReport) -> String {
+    let mut text = topology_text(mesh);
+    let defects = mesh_defects(&mesh.facts);
+    if !defects.is_empty() {
+        text += "\n";
+        text += &hanging_indent("also         ", &defects.join(", "));
+    }
+    text
+}
+
+/// Returns the facts of a mesh. The faults that [`facts_text`] adds are left out.
+pub(crate) fn topology_text(mesh: &MeshReport) -> String {
     let facts = &mesh.facts;
     let mut lines = vec![hanging_indent("mesh         ", &sanitize(&mesh.name))];
     if !mesh.changes.is_empty() {
@@ -52,10 +62,6 @@ pub(crate) fn facts_text(mesh: &MeshReport) -> String {
         lines.push(hanging_indent("orientation  ", &orientation(facts)));
         lines.push(hanging_indent("manifold     ", &manifold(facts)));
         lines.push(hanging_indent("degrees      ", &degrees(facts)));
-    }
-    let defects = mesh_defects(facts);
-    if !defects.is_empty() {
-        lines.push(hanging_indent("also         ", &defects.join(", ")));
     }
     lines.join("\n")
 }
@@ -88,7 +94,8 @@ fn surface(facts: &Facts) -> String {
 fn orientation(facts: &Facts) -> String {
     let edges = counted(facts.inconsistent_edges, "edge", "edges");
     match (facts.consistently_oriented, facts.orientable) {
-        (Some(true), Some(true)) => "consistent".into(),
+        (Some(true), Some(true)) if facts.non_manifold_edges == 0 => "consistent".into(),
+        (Some(true), Some(true)) => "consistent along edges with two faces".into(),
         (Some(true), _) => "consistent along edges with two faces, but not orientable".into(),
         (_, Some(true)) => {
             format!("orientable, but at {edges} the two faces have opposite orientations")
@@ -98,13 +105,14 @@ fn orientation(facts: &Facts) -> String {
 }
 
 fn manifold(facts: &Facts) -> String {
-    match (facts.non_manifold_edges, facts.non_manifold_vertices) {
-        (0, 0) => "yes".into(),
-        (edges, vertices) => {
-            let edges = counted(edges, "non-manifold edge", "non-manifold edges");
-            let vertices = counted(vertices, "non-manifold vertex", "non-manifold vertices");
-            format!("no: {edges}, {vertices}")
-        }
+    let (edges, vertices) = (facts.non_manifold_edges, facts.non_manifold_vertices);
+    let counts = present([
+        (edges, "non-manifold edge", "non-manifold edges"),
+        (vertices, "non-manifold vertex", "non-manifold vertices"),
+    ]);
+    match counts.is_empty() {
+        true => "yes".into(),
+        false => format!("no: {}", counts.join(", ")),
     }
 }
 
@@ -124,50 +132,62 @@ fn degrees(facts: &Facts) -> String {
 }
 
 fn mesh_defects(facts: &Facts) -> Vec<String> {
-    let counts = [
-        (
-            facts.isolated_vertices,
-            "isolated vertex",
-            "isolated vertices",
-        ),
-        (facts.duplicate_faces, "duplicate face", "duplicate faces"),
+    let (isolated, duplicate) = (facts.isolated_vertices, facts.duplicate_faces);
+    present([
+        (isolated, "isolated vertex", "isolated vertices"),
+        (duplicate, "duplicate face", "duplicate faces"),
         (
             facts.degenerate_faces,
             "degenerate face",
             "degenerate faces",
         ),
-    ];
+    ])
+}
+
+/// Formats the counts that are not 0, each with its noun in the singular or plural.
+fn present<const N: usize>(counts: [(usize, &str, &str); N]) -> Vec<String> {
     let present = counts.into_iter().filter(|&(count, ..)| count > 0);
     present
         .map(|(count, singular, plural)| counted(count, singular, plural))
         .collect()
 }
 
-/// Returns the list of backends. The list shows which backends can hold the mesh, and the reasons
-/// of the other backends.
+/// Returns the backends that can hold the mesh, and the other backends with their reasons. Backends
+/// with the same reason share a line.
 pub(crate) fn verdicts_text(mesh: &MeshReport, backends: &[BackendReport]) -> String {
-    let name = backends.iter().map(|b| b.name.chars().count()).max();
-    let width = name.unwrap_or(0);
-    let mut lines = Vec::new();
-    for (i, backend) in backends.iter().enumerate() {
-        let label = if i == 0 { "backends" } else { "" };
-        let name = &backend.name;
-        let (verdict, reason) = match &backend.reason {
-            None => ("holds it", ""),
-            Some(reason) => ("refuses: ", reason.as_str()),
-        };
-        let first = format!("{label:<13}{name:<width$}  {verdict}");
-        lines.push(hanging_indent(&first, reason));
+    let names = |of: &dyn Fn(&BackendReport) -> bool| {
+        let names = backends.iter().filter(|backend| of(backend));
+        names
+            .map(|b| b.name.as_str())
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let holding = match names(&|backend| backend.holds) {
+        none if none.is_empty() => "no backend".to_owned(),
+        names => names,
+    };
+    let mut lines = vec![hanging_indent("held by      ", &holding)];
+    let mut reasons: Vec<&Option<String>> = Vec::new();
+    for BackendReport { holds, reason, .. } in backends {
+        if !holds && !reasons.contains(&reason) {
+            reasons.push(reason);
+        }
     }
-    if backends.iter().any(|backend| !backend.holds) {
+    for reason in &reasons {
+        let mut text = names(&|backend| !backend.holds && backend.reason == **reason);
+        if let Some(reason) = reason {
+            text += &format!(": {reason}");
+        }
+        lines.push(hanging_indent("refused by   ", &text));
+    }
+    if !reasons.is_empty() {
         let changed = match mesh.changes.is_empty() {
             true => "",
             false => ", f0 the first face that is left",
         };
-        lines.push(hanging_indent(
-            &format!("{:<13}", ""),
-            &format!("(counting from 0: v0 is the first vertex of the file{changed})"),
-        ));
+        let first = format!("{:<13}", "");
+        let note = format!("(counting from 0: v0 is the first vertex of the file{changed})");
+        lines.push(hanging_indent(&first, &note));
     }
     lines.join("\n")
 }

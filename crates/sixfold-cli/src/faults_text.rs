@@ -16,6 +16,9 @@ use crate::text::{hanging_indent, shell_word, width};
 /// Maximum number of places that are listed for a kind of fault.
 pub(crate) const SHOWN_PLACES: usize = 3;
 
+/// A space at which no line ends.
+const NO_BREAK: &str = "\u{a0}";
+
 /// Width of the labels.
 const LABEL: usize = 13;
 
@@ -156,10 +159,12 @@ impl Diagnosed<'_> {
     }
 
     /// Returns the list of faults: each with its first places, the structures that refuse the mesh
-    /// for it, and the command that repairs it. The last lines are the command that repairs the mesh
-    /// for a structure. If the faces do not share vertices, the only command is the one that joins
-    /// them, because the other faults can follow from this one.
-    pub(crate) fn text(&self) -> String {
+    /// for it, and the options that repair it. The last lines have the command. If the faces do not
+    /// share vertices, the only command is the one that joins them, because the other faults can
+    /// follow from this one.
+    ///
+    /// `inconsistent_edges` is the number of edges with two faces that run in the same direction.
+    pub(crate) fn text(&self, inconsistent_edges: usize) -> String {
         let mut lines = Vec::new();
         let is_unwelded = self.diagnosis.looks_unwelded();
         if is_unwelded {
@@ -169,43 +174,61 @@ impl Diagnosed<'_> {
                 grouped(self.diagnosis.positions)
             );
             lines.push(hanging_indent(&label(&lines), &text));
-            lines.push(self.command_line("--weld"));
-            let text = "inspect the result for the other faults";
-            lines.push(format!("{:LABEL$}  {text}", ""));
         }
+        // No line ends within an option.
+        let note = |text: String| {
+            hanging_indent(&format!("{:LABEL$}  ", ""), &text).replace(NO_BREAK, " ")
+        };
         if !self.left_out.is_empty() {
             lines.push(hanging_indent(&label(&lines), &self.left_out_title()));
             if !is_unwelded {
-                lines.push(self.command_line(self.left_out_options()));
+                lines.push(note(format!("repair: {}", self.left_out_options())));
             }
         }
         let faces = self.first_faces();
         for fault in &self.diagnosis.faults {
-            lines.push(hanging_indent(&label(&lines), &self.title(fault, &faces)));
+            let mut title = Self::title(fault);
+            match fault.kind {
+                // The first line of the list has these vertices.
+                FaultKind::CoincidentVertex if is_unwelded => continue,
+                // On an edge with three faces, two of them always run in the same direction.
+                FaultKind::RepeatedSide if inconsistent_edges == 0 => continue,
+                FaultKind::RepeatedSide if fault.count > inconsistent_edges => {
+                    let others = grouped(fault.count - inconsistent_edges);
+                    title += &format!(" ({others} of them have three or more faces)");
+                }
+                _ => {}
+            }
+            title += &self.places_text(fault, &faces);
+            lines.push(hanging_indent(&label(&lines), &title));
+            let mut notes = Vec::new();
             let refusing = refusing(|own| fault.kind.is_refused_by(own));
             if !refusing.is_empty() {
-                let first = format!("{:LABEL$}  refused by ", "");
-                lines.push(hanging_indent(&first, &refusing.join(", ")));
+                notes.push(format!("refused by {}", refusing.join(", ")));
             }
-            let options = self.options(fault);
-            match options.is_empty() {
-                true => lines.push(format!("{:LABEL$}  correct the coordinates", "")),
-                false if is_unwelded => {}
-                false => lines.push(self.command_line(&options)),
+            match self.options(fault) {
+                none if none.is_empty() => notes.push("correct the coordinates".to_owned()),
+                _ if is_unwelded => {}
+                options => {
+                    let options = options.replace(' ', NO_BREAK).replace("\u{a0}--", " --");
+                    notes.push(format!("repair:{NO_BREAK}{options}"));
+                }
+            }
+            if !notes.is_empty() {
+                lines.push(note(notes.join("; ")));
             }
         }
         if lines.is_empty() {
             lines.push(format!("{:LABEL$}none", "faults"));
         }
-        if !is_unwelded {
-            lines.extend(self.repair_for_structure());
-        }
+        lines.extend(self.repair_lines());
         lines.join("\n")
     }
 
-    /// Returns lines with the command that repairs all that a structure refuses, for the structure
-    /// that refuses most; none if all structures hold the mesh.
-    fn repair_for_structure(&self) -> Vec<String> {
+    /// Returns lines with one command: the command that repairs all that a structure refuses, for
+    /// the structure that refuses most. If all structures hold the mesh, the command repairs the
+    /// first fault. No lines if no command repairs a fault.
+    fn repair_lines(&self) -> Vec<String> {
         let refusals = |own: &Capabilities| self.diagnosis.refusals(own).count();
         let mut refusing: Vec<_> = structure_infos()
             .into_iter()
@@ -213,16 +236,34 @@ impl Diagnosed<'_> {
             .collect();
         refusing.sort_by_key(|info| Reverse(refusals(&info.capabilities)));
         let names: Vec<&str> = refusing.iter().map(|info| info.name).collect();
-        let Some((first, others)) = names.split_first() else {
-            return Vec::new();
+        let left_out = (!self.left_out.is_empty()).then(|| self.left_out_options().to_owned());
+        let faults = self
+            .diagnosis
+            .faults
+            .iter()
+            .map(|fault| self.options(fault));
+        let mut options = left_out.into_iter().chain(faults).filter(|o| !o.is_empty());
+        let (text, options) = match (names.split_first(), options.next()) {
+            (_, Some(options)) if self.diagnosis.looks_unwelded() => {
+                let text = "join the vertices, then inspect the result for the other faults:";
+                (text.to_owned(), options)
+            }
+            (Some((first, others)), _) => {
+                let others = match others {
+                    [] => String::new(),
+                    others => format!(" (or for {})", others.join(", ")),
+                };
+                let text = format!(
+                    "all that {first} refuses{others}; for one kind of fault, write its options \
+                     instead of --for:"
+                );
+                (text, format!("--for {first}"))
+            }
+            (None, Some(options)) => ("one kind of fault, by its options:".to_owned(), options),
+            (None, None) => return Vec::new(),
         };
-        let others = match others {
-            [] => String::new(),
-            others => format!(" (or for {})", others.join(", ")),
-        };
-        let text = format!("all that {first} refuses{others}:");
         let first_line = hanging_indent(&format!("{:LABEL$}", "repair"), &text);
-        vec![first_line, self.command_line(&format!("--for {first}"))]
+        vec![first_line, self.command_line(&options)]
     }
 
     /// Returns the options of the command that repairs `fault`; empty if no command does. If the
@@ -292,14 +333,20 @@ impl Diagnosed<'_> {
         Some(places.place(*face, self.polygons))
     }
 
-    /// Describes a fault: its number, kind and first places.
-    fn title(&self, fault: &Fault, faces: &[(Place, FaceId)]) -> String {
+    /// Describes a fault: its number and kind.
+    fn title(fault: &Fault) -> String {
         let [one, many] = fault.kind.titles();
         let title = if fault.count == 1 { one } else { many };
-        let mut text = format!("{} {title}", grouped(fault.count));
-        if may_be_intended(fault.kind) {
-            text += " (may be intended)";
-        }
+        let intended = match may_be_intended(fault.kind) {
+            true => " (may be intended)",
+            false => "",
+        };
+        format!("{} {title}{intended}", grouped(fault.count))
+    }
+
+    /// Lists the first places of a fault, after a colon.
+    fn places_text(&self, fault: &Fault, faces: &[(Place, FaceId)]) -> String {
+        let mut text = String::new();
         for (i, place) in fault.places.iter().enumerate() {
             text += if i == 0 { ": " } else { ", " };
             text += &place.to_string();

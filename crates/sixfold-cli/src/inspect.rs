@@ -7,7 +7,7 @@ use serde::Serialize;
 use sixfold_study::{Backend, Inspection, inspect_diagnosed};
 
 use crate::arguments::Inspect;
-use crate::facts_text::{facts_text, verdicts_text};
+use crate::facts_text::{topology_text, verdicts_text};
 use crate::failure::Failure;
 use crate::faults_text::{Diagnosed, DiagnosisRecord};
 use crate::load::{self, InspectedMesh};
@@ -94,11 +94,19 @@ fn inspect(path: &Path, arguments: &Inspect, text: &mut TextOutput) -> Result<In
         left_out: &left_out,
         file: path,
     };
-    text.print_line(&facts_text(&inspection.mesh));
+    text.print_line(&topology_text(&inspection.mesh));
     text.print_line("");
-    text.print_line(&verdicts_text(&inspection.mesh, &inspection.backends));
+    // The list of faults has the reasons, except the reason that the mesh is too large.
+    let mut verdicts = inspection.backends.clone();
+    for backend in &mut verdicts {
+        let own = backend.capabilities.as_ref();
+        if own.is_some_and(|own| diagnosed.diagnosis.refusals(own).next().is_some()) {
+            backend.reason = None;
+        }
+    }
+    text.print_line(&verdicts_text(&inspection.mesh, &verdicts));
     text.print_line("");
-    text.print_line(&diagnosed.text());
+    text.print_line(&diagnosed.text(inspection.mesh.facts.inconsistent_edges));
     let diagnosis = diagnosed.record();
     Ok(Inspected {
         inspection,

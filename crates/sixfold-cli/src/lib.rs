@@ -49,6 +49,7 @@
 //! | 4 | interrupted; finished results are kept |
 
 mod arguments;
+mod column_table;
 mod compare;
 mod distance;
 mod edits;

@@ -2,22 +2,20 @@
 
 use std::process::ExitCode;
 
-use comfy_table::{Cell, CellAlignment, Table};
 use sixfold_study::{
-    Audit, Backend, BackendAudit, MAX_SCANNED_FACES, OperationBytes, Policy, Settings, audit,
-    count_allocations,
+    Audit, Backend, BackendAudit, MAX_SCANNED_FACES, Policy, Settings, audit, count_allocations,
 };
 
 use crate::AllocatorCounters;
 use crate::arguments::Memory;
+use crate::column_table::{Column, column_table, short_figure};
 use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
 use crate::load;
 use crate::measure::{Session, with_command};
 use crate::progress::{StatusLine, exit_on_interrupt};
-use crate::tables::table;
-use crate::text::{TextOutput, print_stderr};
-use sixfold_study::numbers::{counted, grouped};
+use crate::text::{TextOutput, hanging_indent, print_stderr};
+use sixfold_study::numbers::{counted, figure, grouped};
 
 /// The exit code if two of the three counts differ.
 const COUNTS_DIFFER: u8 = 1;
@@ -78,207 +76,139 @@ fn report_faults(faults: &[String]) -> ExitCode {
     }
 }
 
-/// Prints the counts, which follow [`print_before_measuring`].
+/// Prints the answer and the counts, which follow [`print_before_measuring`].
 fn print(audit: &Audit, text: &mut TextOutput) {
     text.print_line("");
+    text.print_list("- ", &audit.sentences);
+    text.print_list("- ", merged_vertices(audit));
+    text.print_line("");
     text.print_line(&bytes_table(audit));
+    let words = "words of 4 bytes per vertex of a large closed triangle mesh, by the formula: the \
+                 figure of the literature";
     text.print_line("");
-    text.print_line(&words_table(audit));
-    text.print_line("");
+    text.print_line(&hanging_indent("words  ", words));
+    let peak = "the most bytes in use while the structure is built, without the input";
+    text.print_line(&hanging_indent("peak   ", peak));
     if let Some(table) = operations_table(audit) {
+        text.print_line("");
         text.print_line(&table);
         text.print_line("");
+        text.print_list("", operations_legend(audit));
     }
-    text.print_list("- ", sentences(audit));
 }
 
-/// Returns the three counts of each backend that holds the mesh, with a row for each table below.
+/// Returns the table of the bytes of each backend that holds the mesh. Below each backend are its
+/// tables. If its three counts differ, the counts are above the tables, and a `!` follows each count
+/// that differs from the count before it.
 fn bytes_table(audit: &Audit) -> String {
-    let header = [
-        "bytes",
-        "rows",
-        "formula",
-        "tables",
-        "counted",
-        "peak",
-        "/ counted",
-    ];
-    let mut table = new_table(&header);
-    for entry in &audit.backends {
-        let backend = &entry.backend;
-        let bytes = |bytes: Option<usize>| bytes.map_or(String::new(), grouped);
-        // The mark `!` follows a figure that differs from the figure before it.
-        let marked_bytes = |figure: Option<usize>, before: Option<usize>| {
-            let sign = if figure == before { " " } else { "!" };
-            format!("{}{sign}", bytes(figure))
-        };
-        if !backend.holds {
-            continue;
-        }
-        let ratio = entry.peak_to_counted;
-        add_row(
-            &mut table,
-            [
-                backend.name.clone(),
-                String::new(),
-                format!("{} ", bytes(backend.layout_bytes)),
-                marked_bytes(backend.bytes, backend.layout_bytes),
-                marked_bytes(entry.counted_bytes, backend.bytes),
-                bytes(entry.peak_bytes),
-                ratio.map_or("–".into(), |ratio| format!("{ratio:.2}")),
-            ],
-        );
-        for part in &backend.tables {
-            let name = format!("  {}", part.table);
-            let table_bytes = format!("{} ", grouped(part.bytes));
-            let blank = String::new;
-            let cells = [
-                name,
-                grouped(part.rows),
-                blank(),
-                table_bytes,
-                blank(),
-                blank(),
-                blank(),
-            ];
-            add_row(&mut table, cells);
-        }
-    }
-    table.trim_fmt()
-}
-
-/// Returns the table of bytes and words per vertex.
-fn words_table(audit: &Audit) -> String {
-    let header = [
-        "per vertex",
-        "bytes",
-        "words",
-        "words in a closed triangle mesh",
-    ];
-    let mut table = new_table(&header);
+    let bytes = |bytes: Option<usize>| bytes.map_or(String::new(), grouped);
+    let mut rows: Vec<[String; 7]> = Vec::new();
     for entry in audit.backends.iter().filter(|entry| entry.backend.holds) {
-        let figure = |figure: Option<f64>| figure.map_or("–".into(), |n| format!("{n:.1}"));
-        let cells = [
-            entry.backend.name.clone(),
-            figure(entry.counted_bytes_per_vertex),
-            figure(entry.layout_words_per_vertex),
-            figure(Some(entry.closed_triangles_words_per_vertex)),
-        ];
-        add_row(&mut table, cells);
+        let backend = &entry.backend;
+        rows.push([
+            backend.name.clone(),
+            String::new(),
+            bytes(entry.counted_bytes),
+            entry.counted_bytes_per_vertex.map_or("–".into(), figure),
+            figure(entry.closed_triangles_words_per_vertex),
+            bytes(entry.peak_bytes),
+            entry.peak_to_counted.map_or("–".into(), figure),
+        ]);
+        let part = |name: &str, rows: String, bytes: String| {
+            let [a, b, c, d] = [const { String::new() }; 4];
+            [format!("  {name}"), rows, bytes, a, b, c, d]
+        };
+        if entry.agrees == Some(false) {
+            let counts = [backend.layout_bytes, backend.bytes, entry.counted_bytes];
+            for (i, name) in ["by formula", "by tables", "by allocator"]
+                .iter()
+                .enumerate()
+            {
+                let sign = match i > 0 && counts[i] != counts[i - 1] {
+                    true => "!",
+                    false => "",
+                };
+                rows.push(part(name, sign.to_owned(), bytes(counts[i])));
+            }
+        }
+        for table in &backend.tables {
+            rows.push(part(
+                &table.table,
+                grouped(table.rows),
+                grouped(table.bytes),
+            ));
+        }
     }
-    table.trim_fmt()
+    let cells = |column: usize| rows.iter().map(move |row| row[column].clone());
+    let heads = ["rows", "bytes", "/ vertex", "words", "peak", "/ bytes"];
+    let columns = heads.iter().enumerate();
+    let columns = columns.map(|(i, head)| Column::figures(head, cells(i + 1)));
+    column_table(&Column::words("", cells(0)), &columns.collect::<Vec<_>>())
 }
 
 /// Returns the table of allocated bytes per byte of the result, with a row per operation and a
 /// column per structure. Returns `None` if nothing was counted.
 fn operations_table(audit: &Audit) -> Option<String> {
     let counted = |entry: &&BackendAudit| !entry.operations.is_empty();
-    let columns: Vec<&BackendAudit> = audit.backends.iter().filter(counted).collect();
-    let names = columns
+    let backends: Vec<&BackendAudit> = audit.backends.iter().filter(counted).collect();
+    let was_run = |row: &usize| {
+        let mut cells = backends.iter().map(|entry| &entry.operations[*row]);
+        cells.any(|cell| cell.reason.is_none())
+    };
+    let operations = &backends.first()?.operations;
+    let rows: Vec<usize> = (0..operations.len()).filter(was_run).collect();
+    let names = rows
         .iter()
-        .map(|entry| entry.backend.name.replace('-', "\n"));
-    let header = std::iter::once("allocated bytes\n/ result bytes".to_owned()).chain(names);
-    let aligned = |(i, text): (usize, String)| Cell::new(text).set_alignment(column_alignment(i));
-    let mut table = table(header.enumerate().map(aligned).collect());
-    for (i, first) in columns.first()?.operations.iter().enumerate() {
-        let cells: Vec<&OperationBytes> =
-            columns.iter().map(|entry| &entry.operations[i]).collect();
-        if cells.iter().all(|cell| cell.reason.is_some()) {
-            continue;
-        }
-        let figure = |cell: &OperationBytes| match (cell.allocated_to_result, cell.scans) {
-            (Some(ratio), _) => format!("{ratio:.2}"),
-            (None, true) => "scans".to_owned(),
-            (None, false) => "–".to_owned(),
-        };
-        let cells = cells.into_iter().map(figure);
-        let cells = std::iter::once(first.operation.to_string()).chain(cells);
-        table.add_row(cells.enumerate().map(aligned).collect::<Vec<_>>());
-    }
-    Some(table.trim_fmt())
+        .map(|&row| operations[row].operation.to_string());
+    let columns = backends.iter().map(|entry| {
+        let ratios = rows
+            .iter()
+            .map(|&row| entry.operations[row].allocated_to_result);
+        let cells = ratios.map(|ratio| ratio.map_or("–".into(), short_figure));
+        Column::figures(&entry.backend.name.replace('-', "\n"), cells)
+    });
+    let columns: Vec<Column> = columns.collect();
+    let head = "allocated bytes\n/ result bytes";
+    Some(column_table(&Column::words(head, names), &columns))
 }
 
-fn new_table<const COLUMNS: usize>(header: &[&str; COLUMNS]) -> Table {
-    let aligned = |(i, text): (usize, &&str)| Cell::new(text).set_alignment(column_alignment(i));
-    table(header.iter().enumerate().map(aligned).collect())
-}
-
-fn add_row<const COLUMNS: usize>(table: &mut Table, cells: [String; COLUMNS]) {
-    let cells = cells.into_iter().enumerate();
-    table.add_row(
-        cells
-            .map(|(i, text)| Cell::new(text).set_alignment(column_alignment(i)))
-            .collect::<Vec<_>>(),
-    );
-}
-
-fn column_alignment(column: usize) -> CellAlignment {
-    match column {
-        0 => CellAlignment::Left,
-        _ => CellAlignment::Right,
-    }
-}
-
-fn sentences(audit: &Audit) -> Vec<String> {
-    let holding: Vec<&BackendAudit> = audit.backends.iter().filter(|b| b.backend.holds).collect();
-    let mut sentences = Vec::new();
-    let faults = audit.faults();
-    match faults.is_empty() {
-        true => sentences.push(
-            "Formula, tables and allocator agree to the byte: no table has spare capacity, and \
-             there are no blocks outside the tables."
-                .to_owned(),
-        ),
-        false => sentences.extend(faults.into_iter().map(|fault| format!("! {fault}."))),
-    }
-    sentences.push(
-        "A word is 4 bytes: an index or a coordinate. The last column is computed by the formula \
-         for a mesh with 2 faces and 3 edges per vertex, as in the literature."
-            .to_owned(),
-    );
-    sentences.extend(operation_sentences(audit));
-    for entry in holding {
-        let backend = &entry.backend;
-        if let Some(merged @ 1..) = backend.merged_vertices {
-            sentences.push(format!(
-                "{} merges {} with other vertices at the same position. The bytes do not change, \
-                 because the structure stores corners. Figures per vertex refer to the vertices \
-                 of the file.",
-                backend.name,
-                counted(merged, "vertex", "vertices")
-            ));
-        }
-    }
-    sentences
-}
-
-/// Returns the legend of the table of operations. The legend is empty if there is no such table.
-fn operation_sentences(audit: &Audit) -> Vec<String> {
-    let operations = || audit.backends.iter().flat_map(|entry| &entry.operations);
-    let mut sentences = Vec::new();
-    if operations().next().is_none() {
-        return sentences;
-    }
-    sentences.push(
-        "Allocated bytes are all bytes that one run of the operation requests from the allocator, \
-         including temporary memory that the run frees again. If a block grows, only the added \
-         bytes count. Native steps start with new tables."
-            .to_owned(),
-    );
-    sentences.push(
-        "Result bytes are the bytes of the structure (build), of the depth of each face (ff_bfs), \
-         of the structure of the refined mesh (catmull_clark_* and loop_*), or of the mesh after \
-         the edits (other operations)."
-            .to_owned(),
-    );
-    if operations().any(|operation| operation.scans) {
-        sentences.push(format!(
-            "scans: the operation was not run, because the structure scans all faces for each \
-             element, and the mesh has more than {} faces.",
+/// Returns the legend of the table of operations.
+fn operations_legend(audit: &Audit) -> Vec<String> {
+    let scanning = audit
+        .backends
+        .iter()
+        .filter(|entry| entry.operations.iter().any(|o| o.scans));
+    let scanning: Vec<&str> = scanning.map(|entry| entry.backend.name.as_str()).collect();
+    let scans = match scanning.is_empty() {
+        true => String::new(),
+        false => format!(
+            ", or it scans all faces for each element ({}), and the mesh has more than {} faces",
+            scanning.join(", "),
             grouped(MAX_SCANNED_FACES)
-        ));
-    }
-    sentences
+        ),
+    };
+    vec![
+        "Allocated bytes are all that one run requests, also those that it frees again. The result \
+         is the structure (build), the depths of the faces (ff_bfs), the refined mesh, or the mesh \
+         after the edits."
+            .to_owned(),
+        format!("–: not run, because the structure or the mesh does not allow the operation{scans}."),
+    ]
+}
+
+/// Returns notes on backends that merge vertices.
+fn merged_vertices(audit: &Audit) -> impl Iterator<Item = String> {
+    let merging = |entry: &BackendAudit| match entry.backend.merged_vertices {
+        Some(merged @ 1..) => Some(format!(
+            "{} merges {} with other vertices at the same position. The bytes do not change, \
+             because the structure stores corners. Figures per vertex refer to the vertices of the \
+             file.",
+            entry.backend.name,
+            counted(merged, "vertex", "vertices")
+        )),
+        _ => None,
+    };
+    audit.backends.iter().filter_map(merging)
 }
 
 #[cfg(test)]
@@ -314,13 +244,24 @@ mod tests {
         );
         // 24 half-edges of 12 bytes, 8 vertices of 16 bytes, and 6 faces.
         let table = bytes_table(&audit);
-        let line = table.lines().find(|line| line.contains("half-edge"));
-        let cells: Vec<&str> = line.expect("a row").split_whitespace().collect();
-        assert_eq!(cells, ["half-edge", "440", "440", "0!", "0", "–"]);
+        let cells = |name: &str| {
+            let line = table
+                .lines()
+                .find(|line| line.trim_start().starts_with(name));
+            let cells = line.expect("a row").split_whitespace();
+            cells.map(str::to_owned).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            cells("half-edge"),
+            ["half-edge", "0", "0.000", "24.0", "0", "–"]
+        );
+        assert_eq!(cells("by formula"), ["by", "formula", "440"]);
+        assert_eq!(cells("by tables"), ["by", "tables", "440"]);
+        assert_eq!(cells("by allocator"), ["by", "allocator", "!", "0"]);
         assert!(table.lines().all(|line| line.chars().count() <= WIDTH));
-        let sentences = sentences(&audit);
+        let sentences = &audit.sentences;
         assert!(
-            sentences[0].starts_with("! half-edge: the allocator counted 0 bytes"),
+            sentences[0].starts_with("half-edge: the allocator counted 0 bytes"),
             "{sentences:?}"
         );
         assert!(

@@ -12,11 +12,11 @@ use crate::text::{TextOutput, hanging_indent};
 
 /// The groups, in the order of the list. Each group has a text on its operations.
 const GROUPS: [(&str, &str); 5] = [
-    ("build", "each run builds anew"),
+    ("build", "each run builds a new structure"),
     ("queries", "each run queries every element once"),
     ("traversals", "passes over all elements, as in programs"),
-    ("edits", "each run changes a copy of a triangle mesh"),
-    ("subdivision", "each run refines the mesh once"),
+    ("edits", "each run changes a copy of a mesh of triangles"),
+    ("subdivision", "each run refines the mesh by one step"),
 ];
 
 pub(crate) fn run(arguments: &Operations) -> Result<ExitCode, Failure> {
@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &Operations) -> Result<ExitCode, Failure> {
         text.print_line("");
     }
     let units = "The second column is the unit: a study divides the time of a run by the number \
-                 of vertices, edges, faces or other units.";
+                 of these units.";
     text.print_list("", [units]);
     for (unit, about) in Operation::UNITS {
         text.print_line(&hanging_indent(&format!("{unit}: "), about));

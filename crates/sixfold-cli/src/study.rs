@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use sixfold_study::{
-    BackendReport, Environment, Finding, Report, Run, RunSettings, Settings, StudyError,
-    StudyMesh, Timer,
+    BackendReport, Environment, Finding, Report, Run, RunSettings, Settings, StudyError, StudyMesh,
+    Timer,
 };
 
 use crate::arguments::{STUDY_EXAMPLES, Study};

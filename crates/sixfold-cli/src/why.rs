@@ -11,8 +11,8 @@ use crate::failure::Failure;
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::progress::Bar;
-use crate::text::{TextOutput, hanging_indent};
-use crate::why_text::{legend, memory_text, relation_text, sentence};
+use crate::text::TextOutput;
+use crate::why_text::{legend, memory_text, relation_text};
 
 pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     let mesh = arguments.mesh.as_deref();
@@ -54,7 +54,12 @@ pub(crate) fn measure(
     })
 }
 
-fn print(why: &sixfold_study::Why, with_sentences: bool, text: &mut TextOutput) {
+/// Prints the answer, then the tables and their legend. If `detailed` is set, each relation has two
+/// tables.
+fn print(why: &sixfold_study::Why, detailed: bool, text: &mut TextOutput) {
+    text.print_line("");
+    text.print_list("- ", &why.sentences);
+    text.print_list("! ", &why.warnings);
     if let Some(buffers) = &why.memory {
         text.print_line("");
         text.print_line(&memory_text(buffers));
@@ -64,15 +69,8 @@ fn print(why: &sixfold_study::Why, with_sentences: bool, text: &mut TextOutput) 
         .chunk_by(|a, b| a.reads.relation == b.reads.relation)
     {
         text.print_line("");
-        text.print_line(&relation_text(rows, why.memory.is_some()));
-        if with_sentences {
-            text.print_line("");
-            for row in rows {
-                text.print_line(&hanging_indent("- ", &sentence(row)));
-            }
-        }
+        text.print_line(&relation_text(rows, why.memory.is_some(), detailed));
     }
-    text.print_list("! ", &why.warnings);
     text.print_line("");
-    text.print_line(&legend(why));
+    text.print_line(&legend(why, detailed));
 }

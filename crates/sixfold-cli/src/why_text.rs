@@ -1,111 +1,81 @@
 //! The tables of `sixfold why`, one per relation, with a row per backend.
 
-use comfy_table::{Cell, CellAlignment};
-use sixfold::Relation;
-use sixfold_study::{Bound, BufferSpeed, Model, TableReads, Timed, Why, WhyRow};
+use sixfold_study::numbers::{figure, grouped};
+use sixfold_study::{BufferSpeed, Model, TableReads, Timed, Why, WhyRow};
 
-use crate::tables::table;
-use crate::text::{hanging_indent, wrap};
-use sixfold_study::numbers::{bytes, figure, grouped};
+use crate::column_table::{Column, column_table, short_figure};
+use crate::text::hanging_indent;
 
-/// Width of the column `reads by table`, in characters.
-const TABLES_WIDTH: usize = 36;
-/// A space that does not allow a line break.
-const NO_BREAK: char = '\u{a0}';
-
-fn meaning(relation: Relation) -> &'static str {
-    match relation {
-        Relation::VertexVertices => "the other ends of the edges at a vertex",
-        Relation::VertexEdges => "the edges that end at a vertex",
-        Relation::VertexFaces => "the faces with a corner at a vertex",
-        Relation::EdgeVertices => "the two ends of an edge",
-        Relation::EdgeEdges => "the edges that share an end with an edge",
-        Relation::EdgeFaces => "the faces along an edge",
-        Relation::FaceVertices => "the corners of a face",
-        Relation::FaceEdges => "the sides of a face",
-        Relation::FaceFaces => "the faces that share an edge with a face",
-    }
-}
-
+/// Returns the table of the speed of memory.
 pub(crate) fn memory_text(buffers: &[BufferSpeed]) -> String {
-    let line = |name: &str, what: &str, of: &dyn Fn(&BufferSpeed) -> String| {
-        let figures: String = buffers
-            .iter()
-            .map(|buffer| format!("{:>9}", of(buffer)))
-            .collect();
-        format!("{name:<13}{what:<10}{figures}")
-    };
     let size = |buffer: &BufferSpeed| match buffer.bytes >> 10 {
         kib if kib < 1024 => format!("{kib} KiB"),
         kib => format!("{} MiB", kib >> 10),
     };
-    [
-        line("memory", "buffer of", &size),
-        line("", "GB/s", &|buffer| figure(buffer.gb_per_s)),
-        line("", "latency ns", &|buffer| figure(buffer.latency_ns)),
-    ]
-    .join("\n")
+    let names = ["GB/s", "latency ns"].map(str::to_owned);
+    let columns = buffers.iter().map(|buffer| {
+        let figures = [buffer.gb_per_s, buffer.latency_ns].map(figure);
+        Column::figures(&size(buffer), figures)
+    });
+    let columns: Vec<Column> = columns.collect();
+    column_table(&Column::words("memory", names), &columns)
 }
 
-/// Returns the table of one relation, with times or with the tables that are read.
-pub(crate) fn relation_text(rows: &[WhyRow], timed: bool) -> String {
+/// Returns the table of one relation. If `detailed` is set, a second table has the jumps, the moved
+/// bytes and the reads of each table.
+pub(crate) fn relation_text(rows: &[WhyRow], timed: bool, detailed: bool) -> String {
     let Some(first) = rows.first() else {
         return String::new();
     };
-    let relation = first.reads.relation;
-    let heads = ["answers", "reads", "lines", "bytes", "jumps", "moved"];
-    let more: &[&str] = match timed {
-        true => &["floor", "waits", "measured", "bound by"],
-        false => &["reads by table"],
+    let names = rows.iter().map(|row| match row.reads.sampled {
+        true => format!("{} ~", row.backend),
+        false => row.backend.clone(),
+    });
+    let names = Column::words(first.reads.relation.name(), names);
+    let counts = |head: &str, count: &dyn Fn(&WhyRow) -> f64| {
+        Column::figures(head, rows.iter().map(|row| short_figure(count(row))))
     };
-    let heads = ["per query:"].iter().chain(&heads).chain(more);
-    let mut block = table(heads.map(Cell::new).collect());
-    for row in rows {
-        block.add_row(cells(row, timed));
+    let mut columns = vec![
+        counts("reads", &|row| row.reads.reads),
+        counts("lines", &|row| row.reads.lines),
+        counts("bytes", &|row| row.reads.bytes),
+    ];
+    let mut sweep = vec![
+        counts("jumps", &|row| row.reads.jumps),
+        counts("moved", &|row| row.reads.moved_bytes),
+    ];
+    if timed {
+        columns.extend(time_columns(rows));
+    } else {
+        columns.append(&mut sweep);
     }
-    let columns = 1 + 6 + more.len();
-    for column in 0..columns {
-        let Some(column_of) = block.column_mut(column) else {
-            continue;
-        };
-        let is_word = column == 0 || column + 1 == columns;
-        column_of.set_padding(if column == 0 { (0, 0) } else { (1, 0) });
-        if !is_word {
-            column_of.set_cell_alignment(CellAlignment::Right);
-        }
+    let mut text = column_table(&names, &columns);
+    if detailed {
+        let by_table = rows.iter().map(|row| by_table(&row.reads.tables));
+        sweep.push(Column::words("reads by table", by_table));
+        text += "\n\n";
+        text += &column_table(&names, &sweep);
     }
-    let lines = block.trim_fmt();
-    format!("{relation}: {}\n{lines}", meaning(relation))
+    text
 }
 
-fn cells(row: &WhyRow, timed: bool) -> Vec<Cell> {
-    let reads = &row.reads;
-    let sign = if reads.sampled { " ~" } else { "" };
-    let mut cells = vec![format!("{}{sign}", row.backend)];
-    let counts = [
-        reads.answers,
-        reads.reads,
-        reads.lines,
-        reads.bytes,
-        reads.jumps,
-        reads.moved_bytes,
-    ];
-    cells.extend(counts.map(short_figure));
-    match (timed, &row.timed) {
-        (false, _) => cells.push(by_table(&reads.tables)),
-        (true, None) => cells.extend(["–"; 4].map(str::to_owned)),
-        (true, Some(timed)) => cells.extend([
-            short_figure(timed.floor_ns),
-            short_figure(timed.waits_ns),
-            format!(
-                "{}{}",
-                if timed.sampled { "~" } else { "" },
-                short_figure(timed.ns_per_element)
-            ),
-            timed.bound.name().to_owned(),
-        ]),
-    }
-    cells.into_iter().map(Cell::new).collect()
+/// Returns the columns of a table with times.
+fn time_columns(rows: &[WhyRow]) -> [Column; 4] {
+    let cells = |cell: &dyn Fn(&Timed) -> String| {
+        let cells = rows.iter().map(|row| row.timed.as_ref());
+        let cells = cells.map(|timed| timed.map_or("–".to_owned(), cell));
+        cells.collect::<Vec<_>>()
+    };
+    let measured = |timed: &Timed| {
+        let sign = if timed.sampled { "~" } else { "" };
+        format!("{sign}{}", short_figure(timed.ns_per_element))
+    };
+    [
+        Column::figures("floor", cells(&|timed| short_figure(timed.floor_ns))),
+        Column::figures("waits", cells(&|timed| short_figure(timed.waits_ns))),
+        Column::figures("measured", cells(&measured)),
+        Column::words("bound by", cells(&|timed| timed.bound.name().to_owned())),
+    ]
 }
 
 /// Formats reads as `halves 6.00, leaving 1.00`. The table with the most reads comes first.
@@ -115,113 +85,12 @@ fn by_table(tables: &[TableReads]) -> String {
     }
     let mut tables: Vec<&TableReads> = tables.iter().collect();
     tables.sort_by(|a, b| b.reads.total_cmp(&a.reads));
-    let tables = tables
-        .iter()
-        .map(|table| format!("{}{NO_BREAK}{}", table.table, short_figure(table.reads)));
-    let tables = tables.collect::<Vec<_>>().join(", ");
-    let lines = wrap(&tables, TABLES_WIDTH).join("\n");
-    lines.replace(NO_BREAK, " ")
+    let reads = |table: &&TableReads| format!("{} {}", table.table, short_figure(table.reads));
+    tables.iter().map(reads).collect::<Vec<_>>().join(", ")
 }
 
-/// Formats a number in at most five characters: `0`, `<.001`, `0.052`, `7.00`, `60.5k`, `3.63M`.
-fn short_figure(number: f64) -> String {
-    match number {
-        0.0 => "0".into(),
-        n if n < 0.000_5 => "<.001".into(),
-        n if n < 999.5 => figure(n),
-        n if n < 999.5e3 => format!("{}k", figure(n / 1e3)),
-        n if n < 999.5e6 => format!("{}M", figure(n / 1e6)),
-        n => format!("{}G", figure(n / 1e9)),
-    }
-}
-
-pub(crate) fn sentence(row: &WhyRow) -> String {
-    let WhyRow {
-        backend,
-        per,
-        reads,
-        timed,
-    } = row;
-    let mut text = format!("{backend}: ");
-    text += &match reads.reads {
-        0.0 => "a query reads nothing".into(),
-        number => format!(
-            "a query makes {} reads in {} cache lines, and reads {} bytes",
-            short_figure(number),
-            short_figure(reads.lines),
-            short_figure(reads.bytes)
-        ),
-    };
-    if reads.sampled {
-        text += &format!(" (mean of {} queries)", reads.queried);
-    }
-    let swept = bytes(reads.sweep_bytes());
-    text += &match reads.moved_bytes {
-        0.0 => ". A sweep over all elements also reads nothing.".into(),
-        moved => format!(
-            ". A sweep over all elements touches {swept} and moves {} bytes per {per}.",
-            short_figure(moved)
-        ),
-    };
-    match timed {
-        None => text,
-        Some(timed) => text + &describe_times(timed),
-    }
-}
-
-/// Describes the measured time and its limiting factor.
-fn describe_times(timed: &Timed) -> String {
-    let Timed {
-        ns_per_element,
-        speed,
-        floor_ns,
-        waits_ns,
-        bound,
-        ..
-    } = timed;
-    let (measured, floor, waits) = (
-        short_figure(*ns_per_element),
-        short_figure(*floor_ns),
-        short_figure(*waits_ns),
-    );
-    let speed = short_figure(speed.gb_per_s);
-    let verdict = match bound {
-        Bound::Bandwidth => "bound by memory bandwidth",
-        Bound::Latency => "bound by the latency of lines that cannot be prefetched",
-        Bound::Work => "bound by the work of the query itself, not by memory",
-    };
-    format!(
-        " At {speed} GB/s, moving the bytes of one element takes {floor} ns. Waiting for its jumps \
-         takes {waits} ns. The measured time is {measured} ns and is {verdict}."
-    )
-}
-
-/// The columns of a table with times, and their meaning.
-const TIMED: [(&str, &str); 4] = [
-    (
-        "floor",
-        "ns per element to read the bytes of `moved` sequentially. The speed is that of the \
-         largest measured buffer that is not larger than the memory that the sweep touches.",
-    ),
-    (
-        "waits",
-        "ns per element for the jumps, if each jump waits for the previous jump. The latency \
-         is that of the buffer that is used for `floor`.",
-    ),
-    (
-        "measured",
-        "time of the sweep in ns per element, median; ~ if measured on a sample",
-    ),
-    (
-        "bound by",
-        "bandwidth: `floor` is at least half of the measured time. latency: `floor` is less, \
-         but `waits` is at least half of the measured time. work: `floor` and `waits` are both \
-         less than half; most of the time is spent on reading nearby data, comparing and \
-         branching.",
-    ),
-];
-
-pub(crate) fn legend(why: &Why) -> String {
+/// Returns the meanings of the columns and signs that the tables have.
+pub(crate) fn legend(why: &Why, detailed: bool) -> String {
     let Model {
         line_bytes,
         cache_lines,
@@ -229,82 +98,101 @@ pub(crate) fn legend(why: &Why) -> String {
         sample,
         ..
     } = why.model;
-    let first = [
-        (
-            "answers",
-            "number of elements that a query returns; all figures are means over all queries",
-        ),
+    let timed = why.memory.is_some();
+    let has_sweep = !timed || detailed;
+    let jump = format!(
+        "a cache line that a prefetcher cannot predict: none of the last {} lines that the sweep \
+         fetched is within {reach} lines of it",
+        grouped(cache_lines as usize)
+    );
+    let mut lines = vec![
         (
             "reads",
-            "number of table rows that a query reads; a row that is read twice counts twice",
+            "table rows that a query reads, each as often as it is read (a mean, like all figures)"
+                .to_owned(),
         ),
         (
             "lines",
-            &format!(
-                "number of cache lines of {line_bytes} bytes that a query touches; each line \
-                 counts once"
-            ),
+            format!("cache lines of {line_bytes} bytes that a query touches"),
         ),
         (
             "bytes",
-            "number of bytes that a query reads; each byte counts once",
+            "bytes that a query reads; each byte counts once".to_owned(),
         ),
-        (
+    ];
+    if has_sweep {
+        lines.push((
             "jumps",
-            &format!(
-                "number of lines per element that a prefetcher cannot predict, in a sweep over all \
-                 elements in order. A fetched line is a jump if none of the last {} fetched lines \
-                 is within {reach} lines of this line.",
-                grouped(cache_lines as usize)
-            ),
-        ),
-        (
+            format!("jumps per element in a sweep over all elements in order. A jump is {jump}."),
+        ));
+        lines.push((
             "moved",
-            "minimum number of bytes per element that a sweep moves from memory: each line of the \
-             sweep counts once. In a row with ~, the lines of each query are counted separately.",
-        ),
-    ];
-    let counted = [("by table", "number of reads of a query in each table")];
-    let listing = match why.memory.is_some() {
-        true => {
-            "The figures `jumps`, `moved` and `measured` include the iteration over the elements. \
-             If a structure has no table of edges, a list of edges is prepared first. Only \
-             `measured` includes this preparation."
-        }
-        false => "The figures `jumps` and `moved` include the iteration over the elements.",
-    };
-    let last = [
-        (
+            "bytes per element that a sweep moves from memory at least: each line counts once"
+                .to_owned(),
+        ));
+    }
+    if detailed {
+        lines.push(("by table", "reads of a query in each table".to_owned()));
+    }
+    if timed {
+        let waits = match has_sweep {
+            true => "ns per element if each jump waits for the previous jump".to_owned(),
+            false => {
+                format!("ns per element if each jump waits for the previous one; a jump is {jump}")
+            }
+        };
+        lines.extend([
+            (
+                "floor",
+                "ns per element to move the lines of a sweep over all elements from memory, each \
+                 line once, at the speed of the largest buffer above that is not larger than they \
+                 are"
+                .to_owned(),
+            ),
+            ("waits", waits),
+            (
+                "measured",
+                "median time of the sweep in ns per element; ~ if measured on a sample".to_owned(),
+            ),
+            (
+                "bound by",
+                "bandwidth: floor is at least half of the measured time; latency: waits is, but \
+                 not floor; work: neither, so most of the time is spent on nearby data"
+                    .to_owned(),
+            ),
+        ]);
+    }
+    if why.rows.iter().any(|row| row.reads.sampled) {
+        lines.push((
             "~",
-            &*format!("only {sample} evenly spaced elements are queried, not all elements"),
-        ),
-        ("", listing),
-    ];
-    let second: &[(&str, &str)] = if why.memory.is_some() {
-        &TIMED
-    } else {
-        &counted
+            format!(
+                "only {sample} evenly spaced elements are queried; the lines of each query are \
+                 counted separately"
+            ),
+        ));
+    }
+    let lines = lines
+        .into_iter()
+        .map(|(name, meaning)| hanging_indent(&format!("{name:<10}"), &meaning));
+    let mut lines: Vec<String> = lines.collect();
+    let listing = match timed {
+        true => {
+            "Sweeps include the iteration over the elements. If a structure has no table of edges, \
+             a list of edges is prepared first; only the measured time includes this. `sixfold \
+             operations` describes the relations."
+        }
+        false => {
+            "Sweeps include the iteration over the elements. `sixfold operations` describes the \
+             relations."
+        }
     };
-    let lines = first.iter().chain(second).chain(&last);
-    let lines = lines.map(|(name, meaning)| hanging_indent(&format!("{name:<10}"), meaning));
-    lines.collect::<Vec<_>>().join("\n")
+    lines.push(hanging_indent("", listing));
+    lines.join("\n")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_take_five_characters() {
-        let numbers = [
-            0.0, 0.0004, 0.0521, 7.0, 999.4, 999.6, 60_480.0, 999_600.0, 3.63e6, 2e9,
-        ];
-        let expected = [
-            "0", "<.001", "0.052", "7.00", "999", "1.00k", "60.5k", "1.00M", "3.63M", "2.00G",
-        ];
-        assert_eq!(numbers.map(short_figure), expected);
-        assert!(numbers.map(short_figure).iter().all(|text| text.len() <= 5));
-    }
 
     #[test]
     fn the_most_read_table_comes_first() {
@@ -315,10 +203,6 @@ mod tests {
         };
         let text = by_table(&[read("leaving", 1.0), read("halves", 6.0)]);
         assert_eq!(text, "halves 6.00, leaving 1.00");
-        // No line ends between a table name and its figure.
-        let many = ["vertex", "opposite", "corner"].map(|table| read(table, 1.0));
-        let text = by_table(&many);
-        assert_eq!(text, "vertex 1.00, opposite 1.00,\ncorner 1.00");
         assert_eq!(by_table(&[]), "none: the handle is the answer");
     }
 }

@@ -176,9 +176,12 @@ fn inspect_names_lines_bytes_and_unshared_vertices() {
     sixfold.file("a.obj", TETRAHEDRON);
     run_ok(&sixfold, &["triangulate", "a.obj", "-o", "a.stl"]);
     let run = run_ok(&sixfold, &["inspect", "a.stl", "--as-stored"]);
-    let unshared = "the faces do not share vertices (12 vertices at 4 positions)\n               \
-                    sixfold repair a.stl --weld -o repaired.obj";
+    let unshared = "the faces do not share vertices (12 vertices at 4 positions)\n";
     assert!(run.stdout.contains(unshared), "{run:?}");
+    // The vertices at other vertices are not listed again.
+    assert!(!run.stdout.contains("at the position of"), "{run:?}");
+    let command = "               sixfold repair a.stl --weld -o repaired.obj\n";
+    assert!(run.stdout.ends_with(command), "{run:?}");
 }
 
 #[test]

@@ -214,7 +214,7 @@ impl Operation {
         }
     }
 
-    /// Returns what one run of the operation does, for users.
+    /// Returns what one run of the operation does, in at most 45 characters, for lists.
     pub const fn about(self) -> &'static str {
         match self {
             Self::Build => "builds the structure from a polygon mesh",
@@ -232,38 +232,27 @@ impl Operation {
             Self::Circulate => "vertex_faces, then face_vertices",
             Self::AllQueries => "all nine relations",
             Self::FaceBarycenter => "stores the mean of the corners of each face",
-            Self::VertexNormal => "stores the normals of all faces, then of all vertices",
-            Self::VvSmooth => "moves each vertex to the mean of its neighbours",
+            Self::VertexNormal => "stores the normals of faces, then of vertices",
+            Self::VvSmooth => "moves each vertex to its neighbours' mean",
             Self::EdgeLength => "sums the lengths of all edges",
             Self::Boundary => "counts the edges with one face",
-            Self::FfBfs => "visits all faces breadth first, from face to face",
-            Self::CatmullClark(Method::Gather) => {
-                "one step of Catmull–Clark; each new point queries its neighbours"
-            }
-            Self::CatmullClark(Method::Scatter) => {
-                "one step of Catmull–Clark; one pass over the faces adds to the new points"
-            }
-            Self::CatmullClark(Method::Native) => {
-                "one step of Catmull–Clark; the structure splits its own tables"
-            }
-            Self::Loop(Method::Gather) => "one step of Loop; each new point queries its neighbours",
-            Self::Loop(Method::Scatter) => {
-                "one step of Loop; one pass over the faces adds to the new points"
-            }
-            Self::Loop(Method::Native) => "one step of Loop; the structure splits its own tables",
-            Self::EditPass(EditPass::SplitCollapse) => {
-                "puts a vertex into each face, then collapses each new vertex into a neighbour; \
-                 the mesh is then as before"
-            }
-            Self::EditPass(EditPass::FlipAll) => {
-                "flips each edge if the flip is legal, then flips the same edges again"
-            }
-            Self::EditPass(EditPass::DecimateHalf) => {
-                "collapses the edge with the least error, until half of the faces are left"
-            }
-            Self::EditPass(EditPass::DecimateTenth) => {
-                "collapses the edge with the least error, until a tenth of the faces is left"
-            }
+            Self::FfBfs => "visits the faces breadth first",
+            Self::CatmullClark(method) => match method {
+                Method::Gather => "Catmull–Clark; new points query neighbours",
+                Method::Scatter => "Catmull–Clark; one pass over the faces",
+                Method::Native => "Catmull–Clark; splits the structure's tables",
+            },
+            Self::Loop(method) => match method {
+                Method::Gather => "Loop; new points query neighbours",
+                Method::Scatter => "Loop; one pass over the faces",
+                Method::Native => "Loop; splits the structure's tables",
+            },
+            Self::EditPass(pass) => match pass {
+                EditPass::SplitCollapse => "adds a vertex to each face, then collapses it",
+                EditPass::FlipAll => "flips each edge that can be flipped, twice",
+                EditPass::DecimateHalf => "collapses edges until half the faces are left",
+                EditPass::DecimateTenth => "collapses edges until a tenth is left",
+            },
         }
     }
 
@@ -421,6 +410,7 @@ mod tests {
             let about = operation.about();
             let same = |other: &&Operation| other.about() == about;
             assert_eq!(Operation::ALL.iter().filter(same).count(), 1, "{about}");
+            assert!(about.chars().count() <= 45, "{about}");
             let unit = operation.unit();
             let is_element = ElementKind::ALL.iter().any(|kind| kind.name() == unit);
             let is_described = Operation::UNITS.iter().any(|(name, _)| *name == unit);

@@ -12,7 +12,7 @@ const EXAMPLES: &str = "Examples:
   sixfold inspect bunny.obj --json -         machine-readable
 
 For each kind of fault it prints the first elements, the line or byte of a face with this element,
-the structures that refuse the mesh for it, and the command that repairs it.
+the structures that refuse the mesh for it, and the options of `sixfold repair` that repair it.
 
 Exit codes: 0 success; 2 wrong usage or unusable input; 4 interrupted.";
 

@@ -9,7 +9,7 @@ use super::{EffortArgs, ReadFiles, ResultFiles, backend};
 
 const WHY_EXAMPLES: &str = "Examples:
   sixfold why --counts-only                                counts on the built-in mesh, no times
-  sixfold why bunny.obj --relations vertex_faces           counts, times, and a sentence for each
+  sixfold why bunny.obj --relations vertex_faces           counts and times, and the reads of each table
   sixfold why bunny.obj --backends half-edge,face-vertex --budget 1m --json why.json
 
 Counts are exact and the same on every machine. Every table row that a query reads is counted. The
@@ -20,10 +20,10 @@ spaced elements are queried. In the output, the sign ~ marks counts from only 16
 Times are measured as in `sixfold study`. A sweep queries all elements once, in order. The speed of
 memory is measured first, in buffers of growing size. The time of a sweep is compared with the speed
 of the largest buffer that is not larger than the memory that the sweep touches. With --relations,
-the command also describes each result in a sentence.
+the command also shows the reads of each table.
 
 Relations: vertex_vertices, vertex_edges, vertex_faces, edge_vertices, edge_edges, edge_faces,
-           face_vertices, face_edges, face_faces
+face_vertices, face_edges, face_faces.
 
 Exit codes: 0 success; 1 results differ between backends (a fault in Sixfold); 2 wrong usage or
 unusable input; 3 none of the selected backends can hold the mesh; 4 interrupted, finished results

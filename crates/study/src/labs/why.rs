@@ -5,6 +5,8 @@
 //! [`Bound::from_times`] compares the time of a query with the time for reading the same amount of
 //! memory.
 
+mod sentences;
+
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -79,6 +81,9 @@ pub struct Why {
     pub rows: Vec<WhyRow>,
     /// The times of all samples; empty if no times were measured.
     pub samples: Vec<Samples>,
+    /// Sentences about the results; empty in older documents, and if the counting was stopped.
+    #[serde(default)]
+    pub sentences: Vec<String>,
     /// Sentences about possible faults of the measurement and their remedies.
     pub warnings: Vec<String>,
     /// True if the measurement was stopped early. Some rows or times may then be missing.
@@ -185,7 +190,7 @@ impl LabFinding for Why {
         Common {
             run: &self.run,
             meshes: std::slice::from_ref(&self.mesh),
-            sentences: &[],
+            sentences: &self.sentences,
             warnings: &self.warnings,
             interrupted: self.interrupted,
         }
@@ -301,10 +306,16 @@ pub(crate) fn why_on(
         (samples, warnings) = (report.samples, report.warnings);
         warnings.extend(left_out_buffers(memory));
     }
+    let holding = backends.iter().filter(|backend| backend.holds).count();
+    let sentences = match rows.len() == holding * relations.len() {
+        true => sentences::sentences(&rows),
+        false => Vec::new(),
+    };
     Ok(Why {
         run,
         mesh: study_mesh.report(),
         backends,
+        sentences,
         model: Model::CURRENT,
         memory: memory.map(|memory| memory.speeds().to_vec()),
         rows,
