@@ -194,8 +194,11 @@ impl Diagnosed<'_> {
                 // On an edge with three faces, two of them always run in the same direction.
                 FaultKind::RepeatedSide if inconsistent_edges == 0 => continue,
                 FaultKind::RepeatedSide if fault.count > inconsistent_edges => {
-                    let others = grouped(fault.count - inconsistent_edges);
-                    title += &format!(" ({others} of them have three or more faces)");
+                    let others = match fault.count - inconsistent_edges {
+                        1 => "1 of them has".to_owned(),
+                        n => format!("{} of them have", grouped(n)),
+                    };
+                    title += &format!(" ({others} three or more faces)");
                 }
                 _ => {}
             }
@@ -242,24 +245,31 @@ impl Diagnosed<'_> {
             .faults
             .iter()
             .map(|fault| self.options(fault));
-        let mut options = left_out.into_iter().chain(faults).filter(|o| !o.is_empty());
-        let (text, options) = match (names.split_first(), options.next()) {
+        let options = left_out.into_iter().chain(faults).filter(|o| !o.is_empty());
+        let options: Vec<String> = options.collect();
+        let (text, options) = match (names.split_first(), options.first()) {
             (_, Some(options)) if self.diagnosis.looks_unwelded() => {
                 let text = "join the vertices, then inspect the result for the other faults:";
-                (text.to_owned(), options)
+                (text.to_owned(), options.clone())
             }
             (Some((first, others)), _) => {
                 let others = match others {
                     [] => String::new(),
                     others => format!(" (or for {})", others.join(", ")),
                 };
-                let text = format!(
-                    "all that {first} refuses{others}; for one kind of fault, write its options \
-                     instead of --for:"
-                );
-                (text, format!("--for {first}"))
+                let one = match options.len() {
+                    0 | 1 => "",
+                    _ => "; for one kind of fault, write its options instead of --for",
+                };
+                (
+                    format!("all that {first} refuses{others}{one}:"),
+                    format!("--for {first}"),
+                )
             }
-            (None, Some(options)) => ("one kind of fault, by its options:".to_owned(), options),
+            (None, Some(options)) => {
+                let text = "one kind of fault, by its options:";
+                (text.to_owned(), options.clone())
+            }
             (None, None) => return Vec::new(),
         };
         let first_line = hanging_indent(&format!("{:LABEL$}", "repair"), &text);

@@ -89,6 +89,8 @@ fn print(audit: &Audit, text: &mut TextOutput) {
     text.print_line(&hanging_indent("words  ", words));
     let peak = "the most bytes in use while the structure is built, without the input";
     text.print_line(&hanging_indent("peak   ", peak));
+    text.print_line("");
+    text.print_line(&tables_text(audit));
     if let Some(table) = operations_table(audit) {
         text.print_line("");
         text.print_line(&table);
@@ -97,53 +99,59 @@ fn print(audit: &Audit, text: &mut TextOutput) {
     }
 }
 
-/// Returns the table of the bytes of each backend that holds the mesh. Below each backend are its
-/// tables. If its three counts differ, the counts are above the tables, and a `!` follows each count
-/// that differs from the count before it.
+/// Returns the table of the bytes of each backend that holds the mesh.
 fn bytes_table(audit: &Audit) -> String {
-    let bytes = |bytes: Option<usize>| bytes.map_or(String::new(), grouped);
-    let mut rows: Vec<[String; 7]> = Vec::new();
-    for entry in audit.backends.iter().filter(|entry| entry.backend.holds) {
+    let holding = || audit.backends.iter().filter(|entry| entry.backend.holds);
+    let bytes = |bytes: Option<usize>| bytes.map_or("–".into(), grouped);
+    let ratio = |ratio: Option<f64>| ratio.map_or("–".into(), figure);
+    let column = |head: &str, cell: &dyn Fn(&BackendAudit) -> String| {
+        Column::figures(head, holding().map(cell))
+    };
+    let columns = [
+        column("bytes", &|entry| bytes(entry.counted_bytes)),
+        column("/ vertex", &|entry| ratio(entry.counted_bytes_per_vertex)),
+        column("words", &|entry| {
+            figure(entry.closed_triangles_words_per_vertex)
+        }),
+        column("peak", &|entry| bytes(entry.peak_bytes)),
+        column("/ bytes", &|entry| ratio(entry.peak_to_counted)),
+    ];
+    let names = Column::words("", holding().map(|entry| entry.backend.name.clone()));
+    column_table(&names, &columns)
+}
+
+/// Returns the bytes of the tables of each backend that holds the mesh. If the three counts of a
+/// backend differ, a line has the counts. In this line, a `!` follows each count that differs from
+/// the count before it.
+fn tables_text(audit: &Audit) -> String {
+    let holding = audit.backends.iter().filter(|entry| entry.backend.holds);
+    let holding: Vec<&BackendAudit> = holding.collect();
+    let width = holding.iter().map(|entry| entry.backend.name.len()).max();
+    let width = width.unwrap_or(0);
+    let mut lines = vec!["The bytes of the tables:".to_owned()];
+    for entry in holding {
         let backend = &entry.backend;
-        rows.push([
-            backend.name.clone(),
-            String::new(),
-            bytes(entry.counted_bytes),
-            entry.counted_bytes_per_vertex.map_or("–".into(), figure),
-            figure(entry.closed_triangles_words_per_vertex),
-            bytes(entry.peak_bytes),
-            entry.peak_to_counted.map_or("–".into(), figure),
-        ]);
-        let part = |name: &str, rows: String, bytes: String| {
-            let [a, b, c, d] = [const { String::new() }; 4];
-            [format!("  {name}"), rows, bytes, a, b, c, d]
-        };
+        let tables = backend.tables.iter();
+        let tables = tables.map(|table| format!("{} {}", table.table, grouped(table.bytes)));
+        let tables = tables.collect::<Vec<_>>().join(" + ");
+        let name = &backend.name;
+        lines.push(hanging_indent(&format!("{name:<width$}  "), &tables));
         if entry.agrees == Some(false) {
             let counts = [backend.layout_bytes, backend.bytes, entry.counted_bytes];
-            for (i, name) in ["by formula", "by tables", "by allocator"]
-                .iter()
-                .enumerate()
-            {
-                let sign = match i > 0 && counts[i] != counts[i - 1] {
-                    true => "!",
-                    false => "",
+            let names = ["formula", "tables", "allocator"];
+            let count = |i: usize| {
+                let sign = if i > 0 && counts[i] != counts[i - 1] {
+                    "!"
+                } else {
+                    ""
                 };
-                rows.push(part(name, sign.to_owned(), bytes(counts[i])));
-            }
-        }
-        for table in &backend.tables {
-            rows.push(part(
-                &table.table,
-                grouped(table.rows),
-                grouped(table.bytes),
-            ));
+                format!("{} {}{sign}", names[i], grouped(counts[i].unwrap_or(0)))
+            };
+            let differing = [count(0), count(1), count(2)].join(", ");
+            lines.push(hanging_indent(&format!("{:<width$}  ", ""), &differing));
         }
     }
-    let cells = |column: usize| rows.iter().map(move |row| row[column].clone());
-    let heads = ["rows", "bytes", "/ vertex", "words", "peak", "/ bytes"];
-    let columns = heads.iter().enumerate();
-    let columns = columns.map(|(i, head)| Column::figures(head, cells(i + 1)));
-    column_table(&Column::words("", cells(0)), &columns.collect::<Vec<_>>())
+    lines.join("\n")
 }
 
 /// Returns the table of allocated bytes per byte of the result, with a row per operation and a
@@ -242,22 +250,16 @@ mod tests {
             &ZeroHeap,
             &mut |_| (),
         );
-        // 24 half-edges of 12 bytes, 8 vertices of 16 bytes, and 6 faces.
         let table = bytes_table(&audit);
-        let cells = |name: &str| {
-            let line = table
-                .lines()
-                .find(|line| line.trim_start().starts_with(name));
-            let cells = line.expect("a row").split_whitespace();
-            cells.map(str::to_owned).collect::<Vec<_>>()
-        };
-        assert_eq!(
-            cells("half-edge"),
-            ["half-edge", "0", "0.000", "24.0", "0", "–"]
-        );
-        assert_eq!(cells("by formula"), ["by", "formula", "440"]);
-        assert_eq!(cells("by tables"), ["by", "tables", "440"]);
-        assert_eq!(cells("by allocator"), ["by", "allocator", "!", "0"]);
+        let row = table.lines().find(|line| line.starts_with("half-edge"));
+        let cells: Vec<&str> = row.expect("a row").split_whitespace().collect();
+        assert_eq!(cells, ["half-edge", "0", "0.000", "24.0", "0", "–"]);
+        // 24 half-edges of 12 bytes, 8 vertices of 16 bytes, and 6 faces.
+        let tables = tables_text(&audit);
+        let sum = "half-edge  positions 96 + leaving 32 + halves 288 + first 24";
+        assert!(tables.contains(sum), "{tables}");
+        let counts = "           formula 440, tables 440, allocator 0!";
+        assert!(tables.ends_with(counts), "{tables}");
         assert!(table.lines().all(|line| line.chars().count() <= WIDTH));
         let sentences = &audit.sentences;
         assert!(

@@ -67,7 +67,7 @@ fn json_has_the_three_counts_and_the_tables() {
     assert_eq!(backends["indexed-face-set"]["counted_bytes"], 64);
     assert_eq!(backends["half-edge"]["counted_bytes"], 164);
     assert_eq!(backends["half-edge"]["layout_words_per_vertex"], 10.25);
-    let least = "indexed-face-set needs the least memory: 64 bytes, 16.0 per vertex.";
+    let least = "polygon-soup needs the least memory: 48 bytes, 12.0 per vertex.";
     let sentence = audit["sentences"][0].as_str().expect("a sentence");
     assert!(sentence.starts_with(least), "{sentence}");
 }

@@ -137,7 +137,7 @@ fn commands(text: &str) -> Vec<Vec<String>> {
 #[test]
 fn the_commands_that_inspect_prints_repair_the_mesh() {
     let sixfold = Sixfold::new();
-    for (name, text) in [
+    for (name, mesh) in [
         ("book.obj", BOOK),
         ("unwelded.obj", UNWELDED),
         // These names need care in a shell, or would be overwritten.
@@ -145,9 +145,27 @@ fn the_commands_that_inspect_prints_repair_the_mesh() {
         ("my 'best' part.obj", BOOK),
         ("repaired.obj", BOOK),
     ] {
-        sixfold.file(name, text);
-        let inspected = run_ok(&sixfold, &["inspect", "--", name]).stdout;
-        let commands = commands(&inspected);
+        sixfold.file(name, mesh);
+        let inspect = ["inspect", "--json", "i.json", "--", name];
+        let inspected = run_ok(&sixfold, &inspect).stdout;
+        let text_words: Vec<&str> = inspected.split_whitespace().collect();
+        let text_words = text_words.join(" ");
+        let mut commands = commands(&inspected);
+        assert_eq!(commands.len(), 1, "{name}: {inspected}");
+        // The text has the options of each command of the document.
+        let json: Value = serde_json::from_str(&text(&sixfold, "i.json")).expect("JSON");
+        for fault in json["diagnosis"]["faults"].as_array().expect("faults") {
+            let Some(command) = fault["repair"].as_str() else {
+                continue;
+            };
+            let words = shlex::split(command).expect("words of a shell");
+            let options = words[3..words.len() - 2].join(" ");
+            // On an edge with three faces, two faces always run in the same direction.
+            let is_listed = fault["kind"] != "repeated_side" && options != "--weld";
+            let shown = text_words.contains(&format!("repair: {options}"));
+            assert!(shown || !is_listed, "{command}: {inspected}");
+            commands.push(words[1..].to_vec());
+        }
         assert!(commands.len() >= 2, "{name}: {inspected}");
         for command in commands {
             let words: Vec<&str> = command.iter().map(String::as_str).collect();
