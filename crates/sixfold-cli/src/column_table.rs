@@ -36,16 +36,17 @@ impl Column {
 /// columns move closer together. If this is not sufficient, the columns are divided into several
 /// tables below one another, each with `names`.
 pub(crate) fn column_table(names: &Column, columns: &[Column]) -> String {
-    let wide = part(names, columns, 2);
+    let wide = part(names, columns, 1);
     let fits = wide.lines().all(|line| line.chars().count() <= width());
     match fits {
         true => wide,
-        false => stacked(columns, |columns| part(names, columns, 1)),
+        false => stacked(columns, |columns| part(names, columns, 0)),
     }
 }
 
-/// Returns a table of some columns, with `gap` spaces between two columns.
-fn part(names: &Column, columns: &[Column], gap: u16) -> String {
+/// Returns a table of some columns, with `padding` spaces before each column, in addition to the
+/// space of the style.
+fn part(names: &Column, columns: &[Column], padding: u16) -> String {
     let all = || std::iter::once(names).chain(columns);
     let cell = |text: &String, column: &Column| Cell::new(text).set_alignment(column.alignment);
     let header = all().map(|column| cell(&column.head, column));
@@ -56,7 +57,7 @@ fn part(names: &Column, columns: &[Column], gap: u16) -> String {
     }
     for (i, _) in all().enumerate() {
         if let Some(column) = table.column_mut(i) {
-            column.set_padding((if i == 0 { 0 } else { gap }, 0));
+            column.set_padding((if i == 0 { 0 } else { padding }, 0));
         }
     }
     table.trim_fmt()

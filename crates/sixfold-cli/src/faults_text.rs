@@ -17,7 +17,7 @@ use crate::text::{hanging_indent, shell_word, width};
 pub(crate) const SHOWN_PLACES: usize = 3;
 
 /// A space at which no line ends.
-const NO_BREAK: &str = "\u{a0}";
+pub(crate) const NO_BREAK: &str = "\u{a0}";
 
 /// Width of the labels.
 const LABEL: usize = 13;

@@ -11,6 +11,7 @@ use crate::arguments::Memory;
 use crate::column_table::{Column, column_table, short_figure};
 use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
+use crate::faults_text::NO_BREAK;
 use crate::load;
 use crate::measure::{Session, with_command};
 use crate::progress::{StatusLine, exit_on_interrupt};
@@ -132,7 +133,8 @@ fn tables_text(audit: &Audit) -> String {
     for entry in holding {
         let backend = &entry.backend;
         let tables = backend.tables.iter();
-        let tables = tables.map(|table| format!("{} {}", table.table, grouped(table.bytes)));
+        let tables =
+            tables.map(|table| format!("{}{NO_BREAK}{}", table.table, grouped(table.bytes)));
         let tables = tables.collect::<Vec<_>>().join(" + ");
         let name = &backend.name;
         lines.push(hanging_indent(&format!("{name:<width$}  "), &tables));
@@ -151,7 +153,7 @@ fn tables_text(audit: &Audit) -> String {
             lines.push(hanging_indent(&format!("{:<width$}  ", ""), &differing));
         }
     }
-    lines.join("\n")
+    lines.join("\n").replace(NO_BREAK, " ")
 }
 
 /// Returns the table of allocated bytes per byte of the result, with a row per operation and a

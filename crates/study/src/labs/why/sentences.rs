@@ -74,7 +74,8 @@ fn limits(rows: &[WhyRow]) -> Option<String> {
     })
 }
 
-/// Lists the backends of `rows`, each with its number of rows, such as `2 of half-edge`.
+/// Lists the backends of `rows`: a single backend by its name, several each with its number of rows,
+/// such as `2 of half-edge`.
 fn by_backend(rows: &[&WhyRow]) -> String {
     let mut counts: Vec<(&str, usize)> = Vec::new();
     for row in rows {
@@ -168,8 +169,8 @@ mod tests {
         let sentences = sentences(&rows);
         assert_eq!(
             sentences[1],
-            "What limits the 3 times: work on nearby data in 2 and memory bandwidth in 1 (1 of \
-             half-edge)."
+            "What limits the 3 times: work on nearby data in 2 and memory bandwidth in 1 \
+             (half-edge)."
         );
         assert!(
             sentences[2].starts_with("The counts are exact, except in 1 of 4 rows (~)"),
