@@ -84,6 +84,9 @@ fn by_backend(rows: &[&WhyRow]) -> String {
             None => counts.push((&row.backend, 1)),
         }
     }
+    if let [(name, _)] = counts[..] {
+        return name.to_owned();
+    }
     counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
     list(
         counts
