@@ -145,9 +145,9 @@ pub(crate) fn legend(why: &Why, detailed: bool) -> String {
             (
                 "floor",
                 "ns per element to move the lines of a sweep over all elements from memory, each \
-                 line once, at the speed of the largest buffer above that is not larger than they \
-                 are"
-                .to_owned(),
+                 line once; the speed is that of the largest buffer that is not larger than these \
+                 lines together"
+                    .to_owned(),
             ),
             ("waits", waits),
             (
