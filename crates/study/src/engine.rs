@@ -3,6 +3,7 @@
 
 pub(crate) mod agreement;
 pub(crate) mod control;
+pub(crate) mod corrected;
 #[cfg(test)]
 mod cost;
 pub(crate) mod disturbance;

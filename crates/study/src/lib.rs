@@ -45,6 +45,7 @@ mod sanitize;
 pub use engine::effort::Effort;
 pub use engine::heap::{CacheState, CachesReport, free_memory};
 pub use engine::measure::Progress;
+pub use engine::ranking::FEWEST_OF_A_WINNER;
 pub use engine::statistics::UNSEEN_DRIFT;
 pub use engine::timer::Timer;
 pub use external::isolated::{ChildTask, Isolation, serve_program};
@@ -57,12 +58,12 @@ pub use labs::growth::{
 };
 pub use labs::memory::{Audit, BackendAudit, OperationBytes, audit, count_allocations};
 pub use labs::neighbours::{
-    Cheapest, CheapestIndices, IndexReport, NeighbourRow, NeighboursError, NeighboursReport,
-    NeighboursSettings, QueryPoints, SpatialTask, neighbour_indices, neighbours,
+    Cheapest, CheapestIndices, IndexReport, NeighboursError, NeighboursReport, NeighboursSettings,
+    QueryPoints, SpatialTask, neighbour_indices, neighbours,
 };
 pub use labs::orders::{
-    Comparison, DEFAULT_OPERATIONS, Factor, Larger, OrderEffect, OrderRow, OrdersReport,
-    SamplesInOrder, StructureEffect, orders, orders_bytes,
+    Comparison, DEFAULT_OPERATIONS, Factor, Larger, OrderEffect, OrdersReport, StructureEffect,
+    orders, orders_bytes,
 };
 pub use labs::pick::{
     AskedCount, BreakEven, Choice, EQUAL_UP_TO, Excluded, MeshRanking, Need, PartCost, PickError,
@@ -83,8 +84,8 @@ pub use results::merge::MergeError;
 pub use results::pool::{Group, Holding, Overall, Pool, Pooled, Purpose};
 pub use results::read::ReadError;
 pub use results::rows::{
-    Agreement, BackendRefusal, BackendReport, Control, ControlRow, FIRST_TIME_SHOWN, MeshReport,
-    Refusal, RefusalKind, ResultRow, Samples, Standing,
+    Agreement, BackendRefusal, BackendReport, Control, ControlRow, FIRST_TIME_SHOWN, MeasuredTask,
+    MeshReport, Refusal, RefusalKind, ResultRow, Samples, Standing,
 };
 pub use results::run::{Run, RunSettings, Start as RunStart};
 pub use runner::{BackendRun, BackendRunner};

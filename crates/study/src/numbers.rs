@@ -13,15 +13,43 @@ pub fn grouped(number: usize) -> String {
     text
 }
 
-/// Formats a number with three digits, or as a whole number if the number is 100 or larger:
-/// `0.412`, `4.12`, `41.2`, `412`, `41,235`.
+/// Rounds a number to three significant digits: the digits that [`figure`] shows.
+pub fn rounded(number: f64) -> f64 {
+    match number != 0.0 && number.is_finite() {
+        true => {
+            let unit = 10_f64.powi(number.abs().log10().floor() as i32 - 2);
+            // 99.96 becomes 100.0, and has then one digit fewer after the point.
+            let digits = (number / unit).round();
+            if unit < 1.0 {
+                digits / unit.recip().round()
+            } else {
+                digits * unit
+            }
+        }
+        false => number,
+    }
+}
+
+/// Returns the quotient of two times as they are shown: a reader who divides the shown times gets
+/// this ratio.
+pub fn shown_ratio(time: f64, other: f64) -> f64 {
+    rounded(time) / rounded(other)
+}
+
+/// Formats a number with three significant digits: `0.0412`, `0.412`, `4.12`, `41.2`, `412`,
+/// `41,200`.
 pub fn figure(number: f64) -> String {
-    match number {
+    let rounded = rounded(number);
+    match rounded {
         n if !n.is_finite() => "–".into(),
-        n if n < 0.9995 => format!("{n:.3}"),
-        n if n < 9.995 => format!("{n:.2}"),
-        n if n < 99.95 => format!("{n:.1}"),
-        n => grouped(n.round() as usize),
+        0.0 => "0".into(),
+        n if n < 1.0 => {
+            let zeros = -(n.abs().log10().floor() as i32 + 1);
+            format!("{n:.*}", (zeros + 3).max(0) as usize)
+        }
+        n if n < 10.0 => format!("{n:.2}"),
+        n if n < 100.0 => format!("{n:.1}"),
+        n => grouped(n as usize),
     }
 }
 
@@ -46,8 +74,8 @@ pub(crate) fn list<N: AsRef<str>>(names: impl IntoIterator<Item = N>) -> String 
 
 /// Formats a number of bytes with a suitable decimal unit, such as `1.50 kB` (1 kB = 1,000 bytes).
 pub fn bytes(number: usize) -> String {
-    match number as f64 {
-        n if n < 1e3 => counted(number, "byte", "bytes"),
+    match rounded(number as f64) {
+        _ if number < 1000 => counted(number, "byte", "bytes"),
         n if n < 1e6 => format!("{} kB", figure(n / 1e3)),
         n if n < 1e9 => format!("{} MB", figure(n / 1e6)),
         n => format!("{} GB", figure(n / 1e9)),
@@ -56,7 +84,7 @@ pub fn bytes(number: usize) -> String {
 
 /// Formats a time in nanoseconds with a suitable unit, such as `2.34 ms`.
 pub fn duration(ns: f64) -> String {
-    match ns {
+    match rounded(ns) {
         ns if ns < 1e3 => format!("{} ns", figure(ns)),
         ns if ns < 1e6 => format!("{} µs", figure(ns / 1e3)),
         ns if ns < 1e9 => format!("{} ms", figure(ns / 1e6)),
@@ -64,13 +92,9 @@ pub fn duration(ns: f64) -> String {
     }
 }
 
-/// Formats a ratio with a multiplication sign: `1.4 ×`, `2,100 ×`.
+/// Formats a ratio with a multiplication sign: `1.04 ×`, `12.3 ×`, `2,100 ×`.
 pub fn times(ratio: f64) -> String {
-    match ratio {
-        r if r < 1.095 => format!("{r:.2} ×"),
-        r if r < 9.95 => format!("{r:.1} ×"),
-        r => format!("{} ×", grouped(r.round() as usize)),
-    }
+    format!("{} ×", figure(ratio))
 }
 
 #[cfg(test)]
@@ -85,14 +109,44 @@ mod tests {
 
     #[test]
     fn three_digits_are_significant() {
-        let figures = [
-            0.0, 0.05, 0.9994, 0.9996, 9.994, 9.996, 99.94, 99.96, 41234.5,
-        ]
-        .map(figure);
-        let expected = [
-            "0.000", "0.050", "0.999", "1.00", "9.99", "10.0", "99.9", "100", "41,235",
+        let shown = [
+            (0.0, "0"),
+            (0.000_051_26, "0.0000513"),
+            (0.05, "0.0500"),
+            (0.0999_96, "0.100"),
+            (0.9994, "0.999"),
+            (0.9996, "1.00"),
+            (9.994, "9.99"),
+            (9.996, "10.0"),
+            (99.94, "99.9"),
+            (99.96, "100"),
+            (999.6, "1,000"),
+            (41_234.5, "41,200"),
+            (1_239_999.0, "1,240,000"),
+            (f64::NAN, "–"),
+            (f64::INFINITY, "–"),
         ];
-        assert_eq!(figures, expected);
+        for (number, expected) in shown {
+            assert_eq!(figure(number), expected, "{number}");
+        }
         assert_eq!(duration(2_340_000.0), "2.34 ms");
+        assert_eq!(duration(999.7), "1.00 µs");
+        assert_eq!(bytes(999_700), "1.00 MB");
+        assert_eq!(times(18_130.0), "18,100 ×");
+    }
+
+    #[test]
+    fn the_quotient_of_shown_times_is_the_shown_ratio() {
+        for (a, b) in [
+            (205.4, 123.5),
+            (1.2345e6, 7.7777),
+            (0.0417, 0.3333),
+            (3.0, 3.0),
+        ] {
+            let parsed = |text: String| text.replace(',', "").parse::<f64>().expect("a number");
+            let [a_shown, b_shown] = [a, b].map(|time| parsed(figure(time)));
+            assert_eq!([a_shown, b_shown], [a, b].map(rounded));
+            assert_eq!(figure(shown_ratio(a, b)), figure(a_shown / b_shown));
+        }
     }
 }

@@ -18,7 +18,7 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
     let columns: Vec<&str> = columns.map(|column| column.name.as_str()).collect();
     let ratio = |operation: Operation, column: &str| {
         let mut rows = study.rows(operation);
-        rows.find(|row| row.backend == column)?.ratio_to_best
+        study.shown_ratio(rows.find(|row| row.backend == column)?)
     };
     let title = format!("Every operation on every structure: {}", study.mesh.name);
     figure(&title, &columns, &ratio, id_prefix, command)

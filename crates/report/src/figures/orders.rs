@@ -3,8 +3,8 @@
 
 use kuva::plot::BarPlot;
 use kuva::render::plots::Plot;
-use sixfold_study::numbers::duration;
-use sixfold_study::{Comparison, OrderRow, OrdersReport};
+use sixfold_study::numbers::{duration, figure as shown, shown_ratio};
+use sixfold_study::{Comparison, OrdersReport, ResultRow};
 
 use super::per_unit;
 use crate::colours::table_colour;
@@ -25,7 +25,7 @@ fn figure(
     command: &str,
 ) -> Option<Figure> {
     let operation = comparison.operation;
-    let rows: Vec<&OrderRow> = report.rows(operation).collect();
+    let rows: Vec<&ResultRow> = report.rows(operation).collect();
     if rows.is_empty() {
         return None;
     }
@@ -33,22 +33,27 @@ fn figure(
     let header = [""].into_iter().chain(names.iter().copied());
     let mut table = Table::new(header.chain(["worst / best", "95 %"]));
     let (mut plot, mut titles) = (BarPlot::new().with_legend(names), Vec::new());
-    let logs = rows.iter().filter_map(|row| row.row.ratio_to_best);
+    let logs = rows.iter().filter_map(|row| row.ratio_to_best);
     // The axis reaches at least ratio 1.5, so that noise does not fill the figure.
     let max_log = logs.fold(1.5, f64::max).log10();
     let per = per_unit(operation.unit());
-    for backend_rows in rows.chunk_by(|a, b| a.row.backend == b.row.backend) {
-        let backend = &backend_rows[0].row.backend;
+    for backend_rows in rows.chunk_by(|a, b| a.backend == b.backend) {
+        let backend = &backend_rows[0].backend;
+        let times = backend_rows.iter().filter_map(|row| row.ns_per_element);
+        let best = times.clone().fold(f64::INFINITY, f64::min);
+        let worst = times.fold(0.0, f64::max);
         let (mut bars, mut line) = (Vec::new(), vec![backend.clone()]);
         for (i, &order) in report.orders.iter().enumerate() {
-            let row = backend_rows.iter().find(|row| row.order == order);
-            let ratio = row.and_then(|row| row.row.ratio_to_best);
-            let time = row.and_then(|row| row.row.ns_per_element);
+            let row = backend_rows.iter().find(|row| row.case == order.name());
+            let ratio = row.and_then(|row| row.ratio_to_best);
+            let time = row.and_then(|row| row.ns_per_element);
+            let ratio = ratio.and(time.map(|time| shown_ratio(time, best)));
             let time = time.map_or_else(|| "–".into(), duration);
             titles.push(match ratio {
                 Some(ratio) => {
+                    let ratio = shown(ratio);
                     format!(
-                        "{backend}, {order}: {ratio:.3} × the time of its best order, {time} {per}"
+                        "{backend}, {order}: {ratio} × the time of its best order, {time} {per}"
                     )
                 }
                 None => format!("{backend}, {order}: not measured"),
@@ -59,9 +64,12 @@ fn figure(
         }
         let effect = comparison.orders.iter().find(|e| e.backend == *backend);
         let factor = effect.map(|effect| effect.worst_to_best);
-        line.push(factor.map_or_else(|| "–".into(), |factor| format!("{:.3}", factor.ratio)));
+        line.push(factor.map_or_else(|| "–".into(), |_| shown(shown_ratio(worst, best))));
         let interval = factor.and_then(|factor| factor.ci_low.zip(factor.ci_high));
-        line.push(interval.map_or_else(|| "–".into(), |(a, b)| format!("{a:.3} to {b:.3}")));
+        line.push(interval.map_or_else(
+            || "–".into(),
+            |(a, b)| format!("{} to {}", shown(a), shown(b)),
+        ));
         table.row(line);
         plot = plot.with_group(backend.clone(), bars);
     }

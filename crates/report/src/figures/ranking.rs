@@ -3,7 +3,7 @@
 
 use kuva::plot::BarPlot;
 use kuva::render::plots::Plot;
-use sixfold_study::numbers::{counted, duration};
+use sixfold_study::numbers::{counted, duration, figure as shown, shown_ratio};
 use sixfold_study::{
     FIRST_TIME_SHOWN, NeighboursReport, Operation, PickReport, Pool, Report, ResultRow,
     SpatialTask, Standing,
@@ -18,7 +18,7 @@ pub(super) fn from_study(study: &Report, command: &str) -> Vec<Figure> {
         let rows = study.rows(operation).filter_map(|row| {
             Some(Row {
                 backend: &row.backend,
-                ratio: row.ratio_to_best?,
+                ratio: study.shown_ratio(row)?,
                 interval: row.ratio_ci_low.zip(row.ratio_ci_high).map(|(a, b)| [a, b]),
                 ns: row.ns_per_element,
                 first_ns: first_time(row),
@@ -92,7 +92,8 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
         },
     });
     let title = format!("{}: time relative to the fastest", report.workload.name);
-    figure(title, id.into(), rows.collect(), "operation", command)
+    let rows = with_shown_ratios(rows.collect());
+    figure(title, id.into(), rows, "operation", command)
 }
 
 pub(super) fn from_neighbours(
@@ -106,7 +107,7 @@ pub(super) fn from_neighbours(
                 backend: &row.backend,
                 ratio: row.ratio_to_best?,
                 interval: row.ratio_ci_low.zip(row.ratio_ci_high).map(|(a, b)| [a, b]),
-                ns: Some(row.ns_per_element),
+                ns: row.ns_per_element,
                 first_ns: None,
                 note: match row.standing {
                     Some(Standing::Best) => "best".into(),
@@ -118,7 +119,13 @@ pub(super) fn from_neighbours(
         });
         let title = format!("{task}: time relative to the fastest");
         let id = format!("{id}-{}", task.name().replace('_', "-"));
-        figure(title, id, rows.collect(), task.unit(), command)
+        figure(
+            title,
+            id,
+            with_shown_ratios(rows.collect()),
+            task.unit(),
+            command,
+        )
     })
 }
 
@@ -134,13 +141,25 @@ fn operation_figure(
     figure(title, id, rows, per, command)
 }
 
+/// Replaces the ratios by the quotients of the shown times, so that a reader who divides two times
+/// gets the ratio.
+fn with_shown_ratios(mut rows: Vec<Row<'_>>) -> Vec<Row<'_>> {
+    let best = rows.iter().find(|row| row.ratio == 1.0);
+    if let Some(best) = best.and_then(|best| best.ns) {
+        for row in &mut rows {
+            row.ratio = row.ns.map_or(row.ratio, |ns| shown_ratio(ns, best));
+        }
+    }
+    rows
+}
+
 /// Returns the cells of a row of the table. If `firsts` is true, the table has a column for the first
 /// run.
 fn cells(row: &Row<'_>, firsts: bool) -> Vec<String> {
     let missing = || "–".into();
     let mut cells = vec![
         row.backend.to_owned(),
-        format!("{:.3}", row.ratio),
+        shown(row.ratio),
         row.interval.map_or_else(missing, interval_text),
         row.ns.map_or_else(missing, duration),
     ];
@@ -156,12 +175,12 @@ fn bar_title(row: &Row<'_>, per: &str) -> String {
         .map(|ends| format!(" ({})", interval_text(ends)));
     let interval = interval.unwrap_or_default();
     let time = row.ns.map_or_else(|| "–".into(), duration);
-    let (backend, ratio, unit) = (row.backend, row.ratio, per_unit(per));
-    format!("{backend}: {ratio:.3}{interval} × the time of the fastest, {time} {unit}")
+    let (backend, ratio, unit) = (row.backend, shown(row.ratio), per_unit(per));
+    format!("{backend}: {ratio}{interval} × the time of the fastest, {time} {unit}")
 }
 
 fn interval_text([low, high]: [f64; 2]) -> String {
-    format!("{low:.3} to {high:.3}")
+    format!("{} to {}", shown(low), shown(high))
 }
 
 fn figure(
@@ -223,8 +242,7 @@ fn figure(
         id,
         svg: render_svg(&title, plots, layout),
         title,
-        caption: "The scale is logarithmic and begins at 1, the time of the fastest. Each ratio \
-                  compares times of the same rounds. The thin lines are the 95 % intervals of the \
+        caption: "The scale is logarithmic and begins at 1, the time of the fastest. The thin lines are the 95 % intervals of the \
                   ratios."
             .into(),
         table,

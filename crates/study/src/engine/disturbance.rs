@@ -23,7 +23,7 @@ const PASSES: usize = 12;
 /// Maximum slowdown of an undisturbed machine, as a ratio of times. A lower value would also detect
 /// changes of the processor frequency. These last longer than a round and affect all backends
 /// equally.
-const DISTURBED: f64 = 1.3;
+pub(crate) const DISTURBED: f64 = 1.3;
 /// The quantile of all reference times that counts as the undisturbed time.
 const UNDISTURBED: f64 = 0.05;
 /// Maximum wait for an undisturbed moment before a sample, in nanoseconds.

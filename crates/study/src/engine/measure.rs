@@ -21,6 +21,7 @@ use rand::seq::SliceRandom;
 
 use crate::engine::disturbance::{DisturbanceDetector, Verdict, undisturbed};
 use crate::engine::effort::Effort;
+use crate::engine::ranking::FEWEST_OF_A_WINNER;
 use crate::engine::statistics::Median;
 use crate::engine::trial::Trial;
 use crate::results::rows::RefusalKind;
@@ -33,6 +34,8 @@ use sixfold_workload::{
 
 /// Maximum number of rounds.
 const MAX_ROUNDS: u32 = 200;
+/// The first rounds, in which also slow entries take part, may cost this part of the time left.
+const FULL_ROUNDS_SHARE: f64 = 0.75;
 /// Part of the budget for the samples on fresh pages.
 const FIRST_TIMES_SHARE: f64 = 0.1;
 /// Maximum number of samples on fresh pages.
@@ -155,6 +158,12 @@ impl Entry {
     fn has_first_time(&self) -> bool {
         let measured = !self.samples.is_empty() && self.job.sample.is_none();
         measured && self.job.task.allocates()
+    }
+
+    /// Returns whether the time was measured or estimated. Otherwise the task was refused, or the
+    /// measurement was stopped before.
+    pub(crate) fn has_time(&self) -> bool {
+        self.estimate.is_some() || !self.times().is_empty()
     }
 
     /// Returns the samples that count. If there are no samples, returns the warm-up run.
@@ -296,9 +305,11 @@ impl Measurement<'_, '_, '_> {
         // First estimate: building and touching a structure takes 1 ns per byte.
         let mut rebuild_ns: f64 = self.subjects.iter().map(|s| s.bytes() as f64).sum();
         let mut rebuilding_ns = 0.0;
+        let full_rounds = full_rounds(entries, deadline - self.trial.clock().now().wall_ns);
         for round in 0..rounds {
             self.trial.memory.check_free_memory();
-            let costs = entries.iter().filter(|e| takes_part(e, round));
+            let takes_part = |entry: &Entry| takes_part(entry, round, full_rounds);
+            let costs = entries.iter().filter(|e| takes_part(e));
             let cost: f64 = costs.map(|e| e.cost_ns).sum();
             let now = self.trial.clock().now().wall_ns;
             let over = now >= deadline || (round > 0 && now + cost > deadline);
@@ -323,7 +334,7 @@ impl Measurement<'_, '_, '_> {
                 let repeat_next = group.iter().any(|&entry| entries[entry].repeat_next);
                 for &entry in &*group {
                     let entry = &mut entries[entry];
-                    let wanted = takes_part(entry, round) || (repeat_next && can_take_part(entry));
+                    let wanted = takes_part(entry) || (repeat_next && can_take_part(entry));
                     if !wanted {
                         continue;
                     }
@@ -449,8 +460,25 @@ impl Measurement<'_, '_, '_> {
     }
 }
 
-fn takes_part(entry: &Entry, round: u32) -> bool {
-    can_take_part(entry) && round.is_multiple_of(entry.every.max(entry.least_every))
+/// Returns whether an entry takes part in a round. In the first `full_rounds`, also slow entries do.
+fn takes_part(entry: &Entry, round: u32, full_rounds: u32) -> bool {
+    let every = match round < full_rounds {
+        true => entry.least_every,
+        false => entry.every.max(entry.least_every),
+    };
+    can_take_part(entry) && round.is_multiple_of(every)
+}
+
+/// Returns the number of rounds in which all entries take part: as many as a backend needs to be the
+/// fastest, if there is time.
+fn full_rounds(entries: &[Entry], left_ns: f64) -> u32 {
+    let costs = entries.iter().filter(|entry| can_take_part(entry));
+    let cost: f64 = costs.map(|entry| entry.cost_ns).sum();
+    let rounds = FEWEST_OF_A_WINNER as u32;
+    match cost * f64::from(rounds) <= FULL_ROUNDS_SHARE * left_ns {
+        true => rounds,
+        false => 0,
+    }
 }
 
 fn can_take_part(entry: &Entry) -> bool {

@@ -7,93 +7,92 @@ use sixfold_workload::Time;
 /// Maximum ratio that always counts as a tie.
 pub(crate) const NO_DIFFERENCE: f64 = 1.02;
 
-/// Minimum ratio of a clear difference if there are too few samples for an interval.
+/// Minimum ratio of a clear difference if there are too few samples.
 pub(crate) const CLEAR_DIFFERENCE: f64 = 2.0;
+/// Minimum number of samples of a backend that can be fastest, or tied with the fastest.
+pub const FEWEST_OF_A_WINNER: usize = 4;
 
-/// The comparison of one backend with the fastest backend.
+/// The time of one backend, and its comparison with the fastest backend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rank {
-    /// The median ratio to the fastest backend, over the rounds.
+    /// The time, corrected for the drift of the machine.
+    pub(crate) time: Median,
+    /// The time divided by the time of the fastest backend.
     pub(crate) ratio: Median,
-    pub(crate) standing: Standing,
+    /// `None` if there are too few samples.
+    pub(crate) standing: Option<Standing>,
 }
 
-/// Ranks the backends of one operation by their samples. Each sample has the number of its round. A
-/// backend without samples has the rank `None`.
+/// Ranks the backends of one operation. `samples` are the samples of each backend with the numbers
+/// of their rounds, and `times` the [corrected times](crate::engine::corrected). A backend without
+/// a time has the rank `None`.
 ///
-/// The fastest backend has the smallest median, unless another backend is faster in most of the
-/// rounds. Its ratio is 1, and no ratio is smaller. Another backend is tied with the fastest in
-/// three cases:
+/// The fastest backend has the smallest corrected time. Its ratio is 1. Another backend is tied with
+/// the fastest if the ratio is at most `noise`, or if the 95 % interval of the ratio includes 1.
 ///
-/// - The 95 % interval of the ratio includes 1.
-/// - The ratio is at most `noise`.
-/// - There are fewer than three samples, so there is no interval, and the ratio is below 2.
-pub(crate) fn rank(backends: &[Vec<(u32, Time)>], noise: f64) -> Vec<Option<Rank>> {
-    let measured = backends
-        .iter()
-        .filter(|samples| !samples.is_empty())
-        .count();
-    let Some(best) = fastest(backends) else {
-        return vec![None; backends.len()];
+/// If one of the two has fewer than [`FEWEST_OF_A_WINNER`] samples, the other backend is slower if
+/// its ratio is at least [`CLEAR_DIFFERENCE`]; otherwise its standing is unknown, and the fastest
+/// backend is not known to be the best.
+pub(crate) fn rank(
+    samples: &[Vec<(u32, Time)>],
+    times: &[Option<f64>],
+    noise: f64,
+) -> Vec<Option<Rank>> {
+    let measured = || (0..times.len()).filter_map(|b| Some((b, times[b]?)));
+    let Some((best, best_ns)) = measured().min_by(|(_, a), (_, b)| a.total_cmp(b)) else {
+        return vec![None; times.len()];
     };
-    let mut ranks: Vec<Option<Rank>> = backends
+    let enough = |samples: &[(u32, Time)]| samples.len() >= FEWEST_OF_A_WINNER;
+    let mut ranks: Vec<Option<Rank>> = samples
         .iter()
-        .map(|samples| {
-            let mut ratio = ratio(samples, &backends[best])?;
-            ratio.value = ratio.value.max(1.0);
-            let tied = match ratio.interval {
-                _ if ratio.value <= noise => true,
-                Some([low, _]) => low <= 1.0,
-                None => ratio.value < CLEAR_DIFFERENCE,
+        .zip(times)
+        .map(|(own, &ns)| {
+            let ratio = quotient([own, &samples[best]], [ns?, best_ns])?;
+            let includes_1 = ratio.interval.is_some_and(|[low, _]| low <= 1.0);
+            let standing = match enough(own) && enough(&samples[best]) {
+                true if ratio.value <= noise || includes_1 => Some(Standing::Tied),
+                true => Some(Standing::Slower),
+                false if ratio.value >= CLEAR_DIFFERENCE => Some(Standing::Slower),
+                false => None,
             };
-            let standing = if tied {
-                Standing::Tied
-            } else {
-                Standing::Slower
-            };
-            Some(Rank { ratio, standing })
+            Some(Rank {
+                time: time(own, ns?)?,
+                ratio,
+                standing,
+            })
         })
         .collect();
-    let ties = ranks
-        .iter()
-        .flatten()
-        .filter(|p| p.standing == Standing::Tied)
-        .count();
+    let others = || {
+        (0..ranks.len())
+            .filter(|&b| b != best)
+            .filter_map(|b| ranks[b])
+    };
+    let has = |standing| others().any(|rank| rank.standing == standing);
+    let standing = match () {
+        () if others().next().is_none() => Some(Standing::Alone),
+        () if has(Some(Standing::Tied)) => Some(Standing::Tied),
+        () if has(None) || !enough(&samples[best]) => None,
+        () => Some(Standing::Best),
+    };
     if let Some(rank) = &mut ranks[best] {
-        rank.standing = match (measured, ties) {
-            (1, _) => Standing::Alone,
-            (_, 1) => Standing::Best,
-            _ => Standing::Tied,
-        };
+        rank.standing = standing;
     }
     ranks
 }
 
-/// Returns the index of the fastest backend; `None` if none has samples.
-///
-/// The search begins with the backend with the smallest median. It goes on to a backend that is
-/// faster in most of the rounds that have samples of both. The speed of the machine may change
-/// between rounds. This affects the medians over all rounds, but hardly the ratios within rounds.
-fn fastest(backends: &[Vec<(u32, Time)>]) -> Option<usize> {
-    let median = |samples: &[(u32, Time)]| {
-        let median = Median::from_samples(samples.iter().map(|(_, time)| time.ns()));
-        median.map_or(f64::INFINITY, |median| median.value)
-    };
-    let sampled = || (0..backends.len()).filter(|&b| !backends[b].is_empty());
-    let mut best =
-        sampled().min_by(|&a, &b| median(&backends[a]).total_cmp(&median(&backends[b])))?;
-    // The number of steps is limited, because "faster in most rounds" can go round in a circle.
-    for _ in 0..backends.len() {
-        let faster = sampled().filter_map(|b| {
-            let ratio = ratio(&backends[b], &backends[best])?.value;
-            (ratio < 1.0).then_some((b, ratio))
-        });
-        match faster.min_by(|(_, a), (_, b)| a.total_cmp(b)) {
-            Some((b, _)) => best = b,
-            None => break,
-        }
-    }
-    Some(best)
+/// Returns the corrected time `ns` with the interval of its samples.
+pub(crate) fn time(samples: &[(u32, Time)], ns: f64) -> Option<Median> {
+    let raw = Median::from_samples(samples.iter().map(|(_, time)| time.ns()))?;
+    Some(raw.moved_to(ns))
+}
+
+/// Returns the quotient of two corrected times, with the interval of the ratios within rounds.
+pub(crate) fn quotient([a, b]: [&[(u32, Time)]; 2], [ns, other_ns]: [f64; 2]) -> Option<Median> {
+    let within_rounds = ratio(a, b)?;
+    let quotient = ns / other_ns;
+    // The quotient does not exist if the clock is too coarse.
+    let value = if quotient.is_finite() { quotient } else { 1.0 };
+    Some(within_rounds.moved_to(value))
 }
 
 /// Returns the median ratio over the rounds that have samples of both. If there are no such rounds,
@@ -125,6 +124,7 @@ pub(crate) fn ratio(samples: &[(u32, Time)], best: &[(u32, Time)]) -> Option<Med
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::corrected::corrected_times;
 
     fn samples(times: &[f64]) -> Vec<(u32, Time)> {
         let time = |&ns: &f64| Time {
@@ -135,9 +135,13 @@ mod tests {
         (0..).zip(times.iter().map(time)).collect()
     }
 
+    fn ranked(backends: &[Vec<(u32, Time)>], noise: f64) -> Vec<Option<Rank>> {
+        rank(backends, &corrected_times(backends), noise)
+    }
+
     fn standings(backends: &[Vec<(u32, Time)>]) -> Vec<Option<Standing>> {
-        let ranks = rank(backends, NO_DIFFERENCE).into_iter();
-        ranks.map(|rank| rank.map(|p| p.standing)).collect()
+        let ranks = ranked(backends, NO_DIFFERENCE).into_iter();
+        ranks.map(|rank| rank.and_then(|p| p.standing)).collect()
     }
 
     #[test]
@@ -147,7 +151,7 @@ mod tests {
         let slow = samples(&drift.map(|t| t * 1.1));
         let expected = [Some(Standing::Slower), Some(Standing::Best), None];
         assert_eq!(standings(&[slow.clone(), fast.clone(), vec![]]), expected);
-        let ratio = rank(&[fast, slow], NO_DIFFERENCE)[1];
+        let ratio = ranked(&[fast, slow], NO_DIFFERENCE)[1];
         let ratio = ratio.expect("measured").ratio;
         let [low, high] = ratio.interval.expect("seven rounds");
         assert!((ratio.value - 1.1).abs() < 1e-9 && low > 1.065 && high < 1.135);
@@ -172,7 +176,7 @@ mod tests {
     fn ratios_up_to_the_noise_are_ties() {
         let drift = [1.0, 3.0, 2.0, 1.5, 5.0, 2.5, 1.1];
         let both = [samples(&drift), samples(&drift.map(|t| t * 1.1))];
-        let tied = |noise| rank(&both, noise)[1].map(|rank| rank.standing);
+        let tied = |noise| ranked(&both, noise)[1].and_then(|rank| rank.standing);
         assert_eq!(tied(1.05), Some(Standing::Slower));
         assert_eq!(tied(1.11), Some(Standing::Tied));
     }
@@ -182,7 +186,7 @@ mod tests {
         // `b` is 5 % faster in each round that both have, but missed the fast rounds.
         let a = samples(&[1.0, 1.0, 1.0, 1.0, 3.0, 3.0, 3.0]);
         let b: Vec<(u32, Time)> = samples(&[0.95, 0.95, 0.95, 0.95, 2.85, 2.85, 2.85]).split_off(3);
-        let ranks = rank(&[a, b], NO_DIFFERENCE);
+        let ranks = ranked(&[a, b], NO_DIFFERENCE);
         let value = |i: usize| {
             ranks[i]
                 .map(|rank: Rank| rank.ratio.value)
@@ -192,18 +196,49 @@ mod tests {
         assert_eq!(value(1), 1.0);
         // Each of three is faster than the next in two of three rounds.
         let circle = [[1.0, 2.0, 3.0], [2.0, 3.0, 1.0], [3.0, 1.0, 2.0]];
-        for rank in rank(&circle.map(|times| samples(&times)), NO_DIFFERENCE) {
+        for rank in ranked(&circle.map(|times| samples(&times)), NO_DIFFERENCE) {
             assert!(rank.expect("measured").ratio.value >= 1.0);
         }
     }
 
     #[test]
-    fn too_few_samples_are_ties_below_a_ratio_of_two() {
-        let ties = standings(&[samples(&[1.0, 1.0]), samples(&[1.5, 1.5])]);
-        assert_eq!(ties, [Some(Standing::Tied); 2]);
-        let clear = standings(&[samples(&[1.0, 1.0]), samples(&[9.0, 9.0])]);
-        assert_eq!(clear, [Some(Standing::Best), Some(Standing::Slower)]);
-        assert_eq!(standings(&[samples(&[1.0])]), [Some(Standing::Alone)]);
+    fn quotients_of_times_are_the_ratios_and_drift_does_not_change_them() {
+        let drift = [1.0, 3.0, 2.0, 1.5, 5.0, 2.5, 1.1, 1.0, 4.0];
+        let factors = [3.0, 1.0, 2.0, 1.25];
+        // The backends take part in every round, or in every second or third round.
+        let every = [2, 1, 3, 1];
+        let backends: Vec<Vec<(u32, Time)>> = (factors.iter().zip(every))
+            .map(|(factor, every)| {
+                let times = samples(&drift.map(|slowdown| factor * slowdown));
+                times.into_iter().step_by(every).collect()
+            })
+            .collect();
+        for (rank, factor) in ranked(&backends, NO_DIFFERENCE).into_iter().zip(factors) {
+            let rank = rank.expect("measured");
+            assert!((rank.ratio.value / factor - 1.0).abs() < 1e-9, "{rank:?}");
+            // The median slowdown is 2.
+            assert!(
+                (rank.time.value / (2.0 * factor) - 1.0).abs() < 1e-9,
+                "{rank:?}"
+            );
+            let [low, high] = rank.ratio.interval.expect("three rounds or more");
+            assert!(low <= rank.ratio.value && rank.ratio.value <= high);
+        }
+    }
+
+    #[test]
+    fn fewer_than_four_samples_have_no_winner() {
+        let [one, more, clear] = [1.0, 1.5, 2.0].map(|ns| samples(&[ns; 3]));
+        let slower = Some(Standing::Slower);
+        assert_eq!(standings(&[one.clone(), more.clone()]), [None; 2]);
+        assert_eq!(standings(&[one.clone(), clear.clone()]), [None, slower]);
+        let enough = |ns: f64| samples(&[ns; 4]);
+        assert_eq!(standings(&[enough(1.0), more.clone()]), [None; 2]);
+        let found = standings(&[enough(1.0), clear, enough(1.5)]);
+        assert_eq!(found, [Some(Standing::Best), slower, slower]);
+        let found = standings(&[enough(1.0), more, enough(1.0)]);
+        assert_eq!(found, [Some(Standing::Tied), None, Some(Standing::Tied)]);
+        assert_eq!(standings(&[one]), [Some(Standing::Alone)]);
         assert_eq!(standings(&[vec![], vec![]]), [None, None]);
     }
 }

@@ -82,6 +82,17 @@ impl Median {
         })
     }
 
+    /// Returns this median with `value`, and with an interval of the same relative width.
+    pub(crate) fn moved_to(self, value: f64) -> Self {
+        let factor = value / self.value;
+        let interval = self.interval.map(|ends| ends.map(|end| end * factor));
+        Self {
+            value,
+            interval: interval.filter(|_| factor.is_finite()),
+            ..self
+        }
+    }
+
     fn with_drift(samples: impl IntoIterator<Item = f64>, drift: f64) -> Option<Self> {
         let samples: Vec<f64> = samples.into_iter().collect();
         let sorted = sorted(samples.iter().copied())?;
@@ -137,6 +148,11 @@ fn without_outliers(samples: &[f64]) -> Option<Vec<f64>> {
     };
     let nearer = |sample: &f64| sample.clamp(middle - farthest, middle + farthest);
     Some(samples.iter().map(nearer).collect())
+}
+
+/// Returns the median of `samples`; `None` without samples.
+pub(crate) fn median(samples: Vec<f64>) -> Option<f64> {
+    Some(median_of_sorted(&sorted(samples.into_iter())?))
 }
 
 /// Returns the samples in ascending order. Returns `None` if there are no samples.

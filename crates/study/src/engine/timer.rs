@@ -19,9 +19,10 @@ pub struct Timer {
     /// time.
     pub overhead_ns: f64,
     /// The uncertainty of `overhead_ns`, in nanoseconds. The time between two readings without work
-    /// is measured many times. The uncertainty is the larger of two differences: between
-    /// `overhead_ns` and the median of the measured times, and between the 95 % quantile and the
-    /// median of the measured times.
+    /// is measured many times. The uncertainty is the largest of three differences:
+    /// between `overhead_ns` and the median of the measured times, between the 95 % quantile and the
+    /// median, and between `resolution_ns` and the median, which is large if most readings see no
+    /// step.
     pub uncertainty_ns: f64,
     /// `uncertainty_ns` divided by `shortest_ns`; `None` if nothing was measured.
     pub largest_share: Option<f64>,
@@ -44,13 +45,18 @@ impl Timer {
         times.sort_by(f64::total_cmp);
         let (usual, longest) = (times[TRIALS / 2], times[TRIALS * 95 / 100]);
         let overhead_ns = clock.overhead().ns();
+        let mut steps = times.iter().copied().filter(|&ns| ns > 0.0);
+        let resolution_ns = steps.next().unwrap_or(0.0);
         // The overhead may be as in this empty loop, or a reading may take longer.
-        let uncertainty_ns = (overhead_ns - usual).abs().max(longest - usual);
-        let steps = times.iter().copied().filter(|&ns| ns > 0.0);
+        let differences = [
+            (overhead_ns - usual).abs(),
+            longest - usual,
+            resolution_ns - usual,
+        ];
         Self {
-            resolution_ns: steps.min_by(f64::total_cmp).unwrap_or(0.0),
+            resolution_ns,
             overhead_ns,
-            uncertainty_ns,
+            uncertainty_ns: differences.into_iter().fold(0.0, f64::max),
             largest_share: None,
             shortest_ns: None,
         }
@@ -67,5 +73,46 @@ impl Timer {
             shortest_ns,
             ..self
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicU32, Ordering};
+
+    use sixfold_workload::Time;
+
+    use super::*;
+
+    /// A clock that takes 600 ns for a reading, and shows only whole ticks.
+    struct Ticks {
+        readings: AtomicU32,
+        tick_ns: f64,
+    }
+
+    impl Clock for Ticks {
+        fn now(&self) -> Time {
+            let ns = 600.0 * f64::from(self.readings.fetch_add(1, Ordering::Relaxed));
+            Time::from_wall_ns((ns / self.tick_ns).floor() * self.tick_ns)
+        }
+
+        fn overhead(&self) -> Time {
+            Time::from_wall_ns(600.0)
+        }
+    }
+
+    #[test]
+    fn a_slow_clock_is_exact_but_a_coarse_clock_is_not() {
+        let timer = |tick_ns| {
+            let readings = AtomicU32::new(0);
+            Timer::measure(&Ticks { readings, tick_ns }).with_shortest(Some(59_400.0))
+        };
+        let slow = timer(1.0);
+        assert_eq!((slow.resolution_ns, slow.overhead_ns), (600.0, 600.0));
+        assert_eq!((slow.uncertainty_ns, slow.largest_share), (0.0, Some(0.0)));
+        let coarse = timer(59_400.0);
+        assert_eq!(coarse.resolution_ns, 59_400.0);
+        assert_eq!(coarse.uncertainty_ns, 59_400.0);
+        assert_eq!(coarse.largest_share, Some(1.0));
     }
 }

@@ -1,14 +1,15 @@
 //! Warnings about possible faults of the measurement, each with a remedy.
 
-use crate::engine::statistics::{MIN_SAMPLES, Median};
+use crate::engine::disturbance::DISTURBED;
+use crate::engine::statistics::{MIN_SAMPLES, median};
 use crate::engine::timer::Timer;
 use crate::results::environment::Environment;
-use crate::results::rows::{Control, ResultRow};
+use crate::results::rows::{Control, ResultRow, Samples};
 use crate::results::run::{Run, RunSettings};
 use sixfold_workload::pages::Policy;
 
-/// Maximum load of an idle machine at the start, as a part of the cores.
-const BUSY: f64 = 0.5;
+/// Maximum share of disturbed samples on a quiet machine.
+const FEW_DISTURBED: f64 = 0.1;
 /// Maximum ratio of wall time to processor time on an unshared processor.
 const INTERRUPTED: f64 = 1.05;
 /// Maximum half-width of a narrow interval, as a part of the median.
@@ -23,6 +24,7 @@ pub(crate) fn warnings(
     run: &Run,
     timer: &Timer,
     results: &[&ResultRow],
+    samples: &[&Samples],
     control: Option<&Control>,
 ) -> Vec<String> {
     let environment = &run.environment;
@@ -30,8 +32,8 @@ pub(crate) fn warnings(
         nothing_measured(results),
         pages_not_kept(environment),
         page_faults(environment, results),
-        busy(run),
-        interrupted(environment, results),
+        disturbed(samples),
+        interrupted(samples),
         noisy(&run.settings, control, results),
         coarse(timer),
         wall_time_only(environment),
@@ -42,11 +44,13 @@ pub(crate) fn warnings(
     all.into_iter().flatten().collect()
 }
 
-pub(crate) fn machine_warnings(run: &Run) -> Vec<String> {
+/// Returns the warnings that do not depend on the results.
+pub(crate) fn machine_warnings(run: &Run, samples: &[&Samples]) -> Vec<String> {
     let environment = &run.environment;
     let all = [
         pages_not_kept(environment),
-        busy(run),
+        disturbed(samples),
+        interrupted(samples),
         wall_time_only(environment),
         powersave(environment),
     ];
@@ -102,29 +106,27 @@ fn page_faults(environment: &Environment, results: &[&ResultRow]) -> Option<Stri
     })
 }
 
-fn busy(run: &Run) -> Option<String> {
-    let (load, cores) = run.start.load_average.zip(run.environment.cores)?;
-    (load > BUSY * cores as f64).then(|| {
-        let cores = if cores == 1 {
-            "1 core".into()
-        } else {
-            format!("{cores} cores")
-        };
+/// Warns if the machine was slower than usual in many of the samples.
+fn disturbed(samples: &[&Samples]) -> Option<String> {
+    let slowdowns = || samples.iter().flat_map(|samples| &samples.slowdowns);
+    let slowed = slowdowns().filter(|&&slowdown| slowdown > DISTURBED);
+    let share = slowed.count() as f64 / slowdowns().count().max(1) as f64;
+    (share > FEW_DISTURBED).then(|| {
         format!(
-            "The machine was busy at the start (load {load:.1} on {cores}). The ratios in this \
-             result are more reliable than the times. Stop other programs and measure again."
+            "Other programs disturbed {:.0} % of the samples. The ratios in this result are more \
+             reliable than the times. Stop other programs and measure again.",
+            100.0 * share
         )
     })
 }
 
-fn interrupted(environment: &Environment, results: &[&ResultRow]) -> Option<String> {
-    if environment.clock == "wall" {
-        return None; // there is no processor time to compare with
-    }
-    let ratios = results
-        .iter()
-        .filter_map(|row| Some(row.wall_median_ns? / row.median_ns?));
-    let ratio = Median::from_samples(ratios)?.value;
+/// Warns if the wall time was much longer than the processor time in most of the samples.
+fn interrupted(samples: &[&Samples]) -> Option<String> {
+    let ratios = samples.iter().flat_map(|samples| {
+        let cpu = samples.cpu_ns.iter().flatten();
+        cpu.zip(&samples.wall_ns).map(|(cpu, wall)| wall / cpu)
+    });
+    let ratio = median(ratios.collect())?;
     (ratio > INTERRUPTED).then(|| {
         format!(
             "Other programs used the processor for {:.0} % of the time and disturbed the caches. \
@@ -150,7 +152,7 @@ fn noisy(
 }
 
 fn coarse(timer: &Timer) -> Option<String> {
-    let share = timer.resolution_ns.max(timer.uncertainty_ns) / timer.shortest_ns?;
+    let share = timer.largest_share?;
     (share > COARSE).then(|| {
         format!(
             "The clock is too coarse: its error is up to {:.1} % of the shortest sample. Study a larger mesh.",
@@ -250,7 +252,7 @@ mod tests {
             samples: 2,
             ..fine()
         };
-        let advice = |run: &Run| warnings(run, &TIMER, &[&few], None).join(" ");
+        let advice = |run: &Run| warnings(run, &TIMER, &[&few], &[], None).join(" ");
         assert!(advice(&run).contains("Use a longer --budget or fewer --operations."));
         (run.settings.budget_s, run.settings.rounds) = (None, std::num::NonZeroU32::new(2));
         let advice = advice(&run);
@@ -263,6 +265,21 @@ mod tests {
         let mut run = quiet();
         change(&mut run.environment);
         run
+    }
+
+    /// Returns six samples without disturbances.
+    fn undisturbed() -> Samples {
+        Samples {
+            backend: "half-edge".into(),
+            operation: "build".into(),
+            control: false,
+            rounds: (0..6).collect(),
+            cpu_ns: Some(vec![100.0; 6]),
+            wall_ns: vec![104.0; 6],
+            faults: None,
+            slowdowns: vec![1.2; 6],
+            ..Samples::default()
+        }
     }
 
     fn fine() -> ResultRow {
@@ -285,7 +302,7 @@ mod tests {
 
     #[test]
     fn a_good_run_has_no_warnings() {
-        let messages = warnings(&quiet(), &TIMER, &[&fine()], None);
+        let messages = warnings(&quiet(), &TIMER, &[&fine()], &[&undisturbed()], None);
         assert_eq!(messages, [""; 0]);
     }
 
@@ -308,14 +325,12 @@ mod tests {
             shortest_ns: Some(2000.0),
             ..TIMER
         };
-        let mut busy = quiet();
-        busy.start.load_average = Some(1.5);
         let wall = with(|environment| environment.clock = "wall".into());
         let powersave = with(|environment| environment.governor = Some("powersave".into()));
-        let shared = ResultRow {
-            wall_median_ns: Some(125.0),
-            ..fine()
-        };
+        let mut busy = undisturbed();
+        busy.slowdowns = [1.0, 1.4, 1.3, 1.0, 1.0, 1.0].into();
+        let mut shared = undisturbed();
+        shared.wall_ns = [100.0, 125.0, 125.0, 125.0, 500.0, 100.0].into();
         let wide = ResultRow {
             ci_high_ns: Some(134.0),
             ..fine()
@@ -333,47 +348,47 @@ mod tests {
         };
         let cases = [
             (
-                warnings(&busy, &TIMER, &[&fine()], None),
-                "load 1.5 on 2 cores",
+                warnings(&good, &TIMER, &[&fine()], &[&busy], None),
+                "disturbed 17 % of the samples",
                 "Stop other programs",
             ),
             (
-                warnings(&wall, &TIMER, &[&fine()], None),
+                warnings(&wall, &TIMER, &[&fine()], &[], None),
                 "wall time",
                 "quiet",
             ),
             (
-                warnings(&powersave, &TIMER, &[&fine()], None),
+                warnings(&powersave, &TIMER, &[&fine()], &[], None),
                 "powersave",
                 "cpupower",
             ),
             (
-                warnings(&good, &coarse, &[&fine()], None),
+                warnings(&good, &coarse, &[&fine()], &[], None),
                 "5.0 % of the shortest",
                 "larger mesh",
             ),
             (
-                warnings(&good, &TIMER, &[&fine()], Some(&control)),
+                warnings(&good, &TIMER, &[&fine()], &[], Some(&control)),
                 "by 20 %",
                 "--budget",
             ),
             (
-                warnings(&good, &TIMER, &[&shared], None),
+                warnings(&good, &TIMER, &[&fine()], &[&shared], None),
                 "for 20 % of the time",
                 "pin",
             ),
             (
-                warnings(&good, &TIMER, &[&fine(), &wide], None),
+                warnings(&good, &TIMER, &[&fine(), &wide], &[], None),
                 "1 of 2 intervals",
                 "--budget",
             ),
             (
-                warnings(&good, &TIMER, &[&fine(), &few], None),
+                warnings(&good, &TIMER, &[&fine(), &few], &[], None),
                 "1 of 2 times",
                 "--budget",
             ),
             (
-                warnings(&good, &TIMER, &[&once], None),
+                warnings(&good, &TIMER, &[&once], &[], None),
                 "each time is from a single run",
                 "--operations",
             ),

@@ -29,6 +29,7 @@ pub use shapes::{SCALABLE_SHAPES, ScalableShape};
 
 use crate::engine::agreement::compare_checksums;
 use crate::engine::control::noise;
+use crate::engine::corrected::corrected_entries;
 use crate::engine::effort::Effort;
 use crate::engine::heap::Memory;
 use crate::engine::machine::Machine;
@@ -39,7 +40,7 @@ use crate::engine::warnings::warnings;
 use crate::inspect::StudyMesh;
 use crate::labs::study::{StudyError, is_skewed, prepare, refusals, results, scans};
 use crate::refusal::Candidate;
-use crate::results::figure::{Figure, FigureRow, samples_of};
+use crate::results::figure::{Figure, figures_of};
 use crate::results::finding::{Common, LabFinding, Meshes};
 use crate::results::read::ReadError;
 use crate::results::rows::{
@@ -150,30 +151,26 @@ impl LabFinding for GrowthReport {
     }
 
     fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
-        let figures = self.sizes.iter().enumerate().flat_map(|(i, size)| {
-            let figure = |row: FigureRow<'s>| {
+        let of_size = |(i, size): (usize, &'s SizeReport)| {
+            let bytes = |name: &str| {
                 let mut bytes = size.backend_bytes.iter();
-                let bytes = bytes.find(|bytes| bytes.backend == row.backend);
-                Figure {
-                    mesh: self.meshes.get(i),
-                    elements_of_mesh: [size.vertices, size.edges, size.faces],
-                    case: format!("{}, {}, {} faces", self.shape, self.order, size.faces),
-                    backend_bytes: bytes.map(|bytes| bytes.bytes),
-                    row,
-                    samples: None,
-                    noise: 1.0,
-                }
+                bytes.find(|bytes| bytes.backend == name).map(|b| b.bytes)
             };
-            let timed = size.results.iter().map(|row| Figure {
-                samples: samples_of(&size.samples, row.operation.name(), &row.backend),
-                noise: noise(size.control.as_ref(), row.operation),
-                ..figure(FigureRow::of_result(row))
-            });
-            let refused = size.refusals.iter();
-            let refused = refused.map(|refusal| figure(FigureRow::of_refusal(refusal)));
-            timed.chain(refused).collect::<Vec<_>>()
-        });
-        figures.collect()
+            let figures = figures_of(
+                self.meshes.get(i),
+                &size.results,
+                &size.refusals,
+                &size.samples,
+                bytes,
+                |operation| noise(size.control.as_ref(), operation),
+            );
+            figures.into_iter().map(|figure| Figure {
+                elements_of_mesh: [size.vertices, size.edges, size.faces],
+                case: format!("{}, {}, {} faces", self.shape, self.order, size.faces),
+                ..figure
+            })
+        };
+        self.sizes.iter().enumerate().flat_map(of_size).collect()
     }
 
     fn check(&self) -> Result<(), ReadError> {
@@ -303,7 +300,8 @@ pub(crate) fn growth_on(
     let rows: Vec<&ResultRow> = sizes.iter().flat_map(|size| &size.results).collect();
     let noisiest = sizes.iter().filter_map(|size| size.control.as_ref());
     let noisiest = noisiest.max_by(|a, b| a.typical.total_cmp(&b.typical));
-    let warnings = warnings(&run, &timer, &rows, noisiest);
+    let samples: Vec<&Samples> = sizes.iter().flat_map(|size| &size.samples).collect();
+    let warnings = warnings(&run, &timer, &rows, &samples, noisiest);
     Ok(GrowthReport {
         run,
         meshes,
@@ -416,7 +414,14 @@ impl Sweep<'_> {
             edges: counts.edges,
             faces: counts.faces,
             backend_bytes,
-            results: results(&entries, agreements, subjects, mesh, control.as_ref()),
+            results: results(
+                &entries,
+                &corrected_entries(&entries),
+                &agreements,
+                subjects,
+                mesh,
+                control.as_ref(),
+            ),
             samples,
             refusals: refusals(&entries, subjects),
             control,

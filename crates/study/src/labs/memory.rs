@@ -274,7 +274,7 @@ impl LabFinding for Audit {
                 ..row(STRUCTURE, status)
             };
             let rows = std::iter::once(structure).chain(audited.operations.iter().map(operation));
-            rows.map(|row| Figure::new(&self.mesh, audited.counted_bytes, row))
+            rows.map(|row| Figure::new(Some(&self.mesh), audited.counted_bytes, row))
                 .collect::<Vec<_>>()
         };
         self.backends.iter().flat_map(of_backend).collect()

@@ -17,28 +17,31 @@ use serde::{Deserialize, Serialize};
 use sixfold::UnknownName;
 use sixfold::spatial::SpatialError;
 use sixfold_workload::pages::Policy;
-use sixfold_workload::{ElementSample, MachineClock, Task, Time, TimedBackend};
+use sixfold_workload::{ElementSample, MachineClock, Task, TimedBackend};
 
 pub use cheapest::Cheapest;
 pub use queries::QueryPoints;
 pub use tasks::SpatialTask;
 
 use crate::engine::agreement::compare_checksums;
+use crate::engine::corrected::corrected_entries;
 use crate::engine::effort::{Budget, Effort};
 use crate::engine::heap::CacheState;
 use crate::engine::machine::Machine;
 use crate::engine::measure::{Entry, Progress};
-use crate::engine::ranking::{NO_DIFFERENCE, rank, ratio};
-use crate::engine::statistics::Median;
+use crate::engine::ranking::{NO_DIFFERENCE, ratio};
 use crate::engine::timer::Timer;
 use crate::engine::trial::{Columns, Measured, Trial};
 use crate::engine::warnings::machine_warnings;
 use crate::inspect::StudyMesh;
+use crate::labs::rows::Group;
 use crate::labs::study::StudyError;
-use crate::results::figure::{Figure, FigureRow, Status, samples_of};
+use crate::results::figure::{Figure, figures_of};
 use crate::results::finding::{Common, LabFinding, Meshes};
 use crate::results::read::ReadError;
-use crate::results::rows::{Agreement, MeshReport, Samples, Standing, check_samples};
+use crate::results::rows::{
+    Agreement, MeasuredTask, MeshReport, ResultRow, Samples, check_results, check_samples,
+};
 use crate::results::run::{Run, RunSettings};
 use cheapest::{Cost, cheapest};
 use index::{IndexKind, KINDS, LIST};
@@ -105,7 +108,7 @@ pub struct NeighboursReport {
     /// The indices and their sizes.
     pub backends: Vec<IndexReport>,
     /// The measured times, sorted by task, then by index.
-    pub results: Vec<NeighbourRow>,
+    pub results: Vec<ResultRow<SpatialTask>>,
     /// For each kind of query, which index takes the least time in total.
     pub cheapest: Vec<CheapestIndices>,
     /// The largest difference of two measurements of the same index, as a ratio of times. `None` if
@@ -132,47 +135,6 @@ pub struct IndexReport {
     pub bytes: usize,
 }
 
-/// The time of one task on one index.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct NeighbourRow {
-    /// The task, such as `nearest_vertex`.
-    pub operation: SpatialTask,
-    /// The name of the index, such as `bvh`.
-    pub backend: String,
-    /// The median time of one run on all elements, in nanoseconds.
-    pub median_ns: f64,
-    /// The smallest time of a sample, in nanoseconds.
-    pub min_ns: f64,
-    /// The lower end of the 95 % confidence interval of `median_ns`; `None` with fewer than three
-    /// samples.
-    pub ci_low_ns: Option<f64>,
-    /// The upper end of the 95 % confidence interval of `median_ns`.
-    pub ci_high_ns: Option<f64>,
-    /// The number of elements of one run: vertices, triangles, queries or rays.
-    pub elements: u64,
-    /// The unit of `elements`.
-    pub per: String,
-    /// `median_ns` divided by `elements`.
-    pub ns_per_element: f64,
-    /// The number of queries that were run. `None` if all queries were run, otherwise the time is
-    /// scaled to all queries.
-    pub sample_size: Option<usize>,
-    /// A number computed from all answers.
-    pub checksum: Option<f64>,
-    /// The comparison of the answers with the answers of another index.
-    pub agreement: Agreement,
-    /// The comparison of the time with the times of the other indices.
-    pub standing: Option<Standing>,
-    /// The time divided by the time of the fastest index.
-    pub ratio_to_best: Option<f64>,
-    /// The lower end of the 95 % confidence interval of `ratio_to_best`.
-    pub ratio_ci_low: Option<f64>,
-    /// The upper end of the 95 % confidence interval of `ratio_to_best`.
-    pub ratio_ci_high: Option<f64>,
-    /// The number of samples that count.
-    pub samples: usize,
-}
-
 /// The indices that take the least time for one kind of query, building included.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct CheapestIndices {
@@ -184,7 +146,7 @@ pub struct CheapestIndices {
 
 impl NeighboursReport {
     /// Iterates over the results of `task`.
-    pub fn rows(&self, task: SpatialTask) -> impl Iterator<Item = &NeighbourRow> {
+    pub fn rows(&self, task: SpatialTask) -> impl Iterator<Item = &ResultRow<SpatialTask>> {
         self.results.iter().filter(move |row| row.operation == task)
     }
 }
@@ -205,56 +167,37 @@ impl LabFinding for NeighboursReport {
     }
 
     fn mismatches(&self) -> usize {
-        let wrong = |row: &&NeighbourRow| row.agreement == Agreement::Mismatch;
+        let wrong = |row: &&ResultRow<SpatialTask>| row.agreement == Agreement::Mismatch;
         self.results.iter().filter(wrong).count()
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {
-        let figure = |row| {
-            let row: &NeighbourRow = row;
-            let name = row.operation.name();
+        let bytes = |name: &str| {
             let mut backends = self.backends.iter();
-            let backend = backends.find(|backend| backend.name == row.backend);
-            let bytes = backend.map(|backend| backend.bytes);
-            let status = match row.sample_size {
-                Some(_) => Status::Sampled,
-                None => Status::Measured,
-            };
-            let pair = |low: Option<f64>, high: Option<f64>| low.zip(high).map(<[f64; 2]>::from);
-            let figure_row = FigureRow {
-                ns: Some(row.median_ns),
-                min_ns: Some(row.min_ns),
-                interval_ns: pair(row.ci_low_ns, row.ci_high_ns),
-                elements: Some(row.elements),
-                unit: row.per.clone(),
-                ratio_to_best: row.ratio_to_best,
-                ratio_interval: pair(row.ratio_ci_low, row.ratio_ci_high),
-                standing: row.standing,
-                agreement: Some(row.agreement),
-                samples: row.samples,
-                checksum: row.checksum,
-                sample_size: row.sample_size,
-                ..FigureRow::new(name.into(), &row.backend, status)
-            };
-            Figure {
-                case: self.points.name().into(),
-                samples: samples_of(&self.samples, name, &row.backend),
-                noise: self.noise.unwrap_or(1.0),
-                ..Figure::new(&self.mesh, bytes, figure_row)
-            }
+            backends.find(|index| index.name == name).map(|i| i.bytes)
         };
-        self.results.iter().map(figure).collect()
+        let noise = self.noise.unwrap_or(1.0);
+        let (rows, samples) = (&self.results, &self.samples);
+        let mut figures = figures_of(Some(&self.mesh), rows, &[], samples, bytes, |_| noise);
+        for figure in &mut figures {
+            figure.case = self.points.name().into();
+        }
+        figures
     }
 
     fn check(&self) -> Result<(), ReadError> {
         check_samples(&self.samples)?;
-        let is_time = |row: &&NeighbourRow| row.median_ns.is_finite() && row.median_ns >= 0.0;
-        match self.results.iter().find(|row| !is_time(row)) {
-            None => Ok(()),
-            Some(row) => Err(ReadError::Malformed {
-                cause: format!("invalid time of {} on {}", row.operation, row.backend),
-            }),
-        }
+        check_results(&self.results)
+    }
+}
+
+impl MeasuredTask for SpatialTask {
+    fn name(self) -> &'static str {
+        self.name()
+    }
+
+    fn unit(self) -> &'static str {
+        self.unit()
     }
 }
 
@@ -365,22 +308,23 @@ pub(crate) fn neighbours_on(
     let control = columns.control;
     let subjects = &mut columns.subjects;
     let agreements = compare_checksums(&entries, subjects, polygons, clock, stop);
-    let noise = |task| difference(control?[0], &entries, &second, task);
-    let results = results(&entries, &agreements, subjects, noise);
+    let measured_noise = |task| difference(control?[0], &entries, &second, task);
+    let noise = |task| measured_noise(task).unwrap_or(1.0).max(NO_DIFFERENCE);
+    let results = results(&entries, &agreements, subjects, &noise);
     let run = run.with_memory(&memory);
     let mut report = NeighboursReport {
-        warnings: machine_warnings(&run),
+        warnings: machine_warnings(&run, &samples.iter().collect::<Vec<_>>()),
         run,
         mesh: study_mesh.report(),
         points: settings.points,
         queries: input.points.len(),
         radius: input.radius,
         backends,
-        cheapest: cheapest_indices(&results),
+        cheapest: cheapest_indices(&results, &noise),
         results,
         noise: SpatialTask::ALL
             .into_iter()
-            .filter_map(noise)
+            .filter_map(measured_noise)
             .reduce(f64::max),
         sentences: Vec::new(),
         samples,
@@ -431,63 +375,38 @@ fn difference(first: usize, entries: &[Entry], second: &[Entry], task: SpatialTa
     (ratio.is_finite() && ratio > 0.0).then(|| ratio.max(ratio.recip()))
 }
 
-/// Returns a row for each entry with a time. Indices with wrong answers are not ranked.
+/// Returns a row for each entry with a time. The entries of a task are adjacent.
 fn results(
     entries: &[Entry],
     agreements: &[Agreement],
     subjects: &[Box<dyn TimedBackend + '_>],
-    noise: impl Fn(SpatialTask) -> Option<f64>,
-) -> Vec<NeighbourRow> {
+    noise: &impl Fn(SpatialTask) -> f64,
+) -> Vec<ResultRow<SpatialTask>> {
+    let times = corrected_entries(entries);
     let mut rows = Vec::new();
-    let mut agreements = agreements.iter().copied();
+    let mut from = 0;
     let groups = entries.chunk_by(|a, b| a.job.task == b.job.task);
-    for (group, task) in groups.zip(SpatialTask::ALL) {
-        let agreements: Vec<Agreement> = agreements.by_ref().take(group.len()).collect();
-        let times: Vec<Vec<(u32, Time)>> = group.iter().map(Entry::times).collect();
-        let right = times.iter().zip(&agreements);
-        let right = right.map(|(times, agreement)| match agreement {
-            Agreement::Mismatch => Vec::new(),
-            _ => times.clone(),
-        });
-        let ranks = rank(
-            &right.collect::<Vec<_>>(),
-            noise(task).unwrap_or(1.0).max(NO_DIFFERENCE),
-        );
-        for (((entry, times), rank), agreement) in
-            group.iter().zip(&times).zip(ranks).zip(agreements)
-        {
-            let median = Median::from_samples(times.iter().map(|(_, time)| time.ns()));
-            // An entry has no times if the measurement was stopped before.
-            let (Some(median), Some(outcome)) = (median, entry.outcome) else {
-                continue;
-            };
-            let ratio = rank.and_then(|rank| rank.ratio.interval);
-            rows.push(NeighbourRow {
-                operation: task,
-                backend: subjects[entry.subject].name().to_owned(),
-                median_ns: median.value,
-                min_ns: median.least,
-                ci_low_ns: median.interval.map(|[low, _]| low),
-                ci_high_ns: median.interval.map(|[_, high]| high),
-                elements: outcome.elements,
-                per: task.unit().to_owned(),
-                ns_per_element: median.value / outcome.elements.max(1) as f64,
-                sample_size: entry.job.sample.map(|sample| sample.size),
-                checksum: Some(outcome.checksum),
-                agreement,
-                standing: rank.map(|rank| rank.standing),
-                ratio_to_best: rank.map(|rank| rank.ratio.value),
-                ratio_ci_low: ratio.map(|[low, _]| low),
-                ratio_ci_high: ratio.map(|[_, high]| high),
-                samples: times.len(),
-            });
-        }
+    for (entries, task) in groups.zip(SpatialTask::ALL) {
+        let range = from..from + entries.len();
+        from = range.end;
+        let group = Group {
+            task,
+            entries,
+            times: &times[range.clone()],
+            agreements: &agreements[range],
+            noise: noise(task),
+            expected: None,
+        };
+        rows.extend(group.rows(subjects));
     }
     rows
 }
 
 /// Returns for each kind of query which index takes the least time, building included.
-fn cheapest_indices(results: &[NeighbourRow]) -> Vec<CheapestIndices> {
+fn cheapest_indices(
+    results: &[ResultRow<SpatialTask>],
+    noise: &impl Fn(SpatialTask) -> f64,
+) -> Vec<CheapestIndices> {
     let queries = SpatialTask::ALL.into_iter();
     let queries = queries.filter_map(|query| Some((query, query.build()?)));
     let ranges = queries.map(|(query, build)| {
@@ -497,13 +416,14 @@ fn cheapest_indices(results: &[NeighbourRow]) -> Vec<CheapestIndices> {
             let build = builds.find(|other| other.backend == row.backend)?;
             Some(Cost {
                 index: &row.backend,
-                build_ns: build.median_ns,
-                query_ns: row.ns_per_element,
+                build_ns: build.median_ns?,
+                query_ns: row.ns_per_element?,
+                is_fastest: row.is_fastest(),
             })
         });
         CheapestIndices {
             operation: query,
-            ranges: cheapest(&costs.collect::<Vec<_>>()),
+            ranges: cheapest(&costs.collect::<Vec<_>>(), noise(query)),
         }
     });
     ranges.collect()

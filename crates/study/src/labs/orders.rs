@@ -22,6 +22,7 @@ pub use effects::{Comparison, Factor, Larger, OrderEffect, StructureEffect};
 
 use crate::engine::agreement::compare_checksums;
 use crate::engine::control::noise;
+use crate::engine::corrected::corrected_entries;
 use crate::engine::effort::Budget;
 use crate::engine::machine::Machine;
 use crate::engine::measure::{Entry, Progress};
@@ -32,7 +33,7 @@ use crate::inspect::StudyMesh;
 use crate::labs::study::report::bytes_of;
 use crate::labs::study::{Settings, StudyError, is_skewed, prepare, refusals, results, scans};
 use crate::refusal::Candidate;
-use crate::results::figure::{Figure, FigureRow};
+use crate::results::figure::{Figure, figures_of};
 use crate::results::finding::{Common, LabFinding, Meshes};
 use crate::results::read::ReadError;
 use crate::results::rows::{
@@ -68,8 +69,9 @@ pub struct OrdersReport {
     pub orders: Vec<Order>,
     /// The requested backends with their memory, built from the mesh in its original order.
     pub backends: Vec<BackendReport>,
-    /// The measured times, sorted by operation, then by structure, then by order.
-    pub results: Vec<OrderRow>,
+    /// The measured times, sorted by operation, then by structure, then by order. The order is the
+    /// `case`. `standing` and `ratio_to_best` compare it with the other orders on the structure.
+    pub results: Vec<ResultRow>,
     /// Requested operations that a backend cannot do.
     pub refusals: Vec<Refusal>,
     /// The effects of the order and of the structure, for each operation.
@@ -82,46 +84,18 @@ pub struct OrdersReport {
     /// Sentences about possible faults of the measurement and their remedies.
     pub warnings: Vec<String>,
     /// The times of all samples, without the second measurement of the control.
-    pub samples: Vec<SamplesInOrder>,
+    pub samples: Vec<Samples>,
     /// True if the measurement was stopped early.
     pub interrupted: bool,
     /// The resolution and the cost of reading the clock.
     pub timer: Timer,
 }
 
-/// The samples of one operation on one structure in one order.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct SamplesInOrder {
-    /// The order of the elements.
-    pub order: Order,
-    /// The samples.
-    #[serde(flatten)]
-    pub samples: Samples,
-}
-
-/// The times of one operation on one structure in one order.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
-pub struct OrderRow {
-    /// The order of the elements.
-    pub order: Order,
-    /// The times of the operation. The fields `standing` and `ratio_to_best` compare this order
-    /// with the other orders on the same structure.
-    #[serde(flatten)]
-    pub row: ResultRow,
-}
-
 impl OrdersReport {
     /// Iterates over the results of `operation`.
-    pub fn rows(&self, operation: Operation) -> impl Iterator<Item = &OrderRow> {
-        let of_it = move |row: &&OrderRow| row.row.operation == operation;
+    pub fn rows(&self, operation: Operation) -> impl Iterator<Item = &ResultRow> {
+        let of_it = move |row: &&ResultRow| row.operation == operation;
         self.results.iter().filter(of_it)
-    }
-
-    /// Returns the samples of a result.
-    fn samples_of(&self, order: Order, row: &ResultRow) -> Option<&Samples> {
-        let samples = self.samples.iter().filter(|s| s.order == order);
-        let mut samples = samples.map(|of_order| &of_order.samples);
-        samples.find(|s| s.backend == row.backend && s.operation == row.operation.name())
     }
 }
 
@@ -141,30 +115,24 @@ impl LabFinding for OrdersReport {
     }
 
     fn mismatches(&self) -> usize {
-        let wrong = |row: &&OrderRow| row.row.agreement == Agreement::Mismatch;
+        let wrong = |row: &&ResultRow| row.agreement == Agreement::Mismatch;
         self.results.iter().filter(wrong).count()
     }
 
-    fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
-        let figure = |case: String, row: FigureRow<'s>| Figure {
-            case,
-            ..Figure::new(&self.mesh, bytes_of(&self.backends, row.backend), row)
-        };
-        let timed = self.results.iter().map(|OrderRow { order, row }| Figure {
-            samples: self.samples_of(*order, row),
-            noise: noise(self.control.as_ref(), row.operation),
-            ..figure(order.to_string(), FigureRow::of_result(row))
-        });
-        let refused = self.refusals.iter();
-        let refused = refused.map(|r| figure(String::new(), FigureRow::of_refusal(r)));
-        timed.chain(refused).collect()
+    fn figures(&self) -> Vec<Figure<'_>> {
+        figures_of(
+            Some(&self.mesh),
+            &self.results,
+            &self.refusals,
+            &self.samples,
+            |backend| bytes_of(&self.backends, backend),
+            |operation| noise(self.control.as_ref(), operation),
+        )
     }
 
     fn check(&self) -> Result<(), ReadError> {
-        self.samples
-            .iter()
-            .try_for_each(|of_order| check_samples(std::slice::from_ref(&of_order.samples)))?;
-        check_results(self.results.iter().map(|row| &row.row))?;
+        check_samples(&self.samples)?;
+        check_results(&self.results)?;
         check_control(self.control.as_ref())
     }
 }
@@ -280,8 +248,11 @@ pub(crate) fn orders_on(
     let agreements = agreements(&entries, &columns, &mut compare);
 
     let refusals = deduplicated(refusals(&entries, subjects));
+    // One correction for all orders of all structures, so that all their times can be compared.
+    let corrected = corrected_entries(&entries);
     let rows = rows(
         &entries,
+        &corrected,
         &agreements,
         &columns,
         subjects,
@@ -289,12 +260,14 @@ pub(crate) fn orders_on(
         control.as_ref(),
     );
     let timed = |operation: Operation| {
-        let of_it = entries.iter().filter(|e| e.operation() == Some(operation));
-        let timed = of_it.map(|entry| OrderSamples {
+        let all = entries.iter().zip(&corrected);
+        let of_it = all.filter(|(entry, _)| entry.operation() == Some(operation));
+        let timed = of_it.map(|(entry, &ns)| OrderSamples {
             backend: columns[entry.subject].backend.name(),
             order: columns[entry.subject].order,
             scans: operation.scans(&columns[entry.subject].backend.info.costs) != [false; 3],
             samples: entry.times(),
+            ns,
         });
         let timed: Vec<OrderSamples> = timed.collect();
         Comparison::new(operation, &timed, noise(control.as_ref(), operation))
@@ -303,25 +276,30 @@ pub(crate) fn orders_on(
     let sentences = sentences::sentences(&rows, &comparisons, control.as_ref());
     let run = run.with_memory(&memory);
     let timer = timer.with_entries(&entries);
-    let timed: Vec<&ResultRow> = rows.iter().map(|row| &row.row).collect();
-    let warnings = warnings(&run, &timer, &timed, control.as_ref());
+    let timed: Vec<&ResultRow> = rows.iter().collect();
     let samples = entries.iter().filter_map(|entry| {
         let Column { backend, order } = columns[entry.subject];
-        let samples = Samples::of_entry(entry, backend.name(), false)?;
-        Some(SamplesInOrder { order, samples })
+        Some(Samples {
+            case: order.name().into(),
+            ..Samples::of_entry(entry, backend.name(), false)?
+        })
     });
+    let samples: Vec<Samples> = samples.collect();
+    let all: Vec<&Samples> = samples.iter().collect();
+    let mut warned: Vec<String> = sentences::mismatches(&rows).collect();
+    warned.extend(warnings(&run, &timer, &timed, &all, control.as_ref()));
     Ok(OrdersReport {
         run,
         mesh: study_mesh.report(),
         orders: Order::ALL.into(),
         backends,
-        samples: samples.collect(),
+        samples,
         results: rows,
         refusals,
         comparisons,
         control,
         sentences,
-        warnings,
+        warnings: warned,
         interrupted,
         timer,
     })
@@ -367,34 +345,26 @@ fn agreements(
 /// structure.
 fn rows(
     entries: &[Entry],
+    times: &[Option<f64>],
     agreements: &[Agreement],
     columns: &[Column],
     subjects: &[Box<dyn TimedBackend + '_>],
     polygons: &PolygonMesh,
     control: Option<&Control>,
-) -> Vec<OrderRow> {
-    let with_times: Vec<(&Entry, Agreement)> = entries
-        .iter()
-        .zip(agreements.iter().copied())
-        .filter(|(entry, _)| !entry.times().is_empty() || entry.estimate.is_some())
-        .collect();
+) -> Vec<ResultRow> {
     let mut rows = Vec::new();
-    for group in with_times.chunk_by(|(a, _), (b, _)| {
-        let backend = |entry: &Entry| columns[entry.subject].backend.name();
-        a.job.task == b.job.task && backend(a) == backend(b)
-    }) {
-        let backend_entries: Vec<Entry> = group.iter().map(|(entry, _)| (*entry).clone()).collect();
-        let agreements = group.iter().map(|(_, agreement)| *agreement).collect();
-        let backend_rows = results(&backend_entries, agreements, subjects, polygons, control);
-        rows.extend(
-            backend_entries
-                .iter()
-                .zip(backend_rows)
-                .map(|(entry, row)| OrderRow {
-                    order: columns[entry.subject].order,
-                    row,
-                }),
-        );
+    let mut from = 0;
+    let backend = |entry: &Entry| columns[entry.subject].backend.name();
+    for orders in entries.chunk_by(|a, b| a.job.task == b.job.task && backend(a) == backend(b)) {
+        let range = from..from + orders.len();
+        from = range.end;
+        let (times, agreements) = (&times[range.clone()], &agreements[range]);
+        let in_orders = results(orders, times, agreements, subjects, polygons, control);
+        let measured = orders.iter().filter(|entry| entry.has_time());
+        rows.extend(measured.zip(in_orders).map(|(entry, row)| ResultRow {
+            case: columns[entry.subject].order.name().into(),
+            ..row
+        }));
     }
     rows
 }

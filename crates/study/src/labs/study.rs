@@ -12,30 +12,31 @@ use sixfold_core::Counts;
 
 use crate::engine::agreement::compare_checksums;
 use crate::engine::control::noise;
+use crate::engine::corrected::corrected_entries;
 use crate::engine::effort::{Budget, Effort};
 use crate::engine::heap::CacheState;
 use crate::engine::machine::Machine;
 use crate::engine::measure::{Entry, Progress};
-use crate::engine::ranking::rank;
 use crate::external::{self, EXTERNAL_TIMEOUT, External, MeshFile};
 use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::labs::orders::prepared_bytes;
-use crate::results::rows::{Agreement, BackendRefusal, BackendReport, Control, Refusal, ResultRow};
+use crate::labs::rows::Group;
+use crate::results::rows::{
+    Agreement, BackendRefusal, BackendReport, Control, Refusal, ResultRow, Samples,
+};
 use crate::results::run::{Run, RunSettings};
 pub use report::Report;
 
-use crate::engine::statistics::Median;
 use crate::engine::timer::Timer;
 use crate::engine::trial::{Columns, Measured, Trial};
 use crate::engine::warnings::warnings;
 use crate::refusal::Candidate;
-use sentences::sentences;
 use sixfold_workload::Backend;
 use sixfold_workload::Draw;
+use sixfold_workload::MachineClock;
 use sixfold_workload::Operation;
 use sixfold_workload::TimedBackend;
 use sixfold_workload::pages::{HeapPolicyConflict, Policy};
-use sixfold_workload::{MachineClock, Time};
 
 /// Maximum valence or degree of a mesh that counts as not skewed.
 const MAX_NEIGHBOURS: usize = 1000;
@@ -290,29 +291,46 @@ pub(crate) fn study_on(
     let subjects = &mut columns.subjects;
     let timer = timer.with_entries(&entries);
     let agreements = compare_checksums(&entries, subjects, polygons, clock, stop);
-    let results = results(&entries, agreements, subjects, polygons, control.as_ref());
+    let results = results(
+        &entries,
+        &corrected_entries(&entries),
+        &agreements,
+        subjects,
+        polygons,
+        control.as_ref(),
+    );
     let refusals = refusals(&entries, subjects);
     let scanning = |backend: &str, relation: Relation| {
         let costs = chosen.iter().find(|b| b.name() == backend);
         costs.is_some_and(|b| b.info.costs[relation as usize] == QueryCost::Scan)
     };
-    let sentences = sentences(&backends, &results, polygons, control.as_ref(), &scanning);
-    let run = run.with_memory(&memory);
-    let rows: Vec<&ResultRow> = results.iter().collect();
-    let warnings = warnings(&run, &timer, &rows, control.as_ref());
-    Ok(Report {
-        run,
+    let mut report = Report {
+        run: run.with_memory(&memory),
         mesh: study_mesh.report(),
+        notes: sentences::notes(&backends, &results),
         backends,
         results,
         refusals,
         control,
-        sentences,
-        warnings,
+        sentences: Vec::new(),
+        warnings: Vec::new(),
         samples,
         interrupted,
         timer: Some(timer),
-    })
+    };
+    report.sentences = sentences::answer(&report, &scanning);
+    report.warnings = sentences::mismatches(&report);
+    let rows: Vec<&ResultRow> = report.results.iter().collect();
+    let samples: Vec<&Samples> = report.samples.iter().collect();
+    let measured = warnings(
+        &report.run,
+        &timer,
+        &rows,
+        &samples,
+        report.control.as_ref(),
+    );
+    report.warnings.extend(measured);
+    Ok(report)
 }
 
 /// Estimates the peak memory of the measurement in bytes. The sum includes the structures with
@@ -361,96 +379,35 @@ pub(crate) fn prepare<'a>(
     }
 }
 
+/// Returns the rows of all entries. The entries of an operation are adjacent, and are compared with
+/// each other.
 pub(crate) fn results(
     entries: &[Entry],
-    agreements: Vec<Agreement>,
+    times: &[Option<f64>],
+    agreements: &[Agreement],
     subjects: &[Box<dyn TimedBackend + '_>],
     polygons: &PolygonMesh,
     control: Option<&Control>,
 ) -> Vec<ResultRow> {
     let mut rows = Vec::new();
-    let mut agreements = agreements.into_iter();
-    for group in entries.chunk_by(|a, b| a.job.task == b.job.task) {
-        let Some(operation) = group[0].operation() else {
+    let mut from = 0;
+    for entries in entries.chunk_by(|a, b| a.job.task == b.job.task) {
+        let range = from..from + entries.len();
+        from = range.end;
+        let Some(operation) = entries[0].operation() else {
             continue;
         };
-        let times: Vec<Vec<(u32, Time)>> = group.iter().map(Entry::times).collect();
-        let noise = noise(control, operation);
-        let verdicts: Vec<Agreement> = agreements.by_ref().take(group.len()).collect();
-        let mut ranked = times.clone();
-        for (verdict, times) in verdicts.iter().zip(&mut ranked) {
-            if matches!(verdict, Agreement::Mismatch | Agreement::OtherEdits) {
-                times.clear();
-            }
-        }
-        let ranks = rank(&ranked, noise);
-        // The largest count comes from a whole run, if any backend made a whole run.
-        let counted = group
-            .iter()
-            .filter(|e| e.job.sample.is_none() && subjects[e.subject].merged_vertices() == 0)
-            .find_map(|e| e.outcome);
-        for (((entry, times), rank), agreement) in group.iter().zip(&times).zip(ranks).zip(verdicts)
-        {
-            if times.is_empty() && entry.estimate.is_none() {
-                continue; // refused, or the study was stopped before
-            }
-            let median = Median::from_samples(times.iter().map(|(_, time)| time.ns()));
-            let wall = Median::from_samples(times.iter().map(|(_, time)| time.wall_ns));
-            let elements = match entry.job.sample {
-                Some(_) => counted.or(entry.outcome),
-                None => entry.outcome.or(counted),
-            };
-            let elements = elements.map(|outcome| outcome.elements);
-            let expected = operation.estimated_elements(polygons) as u64;
-            let elements = elements.or(entry.estimate.map(|_| expected));
-            let per_element = |ns: f64| match elements {
-                Some(n) if n > 0 => Some(ns / n as f64),
-                _ => None,
-            };
-            let interval = median.and_then(|m| m.interval);
-            let ratio = rank.and_then(|p| p.ratio.interval);
-            rows.push(ResultRow {
-                backend: subjects[entry.subject].name().into(),
-                operation,
-                median_ns: median.map(|m| m.value),
-                min_ns: median.map(|m| m.least),
-                ci_low_ns: interval.map(|[low, _]| low),
-                ci_high_ns: interval.map(|[_, high]| high),
-                elements,
-                per: operation.unit().into(),
-                ns_per_element: median.and_then(|m| per_element(m.value)),
-                wall_median_ns: wall.map(|m| m.value),
-                wall_min_ns: wall.map(|m| m.least),
-                sampled: entry.job.sample.is_some(),
-                sample_size: entry.job.sample.map(|sample| sample.size),
-                estimated_ns: entry.estimate.map(Time::ns),
-                checksum: entry
-                    .outcome
-                    .map(|outcome| outcome.checksum)
-                    .filter(|checksum| checksum.is_finite()),
-                agreement,
-                standing: rank.map(|p| p.standing),
-                ratio_to_best: rank.map(|p| p.ratio.value),
-                ratio_ci_low: ratio.map(|[low, _]| low),
-                ratio_ci_high: ratio.map(|[_, high]| high),
-                samples: times.len(),
-                runs_per_sample: entry.runs,
-                warm_up_only: entry.samples.is_empty() && entry.warm_up.is_some(),
-                by_name_only: entry.by_name_only,
-                faults: most_faults(entry.samples.iter().map(|(_, time)| time)),
-                retaken: entry.retaken,
-                disturbed: entry.samples.len().saturating_sub(times.len()),
-                first_ns: entry.first_ns(),
-                first_samples: entry.first_times.len(),
-                first_faults: most_faults(entry.first_times.iter().map(|[first, _]| first)),
-            });
-        }
+        let group = Group {
+            task: operation,
+            entries,
+            times: &times[range.clone()],
+            agreements: &agreements[range],
+            noise: noise(control, operation),
+            expected: Some(operation.estimated_elements(polygons) as u64),
+        };
+        rows.extend(group.rows(subjects));
     }
     rows
-}
-
-fn most_faults<'t>(samples: impl IntoIterator<Item = &'t Time>) -> Option<u64> {
-    samples.into_iter().filter_map(|time| time.faults).max()
 }
 
 pub(crate) fn refusals(entries: &[Entry], subjects: &[Box<dyn TimedBackend + '_>]) -> Vec<Refusal> {

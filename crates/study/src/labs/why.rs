@@ -216,7 +216,7 @@ impl LabFinding for Why {
                 Some(false) => Status::Measured,
             };
             let elements = row.reads.elements;
-            let samples = samples_of(&self.samples, operation, &row.backend);
+            let samples = samples_of(&self.samples, "", operation, &row.backend);
             let figure_row = FigureRow {
                 ns: row
                     .timed
@@ -231,7 +231,7 @@ impl LabFinding for Why {
             let bytes = bytes_of(&self.backends, &row.backend);
             Figure {
                 samples,
-                ..Figure::new(&self.mesh, bytes, figure_row)
+                ..Figure::new(Some(&self.mesh), bytes, figure_row)
             }
         };
         self.rows.iter().map(figure).collect()

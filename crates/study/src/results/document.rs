@@ -3,6 +3,7 @@
 //! In JSON, the document lists each run and each mesh once, and a finding has their places in these
 //! lists. In memory, each finding has its own copy, so that a finding can be used alone.
 
+use std::collections::{HashMap, HashSet};
 use std::io;
 
 use serde::{Deserialize, Serialize};
@@ -17,7 +18,9 @@ use crate::results::run::{Run, Start};
 
 /// The version of the format of [`Results`] in JSON. The number increases when older versions of
 /// Sixfold could misread a new file.
-pub const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 3;
+/// The oldest version of the format that [`Results::read_json`] reads.
+pub(crate) const OLDEST_SCHEMA: u32 = 2;
 
 /// The results of one or more measuring commands.
 #[derive(Clone, Debug, Default)]
@@ -117,31 +120,36 @@ impl Results {
     /// Adds a finding. If the finding is a study, it replaces an earlier study or failure of the
     /// same mesh.
     pub fn add(&mut self, finding: Finding) {
-        match &finding {
-            Finding::Study(study) => {
-                let name = study.mesh.name.clone();
-                self.remove(&name);
-                self.plan(name);
-                self.findings.push(finding);
-                self.sort();
-            }
-            _ => self.findings.push(finding),
-        }
+        self.extend([finding]);
     }
 
     /// Records that a mesh could not be studied. Replaces an earlier study or failure of the mesh.
     pub fn add_failure(&mut self, failed: Failed) {
         self.remove(&failed.mesh);
-        self.plan(failed.mesh.clone());
+        self.plan([failed.mesh.clone()]);
         self.failures.push(failed);
         self.sort();
     }
 
-    /// Adds a name to the planned meshes if it is new.
-    pub(crate) fn plan(&mut self, mesh: String) {
-        if !self.planned.contains(&mesh) {
-            self.planned.push(mesh);
-        }
+    /// Adds names to the planned meshes, if they are new.
+    pub(crate) fn plan(&mut self, meshes: impl IntoIterator<Item = String>) {
+        let mut known: HashSet<String> = self.planned.iter().cloned().collect();
+        let new = meshes.into_iter().filter(|mesh| known.insert(mesh.clone()));
+        self.planned.extend(new);
+    }
+
+    /// Adds the failures of meshes that are neither studied nor failed.
+    pub(crate) fn add_failures(&mut self, failures: impl IntoIterator<Item = Failed>) {
+        let studied = self.studies().map(|study| study.mesh.name.clone());
+        let failed = self.failures.iter().map(|failed| failed.mesh.clone());
+        let mut done: HashSet<String> = studied.chain(failed).collect();
+        let new = failures
+            .into_iter()
+            .filter(|failed| done.insert(failed.mesh.clone()));
+        let new: Vec<Failed> = new.collect();
+        self.plan(new.iter().map(|failed| failed.mesh.clone()));
+        self.failures.extend(new);
+        self.sort();
     }
 
     /// Removes the study and the failure of a mesh.
@@ -154,12 +162,15 @@ impl Results {
     }
 
     /// Sorts the studies and the failures in the order of the planned meshes. Studies come before
-    /// other findings.
+    /// other findings. O(n log n).
     pub(crate) fn sort(&mut self) {
-        let place = |mesh: &str| self.planned.iter().position(|other| other == mesh);
+        let places = self.planned.iter().enumerate();
+        let places: HashMap<&str, usize> =
+            places.map(|(place, mesh)| (mesh.as_str(), place)).collect();
+        let place = |mesh: &str| places.get(mesh).copied();
         self.findings.sort_by_key(|finding| match finding {
-            Finding::Study(study) => place(&study.mesh.name),
-            _ => Some(usize::MAX),
+            Finding::Study(study) => (0, place(&study.mesh.name)),
+            _ => (1, None),
         });
         self.failures.sort_by_key(|failed| place(&failed.mesh));
     }
@@ -239,6 +250,7 @@ impl Results {
         check_schema(text)?;
         let document: ReadDocument = parse_json(text)?;
         let mut results = Self::new(document.planned);
+        let mut findings = Vec::new();
         let no_entry = |list: &str, place: usize| ReadError::Malformed {
             cause: format!("a finding names entry {place} of `{list}`, which does not exist"),
         };
@@ -259,14 +271,36 @@ impl Results {
                 },
                 meshes?,
             )?;
-            results.add(finding);
+            findings.push(finding);
         }
-        for failed in document.failures {
-            if !results.is_done(&failed.mesh) {
-                results.add_failure(failed);
-            }
-        }
+        results.extend(findings);
+        results.add_failures(document.failures);
         Ok(results)
+    }
+}
+
+impl Extend<Finding> for Results {
+    /// Adds findings, as [`add`](Results::add) does. O((n + m) log (n + m)) for n known and m new
+    /// findings.
+    fn extend<I: IntoIterator<Item = Finding>>(&mut self, findings: I) {
+        self.findings.extend(findings);
+        let mut studied: HashSet<String> = HashSet::new();
+        let studies = self.studies().map(|study| study.mesh.name.clone());
+        let studies: Vec<String> = studies.collect();
+        // The last study of a mesh replaces the others.
+        let mut is_last: Vec<bool> = studies
+            .iter()
+            .rev()
+            .map(|s| studied.insert(s.clone()))
+            .collect();
+        self.findings.retain(|finding| match finding {
+            Finding::Study(_) => is_last.pop().unwrap_or(true),
+            _ => true,
+        });
+        self.failures
+            .retain(|failed| !studied.contains(&failed.mesh));
+        self.plan(studies);
+        self.sort();
     }
 }
 

@@ -4,7 +4,7 @@ use serde::Serialize;
 use sixfold_workload::Reads;
 
 use crate::results::rows::{
-    Agreement, MeshReport, Refusal, RefusalKind, ResultRow, Samples, Standing,
+    Agreement, MeasuredTask, MeshReport, Refusal, RefusalKind, ResultRow, Samples, Standing,
 };
 
 /// One time or count of bytes in a finding: an operation on a backend, on a mesh and in a case.
@@ -124,7 +124,7 @@ impl<'r> FigureRow<'r> {
     }
 
     /// Returns the row of a measured or estimated result.
-    pub(crate) fn of_result(row: &'r ResultRow) -> Self {
+    pub(crate) fn of_result<T: MeasuredTask>(row: &'r ResultRow<T>) -> Self {
         let status = match (row.median_ns, row.sampled) {
             (None, _) => Status::Estimated,
             (Some(_), true) => Status::Sampled,
@@ -165,14 +165,14 @@ impl<'r> FigureRow<'r> {
 impl<'r> Figure<'r> {
     /// Returns a figure of a mesh, without a case, without samples and without noise.
     pub(crate) fn new(
-        mesh: &'r MeshReport,
+        mesh: Option<&'r MeshReport>,
         backend_bytes: Option<usize>,
         row: FigureRow<'r>,
     ) -> Self {
-        let facts = &mesh.facts;
+        let facts = mesh.map(|mesh| &mesh.facts);
         Self {
-            mesh: Some(mesh),
-            elements_of_mesh: [facts.vertices, facts.edges, facts.faces],
+            mesh,
+            elements_of_mesh: facts.map_or([0; 3], |f| [f.vertices, f.edges, f.faces]),
             case: String::new(),
             backend_bytes,
             row,
@@ -187,12 +187,38 @@ impl<'r> Figure<'r> {
     }
 }
 
-/// Returns the samples of an operation on a backend, without the second measurement of the control.
+/// Returns the samples of an operation on a backend in a case, without the second measurement of the
+/// control.
 pub(crate) fn samples_of<'r>(
     samples: &'r [Samples],
+    case: &str,
     operation: &str,
     backend: &str,
 ) -> Option<&'r Samples> {
-    let of_it = |s: &&Samples| !s.control && s.operation == operation && s.backend == backend;
+    let of_it = |s: &&Samples| {
+        !s.control && s.operation == operation && s.backend == backend && s.case == case
+    };
     samples.iter().find(of_it)
+}
+
+/// Returns the figures of the rows and refusals of a mesh.
+pub(crate) fn figures_of<'r, T: MeasuredTask>(
+    mesh: Option<&'r MeshReport>,
+    rows: &'r [ResultRow<T>],
+    refusals: &'r [Refusal],
+    samples: &'r [Samples],
+    bytes: impl Fn(&str) -> Option<usize>,
+    noise: impl Fn(T) -> f64,
+) -> Vec<Figure<'r>> {
+    let timed = rows.iter().map(|row| Figure {
+        case: row.case.clone(),
+        samples: samples_of(samples, &row.case, row.operation.name(), &row.backend),
+        noise: noise(row.operation),
+        ..Figure::new(mesh, bytes(&row.backend), FigureRow::of_result(row))
+    });
+    let refused = refusals.iter().map(|refusal| {
+        let row = FigureRow::of_refusal(refusal);
+        Figure::new(mesh, bytes(row.backend), row)
+    });
+    timed.chain(refused).collect()
 }

@@ -1,5 +1,7 @@
 //! Merging of documents, for example of the shards of a study of many meshes.
 
+use std::collections::HashMap;
+
 use crate::labs::study::Report;
 use crate::results::document::Results;
 use crate::results::finding::Finding;
@@ -47,12 +49,15 @@ impl Results {
             ours.run.settings.check_equal(&theirs.run.settings)?;
         }
         self.check_memory(&other)?;
+        let known: HashMap<&str, &Report> = self
+            .studies()
+            .map(|study| (study.mesh.name.as_str(), study))
+            .collect();
         for study in other.studies() {
-            let name = &study.mesh.name;
-            let Some(known) = self.studies().find(|known| known.mesh.name == *name) else {
+            let Some(known) = known.get(study.mesh.name.as_str()) else {
                 continue;
             };
-            let mesh = name.clone();
+            let mesh = study.mesh.name.clone();
             if known.mesh.sha256 != study.mesh.sha256 {
                 return Err(MergeError::OtherMesh { mesh });
             }
@@ -60,24 +65,14 @@ impl Results {
                 return Err(MergeError::SecondStudy { mesh });
             }
         }
-        other.planned.into_iter().for_each(|mesh| self.plan(mesh));
-        for finding in other.findings {
-            let is_known = match &finding {
-                Finding::Study(study) => self
-                    .studies()
-                    .any(|known| known.mesh.name == study.mesh.name),
-                finding => self.findings.iter().any(|known| is_copy(known, finding)),
-            };
-            if !is_known {
-                self.add(finding);
-            }
-        }
-        for failed in other.failures {
-            if !self.is_done(&failed.mesh) {
-                self.add_failure(failed);
-            }
-        }
-        self.sort();
+        let is_new = |finding: &Finding| match finding {
+            Finding::Study(study) => !known.contains_key(study.mesh.name.as_str()),
+            finding => !self.findings.iter().any(|known| is_copy(known, finding)),
+        };
+        let new: Vec<Finding> = other.findings.into_iter().filter(is_new).collect();
+        self.plan(other.planned);
+        self.extend(new);
+        self.add_failures(other.failures);
         Ok(())
     }
 

@@ -4,6 +4,7 @@
 //! mean is therefore over the meshes that all compared backends can hold. The means include
 //! estimated times. Without estimated times, backends that are too slow to measure would look fast.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
@@ -91,6 +92,9 @@ pub struct Overall {
     pub ci_low: Option<f64>,
     /// Upper end of the 95 % confidence interval of `ratio_to_best`.
     pub ci_high: Option<f64>,
+    /// True if the mean includes estimated times. Estimates are lower bounds, so the mean is one too.
+    #[serde(default)]
+    pub bound: bool,
 }
 
 /// The results of one operation on one backend, over several meshes.
@@ -310,11 +314,28 @@ fn decade(study: &Report) -> u32 {
     study.mesh.facts.faces.checked_ilog10().unwrap_or(0)
 }
 
-/// Returns the time of a row: measured, or estimated. Returns `None` for other work.
-fn time(row: &ResultRow) -> Option<f64> {
-    let time = row.median_ns.or(row.estimated_ns)?;
-    let same_work = !matches!(row.agreement, Agreement::Mismatch | Agreement::OtherEdits);
-    (time > 0.0 && same_work).then_some(time)
+/// A time in nanoseconds.
+#[derive(Clone, Copy)]
+struct Known {
+    ns: f64,
+    /// Whether the time is an estimate: a lower bound.
+    bound: bool,
+}
+
+impl Known {
+    /// Returns the time of a row: measured, or estimated. Returns `None` for other work.
+    fn of(row: &ResultRow) -> Option<Self> {
+        let ns = row.median_ns.or(row.estimated_ns)?;
+        let bound = row.median_ns.is_none();
+        let same_work = !matches!(row.agreement, Agreement::Mismatch | Agreement::OtherEdits);
+        (ns > 0.0 && same_work).then_some(Self { ns, bound })
+    }
+
+    /// Orders measured times before estimates, because the real time may be longer than an estimate.
+    fn measured_first(&self, other: &Self) -> Ordering {
+        let by_time = self.ns.total_cmp(&other.ns);
+        self.bound.cmp(&other.bound).then(by_time)
+    }
 }
 
 fn row<'s>(study: &'s Report, operation: Operation, backend: &str) -> Option<&'s ResultRow> {
@@ -327,7 +348,7 @@ fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
     for operation in Operation::ALL {
         let value = |mesh: usize, backend: &str| {
             let row = row(studies[mesh], operation, backend)?;
-            Some((row, time(row)?))
+            Some((row, Known::of(row)?.ns))
         };
         let has = |mesh: usize, backend: &str| value(mesh, backend).is_some();
         let some = |backend: &&&str| (0..studies.len()).any(|mesh| has(mesh, backend));
@@ -400,6 +421,16 @@ impl Purpose {
         }
     }
 
+    /// Returns the purpose of a choice, such as `for queries`.
+    pub(crate) const fn of_choice(self) -> &'static str {
+        match self {
+            Self::Build => "to build",
+            Self::Query => "for queries",
+            Self::Edit => "for edits",
+            Self::Subdivide => "for subdivision",
+        }
+    }
+
     /// Returns the name of the purpose in sentences, such as `queries`.
     pub const fn name(self) -> &'static str {
         match self {
@@ -411,8 +442,18 @@ impl Purpose {
     }
 }
 
-/// Pools all tasks of each purpose.
-fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
+impl Overall {
+    /// Formats the mean time relative to the mean time of `other`: `1.31 ×`, or `≥ 900 ×` for a
+    /// lower bound.
+    pub(crate) fn times(&self, other: &Self) -> String {
+        let bound = if self.bound { "≥ " } else { "" };
+        format!("{bound}{}", times(self.ratio_to_best / other.ratio_to_best))
+    }
+}
+
+/// Pools all tasks of each purpose. The backends of a purpose are sorted from the fastest to the
+/// slowest.
+pub(crate) fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
     let mut overall = Vec::new();
     for purpose in Purpose::ALL {
         let tasks = tasks(purpose);
@@ -423,15 +464,21 @@ fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
         let value = |case: usize, backend: &str| {
             let (mesh, task) = cases[case];
             let rows = task.iter().filter_map(|&o| row(studies[mesh], o, backend));
-            rows.filter_map(time).min_by(f64::total_cmp)
+            rows.filter_map(Known::of).min_by(Known::measured_first)
         };
         let has = |case: usize, backend: &str| value(case, backend).is_some();
         let some = |backend: &&&str| (0..cases.len()).any(|case| has(case, backend));
         let backends: Vec<&str> = backends.iter().filter(some).copied().collect();
         let (compared, shared) = common(&backends, cases.len(), has);
         let ratio = |case: usize, backend: &str| {
-            let all = compared.iter().filter_map(|other| value(case, other));
-            Some(value(case, backend)? / all.min_by(f64::total_cmp)?)
+            let all = compared
+                .iter()
+                .filter_map(|other| Some(value(case, other)?.ns));
+            Some(value(case, backend)?.ns / all.min_by(f64::total_cmp)?)
+        };
+        let is_bound = |backend: &str| {
+            let mut times = shared.iter().filter_map(|&case| value(case, backend));
+            times.any(|time| time.bound)
         };
         let mut rows: Vec<Overall> = compared
             .iter()
@@ -452,6 +499,7 @@ fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
                     ratio_to_best: mean,
                     ci_low: interval.map(|[low, _]| low),
                     ci_high: interval.map(|[_, high]| high),
+                    bound: is_bound(backend),
                 })
             })
             .collect();
@@ -485,35 +533,34 @@ fn above_best([low, high]: [f64; 2], mean: f64) -> [f64; 2] {
     [low.max(mean.min(1.0)), high]
 }
 
+/// Returns the fastest backends of one purpose: the first of `rows`, and those that are at most 5 %
+/// slower. Empty if `rows` is empty.
+pub(crate) fn leaders(rows: &[Overall]) -> &[Overall] {
+    let equal = |row: &&Overall| row.ratio_to_best <= EQUAL_UP_TO * rows[0].ratio_to_best;
+    &rows[..rows.iter().take_while(equal).count()]
+}
+
 /// Describes the fastest backends of one purpose. `compared` is the number of all compared backends.
 fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
-    let (first, others) = rows.split_first()?;
-    let equal = others
-        .iter()
-        .filter(|row| row.ratio_to_best <= EQUAL_UP_TO * first.ratio_to_best);
-    let best: Vec<&str> = std::iter::once(first)
-        .chain(equal)
-        .map(|row| row.backend.as_str())
-        .collect();
+    let best = leaders(rows);
+    let first = best.first()?;
     let next = rows.get(best.len())?;
     let lead = match best.len() {
         1 => "is fastest on average",
         _ => "are fastest on average, within 5 % of each other",
     };
-    let with_times: Vec<&str> = rows.iter().map(|row| row.backend.as_str()).collect();
-    let only = match with_times.len() < compared {
-        true => format!(" Only {} have times.", with_times.join(", ")),
+    let name = |row: &Overall| row.backend.clone();
+    let only = match rows.len() < compared {
+        true => format!(" Only {} have times.", list(rows.iter().map(name))),
         false => String::new(),
     };
     Some(format!(
-        "{}, {group} (mean over {}): {} {lead}: {} the time of the fastest backend of each mesh and \
-         operation. Next is {} with {}.{only}",
+        "{}, {group}: {} {lead} (geometric mean over {}). Next is {}, with {} the time.{only}",
         first.purpose.name(),
+        list(best.iter().map(name)),
         counted(first.meshes, "mesh", "meshes"),
-        list(best),
-        times(first.ratio_to_best),
         next.backend,
-        times(next.ratio_to_best)
+        next.times(first)
     ))
 }
 

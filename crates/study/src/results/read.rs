@@ -7,7 +7,7 @@ use serde::Deserialize;
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde_json::error::Category;
 
-use crate::results::document::SCHEMA;
+use crate::results::document::{OLDEST_SCHEMA, SCHEMA};
 use crate::results::finding::KINDS;
 
 /// The reason why a file cannot be read as results.
@@ -31,7 +31,7 @@ pub enum ReadError {
     Foreign,
     /// The file has another version of the schema.
     #[error(
-        "has schema {found}, but this version of sixfold reads schema {SCHEMA}: {}",
+        "has schema {found}, but this version of sixfold reads schemas {OLDEST_SCHEMA} to {SCHEMA}: {}",
         remedy(*found)
     )]
     OtherSchema { found: u64 },
@@ -50,7 +50,7 @@ fn commands() -> String {
     format!("`sixfold {first}`{between} or `{last}`")
 }
 
-/// Returns an error if the text is not a document of the current schema.
+/// Returns an error if the text is not a document of a schema that can be read.
 pub(crate) fn check_schema(text: &str) -> Result<(), ReadError> {
     #[derive(Deserialize)]
     struct Head {
@@ -61,7 +61,9 @@ pub(crate) fn check_schema(text: &str) -> Result<(), ReadError> {
     let head: Head = parse_json(text)?;
     match head.schema {
         None => Err(ReadError::Foreign),
-        Some(found) if found != u64::from(SCHEMA) => Err(ReadError::OtherSchema { found }),
+        Some(found) if !(OLDEST_SCHEMA.into()..=SCHEMA.into()).contains(&found) => {
+            Err(ReadError::OtherSchema { found })
+        }
         Some(_) if head.findings.is_none() => Err(ReadError::NoFindings),
         Some(_) => Ok(()),
     }

@@ -1,5 +1,7 @@
 //! The rows of findings: times, samples, backends and meshes.
 
+use std::fmt::Display;
+
 use serde::{Deserialize, Serialize};
 use sixfold::{Capabilities, Facts, TableBytes};
 
@@ -11,8 +13,11 @@ use sixfold_workload::Operation;
 
 /// All samples (timed series of runs) of one operation on one backend. All lists except `first_ns`
 /// contain one value for each sample.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct Samples {
+    /// The same as [`ResultRow::case`].
+    #[serde(default, alias = "order", skip_serializing_if = "String::is_empty")]
+    pub case: String,
     /// The name of the backend, such as `half-edge`.
     pub backend: String,
     /// The name of the measured operation, such as `vertex_normal`. In a pick, `mix` is the whole
@@ -52,6 +57,7 @@ impl Samples {
         }
         let times = || entry.samples.iter().map(|(_, time)| time);
         Some(Self {
+            case: String::new(),
             backend: backend.to_owned(),
             operation: entry.name.to_owned(),
             control,
@@ -157,16 +163,43 @@ impl From<BackendReport> for BackendRefusal {
     }
 }
 
-/// The result of one operation on one backend. All times are times of one run on the whole mesh, in
-/// nanoseconds.
+/// What a row of results measures.
+pub trait MeasuredTask: Copy + Default + PartialEq + Display {
+    /// Returns the name of the task, such as `vertex_normal`.
+    fn name(self) -> &'static str;
+    /// Returns the kind of the visited elements, such as `vertex`.
+    fn unit(self) -> &'static str;
+}
+
+impl MeasuredTask for Operation {
+    fn name(self) -> &'static str {
+        self.name()
+    }
+
+    fn unit(self) -> &'static str {
+        self.unit()
+    }
+}
+
+/// The result of one task in one case on one backend: an operation, or in `neighbours` a spatial
+/// task. All times are times of one run on the whole mesh, in nanoseconds.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
-pub struct ResultRow {
+pub struct ResultRow<T = Operation> {
+    /// What was measured besides the task and the backend: in `orders`, the name of the order. Empty
+    /// if there is only one case.
+    #[serde(default, alias = "order", skip_serializing_if = "String::is_empty")]
+    pub case: String,
     /// The name of the backend, such as `half-edge`.
     pub backend: String,
-    /// The measured operation, such as `vertex_normal`.
-    pub operation: Operation,
-    /// The median time of the samples; `None` if nothing was measured.
+    /// The measured task, such as `vertex_normal`.
+    pub operation: T,
+    /// The time of a run: the median of the samples, corrected for the drift of the machine, so
+    /// that the ratio of two backends is the quotient of their times. `None` if nothing was
+    /// measured.
     pub median_ns: Option<f64>,
+    /// The median of the samples without correction; `None` in documents of older versions.
+    #[serde(default)]
+    pub uncorrected_ns: Option<f64>,
     /// The smallest time of a sample.
     pub min_ns: Option<f64>,
     /// The lower end of the 95 % confidence interval of `median_ns`; `None` with fewer than three
@@ -186,6 +219,7 @@ pub struct ResultRow {
     pub wall_min_ns: Option<f64>,
     /// True if the operation was run on only some of the elements. The times and the number of
     /// elements are scaled to the whole mesh.
+    #[serde(default)]
     pub sampled: bool,
     /// The number of elements of each kind on which the operation was run; `None` if the operation
     /// was run on all elements.
@@ -197,11 +231,13 @@ pub struct ResultRow {
     pub checksum: Option<f64>,
     /// The comparison of the checksum with the checksums of other backends.
     pub agreement: Agreement,
-    /// The comparison of the time with the times of the other backends. `None` if nothing was
-    /// measured or if the backend did other work than the other backends.
+    /// The comparison of the time with the times of the other backends; in `orders`, with the other
+    /// orders on this backend. `None` if nothing was measured, if the backend did other work than the
+    /// others, or if there are too few samples: a backend with fewer than four samples is neither
+    /// the fastest nor tied with it, and it is slower only if it takes at least twice the time.
     pub standing: Option<Standing>,
-    /// The time of this backend divided by the time of the fastest backend, as the median over the
-    /// rounds. The fastest backend has the ratio 1.
+    /// The time of this backend divided by the time of the fastest backend. The fastest backend has
+    /// the ratio 1.
     pub ratio_to_best: Option<f64>,
     /// The lower end of the 95 % confidence interval of `ratio_to_best`.
     pub ratio_ci_low: Option<f64>,
@@ -210,16 +246,21 @@ pub struct ResultRow {
     /// The number of samples (timed series of runs).
     pub samples: usize,
     /// The number of consecutive runs in one sample.
+    #[serde(default)]
     pub runs_per_sample: u32,
     /// True if the only sample is the warm-up run, which has cold caches.
+    #[serde(default)]
     pub warm_up_only: bool,
     /// True if the time is only an estimate because the settings do not name the operation.
+    #[serde(default)]
     pub by_name_only: bool,
     /// The largest number of page faults in a sample; `None` if page faults were not counted.
     pub faults: Option<u64>,
     /// The number of samples that were measured again because of page faults or other programs.
+    #[serde(default)]
     pub retaken: u32,
     /// The number of samples that do not count because other programs disturbed them.
+    #[serde(default)]
     pub disturbed: usize,
     /// The time of a first run, which uses fresh memory pages and tables of exact size. Use this
     /// time for a program that runs the operation only once. The value is `median_ns` multiplied by
@@ -227,14 +268,15 @@ pub struct ResultRow {
     /// measured, for example because the operation does not allocate.
     pub first_ns: Option<f64>,
     /// The number of measured first runs.
+    #[serde(default)]
     pub first_samples: usize,
     /// The largest number of page faults in a first run; `None` if page faults were not counted.
     pub first_faults: Option<u64>,
 }
 
-impl ResultRow {
+impl<T: MeasuredTask> ResultRow<T> {
     /// Creates a result without measurements.
-    pub fn new(backend: &str, operation: Operation) -> Self {
+    pub fn new(backend: &str, operation: T) -> Self {
         Self {
             backend: backend.into(),
             operation,
@@ -248,6 +290,11 @@ impl ResultRow {
     pub fn first_ratio(&self) -> Option<f64> {
         let (first, median) = self.first_ns.zip(self.median_ns)?;
         (median > 0.0).then(|| first / median)
+    }
+
+    /// Returns whether the backend is the fastest, or has no clear difference to the fastest.
+    pub fn is_fastest(&self) -> bool {
+        matches!(self.standing, Some(Standing::Best | Standing::Tied))
     }
 }
 
@@ -406,8 +453,8 @@ pub(crate) fn check_samples(samples: &[Samples]) -> Result<(), ReadError> {
 }
 
 /// Returns an error for an impossible time or ratio.
-pub(crate) fn check_results<'r>(
-    rows: impl IntoIterator<Item = &'r ResultRow>,
+pub(crate) fn check_results<'r, T: MeasuredTask + 'r>(
+    rows: impl IntoIterator<Item = &'r ResultRow<T>>,
 ) -> Result<(), ReadError> {
     for row in rows {
         if !row.median_ns.iter().all(is_time) || row.ratio_to_best.is_some_and(|r| r <= 0.0) {

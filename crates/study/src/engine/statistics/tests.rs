@@ -7,6 +7,7 @@ use rand::{Rng, SeedableRng};
 use sixfold_workload::Time;
 
 use super::*;
+use crate::engine::corrected::corrected_times;
 use crate::engine::ranking::{NO_DIFFERENCE, Rank, rank};
 use crate::results::rows::Standing;
 
@@ -218,18 +219,18 @@ fn differences_of_a_tenth_are_found_and_equal_backends_are_tied() {
     for machine in MACHINES {
         let (mut found, mut ordered, mut covered, mut tied) = (0, 0, 0, 0);
         for pair in pairs(machine, 1.1) {
-            let [first, second] = rank(&pair, NO_DIFFERENCE)[..] else {
+            let [first, second] = rank(&pair, &corrected_times(&pair), NO_DIFFERENCE)[..] else {
                 panic!("two backends");
             };
             let (first, second) = (first.expect("samples"), second.expect("samples"));
-            found += usize::from(second.standing == Standing::Slower);
+            found += usize::from(second.standing == Some(Standing::Slower));
             ordered += usize::from(first.ratio.value == 1.0 && second.ratio.value > 1.0);
             let [low, high] = second.ratio.interval.expect("enough rounds");
             covered += usize::from(low <= 1.1 && 1.1 <= high);
         }
         for pair in pairs(machine, 1.0) {
-            let ranks = rank(&pair, NO_DIFFERENCE);
-            let slower = |rank: &Rank| rank.standing == Standing::Slower;
+            let ranks = rank(&pair, &corrected_times(&pair), NO_DIFFERENCE);
+            let slower = |rank: &Rank| rank.standing == Some(Standing::Slower);
             tied += usize::from(!ranks.iter().flatten().any(slower));
         }
         let [found, ordered, covered, tied] =

@@ -1,86 +1,74 @@
 //! The sentences of the report.
 
 use super::{Cheapest, NeighboursReport, SpatialTask};
-use crate::numbers::{counted, figure, list};
+use crate::numbers::{grouped, list, rounded};
 use crate::results::rows::Standing;
 
-/// Returns the sentences that describe the results.
+/// Returns the fastest indices of all tasks, then for each kind of query the index with the least
+/// total time, and the noise.
 pub(super) fn sentences(report: &NeighboursReport) -> Vec<String> {
-    let tasks = SpatialTask::ALL.into_iter();
-    let mut sentences: Vec<String> = tasks.filter_map(|task| fastest(report, task)).collect();
+    let mut sentences: Vec<String> = fastest(report).into_iter().collect();
     for query in &report.cheapest {
         if let Some(ranges) = in_words(&query.ranges) {
+            let task = query.operation;
             sentences.push(format!(
-                "With building, least total time of {}: {ranges}.",
-                query.operation
+                "{task}, building included: least time with {ranges}."
             ));
         }
     }
     if let Some(noise) = report.noise {
         sentences.push(format!(
-            "Noise: one index was measured twice. The two times differ by at most {:.1} %.",
+            "How sure: two measurements of one index differ by at most {:.1} %.",
             100.0 * (noise - 1.0)
         ));
     }
     sentences
 }
 
-/// Names the fastest indices of a task, and the ratio of the slowest index.
-fn fastest(report: &NeighboursReport, task: SpatialTask) -> Option<String> {
-    let best = report.rows(task).filter(|row| {
-        let standing = row.standing;
-        standing.is_some_and(|standing| standing != Standing::Slower)
+/// Names the fastest indices of each task, such as "grid for nearest_vertex; bvh for first_hit".
+fn fastest(report: &NeighboursReport) -> Option<String> {
+    let mut winners: Vec<(String, Vec<SpatialTask>)> = Vec::new();
+    for task in SpatialTask::ALL {
+        let best = report
+            .rows(task)
+            .filter(|row| matches!(row.standing, Some(Standing::Best | Standing::Tied)));
+        let names: Vec<&str> = best.map(|row| row.backend.as_str()).collect();
+        let names = names.join(" or ");
+        match winners.iter_mut().find(|(known, _)| *known == names) {
+            _ if names.is_empty() => {}
+            Some((_, tasks)) => tasks.push(task),
+            None => winners.push((names, vec![task])),
+        }
+    }
+    let winners = winners.into_iter().map(|(names, tasks)| {
+        let tasks = tasks.into_iter().map(SpatialTask::name);
+        format!("{names} for {}", list(tasks))
     });
-    let best: Vec<_> = best.collect();
-    let first = best.first()?;
-    let slowest = report
-        .rows(task)
-        .filter(|row| row.standing == Some(Standing::Slower))
-        .max_by(|a, b| a.median_ns.total_cmp(&b.median_ns));
-    let names: Vec<&str> = best.iter().map(|row| row.backend.as_str()).collect();
-    let slowest = slowest.and_then(|row| {
-        let ratio = figure(row.ratio_to_best?);
-        Some(format!("; {} takes {ratio} × this time", row.backend))
-    });
-    let lead = if best.len() == 1 {
-        "is fastest"
-    } else {
-        "are fastest, with no clear difference between them"
-    };
-    let times = best.iter().map(|row| row.ns_per_element);
-    let least = figure(times.clone().fold(f64::INFINITY, f64::min));
-    let most = figure(times.fold(0.0, f64::max));
-    let range = match least == most {
-        true => least,
-        false => format!("{least} to {most}"),
-    };
-    Some(format!(
-        "{task}: {} {lead} ({range} ns per {}){}.",
-        list(names),
-        first.per,
-        slowest.unwrap_or_default()
-    ))
+    let winners: Vec<String> = winners.collect();
+    (!winners.is_empty()).then(|| format!("Fastest: {}.", winners.join("; ")))
 }
 
-/// Describes the ranges, such as "list for up to 10 queries and bvh for more".
+/// Describes the ranges, such as "list up to 11 queries, then grid up to 20,000, then bvh".
 fn in_words(ranges: &[Cheapest]) -> Option<String> {
     let (last, others) = ranges.split_last()?;
     if others.is_empty() {
         return Some(format!("{} for any number of queries", last.index));
     }
     let ends = ranges.iter().skip(1).map(|next| next.from - 1);
-    let others = others.iter().zip(ends);
+    let others = others.iter().zip(ends).enumerate();
     let others: Vec<String> = others
-        .map(|(range, end)| {
-            let queries = counted(end as usize, "query", "queries");
-            format!("{} for up to {queries}", range.index)
+        .map(|(i, (range, end))| {
+            // The times are not known to more digits.
+            let end = grouped(rounded(end as f64) as usize);
+            let queries = match (i, end.as_str()) {
+                (0, "1") => " query",
+                (0, _) => " queries",
+                _ => "",
+            };
+            format!("{} up to {end}{queries}", range.index)
         })
         .collect();
-    Some(format!(
-        "{}, and {} for more",
-        others.join(", "),
-        last.index
-    ))
+    Some(format!("{}, then {}", others.join(", then "), last.index))
 }
 
 #[cfg(test)]
@@ -101,7 +89,7 @@ mod tests {
         let three = words(&three).unwrap();
         assert_eq!(
             three,
-            "list for up to 11 queries, grid for up to 20,000 queries, and bvh for more"
+            "list up to 11 queries, then grid up to 20,000, then bvh"
         );
     }
 }

@@ -5,9 +5,11 @@ pub(crate) const EIGHT: usize = 8;
 
 sixfold_core::named! {
     /// One task of the lab: building an index, or one kind of query.
+    #[derive(Default)]
     #[non_exhaustive]
     pub enum SpatialTask: "spatial task" {
         /// Builds the index of the vertices.
+        #[default]
         BuildVertices = "build_vertices",
         /// Finds the nearest vertex of each query point.
         NearestVertex = "nearest_vertex",

@@ -3,8 +3,7 @@
 use serde::{Deserialize, Serialize};
 use sixfold::shapes::Order;
 
-use crate::engine::ranking::ratio;
-use crate::engine::statistics::Median;
+use crate::engine::ranking::quotient;
 use sixfold_workload::{Operation, Time};
 
 /// Assumed error factor of a ratio without an interval.
@@ -16,20 +15,15 @@ pub(super) struct OrderSamples {
     /// Whether the structure scans all faces for each element.
     pub(super) scans: bool,
     pub(super) samples: Vec<(u32, Time)>,
-}
-
-impl OrderSamples {
-    fn median(&self) -> Option<f64> {
-        Median::from_samples(self.samples.iter().map(|(_, time)| time.ns()))
-            .map(|median| median.value)
-    }
+    /// The corrected time; `None` without samples.
+    pub(super) ns: Option<f64>,
 }
 
 /// The time of one measurement divided by the time of another measurement, with a 95 % confidence
 /// interval.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Factor {
-    /// The median of the ratio over the rounds of the measurement.
+    /// The quotient of the two times.
     pub ratio: f64,
     /// Lower end of the 95 % confidence interval of `ratio`; `None` with fewer than three rounds.
     pub ci_low: Option<f64>,
@@ -39,7 +33,7 @@ pub struct Factor {
 
 impl Factor {
     fn new(slow: &OrderSamples, fast: &OrderSamples) -> Option<Self> {
-        let ratio = ratio(&slow.samples, &fast.samples)?;
+        let ratio = quotient([&slow.samples, &fast.samples], [slow.ns?, fast.ns?])?;
         Some(Self {
             ratio: ratio.value,
             ci_low: ratio.interval.map(|[low, _]| low),
@@ -68,9 +62,9 @@ pub struct OrderEffect {
     pub backend: String,
     /// True if the operation scans all faces of the mesh for each element on this structure.
     pub scans: bool,
-    /// The order with the smallest median time.
+    /// The order with the smallest time.
     pub best: Order,
-    /// The order with the largest median time.
+    /// The order with the largest time.
     pub worst: Order,
     /// Time in the order `worst` divided by the time in the order `best`.
     pub worst_to_best: Factor,
@@ -87,13 +81,13 @@ pub struct OrderEffect {
 /// out.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct StructureEffect {
-    /// The name of the structure with the smallest median time.
+    /// The name of the structure with the smallest time.
     pub fastest: String,
-    /// The order with the smallest median time on the fastest structure.
+    /// The order with the smallest time on the fastest structure.
     pub fastest_order: Order,
-    /// The name of the structure with the largest median time.
+    /// The name of the structure with the largest time.
     pub slowest: String,
-    /// The order with the smallest median time on the slowest structure.
+    /// The order with the smallest time on the slowest structure.
     pub slowest_order: Order,
     /// Time of the slowest structure divided by the time of the fastest structure.
     pub slowest_to_fastest: Factor,
@@ -160,12 +154,12 @@ impl Comparison {
     }
 }
 
-/// Returns the samples with the smallest and the largest median.
+/// Returns the samples with the smallest and the largest time.
 fn extremes<'t>(
     timed: impl IntoIterator<Item = &'t OrderSamples>,
 ) -> Option<(&'t OrderSamples, &'t OrderSamples)> {
-    let with_median = timed.into_iter().filter_map(|t| Some((t.median()?, t)));
-    let mut sorted: Vec<(f64, &OrderSamples)> = with_median.collect();
+    let measured = timed.into_iter().filter_map(|t| Some((t.ns?, t)));
+    let mut sorted: Vec<(f64, &OrderSamples)> = measured.collect();
     sorted.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     Some((sorted.first()?.1, sorted.last()?.1))
 }
@@ -236,6 +230,7 @@ mod tests {
             order,
             scans,
             samples: (0..).zip(drift.map(time)).collect(),
+            ns: Some(ns * 2.0), // the median of the drift
         }
     }
 
@@ -312,6 +307,7 @@ mod tests {
         assert_eq!(effect.worst_to_best.ci_low, None);
         assert!(!effect.matters, "{effect:?}");
         a[1].samples.clear();
+        a[1].ns = None;
         assert_eq!(super::order_effect(&a, 1.02), None);
     }
 }

@@ -1,166 +1,207 @@
 //! Sentences about the results of one mesh in several orders.
 
+use std::cmp::Reverse;
+
 use sixfold::shapes::Order;
+use sixfold_workload::Operation;
 
-use super::{Comparison, Larger, OrderEffect, OrderRow};
-use crate::numbers::times;
-use crate::results::rows::{Agreement, Control, Standing};
+use super::{Comparison, Larger};
+use crate::labs::study::sentences::noise;
+use crate::numbers::{counted, shown_ratio, times};
+use crate::results::rows::{Agreement, Control, ResultRow, Standing};
 
+/// The results of one operation on one structure in all orders.
+type Pair<'r> = &'r [ResultRow];
+
+/// Returns at most six sentences, the most useful first.
 pub(super) fn sentences(
-    rows: &[OrderRow],
+    rows: &[ResultRow],
     comparisons: &[Comparison],
     control: Option<&Control>,
 ) -> Vec<String> {
-    let mut sentences = Vec::new();
-    sentences.extend(best_orders(rows));
-    sentences.extend(given_order(comparisons));
-    sentences.extend(comparisons.iter().filter_map(effects));
-    sentences.extend(scan_effect(comparisons));
-    sentences.extend(verdict(comparisons));
-    sentences.extend(control.map(|control| {
-        let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
-        format!(
-            "Noise: {} in the given order was measured twice. Its two times differ by {} (median \
-             over the operations), and by at most {}. Two results are tied if they differ by no \
-             more than the noise of the operation. With one or two samples, they are tied if the \
-             longer time is less than 2 × the shorter time.",
-            control.backend,
-            percent(control.typical),
-            percent(control.worst),
-        )
-    }));
-    for OrderRow { order, row } in rows {
-        if row.agreement == Agreement::Mismatch {
-            let (backend, operation) = (&row.backend, row.operation);
-            sentences.push(format!(
-                "{operation} on {backend} gives different results in the order {order}. This is a \
-                 fault in Sixfold: please report it."
-            ));
-        }
-    }
-    sentences
+    let pairs = rows.chunk_by(|a, b| a.operation == b.operation && a.backend == b.backend);
+    let (decided, undecided): (Vec<Pair<'_>>, Vec<Pair<'_>>) = pairs
+        .filter(|pair| pair.iter().filter(|r| r.median_ns.is_some()).count() > 1)
+        .partition(|pair| pair.iter().any(ResultRow::is_fastest));
+    let times = Times(rows);
+    let sentences = [
+        given_order(&decided),
+        best_orders(&decided, undecided.len()),
+        effects(comparisons, &times),
+        verdict(comparisons),
+        scan_effect(comparisons, &times),
+        control.and_then(how_sure),
+    ];
+    sentences.into_iter().flatten().collect()
 }
 
-/// Counts for each order how often it is the best order or tied with the best.
-fn best_orders(rows: &[OrderRow]) -> Option<String> {
-    let pairs =
-        rows.chunk_by(|a, b| a.row.operation == b.row.operation && a.row.backend == b.row.backend);
-    let pairs: Vec<&[OrderRow]> = pairs
-        .filter(|pair| pair.iter().filter(|r| r.row.standing.is_some()).count() > 1)
+/// Returns a warning for each result that differs from the results of the other orders.
+pub(super) fn mismatches(rows: &[ResultRow]) -> impl Iterator<Item = String> {
+    let wrong = rows
+        .iter()
+        .filter(|row| row.agreement == Agreement::Mismatch);
+    wrong.map(|row| {
+        format!(
+            "{} on {} gives different results in the order {}. This is a fault in Sixfold: please \
+             report it.",
+            row.operation, row.backend, row.case
+        )
+    })
+}
+
+/// The times per element, as the table shows them.
+struct Times<'r>(&'r [ResultRow]);
+
+impl Times<'_> {
+    /// Returns the quotient of the shown times of two structures, each in an order.
+    fn ratio(&self, operation: Operation, [a, b]: [(&str, Order); 2]) -> Option<f64> {
+        let time = |(backend, order): (&str, Order)| {
+            let mut rows = self.0.iter();
+            let row = rows.find(|r| {
+                r.case == order.name() && r.operation == operation && r.backend == backend
+            });
+            row?.ns_per_element
+        };
+        Some(shown_ratio(time(a)?, time(b)?))
+    }
+}
+
+/// Says whether sorting the elements would make the mesh faster than it is in the given order.
+fn given_order(pairs: &[Pair<'_>]) -> Option<String> {
+    let given: Vec<(&ResultRow, Pair<'_>)> = pairs
+        .iter()
+        .filter_map(|pair| {
+            let mut rows = pair.iter();
+            Some((rows.find(|row| row.case == Order::Given.name())?, *pair))
+        })
         .collect();
-    if pairs.is_empty() {
+    let slower = given
+        .iter()
+        .filter(|(row, _)| row.standing == Some(Standing::Slower));
+    let ratio = |row: &ResultRow| row.ratio_to_best.unwrap_or(1.0);
+    let worst = slower
+        .clone()
+        .max_by(|(a, _), (b, _)| ratio(a).total_cmp(&ratio(b)));
+    let (equal, all) = (given.len() - slower.count(), given.len());
+    if all == 0 {
         return None;
     }
-    let counts = Order::ALL.map(|order| {
+    let lead = format!(
+        "The given order is the best order, or has no clear difference to it, in {equal} of {} of a \
+         structure and an operation",
+        counted(all, "pair", "pairs")
+    );
+    let Some((row, pair)) = worst else {
+        return Some(format!("{lead}."));
+    };
+    let time = |row: &&ResultRow| row.median_ns.unwrap_or(f64::INFINITY);
+    let best = pair.iter().min_by(|a, b| time(a).total_cmp(&time(b)))?;
+    let ratio = shown_ratio(row.ns_per_element?, best.ns_per_element?);
+    Some(format!(
+        "{lead}; at worst ({} on {}), it takes {} the time of the order {}.",
+        row.operation,
+        row.backend,
+        times(ratio),
+        best.case,
+    ))
+}
+
+/// Counts for each order how often it is the best order, or has no clear difference to the best.
+fn best_orders(pairs: &[Pair<'_>], undecided: usize) -> Option<String> {
+    let mut counts = Order::ALL.map(|order| {
         let with = |wanted: Standing| {
-            let has_standing =
-                |row: &OrderRow| row.order == order && row.row.standing == Some(wanted);
-            pairs
-                .iter()
-                .filter(|pair| pair.iter().any(has_standing))
-                .count()
+            let has = |row: &ResultRow| row.case == order.name() && row.standing == Some(wanted);
+            pairs.iter().filter(|pair| pair.iter().any(has)).count()
         };
         (order, with(Standing::Best), with(Standing::Tied))
     });
-    let mut sorted = counts.to_vec();
-    sorted.sort_by_key(|&(_, best, tied)| std::cmp::Reverse((best + tied, best)));
-    let parts: Vec<String> = sorted
-        .iter()
-        .map(|(order, best, tied)| {
-            format!("{order} is the single best order in {best} and tied for the best in {tied}")
-        })
-        .collect();
-    Some(format!(
-        "Of {} pairs of a structure and an operation, {}.",
-        pairs.len(),
-        parts.join("; ")
-    ))
-}
-
-fn given_order(comparisons: &[Comparison]) -> Option<String> {
-    let effects = comparisons
-        .iter()
-        .flat_map(|comparison| comparison.orders.iter().map(move |o| (comparison, o)));
-    let given: Vec<(f64, &Comparison, &OrderEffect)> = effects
-        .filter_map(|(comparison, effect)| Some((effect.given_to_best?.ratio, comparison, effect)))
-        .collect();
-    let (most, comparison, effect) = given.iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let within_noise = given
-        .iter()
-        .filter(|(ratio, c, _)| *ratio <= c.noise)
-        .count();
-    let all = given.len();
-    if within_noise == all {
-        return Some(
-            "In all pairs of a structure and an operation, the given order is as fast as the best \
-             order, within the noise."
-                .into(),
-        );
+    counts.sort_by_key(|&(_, best, tied)| Reverse((best + tied, best)));
+    let counts = counts.map(|(order, best, tied)| format!("{order} {best} and {tied}"));
+    let few = match undecided {
+        0 => String::new(),
+        1 => " One more pair has too few samples.".into(),
+        _ => format!(" {undecided} more pairs have too few samples."),
+    };
+    match pairs.len() {
+        0 if undecided > 0 => Some(format!(
+            "{} of a structure and an operation have too few samples to compare the orders.",
+            counted(undecided, "pair", "pairs")
+        )),
+        0 => None,
+        _ => Some(format!(
+            "Number of pairs in which an order is the only best order, and in which it is one of \
+             several without a clear difference: {}.{few}",
+            counts.join(", ")
+        )),
     }
-    Some(format!(
-        "In {within_noise} of {all} pairs of a structure and an operation, the given order is as \
-         fast as the best order, within the noise. In the worst case ({} on {}), the given order \
-         takes {} the time of the best order ({}).",
-        comparison.operation,
-        effect.backend,
-        times(*most),
-        effect.best,
-    ))
 }
 
-/// Describes the effects of order and structure on one operation.
-fn effects(comparison: &Comparison) -> Option<String> {
-    let local = || comparison.orders.iter().filter(|effect| !effect.scans);
-    let ratio = |effect: &&OrderEffect| effect.worst_to_best.ratio;
-    let least = local().min_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
-    let most = local().max_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
-    let describe = |effect: &OrderEffect| match effect.matters {
-        true => format!("{} ({})", times(effect.worst_to_best.ratio), effect.backend),
-        false => format!("within the noise ({})", effect.backend),
+/// Describes the largest effect of the order and of the structure.
+fn effects(comparisons: &[Comparison], shown: &Times<'_>) -> Option<String> {
+    let by_order = comparisons.iter().flat_map(|comparison| {
+        let local = comparison.orders.iter();
+        let local = local.filter(|effect| !effect.scans && effect.matters);
+        local.filter_map(|effect| {
+            let name = effect.backend.as_str();
+            let orders = [(name, effect.worst), (name, effect.best)];
+            let ratio = shown.ratio(comparison.operation, orders)?;
+            Some((ratio, format!("{} on {name}", comparison.operation)))
+        })
+    });
+    let by_structure = comparisons.iter().filter_map(|comparison| {
+        let effect = comparison
+            .structures
+            .as_ref()
+            .filter(|effect| effect.matters)?;
+        let slowest = (effect.slowest.as_str(), effect.slowest_order);
+        let fastest = (effect.fastest.as_str(), effect.fastest_order);
+        let ratio = shown.ratio(comparison.operation, [slowest, fastest])?;
+        let operation = comparison.operation;
+        Some((
+            ratio,
+            format!("{operation}, {} to {}", slowest.0, fastest.0),
+        ))
+    });
+    let largest = |effects: &mut dyn Iterator<Item = (f64, String)>| {
+        let largest = effects.max_by(|(a, _), (b, _)| a.total_cmp(b));
+        largest.map(|(ratio, what)| format!("{} ({what})", times(ratio)))
     };
-    let operation = comparison.operation;
-    let orders = match local().count() {
-        _ if !most.matters => format!(
-            "{operation}: the order makes no measurable difference on the structures that do not \
-             scan all faces"
-        ),
-        1 => format!(
-            "{operation}: time of the worst order relative to the best order: {}",
-            describe(most)
-        ),
-        _ => format!(
-            "{operation}: time of the worst order relative to the best order: {} to {}",
-            describe(least),
-            describe(most)
-        ),
+    let order = match largest(&mut by_order.into_iter()) {
+        Some(largest) => format!("the order changes a time by up to {largest}"),
+        None => "the order makes no clear difference".into(),
     };
-    let Some(structures) = &comparison.structures else {
-        return Some(format!("{orders}."));
-    };
-    let between = match structures.matters {
-        true => format!(
-            "Among the structures that do not scan all faces, each in its best order, the slowest \
-             ({}) takes {} the time of the fastest ({})",
-            structures.slowest,
-            times(structures.slowest_to_fastest.ratio),
-            structures.fastest
-        ),
-        false => {
-            "The times of the structures that do not scan all faces, each in its best order, are \
-             equal within the noise"
-                .into()
+    let structure = match largest(&mut by_structure.into_iter()) {
+        Some(largest) => {
+            format!("the structure, each in its best order, by up to {largest}")
         }
+        None => "the structure, each in its best order, makes no clear difference".into(),
     };
-    let larger = match comparison.larger? {
-        Larger::Order => "The effect of the order is larger",
-        Larger::Structure => "The effect of the structure is larger",
-        Larger::Depends => "The larger effect depends on the structure, or is uncertain",
-    };
-    Some(format!("{orders}. {between}. {larger}."))
+    let any_local = comparisons.iter().flat_map(|comparison| &comparison.orders);
+    any_local
+        .filter(|effect| !effect.scans)
+        .count()
+        .gt(&0)
+        .then(|| format!("On structures that do not scan all faces, {order}, and {structure}."))
+}
+
+/// Counts the operations in which the order or the structure has the larger effect.
+fn verdict(comparisons: &[Comparison]) -> Option<String> {
+    let known: Vec<Larger> = comparisons.iter().filter_map(|c| c.larger).collect();
+    let count = |larger: Larger| known.iter().filter(|&&l| l == larger).count();
+    (!known.is_empty()).then(|| {
+        format!(
+            "The order has the larger effect in {} of {}, the structure in {}; in {}, this depends \
+             on the structure, or is uncertain.",
+            count(Larger::Order),
+            counted(known.len(), "operation", "operations"),
+            count(Larger::Structure),
+            count(Larger::Depends)
+        )
+    })
 }
 
 /// Describes the effect of the order on structures that scan.
-fn scan_effect(comparisons: &[Comparison]) -> Option<String> {
+fn scan_effect(comparisons: &[Comparison], shown: &Times<'_>) -> Option<String> {
     let scans = comparisons.iter().flat_map(|comparison| {
         let scans = comparison.orders.iter().filter(|effect| effect.scans);
         scans.map(move |effect| (comparison.operation, effect))
@@ -169,30 +210,23 @@ fn scan_effect(comparisons: &[Comparison]) -> Option<String> {
         let (a, b) = (a.worst_to_best.ratio, b.worst_to_best.ratio);
         a.total_cmp(&b)
     })?;
+    let name = most.backend.as_str();
+    let ratio = shown.ratio(operation, [(name, most.worst), (name, most.best)])?;
     Some(match most.matters {
         true => format!(
             "On structures that scan all faces for each element, the worst order takes at most {} \
-             the time of the best order ({operation} on {}).",
-            times(most.worst_to_best.ratio),
-            most.backend
+             the time of the best order ({operation} on {name}).",
+            times(ratio),
         ),
-        false => "On structures that scan all faces for each element, all orders are equally \
-                  fast, within the noise."
+        false => "On structures that scan all faces for each element, the order makes no clear \
+                  difference."
             .into(),
     })
 }
 
-fn verdict(comparisons: &[Comparison]) -> Option<String> {
-    let known: Vec<Larger> = comparisons.iter().filter_map(|c| c.larger).collect();
-    let count = |larger: Larger| known.iter().filter(|&&l| l == larger).count();
-    let (order, structure) = (count(Larger::Order), count(Larger::Structure));
-    (known.len() > 1).then(|| {
-        format!(
-            "Overall, {} operations were compared. The effect of the order is larger in {order} \
-             operations, and the effect of the structure is larger in {structure}. In {} \
-             operations, the larger effect depends on the structure, or is uncertain.",
-            known.len(),
-            count(Larger::Depends)
-        )
-    })
+fn how_sure(control: &Control) -> Option<String> {
+    Some(format!(
+        "How sure: {}, in the given order.",
+        noise(control)?
+    ))
 }

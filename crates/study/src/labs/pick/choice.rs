@@ -120,7 +120,7 @@ impl Choice {
             false => "has the fewest bytes",
         };
         Some(format!(
-            "Choose {}: {} are equally fast (within 5 %, or not measurably different), and {} \
+            "Choose {}: {} are equally fast (within 5 %, or with no clear difference), and {} \
              {reason} ({per_vertex:.1} per vertex).",
             self.backend,
             list(std::iter::once(&self.backend).chain(&self.equally_fast)),
@@ -140,8 +140,8 @@ impl Choice {
                 times(point.factor)
             ),
             None => format!(
-                "{} stays the fastest even if the weight of any one operation in the mix is \
-                 multiplied by 100.",
+                "No slower backend would be as fast as {} if the weight of any one operation in the \
+                 mix were 100 times its present weight.",
                 self.backend
             ),
         }
@@ -230,7 +230,7 @@ mod tests {
         assert!(
             choice
                 .what_would_change()
-                .contains("if the weight of boundary in the mix were 3.0 × its present weight"),
+                .contains("if the weight of boundary in the mix were 3.00 × its present weight"),
             "{}",
             choice.what_would_change()
         );

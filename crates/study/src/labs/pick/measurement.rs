@@ -7,6 +7,7 @@ use sixfold_core::Counts;
 use sixfold_workload::{Operation, Task, Time, TimedBackend};
 
 use crate::engine::agreement::compare_checksums;
+use crate::engine::corrected::corrected_times;
 use crate::engine::effort::Effort;
 use crate::engine::heap::Memory;
 use crate::engine::machine::Machine;
@@ -176,10 +177,9 @@ impl Evaluation<'_> {
     fn ranking(&self, noise: f64) -> Vec<Ranked> {
         let times: Vec<Vec<(u32, Time)>> =
             self.measured.iter().map(|m| m.samples.clone()).collect();
-        let ranks = rank(&times, noise);
+        let ranks = rank(&times, &corrected_times(&times), noise);
         let rows = self.measured.iter().zip(ranks).filter_map(|(m, rank)| {
             let rank = rank?;
-            let time = Median::from_samples(m.samples.iter().map(|(_, time)| time.ns()))?;
             let build = m.entry(Task::Operation(Operation::Build))?;
             let builds = build.times();
             let build_ns = Median::from_samples(builds.iter().map(|(_, time)| time.ns()))?.value;
@@ -193,13 +193,13 @@ impl Evaluation<'_> {
             Some(Ranked {
                 backend: name.clone(),
                 made_from: made_from.map(str::to_owned),
-                ns_per_operation: time.value,
-                ns_ci_low: time.interval.map(|[low, _]| low),
-                ns_ci_high: time.interval.map(|[_, high]| high),
+                ns_per_operation: rank.time.value,
+                ns_ci_low: rank.time.interval.map(|[low, _]| low),
+                ns_ci_high: rank.time.interval.map(|[_, high]| high),
                 ratio_to_best: rank.ratio.value,
                 ci_low: rank.ratio.interval.map(|[low, _]| low),
                 ci_high: rank.ratio.interval.map(|[_, high]| high),
-                tied_with_best: rank.standing != Standing::Slower,
+                tied_with_best: rank.standing != Some(Standing::Slower),
                 build_ns,
                 first_build_ns: build.first_ns(),
                 bytes: *bytes,

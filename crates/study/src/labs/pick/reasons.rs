@@ -1,10 +1,12 @@
 //! The result of a pick and its reasons, as sentences.
 
 use crate::engine::statistics::MIN_SAMPLES;
+use crate::engine::warnings::machine_warnings;
 use crate::labs::pick::choice::Choice;
 use crate::labs::pick::report::{PartCost, PickReport, ProgramReport, Ranked};
-use crate::numbers::{counted, duration, grouped, list, times};
+use crate::numbers::{counted, duration, figure, grouped, list, times};
 use crate::packages;
+use crate::results::rows::Samples;
 
 /// Returns sentences about the fastest backend, the reasons, the break-even and the packages.
 pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
@@ -13,6 +15,7 @@ pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
     };
     let chosen = report.choice.as_ref();
     let used = chosen.and_then(|c| report.ranking.iter().find(|r| r.backend == c.backend));
+    let used = used.unwrap_or(best);
     let mut sentences = vec![fastest(report, best)];
     sentences.extend(chosen.and_then(|choice| choice.rule(&report.ranking)));
     sentences.extend(
@@ -24,14 +27,16 @@ pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
     sentences.extend(dominant_part(report, best));
     sentences.extend(largest_loss(report, best));
     sentences.extend(tables(report, best));
-    sentences.extend(one_use_with_building(report, best));
-    sentences.push(packages_to_add(used.unwrap_or(best)));
+    sentences.extend(one_use_with_building(report, used));
+    sentences.push(packages_to_add(used));
     sentences
 }
 
 /// Returns warnings about noise, few rounds, a busy machine and wrong results.
 pub(crate) fn warnings(report: &PickReport) -> Vec<String> {
-    let mut warnings = crate::engine::warnings::machine_warnings(&report.run);
+    let by_mesh = report.by_mesh.iter().flat_map(|of_mesh| &of_mesh.samples);
+    let samples: Vec<&Samples> = report.samples.iter().chain(by_mesh).collect();
+    let mut warnings = machine_warnings(&report.run, &samples);
     let more = report.run.settings.more_samples();
     if let Some(noise) = report.noise.filter(|&noise| noise > 1.05) {
         warnings.push(format!(
@@ -87,12 +92,12 @@ fn fastest(report: &PickReport, best: &Ranked) -> String {
             .ci_low
             .zip(next.ci_high)
             .map_or(String::new(), |(low, high)| {
-                format!(" (95 %: {} to {})", precise(low), precise(high))
+                format!(" (95 %: {} to {})", figure(low), figure(high))
             });
         format!(
             "; {} takes {} that time{sure}",
             name(next),
-            times(next.ratio_to_best)
+            times(next.shown_ratio(best))
         )
     });
     let answer = match report.preliminary {
@@ -108,15 +113,6 @@ fn fastest(report: &PickReport, best: &Ranked) -> String {
             "{answer} {workload}, {} are tied: {each} per {unit}{next}.",
             list(std::iter::once(&name(best)).chain(tied))
         ),
-    }
-}
-
-/// Formats a ratio with three digits: `1.04`, `12.3`, `123`.
-fn precise(ratio: f64) -> String {
-    match ratio {
-        r if r < 10.0 => format!("{r:.2}"),
-        r if r < 100.0 => format!("{r:.1}"),
-        r => grouped(r.round() as usize),
     }
 }
 
@@ -191,12 +187,13 @@ fn tables(report: &PickReport, best: &Ranked) -> Option<String> {
         "Relation tables take {1} the time of the fastest backend. The tables contain only the \
          queried relations, and are made once from {0}.",
         tables.made_from.as_deref().unwrap_or_default(),
-        times(tables.ratio_to_best)
+        times(tables.shown_ratio(best))
     ))
 }
 
-/// Describes the fastest backend for one use of the mesh, building included.
-fn one_use_with_building(report: &PickReport, best: &Ranked) -> Option<String> {
+/// Describes the backend with the least time for one use of the mesh, building included. `used` is
+/// the choice for many uses.
+fn one_use_with_building(report: &PickReport, used: &Ranked) -> Option<String> {
     let operations = report.operations;
     let total = |ranked: &Ranked| {
         // A program already has an indexed face set.
@@ -211,21 +208,21 @@ fn one_use_with_building(report: &PickReport, best: &Ranked) -> Option<String> {
         .iter()
         .min_by(|a, b| total(a).total_cmp(&total(b)))?;
     let unit = report.unit();
-    let used = counted(operations.round() as usize, unit, &format!("{unit}s"));
+    let amount = counted(operations.round() as usize, unit, &format!("{unit}s"));
     let cost = duration(total(least));
-    Some(match least.backend == best.backend {
+    Some(match least.backend == used.backend {
         true => format!(
-            "If the time to build is included, {} is still fastest for one use of the mesh \
-             ({used}): {cost} in total.",
-            name(best)
+            "{} also takes the least time for one use of the mesh ({amount}), building included: \
+             {cost} in total.",
+            name(used)
         ),
         false => format!(
-            "If the time to build is included, {} is fastest for one use of the mesh \
-             ({used}): {cost} in total, compared with {} on {}. The input is already an \
-             indexed face set, so the time to build this structure counts as 0.",
+            "For a single use of the mesh ({amount}), choose {} instead: building included, it takes \
+             {cost} in total, and {} takes {}. The input is already an indexed face set, so the \
+             time to build this structure counts as 0.",
             name(least),
-            duration(total(best)),
-            name(best)
+            name(used),
+            duration(total(used)),
         ),
     })
 }

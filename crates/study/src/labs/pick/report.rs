@@ -6,7 +6,7 @@ use sixfold_workload::{Action, Asked, Workload};
 use crate::engine::timer::Timer;
 use crate::labs::pick::choice::Choice;
 use crate::labs::pick::needs::Need;
-use crate::numbers::grouped;
+use crate::numbers::{grouped, shown_ratio};
 use crate::results::figure::{Figure, FigureRow, Status, samples_of};
 use crate::results::finding::{Common, LabFinding, Meshes};
 use crate::results::read::ReadError;
@@ -184,6 +184,12 @@ pub struct PartCost {
 }
 
 impl Ranked {
+    /// Returns the quotient of the shown times of this backend and of `other`, for tables and
+    /// sentences that show the times.
+    pub fn shown_ratio(&self, other: &Self) -> f64 {
+        shown_ratio(self.ns_per_operation, other.ns_per_operation)
+    }
+
     /// Returns the time to build in fresh memory pages. If this time was not measured, returns
     /// [`Self::build_ns`].
     pub fn first_build_ns(&self) -> f64 {
@@ -318,7 +324,7 @@ impl PickReport {
             (false, false) => Status::Measured,
         };
         let figure = |row: FigureRow<'r>| {
-            let samples = samples_of(samples, &row.operation, row.backend);
+            let samples = samples_of(samples, "", &row.operation, row.backend);
             let count = samples.map_or(0, |samples| samples.rounds.len());
             let row = FigureRow {
                 samples: row.samples.max(count),
@@ -328,7 +334,7 @@ impl PickReport {
                 case: self.workload.name.clone(),
                 samples,
                 noise,
-                ..Figure::new(mesh, Some(ranked.bytes), row)
+                ..Figure::new(Some(mesh), Some(ranked.bytes), row)
             }
         };
         let row = |operation: &str, unit: &str, ns: f64| FigureRow {

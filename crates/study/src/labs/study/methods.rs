@@ -2,6 +2,7 @@
 
 use sixfold::subdivision::Method;
 
+use crate::numbers::{shown_ratio, times};
 use crate::results::rows::{BackendReport, ResultRow};
 use sixfold_workload::Operation;
 
@@ -14,7 +15,11 @@ const ASSUMED_ERROR: f64 = 1.5;
 struct MeasuredTime {
     low: f64,
     ns: f64,
+    /// The time per element, which the table shows.
+    each_ns: f64,
     high: f64,
+    /// Whether the time is an estimate: a lower bound.
+    bound: bool,
 }
 
 impl MeasuredTime {
@@ -23,24 +28,23 @@ impl MeasuredTime {
         Some(Self {
             low: row.ci_low_ns.unwrap_or(ns / ASSUMED_ERROR),
             ns,
+            each_ns: ns / row.elements.filter(|&n| n > 0)? as f64,
             high: row.ci_high_ns.unwrap_or(ns * ASSUMED_ERROR),
+            bound: row.median_ns.is_none(),
         })
     }
 
-    /// Returns the ratio of this time to `other` if this time is clearly longer.
-    fn ratio_if_longer(self, other: Self) -> Option<f64> {
-        let ratio = self.ns / other.ns;
-        (self.low > other.high && ratio > MIN_RATIO).then_some(ratio)
+    /// Returns the ratio of this time to `other`, and its text, if this time is clearly longer.
+    fn ratio_if_longer(self, other: Self) -> Option<(f64, String)> {
+        let ratio = shown_ratio(self.each_ns, other.each_ns);
+        let bound = if self.bound { "≥ " } else { "" };
+        let longer = self.low > other.high && !other.bound && ratio > MIN_RATIO;
+        longer.then(|| (ratio, format!("{bound}{}", times(ratio))))
     }
 }
 
-/// Returns one sentence per scheme about the fastest method on each structure. `times` formats a
-/// ratio.
-pub(crate) fn methods(
-    backends: &[BackendReport],
-    results: &[ResultRow],
-    times: fn(f64) -> String,
-) -> Vec<String> {
+/// Returns one sentence per scheme about the fastest method on each structure.
+pub(crate) fn methods(backends: &[BackendReport], results: &[ResultRow]) -> Vec<String> {
     let time_of = |operation: Operation, backend: &BackendReport| {
         let mut rows = results.iter();
         let row = rows.find(|row| row.operation == operation && row.backend == backend.name);
@@ -53,7 +57,7 @@ pub(crate) fn methods(
             (Vec::new(), Vec::new(), Vec::new());
         for backend in backends {
             let [gather, scatter, own] = Method::ALL.map(|method| time_of(by(method), backend));
-            let phrase = |ratio: f64| (ratio, format!("{} ({})", backend.name, times(ratio)));
+            let phrase = |(ratio, text)| (ratio, format!("{} ({text})", backend.name));
             if let (Some(gather), Some(scatter)) = (gather, scatter) {
                 scatter_faster.extend(gather.ratio_if_longer(scatter).map(phrase));
                 scatter_slower.extend(scatter.ratio_if_longer(gather).map(phrase));

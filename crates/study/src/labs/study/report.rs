@@ -5,7 +5,8 @@ use sixfold_workload::Operation;
 
 use crate::engine::control::noise;
 use crate::engine::timer::Timer;
-use crate::results::figure::{Figure, FigureRow, samples_of};
+use crate::numbers::shown_ratio;
+use crate::results::figure::{Figure, figures_of};
 use crate::results::finding::{Common, LabFinding, Meshes};
 use crate::results::read::ReadError;
 use crate::results::rows::{
@@ -34,8 +35,12 @@ pub struct Report {
     /// The noise: the difference between two measurements of one backend. `None` if no backend was
     /// measured twice.
     pub control: Option<Control>,
-    /// Sentences that describe the main results.
+    /// The answer in at most three sentences: which backend is fastest for what, by how much, and how
+    /// sure this is.
     pub sentences: Vec<String>,
+    /// Sentences about single results: the subdivision methods, and merged vertices.
+    #[serde(default)]
+    pub notes: Vec<String>,
     /// Sentences about possible faults of the measurement and their remedies.
     pub warnings: Vec<String>,
     /// The times of all samples.
@@ -52,6 +57,15 @@ impl Report {
         self.results
             .iter()
             .filter(move |row| row.operation == operation)
+    }
+
+    /// Returns the ratio of a result to the fastest backend of the operation, as the quotient of the
+    /// shown times per element. `None` if the result is not ranked.
+    pub fn shown_ratio(&self, row: &ResultRow) -> Option<f64> {
+        row.ratio_to_best?;
+        let mut rows = self.rows(row.operation);
+        let best = rows.find(|row| row.ratio_to_best == Some(1.0))?;
+        Some(shown_ratio(row.ns_per_element?, best.ns_per_element?))
     }
 
     /// Iterates over the wrong results of Sixfold's structures: the checksum differs, for no known
@@ -98,19 +112,15 @@ impl LabFinding for Report {
         Self::mismatches(self).count()
     }
 
-    fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
-        let figure = |row: FigureRow<'s>, noise| Figure {
-            samples: samples_of(&self.samples, &row.operation, row.backend),
-            noise,
-            ..Figure::new(&self.mesh, bytes_of(&self.backends, row.backend), row)
-        };
-        let timed = self.results.iter().map(|row| {
-            let noise = noise(self.control.as_ref(), row.operation);
-            figure(FigureRow::of_result(row), noise)
-        });
-        let refused = self.refusals.iter();
-        let refused = refused.map(|refusal| figure(FigureRow::of_refusal(refusal), 1.0));
-        timed.chain(refused).collect()
+    fn figures(&self) -> Vec<Figure<'_>> {
+        figures_of(
+            Some(&self.mesh),
+            &self.results,
+            &self.refusals,
+            &self.samples,
+            |backend| bytes_of(&self.backends, backend),
+            |operation| noise(self.control.as_ref(), operation),
+        )
     }
 
     fn check(&self) -> Result<(), ReadError> {

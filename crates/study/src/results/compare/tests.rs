@@ -40,6 +40,7 @@ fn report(factor: impl Fn(&str, Operation) -> f64) -> Report {
             .map(|i| base * (1.0 + 0.005 * f64::from(i - 4)))
             .collect();
         Samples {
+            case: String::new(),
             backend: row.backend.clone(),
             operation: row.operation.name().into(),
             control: false,
@@ -320,7 +321,7 @@ fn other_labs_are_compared_and_nothing_in_common_is_an_error() {
     let mut slower = orders.clone();
     slower.samples.clear();
     for row in &mut slower.results {
-        row.row.median_ns = row.row.median_ns.map(|ns| 10.0 * ns);
+        row.median_ns = row.median_ns.map(|ns| 10.0 * ns);
     }
     let document = Results::from(orders.clone());
     let changes = compare(&document, &slower.into(), CompareSettings::default()).expect("common");

@@ -54,6 +54,7 @@ fn report(mesh: &str, ratio: f64) -> Report {
 /// Gives each result three samples, and one result the samples of a control.
 fn with_samples(mut report: Report) -> Report {
     let samples = |backend: &str, control: bool| Samples {
+        case: String::new(),
         backend: backend.into(),
         operation: "boundary".into(),
         control,
@@ -295,7 +296,7 @@ fn text_that_is_no_document_is_refused() {
         ("{\"schema\": 99}", "schema 99"),
         (
             "{\"schema\": 1, \"results\": []}",
-            "schema 2: measure again",
+            "schemas 2 to 3: measure again",
         ),
         ("{\"schema\": 2, \"rows\": []}", "has no findings"),
         ("{\"schema\": 2, \"findings\": []}", "missing field"),

@@ -1,0 +1,88 @@
+//! Times of several backends, corrected for the drift of the machine.
+//!
+//! The speed of the machine changes from round to round, and not every backend takes part in every
+//! round. So the median of the samples of one backend depends on the rounds in which it took part,
+//! and the quotient of two medians is not the median of the quotients. Here all times of a task come
+//! from one model:
+//!
+//! ```text
+//! ln time = round + backend + residual
+//! ```
+//!
+//! Median polish (Tukey 1977) fits the effects of the rounds and of the backends: it subtracts the
+//! median of the residuals of each round, then of each backend, until they are 0. Medians ignore
+//! single disturbed samples. The time of a backend is the exponential of its effect and of the
+//! median effect of the rounds. So the ratio of two backends is the quotient of their times.
+
+use crate::engine::measure::Entry;
+use crate::engine::statistics::median;
+use sixfold_workload::Time;
+
+/// Maximum number of passes over the rounds and the backends.
+const MAX_PASSES: usize = 50;
+/// Effects that change by less than this, relative to the time, do not change the result.
+const NEGLIGIBLE: f64 = 1e-12;
+
+/// Returns the corrected time of each entry. Entries of the same task must be adjacent.
+pub(crate) fn corrected_entries(entries: &[Entry]) -> Vec<Option<f64>> {
+    let tasks = entries.chunk_by(|a, b| a.job.task == b.job.task);
+    let times = tasks.map(|group| group.iter().map(Entry::times).collect::<Vec<_>>());
+    times.flat_map(|times| corrected_times(&times)).collect()
+}
+
+/// Returns the time of each backend in nanoseconds, corrected for the effects of the rounds; `None`
+/// for a backend without samples. Each sample has the number of its round.
+///
+/// If a sample is not positive, its logarithm does not exist, and the result has the medians of the
+/// samples. O(passes · samples · log samples).
+pub(crate) fn corrected_times(backends: &[Vec<(u32, Time)>]) -> Vec<Option<f64>> {
+    let all = || backends.iter().flatten();
+    if all().any(|(_, time)| time.ns() <= 0.0 || !time.ns().is_finite()) {
+        let times = |samples: &Vec<(u32, Time)>| samples.iter().map(|(_, t)| t.ns()).collect();
+        return backends.iter().map(|b| median(times(b))).collect();
+    }
+    let mut rounds: Vec<u32> = all().map(|&(round, _)| round).collect();
+    rounds.sort_unstable();
+    rounds.dedup();
+    let row = |round: u32| rounds.partition_point(|&known| known < round);
+    let logs: Vec<Vec<(usize, f64)>> = backends
+        .iter()
+        .map(|samples| {
+            samples
+                .iter()
+                .map(|(r, time)| (row(*r), time.ns().ln()))
+                .collect()
+        })
+        .collect();
+    let mut of_round = vec![0.0; rounds.len()];
+    let mut of_backend: Vec<Option<f64>> = vec![None; backends.len()];
+    for _ in 0..MAX_PASSES {
+        let mut moved = 0.0_f64;
+        for (effect, samples) in of_backend.iter_mut().zip(&logs) {
+            let residuals = samples
+                .iter()
+                .map(|&(row, log)| log - of_round[row])
+                .collect();
+            let fitted = median(residuals);
+            moved = moved.max((fitted.unwrap_or(0.0) - effect.unwrap_or(0.0)).abs());
+            *effect = fitted;
+        }
+        let mut residuals: Vec<Vec<f64>> = vec![Vec::new(); rounds.len()];
+        for (effect, samples) in of_backend.iter().zip(&logs) {
+            for &(row, log) in samples {
+                residuals[row].extend(effect.map(|effect| log - effect));
+            }
+        }
+        for (effect, residuals) in of_round.iter_mut().zip(residuals) {
+            *effect = median(residuals).unwrap_or(0.0);
+        }
+        if moved < NEGLIGIBLE {
+            break;
+        }
+    }
+    let typical = median(of_round).unwrap_or(0.0);
+    of_backend
+        .into_iter()
+        .map(|effect| Some((effect? + typical).exp()))
+        .collect()
+}
