@@ -82,11 +82,11 @@ mod tests {
         let expected = [
             "0",
             "<.001",
-            "0.052",
+            "0.0521",
             "7.00",
             "999",
             "1,000",
-            "60,480",
+            "60,500",
             "3,630,000",
         ];
         assert_eq!(numbers.map(short_figure), expected);

@@ -3,10 +3,10 @@
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use comfy_table::{Attribute, Cell, CellAlignment};
+use comfy_table::Cell;
 use sixfold_study::{
     Fit, GrowthError, GrowthReport, GrowthSettings, Operation, ResultRow, SCALABLE_SHAPES,
-    ScalableShape, Settings, SizeReport, Slope, Standing, StudyError,
+    ScalableShape, Settings, SizeReport, Slope, StudyError,
 };
 
 use crate::arguments::{GROWTH_EXAMPLES, Growth};
@@ -14,8 +14,9 @@ use crate::failure::Failure;
 use crate::free_memory::check_free_memory;
 use crate::left_out::refusal_notes;
 use crate::measure::{Session, warn_of_debug_build, with_command};
-use crate::orders::{default_operations, short_figure};
+use crate::orders::default_operations;
 use crate::progress::Bar;
+use crate::signs::{Signs, right};
 use crate::study::{name_lists, print_end};
 use crate::tables::{stacked, styled, unbroken};
 use crate::text::{TextOutput, hanging_indent};
@@ -110,37 +111,41 @@ pub(crate) fn help() -> String {
 
 /// Prints the results, which follow [`print_before_measuring`].
 fn print(report: &GrowthReport, text: &mut TextOutput) {
+    text.print_line("");
+    text.print_answer(&report.sentences);
+    let mut signs = Signs::new("fastest at this size", text.bold());
     let operations = report.sizes.first().map_or(&[][..], |size| &size.results);
     for rows in operations.chunk_by(|a, b| a.operation == b.operation) {
+        text.print_line(&table(report, rows[0].operation, &mut signs));
         text.print_line("");
-        text.print_line(&table(report, rows[0].operation, text.bold()));
     }
     if !report.sizes.is_empty() {
+        for part in LEGEND {
+            signs.explain(part);
+        }
+        text.print_line(&signs.legend());
         text.print_line("");
-        text.print_line(&hanging_indent("", LEGEND));
     }
     if !report.cache_limits.is_empty() {
-        text.print_line("");
         text.print_line(&cache_table(report, text.bold()));
+        text.print_line("");
     }
-    text.print_line("");
     let rows = report.sizes.iter().flat_map(|size| &size.results);
     let samples = rows.map(|row| row.samples);
-    let (sentences, warnings) = (&report.sentences, &report.warnings);
     let notes = refusal_notes(report.sizes.iter().flat_map(|size| &size.refusals));
-    print_end(sentences, warnings, notes, &report.run, samples, text);
+    print_end(&report.warnings, notes, &report.run, samples, text);
 }
 
-const LEGEND: &str = "Each cell has the ns per element, and the smallest cache that can hold the \
-    structure (– if no known cache is large enough). * fastest at this size; = tied with the \
-    fastest; ~ measured on a sample of the elements; ? estimated, not run. power: the exponent p \
-    if the total time is proportional to F^p for F faces, ± standard error. in cache: the power \
-    for the sizes that fit into the last cache. beyond: the power for the larger sizes.";
+const LEGEND: [&str; 3] = [
+    "L1 to L3: smallest cache that can hold the structure, – if none can",
+    "power: exponent p if the total time is proportional to F^p for F faces, ± standard error",
+    "in cache, beyond: power for the sizes that fit into the last cache, and for the larger ones",
+];
 
 /// Returns the table with a row per size and fitted line, and a column per backend.
-fn table(report: &GrowthReport, operation: Operation, bold: bool) -> String {
+fn table(report: &GrowthReport, operation: Operation, signs: &mut Signs) -> String {
     stacked(&report.backends, |backends| {
-        table_of_backends(report, operation, backends, bold)
+        table_of_backends(report, operation, backends, signs)
     })
 }
 
@@ -149,21 +154,21 @@ fn table_of_backends(
     report: &GrowthReport,
     operation: Operation,
     backends: &[String],
-    bold: bool,
+    signs: &mut Signs,
 ) -> String {
     let mut header = vec![Cell::new(format!(
         "{operation}\nns per {}",
         operation.unit()
     ))];
     header.extend(backends.iter().map(|name| right(name.replace('-', "\n"))));
-    let mut table = unbroken(header, bold);
+    let mut table = unbroken(header, signs.is_bold());
     for size in &report.sizes {
         let faces = counted(size.faces, "face", "faces");
         let mut line = vec![right(faces)];
         line.extend(backends.iter().map(|name| {
             let mut rows = size.results.iter();
             let row = rows.find(|r| r.backend == *name && r.operation == operation);
-            row.map_or_else(|| right("–".into()), |row| cell(size, row, bold))
+            row.map_or_else(|| right("–"), |row| cell(size, row, signs))
         }));
         table.add_row(line);
     }
@@ -203,34 +208,13 @@ fn power(slope: Option<Slope>) -> String {
     }
 }
 
-fn right(text: String) -> Cell {
-    Cell::new(text).set_alignment(CellAlignment::Right)
-}
-
-/// Formats a cell such as `24.9 L2*`: ns per element, the cache that can hold the structure, and a
-/// sign.
-fn cell(size: &SizeReport, row: &ResultRow, bold: bool) -> Cell {
-    let time = match (row.ns_per_element, row.estimated_ns, row.elements) {
-        (Some(each), ..) => Some((if row.sampled { "~" } else { "" }, each)),
-        (None, Some(ns), Some(elements)) => Some(("?", ns / elements.max(1) as f64)),
-        _ => None,
-    };
-    let Some((sign, each)) = time else {
-        return right("–".into());
-    };
+/// Returns a cell such as `*24.9 L2`: ns per element, and the cache that can hold the structure.
+fn cell(size: &SizeReport, row: &ResultRow, signs: &mut Signs) -> Cell {
     let weight = size.backend_bytes.iter().find(|w| w.backend == row.backend);
     let cache = weight.and_then(|weight| weight.fits_in);
     let cache = cache.map_or(" –".into(), |level| format!("L{level}"));
-    let standing = match row.standing {
-        Some(Standing::Best) => '*',
-        Some(Standing::Tied) => '=',
-        _ => ' ',
-    };
-    let cell = right(format!("{sign}{} {cache}{standing}", short_figure(each)));
-    match bold && standing == '*' {
-        true => cell.add_attribute(Attribute::Bold),
-        false => cell,
-    }
+    let text = format!("{} {cache}", signs.figure(row));
+    signs.cell(text)
 }
 
 /// Returns the table of the face counts at which structures outgrow caches.

@@ -6,24 +6,33 @@ use sixfold_study::{Refusal, Report, ResultRow};
 /// Explains why figures of a study are missing or only estimated.
 pub(crate) fn left_out_notes(report: &Report) -> Vec<String> {
     let mut notes = refusal_notes(&report.refusals);
-    notes.extend(report.results.iter().filter_map(not_run_note));
+    notes.extend(not_run_notes(&report.results));
     notes
 }
 
-/// Explains why an operation is only estimated.
-fn not_run_note(row: &ResultRow) -> Option<String> {
-    let time = duration(row.estimated_ns?);
-    let ResultRow {
-        backend, operation, ..
-    } = row;
-    let remedy = match row.by_name_only {
-        true => "name it in --operations",
-        false => "increase --budget",
+/// Lists the operations that are only estimated, one note for each remedy.
+fn not_run_notes(results: &[ResultRow]) -> Vec<String> {
+    let remedies = [
+        (true, "name them in --operations"),
+        (false, "use a longer --budget"),
+    ];
+    let note = |(by_name_only, remedy)| {
+        let rows = results
+            .iter()
+            .filter(|row| row.by_name_only == by_name_only);
+        let rows: Vec<&ResultRow> = rows.filter(|row| row.estimated_ns.is_some()).collect();
+        let longest = rows.iter().filter_map(|row| row.estimated_ns);
+        let longest = longest.max_by(f64::total_cmp)?;
+        let places = rows
+            .iter()
+            .map(|row| (row.operation.name(), row.backend.as_str()));
+        Some(format!(
+            "≥ not run, because one run would take {} or more: {}. To run them, {remedy}.",
+            duration(longest),
+            grouped_places(places)
+        ))
     };
-    Some(format!(
-        "? {operation} on {backend} was not run: one run would take about {time}. To run this \
-         operation, {remedy}."
-    ))
+    remedies.into_iter().filter_map(note).collect()
 }
 
 /// Lists the reasons for missing figures, one line per reason. Reasons that differ only in numbers
@@ -42,21 +51,23 @@ pub(crate) fn refusal_notes<'r>(refusals: impl IntoIterator<Item = &'r Refusal>)
         }
     }
     let line = |(_, same): (String, Vec<&Refusal>)| {
-        format!("– {}: {}", left_out_operations(&same), same[0].reason)
+        let places = same
+            .iter()
+            .map(|r| (r.operation.name(), r.backend.as_str()));
+        format!("– {}: {}", grouped_places(places), same[0].reason)
     };
     reasons.into_iter().map(line).collect()
 }
 
-/// Lists the operations of one reason, such as `loop_native, loop_gather on half-edge; flip_all on
+/// Lists operations and their backends, such as `loop_native, loop_gather on half-edge; flip_all on
 /// polygon-soup`.
-fn left_out_operations(refusals: &[&Refusal]) -> String {
+fn grouped_places<'p>(places: impl Iterator<Item = (&'p str, &'p str)>) -> String {
     let mut backends: Vec<(&str, Vec<&str>)> = Vec::new();
-    for refusal in refusals {
-        let operation = refusal.operation.name();
-        match backends.iter_mut().find(|(b, _)| *b == refusal.backend) {
+    for (operation, backend) in places {
+        match backends.iter_mut().find(|(known, _)| *known == backend) {
             Some((_, operations)) if operations.contains(&operation) => {}
             Some((_, operations)) => operations.push(operation),
-            None => backends.push((&refusal.backend, vec![operation])),
+            None => backends.push((backend, vec![operation])),
         }
     }
     let mut groups: Vec<(Vec<&str>, Vec<&str>)> = Vec::new();

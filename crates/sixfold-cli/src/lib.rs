@@ -82,6 +82,7 @@ mod repair;
 mod reshape;
 mod results_table;
 mod schemes;
+mod signs;
 mod study;
 mod subdivide;
 mod tables;

@@ -255,7 +255,7 @@ mod tests {
         let table = bytes_table(&audit);
         let row = table.lines().find(|line| line.starts_with("half-edge"));
         let cells: Vec<&str> = row.expect("a row").split_whitespace().collect();
-        assert_eq!(cells, ["half-edge", "0", "0.000", "24.0", "0", "–"]);
+        assert_eq!(cells, ["half-edge", "0", "0", "24.0", "0", "–"]);
         // 24 half-edges of 12 bytes, 8 vertices of 16 bytes, and 6 faces.
         let tables = tables_text(&audit);
         let sum = "half-edge  positions 96 + leaving 32 + halves 288 + first 24";

@@ -3,11 +3,10 @@
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use comfy_table::{Attribute, Cell, CellAlignment, Table};
+use comfy_table::{Cell, Table};
 use sixfold::shapes::Order;
 use sixfold_study::{
-    Agreement, Comparison, DEFAULT_OPERATIONS, OrderRow, OrdersReport, Settings, Standing,
-    StudyError, StudyMesh,
+    Comparison, DEFAULT_OPERATIONS, OrdersReport, ResultRow, Settings, StudyError, StudyMesh,
 };
 
 use crate::arguments::{ORDERS_EXAMPLES, Orders};
@@ -18,10 +17,11 @@ use crate::left_out::refusal_notes;
 use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::progress::Bar;
+use crate::signs::{Signs, right};
 use crate::study::{name_lists, print_end};
 use crate::tables::styled;
 use crate::text::{TextOutput, hanging_indent};
-use sixfold_study::numbers::figure;
+use sixfold_study::numbers::{figure, shown_ratio};
 
 pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     let mesh = arguments.mesh.as_deref();
@@ -78,106 +78,58 @@ pub(crate) fn default_operations() -> String {
 }
 
 fn print(report: &OrdersReport, text: &mut TextOutput) {
+    text.print_line("");
+    text.print_answer(&report.sentences);
+    let mut signs = Signs::new("best order of the structure", text.bold());
     for comparison in &report.comparisons {
-        let rows: Vec<&OrderRow> = report.rows(comparison.operation).collect();
+        let rows: Vec<&ResultRow> = report.rows(comparison.operation).collect();
         if !rows.is_empty() {
+            text.print_line(&table(comparison, &rows, &mut signs));
             text.print_line("");
-            text.print_line(&table(comparison, &rows, text.bold()));
         }
     }
+    signs.explain("second figure: ratio to the best order of the structure");
+    signs.explain("worst: ratio of the worst order to the best, – without a clear difference");
+    text.print_line(&signs.legend());
     text.print_line("");
-    text.print_line(&hanging_indent("", LEGEND));
-    text.print_line("");
-    let samples = report.results.iter().map(|row| row.row.samples);
-    let (sentences, warnings) = (&report.sentences, &report.warnings);
+    let samples = report.results.iter().map(|row| row.samples);
     let notes = refusal_notes(&report.refusals);
-    print_end(sentences, warnings, notes, &report.run, samples, text);
+    print_end(&report.warnings, notes, &report.run, samples, text);
 }
 
-const LEGEND: &str = "Each cell has the ns per element, and the ratio to the best order of the \
-    backend. * best order of the backend; = tied with the best order; ~ measured on a sample of \
-    the elements; ? estimated, not run; m the backend merges vertices at one position; \
-    e the backend refuses edits that other backends accept; ! WRONG: the result differs from the \
-    other results. worst/best: time in the worst order, divided by the time in the best \
-    order (– if the difference is within the noise).";
-
-/// Returns the table with a row per backend and a column per order.
-fn table(comparison: &Comparison, rows: &[&OrderRow], bold: bool) -> String {
+/// Returns the table with a row per structure and a column per order.
+fn table(comparison: &Comparison, rows: &[&ResultRow], signs: &mut Signs) -> String {
     let operation = comparison.operation;
     let first = format!("{operation}\nns per {}", operation.unit());
-    let orders = Order::ALL.map(|order| right(order.name().to_owned()));
+    let orders = Order::ALL.map(|order| right(order.name()));
     let mut header = vec![Cell::new(first)];
     header.extend(orders);
-    header.push(right("worst/best".into()));
-    let mut table: Table = styled(header, bold);
-    for backend_rows in rows.chunk_by(|a, b| a.row.backend == b.row.backend) {
-        let backend = &backend_rows[0].row.backend;
+    header.push(right("worst"));
+    let mut table: Table = styled(header, signs.is_bold());
+    for backend_rows in rows.chunk_by(|a, b| a.backend == b.backend) {
+        let backend = &backend_rows[0].backend;
+        let each: Vec<f64> = backend_rows
+            .iter()
+            .filter_map(|row| row.ns_per_element)
+            .collect();
+        let [best, worst] = [f64::min, f64::max].map(|of| each.iter().copied().reduce(of));
         let mut line = vec![Cell::new(backend)];
         for order in Order::ALL {
-            let row = backend_rows.iter().find(|row| row.order == order);
-            line.push(row.map_or_else(|| right("–".into()), |row| cell(row, bold)));
+            let row = backend_rows.iter().find(|row| row.case == order.name());
+            let text = row.map_or("–".into(), |row| {
+                let ratio = row.ns_per_element.zip(best);
+                let ratio = ratio.map(|(each, best)| figure(shown_ratio(each, best)));
+                format!("{} {:>5}", signs.figure(row), ratio.unwrap_or_default())
+            });
+            line.push(signs.cell(text));
         }
         let effect = comparison.orders.iter().find(|e| e.backend == *backend);
-        line.push(right(match effect {
-            Some(effect) if effect.matters => format!("{:.2}×", effect.worst_to_best.ratio),
-            _ => "–".into(),
-        }));
+        let matters = effect.is_some_and(|effect| effect.matters);
+        let largest = worst.zip(best).filter(|_| matters);
+        line.push(right(largest.map_or("–".into(), |(worst, best)| {
+            figure(shown_ratio(worst, best))
+        })));
         table.add_row(line);
     }
     table.trim_fmt()
-}
-
-fn right(text: String) -> Cell {
-    Cell::new(text).set_alignment(CellAlignment::Right)
-}
-
-/// Formats a cell such as `24.9 1.52× `: ns per element, the ratio to the best order, and a sign.
-fn cell(OrderRow { row, .. }: &OrderRow, bold: bool) -> Cell {
-    let time = match (row.ns_per_element, row.estimated_ns, row.elements) {
-        (Some(each), ..) => Some((if row.sampled { "~" } else { "" }, each)),
-        (None, Some(ns), Some(elements)) => Some(("?", ns / elements.max(1) as f64)),
-        _ => None,
-    };
-    let Some((sign, each)) = time else {
-        return right("–".into());
-    };
-    let ratio = row.ratio_to_best.map(|ratio| format!("{ratio:.2}×"));
-    let standing = match row.standing {
-        Some(Standing::Best) => '*',
-        Some(Standing::Tied) => '=',
-        _ => ' ',
-    };
-    let note = match row.agreement {
-        Agreement::Mismatch => "!",
-        Agreement::Merged => "m",
-        Agreement::OtherEdits => "e",
-        _ => "",
-    };
-    let (each, ratio) = (short_figure(each), ratio.unwrap_or_default());
-    let cell = right(format!("{sign}{each} {ratio:>5}{standing}{note}"));
-    match bold && standing == '*' {
-        true => cell.add_attribute(Attribute::Bold),
-        false => cell,
-    }
-}
-
-/// Formats a figure in at most six characters.
-pub(crate) fn short_figure(number: f64) -> String {
-    match number {
-        n if n >= 99_999.5 => format!("{n:.1e}"),
-        n => figure(n),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn large_figures_stay_short() {
-        assert_eq!(
-            [4.126, 41_234.5, 123_456.0].map(short_figure),
-            ["4.13", "41,235", "1.2e5"]
-        );
-    }
 }

@@ -4,20 +4,20 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use comfy_table::{Cell, CellAlignment};
 use sixfold_study::{
-    BreakEven, ElementKind, OwnBytes, OwnData, Part, PickReport, PickSettings, Prediction,
-    ProgramSettings, Ranked, StudyMesh, Suite, Trace, Workload,
+    BreakEven, ElementKind, FEWEST_OF_A_WINNER, OwnBytes, OwnData, Part, PickReport, PickSettings,
+    Prediction, ProgramSettings, Ranked, StudyMesh, Suite, Trace, Workload,
 };
 
 use crate::arguments::{Pick, ReadFiles};
+use crate::column_table::{Column, column_table};
 use crate::failure::Failure;
 use crate::load;
 use crate::many::{Mesh, find_meshes};
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::programs::{self, Limits, default_memory_limit};
 use crate::progress::Bar;
-use crate::tables::table;
+use crate::signs::Signs;
 use crate::text::{TextOutput, hanging_indent, print_stderr, sanitize};
 use crate::workloads::workload;
 use sixfold_study::numbers::{counted, duration, figure, grouped};
@@ -229,133 +229,108 @@ fn predicted_lines(prediction: &Prediction, of: &str) -> Vec<(&'static str, Stri
         );
         lines.push(("Scans:    ", text));
     }
-    for excluded in &prediction.excluded {
-        let text = format!("{}: {}", excluded.backend, sanitize(&excluded.reason));
-        lines.push(("Excluded: ", text));
-    }
     lines
 }
 
 /// Prints the results, which follow [`print_before_measuring`].
 pub(crate) fn print(report: &PickReport, text: &mut TextOutput) {
+    let (answer, reasons) = report.sentences.split_at(report.sentences.len().min(1));
+    text.print_answer(answer);
     if !report.ranking.is_empty() {
         text.print_line(&ranking(report));
         text.print_line("");
     }
-    text.print_list("- ", &report.sentences);
+    text.print_list("- ", reasons);
     let excluded = report.excluded.iter();
     let excluded = excluded.map(|e| format!("{} is excluded: {}.", e.backend, e.reason));
     text.print_list("- ", excluded);
     text.print_list("! ", &report.warnings);
 }
 
-/// Returns the table of backends, the fastest first.
+/// Returns the table of backends, the fastest first, and its legend.
 fn ranking(report: &PickReport) -> String {
-    let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
-    let header = [
-        "",
-        report.unit(),
-        "ratio",
-        "interval",
-        "1st build",
-        "rebuild",
-        "B/vertex",
-        "pays after",
-    ];
-    let mut rows = table(header.iter().map(|name| right((*name).into())).collect());
-    let mut notes = [false; 4];
-    let several_tied = report.ranking.iter().filter(|r| r.tied_with_best).count() > 1;
-    for ranked in &report.ranking {
-        let mark = match (ranked.estimated, ranked.sampled) {
-            (true, _) => "?",
-            (_, true) => "~",
-            _ => "",
-        };
-        notes[0] |= ranked.sampled && !ranked.estimated;
-        notes[1] |= ranked.estimated;
-        notes[2] |= ranked.tied_with_best && several_tied;
-        notes[3] |= ranked.tied_with_best && !several_tied;
-        let tied = match (ranked.tied_with_best, several_tied) {
-            (false, _) => "",
-            (true, false) => " *",
-            (true, true) => " =",
-        };
-        let interval = ranked.ci_low.zip(ranked.ci_high);
-        let interval = interval.map_or("–".into(), |(low, high)| {
-            format!("{} to {}", ratio(low), ratio(high))
-        });
-        rows.add_row(vec![
-            Cell::new(&ranked.backend),
-            right(format!("{}{mark}", duration(ranked.ns_per_operation))),
-            right(ratio(ranked.ratio_to_best) + tied),
-            right(interval),
-            right(ranked.first_build_ns.map_or("–".into(), duration)),
-            right(duration(ranked.build_ns)),
-            right(format!("{:.1}", ranked.bytes_per_vertex)),
-            right(pays_after(report, ranked)),
-        ]);
-    }
-    // With this padding, also the largest figures fit into 100 columns of text.
-    for (i, column) in rows.column_iter_mut().enumerate() {
-        column.set_padding((u16::from(i > 0), 0));
-    }
-    let mut text = rows.trim_fmt();
-    let legend = [
-        "~ measured on a sample of the elements, because each query scans all faces",
-        "? estimated, because a full run would exceed the budget",
-        "= tied with the fastest: no measurable difference",
-        "* fastest",
-    ];
-    for (line, _) in legend.into_iter().zip(notes).filter(|(_, note)| *note) {
-        text += "\n";
-        text += &hanging_indent("", line);
-    }
-    let tables = report
+    let pays_after: Vec<String> = report
         .ranking
         .iter()
-        .find_map(|ranked| ranked.made_from.as_deref());
-    if let Some(over) = tables {
-        text += "\n";
-        text += &hanging_indent(
-            "relation-tables: ",
-            &format!("flat tables of only the relations in the mix, made from {over}"),
-        );
+        .map(|ranked| pays_after(report, ranked))
+        .collect();
+    // One operation, or one run, pays for every build: nothing to read.
+    let pays_at_once = pays_after
+        .iter()
+        .all(|after| ["1", "–"].contains(&after.as_str()));
+    let mut signs = Signs::new("fastest", false);
+    let has_winner = report
+        .ranking
+        .iter()
+        .all(|ranked| ranked.samples >= FEWEST_OF_A_WINNER);
+    let ties = report.ranking.iter().filter(|r| r.tied_with_best).count();
+    let mut times = Vec::new();
+    let mut ratios = Vec::new();
+    for ranked in &report.ranking {
+        let sign = match (ranked.estimated, ranked.sampled) {
+            (true, _) => signs.record('≥').into(),
+            (_, true) => signs.record('~').into(),
+            _ => String::new(),
+        };
+        times.push(format!("{sign}{}", duration(ranked.ns_per_operation)));
+        let standing = match (ranked.tied_with_best && has_winner, ties) {
+            (false, _) => String::new(),
+            (true, 1) => signs.record('*').into(),
+            (true, _) => signs.record('=').into(),
+        };
+        let ratio = ranked.shown_ratio(&report.ranking[0]);
+        ratios.push(format!("{standing}{}", figure(ratio)));
     }
-    let unit = match report.program {
-        None => "operation: mean time of an operation of the mix",
-        Some(_) => "run: median time of a run of the program",
+    let of = |figure: &dyn Fn(&Ranked) -> String| -> Vec<String> {
+        report.ranking.iter().map(figure).collect()
     };
-    let units = format!("{}s", report.unit());
-    let pays_after = format!(
-        "number of {units} after which the 1st build and the {units} take less time than the \
-         {units} on an indexed face set that is already built"
-    );
-    let columns = [
-        ("", unit),
-        (
-            "ratio: ",
-            "to the time of the fastest, with its 95 % confidence interval",
+    let interval = |ranked: &Ranked| {
+        let interval = ranked.ci_low.zip(ranked.ci_high);
+        interval.map_or("–".into(), |(low, high)| {
+            format!("{}–{}", figure(low), figure(high))
+        })
+    };
+    let first_build = |ranked: &Ranked| ranked.first_build_ns.map_or("–".into(), duration);
+    let mut columns = vec![
+        Column::figures(report.unit(), times),
+        Column::figures("ratio", ratios),
+        Column::figures("interval", of(&interval)),
+        Column::figures("1st build", of(&first_build)),
+        Column::figures("rebuild", of(&|ranked| duration(ranked.build_ns))),
+        Column::figures(
+            "B/vertex",
+            of(&|ranked| format!("{:.1}", ranked.bytes_per_vertex)),
         ),
-        ("1st build: ", "time to build on new memory pages"),
-        (
-            "rebuild: ",
-            "time to build on memory pages that were used before",
-        ),
-        ("pays after: ", &pays_after),
     ];
-    for (column, meaning) in columns {
-        text += "\n";
-        text += &hanging_indent("", &format!("{column}{meaning}"));
+    if !pays_at_once {
+        columns.push(Column::figures("pays after", pays_after));
     }
-    text
-}
-
-/// Formats a ratio as `1.04`, `12.3` or `1,230`.
-fn ratio(ratio: f64) -> String {
-    match ratio < 1.0 {
-        true => format!("{ratio:.2}"),
-        false => figure(ratio),
+    let names = Column::words("", of(&|ranked| ranked.backend.clone()));
+    let table = column_table(&names, &columns);
+    let unit = report.unit();
+    signs.explain(match report.program {
+        None => "operation: mean time of an operation of the mix",
+        Some(_) => "run: time of a run of the program",
+    });
+    signs.explain("ratio: to the time of the fastest, with its 95 % interval");
+    signs.explain("1st build: time to build on new memory pages");
+    signs.explain("rebuild: on pages that were used before");
+    if !pays_at_once {
+        signs.explain(&format!(
+            "pays after: number of {unit}s after which the 1st build and the {unit}s take less time \
+             than the {unit}s on an indexed face set that is already built"
+        ));
     }
+    let mut made_from = report
+        .ranking
+        .iter()
+        .filter_map(|ranked| ranked.made_from.as_deref());
+    if let Some(over) = made_from.next() {
+        signs.explain(&format!(
+            "relation-tables: flat tables of only the relations in the mix, made from {over}"
+        ));
+    }
+    format!("{table}\n{}", signs.legend())
 }
 
 fn pays_after(report: &PickReport, ranked: &Ranked) -> String {

@@ -1,67 +1,74 @@
 //! The table of a study, with a row per operation and a column per backend.
 
-use comfy_table::{
-    Attribute, Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle,
-};
+use comfy_table::{Cell, LineStyle, Table, TableStyle};
 use sixfold_study::{
-    Agreement, BackendReport, ControlRow, FIRST_TIME_SHOWN, Operation, Report, ResultRow, Standing,
+    BackendReport, ControlRow, FIRST_TIME_SHOWN, Operation, Report, ResultRow, Standing,
 };
 
-use crate::tables::stacked;
-use crate::text::{hanging_indent, width};
+use crate::signs::{Signs, right};
+use crate::tables::{stacked, unbroken};
+use crate::text::hanging_indent;
 use sixfold_study::numbers::figure;
 
 /// The style of tables: two spaces between columns, and a line under the header.
 pub(crate) const STYLE: TableStyle =
     TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
-/// Returns the table and its legend. In a narrow terminal, the backends are divided into several
-/// tables below one another.
+/// A unit of work with the short name in the table, and its meaning.
+const UNITS: [(&str, &str, &str); 5] = [
+    ("vertex", "v", "v vertex"),
+    ("edge", "e", "e edge"),
+    ("face", "f", "f face"),
+    ("visit", "a", "a answered element"),
+    ("new face", "n", "n new face"),
+];
+
+/// Returns the table and its legend. If the terminal is too narrow, the backends are divided into
+/// several tables below one another.
 pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     let columns: Vec<&BackendReport> = report.backends.iter().filter(|b| b.holds).collect();
     // Intervals fit into the table only if there are few columns.
     let intervals = columns.len() <= 4;
-    let mut signs = Signs::default();
-    let least = columns.iter().filter_map(|backend| backend.bytes).min();
-    let least = least.filter(|_| columns.len() > 1);
-    let smallest = columns.iter().filter(|b| b.bytes == least).count();
-    let smallest = (least, smallest);
-    let mut text = stacked(&columns, |part| {
-        table_of_backends(report, part, intervals, smallest, bold, &mut signs)
+    let mut signs = Signs::new("fastest", bold);
+    let bytes = || columns.iter().filter_map(|backend| backend.bytes);
+    let least = bytes().min().filter(|_| columns.len() > 1);
+    let smallest = Smallest {
+        bytes: least,
+        is_tied: bytes().filter(|&bytes| Some(bytes) == least).count() > 1,
+    };
+    let table = stacked(&columns, |part| {
+        table_of_backends(report, part, intervals, smallest, &mut signs)
     });
-    for line in signs.legend() {
-        text += "\n";
-        text += &line;
+    let units = UNITS.iter().filter(|(unit, ..)| {
+        let mut rows = report.results.iter();
+        rows.any(|row| row.per == *unit)
+    });
+    let units: Vec<&str> = units.map(|(.., meaning)| *meaning).collect();
+    if !units.is_empty() {
+        signs.explain(&format!("per: {}", units.join(", ")));
+        signs.explain("`sixfold operations` says what each operation does");
     }
-    text
+    format!("{table}\n{}", signs.legend())
 }
 
-/// Returns the table of some of the backends. `smallest` has the least bytes of all backends, and
-/// the number of backends with these bytes.
+/// The fewest bytes of a backend.
+#[derive(Clone, Copy)]
+struct Smallest {
+    /// `None` if there is only one backend.
+    bytes: Option<usize>,
+    /// Whether several backends have these bytes.
+    is_tied: bool,
+}
+
+/// Returns the table of some of the backends.
 fn table_of_backends(
     report: &Report,
     columns: &[&BackendReport],
     intervals: bool,
-    smallest: (Option<usize>, usize),
-    bold: bool,
+    smallest: Smallest,
     signs: &mut Signs,
 ) -> String {
-    let mut table = Table::new();
-    table
-        .load_style(STYLE)
-        .set_content_arrangement(ContentArrangement::Disabled);
-    if bold {
-        table.enforce_styling();
-    } else {
-        table.force_no_tty();
-    }
-    let is_first = {
-        let first = report.backends.iter().find(|backend| backend.holds);
-        first.map(|b| &b.name) == columns.first().map(|b| &b.name)
-    };
-    // Warnings and the table rows below which they are printed.
-    let mut warnings: Vec<(usize, String)> = Vec::new();
-    let mut header = vec![Cell::new("nanoseconds"), Cell::new("per")];
+    let mut header = vec![Cell::new("ns"), Cell::new("per")];
     header.extend(columns.iter().map(|backend| {
         let mut name = match intervals {
             true => backend.name.clone(),
@@ -74,36 +81,53 @@ fn table_of_backends(
         {
             name += &format!(" ({})", signs.record('h'));
         }
-        Cell::new(name).set_alignment(CellAlignment::Right)
+        right(name)
     }));
-    table.set_header(header);
+    let mut table = unbroken(header, signs.is_bold());
+    let first = report.backends.iter().find(|backend| backend.holds);
+    let is_first = first.map(|b| &b.name) == columns.first().map(|b| &b.name);
+    // Warnings and the table rows below which they are printed.
+    let mut warnings: Vec<(usize, String)> = Vec::new();
 
     for operation in Operation::ALL {
         let rows: Vec<&ResultRow> = report.rows(operation).collect();
         if rows.is_empty() {
             continue; // left_out_notes has the reasons
         }
-        let mut line = vec![Cell::new(operation.name()), Cell::new(operation.unit())];
-        for backend in columns {
-            let row = rows.iter().find(|row| row.backend == backend.name);
-            line.push(match row {
-                Some(row) => cell(row, intervals, bold, signs),
-                None => Cell::new("–  ").set_alignment(CellAlignment::Right),
-            });
-        }
+        let of = |backend: &BackendReport| rows.iter().find(|row| row.backend == backend.name);
+        let unit = UNITS.iter().find(|(unit, ..)| *unit == operation.unit());
+        let unit = unit.map_or(operation.unit(), |(_, short, _)| short);
+        let mut line = vec![Cell::new(operation.name()), Cell::new(unit)];
+        line.extend(columns.iter().map(|backend| {
+            let text = of(backend).map_or("–".into(), |row| figure_of(row, intervals, signs));
+            signs.cell(text)
+        }));
         table.add_row(line);
-        if let Some(line) = first_times(&rows, columns, intervals) {
-            signs.first_times = true;
-            table.add_row(line);
-        }
+        let mut below = |name: &str, meaning: &str, figure: &dyn Fn(&ResultRow) -> Option<f64>| {
+            let figures = columns
+                .iter()
+                .map(|backend| figure_below(figure, of(backend)?));
+            let figures: Vec<Option<String>> = figures.collect();
+            if rows.iter().any(|row| figure(row).is_some()) {
+                signs.explain(meaning);
+                let mut line = vec![Cell::new(format!("  {name}")), Cell::new("")];
+                line.extend(
+                    figures
+                        .into_iter()
+                        .map(|text| right(with_interval(text.unwrap_or_default(), "", intervals))),
+                );
+                table.add_row(line);
+            }
+        };
+        below("ratio up to", UNSURE, &largest_ratio);
+        below("first time", FIRST_TIME, &first_time(&rows));
         let row = table.row_count() - 1;
         let warning = noise_warning(report, operation).filter(|_| is_first);
         warnings.extend(warning.map(|warning| (row, warning)));
     }
-    add_bytes(&mut table, columns, smallest, intervals, bold, signs);
-    // With this padding, six backends fit into 100 columns of text.
-    if let Some(names) = table.column_mut(0) {
-        names.set_padding((0, 1));
+    add_bytes(&mut table, columns, smallest, intervals, signs);
+    for column in table.column_iter_mut().skip(1) {
+        column.set_padding((1, 0));
     }
     let table_text = table.trim_fmt();
     // Each row has one line. The header may have several lines.
@@ -117,26 +141,35 @@ fn table_of_backends(
     lines.join("\n")
 }
 
-/// Returns the row of first times below an operation. Returns `None` if no first time differs from
-/// the median.
-fn first_times(
-    rows: &[&ResultRow],
-    columns: &[&BackendReport],
-    intervals: bool,
-) -> Option<Vec<Cell>> {
-    let differs = |row: &&&ResultRow| {
+const FIRST_TIME: &str = "first time: one run on new pages, with tables without spare capacity";
+
+/// Returns the time per element of first runs, for all backends if it differs from the usual time on
+/// one of them.
+fn first_time(rows: &[&ResultRow]) -> impl Fn(&ResultRow) -> Option<f64> + use<> {
+    let differs = |row: &&ResultRow| {
         let ratio = row.first_ratio().unwrap_or(1.0);
         ratio.max(ratio.recip()) > FIRST_TIME_SHOWN
     };
-    rows.iter().find(differs)?;
-    let mut line = vec![Cell::new("  first time"), Cell::new("")];
-    line.extend(columns.iter().map(|backend| {
-        let row = rows.iter().find(|row| row.backend == backend.name);
-        let first = row.and_then(|row| Some(row.first_ns? / row.elements?.max(1) as f64));
-        let text = first.map_or(String::new(), figure);
-        marked_cell(with_interval(text, "", intervals), ' ', ' ', false)
-    }));
-    Some(line)
+    let is_shown = rows.iter().any(differs);
+    move |row| {
+        let elements = row.elements?.max(1) as f64;
+        row.first_ns.filter(|_| is_shown).map(|ns| ns / elements)
+    }
+}
+
+const UNSURE: &str = "ratio up to: end of the 95 % interval of the ratio to the fastest, for = with \
+                      a ratio above 1.1";
+/// A tie with a larger ratio is shown with the end of its interval.
+const CLOSE: f64 = 1.1;
+
+/// Returns the upper end of the interval of the ratio, for a tie of times that are not close.
+fn largest_ratio(row: &ResultRow) -> Option<f64> {
+    let is_unsure = row.standing == Some(Standing::Tied) && row.ratio_to_best? > CLOSE;
+    row.ratio_ci_high.filter(|_| is_unsure)
+}
+
+fn figure_below(figure_of: &dyn Fn(&ResultRow) -> Option<f64>, row: &ResultRow) -> Option<String> {
+    figure_of(row).map(figure)
 }
 
 /// Returns the warning below an operation if the two columns of the control differ.
@@ -157,42 +190,41 @@ fn noise_warning(report: &Report, operation: Operation) -> Option<String> {
     })
 }
 
-/// Adds two rows of bytes per vertex: the actual size of the tables, and the theoretical size.
+/// Adds the actual bytes per vertex, and the theoretical ones if they differ.
 fn add_bytes(
     table: &mut Table,
     columns: &[&BackendReport],
-    (min_bytes, best_count): (Option<usize>, usize),
+    smallest: Smallest,
     intervals: bool,
-    bold: bool,
     signs: &mut Signs,
 ) {
     let figure = |bytes: Option<f64>| {
         let figure = bytes.map_or("–".into(), |bytes| format!("{bytes:.1}"));
         with_interval(figure, "", intervals)
     };
-    let mut table_bytes = vec![Cell::new("bytes held"), Cell::new("vertex")];
-    let mut layout_bytes = vec![Cell::new("bytes in theory"), Cell::new("vertex")];
-    for backend in columns {
-        let is_best = min_bytes.is_some() && backend.bytes == min_bytes;
-        let mark = match (is_best, best_count) {
-            (false, _) => ' ',
-            (true, 1) => signs.record('*'),
-            (true, _) => signs.record('='),
+    let mut held = vec![Cell::new("bytes held"), Cell::new("v")];
+    held.extend(columns.iter().map(|backend| {
+        let is_least = smallest.bytes.is_some() && backend.bytes == smallest.bytes;
+        let sign = match (is_least, smallest.is_tied) {
+            (false, _) => String::new(),
+            (true, false) => signs.record('*').into(),
+            (true, true) => signs.record('=').into(),
         };
-        table_bytes.push(marked_cell(
-            figure(backend.bytes_per_vertex),
-            mark,
-            ' ',
-            bold,
-        ));
-        layout_bytes.push(marked_cell(
-            figure(backend.layout_bytes_per_vertex),
-            ' ',
-            ' ',
-            bold,
-        ));
+        signs.cell(sign + &figure(backend.bytes_per_vertex))
+    }));
+    table.add_row(held);
+    let differs = |backend: &&BackendReport| {
+        let theory = backend.layout_bytes_per_vertex;
+        theory.is_some() && figure(theory) != figure(backend.bytes_per_vertex)
+    };
+    if columns.iter().any(differs) {
+        let mut theory = vec![Cell::new("bytes in theory"), Cell::new("v")];
+        let bytes = columns
+            .iter()
+            .map(|backend| backend.layout_bytes_per_vertex);
+        theory.extend(bytes.map(|bytes| right(figure(bytes))));
+        table.add_row(theory);
     }
-    table.add_row(table_bytes).add_row(layout_bytes);
 }
 
 fn with_interval(figure: String, half_width: &str, intervals: bool) -> String {
@@ -202,47 +234,16 @@ fn with_interval(figure: String, half_width: &str, intervals: bool) -> String {
     }
 }
 
-/// Returns the cell of a figure with its signs. The cell of the best figure can be bold.
-fn marked_cell(figure: String, standing: char, note: char, bold: bool) -> Cell {
-    let cell = Cell::new(format!("{figure} {standing}{note}")).set_alignment(CellAlignment::Right);
-    if bold && standing == '*' {
-        cell.add_attribute(Attribute::Bold)
-    } else {
-        cell
+/// Formats the time per element, with its interval if there is room.
+fn figure_of(row: &ResultRow, intervals: bool, signs: &mut Signs) -> String {
+    let text = signs.figure(row);
+    match intervals {
+        true => with_interval(text, &half_width(row, signs), true),
+        false => text,
     }
 }
 
-fn cell(row: &ResultRow, intervals: bool, bold: bool, signs: &mut Signs) -> Cell {
-    let standing = match row.standing {
-        Some(Standing::Best) => signs.record('*'),
-        Some(Standing::Tied) => signs.record('='),
-        _ => ' ',
-    };
-    let note = match row.agreement {
-        Agreement::Mismatch => signs.record('!'),
-        Agreement::Merged => signs.record('m'),
-        Agreement::OtherEdits => signs.record('e'),
-        _ => ' ',
-    };
-    let Some(each) = row.ns_per_element else {
-        let estimate = row.estimated_ns.zip(row.elements);
-        let each = estimate.map(|(ns, elements)| ns / elements.max(1) as f64);
-        let figure = each.map_or("–".into(), |each| {
-            format!("{}{}", signs.record('?'), figure(each))
-        });
-        return marked_cell(with_interval(figure, "", intervals), standing, note, bold);
-    };
-    let mut text = figure(each);
-    if row.sampled {
-        text.insert(0, signs.record('~'));
-    }
-    if intervals {
-        text = with_interval(text, &half_width(row, signs), intervals);
-    }
-    marked_cell(text, standing, note, bold)
-}
-
-/// Formats the half-width of the interval in percent of the median, as in `±3%`.
+/// Formats the half-width of the interval in percent of the time, as in `±3%`.
 fn half_width(row: &ResultRow, signs: &mut Signs) -> String {
     let known = (row.median_ns, row.ci_low_ns, row.ci_high_ns);
     let (Some(median), Some(low), Some(high)) = known else {
@@ -254,63 +255,6 @@ fn half_width(row: &ResultRow, signs: &mut Signs) -> String {
         p if p < 0.95 => format!("±.{:.0}%", (10.0 * p).max(1.0)),
         p if p < 999.0 => format!("±{p:.0}%"),
         _ => "±big".into(),
-    }
-}
-
-/// The signs that occur in the table. The legend explains only these signs.
-#[derive(Default)]
-struct Signs {
-    used: Vec<char>,
-    first_times: bool,
-}
-
-impl Signs {
-    fn record(&mut self, sign: char) -> char {
-        if !self.used.contains(&sign) {
-            self.used.push(sign);
-        }
-        sign
-    }
-
-    fn legend(&self) -> Vec<String> {
-        let meanings = [
-            ('*', "best"),
-            (
-                '=',
-                "tied with the best: differs by less than the noise (2 × with one or two \
-                 samples)",
-            ),
-            (
-                'h',
-                "own heap: the allocator of this program does not keep freed pages",
-            ),
-            ('~', "measured on a sample of the elements"),
-            ('?', "estimated, not run"),
-            ('±', "95 % interval of the median"),
-            ('m', "the backend merges vertices at one position"),
-            (
-                'e',
-                "the backend refuses edits that others accept, so its times are not compared",
-            ),
-            ('!', "WRONG: the result differs from the other backends"),
-        ];
-        let used = meanings.iter().filter(|(sign, _)| self.used.contains(sign));
-        let first_times = "first time: one run on new pages, with tables without spare capacity";
-        let first_times = self.first_times.then(|| first_times.to_owned());
-        let parts = used.map(|(sign, meaning)| format!("{sign} {meaning}"));
-        // A legend line may end only between two signs.
-        let mut lines: Vec<String> = Vec::new();
-        for part in parts.chain(first_times) {
-            match lines.last_mut() {
-                Some(line) if line.chars().count() + 2 + part.chars().count() <= width() => {
-                    *line += "; ";
-                    *line += &part;
-                }
-                _ => lines.push(part),
-            }
-        }
-        // A part can be wider than a narrow terminal.
-        lines.iter().map(|line| hanging_indent("", line)).collect()
     }
 }
 

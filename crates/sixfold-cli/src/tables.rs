@@ -4,22 +4,17 @@ use comfy_table::{Cell, ContentArrangement, Table};
 use sixfold::structure_infos;
 
 use crate::results_table::STYLE;
-use crate::text::{WIDTH, width};
+use crate::text::width;
 
-/// Returns an empty table with `header`. Cells break only in a narrow terminal.
+/// Returns an empty table with `header`. Cells break only if the table is wider than the terminal.
 pub(crate) fn table(header: Vec<Cell>) -> Table {
     let mut table = Table::new();
     table
         .load_style(STYLE)
-        .set_content_arrangement(ContentArrangement::Disabled)
+        .set_content_arrangement(ContentArrangement::Dynamic)
+        .set_width(width() as u16)
         .force_no_tty()
         .set_header(header);
-    let width = width();
-    if width < WIDTH {
-        table
-            .set_content_arrangement(ContentArrangement::Dynamic)
-            .set_width(width as u16);
-    }
     table
 }
 
@@ -72,5 +67,10 @@ pub(crate) fn table_of_backends(rows: &str) -> Table {
     let backends = structure_infos();
     let names = backends.iter().map(|backend| backend.name);
     let broken = names.map(|name| Cell::new(name.replace('-', "\n")));
-    table([Cell::new(rows)].into_iter().chain(broken).collect())
+    let mut table = table([Cell::new(rows)].into_iter().chain(broken).collect());
+    // With this padding, the longest names of edits fit into 80 columns of text.
+    for column in table.column_iter_mut() {
+        column.set_padding((0, 0));
+    }
+    table
 }

@@ -11,12 +11,14 @@ use crate::output::{Output, cannot_write};
 
 pub(crate) use sixfold_study::sanitize;
 
-/// Maximum width of text, in columns.
-pub(crate) const WIDTH: usize = 100;
+/// Width of text that is not printed on a terminal, in columns.
+pub(crate) const WIDTH: usize = 80;
+/// Maximum width of text, in columns. Longer lines are hard to read.
+const MAX_WIDTH: usize = 100;
 /// Minimum width of text. In a narrower terminal, the terminal breaks lines.
 const MIN_WIDTH: usize = 40;
 
-/// Returns the width of text, in columns: the width of the terminal, but at most [`WIDTH`]. If
+/// Returns the width of text, in columns: the width of the terminal, but at most [`MAX_WIDTH`]. If
 /// standard output is not a terminal, the variable `COLUMNS` has the width; without it, the width is
 /// [`WIDTH`].
 pub(crate) fn width() -> usize {
@@ -24,7 +26,7 @@ pub(crate) fn width() -> usize {
     let terminal = terminal.map(|(width, _)| usize::from(width.0));
     let given = || std::env::var("COLUMNS").ok()?.parse().ok();
     let width = terminal.or_else(given).unwrap_or(WIDTH);
-    width.clamp(MIN_WIDTH, WIDTH)
+    width.clamp(MIN_WIDTH, MAX_WIDTH)
 }
 
 pub(crate) struct TextOutput {
@@ -68,6 +70,14 @@ impl TextOutput {
     ) {
         for line in lines {
             self.print_line(&hanging_indent(mark, line.as_ref()));
+        }
+    }
+
+    /// Prints the sentences of an answer and an empty line; nothing if there are no sentences.
+    pub(crate) fn print_answer(&mut self, sentences: &[String]) {
+        self.print_list("- ", sentences);
+        if !sentences.is_empty() {
+            self.print_line("");
         }
     }
 

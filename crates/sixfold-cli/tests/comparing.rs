@@ -60,7 +60,7 @@ fn orders_writes_json() {
     let results = list(&report, "results");
     assert_eq!(results.len(), 2 * 6 * 4);
     for (row, order) in results.iter().zip(orders.iter().cycle()) {
-        assert_eq!(row["order"], *order);
+        assert_eq!(row["case"], *order);
         for field in ["backend", "operation", "agreement", "per"] {
             assert!(row[field].is_string(), "{field} in {row}");
         }

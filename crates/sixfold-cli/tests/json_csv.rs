@@ -93,7 +93,7 @@ pub(crate) fn parsed(text: &str) -> Value {
 /// backends by name.
 pub(crate) fn finding(text: &str) -> Value {
     let document = parsed(text);
-    assert_eq!(document["schema"], 2);
+    assert_eq!(document["schema"], 3);
     let findings = document["findings"].as_array().expect("a list");
     assert_eq!(findings.len(), 1, "{document:.200}");
     completed(&document, &findings[0])
@@ -207,7 +207,7 @@ fn an_inspection_writes_facts_and_verdicts() {
     let run = sixfold.run(&["inspect", "mesh.obj", "--json", "-"]);
     assert_eq!(run.code, Some(0), "{run:?}");
     let inspection = parsed(&run.stdout);
-    assert_eq!(inspection["schema"], 2);
+    assert_eq!(inspection["schema"], 3);
     assert_fields(&inspection["mesh"], &FACTS);
     assert_eq!(inspection["mesh"]["edges"], 6);
     assert_eq!(inspection["mesh"]["genus"], 0);
@@ -274,7 +274,7 @@ fn merged_vertices_are_reported_and_are_not_a_failure() {
     assert_eq!(run.code, Some(0), "{run:?}");
     let report = finding(&run.stdout);
     assert_eq!(report["backends"]["polygon-soup"]["merged_vertices"], 2);
-    let sentences = report["sentences"].to_string();
+    let sentences = report["notes"].to_string();
     assert!(
         sentences.contains("polygon-soup merges 2 vertices that share coordinates"),
         "{sentences}"

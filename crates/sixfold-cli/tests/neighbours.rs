@@ -28,7 +28,7 @@ fn all_indices_are_measured_and_the_cheapest_is_named() {
         "kd-tree",
         "bvh",
         "closest_point",
-        "With building",
+        "building included",
     ] {
         assert!(run.stdout.contains(name), "{name}: {}", run.stdout);
     }

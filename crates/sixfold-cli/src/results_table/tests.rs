@@ -1,5 +1,5 @@
 use sixfold::{Facts, PolygonMesh, structure_infos};
-use sixfold_study::{Control, MeshReport, Refusal, RefusalKind, Run};
+use sixfold_study::{Agreement, Control, MeshReport, Refusal, RefusalKind, Run};
 
 use super::*;
 use crate::left_out::left_out_notes;
@@ -114,6 +114,7 @@ fn report() -> Report {
             worst: 1.2,
         }),
         sentences: Vec::new(),
+        notes: Vec::new(),
         warnings: Vec::new(),
         samples: Vec::new(),
         timer: None,
@@ -154,8 +155,34 @@ fn each_reason_for_a_missing_figure_is_said_once() {
         notes.contains("catmull_clark_native, loop_native on "),
         "{notes}"
     );
+    let by_budget = "≥ not run, because one run would take 7.30 s or more: ff_bfs on polygon-soup. To \
+                     run them, use a longer --budget.";
+    let by_name = "≥ not run, because one run would take 1.40 s or more: loop_gather on \
+                   polygon-soup. To run them, name them in --operations.";
     assert!(
-        notes.contains("was not run: one run would take about 1.40 s"),
+        notes.contains(by_budget) && notes.contains(by_name),
         "{notes}"
+    );
+}
+
+#[test]
+fn a_tie_that_may_be_a_large_difference_shows_the_end_of_its_interval() {
+    let mut report = report();
+    let wide = |report: &mut Report, ratio: f64| {
+        let tied = &mut report.results[1];
+        (tied.ratio_to_best, tied.ratio_ci_high) = (Some(ratio), Some(1.4));
+    };
+    wide(&mut report, 1.09);
+    assert!(!results_table(&report, false).contains("ratio up to"));
+    wide(&mut report, 1.12);
+    let table = results_table(&report, false);
+    let line = table.lines().find(|line| line.contains("  ratio up to"));
+    assert_eq!(
+        line.map(str::split_whitespace).and_then(Iterator::last),
+        Some("1.40")
+    );
+    assert!(
+        table.contains("ratio up to: end of the 95 % interval"),
+        "{table}"
     );
 }
