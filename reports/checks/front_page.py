@@ -20,6 +20,7 @@ page = Claims(
         eight example programs
         seven [subdivision]
         the fifteen [edits]
+        a ratio is the quotient of two times
         intervals are 95 %
         If two structures are close
         32-bit floats
@@ -163,6 +164,9 @@ measuring = Claims(
         is one of the six structures
         and one of them a second time
         the two times of one structure
+        median polish (Tukey 1977)
+        the ratio of two structures is the quotient of their times
+        fewer than four samples
         A 95 % interval
         (standard deviation 1 %)
         Two structures are tied
