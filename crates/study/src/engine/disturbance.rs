@@ -28,8 +28,12 @@ pub(crate) const DISTURBED: f64 = 1.3;
 const UNDISTURBED: f64 = 0.05;
 /// Maximum wait for an undisturbed moment before a sample, in nanoseconds.
 const LONGEST_WAIT_NS: f64 = 10_000_000.0;
-/// Part of the budget for waiting and for disturbed samples.
-const FOR_DISTURBED: f64 = 0.3;
+/// Part of the budget for waiting and for disturbed samples before the first sample counts.
+const FOR_DISTURBED_AT_FIRST: f64 = 0.01;
+/// Time for waiting and for disturbed samples, relative to the time of the samples that count. On a
+/// machine that is always disturbed, waiting takes at most this time, so that there is time for
+/// rounds.
+const FOR_DISTURBED: f64 = 0.4;
 /// Part of the budget for samples taken again because of page faults.
 const FOR_FAULTS: f64 = 0.1;
 /// Minimum part of undisturbed samples. If there are fewer, or fewer than [`MIN_SAMPLES`], all
@@ -45,8 +49,11 @@ pub(crate) struct DisturbanceDetector<'w> {
     work: ReferenceWork<'w>,
     /// Times of the reference runs, ascending.
     reference_ns: Vec<f64>,
-    /// Time left for waiting and for disturbed samples, in nanoseconds.
+    /// Time left for waiting and for disturbed samples, in nanoseconds. Grows with the samples that
+    /// count.
     disturbed_left_ns: f64,
+    /// What `disturbed_left_ns` grows by, relative to the time of a sample.
+    earned: f64,
     /// Time left for samples with page faults, in nanoseconds.
     faults_left_ns: f64,
 }
@@ -58,7 +65,8 @@ impl<'w> DisturbanceDetector<'w> {
         Self {
             work,
             reference_ns: Vec::new(),
-            disturbed_left_ns: FOR_DISTURBED * budget_ns,
+            disturbed_left_ns: FOR_DISTURBED_AT_FIRST * budget_ns,
+            earned: FOR_DISTURBED,
             faults_left_ns: FOR_FAULTS * budget_ns,
         }
     }
@@ -68,6 +76,7 @@ impl<'w> DisturbanceDetector<'w> {
     pub(crate) fn without_waiting(work: ReferenceWork<'w>) -> Self {
         Self {
             faults_left_ns: f64::INFINITY,
+            earned: 0.0,
             ..Self::new(0.0, work)
         }
     }
@@ -96,6 +105,7 @@ impl<'w> DisturbanceDetector<'w> {
             };
             let left_ns = left_ns.filter(|left_ns| **left_ns > 0.0 && retaken < MAX_RETAKEN);
             let Some(left_ns) = left_ns else {
+                self.disturbed_left_ns += self.earned * elapsed_ns;
                 return TakenSample {
                     value,
                     slowdown,
@@ -320,6 +330,26 @@ mod tests {
         assert_eq!(tries(Verdict::Final, disturbed, 1e9), (1, true));
         assert_eq!(tries(Verdict::Good, disturbed, 0.0), (1, false));
         assert_eq!(tries(Verdict::Again, quiet, 0.0), (4, false));
+    }
+
+    #[test]
+    fn a_machine_that_is_always_disturbed_has_time_for_samples() {
+        let mut detector = DisturbanceDetector {
+            reference_ns: vec![TICK_NS / 2.0; 40_000],
+            ..DisturbanceDetector::new(0.0, no_work())
+        };
+        let clock = Ticking::default();
+        let (mut tries, samples) = (0, 1000);
+        for _ in 0..samples {
+            let sample = || {
+                tries += 1;
+                let _ = (0..100).map(|_| clock.now()).last(); // takes 100 ticks
+            };
+            let taken = detector.take_sample(&clock, sample, |()| Verdict::Good);
+            assert!(taken.slowdown > DISTURBED);
+        }
+        let again = f64::from(tries - samples) / f64::from(samples);
+        assert!((0.01..=FOR_DISTURBED).contains(&again), "{again}");
     }
 
     #[test]

@@ -193,9 +193,12 @@ impl Measurement<'_, '_, '_> {
         // rounds.
         let unnamed = entry.job.task.creates_mesh() && !self.trial.named;
         let most = if unnamed { 1.0 } else { 4.0 };
+        let scans_all = entry.job.sample.is_none() && self.scans(entry).contains(&true);
         entry.every = match cost_ns / slot_ns {
             slots if slots <= most => 1,
             slots if slots <= MEDIUM_COST_SLOTS => MEDIUM_COST_EVERY,
+            // Such a scan is far from the fastest, so its first run is enough.
+            _ if scans_all && !self.trial.named => 0,
             _ => HIGH_COST_EVERY,
         };
     }

@@ -170,7 +170,9 @@ fn wall_time_only(environment: &Environment) -> Option<String> {
 }
 
 fn few(settings: &RunSettings, results: &[&ResultRow]) -> Option<String> {
-    let measured = results.iter().filter(|row| row.median_ns.is_some());
+    // A long scan is run once, because it is far from the fastest.
+    let in_rounds = |row: &&&ResultRow| row.median_ns.is_some() && !row.warm_up_only;
+    let measured = results.iter().filter(in_rounds);
     let all = measured.clone().count();
     let few = measured.filter(|row| row.samples < MIN_SAMPLES).count();
     let once = results.iter().all(|row| row.warm_up_only); // `nothing_measured` warns of this
