@@ -74,8 +74,13 @@ def code_names(items):
 
 
 def three_digits(value):
-    """Returns a value as the tables of the command print it."""
-    return f"{value:,.0f}" if value >= 100 else f"{value:.1f}" if value >= 10 else f"{value:.2f}"
+    """Returns a value as the command prints it."""
+    return rounded(value, 3)
+
+
+def shown(value):
+    """Returns the number that a reader sees if the command prints a value."""
+    return float(rounded(value, 3).replace(",", ""))
 
 
 def time(ns):

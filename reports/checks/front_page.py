@@ -104,17 +104,21 @@ def machine():
 
 
 def printed_row(backend):
-    """Returns the row that the command prints for a backend, after its name."""
+    """Returns the row that the command prints for a backend, after its name. The ratio is the quotient of the shown times."""
     workload = data.workload(*SMOOTHING)
-    row, ratio = workload.rows[backend], workload.ratio(backend)
+    row = workload.rows[backend]
+    ratio = shown_ratio(workload, backend)
     data.require(row["ci_low"] <= ratio <= row["ci_high"], f"the quotient {ratio} is outside of the interval")
-    time = figures.time(row["ns_per_operation"]) + ("~" if row["sampled"] else "")
-    relative = figures.three_digits(ratio) + (" *" if backend == workload.fastest else "")
-    interval = f"{figures.three_digits(row['ci_low'])} to {figures.three_digits(row['ci_high'])}"
+    time = ("~" if row["sampled"] else "") + figures.time(row["ns_per_operation"])
+    relative = ("*" if backend == workload.fastest else "") + figures.three_digits(ratio)
+    interval = f"{figures.three_digits(row['ci_low'])}–{figures.three_digits(row['ci_high'])}"
     builds = figures.time(row["first_build_ns"]), figures.time(row["build_ns"])
     size = f"{row['bytes_per_vertex']:.1f}"
-    cells = zip((time, relative, interval, *builds, size, pays_after(workload, backend)), (0, 8, 16, 11, 9, 10, 12))
-    return "".join(cell.rjust(width) for cell, width in cells)
+    return " ".join((time, relative, interval, *builds, size, pays_after(workload, backend)))
+
+
+def shown_ratio(workload, backend):
+    return figures.shown(workload.ns(backend)) / figures.shown(workload.ns(workload.fastest))
 
 
 def pays_after(workload, backend):
@@ -127,7 +131,7 @@ def pays_after(workload, backend):
 PRINTED = ("relation-tables", "half-edge", "winged-edge", "corner-table", "face-vertex", "indexed-face-set", "polygon-soup")
 
 
-@page.says(" ".join(f"{name} {{}}" for name in PRINTED) + " - For smoothing,")
+@page.says(" ".join(f"{name} {{}}" for name in PRINTED) + " ```")
 def printed_rows():
     return tuple(map(printed_row, PRINTED))
 
@@ -139,7 +143,7 @@ def sentence():
     made_from, row = workload.rows[first]["made_from"], workload.rows[second]
     best = f"{first} (made from {made_from})" if made_from else first
     interval = figures.three_digits(row["ci_low"]), figures.three_digits(row["ci_high"])
-    return best, figures.time(workload.ns(first)), second, figures.rounded(workload.ratio(second), 2), *interval
+    return best, figures.time(workload.ns(first)), second, figures.three_digits(shown_ratio(workload, second)), *interval
 
 
 @page.says(

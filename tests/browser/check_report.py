@@ -115,22 +115,38 @@ def close_to(a, b, what, tolerance):
     assert abs(a - b) <= tolerance, f"{what}: {a} in the page, {b} in the data"
 
 
+def rounded(number):
+    """Rounds to three significant digits, as the page does."""
+    if number == 0 or not math.isfinite(number):
+        return number
+    places = 2 - math.floor(math.log10(abs(number)))
+    return math.floor(number * 10.0**places + 0.5) / 10.0**places
+
+
+def shown(number):
+    """Formats a number as the page does."""
+    number = rounded(number)
+    if number == 0:
+        return "0"
+    places = max(0, 2 - math.floor(math.log10(abs(number))))
+    return f"{number:,.{places}f}"
+
+
 def times(ratio):
-    """Formats a ratio as the page does."""
-    if ratio < 1.095:
-        return f"{ratio:.2f} ×"
-    if ratio < 9.95:
-        return f"{ratio:.1f} ×"
-    return f"{math.floor(ratio + 0.5):,} ×"
+    return f"{shown(ratio)} ×"
 
 
 def duration(ns):
     """Formats a time as the page does."""
-    for unit, most in [("ns", 1e3), ("µs", 1e6), ("ms", 1e9), ("s", math.inf)]:
-        if ns < most:
-            number = ns / {"ns": 1, "µs": 1e3, "ms": 1e6, "s": 1e9}[unit]
-            digits = 3 if number < 0.9995 else 2 if number < 9.995 else 1 if number < 99.95 else 0
-            return f"{math.floor(number + 0.5):,} {unit}" if digits == 0 else f"{number:.{digits}f} {unit}"
+    for unit, size in [("ns", 1), ("µs", 1e3), ("ms", 1e6), ("s", 1e9)]:
+        if rounded(ns) < 1e3 * size or unit == "s":
+            return f"{shown(ns / size)} {unit}"
+
+
+def shown_ratios(rows, time):
+    """Returns the ratio of each row to the best row, as the quotient of the shown times; the mean ratio without times."""
+    best = next((row[time] for row in rows if row["ratio_to_best"] == 1), None)
+    return [rounded(row[time]) / rounded(best) if best and row[time] else row["ratio_to_best"] for row in rows]
 
 
 def check_places(marks, values, what, axis):
@@ -151,37 +167,35 @@ def operation_of(figure, kind):
     return re.match(rf"{kind}-(?:\d+-)?(.+)$", figure["id"]).group(1).replace("-", "_")
 
 
-def check_ranking(figure, rows, operation):
+def check_ranking(figure, rows, ratios, operation):
     assert len(figure["marks"]) == len(rows) == figure["rows"], figure["id"]
-    by_name = {row["backend"]: row for row in rows}
-    longest = max(math.log10(row["ratio_to_best"]) for row in rows)
+    by_name = {row["backend"]: (row, ratio) for row, ratio in zip(rows, ratios)}
+    longest = max(map(math.log10, ratios))
     # The axis has a least length, and a bar is at least 2 % of the axis long.
     shortest = 0.02 * max(longest, 0.1)
     widest = max(mark["width"] for mark in figure["marks"])
     for mark in figure["marks"]:
         name, figures = mark["title"].split(": ", 1)
-        row = by_name.pop(name)
-        shown = [float(part) for part in re.findall(r"\d+\.\d+", figures.split(" ×")[0])]
-        close_to(shown[0], row["ratio_to_best"], f"{operation} on {name}", 6e-4)
+        row, ratio = by_name.pop(name)
         low, high = [row.get(f"ratio_ci_{end}", row.get(f"ci_{end}")) for end in ("low", "high")]
-        if low is not None:
-            close_to(shown[1], low, f"{operation} on {name}, low", 6e-4)
-            close_to(shown[2], high, f"{operation} on {name}, high", 6e-4)
-        share = max(math.log10(row["ratio_to_best"]), shortest) / max(longest, shortest)
+        interval = "" if low is None else f" ({shown(low)} to {shown(high)})"
+        expected = f"{shown(ratio)}{interval}"
+        assert figures.split(" ×")[0] == expected, f"{operation} on {name}: {figures}, but {expected} in the data"
+        share = max(math.log10(ratio), shortest) / max(longest, shortest)
         close_to(mark["width"], share * widest, f"the bar of {operation} on {name}", 0.6)
 
 
-def check_heat_map(figure, rows, columns):
-    rows = {(r["operation"], r["backend"]): r["ratio_to_best"] for r in rows}
+def check_heat_map(figure, ratios, columns):
+    rows = ratios
     measured = {operation for (operation, _), ratio in rows.items() if ratio}
     assert len(figure["marks"]) == len(measured) * len(columns), figure["id"]
     assert figure["rows"] == len(measured), figure["id"]
     for mark in figure["marks"]:
         operation, rest = mark["title"].split(" on ", 1)
-        column, shown = rest.split(": ", 1)
+        column, found = rest.split(": ", 1)
         ratio = rows.get((operation, column))
         expected = times(ratio) if ratio else "not measured"
-        assert shown == expected, f"{mark['title']}: {ratio} in the data"
+        assert found == expected, f"{mark['title']}: {ratio} in the data"
 
 
 def check_growth(figure, growth):
@@ -195,9 +209,9 @@ def check_growth(figure, growth):
     assert len(figure["marks"]) == len(points), figure["id"]
     here = []
     for mark in figure["marks"]:
-        name, faces, shown = re.match(r"(.+), ([\d,]+) faces: ([^,]+(?:,\d+[^,]*)?)", mark["title"]).groups()
+        name, faces, found = re.match(r"(.+), ([\d,]+) faces: ([^,]+(?:,\d+[^,]*)?)", mark["title"]).groups()
         here.append(points[name, faces])
-        assert shown == duration(here[-1][1]), f"{mark['title']}: {here[-1][1]} ns in the data"
+        assert found == duration(here[-1][1]), f"{mark['title']}: {here[-1][1]} ns in the data"
     check_places(figure["marks"], [faces for faces, _ in here], figure["id"], "x")
     check_places(figure["marks"], [ns for _, ns in here], figure["id"], "y")
     for fit in growth["fits"]:
@@ -209,7 +223,7 @@ def check_growth(figure, growth):
 def check_orders(figure, orders):
     operation = operation_of(figure, "orders")
     rows = {
-        (row["backend"], row["order"]): row for row in orders["results"] if row["operation"] == operation
+        (row["backend"], row["case"]): row for row in orders["results"] if row["operation"] == operation
     }
     backends = {backend for backend, _ in rows}
     assert len(figure["marks"]) == len(backends) * len(orders["orders"]), figure["id"]
@@ -218,12 +232,14 @@ def check_orders(figure, orders):
     most = math.log10(max([1.5] + [row["ratio_to_best"] or 1 for row in rows.values()]))
     for mark in figure["marks"]:
         name, rest = mark["title"].split(", ", 1)
-        order, shown = rest.split(": ", 1)
-        ratio = rows.get((name, order), {}).get("ratio_to_best")
-        if ratio is None:
-            assert shown == "not measured", mark["title"]
+        order, found = rest.split(": ", 1)
+        row = rows.get((name, order), {})
+        if row.get("ratio_to_best") is None:
+            assert found == "not measured", mark["title"]
         else:
-            close_to(float(shown.split(" ×")[0]), ratio, mark["title"], 6e-4)
+            best = min(other["ns_per_element"] for (backend, _), other in rows.items() if backend == name)
+            ratio = rounded(row["ns_per_element"]) / rounded(best)
+            assert found.split(" ×")[0] == shown(ratio), f"{mark['title']}: {ratio} in the data"
             lengths.append((mark["height"], max(math.log10(ratio), 0.02 * most)))
     tallest, longest = max(lengths)
     for height, length in lengths:
@@ -294,7 +310,8 @@ def check(figure, results):
     if kind.startswith("pick") and kind.endswith("break-even"):
         return check_break_even(figure, [row["backend"] for row in lab["ranking"]])
     if kind.startswith("pick"):
-        return check_ranking(figure, lab["ranking"], lab["workload"]["name"])
+        rows = lab["ranking"]
+        return check_ranking(figure, rows, shown_ratios(rows, "ns_per_operation"), lab["workload"]["name"])
     pooled = len(results["planned"]) > 1 and not figure["mesh"]
     if pooled:
         rows = results["pool"]["groups"][0]["pooled"]
@@ -303,12 +320,18 @@ def check(figure, results):
         [study] = [s for s in studies if s["mesh"]["name"] == figure["mesh"]] if figure["mesh"] else studies
         rows = study["results"]
         columns = [column["name"] for column in study["backends"] if column["holds"]]
+    rows = [row for row in rows if row["ratio_to_best"]]
+    ratios = {}
+    for operation in {row["operation"] for row in rows}:
+        of_it = [row for row in rows if row["operation"] == operation]
+        found = [row["ratio_to_best"] for row in of_it] if pooled else shown_ratios(of_it, "ns_per_element")
+        ratios |= {(operation, row["backend"]): ratio for row, ratio in zip(of_it, found)}
     if kind.startswith("ranking-"):
         operation = operation_of(figure, "ranking")
-        rows = [row for row in rows if row["operation"] == operation and row["ratio_to_best"]]
-        return check_ranking(figure, rows, operation)
+        rows = [row for row in rows if row["operation"] == operation]
+        return check_ranking(figure, rows, [ratios[operation, row["backend"]] for row in rows], operation)
     if kind.endswith("heat-map"):
-        return check_heat_map(figure, rows, columns)
+        return check_heat_map(figure, ratios, columns)
     if kind.endswith("memory"):
         return check_memory(figure, study)
     if kind.endswith("break-even"):

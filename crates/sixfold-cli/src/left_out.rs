@@ -21,14 +21,17 @@ fn not_run_notes(results: &[ResultRow]) -> Vec<String> {
             .iter()
             .filter(|row| row.by_name_only == by_name_only);
         let rows: Vec<&ResultRow> = rows.filter(|row| row.estimated_ns.is_some()).collect();
-        let longest = rows.iter().filter_map(|row| row.estimated_ns);
-        let longest = longest.max_by(f64::total_cmp)?;
+        let time = |row: &&&ResultRow| row.estimated_ns.unwrap_or(0.0);
+        let longest = rows.iter().max_by(|a, b| time(a).total_cmp(&time(b)))?;
         let places = rows
             .iter()
             .map(|row| (row.operation.name(), row.backend.as_str()));
         Some(format!(
-            "≥ not run, because one run would take {} or more: {}. To run them, {remedy}.",
-            duration(longest),
+            "≥ not run, because a run would take long ({} on {}: {} or more): {}. To run them, \
+             {remedy}.",
+            longest.operation,
+            longest.backend,
+            duration(longest.estimated_ns?),
             grouped_places(places)
         ))
     };

@@ -303,7 +303,7 @@ fn ranking(report: &PickReport) -> String {
         ),
     ];
     if !pays_at_once {
-        columns.push(Column::figures("pays after", pays_after));
+        columns.push(Column::figures("pays", pays_after));
     }
     let names = Column::words("", of(&|ranked| ranked.backend.clone()));
     let table = column_table(&names, &columns);
@@ -317,8 +317,8 @@ fn ranking(report: &PickReport) -> String {
     signs.explain("rebuild: on pages that were used before");
     if !pays_at_once {
         signs.explain(&format!(
-            "pays after: number of {unit}s after which the 1st build and the {unit}s take less time \
-             than the {unit}s on an indexed face set that is already built"
+            "pays: number of {unit}s after which the 1st build and the {unit}s take less time than \
+             the {unit}s on an indexed face set that is already built"
         ));
     }
     let mut made_from = report

@@ -19,8 +19,8 @@ const UNITS: [(&str, &str, &str); 5] = [
     ("vertex", "v", "v vertex"),
     ("edge", "e", "e edge"),
     ("face", "f", "f face"),
-    ("visit", "a", "a answered element"),
-    ("new face", "n", "n new face"),
+    ("visit", "a", "a element that a query returns"),
+    ("new face", "n", "n face of the refined mesh"),
 ];
 
 /// Returns the table and its legend. If the terminal is too narrow, the backends are divided into
@@ -29,7 +29,7 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     let columns: Vec<&BackendReport> = report.backends.iter().filter(|b| b.holds).collect();
     // Intervals fit into the table only if there are few columns.
     let intervals = columns.len() <= 4;
-    let mut signs = Signs::new("fastest", bold);
+    let mut signs = Signs::new("clearly fastest; of bytes: fewest", bold);
     let bytes = || columns.iter().filter_map(|backend| backend.bytes);
     let least = bytes().min().filter(|_| columns.len() > 1);
     let smallest = Smallest {
@@ -99,7 +99,10 @@ fn table_of_backends(
         let unit = unit.map_or(operation.unit(), |(_, short, _)| short);
         let mut line = vec![Cell::new(operation.name()), Cell::new(unit)];
         line.extend(columns.iter().map(|backend| {
-            let text = of(backend).map_or("–".into(), |row| figure_of(row, intervals, signs));
+            let text = match of(backend) {
+                Some(row) => figure_of(row, intervals, signs),
+                None => signs.record('–').into(),
+            };
             signs.cell(text)
         }));
         table.add_row(line);
@@ -141,7 +144,7 @@ fn table_of_backends(
     lines.join("\n")
 }
 
-const FIRST_TIME: &str = "first time: one run on new pages, with tables without spare capacity";
+const FIRST_TIME: &str = "first time: first run, in memory that was not used before";
 
 /// Returns the time per element of first runs, for all backends if it differs from the usual time on
 /// one of them.
@@ -157,8 +160,8 @@ fn first_time(rows: &[&ResultRow]) -> impl Fn(&ResultRow) -> Option<f64> + use<>
     }
 }
 
-const UNSURE: &str = "ratio up to: end of the 95 % interval of the ratio to the fastest, for = with \
-                      a ratio above 1.1";
+const UNSURE: &str = "ratio up to: a tie may take so many times the time of the fastest (end of the \
+                      95 % interval, of this run only)";
 /// A tie with a larger ratio is shown with the end of its interval.
 const CLOSE: f64 = 1.1;
 

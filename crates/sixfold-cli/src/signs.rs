@@ -93,9 +93,10 @@ impl Signs {
     pub(crate) fn legend(&self) -> String {
         let meanings = [
             ('*', self.best),
-            ('=', "no clear difference to the fastest"),
+            ('=', "shares the first place: no clear difference"),
             ('~', "measured on a sample of the elements"),
             ('≥', "lower bound: estimated, not run"),
+            ('–', "no time: see the notes"),
             ('±', "95 % interval"),
             ('m', "the backend merges vertices at one position"),
             (
@@ -176,7 +177,7 @@ mod tests {
         signs.explain("more");
         signs.explain("more");
         let legend = signs.legend().replace('\n', "; ");
-        let expected = "* fastest; = no clear difference to the fastest; ~ measured on a sample of \
+        let expected = "* fastest; = shares the first place: no clear difference; ~ measured on a sample of \
                         the elements; ≥ lower bound: estimated, not run; m the backend merges \
                         vertices at one position; more";
         assert_eq!(legend, expected);

@@ -130,16 +130,25 @@ pub(crate) fn shell_word(path: &Path) -> String {
     }
 }
 
-/// Breaks `text` at spaces into lines of at most `width` columns. A longer word gets its own line.
+/// Breaks `text` at spaces into lines of at most `width` columns. A longer word gets its own line. A
+/// number and the sign `×` or `%` stay together.
 pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
+    let is_sign = |word: &str| word.starts_with(['×', '%']);
+    let mut words: Vec<String> = Vec::new();
     for word in text.split(' ') {
+        match words.last_mut() {
+            Some(number) if is_sign(word) => *number += &format!(" {word}"),
+            _ => words.push(word.to_owned()),
+        }
+    }
+    for word in words {
         match lines.last_mut() {
             Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
                 line.push(' ');
-                line.push_str(word);
+                line.push_str(&word);
             }
-            _ => lines.push(word.into()),
+            _ => lines.push(word),
         }
     }
     lines
@@ -219,6 +228,8 @@ mod tests {
     fn lines_break_at_spaces() {
         assert_eq!(wrap("one two three", 7), ["one two", "three"]);
         assert_eq!(wrap("longerthanthat a", 4), ["longerthanthat", "a"]);
+        assert_eq!(wrap("takes 1.31 × that", 8), ["takes", "1.31 ×", "that"]);
+        assert_eq!(wrap("of 1.8 %.", 6), ["of", "1.8 %."]);
         assert_eq!(hanging_indent("name  ", "reason"), "name  reason");
         let long_name = "n".repeat(2 * WIDTH);
         assert!(hanging_indent(&long_name, "a reason").starts_with(&format!("{long_name}a\n")));

@@ -28,7 +28,7 @@ fn the_answer_has_a_ranking_with_reasons() {
     for part in [
         "Workload: mine. Mine.",
         "2 vertex_faces, 1 corner_positions; random; 33,640 operations",
-        "pays after",
+        "pays: number of operations after which",
         "relation-tables: flat tables of only the relations in the mix, made from ",
         "For mine, ",
         "To use `sixfold_",

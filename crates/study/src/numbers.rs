@@ -15,18 +15,24 @@ pub fn grouped(number: usize) -> String {
 
 /// Rounds a number to three significant digits: the digits that [`figure`] shows.
 pub fn rounded(number: f64) -> f64 {
-    match number != 0.0 && number.is_finite() {
-        true => {
-            let unit = 10_f64.powi(number.abs().log10().floor() as i32 - 2);
-            // 99.96 becomes 100.0, and has then one digit fewer after the point.
-            let digits = (number / unit).round();
-            if unit < 1.0 {
-                digits / unit.recip().round()
-            } else {
-                digits * unit
-            }
-        }
-        false => number,
+    to_three_digits(number, f64::round)
+}
+
+/// Rounds a lower bound down to three significant digits.
+pub fn rounded_down(bound: f64) -> f64 {
+    to_three_digits(bound, f64::floor)
+}
+
+fn to_three_digits(number: f64, to_whole: fn(f64) -> f64) -> f64 {
+    if number == 0.0 || !number.is_finite() {
+        return number;
+    }
+    let unit = 10_f64.powi(number.abs().log10().floor() as i32 - 2);
+    // 99.96 becomes 100.0, and has then one digit fewer after the point.
+    let digits = to_whole(number / unit);
+    match unit < 1.0 {
+        true => digits / unit.recip().round(),
+        false => digits * unit,
     }
 }
 
@@ -129,6 +135,9 @@ mod tests {
         for (number, expected) in shown {
             assert_eq!(figure(number), expected, "{number}");
         }
+        assert_eq!(figure(rounded_down(139.9)), "139");
+        assert_eq!(figure(rounded_down(0.0419)), "0.0419");
+        assert_eq!(rounded_down(0.0), 0.0);
         assert_eq!(duration(2_340_000.0), "2.34 ms");
         assert_eq!(duration(999.7), "1.00 µs");
         assert_eq!(bytes(999_700), "1.00 MB");

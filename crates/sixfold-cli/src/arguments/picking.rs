@@ -18,7 +18,7 @@ The mix of a workload is the list of its operations with their weights. Each rou
 mix on every backend that has the required abilities. All operations of the mix run in one loop,
 because operations affect each other's times through the caches. If the mix does not change the
 connectivity of the mesh, flat tables of the queried relations are measured as another backend. The
-ranking does not include the time to build a backend. The column `pays after` shows the number of
+ranking does not include the time to build a backend. The column `pays` shows the number of
 operations after which the building time is saved, compared with an indexed face set that is already
 built. The ratios of several meshes are combined by geometric means.
 

@@ -1,7 +1,7 @@
 //! The table of the results of many meshes.
 
 use comfy_table::{Attribute, Cell, CellAlignment};
-use sixfold_study::numbers::counted;
+use sixfold_study::numbers::{counted, figure};
 use sixfold_study::{Overall, Pool, Pooled, Purpose};
 
 use crate::tables::{stacked, unbroken};
@@ -67,11 +67,12 @@ pub(super) fn groups_table(pool: &Pool, bold: bool) -> Option<String> {
                 line.extend(columns.iter().map(|column| {
                     let row = rows.iter().find(|row| row.backend == **column);
                     let Some(row) = row else {
-                        return right("– ".into());
+                        return right("–".into());
                     };
                     let is_best = row.backend == best.backend;
-                    let mark = if is_best { "*" } else { " " };
-                    let cell = right(format!("{}{mark}", ratio(row.ratio_to_best)));
+                    let mark = if is_best { "*" } else { "" };
+                    let bound = if row.bound { "≥" } else { "" };
+                    let cell = right(format!("{mark}{bound}{}", figure(row.ratio_to_best)));
                     match bold && is_best {
                         true => cell.add_attribute(Attribute::Bold),
                         false => cell,
@@ -101,26 +102,18 @@ fn header(title: &str, columns: &[&str]) -> Vec<Cell> {
 
 const LEGEND: [&str; 4] = [
     "* fastest or tied with the fastest on most meshes",
-    "? estimated on some meshes, because a run would exceed the budget",
+    "≥ lower bound: estimated on some meshes, because a run would exceed the budget",
     "(n) mean over n meshes only: on the other meshes, a backend has no time",
     "– no time on these meshes",
 ];
 
-fn ratio(ratio: f64) -> String {
-    match ratio {
-        ratio if ratio < 9.995 => format!("{ratio:.2}"),
-        ratio if ratio < 99.95 => format!("{ratio:.1}"),
-        ratio => format!("{ratio:.0}"),
-    }
-}
-
-/// Formats a cell such as `1.04*` or `?18.2`.
+/// Formats a cell such as `*1.04` or `≥18.2`.
 fn cell(row: &Pooled, bold: bool) -> Cell {
-    let ratio = ratio(row.ratio_to_best);
+    let ratio = figure(row.ratio_to_best);
     let ahead = 2 * (row.best + row.tied) > row.meshes;
-    let mark = if ahead { "*" } else { " " };
-    let estimated = if row.estimated > 0 { "?" } else { "" };
-    let cell = Cell::new(format!("{estimated}{ratio}{mark}")).set_alignment(CellAlignment::Right);
+    let mark = if ahead { "*" } else { "" };
+    let estimated = if row.estimated > 0 { "≥" } else { "" };
+    let cell = Cell::new(format!("{mark}{estimated}{ratio}")).set_alignment(CellAlignment::Right);
     match bold && ahead {
         true => cell.add_attribute(Attribute::Bold),
         false => cell,

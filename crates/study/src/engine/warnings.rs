@@ -1,7 +1,8 @@
 //! Warnings about possible faults of the measurement, each with a remedy.
 
 use crate::engine::disturbance::DISTURBED;
-use crate::engine::statistics::{MIN_SAMPLES, median};
+use crate::engine::ranking::FEWEST_OF_A_WINNER;
+use crate::engine::statistics::median;
 use crate::engine::timer::Timer;
 use crate::results::environment::Environment;
 use crate::results::rows::{Control, ResultRow, Samples};
@@ -174,12 +175,14 @@ fn few(settings: &RunSettings, results: &[&ResultRow]) -> Option<String> {
     let in_rounds = |row: &&&ResultRow| row.median_ns.is_some() && !row.warm_up_only;
     let measured = results.iter().filter(in_rounds);
     let all = measured.clone().count();
-    let few = measured.filter(|row| row.samples < MIN_SAMPLES).count();
+    let few = measured
+        .filter(|row| row.samples < FEWEST_OF_A_WINNER)
+        .count();
     let once = results.iter().all(|row| row.warm_up_only); // `nothing_measured` warns of this
     (few > 0 && !once).then(|| {
         format!(
-            "{few} of {all} times are from fewer than {MIN_SAMPLES} samples, so their intervals are wide \
-             or missing. Use {}{}.",
+            "{few} of {all} times are from fewer than {FEWEST_OF_A_WINNER} samples, so they cannot be \
+             compared with the fastest. Use {}{}.",
             settings.more_samples(),
             match settings.rounds {
                 None => " or fewer --operations",
@@ -198,7 +201,7 @@ fn wide(settings: &RunSettings, results: &[&ResultRow]) -> Option<String> {
     let known: Vec<(f64, &ResultRow)> = results
         .iter()
         .copied()
-        .filter(|row| row.samples >= MIN_SAMPLES)
+        .filter(|row| row.samples >= FEWEST_OF_A_WINNER)
         .filter_map(|row| Some((half_width(row)?, row)))
         .collect();
     let wide = known.iter().filter(|(half_width, _)| *half_width > WIDE);

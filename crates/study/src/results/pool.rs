@@ -5,7 +5,7 @@
 //! estimated times. Without estimated times, backends that are too slow to measure would look fast.
 
 use std::cmp::Ordering;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use serde::{Deserialize, Serialize};
 use sixfold::structure_infos;
@@ -15,7 +15,7 @@ use sixfold_workload::Operation;
 use crate::engine::statistics::geometric_mean;
 use crate::labs::pick::EQUAL_UP_TO;
 use crate::labs::study::Report;
-use crate::numbers::{counted, grouped, list, times};
+use crate::numbers::{counted, grouped, list, rounded_down, times};
 use crate::results::rows::{Agreement, ResultRow, Standing};
 
 /// The results over all meshes of a collection.
@@ -83,6 +83,10 @@ pub struct Overall {
     pub backend: String,
     /// The number of meshes in the mean.
     pub meshes: usize,
+    /// The number of cases in the mean: of operations on a mesh. The methods of a subdivision scheme
+    /// are one case. 0 in documents of schema 2.
+    #[serde(default)]
+    pub cases: usize,
     /// The time of this backend divided by the time of the fastest backend, as the geometric mean
     /// over meshes and operations. Each range of mesh sizes (such as 100 to 999 faces or 1,000 to
     /// 9,999 faces) has the same weight in the mean.
@@ -338,16 +342,31 @@ impl Known {
     }
 }
 
-fn row<'s>(study: &'s Report, operation: Operation, backend: &str) -> Option<&'s ResultRow> {
-    study.rows(operation).find(|row| row.backend == backend)
+/// The rows of several studies, by study, operation and backend.
+struct Rows<'s>(Vec<HashMap<(Operation, &'s str), &'s ResultRow>>);
+
+impl<'s> Rows<'s> {
+    fn new(studies: &[&'s Report]) -> Self {
+        let of = |study: &&'s Report| {
+            let rows = study.results.iter();
+            rows.map(|row| ((row.operation, row.backend.as_str()), row))
+                .collect()
+        };
+        Self(studies.iter().map(of).collect())
+    }
+
+    fn get(&self, study: usize, operation: Operation, backend: &str) -> Option<&'s ResultRow> {
+        self.0[study].get(&(operation, backend)).copied()
+    }
 }
 
 /// Pools each operation over the meshes on which all its backends have a time.
 fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
     let mut pooled = Vec::new();
+    let all_rows = Rows::new(studies);
     for operation in Operation::ALL {
         let value = |mesh: usize, backend: &str| {
-            let row = row(studies[mesh], operation, backend)?;
+            let row = all_rows.get(mesh, operation, backend)?;
             Some((row, Known::of(row)?.ns))
         };
         let has = |mesh: usize, backend: &str| value(mesh, backend).is_some();
@@ -446,8 +465,11 @@ impl Overall {
     /// Formats the mean time relative to the mean time of `other`: `1.31 ×`, or `≥ 900 ×` for a
     /// lower bound.
     pub(crate) fn times(&self, other: &Self) -> String {
-        let bound = if self.bound { "≥ " } else { "" };
-        format!("{bound}{}", times(self.ratio_to_best / other.ratio_to_best))
+        let ratio = self.ratio_to_best / other.ratio_to_best;
+        match self.bound {
+            true => format!("≥ {}", times(rounded_down(ratio))),
+            false => times(ratio),
+        }
     }
 }
 
@@ -455,6 +477,7 @@ impl Overall {
 /// slowest.
 pub(crate) fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
     let mut overall = Vec::new();
+    let all_rows = Rows::new(studies);
     for purpose in Purpose::ALL {
         let tasks = tasks(purpose);
         // A case is a task on a mesh.
@@ -463,7 +486,7 @@ pub(crate) fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
             .collect();
         let value = |case: usize, backend: &str| {
             let (mesh, task) = cases[case];
-            let rows = task.iter().filter_map(|&o| row(studies[mesh], o, backend));
+            let rows = task.iter().filter_map(|&o| all_rows.get(mesh, o, backend));
             rows.filter_map(Known::of).min_by(Known::measured_first)
         };
         let has = |case: usize, backend: &str| value(case, backend).is_some();
@@ -496,6 +519,7 @@ pub(crate) fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
                     purpose,
                     backend: (*backend).to_owned(),
                     meshes: by_mesh.len(),
+                    cases: shared.len(),
                     ratio_to_best: mean,
                     ci_low: interval.map(|[low, _]| low),
                     ci_high: interval.map(|[_, high]| high),

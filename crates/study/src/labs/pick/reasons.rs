@@ -4,7 +4,7 @@ use crate::engine::statistics::MIN_SAMPLES;
 use crate::engine::warnings::machine_warnings;
 use crate::labs::pick::choice::Choice;
 use crate::labs::pick::report::{PartCost, PickReport, ProgramReport, Ranked};
-use crate::numbers::{counted, duration, figure, grouped, list, times};
+use crate::numbers::{counted, duration, figure, grouped, list, rounded, times};
 use crate::packages;
 use crate::results::rows::Samples;
 
@@ -126,7 +126,6 @@ fn asked(program: &ProgramReport) -> Option<String> {
 }
 
 fn dominant_part(report: &PickReport, best: &Ranked) -> Option<String> {
-    let total: f64 = best.parts.iter().map(PartCost::weighted_ns).sum();
     let heaviest = best
         .parts
         .iter()
@@ -138,7 +137,7 @@ fn dominant_part(report: &PickReport, best: &Ranked) -> Option<String> {
     Some(format!(
         "{} takes {:.0} % of the time of the fastest backend ({each} each time).",
         heaviest.operation,
-        100.0 * heaviest.weighted_ns() / total
+        100.0 * (rounded(heaviest.ns?) * heaviest.share / rounded(best.ns_per_operation)).min(1.0)
     ))
 }
 
@@ -199,9 +198,10 @@ fn one_use_with_building(report: &PickReport, used: &Ranked) -> Option<String> {
         // A program already has an indexed face set.
         let build = match ranked.backend.as_str() {
             "indexed-face-set" => 0.0,
-            _ => ranked.first_build_ns(),
+            _ => rounded(ranked.first_build_ns()),
         };
-        build + operations * ranked.ns_per_operation
+        // From the shown times, so that a reader gets the same sum.
+        build + operations * rounded(ranked.ns_per_operation)
     };
     let least = report
         .ranking

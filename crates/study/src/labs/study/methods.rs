@@ -2,7 +2,7 @@
 
 use sixfold::subdivision::Method;
 
-use crate::numbers::{shown_ratio, times};
+use crate::numbers::{rounded_down, shown_ratio, times};
 use crate::results::rows::{BackendReport, ResultRow};
 use sixfold_workload::Operation;
 
@@ -37,9 +37,12 @@ impl MeasuredTime {
     /// Returns the ratio of this time to `other`, and its text, if this time is clearly longer.
     fn ratio_if_longer(self, other: Self) -> Option<(f64, String)> {
         let ratio = shown_ratio(self.each_ns, other.each_ns);
-        let bound = if self.bound { "≥ " } else { "" };
         let longer = self.low > other.high && !other.bound && ratio > MIN_RATIO;
-        longer.then(|| (ratio, format!("{bound}{}", times(ratio))))
+        let text = match self.bound {
+            true => format!("≥ {}", times(rounded_down(ratio))),
+            false => times(ratio),
+        };
+        longer.then_some((ratio, text))
     }
 }
 

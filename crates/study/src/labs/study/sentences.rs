@@ -49,7 +49,7 @@ fn scanning_backends<'r>(
 
 /// Names the fastest backends for each kind of work.
 fn choice(purposes: &[&[Overall]]) -> Option<String> {
-    let mut choices: Vec<(String, Vec<&str>)> = Vec::new();
+    let mut choices: Vec<(String, Vec<String>)> = Vec::new();
     for rows in purposes {
         let best = leaders(rows);
         let names: Vec<&str> = best.iter().map(|row| row.backend.as_str()).collect();
@@ -58,7 +58,7 @@ fn choice(purposes: &[&[Overall]]) -> Option<String> {
             _ if best.len() == rows.len() => "all backends, equal within 5 %,".to_owned(),
             _ => format!("{} (equal within 5 %)", names.join(" or ")),
         };
-        let purpose = rows[0].purpose.of_choice();
+        let purpose = format!("{}{}", rows[0].purpose.of_choice(), mean_over(&rows[0]));
         match choices.iter_mut().find(|(known, _)| *known == names) {
             Some((_, purposes)) => purposes.push(purpose),
             None => choices.push((names, vec![purpose])),
@@ -68,7 +68,19 @@ fn choice(purposes: &[&[Overall]]) -> Option<String> {
     let choices: Vec<String> = choices
         .map(|(names, purposes)| format!("{names} {}", list(purposes)))
         .collect();
-    (!choices.is_empty()).then(|| format!("Fastest on average: {}.", choices.join("; ")))
+    (!choices.is_empty()).then(|| format!("Fastest: {}.", choices.join("; ")))
+}
+
+/// Says over what a mean is, such as ` (geometric mean over 17 operations)`.
+fn mean_over(row: &Overall) -> String {
+    match (row.purpose, row.cases) {
+        (Purpose::Subdivide, cases) => format!(
+            " (fastest method of {})",
+            counted(cases, "scheme", "schemes")
+        ),
+        (_, 1) => String::new(),
+        (_, cases) => format!(" (geometric mean of {cases} operations)"),
+    }
 }
 
 /// Names the next best backend for each kind of work, with its time. [`scans`] names the backends
@@ -102,7 +114,7 @@ fn scans(report: &Report, purposes: &[&[Overall]], scanning: &[&str]) -> Option<
     let faces = grouped(report.mesh.facts.faces);
     let ratios = scanning.iter().map(|mean| mean.times(&queries[0]));
     Some(format!(
-        "{} {verb} all {faces} faces for a query and {times} {} the time in queries",
+        "{} {verb} all {faces} faces for most relations and {times} {} the time in queries",
         list(scanning.iter().map(|mean| &mean.backend)),
         list(ratios)
     ))
@@ -121,7 +133,7 @@ fn how_sure(report: &Report) -> Option<String> {
     let (clear, tied) = (count(Standing::Best), count(Standing::Tied));
     let few = compared.len() - clear - tied;
     let counts = [
-        (clear, "one fastest backend"),
+        (clear, "a clear winner"),
         (tied, "no clear difference between the fastest"),
         (few, "too few samples"),
     ];
@@ -271,13 +283,13 @@ mod tests {
             row("half-edge", Boundary, 1.0, Standing::Best),
             row("corner-table", Boundary, 1.0, Standing::Slower),
         ]);
-        let which = "Fastest on average: polygon-soup or half-edge (equal within 5 %) to build; \
-                     half-edge for queries.";
+        let which = "Fastest: polygon-soup or half-edge (equal within 5 %) to build; half-edge for \
+                     queries (geometric mean of 2 operations).";
         // Queries: the roots of 4 * 1, and of 400 * 900.
         let how_much = "Next best: corner-table takes 2.08 × the time in building, corner-table takes \
-                        2.00 × the time in queries; polygon-soup scans all 4 faces for a query and \
+                        2.00 × the time in queries; polygon-soup scans all 4 faces for most relations and \
                         takes ≥ 600 × the time in queries.";
-        let counts = "How sure: of 3 operations, 2 with one fastest backend and 1 with no clear \
+        let counts = "How sure: of 3 operations, 2 with a clear winner and 1 with no clear \
                       difference between the fastest";
         assert_eq!(said(&report), [which, how_much, &format!("{counts}.")]);
 
@@ -306,7 +318,8 @@ mod tests {
         for row in &mut report.results {
             row.median_ns = Some(100.0);
         }
-        let equal = "Fastest on average: all backends, equal within 5 %, to build and for queries.";
+        let equal = "Fastest: all backends, equal within 5 %, to build and for queries (geometric mean \
+                     of 2 operations).";
         assert_eq!(said(&report)[0], equal);
 
         report.results.truncate(1);

@@ -233,7 +233,8 @@ fn scans_are_slower_and_their_samples_are_small() {
     }
     let sentences = report.sentences.join(" ");
     assert!(
-        sentences.contains("polygon-soup and indexed-face-set scan all 1,500 faces for a query")
+        sentences
+            .contains("polygon-soup and indexed-face-set scan all 1,500 faces for most relations")
             || sentences.contains("indexed-face-set and polygon-soup scan all 1,500 faces"),
         "{sentences}"
     );
