@@ -114,7 +114,9 @@ def printed_row(backend):
     interval = f"{figures.three_digits(row['ci_low'])}–{figures.three_digits(row['ci_high'])}"
     builds = figures.time(row["first_build_ns"]), figures.time(row["build_ns"])
     size = f"{row['bytes_per_vertex']:.1f}"
-    return " ".join((time, relative, interval, *builds, size, pays_after(workload, backend)))
+    cells = time, relative, interval, *builds, size, pays_after(workload, backend)
+    widths = 0, 5, 11, 9, 7, 8, 5
+    return " ".join(cell.rjust(width) for cell, width in zip(cells, widths))
 
 
 def shown_ratio(workload, backend):

@@ -119,7 +119,7 @@ class Changed(unittest.TestCase):
 
     def test_values_are_written(self):
         before = (self.root / "README.md").read_text(encoding="utf-8")
-        self.change("README.md", "86.3 µs  1.00 *", "99.9 µs  1.00 *")
+        self.change("README.md", "86.3 µs *1.00", "99.9 µs *1.00")
         self.change("README.md", "in random order 5.4× |", "in random order 4.0× |")
         main.write(main.check_text(front_page.page))
         self.assertEqual((self.root / "README.md").read_text(encoding="utf-8"), before)
