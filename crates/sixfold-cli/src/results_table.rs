@@ -14,13 +14,13 @@ use sixfold_study::numbers::figure;
 pub(crate) const STYLE: TableStyle =
     TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
-/// A unit of work with the short name in the table, and its meaning.
-const UNITS: [(&str, &str, &str); 5] = [
-    ("vertex", "v", "v vertex"),
-    ("edge", "e", "e edge"),
-    ("face", "f", "f face"),
-    ("visit", "a", "a element that a query returns"),
-    ("new face", "n", "n face of the refined mesh"),
+/// The units of work, with their letters in the table.
+const UNITS: [(&str, &str); 5] = [
+    ("vertex", "v"),
+    ("edge", "e"),
+    ("face", "f"),
+    ("visit", "a"),
+    ("new face", "n"),
 ];
 
 /// Returns the table and its legend. If the terminal is too narrow, the backends are divided into
@@ -39,13 +39,29 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     let table = stacked(&columns, |part| {
         table_of_backends(report, part, intervals, smallest, &mut signs)
     });
-    let units = UNITS.iter().filter(|(unit, ..)| {
+    let units = UNITS.iter().filter(|(unit, _)| {
         let mut rows = report.results.iter();
         rows.any(|row| row.per == *unit)
     });
-    let units: Vec<&str> = units.map(|(.., meaning)| *meaning).collect();
-    if !units.is_empty() {
-        signs.explain(&format!("per: {}", units.join(", ")));
+    let meaning = |unit: &str| {
+        let mut known = Operation::UNITS.iter();
+        known
+            .find(|(name, _)| *name == unit)
+            .map(|(_, meaning)| *meaning)
+    };
+    let (long, short): (Vec<_>, Vec<_>) = units.partition(|(unit, _)| meaning(unit).is_some());
+    let short: Vec<String> = short
+        .iter()
+        .map(|(unit, letter)| format!("{letter} {unit}"))
+        .collect();
+    if !short.is_empty() {
+        signs.explain(&format!("per: {}", short.join(", ")));
+    }
+    for (unit, letter) in long {
+        let meaning = meaning(unit).unwrap_or(unit);
+        signs.explain(&format!("{letter}: {meaning}"));
+    }
+    if !report.results.is_empty() {
         signs.explain("`sixfold operations` says what each operation does");
     }
     format!("{table}\n{}", signs.legend())
@@ -95,8 +111,8 @@ fn table_of_backends(
             continue; // left_out_notes has the reasons
         }
         let of = |backend: &BackendReport| rows.iter().find(|row| row.backend == backend.name);
-        let unit = UNITS.iter().find(|(unit, ..)| *unit == operation.unit());
-        let unit = unit.map_or(operation.unit(), |(_, short, _)| short);
+        let unit = UNITS.iter().find(|(unit, _)| *unit == operation.unit());
+        let unit = unit.map_or(operation.unit(), |(_, letter)| letter);
         let mut line = vec![Cell::new(operation.name()), Cell::new(unit)];
         line.extend(columns.iter().map(|backend| {
             let text = match of(backend) {
@@ -160,8 +176,8 @@ fn first_time(rows: &[&ResultRow]) -> impl Fn(&ResultRow) -> Option<f64> + use<>
     }
 }
 
-const UNSURE: &str = "ratio up to: a tie may take so many times the time of the fastest (end of the \
-                      95 % interval, of this run only)";
+const UNSURE: &str = "ratio up to: upper end of the 95 % interval (of this run) of the ratio to the fastest, \
+                      for = with a ratio above 1.1";
 /// A tie with a larger ratio is shown with the end of its interval.
 const CLOSE: f64 = 1.1;
 

@@ -181,5 +181,8 @@ fn a_tie_that_may_be_a_large_difference_shows_the_end_of_its_interval() {
         line.map(str::split_whitespace).and_then(Iterator::last),
         Some("1.40")
     );
-    assert!(table.contains("ratio up to: a tie may take"), "{table}");
+    assert!(
+        table.contains("ratio up to: upper end of the 95 %"),
+        "{table}"
+    );
 }

@@ -86,3 +86,37 @@ pub(crate) fn corrected_times(backends: &[Vec<(u32, Time)>]) -> Vec<Option<f64>>
         .map(|effect| Some((effect? + typical).exp()))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn backend(times: &[(u32, f64)]) -> Vec<(u32, Time)> {
+        let times = times.iter();
+        times
+            .map(|&(round, ns)| (round, Time::from_wall_ns(ns)))
+            .collect()
+    }
+
+    #[test]
+    fn times_are_those_of_a_round_of_median_speed() {
+        // The second backend takes twice the time of the first, and missed the slow rounds.
+        let first = backend(&[(0, 10.0), (1, 10.0), (2, 30.0), (3, 30.0), (4, 30.0)]);
+        let second = backend(&[(0, 20.0), (1, 20.0)]);
+        let times = corrected_times(&[first, second, Vec::new()]);
+        let [Some(a), Some(b), None] = times[..] else {
+            panic!("{times:?}")
+        };
+        assert!(
+            (a - 30.0).abs() < 1e-9 && (b - 60.0).abs() < 1e-9,
+            "{times:?}"
+        );
+    }
+
+    #[test]
+    fn without_logarithms_times_are_medians() {
+        let coarse = backend(&[(0, 0.0), (1, 4.0), (2, 6.0)]);
+        let other = backend(&[(0, 1.0), (1, 9.0)]);
+        assert_eq!(corrected_times(&[coarse, other]), [Some(4.0), Some(5.0)]);
+    }
+}

@@ -102,6 +102,28 @@ fn slow_operations_have_enough_samples_for_a_winner_if_there_is_time() {
 }
 
 #[test]
+fn a_long_scan_is_run_once_unless_it_was_named() {
+    let study_mesh = grid(30, 30);
+    let samples = |operations: Vec<Operation>, budget_ms| {
+        let settings = Settings {
+            backends: vec!["polygon-soup".into(), "half-edge".into()],
+            operations,
+            ..settings(Effort::of_ms(budget_ms))
+        };
+        let report = quick(&study_mesh, &settings).expect("both hold it");
+        let mut rows = report.rows(Operation::FfBfs);
+        let row = rows.find(|row| row.backend == "polygon-soup");
+        let row = row.expect("the search was run");
+        assert_eq!(row.standing, Some(Standing::Slower));
+        (row.samples, row.warm_up_only)
+    };
+    // A search on the soup takes 3.3 ms, and half-edge 0.018 ms.
+    assert_eq!(samples(Vec::new(), 500), (1, true));
+    let (_, once) = samples(Operation::ALL.to_vec(), 500);
+    assert!(!once);
+}
+
+#[test]
 fn rounds_sample_scans_by_the_number_of_faces() {
     // A sample of a scan visits a million faces: 667 of the vertices of 1,500 faces.
     let study_mesh = grid(30, 25);
