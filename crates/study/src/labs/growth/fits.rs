@@ -18,7 +18,8 @@ pub struct Fit {
     pub operation: Operation,
     /// True if the operation scans all faces of the mesh for each element on this backend.
     pub scans: bool,
-    /// The line fitted to the times at all sizes; `None` with fewer than two sizes.
+    /// The line fitted to the measured times at all sizes; `None` with fewer than two such sizes.
+    /// An estimate is not on the line, because it assumes how the time grows.
     pub all: Option<Slope>,
     /// The line fitted to the times at the sizes for which the structure fits into the last-level
     /// cache. `None` if the structure fits at fewer than two sizes, or if the caches are unknown.
@@ -27,7 +28,7 @@ pub struct Fit {
     /// last-level cache. `None` if the structure is larger than the cache at fewer than two sizes,
     /// or if the caches are unknown.
     pub beyond: Option<Slope>,
-    /// Number of sizes at which the time is an estimate, not a measurement.
+    /// Number of sizes at which the time is an estimate, and the line has no point.
     pub estimated: usize,
 }
 
@@ -66,14 +67,14 @@ pub(super) fn fits(
                 let Some((row, memory)) = row.next().zip(memory) else {
                     continue;
                 };
-                let Some(ns) = row.median_ns.or(row.estimated_ns) else {
+                let Some(ns) = row.median_ns else {
+                    estimated += usize::from(row.estimated_ns.is_some());
                     continue;
                 };
-                estimated += usize::from(row.median_ns.is_none());
                 let fits = last_level_bytes.is_some_and(|bytes| memory.bytes as u64 <= bytes);
                 points.push((size.faces as f64, ns, fits));
             }
-            if points.is_empty() {
+            if points.is_empty() && estimated == 0 {
                 continue;
             }
             let slope = |takes_part: &dyn Fn(bool) -> bool| {
@@ -170,9 +171,11 @@ mod tests {
                 1e5 * (n / 1e5).powf(1.5)
             }
         };
-        let sizes: Vec<SizeReport> = [1e3, 1e4, 1e5, 1e6, 1e7]
-            .map(|n| size(n as usize, 10 * n as usize, time(n), n == 1e7))
-            .into();
+        let measured =
+            [1e3, 1e4, 1e5, 1e6, 1e8].map(|n| size(n as usize, 10 * n as usize, time(n), false));
+        // An estimate is on no line.
+        let estimate = size(10_000_000, 100_000_000, 1.0, true);
+        let sizes: Vec<SizeReport> = measured.into_iter().chain([estimate]).collect();
         let backends = Backend::structures();
         let backends: Vec<&Backend> = backends.iter().collect();
         let fit =

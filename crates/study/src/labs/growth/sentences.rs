@@ -232,13 +232,13 @@ fn noise(sizes: &[SizeReport]) -> Option<String> {
     ))
 }
 
-/// Counts the estimates to which lines are fitted.
+/// Counts the estimates, which are not on the fitted lines.
 fn estimates(fits: &[Fit]) -> Option<String> {
     let estimated: usize = fits.iter().map(|fit| fit.estimated).sum();
     (estimated > 0).then(|| {
         format!(
-            "{} of the times to which the lines are fitted are estimates, because real runs would \
-             exceed the budget.",
+            "{} of the times are estimates, because real runs would exceed the budget. No line is \
+             fitted to them.",
             grouped(estimated)
         )
     })
