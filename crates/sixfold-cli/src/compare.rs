@@ -116,7 +116,7 @@ fn changes_table(rows: &[&Change]) -> String {
     let mut table = table(header.collect());
     for row in rows {
         let interval = row.ci_low.zip(row.ci_high);
-        let interval = interval.map(|(low, high)| format!("{low:.2} to {high:.2}"));
+        let interval = interval.map(|(low, high)| format!("{low:.2}–{high:.2}"));
         let verdict = match row.verdict {
             _ if row.other_checksum => "different checksum",
             Verdict::Faster => "faster",

@@ -112,7 +112,7 @@ pub(crate) fn help() -> String {
 /// Prints the results, which follow [`print_before_measuring`].
 fn print(report: &GrowthReport, text: &mut TextOutput) {
     text.print_line("");
-    text.print_answer(&report.sentences);
+    text.print_answer(&report.sentences, &report.warnings);
     let mut signs = Signs::new("fastest at this size", text.bold());
     let operations = report.sizes.first().map_or(&[][..], |size| &size.results);
     for rows in operations.chunk_by(|a, b| a.operation == b.operation) {
@@ -133,7 +133,7 @@ fn print(report: &GrowthReport, text: &mut TextOutput) {
     let rows = report.sizes.iter().flat_map(|size| &size.results);
     let samples = rows.map(|row| row.samples);
     let notes = refusal_notes(report.sizes.iter().flat_map(|size| &size.refusals));
-    print_end(&report.warnings, notes, &report.run, samples, text);
+    print_end(notes, &report.run, samples, text);
 }
 
 const LEGEND: [&str; 3] = [

@@ -304,15 +304,12 @@ fn print_all(results: &Results, text: &mut TextOutput) {
     let pool = results.pool();
     if !pool.all().is_empty() {
         text.print_line("");
-        text.print_answer(&pool.sentences);
+        text.print_answer(&pool.sentences, &pool.warnings);
         text.print_line(&pooled_table::pooled_table(&pool, text.bold()));
         text.print_line("");
         if let Some(groups) = pooled_table::groups_table(&pool, text.bold()) {
             text.print_line(&groups);
             text.print_line("");
-        }
-        for warning in &pool.warnings {
-            text.print_line(&hanging_indent("! ", &sanitize(warning)));
         }
     }
     for failed in &results.failures {

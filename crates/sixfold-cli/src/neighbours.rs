@@ -42,11 +42,11 @@ pub(crate) fn run(arguments: &Neighbours) -> Result<ExitCode, Failure> {
 
 fn print(report: &NeighboursReport, text: &mut TextOutput) {
     text.print_line("");
-    text.print_answer(&report.sentences);
+    text.print_answer(&report.sentences, &report.warnings);
     text.print_line(&table(report, text.bold()));
     text.print_line("");
     let samples = report.results.iter().map(|row| row.samples);
-    print_end(&report.warnings, Vec::new(), &report.run, samples, text);
+    print_end(Vec::new(), &report.run, samples, text);
 }
 
 /// Returns the table with a row per task and a column per index, and its legend.

@@ -79,7 +79,7 @@ pub(crate) fn default_operations() -> String {
 
 fn print(report: &OrdersReport, text: &mut TextOutput) {
     text.print_line("");
-    text.print_answer(&report.sentences);
+    text.print_answer(&report.sentences, &report.warnings);
     let mut signs = Signs::new("best order of the structure", text.bold());
     for comparison in &report.comparisons {
         let rows: Vec<&ResultRow> = report.rows(comparison.operation).collect();
@@ -88,20 +88,19 @@ fn print(report: &OrdersReport, text: &mut TextOutput) {
             text.print_line("");
         }
     }
-    signs.explain("second figure: ratio to the best order of the structure");
     signs.explain("worst: ratio of the worst order to the best, – without a clear difference");
     text.print_line(&signs.legend());
     text.print_line("");
     let samples = report.results.iter().map(|row| row.samples);
     let notes = refusal_notes(&report.refusals);
-    print_end(&report.warnings, notes, &report.run, samples, text);
+    print_end(notes, &report.run, samples, text);
 }
 
 /// Returns the table with a row per structure and a column per order.
 fn table(comparison: &Comparison, rows: &[&ResultRow], signs: &mut Signs) -> String {
     let operation = comparison.operation;
     let first = format!("{operation}\nns per {}", operation.unit());
-    let orders = Order::ALL.map(|order| right(order.name()));
+    let orders = Order::ALL.map(|order| right(order.name().replace('-', "-\n")));
     let mut header = vec![Cell::new(first)];
     header.extend(orders);
     header.push(right("worst"));
@@ -116,11 +115,7 @@ fn table(comparison: &Comparison, rows: &[&ResultRow], signs: &mut Signs) -> Str
         let mut line = vec![Cell::new(backend)];
         for order in Order::ALL {
             let row = backend_rows.iter().find(|row| row.case == order.name());
-            let text = row.map_or("–".into(), |row| {
-                let ratio = row.ns_per_element.zip(best);
-                let ratio = ratio.map(|(each, best)| figure(shown_ratio(each, best)));
-                format!("{} {:>5}", signs.figure(row), ratio.unwrap_or_default())
-            });
+            let text = row.map_or("–".into(), |row| signs.figure(row));
             line.push(signs.cell(text));
         }
         let effect = comparison.orders.iter().find(|e| e.backend == *backend);

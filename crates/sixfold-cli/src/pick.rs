@@ -235,7 +235,7 @@ fn predicted_lines(prediction: &Prediction, of: &str) -> Vec<(&'static str, Stri
 /// Prints the results, which follow [`print_before_measuring`].
 pub(crate) fn print(report: &PickReport, text: &mut TextOutput) {
     let (answer, reasons) = report.sentences.split_at(report.sentences.len().min(1));
-    text.print_answer(answer);
+    text.print_answer(answer, &report.warnings);
     if !report.ranking.is_empty() {
         text.print_line(&ranking(report));
         text.print_line("");
@@ -244,7 +244,6 @@ pub(crate) fn print(report: &PickReport, text: &mut TextOutput) {
     let excluded = report.excluded.iter();
     let excluded = excluded.map(|e| format!("{} is excluded: {}.", e.backend, e.reason));
     text.print_list("- ", excluded);
-    text.print_list("! ", &report.warnings);
 }
 
 /// Returns the table of backends, the fastest first, and its legend.
@@ -254,11 +253,11 @@ fn ranking(report: &PickReport) -> String {
         .iter()
         .map(|ranked| pays_after(report, ranked))
         .collect();
-    // One operation, or one run, pays for every build: nothing to read.
+    // If one operation, or one run, pays for every build that pays, there is nothing to read.
     let pays_at_once = pays_after
         .iter()
-        .all(|after| ["1", "–"].contains(&after.as_str()));
-    let mut signs = Signs::new("fastest", false);
+        .all(|after| ["1", "–", "never"].contains(&after.as_str()));
+    let mut signs = Signs::new("clearly fastest", false);
     let has_winner = report
         .ranking
         .iter()
@@ -318,7 +317,7 @@ fn ranking(report: &PickReport) -> String {
     if !pays_at_once {
         signs.explain(&format!(
             "pays: number of {unit}s after which the 1st build and the {unit}s take less time than \
-             the {unit}s on an indexed face set that is already built"
+             the {unit}s on an indexed face set that is already built; – for this set"
         ));
     }
     let mut made_from = report

@@ -63,6 +63,7 @@ pub(crate) fn results_table(report: &Report, bold: bool) -> String {
     }
     if !report.results.is_empty() {
         signs.explain("`sixfold operations` says what each operation does");
+        signs.explain("`sixfold pick` ranks the structures, and relation tables, for one program");
     }
     format!("{table}\n{}", signs.legend())
 }
@@ -139,7 +140,9 @@ fn table_of_backends(
             }
         };
         below("ratio up to", UNSURE, &largest_ratio);
-        below("first time", FIRST_TIME, &first_time(&rows));
+        if operation == Operation::Build {
+            below("first time", FIRST_TIME, &first_time(&rows));
+        }
         let row = table.row_count() - 1;
         let warning = noise_warning(report, operation).filter(|_| is_first);
         warnings.extend(warning.map(|warning| (row, warning)));

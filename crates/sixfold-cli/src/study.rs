@@ -107,13 +107,13 @@ pub(crate) fn print(report: &Report, text: &mut TextOutput) {
         text.print_line(&verdicts_text(&report.mesh, &programs));
     }
     text.print_line("");
-    text.print_answer(&report.sentences);
+    text.print_answer(&report.sentences, &report.warnings);
     text.print_line(&results_table(report, text.bold()));
     text.print_line("");
     let samples = report.results.iter().map(|row| row.samples);
     let mut notes = report.notes.clone();
     notes.extend(left_out_notes(report));
-    print_end(&report.warnings, notes, &report.run, samples, text);
+    print_end(notes, &report.run, samples, text);
     if let Some(timer) = report.timer {
         text.print_line(&hanging_indent("", &clock_text(timer)));
     }
@@ -130,23 +130,21 @@ fn clock_text(timer: Timer) -> String {
     )
 }
 
-/// Prints the end of the results: warnings, notes, and how the times were measured. `samples` has the
-/// number of samples of each time.
+/// Prints the end of the results: notes, and how the times were measured. `samples` has the number of
+/// samples of each time.
 pub(crate) fn print_end(
-    warnings: &[String],
     notes: Vec<String>,
     run: &Run,
     samples: impl Iterator<Item = usize>,
     text: &mut TextOutput,
 ) {
-    text.print_list("! ", warnings);
     for note in &notes {
         // Some notes begin with the sign of the figures that they explain.
         let sign = ["– ", "≥ "].into_iter().find(|sign| note.starts_with(sign));
         let (sign, note) = sign.map_or(("- ", note.as_str()), |sign| (sign, &note[sign.len()..]));
         text.print_list(sign, [note]);
     }
-    if !(warnings.is_empty() && notes.is_empty()) {
+    if !notes.is_empty() {
         text.print_line("");
     }
     text.print_list("", [describe_run(run, samples.max().unwrap_or(0))]);

@@ -73,10 +73,12 @@ impl TextOutput {
         }
     }
 
-    /// Prints the sentences of an answer and an empty line; nothing if there are no sentences.
-    pub(crate) fn print_answer(&mut self, sentences: &[String]) {
-        self.print_list("- ", sentences);
-        if !sentences.is_empty() {
+    /// Prints the sentences of an answer, the warnings that say how far to trust it, and an empty line;
+    /// nothing if there are none.
+    pub(crate) fn print_answer(&mut self, sentences: &[String], warnings: &[String]) {
+        self.print_list("- ", sentences.iter().map(|text| sanitize(text)));
+        self.print_list("! ", warnings.iter().map(|text| sanitize(text)));
+        if !(sentences.is_empty() && warnings.is_empty()) {
             self.print_line("");
         }
     }

@@ -285,10 +285,13 @@ fn memory_and_counts_have_pages() {
     run_ok(&sixfold, &["memory", "grid.obj", "--json", "memory.json"]);
     for (files, parts) in [
         (&["counts.json"][..], &["Reads of each query"][..]),
-        (&["memory.json"], &["Bytes by formula", "Allocated bytes"]),
+        (
+            &["memory.json"],
+            &["the allocator give the same bytes", "Allocated bytes"],
+        ),
         (
             &["counts.json", "memory.json"],
-            &["Reads of each query", "Bytes by formula"],
+            &["Reads of each query", "Bytes of each structure"],
         ),
     ] {
         let arguments = [&["report"], files, &["--to", "page"]].concat();

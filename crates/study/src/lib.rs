@@ -78,7 +78,7 @@ pub use results::compare::{
 };
 pub use results::document::{Failed, FailureKind, Results, SCHEMA};
 pub use results::environment::Environment;
-pub use results::figure::{Figure, FigureRow, Status};
+pub use results::figure::{Counted, Figure, Status};
 pub use results::finding::Finding;
 pub use results::merge::MergeError;
 pub use results::pool::{Group, Holding, Overall, Pool, Pooled, Purpose};

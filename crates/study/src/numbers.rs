@@ -28,8 +28,9 @@ fn to_three_digits(number: f64, to_whole: fn(f64) -> f64) -> f64 {
         return number;
     }
     let unit = 10_f64.powi(number.abs().log10().floor() as i32 - 2);
-    // 99.96 becomes 100.0, and has then one digit fewer after the point.
-    let digits = to_whole(number / unit);
+    // 99.96 becomes 100.0, and has then one digit fewer after the point. The quotient of 15.9 and 12.0
+    // is 1.325 on paper, but a little less in binary.
+    let digits = to_whole(number / unit + 1e-9);
     match unit < 1.0 {
         true => digits / unit.recip().round(),
         false => digits * unit,
@@ -151,11 +152,13 @@ mod tests {
             (1.2345e6, 7.7777),
             (0.0417, 0.3333),
             (3.0, 3.0),
+            (15.9, 12.0),
         ] {
             let parsed = |text: String| text.replace(',', "").parse::<f64>().expect("a number");
             let [a_shown, b_shown] = [a, b].map(|time| parsed(figure(time)));
             assert_eq!([a_shown, b_shown], [a, b].map(rounded));
             assert_eq!(figure(shown_ratio(a, b)), figure(a_shown / b_shown));
         }
+        assert_eq!(figure(shown_ratio(15.9, 12.0)), "1.33", "as on paper");
     }
 }

@@ -58,12 +58,24 @@ pub enum SubdivisionError {
     #[error("stopped after level {level}")]
     Stopped { level: u32 },
     /// The structure cannot hold the mesh of this level (level 0 is the input mesh).
-    #[error("{structure} cannot hold level {level}: {refusal}")]
+    #[error("{}", cannot_hold(structure, *level, refusal))]
     Build {
         structure: &'static str,
         level: u32,
         refusal: BuildError,
     },
+}
+
+/// Says why `structure` cannot hold a level. The refusal of a level above 0 names faces that the
+/// scheme made, so the remedy of the refusal, which is for the input, would not help.
+fn cannot_hold(structure: &str, level: u32, refusal: &BuildError) -> String {
+    match refusal {
+        BuildError::NotATriangle { degree, .. } if level > 0 => format!(
+            "{structure} holds only triangles, but level {level} has faces with {degree} corners: \
+             choose another structure, or a scheme that makes triangles"
+        ),
+        _ => format!("{structure} cannot hold level {level}: {refusal}"),
+    }
 }
 
 /// The reason why the given points do not define a curve or a patch.
@@ -121,10 +133,40 @@ pub enum LocalError {
     #[error("stopped after level {level}")]
     Stopped { level: u32 },
     /// The structure cannot hold the mesh of this level (level 0 is the input mesh).
-    #[error("{structure} cannot hold level {level}: {refusal}")]
+    #[error("{}", cannot_hold(structure, *level, refusal))]
     Build {
         structure: &'static str,
         level: u32,
         refusal: BuildError,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_structure_for_triangles_is_not_told_to_triangulate_what_the_scheme_made() {
+        let message = |level| {
+            let error = SubdivisionError::Build {
+                structure: "corner-table",
+                level,
+                refusal: BuildError::NotATriangle {
+                    face: FaceId::new(0),
+                    degree: 4,
+                },
+            };
+            error.to_string()
+        };
+        assert_eq!(
+            message(1),
+            "corner-table holds only triangles, but level 1 has faces with 4 corners: choose another \
+             structure, or a scheme that makes triangles"
+        );
+        assert_eq!(
+            message(0),
+            "corner-table cannot hold level 0: face f0 has 4 corners, and only triangles fit: \
+             triangulate the mesh"
+        );
+    }
 }

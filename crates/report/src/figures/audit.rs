@@ -9,14 +9,21 @@ use crate::figure::{Table, TitledTable};
 pub(super) fn tables(audit: &Audit) -> Vec<TitledTable> {
     let holding = audit.backends.iter().filter(|entry| entry.backend.holds);
     let holding: Vec<&BackendAudit> = holding.collect();
+    let agree = holding.iter().all(|entry| entry.agrees == Some(true));
+    let counts = match agree {
+        true => "The formula, the tables and the allocator give the same bytes.",
+        false => {
+            "The formula computes the bytes from the numbers of elements. Tables: the bytes of all \
+             tables, including spare capacity. Counted: the bytes that the allocator handed out."
+        }
+    };
     let mut tables = vec![TitledTable {
-        title: "Bytes by formula, by tables and by allocator".into(),
-        caption: "The formula computes the bytes from the numbers of elements. Tables: the bytes \
-                  of all tables, including spare capacity. Counted: the bytes that the allocator \
-                  handed out. Peak: the largest number of bytes in use while the structure is \
-                  built, without the input."
-            .into(),
-        table: bytes(&holding),
+        title: "Bytes of each structure".into(),
+        caption: format!(
+            "{counts} Peak: the largest number of bytes in use while the structure is built, without \
+             the input."
+        ),
+        table: bytes(&holding, agree),
     }];
     if holding.iter().any(|entry| !entry.operations.is_empty()) {
         tables.push(TitledTable {
@@ -31,30 +38,37 @@ pub(super) fn tables(audit: &Audit) -> Vec<TitledTable> {
     tables
 }
 
-fn bytes(holding: &[&BackendAudit]) -> Table {
-    let mut table = Table::new([
-        "",
-        "formula",
-        "tables",
-        "counted",
+/// Returns the table of bytes, with one column for the three counts if they `agree`.
+fn bytes(holding: &[&BackendAudit], agree: bool) -> Table {
+    let counts: &[&str] = match agree {
+        true => &["bytes"],
+        false => &["formula", "tables", "counted"],
+    };
+    let others = [
+        "per vertex",
         "peak",
-        "peak / counted",
-        "counted per vertex",
-    ]);
+        match agree {
+            true => "peak / bytes",
+            false => "peak / counted",
+        },
+    ];
+    let mut table = Table::new([""].iter().chain(counts).chain(&others).copied());
     let cell = |bytes: Option<usize>| bytes.map_or_else(|| "–".into(), grouped);
     for entry in holding {
         let ratio = entry.peak_to_counted.map(|ratio| format!("{ratio:.2}"));
         let each = entry.counted_bytes_per_vertex;
         let each = each.map(|each| format!("{each:.1}"));
-        table.row(vec![
-            entry.backend.name.clone(),
-            cell(entry.backend.layout_bytes),
-            cell(entry.backend.bytes),
+        let mut line = vec![entry.backend.name.clone()];
+        if !agree {
+            line.extend([entry.backend.layout_bytes, entry.backend.bytes].map(cell));
+        }
+        line.extend([
             cell(entry.counted_bytes),
+            each.unwrap_or_else(|| "–".into()),
             cell(entry.peak_bytes),
             ratio.unwrap_or_else(|| "–".into()),
-            each.unwrap_or_else(|| "–".into()),
         ]);
+        table.row(line);
     }
     table
 }

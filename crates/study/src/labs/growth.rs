@@ -40,13 +40,10 @@ use crate::engine::warnings::warnings;
 use crate::inspect::StudyMesh;
 use crate::labs::study::{StudyError, is_skewed, prepare, refusals, results, scans};
 use crate::refusal::Candidate;
-use crate::results::figure::{Figure, figures_of};
-use crate::results::finding::{Common, LabFinding, Meshes};
+use crate::results::figure::{Figure, Rows};
+use crate::results::finding::LabFinding;
 use crate::results::read::ReadError;
-use crate::results::rows::{
-    Agreement, BackendRefusal, Control, MeshReport, Refusal, ResultRow, Samples, check_control,
-    check_results, check_samples,
-};
+use crate::results::rows::{BackendRefusal, Control, MeshReport, Refusal, ResultRow, Samples};
 use crate::results::run::{Run, RunSettings};
 use budgets::SizeBudgets;
 use fits::{cache_limits, fits};
@@ -129,46 +126,32 @@ pub struct BackendBytes {
     pub fits_in: Option<u8>,
 }
 
-impl LabFinding for GrowthReport {
-    fn common(&self) -> Common<'_> {
-        Common {
-            run: &self.run,
-            meshes: &self.meshes,
-            sentences: &self.sentences,
-            warnings: &self.warnings,
-            interrupted: self.interrupted,
+impl SizeReport {
+    fn all_rows(&self) -> Rows<'_> {
+        Rows {
+            results: &self.results,
+            refusals: &self.refusals,
+            samples: &self.samples,
+            control: self.control.as_ref(),
         }
     }
+}
 
-    fn parts_mut(&mut self) -> (&mut Run, Meshes<'_>) {
-        (&mut self.run, Meshes::Any(&mut self.meshes))
-    }
-
-    fn mismatches(&self) -> usize {
-        let rows = self.sizes.iter().flat_map(|size| &size.results);
-        rows.filter(|row| row.agreement == Agreement::Mismatch)
-            .count()
-    }
-
+impl LabFinding for GrowthReport {
     fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
         let of_size = |(i, size): (usize, &'s SizeReport)| {
             let bytes = |name: &str| {
                 let mut bytes = size.backend_bytes.iter();
                 bytes.find(|bytes| bytes.backend == name).map(|b| b.bytes)
             };
-            let figures = figures_of(
-                self.meshes.get(i),
-                &size.results,
-                &size.refusals,
-                &size.samples,
-                bytes,
-                |operation| noise(size.control.as_ref(), operation),
-            );
-            figures.into_iter().map(|figure| Figure {
-                elements_of_mesh: [size.vertices, size.edges, size.faces],
-                case: format!("{}, {}, {} faces", self.shape, self.order, size.faces),
-                ..figure
-            })
+            let noise = |operation| noise(size.control.as_ref(), operation);
+            let mut figures = size.all_rows().figures(self.meshes.get(i), bytes, noise);
+            for figure in &mut figures {
+                figure.elements_of_mesh = [size.vertices, size.edges, size.faces];
+                let faces = size.faces;
+                figure.row.case = format!("{}, {}, {faces} faces", self.shape, self.order);
+            }
+            figures
         };
         self.sizes.iter().enumerate().flat_map(of_size).collect()
     }
@@ -180,11 +163,8 @@ impl LabFinding for GrowthReport {
                 cause: format!("a finding of the kind `growth` has {count} meshes, not {sizes}"),
             });
         }
-        self.sizes.iter().try_for_each(|size| {
-            check_samples(&size.samples)?;
-            check_results(&size.results)?;
-            check_control(size.control.as_ref())
-        })
+        let mut sizes = self.sizes.iter();
+        sizes.try_for_each(|size| size.all_rows().check())
     }
 }
 

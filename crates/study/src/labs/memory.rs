@@ -17,9 +17,10 @@ use sixfold_workload::{
 use crate::inspect::{StudyMesh, per_vertex, unbuilt};
 use crate::labs::study::StudyError;
 use crate::refusal::Candidate;
-use crate::results::figure::{Figure, FigureRow, SizeBytes, Status};
-use crate::results::finding::{Common, LabFinding, Meshes};
-use crate::results::rows::{BackendReport, MeshReport};
+use crate::results::figure::{Counted, Figure, Status};
+use crate::results::finding::LabFinding;
+use crate::results::read::ReadError;
+use crate::results::rows::{BackendReport, MeshReport, ResultRow};
 use crate::results::run::{Run, RunSettings};
 
 /// Bytes of a word: an index or a coordinate.
@@ -46,6 +47,12 @@ pub struct Audit {
     /// Sentences about the results; empty in older documents.
     #[serde(default)]
     pub sentences: Vec<String>,
+    /// Sentences about possible faults of the counting and their remedies. A count has none so far.
+    #[serde(default)]
+    pub warnings: Vec<String>,
+    /// True if the counting was stopped early. A count that is stopped has no finding so far.
+    #[serde(default)]
+    pub interrupted: bool,
 }
 
 /// The memory of one backend, counted by a formula, by the tables and by the allocator.
@@ -121,6 +128,8 @@ pub fn audit(
         mesh: study_mesh.report(),
         backends: backends.collect(),
         sentences: Vec::new(),
+        warnings: Vec::new(),
+        interrupted: false,
     };
     audit.sentences = sentences::sentences(&audit);
     audit
@@ -227,57 +236,53 @@ impl Audit {
 }
 
 impl LabFinding for Audit {
-    fn common(&self) -> Common<'_> {
-        Common {
-            run: &self.run,
-            meshes: std::slice::from_ref(&self.mesh),
-            sentences: &self.sentences,
-            warnings: &[],
-            interrupted: false,
-        }
-    }
-
-    fn parts_mut(&mut self) -> (&mut Run, Meshes<'_>) {
-        (&mut self.run, Meshes::One(&mut self.mesh))
-    }
-
-    fn mismatches(&self) -> usize {
-        0
-    }
-
     fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
         let of_backend = |audited: &'s BackendAudit| {
             let backend = &audited.backend;
-            let row =
-                |operation: &str, status| FigureRow::new(operation.into(), &backend.name, status);
-            let operation = |counted: &'s OperationBytes| {
+            let figure = |operation: &str, status, counted| {
+                let row = ResultRow {
+                    backend: backend.name.clone(),
+                    operation: operation.to_owned(),
+                    ..ResultRow::default()
+                };
+                Figure {
+                    counted,
+                    ..Figure::new(Some(&self.mesh), audited.counted_bytes, status, row)
+                }
+            };
+            let operation = |counted: &OperationBytes| {
                 let status = match (counted.allocated_bytes, counted.scans) {
                     (Some(_), _) => Status::Counted,
                     (None, true) => Status::NotRun,
                     (None, false) => Status::Refused,
                 };
-                FigureRow {
+                let bytes = Counted {
                     allocated_bytes: counted.allocated_bytes,
-                    ..row(counted.operation.name(), status)
-                }
+                    ..Counted::default()
+                };
+                figure(counted.operation.name(), status, bytes)
             };
             let status = match backend.holds {
                 true => Status::Counted,
                 false => Status::Refused,
             };
-            let structure = FigureRow {
-                size: audited.counted_bytes.map(|counted| SizeBytes {
-                    layout: backend.layout_bytes,
-                    counted: Some(counted),
-                    peak: audited.peak_bytes,
-                }),
-                ..row(STRUCTURE, status)
+            let bytes = Counted {
+                layout_bytes: backend.layout_bytes.filter(|_| backend.holds),
+                counted_bytes: audited.counted_bytes,
+                peak_bytes: audited.peak_bytes,
+                ..Counted::default()
             };
-            let rows = std::iter::once(structure).chain(audited.operations.iter().map(operation));
-            rows.map(|row| Figure::new(Some(&self.mesh), audited.counted_bytes, row))
+            let structure = figure(STRUCTURE, status, bytes);
+            let operations = audited.operations.iter().map(operation);
+            std::iter::once(structure)
+                .chain(operations)
                 .collect::<Vec<_>>()
         };
         self.backends.iter().flat_map(of_backend).collect()
+    }
+
+    fn check(&self) -> Result<(), ReadError> {
+        Ok(())
     }
 }
 
@@ -434,16 +439,19 @@ mod tests {
         }];
         let figures = with_operation.figures();
         let (structure, operations) = figures.split_first().expect("the structure comes first");
-        let size = SizeBytes {
-            layout: Some(BYTES),
-            counted: Some(BYTES),
-            peak: Some(2 * BYTES),
+        let size = Counted {
+            layout_bytes: Some(BYTES),
+            counted_bytes: Some(BYTES),
+            peak_bytes: Some(2 * BYTES),
+            ..Counted::default()
         };
         assert_eq!(
-            (structure.row.size, structure.backend_bytes),
-            (Some(size), Some(BYTES))
+            (structure.counted, structure.backend_bytes),
+            (size, Some(BYTES))
         );
-        let allocated = operations.iter().map(|figure| figure.row.allocated_bytes);
+        let allocated = operations
+            .iter()
+            .map(|figure| figure.counted.allocated_bytes);
         assert!(allocated.eq([Some(3 * BYTES)]));
         assert_eq!(audit.faults(), Vec::<String>::new());
         let one = &audit.backends[0];

@@ -36,12 +36,10 @@ use crate::engine::warnings::machine_warnings;
 use crate::inspect::StudyMesh;
 use crate::labs::rows::Group;
 use crate::labs::study::StudyError;
-use crate::results::figure::{Figure, figures_of};
-use crate::results::finding::{Common, LabFinding, Meshes};
+use crate::results::figure::{Figure, Rows};
+use crate::results::finding::LabFinding;
 use crate::results::read::ReadError;
-use crate::results::rows::{
-    Agreement, MeasuredTask, MeshReport, ResultRow, Samples, check_results, check_samples,
-};
+use crate::results::rows::{Agreement, MeasuredTask, MeshReport, ResultRow, Samples};
 use crate::results::run::{Run, RunSettings};
 use cheapest::{Cost, cheapest};
 use index::{IndexKind, KINDS, LIST};
@@ -149,45 +147,34 @@ impl NeighboursReport {
     pub fn rows(&self, task: SpatialTask) -> impl Iterator<Item = &ResultRow<SpatialTask>> {
         self.results.iter().filter(move |row| row.operation == task)
     }
+
+    fn all_rows(&self) -> Rows<'_, SpatialTask> {
+        Rows {
+            results: &self.results,
+            refusals: &[],
+            samples: &self.samples,
+            control: None,
+        }
+    }
 }
 
 impl LabFinding for NeighboursReport {
-    fn common(&self) -> Common<'_> {
-        Common {
-            run: &self.run,
-            meshes: std::slice::from_ref(&self.mesh),
-            sentences: &self.sentences,
-            warnings: &self.warnings,
-            interrupted: self.interrupted,
-        }
-    }
-
-    fn parts_mut(&mut self) -> (&mut Run, Meshes<'_>) {
-        (&mut self.run, Meshes::One(&mut self.mesh))
-    }
-
-    fn mismatches(&self) -> usize {
-        let wrong = |row: &&ResultRow<SpatialTask>| row.agreement == Agreement::Mismatch;
-        self.results.iter().filter(wrong).count()
-    }
-
     fn figures(&self) -> Vec<Figure<'_>> {
         let bytes = |name: &str| {
             let mut backends = self.backends.iter();
             backends.find(|index| index.name == name).map(|i| i.bytes)
         };
         let noise = self.noise.unwrap_or(1.0);
-        let (rows, samples) = (&self.results, &self.samples);
-        let mut figures = figures_of(Some(&self.mesh), rows, &[], samples, bytes, |_| noise);
+        let mesh = Some(&self.mesh);
+        let mut figures = self.all_rows().figures(mesh, bytes, |_| noise);
         for figure in &mut figures {
-            figure.case = self.points.name().into();
+            figure.row.case = self.points.name().into();
         }
         figures
     }
 
     fn check(&self) -> Result<(), ReadError> {
-        check_samples(&self.samples)?;
-        check_results(&self.results)
+        self.all_rows().check()
     }
 }
 

@@ -33,12 +33,11 @@ use crate::inspect::StudyMesh;
 use crate::labs::study::report::bytes_of;
 use crate::labs::study::{Settings, StudyError, is_skewed, prepare, refusals, results, scans};
 use crate::refusal::Candidate;
-use crate::results::figure::{Figure, figures_of};
-use crate::results::finding::{Common, LabFinding, Meshes};
+use crate::results::figure::{Figure, Rows};
+use crate::results::finding::LabFinding;
 use crate::results::read::ReadError;
 use crate::results::rows::{
-    Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, Samples, check_control,
-    check_results, check_samples,
+    Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, Samples,
 };
 use crate::results::run::{Run, RunSettings};
 use effects::OrderSamples;
@@ -97,43 +96,26 @@ impl OrdersReport {
         let of_it = move |row: &&ResultRow| row.operation == operation;
         self.results.iter().filter(of_it)
     }
+
+    fn all_rows(&self) -> Rows<'_> {
+        Rows {
+            results: &self.results,
+            refusals: &self.refusals,
+            samples: &self.samples,
+            control: self.control.as_ref(),
+        }
+    }
 }
 
 impl LabFinding for OrdersReport {
-    fn common(&self) -> Common<'_> {
-        Common {
-            run: &self.run,
-            meshes: std::slice::from_ref(&self.mesh),
-            sentences: &self.sentences,
-            warnings: &self.warnings,
-            interrupted: self.interrupted,
-        }
-    }
-
-    fn parts_mut(&mut self) -> (&mut Run, Meshes<'_>) {
-        (&mut self.run, Meshes::One(&mut self.mesh))
-    }
-
-    fn mismatches(&self) -> usize {
-        let wrong = |row: &&ResultRow| row.agreement == Agreement::Mismatch;
-        self.results.iter().filter(wrong).count()
-    }
-
     fn figures(&self) -> Vec<Figure<'_>> {
-        figures_of(
-            Some(&self.mesh),
-            &self.results,
-            &self.refusals,
-            &self.samples,
-            |backend| bytes_of(&self.backends, backend),
-            |operation| noise(self.control.as_ref(), operation),
-        )
+        let bytes = |backend: &str| bytes_of(&self.backends, backend);
+        let noise = |operation| noise(self.control.as_ref(), operation);
+        self.all_rows().figures(Some(&self.mesh), bytes, noise)
     }
 
     fn check(&self) -> Result<(), ReadError> {
-        check_samples(&self.samples)?;
-        check_results(&self.results)?;
-        check_control(self.control.as_ref())
+        self.all_rows().check()
     }
 }
 

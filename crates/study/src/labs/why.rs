@@ -26,10 +26,12 @@ use crate::labs::study::report::{Report, bytes_of};
 use crate::labs::study::{Settings, StudyError, study_on};
 use crate::numbers::bytes;
 use crate::refusal::Candidate;
-use crate::results::figure::{Figure, FigureRow, Status, samples_of};
-use crate::results::finding::{Common, LabFinding, Meshes};
+use crate::results::figure::{Counted, Figure, Status, samples_of};
+use crate::results::finding::LabFinding;
 use crate::results::read::ReadError;
-use crate::results::rows::{Agreement, BackendReport, MeshReport, Samples, check_samples};
+use crate::results::rows::{
+    Agreement, BackendReport, MeshReport, ResultRow, Samples, check_samples,
+};
 use crate::results::run::{Run, RunSettings};
 
 /// The stage before the times are measured.
@@ -186,52 +188,34 @@ impl Bound {
 }
 
 impl LabFinding for Why {
-    fn common(&self) -> Common<'_> {
-        Common {
-            run: &self.run,
-            meshes: std::slice::from_ref(&self.mesh),
-            sentences: &self.sentences,
-            warnings: &self.warnings,
-            interrupted: self.interrupted,
-        }
-    }
-
-    fn parts_mut(&mut self) -> (&mut Run, Meshes<'_>) {
-        (&mut self.run, Meshes::One(&mut self.mesh))
-    }
-
-    fn mismatches(&self) -> usize {
-        let timed = self.rows.iter().filter_map(|row| row.timed);
-        timed
-            .filter(|timed| timed.agreement == Agreement::Mismatch)
-            .count()
-    }
-
     fn figures<'s>(&'s self) -> Vec<Figure<'s>> {
         let figure = |row: &'s WhyRow| {
-            let operation = Operation::Relation(row.reads.relation).name();
+            let operation = Operation::Relation(row.reads.relation);
             let status = match row.timed.map(|timed| timed.sampled) {
                 None => Status::Counted,
                 Some(true) => Status::Sampled,
                 Some(false) => Status::Measured,
             };
             let elements = row.reads.elements;
-            let samples = samples_of(&self.samples, "", operation, &row.backend);
-            let figure_row = FigureRow {
-                ns: row
-                    .timed
-                    .map(|timed| timed.ns_per_element * elements as f64),
+            let samples = samples_of(&self.samples, "", operation.name(), &row.backend);
+            let each = row.timed.map(|timed| timed.ns_per_element);
+            let times = ResultRow {
+                median_ns: each.map(|ns| ns * elements as f64),
+                ns_per_element: each,
                 elements: Some(elements),
-                unit: row.per.clone(),
-                agreement: row.timed.map(|timed| timed.agreement),
-                reads: Some(&row.reads),
+                per: row.per.clone(),
+                sampled: status == Status::Sampled,
+                agreement: row
+                    .timed
+                    .map_or(Agreement::Unchecked, |timed| timed.agreement),
                 samples: samples.map_or(0, |samples| samples.rounds.len()),
-                ..FigureRow::new(operation.into(), &row.backend, status)
+                ..ResultRow::new(&row.backend, operation)
             };
             let bytes = bytes_of(&self.backends, &row.backend);
             Figure {
                 samples,
-                ..Figure::new(Some(&self.mesh), bytes, figure_row)
+                counted: Counted::from(&row.reads),
+                ..Figure::new(Some(&self.mesh), bytes, status, times.named())
             }
         };
         self.rows.iter().map(figure).collect()
@@ -505,24 +489,13 @@ mod tests {
         let [figure] = &why.figures()[..] else {
             panic!("one figure");
         };
-        let FigureRow {
-            ns,
-            elements,
-            unit,
-            agreement,
-            reads,
-            ..
-        } = &figure.row;
-        let ns = ns.expect("measured");
+        let ns = figure.row.median_ns.expect("measured");
         assert!((ns - 10_000.0).abs() < 1e-6, "the time of a run: {ns}");
-        assert_eq!(
-            (*elements, unit.as_str()),
-            (Some(vertices as u64), "vertex")
-        );
-        assert_eq!(
-            (*agreement, *reads),
-            (Some(timed.agreement), Some(&row.reads))
-        );
+        assert_eq!(figure.row.elements, Some(vertices as u64));
+        assert_eq!(figure.row.per, "vertex");
+        assert_eq!(figure.row.ns_per_element, Some(timed.ns_per_element));
+        assert_eq!(figure.row.agreement, timed.agreement);
+        assert_eq!(figure.counted, Counted::from(&row.reads));
         assert_eq!(
             figure.row.samples,
             figure.samples.expect("samples").rounds.len()

@@ -276,7 +276,7 @@ fn check_memory(before: &Finding, after: &Finding) -> Result<(), CompareError> {
 /// is not finite.
 fn change(before: &Measured<'_>, after: &Measured<'_>, drift: f64) -> Option<Change> {
     let [a, b] = [before, after].map(|measured| &measured.figure);
-    let (before_ns, after_ns) = (a.row.ns?, b.row.ns?);
+    let (before_ns, after_ns) = (a.row.median_ns?, b.row.median_ns?);
     let quotient = quotient(&b.counted_ns(), &a.counted_ns()).or_else(|| {
         let value = after_ns / before_ns;
         value.is_finite().then_some((value, None))
@@ -371,8 +371,8 @@ fn bytes<'r>(
     for (a, b) in pairs {
         let size = (a.figure.backend_bytes, b.figure.backend_bytes, None);
         let allocated = (
-            a.figure.row.allocated_bytes,
-            b.figure.row.allocated_bytes,
+            a.figure.counted.allocated_bytes,
+            b.figure.counted.allocated_bytes,
             Some(a.key.operation.clone()),
         );
         for (before, after, operation) in [size, allocated] {

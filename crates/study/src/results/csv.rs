@@ -6,12 +6,13 @@ use csv::Writer;
 use serde::Serialize;
 
 use crate::results::document::Results;
-use crate::results::figure::{Figure, Status};
-use crate::results::rows::{Agreement, Standing};
+use crate::results::figure::{Counted, Figure, Status};
+use crate::results::rows::ResultRow;
 
-/// One row of the table of times.
+/// The first columns of the table of times. The fields of [`ResultRow`] follow, then those of
+/// [`BackendColumns`] and of [`Counted`].
 #[derive(Default, Serialize)]
-struct TimeRow<'r> {
+struct MeshColumns<'r> {
     mesh: &'r str,
     vertices: usize,
     edges: usize,
@@ -20,35 +21,16 @@ struct TimeRow<'r> {
     largest_valence: Option<usize>,
     largest_face_degree: Option<usize>,
     kind: &'r str,
-    case: &'r str,
-    operation: &'r str,
-    backend: &'r str,
+}
+
+#[derive(Default, Serialize)]
+struct BackendColumns {
     backend_bytes: Option<usize>,
     status: Status,
-    unit: &'r str,
-    elements: Option<u64>,
-    allocated_bytes: Option<usize>,
-    layout_bytes: Option<usize>,
-    counted_bytes: Option<usize>,
-    peak_bytes: Option<usize>,
-    reads: Option<f64>,
-    read_bytes: Option<f64>,
-    lines: Option<f64>,
-    fetched: Option<f64>,
-    jumps: Option<f64>,
-    moved_bytes: Option<f64>,
-    ns: Option<f64>,
-    ns_per_element: Option<f64>,
-    min_ns: Option<f64>,
-    ci_low_ns: Option<f64>,
-    ci_high_ns: Option<f64>,
-    ratio_to_best: Option<f64>,
-    ratio_ci_low: Option<f64>,
-    ratio_ci_high: Option<f64>,
-    standing: Option<Standing>,
-    agreement: Option<Agreement>,
-    samples: usize,
 }
+
+/// One row of the table of times.
+type TimeRow<'r> = (MeshColumns<'r>, ResultRow<String>, BackendColumns, Counted);
 
 /// One row of the table of samples.
 #[derive(Default, Serialize)]
@@ -124,54 +106,24 @@ fn mesh_name<'r>(figure: &Figure<'r>) -> &'r str {
     figure.mesh.map_or("", |mesh| mesh.name.as_str())
 }
 
-fn time_row<'r>(kind: &'r str, figure: &'r Figure<'_>) -> TimeRow<'r> {
-    let Figure {
-        mesh,
-        elements_of_mesh: [vertices, edges, faces],
-        case,
-        backend_bytes,
-        row,
-        ..
-    } = figure;
-    let facts = mesh.map(|mesh| &mesh.facts);
-    TimeRow {
+fn time_row<'r>(kind: &'r str, figure: &Figure<'r>) -> TimeRow<'r> {
+    let [vertices, edges, faces] = figure.elements_of_mesh;
+    let facts = figure.mesh.map(|mesh| &mesh.facts);
+    let mesh = MeshColumns {
         mesh: mesh_name(figure),
-        vertices: *vertices,
-        edges: *edges,
-        faces: *faces,
+        vertices,
+        edges,
+        faces,
         closed: facts.map(|facts| facts.closed),
         largest_valence: facts.and_then(|facts| Some(facts.valence.as_ref()?.max)),
         largest_face_degree: facts.and_then(|facts| Some(facts.face_degree.as_ref()?.max)),
         kind,
-        case,
-        operation: &row.operation,
-        backend: row.backend,
-        backend_bytes: *backend_bytes,
-        status: row.status,
-        unit: &row.unit,
-        elements: row.elements,
-        allocated_bytes: row.allocated_bytes,
-        layout_bytes: row.size.and_then(|size| size.layout),
-        counted_bytes: row.size.and_then(|size| size.counted),
-        peak_bytes: row.size.and_then(|size| size.peak),
-        reads: row.reads.map(|reads| reads.reads),
-        read_bytes: row.reads.map(|reads| reads.bytes),
-        lines: row.reads.map(|reads| reads.lines),
-        fetched: row.reads.map(|reads| reads.fetched),
-        jumps: row.reads.map(|reads| reads.jumps),
-        moved_bytes: row.reads.map(|reads| reads.moved_bytes),
-        ns: row.ns,
-        ns_per_element: row.ns_per_element(),
-        min_ns: row.min_ns,
-        ci_low_ns: row.interval_ns.map(|[low, _]| low),
-        ci_high_ns: row.interval_ns.map(|[_, high]| high),
-        ratio_to_best: row.ratio_to_best,
-        ratio_ci_low: row.ratio_interval.map(|[low, _]| low),
-        ratio_ci_high: row.ratio_interval.map(|[_, high]| high),
-        standing: row.standing,
-        agreement: row.agreement,
-        samples: row.samples,
-    }
+    };
+    let backend = BackendColumns {
+        backend_bytes: figure.backend_bytes,
+        status: figure.status,
+    };
+    (mesh, figure.row.clone(), backend, figure.counted)
 }
 
 fn sample_rows<'r>(kind: &'r str, figure: &'r Figure<'_>) -> impl Iterator<Item = SampleRow<'r>> {
@@ -179,9 +131,9 @@ fn sample_rows<'r>(kind: &'r str, figure: &'r Figure<'_>) -> impl Iterator<Item 
         (0..samples.wall_ns.len()).map(move |i| SampleRow {
             mesh: mesh_name(figure),
             kind,
-            case: &figure.case,
+            case: &figure.row.case,
             operation: &figure.row.operation,
-            backend: figure.row.backend,
+            backend: &figure.row.backend,
             round: samples.rounds[i],
             cpu_ns: samples.cpu_ns.as_ref().map(|all| all[i]),
             wall_ns: samples.wall_ns[i],

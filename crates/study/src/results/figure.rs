@@ -1,87 +1,77 @@
-//! Single times and counts of bytes of findings, in one form for all labs.
+//! The rows of all labs in one form, for comparisons and tables.
 
 use serde::Serialize;
 use sixfold_workload::Reads;
 
+use crate::results::read::ReadError;
+use crate::results::rows::Control;
 use crate::results::rows::{
-    Agreement, MeasuredTask, MeshReport, Refusal, RefusalKind, ResultRow, Samples, Standing,
+    MeasuredTask, MeshReport, Refusal, RefusalKind, ResultRow, Samples, check_control,
+    check_results, check_samples,
 };
+use sixfold_workload::Operation;
 
-/// One time or count of bytes in a finding: an operation on a backend, on a mesh and in a case.
+/// One row of a finding with its mesh: a task on a backend, on a mesh and in a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure<'r> {
     /// The mesh; `None` if the lab made its own mesh.
     pub mesh: Option<&'r MeshReport>,
     /// The numbers of vertices, edges and faces of the measured mesh.
     pub elements_of_mesh: [usize; 3],
-    /// What was measured besides the operation: in `orders`, the order; in `growth`, the shape, the
-    /// order and the number of faces; in `pick`, the name of the workload. Empty in other labs.
-    pub case: String,
     /// The size of the backend in bytes; `None` if unknown.
     pub backend_bytes: Option<usize>,
-    /// The operation, the backend, and the time or the bytes.
-    pub row: FigureRow<'r>,
-    /// The samples of the time; `None` for a time or size without samples.
+    /// How the times or counts were obtained.
+    pub status: Status,
+    /// The times. `case`: in `orders`, the order; in `growth`, the shape, the order and the number of
+    /// faces; in `pick`, the name of the workload; in `neighbours`, the query points. In a pick, the
+    /// operation `mix` is the whole mix, `run` is a run of a program, and the others are the parts of
+    /// the mix and `build`.
+    pub row: ResultRow<String>,
+    /// The counts of bytes and reads.
+    pub counted: Counted,
+    /// The samples of the time; `None` for a row without samples.
     pub samples: Option<&'r Samples>,
     /// Ratios of times up to this value are noise, as the control of the finding shows.
     pub noise: f64,
 }
 
-/// The time or the bytes of an operation on a backend, without the mesh.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct FigureRow<'r> {
-    /// The name of the operation. In a pick, `mix` is the whole mix, and the other names are the
-    /// parts of the mix and `build`.
-    pub operation: String,
-    /// The name of the backend, such as `half-edge`.
-    pub backend: &'r str,
-    /// How the time or the count of bytes was obtained.
-    pub status: Status,
-    /// The median time of one run, or the estimated time, in nanoseconds. `None` if there is no
-    /// time, see `status`.
-    pub ns: Option<f64>,
-    /// The bytes that one run allocates; `None` if they were not counted.
+/// Counts of `memory` and `why`. Other labs have none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Counted {
+    /// The bytes that one run of an operation allocates.
     pub allocated_bytes: Option<usize>,
-    /// The smallest time of a sample, in nanoseconds.
-    pub min_ns: Option<f64>,
-    /// The 95 % confidence interval of `ns`.
-    pub interval_ns: Option<[f64; 2]>,
-    /// The number of elements that one run visits.
-    pub elements: Option<u64>,
-    /// The kind of the visited elements, such as `vertex`.
-    pub unit: String,
-    /// The time divided by the time of the fastest backend. In `orders`, the time divided by the
-    /// time of the best order of the backend.
-    pub ratio_to_best: Option<f64>,
-    /// The 95 % confidence interval of `ratio_to_best`.
-    pub ratio_interval: Option<[f64; 2]>,
-    /// The comparison with the other backends. In `orders`, the comparison with the other orders on
-    /// this backend.
-    pub standing: Option<Standing>,
-    /// The comparison of the checksum with the checksums of other backends. `None` if there is no
-    /// time, and in `pick`, which compares all results of a backend at once.
-    pub agreement: Option<Agreement>,
-    /// The number of samples.
-    pub samples: usize,
-    /// The checksum of all results.
-    pub checksum: Option<f64>,
-    /// The number of elements on which the operation was run; `None` if it was run on all elements.
-    pub sample_size: Option<usize>,
-    /// The bytes of the backend in `memory`; `None` in other labs, and for an operation.
-    pub size: Option<SizeBytes>,
-    /// The reads of the queries in `why`; `None` in other labs.
-    pub reads: Option<&'r Reads>,
+    /// The bytes of the backend by its layout formula; `None` if it has no formula.
+    pub layout_bytes: Option<usize>,
+    /// The bytes of the backend that the allocator counted.
+    pub counted_bytes: Option<usize>,
+    /// The peak of the bytes while the backend is built.
+    pub peak_bytes: Option<usize>,
+    /// The mean number of reads of a query, as in [`Reads::reads`].
+    pub reads: Option<f64>,
+    /// The mean number of bytes that a query reads.
+    pub read_bytes: Option<f64>,
+    /// The mean number of cache lines that a query reads.
+    pub lines: Option<f64>,
+    /// The mean number of cache lines that a query loads into the cache.
+    pub fetched: Option<f64>,
+    /// The mean number of loads of a cache line that is not near any cached line.
+    pub jumps: Option<f64>,
+    /// The mean number of bytes that a query moves between memory and the cache.
+    pub moved_bytes: Option<f64>,
 }
 
-/// The bytes of a backend, by formula and by allocator.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SizeBytes {
-    /// The bytes by the layout formula; `None` if the backend has no formula.
-    pub layout: Option<usize>,
-    /// The bytes that the allocator counted.
-    pub counted: Option<usize>,
-    /// The peak of the bytes while the backend is built.
-    pub peak: Option<usize>,
+impl From<&Reads> for Counted {
+    fn from(reads: &Reads) -> Self {
+        Self {
+            reads: Some(reads.reads),
+            read_bytes: Some(reads.bytes),
+            lines: Some(reads.lines),
+            fetched: Some(reads.fetched),
+            jumps: Some(reads.jumps),
+            moved_bytes: Some(reads.moved_bytes),
+            ..Self::default()
+        }
+    }
 }
 
 /// How a time or a count of bytes was obtained.
@@ -103,48 +93,33 @@ pub enum Status {
     NotRun,
 }
 
-impl<'r> FigureRow<'r> {
-    /// Returns a row without a time.
-    pub(crate) fn new(operation: String, backend: &'r str, status: Status) -> Self {
-        Self {
-            operation,
-            backend,
-            status,
-            ..Self::default()
+impl From<RefusalKind> for Status {
+    fn from(kind: RefusalKind) -> Self {
+        match kind {
+            RefusalKind::BudgetEnded => Self::NotRun,
+            RefusalKind::Impossible => Self::Refused,
         }
     }
+}
 
-    /// Returns the row of an operation that was refused or not run.
-    pub(crate) fn of_refusal(refusal: &'r Refusal) -> Self {
-        let status = match refusal.kind {
-            RefusalKind::BudgetEnded => Status::NotRun,
-            RefusalKind::Impossible => Status::Refused,
-        };
-        Self::new(refusal.operation.name().into(), &refusal.backend, status)
-    }
-
-    /// Returns the row of a measured or estimated result.
-    pub(crate) fn of_result<T: MeasuredTask>(row: &'r ResultRow<T>) -> Self {
-        let status = match (row.median_ns, row.sampled) {
-            (None, _) => Status::Estimated,
-            (Some(_), true) => Status::Sampled,
-            (Some(_), false) => Status::Measured,
-        };
-        let pair = |low: Option<f64>, high: Option<f64>| low.zip(high).map(|(l, h)| [l, h]);
+impl<'r> Figure<'r> {
+    /// Returns a figure of a mesh, without samples and without noise.
+    pub(crate) fn new(
+        mesh: Option<&'r MeshReport>,
+        backend_bytes: Option<usize>,
+        status: Status,
+        row: ResultRow<String>,
+    ) -> Self {
+        let facts = mesh.map(|mesh| &mesh.facts);
         Self {
-            ns: row.median_ns.or(row.estimated_ns),
-            min_ns: row.min_ns,
-            interval_ns: pair(row.ci_low_ns, row.ci_high_ns),
-            elements: row.elements,
-            unit: row.per.clone(),
-            ratio_to_best: row.ratio_to_best,
-            ratio_interval: pair(row.ratio_ci_low, row.ratio_ci_high),
-            standing: row.standing,
-            agreement: Some(row.agreement),
-            samples: row.samples,
-            checksum: row.checksum,
-            sample_size: row.sample_size,
-            ..Self::new(row.operation.name().into(), &row.backend, status)
+            mesh,
+            elements_of_mesh: facts.map_or([0; 3], |f| [f.vertices, f.edges, f.faces]),
+            backend_bytes,
+            status,
+            row,
+            counted: Counted::default(),
+            samples: None,
+            noise: 1.0,
         }
     }
 
@@ -156,34 +131,53 @@ impl<'r> FigureRow<'r> {
         )
     }
 
-    /// Returns the time per element in nanoseconds.
-    pub fn ns_per_element(&self) -> Option<f64> {
-        Some(self.ns? / self.elements.filter(|&count| count > 0)? as f64)
-    }
-}
-
-impl<'r> Figure<'r> {
-    /// Returns a figure of a mesh, without a case, without samples and without noise.
-    pub(crate) fn new(
-        mesh: Option<&'r MeshReport>,
-        backend_bytes: Option<usize>,
-        row: FigureRow<'r>,
-    ) -> Self {
-        let facts = mesh.map(|mesh| &mesh.facts);
-        Self {
-            mesh,
-            elements_of_mesh: facts.map_or([0; 3], |f| [f.vertices, f.edges, f.faces]),
-            case: String::new(),
-            backend_bytes,
-            row,
-            samples: None,
-            noise: 1.0,
-        }
-    }
-
     /// Returns the times of all samples that count, in nanoseconds. See [`Samples::counted_ns`].
     pub fn counted_ns(&self) -> Vec<f64> {
         self.samples.map_or_else(Vec::new, Samples::counted_ns)
+    }
+}
+
+/// The rows of a lab on one mesh, with what belongs to them.
+pub(crate) struct Rows<'r, T = Operation> {
+    pub(crate) results: &'r [ResultRow<T>],
+    pub(crate) refusals: &'r [Refusal],
+    pub(crate) samples: &'r [Samples],
+    pub(crate) control: Option<&'r Control>,
+}
+
+impl<'r, T: MeasuredTask> Rows<'r, T> {
+    /// Returns the figures of the rows and refusals. `bytes` is the size of a backend.
+    pub(crate) fn figures(
+        &self,
+        mesh: Option<&'r MeshReport>,
+        bytes: impl Fn(&str) -> Option<usize>,
+        noise: impl Fn(T) -> f64,
+    ) -> Vec<Figure<'r>> {
+        let timed = self.results.iter().map(|row| {
+            let status = match (row.median_ns, row.sampled) {
+                (None, _) => Status::Estimated,
+                (Some(_), true) => Status::Sampled,
+                (Some(_), false) => Status::Measured,
+            };
+            let operation = row.operation.name();
+            Figure {
+                samples: samples_of(self.samples, &row.case, operation, &row.backend),
+                noise: noise(row.operation),
+                ..Figure::new(mesh, bytes(&row.backend), status, row.named())
+            }
+        });
+        let refused = self.refusals.iter().map(|refusal| {
+            let row = ResultRow::new(&refusal.backend, refusal.operation).named();
+            Figure::new(mesh, bytes(&refusal.backend), refusal.kind.into(), row)
+        });
+        timed.chain(refused).collect()
+    }
+
+    /// Returns an error for values that no measurement can produce.
+    pub(crate) fn check(&self) -> Result<(), ReadError> {
+        check_samples(self.samples)?;
+        check_results(self.results)?;
+        check_control(self.control)
     }
 }
 
@@ -199,26 +193,4 @@ pub(crate) fn samples_of<'r>(
         !s.control && s.operation == operation && s.backend == backend && s.case == case
     };
     samples.iter().find(of_it)
-}
-
-/// Returns the figures of the rows and refusals of a mesh.
-pub(crate) fn figures_of<'r, T: MeasuredTask>(
-    mesh: Option<&'r MeshReport>,
-    rows: &'r [ResultRow<T>],
-    refusals: &'r [Refusal],
-    samples: &'r [Samples],
-    bytes: impl Fn(&str) -> Option<usize>,
-    noise: impl Fn(T) -> f64,
-) -> Vec<Figure<'r>> {
-    let timed = rows.iter().map(|row| Figure {
-        case: row.case.clone(),
-        samples: samples_of(samples, &row.case, row.operation.name(), &row.backend),
-        noise: noise(row.operation),
-        ..Figure::new(mesh, bytes(&row.backend), FigureRow::of_result(row))
-    });
-    let refused = refusals.iter().map(|refusal| {
-        let row = FigureRow::of_refusal(refusal);
-        Figure::new(mesh, bytes(row.backend), row)
-    });
-    timed.chain(refused).collect()
 }

@@ -12,15 +12,16 @@ use crate::labs::why::Why;
 use crate::results::document::Results;
 use crate::results::figure::Figure;
 use crate::results::read::ReadError;
-use crate::results::rows::MeshReport;
+use crate::results::rows::{Agreement, MeshReport};
 use crate::results::run::Run;
 
-/// Defines [`Finding`] and what differs only in the lab: the conversions, and the iterators of
-/// [`Results`].
+/// Defines [`Finding`] and what differs only in the lab: the conversions, the iterators of
+/// [`Results`], and the access to the fields that the findings of all labs have. A lab is named with
+/// its finding and the field of the mesh or meshes.
 macro_rules! findings {
     ($(
         $(#[$about:meta])*
-        $kind:ident($finding:ty) = $name:literal,
+        $kind:ident($finding:ty, $meshes:ident) = $name:literal,
         $(#[$items_about:meta])*
         $items:ident;
     )+) => {
@@ -61,6 +62,22 @@ macro_rules! findings {
             fn from(finding: $finding) -> Self {
                 Self::$kind(finding.into())
             }
+        }
+
+        impl CommonFields for $finding {
+            fn common(&self) -> Common<'_> {
+                Common {
+                    run: &self.run,
+                    meshes: self.$meshes.list(),
+                    sentences: &self.sentences,
+                    warnings: &self.warnings,
+                    interrupted: self.interrupted,
+                }
+            }
+
+            fn parts_mut(&mut self) -> (&mut Run, &mut dyn Meshes) {
+                (&mut self.run, &mut self.$meshes)
+            }
         })+
 
         impl Results {
@@ -77,37 +94,37 @@ macro_rules! findings {
 
 findings! {
     /// `sixfold study`: the times of operations on one mesh.
-    Study(Report) = "study",
+    Study(Report, mesh) = "study",
     /// Iterates over the studies.
     studies;
 
     /// `sixfold orders`: one mesh with its elements in several orders.
-    Orders(OrdersReport) = "orders",
+    Orders(OrdersReport, mesh) = "orders",
     /// Iterates over the measurements of a mesh in several orders.
     orders;
 
     /// `sixfold growth`: one shape in several sizes.
-    Growth(GrowthReport) = "growth",
+    Growth(GrowthReport, meshes) = "growth",
     /// Iterates over the measurements of a shape in several sizes.
     growth;
 
     /// `sixfold why`: the memory that queries read, compared with the times of the queries.
-    Why(Why) = "why",
+    Why(Why, mesh) = "why",
     /// Iterates over the explanations of query times by the memory that the queries read.
     why;
 
     /// `sixfold memory`: the bytes of each backend, counted in three ways.
-    Memory(Audit) = "memory",
+    Memory(Audit, mesh) = "memory",
     /// Iterates over the counts of the bytes of each backend.
     memory;
 
     /// `sixfold neighbours`: the times of spatial indices on one mesh.
-    Neighbours(NeighboursReport) = "neighbours",
+    Neighbours(NeighboursReport, mesh) = "neighbours",
     /// Iterates over the measurements of spatial indices.
     neighbours;
 
     /// `sixfold pick`: the backends, ranked for a workload.
-    Pick(PickReport) = "pick",
+    Pick(PickReport, meshes) = "pick",
     /// Iterates over the rankings for workloads.
     picks;
 }
@@ -123,29 +140,60 @@ pub(crate) struct Common<'f> {
     pub(crate) interrupted: bool,
 }
 
-/// The meshes of a finding, so that they can be changed.
-pub(crate) enum Meshes<'f> {
-    /// The lab measures one mesh.
-    One(&'f mut MeshReport),
-    /// The lab measures any number of meshes.
-    Any(&'f mut Vec<MeshReport>),
+/// The mesh or the meshes of a finding.
+pub(crate) trait Meshes {
+    fn list(&self) -> &[MeshReport];
+    /// Sets the meshes. Returns an error if their number is wrong.
+    fn set(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError>;
 }
 
-/// The common interface of the findings of all labs.
-pub(crate) trait LabFinding {
-    /// Returns the parts that all findings have.
-    fn common(&self) -> Common<'_>;
-    /// Returns the run and the meshes, so that they can be changed.
-    fn parts_mut(&mut self) -> (&mut Run, Meshes<'_>);
-    /// Counts the results that differ, for no known reason, from the results of other backends of
-    /// Sixfold.
-    fn mismatches(&self) -> usize;
-    /// Returns the times and counts of bytes of the finding, for comparisons and CSV.
-    fn figures(&self) -> Vec<Figure<'_>>;
-    /// Returns an error for values that no measurement can produce.
-    fn check(&self) -> Result<(), ReadError> {
+impl Meshes for MeshReport {
+    fn list(&self) -> &[MeshReport] {
+        std::slice::from_ref(self)
+    }
+
+    fn set(&mut self, meshes: Vec<MeshReport>) -> Result<(), ReadError> {
+        let count = meshes.len();
+        let only: Result<[MeshReport; 1], _> = meshes.try_into();
+        let [mesh] = only.map_err(|_| ReadError::Malformed {
+            cause: format!("a finding of one mesh has {count} meshes"),
+        })?;
+        *self = mesh;
         Ok(())
     }
+}
+
+impl Meshes for Vec<MeshReport> {
+    fn list(&self) -> &[MeshReport] {
+        self
+    }
+
+    fn set(&mut self, meshes: Self) -> Result<(), ReadError> {
+        *self = meshes;
+        Ok(())
+    }
+}
+
+/// The access to the fields that the findings of all labs have.
+pub(crate) trait CommonFields {
+    fn common(&self) -> Common<'_>;
+    /// Returns the run and the meshes, so that they can be changed.
+    fn parts_mut(&mut self) -> (&mut Run, &mut dyn Meshes);
+}
+
+/// What the finding of a lab adds.
+pub(crate) trait LabFinding: CommonFields {
+    /// Returns the rows of the finding, for comparisons and tables.
+    fn figures(&self) -> Vec<Figure<'_>>;
+    /// Counts the results that differ, for no known reason, from the results of other backends of
+    /// Sixfold.
+    fn mismatches(&self) -> usize {
+        let figures = self.figures();
+        let mismatch = |figure: &&Figure<'_>| figure.row.agreement == Agreement::Mismatch;
+        figures.iter().filter(mismatch).count()
+    }
+    /// Returns an error for values that no measurement can produce.
+    fn check(&self) -> Result<(), ReadError>;
 }
 
 impl Finding {
@@ -185,8 +233,8 @@ impl Finding {
         self.lab().mismatches()
     }
 
-    /// Returns the times and counts of bytes of the finding: one figure for each mesh, case,
-    /// operation and backend.
+    /// Returns the rows of the finding with their meshes: one for each mesh, case, operation and
+    /// backend.
     pub fn figures(&self) -> Vec<Figure<'_>> {
         self.lab().figures()
     }
@@ -196,19 +244,7 @@ impl Finding {
         let lab = self.lab_mut();
         let (old_run, old_meshes) = lab.parts_mut();
         *old_run = run;
-        match old_meshes {
-            Meshes::One(mesh) => *mesh = only_mesh(meshes)?,
-            Meshes::Any(all) => *all = meshes,
-        }
+        old_meshes.set(meshes)?;
         lab.check()
     }
-}
-
-/// Returns the only mesh of a finding. Returns an error if the number of meshes is not 1.
-fn only_mesh(meshes: Vec<MeshReport>) -> Result<MeshReport, ReadError> {
-    let count = meshes.len();
-    let only: Result<[MeshReport; 1], _> = meshes.try_into();
-    only.map(|[mesh]| mesh).map_err(|_| ReadError::Malformed {
-        cause: format!("a finding of one mesh has {count} meshes"),
-    })
 }

@@ -99,6 +99,10 @@ pub struct Overall {
     /// True if the mean includes estimated times. Estimates are lower bounds, so the mean is one too.
     #[serde(default)]
     pub bound: bool,
+    /// The half-width of the 95 % interval of the logarithm of `ratio_to_best`, from the intervals of
+    /// the times of one mesh; 0 if there are several meshes.
+    #[serde(skip)]
+    pub(crate) log_error: f64,
 }
 
 /// The results of one operation on one backend, over several meshes.
@@ -324,6 +328,8 @@ struct Known {
     ns: f64,
     /// Whether the time is an estimate: a lower bound.
     bound: bool,
+    /// The half-width of the 95 % interval of the logarithm of the ratio to the fastest backend.
+    log_error: f64,
 }
 
 impl Known {
@@ -332,7 +338,18 @@ impl Known {
         let ns = row.median_ns.or(row.estimated_ns)?;
         let bound = row.median_ns.is_none();
         let same_work = !matches!(row.agreement, Agreement::Mismatch | Agreement::OtherEdits);
-        (ns > 0.0 && same_work).then_some(Self { ns, bound })
+        let interval = row.ratio_ci_low.zip(row.ratio_ci_high);
+        let log_error = match interval {
+            _ if bound || row.ratio_to_best == Some(1.0) => 0.0,
+            Some((low, high)) => (high / low).ln() / 2.0,
+            // Without an interval, a difference is clear from a ratio of 2.
+            None => 2_f64.ln(),
+        };
+        (ns > 0.0 && same_work).then_some(Self {
+            ns,
+            bound,
+            log_error,
+        })
     }
 
     /// Orders measured times before estimates, because the real time may be longer than an estimate.
@@ -503,6 +520,15 @@ pub(crate) fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
             let mut times = shared.iter().filter_map(|&case| value(case, backend));
             times.any(|time| time.bound)
         };
+        // The errors of different operations are independent.
+        let log_error = |backend: &str| match studies {
+            [_] => {
+                let known = shared.iter().filter_map(|&case| value(case, backend));
+                let squares: f64 = known.map(|known| known.log_error.powi(2)).sum();
+                squares.sqrt() / shared.len().max(1) as f64
+            }
+            _ => 0.0,
+        };
         let mut rows: Vec<Overall> = compared
             .iter()
             .filter_map(|backend| {
@@ -524,6 +550,7 @@ pub(crate) fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
                     ci_low: interval.map(|[low, _]| low),
                     ci_high: interval.map(|[_, high]| high),
                     bound: is_bound(backend),
+                    log_error: log_error(backend),
                 })
             })
             .collect();
@@ -558,9 +585,12 @@ fn above_best([low, high]: [f64; 2], mean: f64) -> [f64; 2] {
 }
 
 /// Returns the fastest backends of one purpose: the first of `rows`, and those that are at most 5 %
-/// slower. Empty if `rows` is empty.
+/// slower, or by less than the error of the means of one mesh. Empty if `rows` is empty.
 pub(crate) fn leaders(rows: &[Overall]) -> &[Overall] {
-    let equal = |row: &&Overall| row.ratio_to_best <= EQUAL_UP_TO * rows[0].ratio_to_best;
+    let equal = |row: &&Overall| {
+        let error = row.log_error.hypot(rows[0].log_error);
+        row.ratio_to_best <= rows[0].ratio_to_best * error.exp().max(EQUAL_UP_TO)
+    };
     &rows[..rows.iter().take_while(equal).count()]
 }
 

@@ -182,12 +182,13 @@ impl MeasuredTask for Operation {
 }
 
 /// The result of one task in one case on one backend: an operation, or in `neighbours` a spatial
-/// task. All times are times of one run on the whole mesh, in nanoseconds.
+/// task. All times are times of one run on the whole mesh, in nanoseconds. The fields are the columns
+/// of the table of times in CSV.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 pub struct ResultRow<T = Operation> {
     /// What was measured besides the task and the backend: in `orders`, the name of the order. Empty
     /// if there is only one case.
-    #[serde(default, alias = "order", skip_serializing_if = "String::is_empty")]
+    #[serde(default, alias = "order")]
     pub case: String,
     /// The name of the backend, such as `half-edge`.
     pub backend: String,
@@ -283,6 +284,79 @@ impl<T: MeasuredTask> ResultRow<T> {
             per: operation.unit().into(),
             runs_per_sample: 1,
             ..Self::default()
+        }
+    }
+
+    /// Returns the row with the name of its task, for tables of the rows of all labs.
+    pub(crate) fn named(&self) -> ResultRow<String> {
+        let operation = self.operation.name().to_owned();
+        let Self {
+            operation: _,
+            case,
+            backend,
+            median_ns,
+            uncorrected_ns,
+            min_ns,
+            ci_low_ns,
+            ci_high_ns,
+            elements,
+            per,
+            ns_per_element,
+            wall_median_ns,
+            wall_min_ns,
+            sampled,
+            sample_size,
+            estimated_ns,
+            checksum,
+            agreement,
+            standing,
+            ratio_to_best,
+            ratio_ci_low,
+            ratio_ci_high,
+            samples,
+            runs_per_sample,
+            warm_up_only,
+            by_name_only,
+            faults,
+            retaken,
+            disturbed,
+            first_ns,
+            first_samples,
+            first_faults,
+        } = self.clone();
+        ResultRow {
+            operation,
+            case,
+            backend,
+            median_ns,
+            uncorrected_ns,
+            min_ns,
+            ci_low_ns,
+            ci_high_ns,
+            elements,
+            per,
+            ns_per_element,
+            wall_median_ns,
+            wall_min_ns,
+            sampled,
+            sample_size,
+            estimated_ns,
+            checksum,
+            agreement,
+            standing,
+            ratio_to_best,
+            ratio_ci_low,
+            ratio_ci_high,
+            samples,
+            runs_per_sample,
+            warm_up_only,
+            by_name_only,
+            faults,
+            retaken,
+            disturbed,
+            first_ns,
+            first_samples,
+            first_faults,
         }
     }
 
@@ -488,7 +562,7 @@ fn malformed(cause: String) -> Result<(), ReadError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::figure::{FigureRow, Status};
+    use crate::results::figure::Status;
 
     #[test]
     fn a_refusal_is_not_run_by_its_kind_and_without_a_kind_by_the_reason_of_older_versions() {
@@ -501,7 +575,7 @@ mod tests {
                 serde_json::from_str::<Refusal>(&written).ok(),
                 Some(refusal.clone())
             );
-            FigureRow::of_refusal(&refusal).status
+            Status::from(refusal.kind)
         };
         let ended = r#""kind": "budget_ended","#;
         assert_eq!(status(ended, "any words"), Status::NotRun);

@@ -140,8 +140,8 @@ impl Choice {
                 times(point.factor)
             ),
             None => format!(
-                "No slower backend would be as fast as {} if the weight of any one operation in the \
-                 mix were 100 times its present weight.",
+                "{} stays ahead of the slower backends even if any one operation of the mix has 100 \
+                 times its weight.",
                 self.backend
             ),
         }

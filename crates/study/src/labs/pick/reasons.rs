@@ -87,6 +87,7 @@ fn fastest(report: &PickReport, best: &Ranked) -> String {
     let next = report.ranking[1..]
         .iter()
         .find(|ranked| !ranked.tied_with_best);
+    let clear = !report.preliminary && next.is_some_and(|next| next.ci_low.is_some());
     let next = next.map_or(String::new(), |next| {
         let sure = next
             .ci_low
@@ -104,9 +105,13 @@ fn fastest(report: &PickReport, best: &Ranked) -> String {
         true => "Preliminary answer from too few samples: for",
         false => "For",
     };
+    let clearly = match clear {
+        true => "clearly ",
+        false => "",
+    };
     match &tied[..] {
         [] => format!(
-            "{answer} {workload}, {} is fastest: {each} per {unit}{next}.",
+            "{answer} {workload}, {} is {clearly}fastest: {each} per {unit}{next}.",
             name(best)
         ),
         tied => format!(

@@ -7,10 +7,10 @@ use crate::engine::timer::Timer;
 use crate::labs::pick::choice::Choice;
 use crate::labs::pick::needs::Need;
 use crate::numbers::{grouped, shown_ratio};
-use crate::results::figure::{Figure, FigureRow, Status, samples_of};
-use crate::results::finding::{Common, LabFinding, Meshes};
+use crate::results::figure::{Figure, Status, samples_of};
+use crate::results::finding::LabFinding;
 use crate::results::read::ReadError;
-use crate::results::rows::{MeshReport, Samples, check_samples};
+use crate::results::rows::{MeshReport, ResultRow, Samples, check_samples};
 use crate::results::run::Run;
 
 /// The name of the whole mix in samples and figures.
@@ -252,20 +252,6 @@ pub(crate) fn over_memory_limit(bytes: u64, most: u64) -> String {
 }
 
 impl LabFinding for PickReport {
-    fn common(&self) -> Common<'_> {
-        Common {
-            run: &self.run,
-            meshes: &self.meshes,
-            sentences: &self.sentences,
-            warnings: &self.warnings,
-            interrupted: self.interrupted,
-        }
-    }
-
-    fn parts_mut(&mut self) -> (&mut Run, Meshes<'_>) {
-        (&mut self.run, Meshes::Any(&mut self.meshes))
-    }
-
     fn mismatches(&self) -> usize {
         self.mismatches.len()
     }
@@ -323,34 +309,41 @@ impl PickReport {
             (false, true) => Status::Sampled,
             (false, false) => Status::Measured,
         };
-        let figure = |row: FigureRow<'r>| {
-            let samples = samples_of(samples, "", &row.operation, row.backend);
+        let row = |operation: &str, unit: &str, ns: f64| ResultRow {
+            case: self.workload.name.clone(),
+            backend: ranked.backend.clone(),
+            operation: operation.to_owned(),
+            median_ns: Some(ns),
+            ns_per_element: Some(ns),
+            elements: Some(1),
+            per: unit.to_owned(),
+            sampled: ranked.sampled,
+            ..ResultRow::default()
+        };
+        let figure = |row: ResultRow<String>| {
+            let samples = samples_of(samples, "", &row.operation, &row.backend);
             let count = samples.map_or(0, |samples| samples.rounds.len());
-            let row = FigureRow {
+            let row = ResultRow {
                 samples: row.samples.max(count),
                 ..row
             };
             Figure {
-                case: self.workload.name.clone(),
                 samples,
                 noise,
-                ..Figure::new(Some(mesh), Some(ranked.bytes), row)
+                ..Figure::new(Some(mesh), Some(ranked.bytes), status, row)
             }
-        };
-        let row = |operation: &str, unit: &str, ns: f64| FigureRow {
-            ns: Some(ns),
-            unit: unit.into(),
-            elements: Some(1),
-            ..FigureRow::new(operation.into(), &ranked.backend, status)
         };
         let (whole, unit) = match self.program {
             Some(_) => (RUN, "run"),
             None => (MIX, "operation"),
         };
-        let mut figures = vec![figure(FigureRow {
-            interval_ns: ranked.ns_ci_low.zip(ranked.ns_ci_high).map(|(l, h)| [l, h]),
+        let mut figures = vec![figure(ResultRow {
+            ci_low_ns: ranked.ns_ci_low,
+            ci_high_ns: ranked.ns_ci_high,
             ratio_to_best: Some(ranked.ratio_to_best),
-            ratio_interval: ranked.ci_low.zip(ranked.ci_high).map(|(l, h)| [l, h]),
+            ratio_ci_low: ranked.ci_low,
+            ratio_ci_high: ranked.ci_high,
+            faults: ranked.faults,
             samples: ranked.samples,
             ..row(whole, unit, ranked.ns_per_operation)
         })];

@@ -489,9 +489,9 @@ fn the_figures_of_a_pick_are_its_times() {
     let mut figures = figures.iter();
     for ranked in &report.ranking {
         let mix = figures.next().expect("the mix");
-        assert_eq!(mix.case, report.workload.name);
+        assert_eq!(mix.row.case, report.workload.name);
         assert_eq!(mix.row.operation, "mix");
-        assert_eq!(mix.row.ns, Some(ranked.ns_per_operation));
+        assert_eq!(mix.row.median_ns, Some(ranked.ns_per_operation));
         assert_eq!(mix.row.samples, 3);
         let rounds = mix.samples.map(|samples| samples.rounds.len());
         // The samples of a mix on some of the elements are those of its parts.
@@ -500,12 +500,12 @@ fn the_figures_of_a_pick_are_its_times() {
         for part in ranked.parts.iter().filter(|part| part.ns.is_some()) {
             let figure = figures.next().expect("a part");
             assert_eq!(figure.row.operation, part.operation.to_string());
-            assert_eq!(figure.row.ns, part.ns);
+            assert_eq!(figure.row.median_ns, part.ns);
         }
         let build = figures.next().expect("the build");
         assert_eq!(build.row.operation, "build");
-        assert_eq!(build.row.ns, Some(ranked.build_ns));
-        assert_eq!(build.case, report.workload.name);
+        assert_eq!(build.row.median_ns, Some(ranked.build_ns));
+        assert_eq!(build.row.case, report.workload.name);
     }
     assert!(figures.next().is_none());
 }

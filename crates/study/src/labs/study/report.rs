@@ -6,12 +6,11 @@ use sixfold_workload::Operation;
 use crate::engine::control::noise;
 use crate::engine::timer::Timer;
 use crate::numbers::shown_ratio;
-use crate::results::figure::{Figure, figures_of};
-use crate::results::finding::{Common, LabFinding, Meshes};
+use crate::results::figure::{Figure, Rows};
+use crate::results::finding::LabFinding;
 use crate::results::read::ReadError;
 use crate::results::rows::{
-    Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, Samples, check_control,
-    check_results, check_samples,
+    Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, Samples,
 };
 use crate::results::run::Run;
 
@@ -87,6 +86,15 @@ impl Report {
             .filter(|row| self.is_external(&row.backend))
     }
 
+    fn all_rows(&self) -> Rows<'_> {
+        Rows {
+            results: &self.results,
+            refusals: &self.refusals,
+            samples: &self.samples,
+            control: self.control.as_ref(),
+        }
+    }
+
     fn is_external(&self, column: &str) -> bool {
         let mut columns = self.backends.iter().filter(|other| other.name == column);
         columns.any(|column| column.external.is_some())
@@ -94,39 +102,18 @@ impl Report {
 }
 
 impl LabFinding for Report {
-    fn common(&self) -> Common<'_> {
-        Common {
-            run: &self.run,
-            meshes: std::slice::from_ref(&self.mesh),
-            sentences: &self.sentences,
-            warnings: &self.warnings,
-            interrupted: self.interrupted,
-        }
-    }
-
-    fn parts_mut(&mut self) -> (&mut Run, Meshes<'_>) {
-        (&mut self.run, Meshes::One(&mut self.mesh))
-    }
-
     fn mismatches(&self) -> usize {
         Self::mismatches(self).count()
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {
-        figures_of(
-            Some(&self.mesh),
-            &self.results,
-            &self.refusals,
-            &self.samples,
-            |backend| bytes_of(&self.backends, backend),
-            |operation| noise(self.control.as_ref(), operation),
-        )
+        let bytes = |backend: &str| bytes_of(&self.backends, backend);
+        let noise = |operation| noise(self.control.as_ref(), operation);
+        self.all_rows().figures(Some(&self.mesh), bytes, noise)
     }
 
     fn check(&self) -> Result<(), ReadError> {
-        check_samples(&self.samples)?;
-        check_results(&self.results)?;
-        check_control(self.control.as_ref())
+        self.all_rows().check()
     }
 }
 

@@ -1,6 +1,7 @@
 //! The main results of a study, as sentences.
 
 use sixfold::Relation;
+use sixfold::subdivision::Scheme;
 
 use crate::labs::study::Report;
 use crate::labs::study::methods::methods;
@@ -26,7 +27,7 @@ pub(crate) fn answer(report: &Report, scanning: &dyn Fn(&str, Relation) -> bool)
     ];
     let parts: Vec<String> = parts.into_iter().flatten().collect();
     let by_how_much = (!parts.is_empty()).then(|| parts.join("; ") + ".");
-    let sentences = [choice(&purposes), by_how_much, how_sure(report)];
+    let sentences = [choice(report, &purposes), by_how_much, how_sure(report)];
     sentences.into_iter().flatten().collect()
 }
 
@@ -48,17 +49,17 @@ fn scanning_backends<'r>(
 }
 
 /// Names the fastest backends for each kind of work.
-fn choice(purposes: &[&[Overall]]) -> Option<String> {
+fn choice(report: &Report, purposes: &[&[Overall]]) -> Option<String> {
     let mut choices: Vec<(String, Vec<String>)> = Vec::new();
     for rows in purposes {
         let best = leaders(rows);
         let names: Vec<&str> = best.iter().map(|row| row.backend.as_str()).collect();
         let names = match names[..] {
             [name] => name.to_owned(),
-            _ if best.len() == rows.len() => "all backends, equal within 5 %,".to_owned(),
-            _ => format!("{} (equal within 5 %)", names.join(" or ")),
+            _ if best.len() == rows.len() => "all backends, with no clear difference,".to_owned(),
+            _ => format!("{} (no clear difference)", names.join(" or ")),
         };
-        let purpose = format!("{}{}", rows[0].purpose.of_choice(), mean_over(&rows[0]));
+        let purpose = format!("{}{}", rows[0].purpose.of_choice(), mean_over(report, rows));
         match choices.iter_mut().find(|(known, _)| *known == names) {
             Some((_, purposes)) => purposes.push(purpose),
             None => choices.push((names, vec![purpose])),
@@ -71,16 +72,33 @@ fn choice(purposes: &[&[Overall]]) -> Option<String> {
     (!choices.is_empty()).then(|| format!("Fastest: {}.", choices.join("; ")))
 }
 
-/// Says over what a mean is, such as ` (geometric mean over 17 operations)`.
-fn mean_over(row: &Overall) -> String {
-    match (row.purpose, row.cases) {
-        (Purpose::Subdivide, cases) => format!(
-            " (fastest method of {})",
-            counted(cases, "scheme", "schemes")
-        ),
+/// Says over what a mean is, such as ` (geometric mean of 17 operations)` or ` (fastest method of
+/// Loop)`.
+fn mean_over(report: &Report, rows: &[Overall]) -> String {
+    match (rows[0].purpose, rows[0].cases) {
+        (Purpose::Subdivide, _) => {
+            format!(" (fastest method of {})", list(schemes(report, rows)))
+        }
         (_, 1) => String::new(),
         (_, cases) => format!(" (geometric mean of {cases} operations)"),
     }
+}
+
+/// Returns the names of the schemes of which all backends of `rows` have a time.
+fn schemes(report: &Report, rows: &[Overall]) -> Vec<&'static str> {
+    let is_timed = |(_, scheme): &(&str, Scheme)| {
+        let has = |backend: &str| {
+            let mut results = report.results.iter();
+            results.any(|r| r.backend == backend && r.operation.scheme() == Some(*scheme))
+        };
+        rows.iter().all(|row| has(&row.backend))
+    };
+    let known = [
+        ("Catmull–Clark", Scheme::CatmullClark),
+        ("Loop", Scheme::Loop),
+    ];
+    let timed = known.into_iter().filter(is_timed);
+    timed.map(|(name, _)| name).collect()
 }
 
 /// Names the next best backend for each kind of work, with its time. [`scans`] names the backends
@@ -105,7 +123,9 @@ fn scans(report: &Report, purposes: &[&[Overall]], scanning: &[&str]) -> Option<
     let scanning = queries
         .iter()
         .filter(|mean| scanning.contains(&mean.backend.as_str()));
-    let scanning: Vec<&Overall> = scanning.collect();
+    let mut scanning: Vec<&Overall> = scanning.collect();
+    let column = |mean: &&Overall| report.backends.iter().position(|b| b.name == mean.backend);
+    scanning.sort_by_key(column);
     let (verb, times) = match scanning.len() {
         0 => return None,
         1 => ("scans", "takes"),
@@ -283,7 +303,7 @@ mod tests {
             row("half-edge", Boundary, 1.0, Standing::Best),
             row("corner-table", Boundary, 1.0, Standing::Slower),
         ]);
-        let which = "Fastest: polygon-soup or half-edge (equal within 5 %) to build; half-edge for \
+        let which = "Fastest: polygon-soup or half-edge (no clear difference) to build; half-edge for \
                      queries (geometric mean of 2 operations).";
         // Queries: the roots of 4 * 1, and of 400 * 900.
         let how_much = "Next best: corner-table takes 2.08 × the time in building, corner-table takes \
@@ -318,13 +338,46 @@ mod tests {
         for row in &mut report.results {
             row.median_ns = Some(100.0);
         }
-        let equal = "Fastest: all backends, equal within 5 %, to build and for queries (geometric mean \
-                     of 2 operations).";
+        let equal = "Fastest: all backends, with no clear difference, to build and for queries \
+                     (geometric mean of 2 operations).";
         assert_eq!(said(&report)[0], equal);
 
         report.results.truncate(1);
         report.control = None;
         assert_eq!(said(&report), [""; 0], "one backend has no comparison");
+    }
+
+    #[test]
+    fn backends_whose_means_differ_by_less_than_their_error_share_the_first_place() {
+        let timed = |backend: &str, operation, ratio: f64, spread: f64| ResultRow {
+            ratio_ci_low: Some(ratio / spread),
+            ratio_ci_high: Some(ratio * spread),
+            ..row(backend, operation, ratio, Standing::Tied)
+        };
+        let loops = Operation::Loop(Scatter);
+        let with_spread = |spread| {
+            report(vec![
+                timed("half-edge", Operation::Boundary, 1.0, 1.0),
+                timed("corner-table", Operation::Boundary, 1.2, spread),
+                timed("half-edge", Operation::EdgeLength, 1.0, 1.0),
+                timed("corner-table", Operation::EdgeLength, 1.2, spread),
+                timed("half-edge", loops, 1.0, 1.0),
+                timed("corner-table", loops, 3.0, 1.1),
+            ])
+        };
+        // The error of the mean of two operations is that of one divided by the root of 2.
+        assert!(1.28_f64.powf(0.5_f64.sqrt()) < 1.2 && 1.31_f64.powf(0.5_f64.sqrt()) > 1.2);
+        let which = |spread| said(&with_spread(spread)).swap_remove(0);
+        assert_eq!(
+            which(1.28),
+            "Fastest: half-edge for queries (geometric mean of 2 operations) and for subdivision \
+             (fastest method of Loop)."
+        );
+        assert_eq!(
+            which(1.31),
+            "Fastest: all backends, with no clear difference, for queries (geometric mean of 2 \
+             operations); half-edge for subdivision (fastest method of Loop)."
+        );
     }
 
     #[test]

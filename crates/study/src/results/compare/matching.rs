@@ -105,15 +105,15 @@ pub(super) fn measurements<'r>(
     let (mut in_order, mut places) = (Vec::new(), BTreeMap::new());
     for finding in &results.findings {
         for figure in finding.figures() {
-            if !figure.row.is_measured() {
+            if !figure.is_measured() {
                 continue;
             }
             let key = Measurement {
                 mesh: figure.mesh.map_or("", &name).to_owned(),
                 kind: finding.kind(),
-                case: figure.case.clone(),
+                case: figure.row.case.clone(),
                 operation: figure.row.operation.clone(),
-                backend: figure.row.backend.to_owned(),
+                backend: figure.row.backend.clone(),
             };
             if !places.contains_key(&key) {
                 places.insert(key.clone(), in_order.len());
