@@ -1,15 +1,13 @@
 //! The rows of all labs in one form, for comparisons and tables.
 
 use serde::Serialize;
-use sixfold_workload::Reads;
+use sixfold_workload::{Operation, Reads};
 
 use crate::results::read::ReadError;
-use crate::results::rows::Control;
 use crate::results::rows::{
-    MeasuredTask, MeshReport, Refusal, RefusalKind, ResultRow, Samples, check_control,
+    Control, MeasuredTask, MeshReport, Refusal, RefusalKind, ResultRow, Samples, check_control,
     check_results, check_samples,
 };
-use sixfold_workload::Operation;
 
 /// One row of a finding with its mesh: a task on a backend, on a mesh and in a case.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,11 +50,11 @@ pub struct Counted {
     pub read_bytes: Option<f64>,
     /// The mean number of cache lines that a query reads.
     pub lines: Option<f64>,
-    /// The mean number of cache lines that a query loads into the cache.
+    /// The mean number of cache lines per element that a small simulated cache fetches.
     pub fetched: Option<f64>,
-    /// The mean number of loads of a cache line that is not near any cached line.
+    /// The mean number of jumps per element: fetches of a line that is not near a cached line.
     pub jumps: Option<f64>,
-    /// The mean number of bytes that a query moves between memory and the cache.
+    /// The bytes per element that a pass over all elements moves from memory at least.
     pub moved_bytes: Option<f64>,
 }
 
@@ -193,4 +191,55 @@ pub(crate) fn samples_of<'r>(
         !s.control && s.operation == operation && s.backend == backend && s.case == case
     };
     samples.iter().find(of_it)
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold::Relation;
+
+    use super::*;
+
+    #[test]
+    fn the_columns_of_reads_are_those_of_the_counts() {
+        let reads = Reads {
+            relation: Relation::VertexFaces,
+            elements: 7,
+            queried: 7,
+            sampled: false,
+            answers: 8.0,
+            listing_reads: 9.0,
+            sweep_lines: 10,
+            reads: 1.0,
+            bytes: 2.0,
+            lines: 3.0,
+            fetched: 4.0,
+            jumps: 5.0,
+            moved_bytes: 6.0,
+            tables: Vec::new(),
+        };
+        let expected = Counted {
+            reads: Some(1.0),
+            read_bytes: Some(2.0),
+            lines: Some(3.0),
+            fetched: Some(4.0),
+            jumps: Some(5.0),
+            moved_bytes: Some(6.0),
+            ..Counted::default()
+        };
+        assert_eq!(Counted::from(&reads), expected);
+    }
+
+    #[test]
+    fn estimates_and_refusals_are_not_measured() {
+        let measured = |status| Figure::new(None, None, status, ResultRow::default()).is_measured();
+        let all = [
+            Status::Measured,
+            Status::Sampled,
+            Status::Counted,
+            Status::Estimated,
+            Status::Refused,
+            Status::NotRun,
+        ];
+        assert_eq!(all.map(measured), [true, true, true, false, false, false]);
+    }
 }
