@@ -6,7 +6,7 @@
 
 For each mesh, the programs of the example `programs` are measured on four structures: these ratios are the truth. Each program
 is also recorded. Five predictions are compared with the truth: the built-in workload that is closest to the program, the
-recorded workload, the recorded trace, and for both workloads the first answer of `pick`: the counted cache lines, which are
+recorded workload, the recorded trace, and for both workloads the first answer of `pick`: the counted table rows, which are
 printed before any time is measured. Without a mesh, four built-in shapes are used. Needs about two minutes for each mesh.
 Writes `validity.json` and `tables.md`, whose tables are in `report.md`.
 """
@@ -53,10 +53,11 @@ def run(command):
     return ran.stdout if ran.returncode == 0 else None
 
 
-def counted_lines(printed):
-    """Returns the cache lines for each operation, which `pick` prints before it measures."""
-    found = re.search(r"^Reads: (.*?) cache\s+lines", printed, re.MULTILINE | re.DOTALL)
-    return {name: float(lines) for name, lines in re.findall(r"([a-z-]+) ([0-9.]+)", found[1])} if found else {}
+def counted_reads(printed):
+    """Returns the table rows that each operation reads, which `pick` prints before it measures."""
+    found = re.search(r"^Reads: (.*?) table\s+rows", printed, re.MULTILINE | re.DOTALL)
+    counts = re.findall(r"([a-z-]+)\s+([0-9][0-9.,]*[0-9]|[0-9])", found[1]) if found else []
+    return {name: float(reads.replace(",", "")) for name, reads in counts}
 
 
 def times(finding):
@@ -64,12 +65,12 @@ def times(finding):
 
 
 def picked(sixfold, mesh, option, value, budget, scratch):
-    """Returns the measured times of a workload or trace, and the counted cache lines."""
+    """Returns the measured times of a workload or trace, and the counted table rows."""
     file = f"{scratch}/pick.json"
     printed = run([sixfold, "pick", mesh, option, value, "--backends", ",".join(STRUCTURES), "--budget", f"{budget}s", "--json", file])
     if printed is None:
         return {}, {}
-    return times(json.load(open(file))["findings"][0]), counted_lines(printed)
+    return times(json.load(open(file))["findings"][0]), counted_reads(printed)
 
 
 def compared(true, predicted):
@@ -81,16 +82,20 @@ def compared(true, predicted):
     best = min(both, key=true.get)
     errors = []
     agreeing = 0
-    for a, b in itertools.combinations(both, 2):
-        error = (predicted[a] / predicted[b]) / (true[a] / true[b])
-        errors.append(max(error, 1 / error))
+    pairs = list(itertools.combinations(both, 2))
+    for a, b in pairs:
         agreeing += (predicted[a] < predicted[b]) == (true[a] < true[b])
-    pairs = len(errors)
+        # A structure can need no table row; then there is no ratio.
+        if predicted[a] and predicted[b]:
+            error = (predicted[a] / predicted[b]) / (true[a] / true[b])
+            errors.append(max(error, 1 / error))
+    if not errors:
+        return None
     return {
         "chosen": chosen,
         "best": best,
         "regret": true[chosen] / true[best],
-        "tau": (2 * agreeing - pairs) / pairs,
+        "tau": (2 * agreeing - len(pairs)) / len(pairs),
         "error": median(errors),
         "worst_error": max(errors),
     }
@@ -109,10 +114,10 @@ def measure(name, mesh, programs, sixfold, budget, scratch):
         true = truth.get(program, {})
         if len(true) < 2:
             continue
-        by_built_in, lines_of_built_in = built_in[workload]
-        by_recorded, lines_of_recorded = picked(sixfold, mesh, "--workload", f"{records}/{program}.toml", budget, scratch)
+        by_built_in, reads_of_built_in = built_in[workload]
+        by_recorded, reads_of_recorded = picked(sixfold, mesh, "--workload", f"{records}/{program}.toml", budget, scratch)
         by_trace, _ = picked(sixfold, mesh, "--trace", f"{records}/{program}.trace", budget, scratch)
-        every = [by_built_in, by_recorded, by_trace, lines_of_built_in, lines_of_recorded]
+        every = [by_built_in, by_recorded, by_trace, reads_of_built_in, reads_of_recorded]
         predictions = dict(zip(METHODS, every))
         row = {"mesh": name, "program": program, "workload": workload, "ns": true, "predicted_ns": predictions}
         row["agreement"] = {method: compared(true, predictions[method]) for method in METHODS}

@@ -208,14 +208,14 @@ fn operations(study_meshes: &[StudyMesh], workload: &Workload) -> String {
 fn predicted_lines(prediction: &Prediction, of: &str) -> Vec<(&'static str, String)> {
     let mut lines = Vec::new();
     let local = || prediction.candidates.iter().filter(|p| p.scans.is_empty());
-    let counted = local().map(|p| Some(format!("{} {}", p.backend, figure(p.lines?))));
+    let counted = local().map(|p| Some(format!("{} {}", p.backend, figure(p.reads?))));
     let counted: Option<Vec<String>> = counted.collect();
     if let Some(counted) = counted.filter(|counted| !counted.is_empty()) {
         let patch = prediction.patch_faces.map_or(String::new(), |faces| {
             format!(" on a patch of {} faces", grouped(faces))
         });
         let text = format!(
-            "{} cache lines per operation (counted{patch}{of}, not timed)",
+            "{} table rows per operation (counted{patch}{of}, not timed)",
             counted.join(", ")
         );
         lines.push(("Reads:    ", text));

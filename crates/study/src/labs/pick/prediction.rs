@@ -18,8 +18,8 @@ const MOST_FACES: usize = 100_000;
 /// The predicted costs of the backends for a workload on one mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prediction {
-    /// The backends that meet all requirements, sorted by the number of cache lines that the
-    /// queries of the workload read. Backends that scan all faces for some operation come last.
+    /// The backends that meet all requirements, sorted by the number of table rows that the queries
+    /// of the workload read. Backends that scan all faces for some operation come last.
     pub candidates: Vec<Predicted>,
     /// The backends that do not meet the requirements, each with the reason.
     pub excluded: Vec<Excluded>,
@@ -36,15 +36,17 @@ pub struct Predicted {
     /// The operations of the workload that scan all faces of the mesh for each element on this
     /// backend.
     pub scans: Vec<Action>,
-    /// The mean number of cache lines that the queries of one operation of the workload read.
-    /// `None` if the workload has no queries, or if some operation scans all faces.
-    pub lines: Option<f64>,
+    /// The mean number of table rows that the queries of one operation of the workload read. `None`
+    /// if the workload has no queries, if it has edits or subdivision, which are not counted, or if
+    /// some operation scans all faces.
+    pub reads: Option<f64>,
 }
 
 /// Predicts which backends are fast for a workload, without measuring time.
 ///
 /// The prediction uses two properties of each backend: which queries scan all faces, and how many
-/// cache lines the queries read on this mesh, or on its first 100,000 faces. Edits and subdivision are not predicted.
+/// table rows the queries read on this mesh, or on a patch of 100,000 faces. Workloads with edits or
+/// subdivision are not predicted.
 ///
 /// # Errors
 ///
@@ -73,27 +75,27 @@ fn predict_from(
         .filter(|backend| scanning_actions(workload, &backend.info.costs).is_empty())
         .copied()
         .collect();
-    // The queries of a patch read as many lines as the queries of the mesh. The weights are those of
+    // The queries of a patch read as many rows as the queries of the mesh. The weights are those of
     // the whole mesh.
     let piece = (polygons.face_count() > most_faces)
         .then(|| StudyMesh::new(study_mesh.name.clone(), patch(polygons, most_faces)));
     let counted_mesh = piece.as_ref().unwrap_or(study_mesh);
-    let lines = lines_by_backend(counted_mesh, &local, workload, &counts, stop);
+    let reads = reads_by_backend(counted_mesh, &local, workload, &counts, stop);
     let mut candidates: Vec<Predicted> = qualifying
         .iter()
         .map(|backend| {
-            let counted = lines.iter().find(|(name, _)| name == backend.name());
+            let counted = reads.iter().find(|(name, _)| name == backend.name());
             Predicted {
                 backend: backend.name().to_owned(),
                 scans: scanning_actions(workload, &backend.info.costs),
-                lines: counted.map(|(_, lines)| *lines),
+                reads: counted.map(|(_, reads)| *reads),
             }
         })
         .collect();
     candidates.sort_by(|a, b| {
-        let lines = |p: &Predicted| p.lines.unwrap_or(f64::INFINITY);
+        let reads = |p: &Predicted| p.reads.unwrap_or(f64::INFINITY);
         let scans = a.scans.len().cmp(&b.scans.len());
-        scans.then(lines(a).total_cmp(&lines(b)))
+        scans.then(reads(a).total_cmp(&reads(b)))
     });
     Ok(Prediction {
         candidates,
@@ -112,9 +114,9 @@ fn scanning_actions(workload: &Workload, costs: &[QueryCost; 9]) -> Vec<Action> 
     actions.filter(scans).collect()
 }
 
-/// Returns for each backend the number of cache lines that one operation of the mix reads. Empty if
-/// the mix has no queries.
-fn lines_by_backend(
+/// Returns for each backend the number of table rows that one operation of the mix reads. Empty if
+/// the mix has no queries, or if it changes the connectivity.
+fn reads_by_backend(
     study_mesh: &StudyMesh,
     backends: &[Backend],
     workload: &Workload,
@@ -125,7 +127,9 @@ fn lines_by_backend(
     let known = Backend::structures();
     let known = |backend: &&Backend| known.iter().any(|k| k.name() == backend.name());
     let (ours, extra): (Vec<&Backend>, Vec<&Backend>) = backends.iter().partition(known);
-    if relations.is_empty() || backends.is_empty() {
+    let mut actions = workload.mix.iter().map(|part| part.action);
+    let is_edited = actions.any(Action::changes_connectivity);
+    if relations.is_empty() || backends.is_empty() || is_edited {
         return Vec::new();
     }
     let settings = WhySettings {
@@ -143,7 +147,7 @@ fn lines_by_backend(
     let weights = query_weights(workload, counts);
     let of_backend = |backend: &Backend| {
         let rows = counted.rows.iter().filter(|r| r.backend == backend.name());
-        let weighted = rows.map(|row| weights[row.reads.relation as usize] * row.reads.lines);
+        let weighted = rows.map(|row| weights[row.reads.relation as usize] * row.reads.reads);
         (backend.name().to_owned(), weighted.sum())
     };
     backends.iter().map(of_backend).collect()
@@ -217,14 +221,17 @@ mod tests {
             last.scans.contains(&Action::Pass(Operation::VvSmooth)),
             "{last:?}"
         );
-        assert_eq!(last.lines, None);
-        let lines: Vec<f64> = prediction.candidates[..4]
+        assert_eq!(last.reads, None);
+        let reads: Vec<f64> = prediction.candidates[..4]
             .iter()
-            .map(|p| p.lines.expect("a small mesh"))
+            .map(|p| p.reads.expect("a small mesh"))
             .collect();
-        assert!(lines.is_sorted(), "{lines:?}");
-        // A pass over 400 vertices reads at least a line for each vertex.
-        assert!(lines[0] > 400.0, "{lines:?}");
+        assert!(reads.is_sorted(), "{reads:?}");
+        // A pass over 400 vertices of valence 6 reads a row for each neighbour, and one for the
+        // vertex.
+        assert!(reads[0] >= 400.0 * 7.0, "{reads:?}");
+        let edited = predicted("decimation");
+        assert!(edited.candidates.iter().all(|p| p.reads.is_none()));
     }
 
     #[test]
@@ -237,10 +244,10 @@ mod tests {
         assert_eq!(whole.patch_faces, None);
         assert_eq!(patch.patch_faces, Some(600));
         for (a, b) in whole.candidates.iter().zip(&patch.candidates) {
-            let [a_lines, b_lines] = [a.lines, b.lines];
-            assert_eq!(a_lines.is_some(), b_lines.is_some(), "{a:?} {b:?}");
+            let [a_reads, b_reads] = [a.reads, b.reads];
+            assert_eq!(a_reads.is_some(), b_reads.is_some(), "{a:?} {b:?}");
             // Vertices on the boundary of the patch have fewer neighbours.
-            let ratio = b_lines.unwrap_or(1.0) / a_lines.unwrap_or(1.0);
+            let ratio = b_reads.unwrap_or(1.0) / a_reads.unwrap_or(1.0);
             assert!((0.6..1.5).contains(&ratio), "{a:?} {b:?}");
         }
     }
