@@ -2,6 +2,7 @@
 
 pub(crate) mod boundary;
 pub(crate) mod convert;
+pub(crate) mod described;
 pub mod invariant_checks;
 pub(crate) mod local_queries;
 pub(crate) mod measured;

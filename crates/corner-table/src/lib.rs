@@ -96,6 +96,7 @@
 
 mod circulate;
 mod construct;
+mod describe;
 mod edit;
 mod mesh;
 mod query;

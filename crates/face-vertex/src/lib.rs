@@ -12,6 +12,7 @@
 
 mod circulate;
 mod construct;
+mod describe;
 mod edge_numbers;
 mod edit;
 mod mesh;

@@ -84,6 +84,7 @@
 
 mod circulate;
 mod construct;
+mod describe;
 mod edit;
 mod mesh;
 mod query;

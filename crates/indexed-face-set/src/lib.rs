@@ -47,6 +47,7 @@
 //! ```
 
 mod construct;
+mod describe;
 mod edit;
 mod mesh;
 mod query;

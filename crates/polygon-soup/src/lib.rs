@@ -17,6 +17,7 @@
 //! soup and of the indexed face set.
 
 mod construct;
+mod describe;
 mod edit;
 mod mesh;
 mod query;

@@ -10,6 +10,7 @@
 //! - [`SearchSet`]: the vertices that one scan searches for; [`Hit`]: a corner that a scan finds.
 //! - [`scan()`] and [`hits_in`]: the scan of any table.
 
+mod describe;
 mod scan;
 mod scan_edit;
 mod scanned;

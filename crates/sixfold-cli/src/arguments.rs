@@ -15,6 +15,7 @@ mod repair;
 mod reshaping;
 mod results;
 mod subdivision;
+mod teaching;
 mod why;
 
 use std::num::NonZeroU32;
@@ -41,6 +42,7 @@ pub(crate) use repair::{Repair, repair_options};
 pub(crate) use reshaping::{Dual, Smooth, Triangulate};
 pub(crate) use results::ResultFiles;
 pub(crate) use subdivision::{Schemes, Select, Subdivide};
+pub(crate) use teaching::Tables;
 pub(crate) use why::Why;
 
 use crate::many::{LabSelection, Shard};
@@ -88,7 +90,8 @@ Progress: A terminal shows a bar. With SIXFOLD_PROGRESS=lines in the environment
 on standard error, also without a terminal.
 
 Memory: With --heap kept, the process keeps freed memory pages, and timed runs use these pages
-again. The rows `first time` of the table show the time on new pages. With --heap system, the
+again. The row `first time` of the table shows the time to build on new pages; documents have the
+first times of all operations. With --heap system, the
 allocator decides which freed pages it keeps. The time of an operation that allocates memory then
 depends on the previous operations. With --caches cold, the caches are filled with other data before
 each timed run. `compare` and `merge` refuse results that differ in --heap or --caches.
@@ -155,6 +158,8 @@ pub(crate) enum Command {
     New(New),
     /// Explain the time of queries by the memory that the queries read
     Why(Why),
+    /// Show the tables of a data structure, row by row
+    Tables(Tables),
     /// Measure how the order of vertices and faces in memory affects the times
     Orders(Orders),
     /// Measure how the times grow with the size of the mesh

@@ -14,7 +14,7 @@ use crate::text::{hanging_indent, ignore_closed_pipe, reflow, width};
 use crate::{generate, growth, orders, study};
 
 /// The commands of each group, in the order of the list.
-const GROUPS: [(&str, &[&str]); 5] = [
+const GROUPS: [(&str, &[&str]); 6] = [
     (
         "Choose a structure",
         &["pick", "new", "workloads", "study", "operations", "inspect"],
@@ -31,6 +31,7 @@ const GROUPS: [(&str, &[&str]); 5] = [
             "schemes",
         ],
     ),
+    ("See how structures work", &["tables"]),
     ("Saved results", &["report", "compare", "merge"]),
     (
         "Meshes",

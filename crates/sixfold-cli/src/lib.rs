@@ -76,6 +76,7 @@ mod output;
 mod pick;
 mod programs;
 mod progress;
+mod records;
 mod remesh;
 mod render;
 mod repair;
@@ -134,6 +135,7 @@ pub fn sixfold(counters: &dyn AllocatorCounters) -> ExitCode {
         Ok(Some(Command::Workloads(arguments))) => workloads::run(&arguments),
         Ok(Some(Command::Operations(arguments))) => operations::run(&arguments),
         Ok(Some(Command::Why(arguments))) => why::run(&arguments),
+        Ok(Some(Command::Tables(arguments))) => records::run(&arguments),
         Ok(Some(Command::Orders(arguments))) => orders::run(&arguments),
         Ok(Some(Command::Growth(arguments))) => growth::run(&arguments),
         Ok(Some(Command::Merge(arguments))) => many::merge(&arguments),

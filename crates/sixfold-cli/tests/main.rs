@@ -24,5 +24,6 @@ mod reports;
 mod run;
 mod schema;
 mod subdivision;
+mod tables;
 mod user_files;
 mod why;

@@ -70,13 +70,17 @@ fn written_fields() -> BTreeSet<String> {
         &["compare", "0.json", "other.json", "--json", "c.json"],
     );
     run_ok(&sixfold, &["inspect", "t.obj", "--json", "i.json"]);
+    run_ok(
+        &sixfold,
+        &["tables", "--json", "tables.json", "--csv", "tables.csv"],
+    );
     let mut fields = BTreeSet::new();
-    for file in ["all.json", "c.json"] {
+    for file in ["all.json", "c.json", "tables.json"] {
         add_fields(&parsed(&text(&sixfold, file)), &mut fields);
     }
     let inspection = parsed(&text(&sixfold, "i.json"));
     fields.extend(inspection.as_object().expect("an object").keys().cloned());
-    for file in ["all.csv", "samples.csv"] {
+    for file in ["all.csv", "samples.csv", "tables.csv"] {
         let table = text(&sixfold, file);
         let header = table.lines().next().expect("a header");
         fields.extend(header.split(',').map(str::to_owned));

@@ -97,6 +97,7 @@
 
 mod circulate;
 mod construct;
+mod describe;
 mod edge;
 mod edit;
 mod mesh;

@@ -89,6 +89,17 @@ impl<P: Probe> ScatteredFaces<P> {
         self.spans.read(face.index()).range()
     }
 
+    /// Returns the number of corners, including blank corners.
+    pub(crate) fn corner_count(&self) -> usize {
+        self.owners.len()
+    }
+
+    /// Returns the face of a corner: `Some(None)` for a blank corner, `None` if there is no such
+    /// corner.
+    pub(crate) fn owner_of(&self, corner: usize) -> Option<Option<FaceId>> {
+        Some(self.owners.rows().get(corner)?.get())
+    }
+
     fn owner(&self, corner: usize) -> FaceId {
         let owner = self.owners.read(corner).get();
         owner.expect("scans skip the blank corners between faces")

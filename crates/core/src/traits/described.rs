@@ -1,0 +1,186 @@
+//! The records of a structure, as a textbook shows them.
+
+use std::fmt;
+
+use crate::Point;
+use crate::handles::row_id::RowId;
+use crate::tables::editing::Editing;
+use crate::tables::face_spans::FaceSpans;
+use crate::tables::probe::Probe;
+
+/// A structure that describes its tables: what a row is, and what each field of a row means.
+///
+/// Tools that show tables and explain queries read a structure through this trait. The values come
+/// from the tables of the structure, so there is no second copy of the layout.
+pub trait Described {
+    /// Returns the tables that this mesh has, in the order in which a textbook shows them.
+    fn tables(&self) -> Vec<RecordTable>;
+
+    /// Returns the fields of a row, in the order of the columns of its table; `None` if there is no
+    /// such row, or if the row belongs to a deleted element. A probe may record reads.
+    fn record(&self, table: &str, row: usize) -> Option<Vec<Field>>;
+}
+
+/// One table of a structure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RecordTable {
+    /// The name of the table, as in traces and memory reports.
+    pub name: &'static str,
+    /// What a row describes, such as `half-edge`.
+    pub element: &'static str,
+    /// The letter of the names of rows: row 3 of a table with the letter `h` is `h3`. Tables with the
+    /// same letter describe the same elements.
+    pub letter: &'static str,
+    /// The number of rows, including the rows of deleted elements.
+    pub rows: usize,
+    /// The columns.
+    pub columns: &'static [Column],
+}
+
+impl RecordTable {
+    /// Returns a table. The arguments are the fields, in their order.
+    pub const fn new(
+        name: &'static str,
+        element: &'static str,
+        letter: &'static str,
+        rows: usize,
+        columns: &'static [Column],
+    ) -> Self {
+        Self {
+            name,
+            element,
+            letter,
+            rows,
+            columns,
+        }
+    }
+}
+
+/// One column of a table: a field that each row stores, or that follows from the number of the row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// The name of the field in textbooks, such as `twin`.
+    pub name: &'static str,
+    /// What the field means, such as `the half-edge in the opposite direction`.
+    pub about: &'static str,
+    /// True if the field is not stored: it follows from the number of the row, or from other fields.
+    pub is_derived: bool,
+}
+
+impl Column {
+    /// Returns a column that is stored.
+    pub const fn stored(name: &'static str, about: &'static str) -> Self {
+        Self {
+            name,
+            about,
+            is_derived: false,
+        }
+    }
+
+    /// Returns a column that is not stored.
+    pub const fn derived(name: &'static str, about: &'static str) -> Self {
+        Self {
+            name,
+            about,
+            is_derived: true,
+        }
+    }
+
+    /// The column of the position of a vertex.
+    pub const POSITION: Self = Self::stored("position", "the coordinates of the vertex");
+}
+
+/// The value of one field of a record.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Field {
+    /// The name of a row: the letter of its table, and its number.
+    Row {
+        /// The letter of the table.
+        letter: &'static str,
+        /// The number of the row.
+        row: u32,
+    },
+    /// There is no element, such as the face beyond a boundary.
+    None,
+    /// A number that is not the name of a row.
+    Number(u32),
+    /// A position.
+    Point(Point),
+}
+
+impl Field {
+    /// Returns the name of the row of `handle`.
+    pub fn row(letter: &'static str, handle: impl RowId) -> Self {
+        Self::Row {
+            letter,
+            row: handle.row(),
+        }
+    }
+
+    /// Returns the name of the row of `handle`, or [`None`](Self::None).
+    pub fn optional(letter: &'static str, handle: Option<impl RowId>) -> Self {
+        handle.map_or(Self::None, |handle| Self::row(letter, handle))
+    }
+}
+
+/// Writes `h3`, `none`, `7` or `(1, 0, 0.5)`.
+impl fmt::Display for Field {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Row { letter, row } => write!(f, "{letter}{row}"),
+            Self::None => f.write_str("none"),
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Point(Point { x, y, z }) => write!(f, "({x}, {y}, {z})"),
+        }
+    }
+}
+
+/// The description of the ranges of corners of faces; the letter of corners is `c`.
+impl<P: Probe, E: Editing> FaceSpans<P, E> {
+    /// Returns the tables of the ranges: none if all faces have the same degree.
+    pub fn record_tables(&self) -> Vec<RecordTable> {
+        const FIRST: Column = Column::stored("first", "the first corner of the face");
+        const OFFSETS: &[Column] = &[FIRST, Column::derived("degree", "the number of corners")];
+        const SPANS: &[Column] = &[FIRST, Column::stored("degree", "the number of corners")];
+        const OWNERS: &[Column] = &[Column::stored("face", "the face that has the corner")];
+        match self {
+            Self::Uniform { .. } => Vec::new(),
+            Self::Mixed(_) => vec![RecordTable::new(
+                "offsets",
+                "face",
+                "f",
+                self.len(),
+                OFFSETS,
+            )],
+            Self::Scattered(faces) => vec![
+                RecordTable::new("spans", "face", "f", self.len(), SPANS),
+                RecordTable::new(
+                    "owners",
+                    "corner",
+                    "c",
+                    faces.as_ref().corner_count(),
+                    OWNERS,
+                ),
+            ],
+        }
+    }
+
+    /// Returns the fields of a row of `offsets`, `spans` or `owners`; `None` if there is no such row.
+    pub fn record(&self, table: &str, row: usize) -> Option<Vec<Field>> {
+        match (self, table) {
+            (Self::Scattered(faces), "owners") => {
+                let owner = faces.as_ref().owner_of(row)?;
+                Some(vec![Field::optional("f", owner)])
+            }
+            (Self::Mixed(_), "offsets") | (Self::Scattered(_), "spans") if row < self.len() => {
+                let range = self.range(crate::FaceId::new(row as u32));
+                let first = Field::Row {
+                    letter: "c",
+                    row: range.start as u32,
+                };
+                Some(vec![first, Field::Number(range.len() as u32)])
+            }
+            _ => None,
+        }
+    }
+}

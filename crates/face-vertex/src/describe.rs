@@ -1,0 +1,61 @@
+//! The records of a face-vertex mesh, as textbooks show them.
+
+use sixfold_core::{Column, Described, Editing, Field, HoleSet, Probe, RecordTable};
+
+use crate::mesh::{BLANK_CORNER, BLANK_PLACE, FaceVertexMesh, Fan};
+
+const CORNERS: &[Column] = &[
+    Column::stored("vertex", "the vertex at the corner"),
+    Column::derived("face", "the face of the corner"),
+];
+const FANS: &[Column] = &[
+    Column::stored(
+        "first",
+        "the place of the first face of the fan in the pool",
+    ),
+    Column::stored("faces", "the number of faces around the vertex"),
+];
+const POOL: &[Column] = &[Column::stored("face", "a face around a vertex")];
+
+impl<P: Probe, E: Editing> Described for FaceVertexMesh<E, P> {
+    fn tables(&self) -> Vec<RecordTable> {
+        let vertices = self.positions.len();
+        let mut tables = vec![
+            RecordTable::new("positions", "vertex", "v", vertices, &[Column::POSITION]),
+            RecordTable::new("fans", "vertex", "v", vertices, FANS),
+            RecordTable::new("pool", "place", "p", self.pool.len(), POOL),
+            RecordTable::new("corners", "corner", "c", self.corners.len(), CORNERS),
+        ];
+        tables.extend(self.spans.record_tables());
+        tables
+    }
+
+    fn record(&self, table: &str, row: usize) -> Option<Vec<Field>> {
+        match table {
+            "positions" | "fans" if self.vertex_holes.has(row) => None,
+            "positions" => Some(vec![Field::Point(*self.positions.rows().get(row)?)]),
+            "fans" => {
+                let &Fan { start, len } = self.fans.rows().get(row)?;
+                let first = Field::Row {
+                    letter: "p",
+                    row: start,
+                };
+                Some(vec![first, Field::Number(len)])
+            }
+            "pool" => {
+                let face = self.pool.rows().get(row)?;
+                (*face != BLANK_PLACE).then(|| vec![Field::row("f", *face)])
+            }
+            "corners" => {
+                let vertex = *self.corners.rows().get(row)?;
+                if vertex == BLANK_CORNER {
+                    return None;
+                }
+                let face = Field::row("f", self.spans.face_of(row));
+                Some(vec![Field::row("v", vertex), face])
+            }
+            "offsets" | "spans" if self.face_holes.has(row) => None,
+            _ => self.spans.record(table, row),
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! The records of an indexed face set, as textbooks show them.
+
+use sixfold_core::{Column, Described, Editing, Field, HoleSet, Probe, RecordTable};
+
+use crate::mesh::IndexedFaceSet;
+
+impl<P: Probe, E: Editing> Described for IndexedFaceSet<E, P> {
+    fn tables(&self) -> Vec<RecordTable> {
+        let positions = RecordTable {
+            name: "positions",
+            element: "vertex",
+            letter: "v",
+            rows: self.positions.len(),
+            columns: &[Column::POSITION],
+        };
+        let mut tables = vec![positions];
+        tables.extend(self.faces.record_tables());
+        tables
+    }
+
+    fn record(&self, table: &str, row: usize) -> Option<Vec<Field>> {
+        match table {
+            "positions" if self.vertex_holes.has(row) => None,
+            "positions" => Some(vec![Field::Point(*self.positions.rows().get(row)?)]),
+            _ => self.faces.record(table, row, |v| Field::row("v", v)),
+        }
+    }
+}
