@@ -120,7 +120,8 @@ def rounded(number):
     if number == 0 or not math.isfinite(number):
         return number
     places = 2 - math.floor(math.log10(abs(number)))
-    return math.floor(number * 10.0**places + 0.5) / 10.0**places
+    # The small term is that of the page: 15.9 / 12.0 is 1.325 on paper, but a little less in binary.
+    return math.floor(number * 10.0**places + 0.5 + 1e-9) / 10.0**places
 
 
 def shown(number):
