@@ -43,7 +43,7 @@ impl Structure {
         all
     }
 
-    /// Returns the structure of Sixfold with this name; `None` if there is none.
+    /// Returns the structure of Sixfold with this name, or `None` if no structure has it.
     pub fn find(name: &str) -> Option<Self> {
         Self::all().into_iter().find(|one| one.name == name)
     }

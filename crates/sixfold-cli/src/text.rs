@@ -73,8 +73,8 @@ impl TextOutput {
         }
     }
 
-    /// Prints the sentences of an answer, the warnings that say how far to trust it, and an empty line;
-    /// nothing if there are none.
+    /// Prints the sentences of an answer, then the warnings that say how far to trust it, then an empty
+    /// line. Prints nothing if both lists are empty.
     pub(crate) fn print_answer(&mut self, sentences: &[String], warnings: &[String]) {
         self.print_list("- ", sentences.iter().map(|text| sanitize(text)));
         self.print_list("! ", warnings.iter().map(|text| sanitize(text)));
