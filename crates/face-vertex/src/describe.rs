@@ -11,7 +11,7 @@ const CORNERS: &[Column] = &[
 const FANS: &[Column] = &[
     Column::stored(
         "first",
-        "the place of the first face of the fan in the pool",
+        "the place of the first face of the fan in the pool; none without a face",
     ),
     Column::stored("faces", "the number of faces around the vertex"),
 ];
@@ -36,9 +36,12 @@ impl<P: Probe, E: Editing> Described for FaceVertexMesh<E, P> {
             "positions" => Some(vec![Field::Point(*self.positions.rows().get(row)?)]),
             "fans" => {
                 let &Fan { start, len } = self.fans.rows().get(row)?;
-                let first = Field::Row {
-                    letter: "p",
-                    row: start,
+                let first = match len {
+                    0 => Field::None,
+                    _ => Field::Row {
+                        letter: "p",
+                        row: start,
+                    },
                 };
                 Some(vec![first, Field::Number(len)])
             }
