@@ -1,11 +1,13 @@
 //! Checks that decimation, remeshing and Delaunay flips give bit-identical meshes on every
 //! structure.
 
+use sixfold::EditableHalfEdgeMesh;
 use sixfold::remeshing::{
-    Decimation, DecimationBoundary, Remeshing, Target, decimate, flip_to_delaunay, remesh,
+    Decimation, DecimationBoundary, Remeshing, Target, decimate, flip_to_delaunay,
+    meets_link_condition, remesh,
 };
 use sixfold::{for_each_editable, shapes};
-use sixfold_core::{MeshEdit, Point, PolygonMesh, Representation};
+use sixfold_core::{EditError, MeshEdit, MeshQuery, Point, PolygonMesh, Representation};
 
 /// Returns closed and open surfaces. One surface is rough and has corners.
 pub(crate) fn surfaces() -> [PolygonMesh; 4] {
@@ -114,4 +116,73 @@ fn delaunay_flips_are_the_same_on_all() {
     for (i, polygons) in surfaces().iter().enumerate() {
         compare_structures(&Delaunay, polygons, &format!("flips of surface {i}"));
     }
+}
+
+/// Returns for each edge, in order of its corners, whether it meets the link condition; `None` if
+/// the structure cannot hold the mesh.
+fn meeting<M: MeshEdit + Representation>(
+    polygons: &PolygonMesh,
+) -> Option<Vec<([[u32; 3]; 2], bool)>> {
+    let mesh = M::from_polygons(polygons).ok()?;
+    let bits = |v| {
+        (mesh.position(v) + Point::ZERO)
+            .to_array()
+            .map(f32::to_bits)
+    };
+    let edges = mesh.edges().map(|e| {
+        let mut ends = mesh.edge_vertices(e).map(bits);
+        ends.sort_unstable();
+        (ends, meets_link_condition(&mesh, e))
+    });
+    let mut edges: Vec<_> = edges.collect();
+    edges.sort_unstable();
+    Some(edges)
+}
+
+/// The half-edge mesh refuses exactly the collapses that do not meet the link condition, and every
+/// structure gives the same answer for an edge.
+#[test]
+fn the_link_condition_is_what_the_half_edge_mesh_asks_for() {
+    let message = "a small shape";
+    let mut shapes = vec![
+        shapes::tetrahedron(),
+        shapes::cube(),
+        shapes::octahedron(),
+        shapes::grid(1, 1).expect(message),
+        shapes::triangle_grid(1, 2).expect(message),
+        shapes::triangle_grid(2, 3).expect(message),
+        shapes::mixed_grid(3, 3).expect(message),
+        shapes::grid_with_hole(4, 4).expect(message),
+        shapes::triangle_torus(3, 3).expect(message),
+        shapes::triangle_torus(3, 5).expect(message),
+        shapes::torus(3, 4).expect(message),
+        shapes::prism(3).expect(message),
+    ];
+    shapes.extend(surfaces());
+    let mut refused = [0, 0];
+    for (i, polygons) in shapes.iter().enumerate() {
+        let whole = EditableHalfEdgeMesh::from_polygons(polygons).expect("a manifold");
+        for e in whole.edges() {
+            let mut mesh = whole.clone();
+            let [a, b] = mesh.edge_vertices(e);
+            let middle = mesh.position(a).midpoint(mesh.position(b));
+            let meets = meets_link_condition(&whole, e);
+            let result = mesh.collapse_edge(e, a, middle);
+            let broken = matches!(
+                result,
+                Err(EditError::CommonNeighbour { .. }
+                    | EditError::SameApex { .. }
+                    | EditError::AcrossBoundary { .. }
+                    | EditError::Pillow { .. })
+            );
+            assert_eq!(meets, !broken, "shape {i}, {e:?}: {result:?}");
+            refused[usize::from(broken)] += 1;
+        }
+        let expected = meeting::<EditableHalfEdgeMesh>(polygons);
+        for_each_editable!(M => {
+            let got = meeting::<M>(polygons);
+            assert!(got.is_none() || got == expected, "{} and shape {i}", M::NAME);
+        });
+    }
+    assert!(refused.iter().all(|&n| n > 50), "{refused:?}");
 }

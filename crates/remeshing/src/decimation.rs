@@ -10,7 +10,7 @@ use crate::error::RemeshError;
 use crate::numbering::{Numbering, corners};
 use crate::quadric::{Packed, Quadric};
 use crate::queue::{Entry, Queue};
-use crate::rules::{keeps_orientation, meets_link_condition};
+use crate::rules::{keeps_orientation, may_collapse};
 
 /// Weight of a plane through a boundary edge, relative to the plane of a face.
 const BOUNDARY_WEIGHT: f64 = 100.0;
@@ -369,7 +369,7 @@ impl<M: MeshEdit> Work<M> {
             _ => (p.at.as_dvec3() + placement.offset * self.size).as_vec3(),
         };
         let ends = [a, b].map(|n| self.numbering.handle(n));
-        if !keeps_orientation(mesh, ends, to.as_dvec3()) || !meets_link_condition(mesh, e) {
+        if !keeps_orientation(mesh, ends, to.as_dvec3()) || !may_collapse(mesh, e) {
             return None;
         }
         let kept = mesh.collapse_edge(e, ends[0], to).ok()?;

@@ -9,7 +9,7 @@ use sixfold_core::MeshEdit;
 use crate::Stop;
 use crate::error::RemeshError;
 use crate::numbering::{Numbering, corners, corners_from};
-use crate::rules::{at, is_boundary, keeps_orientation, meets_link_condition};
+use crate::rules::{at, is_boundary, keeps_orientation, may_collapse};
 
 /// `LONG`: minimum length of edges that are split. `SHORT`: maximum length of edges that are
 /// collapsed. Both are multiples of the target length.
@@ -275,10 +275,7 @@ impl<M: MeshEdit> Work<M> {
                 around
                     .all(|u| handles.contains(&u) || at(mesh, u).distance_squared(to) <= self.long)
             });
-            if !stays_short
-                || !keeps_orientation(mesh, handles, to)
-                || !meets_link_condition(mesh, e)
-            {
+            if !stays_short || !keeps_orientation(mesh, handles, to) || !may_collapse(mesh, e) {
                 continue;
             }
             let place = to.as_vec3();

@@ -85,6 +85,7 @@ pub use decimation::{
 pub use delaunay::{Flipped, flip_to_delaunay};
 pub use error::RemeshError;
 pub use isotropic::{Remeshed, Remeshing, remesh, remesh_watched};
+pub use rules::meets_link_condition;
 
 /// The reason why an operator ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use sixfold_core::MeshEdit;
 
-use crate::numbering::{corners, corners_from};
+use crate::numbering::corners_from;
 
 /// Minimum cosine of the angle between the normals of a face before and after an edit.
 const MIN_COSINE: f64 = 0.2;
@@ -38,18 +38,57 @@ pub(crate) fn keeps_orientation<M: MeshEdit>(mesh: &M, [a, b]: [M::Vertex; 2], t
     true
 }
 
-/// Returns whether a collapse meets the link condition (Dey et al. 1999) in a triangle mesh. Tests
-/// only structures that hold non-manifold edges; other structures refuse the collapse themselves.
-pub(crate) fn meets_link_condition<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
-    if !M::CAPABILITIES.non_manifold_edges {
-        return true;
-    }
+/// Returns whether a collapse of `e` would keep the mesh a manifold. Structures that hold only
+/// manifolds refuse other collapses themselves.
+pub(crate) fn may_collapse<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
+    !M::CAPABILITIES.non_manifold_edges || meets_link_condition(mesh, e)
+}
+
+/// Returns whether edge `e` of a manifold meets the link condition (Dey et al. 1999): a collapse of
+/// `e` then keeps the topology of the surface. O(v²), where v is the valence of the ends of `e`.
+///
+/// Half-edge, winged-edge and corner-table meshes refuse a collapse that does not meet the
+/// condition. Polygon soups, indexed face sets and face-vertex meshes also hold meshes that are not
+/// manifolds, therefore [`MeshEdit::collapse_edge`] makes the collapse. A program that is to do the
+/// same on all structures calls this function first.
+///
+/// The condition is met if all of the following is true:
+///
+/// - `e` has one or two faces.
+/// - Each vertex that is adjacent to both ends of `e` is the third corner of a triangle along `e`,
+///   and no two of these triangles have the same third corner.
+/// - If `e` has two faces, an end of `e` is not on the boundary.
+/// - `e` is not an edge of a tetrahedron.
+///
+/// # Examples
+///
+/// A torus of three by three vertices becomes narrower than a triangle by any collapse:
+///
+/// ```
+/// use sixfold_core::{MeshQuery, Representation};
+/// use sixfold_indexed_face_set::EditableIndexedFaceSet;
+/// use sixfold_remeshing::meets_link_condition;
+///
+/// let sphere = sixfold_shapes::geodesic(2)?;
+/// let torus = sixfold_shapes::triangle_torus(3, 3)?;
+/// for (polygons, meet) in [(sphere, 120), (torus, 0)] {
+///     let mesh = EditableIndexedFaceSet::from_polygons(&polygons)?;
+///     let meeting = mesh.edges().filter(|&e| meets_link_condition(&mesh, e));
+///     assert_eq!(meeting.count(), meet);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn meets_link_condition<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
     let [a, b] = mesh.edge_vertices(e);
+    let mut faces = 0;
     let mut apexes = Vec::with_capacity(2);
     for f in mesh.edge_faces(e) {
-        apexes.extend(corners(mesh, f).into_iter().find(|&v| v != a && v != b));
+        faces += 1;
+        if mesh.face_vertices(f).count() == 3 {
+            apexes.extend(mesh.face_vertices(f).find(|&v| v != a && v != b));
+        }
     }
-    if apexes.len() > 2 || (apexes.len() == 2 && apexes[0] == apexes[1]) {
+    if faces > 2 || (apexes.len() == 2 && apexes[0] == apexes[1]) {
         return false;
     }
     let at_b: Vec<M::Vertex> = mesh.vertex_vertices(b).collect();
@@ -64,9 +103,8 @@ pub(crate) fn meets_link_condition<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
         if at_a.len() == 3 && at_b.len() == 3 && closed(a) && closed(b) {
             return false;
         }
-        return !(is_boundary(mesh, a) && is_boundary(mesh, b));
     }
-    true
+    faces < 2 || !(is_boundary(mesh, a) && is_boundary(mesh, b))
 }
 
 /// Returns whether `v` is an end of an edge with one face.

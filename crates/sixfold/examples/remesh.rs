@@ -9,6 +9,7 @@ use std::error::Error;
 
 use sixfold::io::{Format, WriteOptions, write_to};
 use sixfold::prelude::*;
+use sixfold::remeshing::meets_link_condition;
 
 mod common;
 
@@ -29,10 +30,13 @@ pub fn remesh<M: MeshEdit>(mesh: &mut M, length: f32) -> [usize; 2] {
     let mut collapsed = 0;
     let edges: Vec<_> = mesh.edges().collect();
     for e in edges {
-        if mesh.contains_edge(e) && edge_length(mesh, e) < 4.0 / 5.0 * length {
+        // A face-vertex mesh would also make a collapse that does not keep the mesh a manifold.
+        if mesh.contains_edge(e)
+            && edge_length(mesh, e) < 4.0 / 5.0 * length
+            && meets_link_condition(mesh, e)
+        {
             let [kept, _] = mesh.edge_vertices(e);
             let middle = middle(mesh, e);
-            // A collapse that would make the mesh non-manifold is refused.
             collapsed += usize::from(mesh.collapse_edge(e, kept, middle).is_ok());
         }
     }
