@@ -8,7 +8,7 @@ from checks.claims import Claims
 
 DATA = "reports/validity/validity.json"
 STRUCTURES = ("face-vertex", "winged-edge", "half-edge", "corner-table")
-METHODS = ("built-in workload", "recorded workload", "trace")
+METHODS = ("built-in workload", "recorded workload", "trace", "first answer, built-in", "first answer, recorded")
 PROGRAMS = ("geodesics", "feature-lines", "laplacian", "regions", "remesh", "taubin", "gathered-normals", "scattered-normals")
 MESHES = ("ball", "torus-shuffled", "built-in-mesh", "plane_holes", "boot", "koala")
 # Structures up to this ratio count as equally fast.
@@ -17,8 +17,8 @@ EQUAL = 1.05
 page = Claims(
     "reports/validity/report.md",
     definitions="""
-        can be found in four ways
-        The last three ways
+        can be found in five ways
+        All ways except the first
         a regret of at most 1.05
         A regret of 1 means
         *Within 5 %*
@@ -26,7 +26,6 @@ page = Claims(
         | within 5 % | worst regret |
         is within 5 % of the
         structure within 5 % of the
-        cases within 5 %
         between two structures
         has three corners
         on balls of two other sizes
@@ -36,8 +35,8 @@ page = Claims(
         The other five meshes
         measurement took 3 seconds
         with two cores
-        Two goals are reached: 95 % of the cases
-        a mean regret of at most 1.02
+        The goals were 95 % of the cases and a mean regret of at most 1.02
+        a *first answer*: the structure
         a typical error of 1.1 is not reached
         The compared structures are the four structures
     """,
@@ -52,11 +51,13 @@ def compared(case, method):
     """Returns how well the predicted times agree with the measured ones."""
     true, predicted = case["ns"], case["predicted_ns"][method]
     both = [name for name in true if name in predicted]
+    # Of equal counts, the first one is the answer: `pick` sorts them by bytes.
+    chosen = true[min((name for name in predicted if name in true), key=predicted.get)]
     pairs = list(itertools.combinations(both, 2))
     errors = [(predicted[a] / predicted[b]) / (true[a] / true[b]) for a, b in pairs]
     agreeing = sum((predicted[a] < predicted[b]) == (true[a] < true[b]) for a, b in pairs)
     return {
-        "regret": true[min(both, key=predicted.get)] / min(true[name] for name in both),
+        "regret": chosen / min(true[name] for name in both),
         "tau": (2 * agreeing - len(pairs)) / len(pairs),
         "error": statistics.median(max(error, 1 / error) for error in errors),
         "worst_error": max(max(error, 1 / error) for error in errors),
@@ -64,7 +65,8 @@ def compared(case, method):
 
 
 def cases(method, program=None):
-    return [compared(row, method) for row in data.document(DATA) if program in (None, row["program"])]
+    rows = [row for row in data.document(DATA) if program in (None, row["program"])]
+    return [compared(row, method) for row in rows if row["predicted_ns"][method]]
 
 
 def regrets(method, program=None):
@@ -91,7 +93,7 @@ def program_row(program, method):
 
 def case_row(mesh, program):
     found = case(mesh, program)
-    every = [found["ns"], *(found["predicted_ns"][method] for method in METHODS[1:])]
+    every = [found["ns"], *(found["predicted_ns"][method] for method in METHODS[1:3])]
     shown = lambda times, name: f"{times[name] / min(times.values()):.2f}" if name in times else "–"
     return tuple(" / ".join(shown(times, name) for times in every) for name in STRUCTURES)
 
@@ -103,6 +105,8 @@ page.row(f"| mesh | program | {' | '.join(STRUCTURES)} |", lambda: None)
 for method in METHODS:
     page.row(f"| {method} |" + " {} |" * 8, method_row, method)
 for program, method in itertools.product(PROGRAMS, METHODS):
+    if not cases(method, program):
+        continue  # there is no first answer for a program that edits
     page.row(f"| {program} | {{}} | {method} | {{}} | {{}} | {{}} |", program_row, program, method, section="## By program")
 for mesh, program in itertools.product(MESHES, PROGRAMS):
     page.row(f"| {mesh} | {program} | {{}} | {{}} | {{}} | {{}} |", case_row, mesh, program, section="## All cases")
@@ -128,12 +132,56 @@ def mesh_count():
     return figures.word(len({row["mesh"] for row in data.document(DATA)}))
 
 
-@page.says("is within 5 % of the fastest in {} of {} cases, and takes {} % more time than the fastest on average")
+@page.says("A structure with the fewest counted rows is within 5 % of the fastest in {} of {} cases")
+def fewest_rows():
+    method, good = METHODS[3], 0
+    rows = [row for row in data.document(DATA) if row["predicted_ns"][method]]
+    for row in rows:
+        true, counts = row["ns"], row["predicted_ns"][method]
+        fewest = [true[name] for name in counts if counts[name] == min(counts.values())]
+        good += min(fewest) <= EQUAL * min(true.values())
+    return str(good), str(len(rows))
+
+
+@page.says("the structure that it prints first is within 5 % of the fastest in {} of {} cases for a built-in workload, and in {} of {} "
+           "cases for a recorded workload.")
+def first_answers():
+    both = METHODS[3:]
+    data.require(all(not cases(method, "remesh") for method in both), "remesh has a first answer")
+    most = sum(len(cases(both[0], program)) - within(both[0], program) for program in ("laplacian", "scattered-normals"))
+    missed = len(cases(both[0])) - within(both[0])
+    data.require(2 * most > missed, f"{most} of {missed} cases")
+    return tuple(str(count) for method in both for count in (within(method), len(cases(method))))
+
+
+@page.says("Counts do not say how much faster a structure is: the typical error of a ratio is {}.")
+def first_errors():
+    return f"{statistics.median(each['error'] for each in cases(METHODS[3])):.2f}"
+
+
+@page.says("is within 5 % of the fastest in {} of {} cases, and takes {} % more time than the fastest on average. The goals were 95 % of "
+           "the cases and a mean regret of at most 1.02. Of the {} cases outside, {} are `laplacian` and {} is `taubin` on the scan of "
+           "99,994 triangles (regret {}).")
 def recorded():
-    mean = statistics.fmean(regrets("recorded workload"))
-    reached = within("recorded workload") >= 0.95 * len(cases("recorded workload")) and mean <= 1.02
-    data.require(reached, "a goal is not reached")
-    return str(within("recorded workload")), str(len(cases("recorded workload"))), f"{100 * (mean - 1):.1f}"
+    method = "recorded workload"
+    mean = statistics.fmean(regrets(method))
+    data.require(within(method) < 0.95 * len(cases(method)) and mean > 1.02, "a goal is reached")
+    missed = [row for row in data.document(DATA) if compared(row, method)["regret"] > EQUAL]
+    laplacian = sum(row["program"] == "laplacian" for row in missed)
+    taubin = [row["mesh"] for row in missed if row["program"] == "taubin"]
+    data.require(taubin == ["koala"], f"taubin is wrong on {taubin}")
+    regret = compared(case("koala", "taubin"), method)["regret"]
+    return (str(within(method)), str(len(cases(method))), f"{100 * (mean - 1):.1f}", str(len(missed)), str(laplacian), str(len(taubin)),
+            f"{regret:.2f}")
+
+
+@page.says("In `laplacian` on the ball, face-vertex takes {} times the time of the corner table, and the recorded workload predicts {}.")
+def ball_laplacian():
+    found = case("ball", "laplacian")
+    quotient = lambda times: f"{times['face-vertex'] / times['corner-table']:.2f}"
+    reads = found["predicted_ns"]["first answer, recorded"]
+    data.require(reads["face-vertex"] == reads["corner-table"], "the counted rows are not equal")
+    return quotient(found["ns"]), quotient(found["predicted_ns"]["recorded workload"])
 
 
 @page.says("The ratios that traces predict are nearer to the measured ratios than those of recorded workloads")
@@ -143,11 +191,11 @@ def traces():
     data.require(within("trace") <= within("recorded workload"), "traces choose better")
 
 
-@page.says("The worst cases are `geodesics` on the torus in random order (regret {}) and `laplacian` on the ball (regret {}).")
+@page.says("The worst cases are `geodesics` on the torus in random order (regret {}) and `remesh` on the terrain (regret {}).")
 def worst_traces():
     regret = {(row["program"], row["mesh"]): compared(row, "trace")["regret"] for row in data.document(DATA)}
     worst = sorted(regret, key=regret.get, reverse=True)[:2]
-    data.require(worst == [("geodesics", "torus-shuffled"), ("laplacian", "ball")], f"the worst cases are {worst}")
+    data.require(worst == [("geodesics", "torus-shuffled"), ("remesh", "plane_holes")], f"the worst cases are {worst}")
     return tuple(f"{regret[case]:.2f}" for case in worst)
 
 

@@ -19,7 +19,8 @@ const MOST_FACES: usize = 100_000;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prediction {
     /// The backends that meet all requirements, sorted by the number of table rows that the queries
-    /// of the workload read. Backends that scan all faces for some operation come last.
+    /// of the workload read; for equal numbers, by the bytes that the queries read. Backends that
+    /// scan all faces for some operation come last.
     pub candidates: Vec<Predicted>,
     /// The backends that do not meet the requirements, each with the reason.
     pub excluded: Vec<Excluded>,
@@ -40,6 +41,8 @@ pub struct Predicted {
     /// if the workload has no queries, if it has edits or subdivision, which are not counted, or if
     /// some operation scans all faces.
     pub reads: Option<f64>,
+    /// The mean number of bytes that these queries read, in the same cases.
+    pub bytes: Option<f64>,
 }
 
 /// Predicts which backends are fast for a workload, without measuring time.
@@ -88,14 +91,17 @@ fn predict_from(
             Predicted {
                 backend: backend.name().to_owned(),
                 scans: scanning_actions(workload, &backend.info.costs),
-                reads: counted.map(|(_, reads)| *reads),
+                reads: counted.map(|(_, [reads, _])| *reads),
+                bytes: counted.map(|(_, [_, bytes])| *bytes),
             }
         })
         .collect();
     candidates.sort_by(|a, b| {
-        let reads = |p: &Predicted| p.reads.unwrap_or(f64::INFINITY);
+        let costs = |p: &Predicted| [p.reads, p.bytes].map(|cost| cost.unwrap_or(f64::INFINITY));
+        let ([reads_a, bytes_a], [reads_b, bytes_b]) = (costs(a), costs(b));
         let scans = a.scans.len().cmp(&b.scans.len());
-        scans.then(reads(a).total_cmp(&reads(b)))
+        let reads = scans.then(reads_a.total_cmp(&reads_b));
+        reads.then(bytes_a.total_cmp(&bytes_b))
     });
     Ok(Prediction {
         candidates,
@@ -114,15 +120,15 @@ fn scanning_actions(workload: &Workload, costs: &[QueryCost; 9]) -> Vec<Action> 
     actions.filter(scans).collect()
 }
 
-/// Returns for each backend the number of table rows that one operation of the mix reads. Empty if
-/// the mix has no queries, or if it changes the connectivity.
+/// Returns for each backend the number of table rows and of bytes that one operation of the mix reads.
+/// Empty if the mix has no queries, or if it changes the connectivity.
 fn reads_by_backend(
     study_mesh: &StudyMesh,
     backends: &[Backend],
     workload: &Workload,
     counts: &Counts,
     stop: &AtomicBool,
-) -> Vec<(String, f64)> {
+) -> Vec<(String, [f64; 2])> {
     let relations = workload.relations();
     let known = Backend::structures();
     let known = |backend: &&Backend| known.iter().any(|k| k.name() == backend.name());
@@ -147,8 +153,14 @@ fn reads_by_backend(
     let weights = query_weights(workload, counts);
     let of_backend = |backend: &Backend| {
         let rows = counted.rows.iter().filter(|r| r.backend == backend.name());
-        let weighted = rows.map(|row| weights[row.reads.relation as usize] * row.reads.reads);
-        (backend.name().to_owned(), weighted.sum())
+        let sums = rows.fold([0.0; 2], |[reads, bytes], row| {
+            let weight = weights[row.reads.relation as usize];
+            [
+                reads + weight * row.reads.reads,
+                bytes + weight * row.reads.bytes,
+            ]
+        });
+        (backend.name().to_owned(), sums)
     };
     backends.iter().map(of_backend).collect()
 }
@@ -230,6 +242,15 @@ mod tests {
         // A pass over 400 vertices of valence 6 reads a row for each neighbour, and one for the
         // vertex.
         assert!(reads[0] >= 400.0 * 7.0, "{reads:?}");
+        // Both read one row for each neighbour, but a row of the half-edge mesh is smaller.
+        let order: Vec<&str> = (prediction.candidates.iter())
+            .map(|p| p.backend.as_str())
+            .take(2)
+            .collect();
+        assert_eq!(order, ["half-edge", "winged-edge"]);
+        assert_eq!(reads[0], reads[1]);
+        let [first, second] = [0, 1].map(|i| prediction.candidates[i].bytes);
+        assert!(first < second, "{first:?} {second:?}");
         let edited = predicted("decimation");
         assert!(edited.candidates.iter().all(|p| p.reads.is_none()));
     }
