@@ -1,6 +1,11 @@
 //! The records of a corner table, as textbooks show them.
 
-use sixfold_core::{Column, Described, Editing, Field, HoleSet, Probe, RecordTable};
+mod algorithms;
+
+use sixfold_core::{
+    Column, Described, Editing, Element, Field, HoleSet, Line, Probe, RecordTable, Relation,
+    RowName,
+};
 
 use crate::mesh::{CornerId, CornerTable};
 
@@ -54,5 +59,17 @@ impl<P: Probe, E: Editing> Described for CornerTable<E, P> {
             "opposite" => vec![Field::optional("c", self.opposite.rows().get(row)?.get())],
             _ => return None,
         })
+    }
+
+    fn rows_of(&self, element: Element<Self>) -> Vec<RowName> {
+        vec![match element {
+            Element::Vertex(v) => RowName::new("v", v),
+            Element::Edge(e) => RowName::new("c", e.corner()),
+            Element::Face(f) => RowName::new("f", f),
+        }]
+    }
+
+    fn algorithm(relation: Relation) -> &'static [Line] {
+        algorithms::of(relation)
     }
 }

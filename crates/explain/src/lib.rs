@@ -3,11 +3,13 @@
 //! [`Structure`] builds a structure from a mesh and returns the [`Records`] of its tables: one row
 //! for each vertex, edge, half-edge, face or corner, with the names that textbooks use for the fields.
 //! The values come from the tables of the structure, through [`Described`](sixfold_core::Described).
-//! The crate does no input and output.
+//! A [`Trace`] has the reads of a query, each with its [`Reason`], and an [`EditTrace`] has the rows
+//! before and after an edit. The queries and edits are those that programs run; a probe records their
+//! reads and writes. The crate does no input and output.
 //!
 //! ```
-//! use sixfold::shapes;
-//! use sixfold_explain::Structure;
+//! use sixfold::{Relation, shapes};
+//! use sixfold_explain::{Step, Structure};
 //!
 //! let half_edge = Structure::find("half-edge").expect("one of six");
 //! let records = half_edge.records(&shapes::cube(), 0..2)?;
@@ -16,11 +18,29 @@
 //! assert_eq!((half_edges.total, half_edges.rows.len()), (24, 2));
 //! assert_eq!(half_edges.columns[0].name, "origin");
 //! assert_eq!(half_edges.rows[1].name, "h1");
+//!
+//! let trace = half_edge.trace(&shapes::cube(), Relation::VertexVertices, "v3".parse()?)?;
+//! assert_eq!((trace.results.len(), trace.reads), (3, 4));
+//! let Step::Read(second) = &trace.steps[1] else { unreachable!("a walk begins with two reads") };
+//! assert_eq!((second.row.as_str(), second.reason.text.as_str()), ("h0", "twin of h1"));
+//!
+//! let edits = half_edge.edit(&shapes::octahedron(), &["flip_edge v0-v2".parse()?])?;
+//! assert!(edits[0].rows.iter().any(|row| row.is_changed()));
 //! # Ok::<(), sixfold_explain::ExplainError>(())
 //! ```
 
+mod edit;
+mod edit_command;
+mod element;
+mod reason;
 mod records;
 mod structure;
+mod trace;
 
+pub use edit::{EditTrace, RowChange};
+pub use edit_command::EditCommand;
+pub use element::ElementName;
+pub use reason::Reason;
 pub use records::{Record, RecordColumn, Records};
 pub use structure::{ExplainError, Structure};
+pub use trace::{Read, Step, Trace};

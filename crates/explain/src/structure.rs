@@ -2,16 +2,31 @@
 
 use std::ops::Range;
 
-use sixfold::{BuildError, PolygonMesh, Representation};
-use sixfold_core::Described;
+use sixfold::{BuildError, MeshEdit, PolygonMesh, Relation, Representation};
+use sixfold_core::{Described, Measured, Traced};
 
+use crate::edit::{EditTrace, edit, edited_records};
+use crate::edit_command::EditCommand;
+use crate::element::ElementName;
 use crate::records::{Records, records};
+use crate::trace::{Trace, trace};
+
+type Explained<T> = Result<Vec<T>, ExplainError>;
+
+/// The functions of the editable form of a structure.
+#[derive(Clone, Copy, Debug)]
+struct Edits {
+    edit: fn(&PolygonMesh, &[EditCommand]) -> Explained<EditTrace>,
+    records: fn(&PolygonMesh, &[EditCommand], &Range<usize>) -> Explained<Records>,
+}
 
 /// A structure whose tables can be shown.
 #[derive(Clone, Copy, Debug)]
 pub struct Structure {
     name: &'static str,
     records: fn(&PolygonMesh, &Range<usize>) -> Result<Vec<Records>, BuildError>,
+    trace: fn(&PolygonMesh, Relation, ElementName) -> Result<Trace, ExplainError>,
+    edits: Option<Edits>,
 }
 
 /// The reason why a structure cannot be explained on a mesh.
@@ -25,14 +40,59 @@ pub enum ExplainError {
         structure: &'static str,
         refusal: BuildError,
     },
+    /// A text that is not the name of an element.
+    #[error("`{name}` names no element: write v3 for a vertex, v0-v1 for an edge, f2 for a face")]
+    BadName { name: String },
+    /// The structure has no element of this name.
+    #[error("{structure} has no {} {name} in this mesh", name.kind())]
+    NoSuchElement {
+        structure: &'static str,
+        name: ElementName,
+    },
+    /// A text that is not an edit.
+    #[error("{reason}")]
+    BadEdit { reason: String },
+    /// The structure was given without its editable form.
+    #[error("{structure} has no edits")]
+    NoEdits { structure: &'static str },
+    /// The relation starts from another kind of element.
+    #[error("{relation} starts from {}, and {element} is {}", an(wanted), an(element.kind()))]
+    WrongKind {
+        relation: Relation,
+        wanted: &'static str,
+        element: ElementName,
+    },
+}
+
+fn an(kind: &str) -> String {
+    let article = if kind == "edge" { "an" } else { "a" };
+    format!("{article} {kind}")
 }
 
 impl Structure {
     /// Returns the structure `M`, which need not be part of Sixfold.
-    pub fn new<M: Representation + Described>() -> Self {
+    pub fn new<M: Representation + Measured + Described>() -> Self {
         Self {
             name: M::NAME,
             records: |polygons, rows| Ok(records(&M::from_polygons(polygons)?, rows)),
+            trace: trace::<M>,
+            edits: None,
+        }
+    }
+
+    /// Returns the same structure, whose editable form is `M`.
+    #[must_use]
+    pub fn with_edits<M>(self) -> Self
+    where
+        M: Representation + Measured + MeshEdit,
+        M::Probed<Traced>: MeshEdit<Vertex = M::Vertex, Edge = M::Edge, Face = M::Face> + Described,
+    {
+        Self {
+            edits: Some(Edits {
+                edit: edit::<M>,
+                records: edited_records::<M>,
+            }),
+            ..self
         }
     }
 
@@ -40,6 +100,12 @@ impl Structure {
     pub fn all() -> Vec<Self> {
         let mut all = Vec::new();
         sixfold::for_each_representation!(M => { all.push(Self::new::<M>()); });
+        sixfold::for_each_editable!(M => {
+            let own = all.iter_mut().find(|one| one.name == M::NAME);
+            if let Some(own) = own {
+                *own = own.with_edits::<M>();
+            }
+        });
         all
     }
 
@@ -68,5 +134,60 @@ impl Structure {
             structure: self.name,
             refusal,
         })
+    }
+
+    /// Builds the structure from `polygons`, runs one query, and returns its reads and results.
+    /// O(corners of the mesh).
+    ///
+    /// # Errors
+    ///
+    /// Returns [`ExplainError::Refused`] if the structure cannot hold the mesh,
+    /// [`ExplainError::NoSuchElement`] if it does not have the element, and
+    /// [`ExplainError::WrongKind`] if the relation starts from another kind of element.
+    pub fn trace(
+        &self,
+        polygons: &PolygonMesh,
+        relation: Relation,
+        element: ElementName,
+    ) -> Result<Trace, ExplainError> {
+        (self.trace)(polygons, relation, element)
+    }
+
+    /// Builds the structure from `polygons`, runs the edits one after the other, and returns what each
+    /// of them reads and writes. A refused edit changes nothing, and the next one runs. O(size of the mesh)
+    /// for each edit, because all rows are compared.
+    ///
+    /// To undo the last edit, leave it out: the rows are then those before the edit.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`ExplainError::Refused`] if the structure cannot hold the mesh,
+    /// [`ExplainError::NoSuchElement`] if an edit names an element that does not exist, and
+    /// [`ExplainError::NoEdits`] without [`with_edits`](Self::with_edits).
+    pub fn edit(
+        &self,
+        polygons: &PolygonMesh,
+        edits: &[EditCommand],
+    ) -> Result<Vec<EditTrace>, ExplainError> {
+        (self.editable()?.edit)(polygons, edits)
+    }
+
+    /// Does the same as [`records`](Self::records), after edits.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`edit`](Self::edit).
+    pub fn records_after(
+        &self,
+        polygons: &PolygonMesh,
+        edits: &[EditCommand],
+        rows: Range<usize>,
+    ) -> Result<Vec<Records>, ExplainError> {
+        (self.editable()?.records)(polygons, edits, &rows)
+    }
+
+    fn editable(&self) -> Result<Edits, ExplainError> {
+        let structure = self.name;
+        self.edits.ok_or(ExplainError::NoEdits { structure })
     }
 }

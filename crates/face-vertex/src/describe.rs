@@ -1,6 +1,11 @@
 //! The records of a face-vertex mesh, as textbooks show them.
 
-use sixfold_core::{Column, Described, Editing, Field, HoleSet, Probe, RecordTable};
+mod algorithms;
+
+use sixfold_core::{
+    Column, Described, Editing, Element, Field, HoleSet, Line, Probe, RecordTable, Relation,
+    RowName,
+};
 
 use crate::mesh::{BLANK_CORNER, BLANK_PLACE, FaceVertexMesh, Fan};
 
@@ -38,10 +43,10 @@ impl<P: Probe, E: Editing> Described for FaceVertexMesh<E, P> {
                 let &Fan { start, len } = self.fans.rows().get(row)?;
                 let first = match len {
                     0 => Field::None,
-                    _ => Field::Row {
+                    _ => Field::Row(RowName {
                         letter: "p",
                         row: start,
-                    },
+                    }),
                 };
                 Some(vec![first, Field::Number(len)])
             }
@@ -60,5 +65,17 @@ impl<P: Probe, E: Editing> Described for FaceVertexMesh<E, P> {
             "offsets" | "spans" if self.face_holes.has(row) => None,
             _ => self.spans.record(table, row),
         }
+    }
+
+    fn rows_of(&self, element: Element<Self>) -> Vec<RowName> {
+        match element {
+            Element::Vertex(v) => vec![RowName::new("v", v)],
+            Element::Edge(e) => e.ends().map(|v| RowName::new("v", v)).to_vec(),
+            Element::Face(f) => vec![RowName::new("f", f)],
+        }
+    }
+
+    fn algorithm(relation: Relation) -> &'static [Line] {
+        algorithms::of(relation)
     }
 }

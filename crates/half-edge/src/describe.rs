@@ -1,6 +1,11 @@
 //! The records of a half-edge mesh, as textbooks show them.
 
-use sixfold_core::{Column, Described, Editing, Field, HoleSet, Probe, RecordTable};
+mod algorithms;
+
+use sixfold_core::{
+    Column, Described, Editing, Element, Field, HoleSet, Line, Probe, RecordTable, Relation,
+    RowName,
+};
 
 use crate::mesh::{HalfEdgeId, HalfEdgeMesh};
 
@@ -62,5 +67,20 @@ impl<P: Probe, E: Editing> Described for HalfEdgeMesh<E, P> {
             "first" => vec![Field::row("h", *self.first.rows().get(row)?)],
             _ => return None,
         })
+    }
+
+    fn rows_of(&self, element: Element<Self>) -> Vec<RowName> {
+        match element {
+            Element::Vertex(v) => vec![RowName::new("v", v)],
+            Element::Edge(e) => {
+                let [one, other] = self.edge_half_edges(e).map(|h| RowName::new("h", h));
+                vec![RowName::new("e", e), one, other]
+            }
+            Element::Face(f) => vec![RowName::new("f", f)],
+        }
+    }
+
+    fn algorithm(relation: Relation) -> &'static [Line] {
+        algorithms::of(relation)
     }
 }

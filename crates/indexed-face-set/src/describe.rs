@@ -1,6 +1,10 @@
 //! The records of an indexed face set, as textbooks show them.
 
-use sixfold_core::{Column, Described, Editing, Field, HoleSet, Probe, RecordTable};
+use sixfold_core::{
+    Column, Described, Editing, Element, Field, HoleSet, Line, Probe, RecordTable, Relation,
+    RowName,
+};
+use sixfold_scanning::algorithm_of;
 
 use crate::mesh::IndexedFaceSet;
 
@@ -24,5 +28,17 @@ impl<P: Probe, E: Editing> Described for IndexedFaceSet<E, P> {
             "positions" => Some(vec![Field::Point(*self.positions.rows().get(row)?)]),
             _ => self.faces.record(table, row, |v| Field::row("v", v)),
         }
+    }
+
+    fn rows_of(&self, element: Element<Self>) -> Vec<RowName> {
+        match element {
+            Element::Vertex(v) => vec![RowName::new("v", v)],
+            Element::Edge(e) => e.ends().map(|v| RowName::new("v", v)).to_vec(),
+            Element::Face(f) => vec![RowName::new("f", f)],
+        }
+    }
+
+    fn algorithm(relation: Relation) -> &'static [Line] {
+        algorithm_of(relation)
     }
 }

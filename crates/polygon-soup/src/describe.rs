@@ -1,6 +1,9 @@
 //! The records of a polygon soup, as textbooks show them.
 
-use sixfold_core::{Described, Editing, Field, Probe, RecordTable};
+use sixfold_core::{
+    Described, Editing, Element, Field, Line, Probe, RecordTable, Relation, RowName,
+};
+use sixfold_scanning::algorithm_of;
 
 use crate::mesh::PolygonSoup;
 
@@ -12,5 +15,17 @@ impl<P: Probe, E: Editing> Described for PolygonSoup<E, P> {
     fn record(&self, table: &str, row: usize) -> Option<Vec<Field>> {
         self.faces
             .record(table, row, |v| Field::Point(v.position()))
+    }
+
+    /// A vertex has no row: its handle is its position.
+    fn rows_of(&self, element: Element<Self>) -> Vec<RowName> {
+        match element {
+            Element::Vertex(_) | Element::Edge(_) => Vec::new(),
+            Element::Face(f) => vec![RowName::new("f", f)],
+        }
+    }
+
+    fn algorithm(relation: Relation) -> &'static [Line] {
+        algorithm_of(relation)
     }
 }

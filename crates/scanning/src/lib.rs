@@ -10,11 +10,13 @@
 //! - [`SearchSet`]: the vertices that one scan searches for; [`Hit`]: a corner that a scan finds.
 //! - [`scan()`] and [`hits_in`]: the scan of any table.
 
+mod algorithms;
 mod describe;
 mod scan;
 mod scan_edit;
 mod scanned;
 
+pub use algorithms::algorithm_of;
 pub use scan::{hits_in, scan};
 pub use scan_edit::ScannedMesh;
 pub use scanned::{Hit, ScannedFaces, ScannedVertex, SearchSet};

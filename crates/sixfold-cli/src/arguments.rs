@@ -42,7 +42,7 @@ pub(crate) use repair::{Repair, repair_options};
 pub(crate) use reshaping::{Dual, Smooth, Triangulate};
 pub(crate) use results::ResultFiles;
 pub(crate) use subdivision::{Schemes, Select, Subdivide};
-pub(crate) use teaching::Tables;
+pub(crate) use teaching::{Explained, Tables, Trace};
 pub(crate) use why::Why;
 
 use crate::many::{LabSelection, Shard};
@@ -160,6 +160,8 @@ pub(crate) enum Command {
     Why(Why),
     /// Show the tables of a data structure, row by row
     Tables(Tables),
+    /// Step through a query or an edit: what it reads and writes, and why
+    Trace(Trace),
     /// Measure how the order of vertices and faces in memory affects the times
     Orders(Orders),
     /// Measure how the times grow with the size of the mesh

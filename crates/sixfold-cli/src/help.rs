@@ -31,7 +31,7 @@ const GROUPS: [(&str, &[&str]); 6] = [
             "schemes",
         ],
     ),
-    ("See how structures work", &["tables"]),
+    ("See how structures work", &["tables", "trace"]),
     ("Saved results", &["report", "compare", "merge"]),
     (
         "Meshes",

@@ -76,7 +76,6 @@ mod output;
 mod pick;
 mod programs;
 mod progress;
-mod records;
 mod remesh;
 mod render;
 mod repair;
@@ -87,6 +86,7 @@ mod signs;
 mod study;
 mod subdivide;
 mod tables;
+mod teaching;
 mod text;
 mod triangulate;
 mod why;
@@ -135,7 +135,8 @@ pub fn sixfold(counters: &dyn AllocatorCounters) -> ExitCode {
         Ok(Some(Command::Workloads(arguments))) => workloads::run(&arguments),
         Ok(Some(Command::Operations(arguments))) => operations::run(&arguments),
         Ok(Some(Command::Why(arguments))) => why::run(&arguments),
-        Ok(Some(Command::Tables(arguments))) => records::run(&arguments),
+        Ok(Some(Command::Tables(arguments))) => teaching::tables::run(&arguments),
+        Ok(Some(Command::Trace(arguments))) => teaching::trace::run(&arguments),
         Ok(Some(Command::Orders(arguments))) => orders::run(&arguments),
         Ok(Some(Command::Growth(arguments))) => growth::run(&arguments),
         Ok(Some(Command::Merge(arguments))) => many::merge(&arguments),

@@ -25,5 +25,6 @@ mod run;
 mod schema;
 mod subdivision;
 mod tables;
+mod trace;
 mod user_files;
 mod why;

@@ -74,8 +74,19 @@ fn written_fields() -> BTreeSet<String> {
         &sixfold,
         &["tables", "--json", "tables.json", "--csv", "tables.csv"],
     );
+    let query = ["trace", "vertex_edges", "v3", "--json", "trace.json"];
+    run_ok(&sixfold, &query);
+    let edit = ["trace", "--edit", "poke_face f0", "--json", "edit.json"];
+    run_ok(&sixfold, &edit);
     let mut fields = BTreeSet::new();
-    for file in ["all.json", "c.json", "tables.json"] {
+    let documents = [
+        "all.json",
+        "c.json",
+        "tables.json",
+        "trace.json",
+        "edit.json",
+    ];
+    for file in documents {
         add_fields(&parsed(&text(&sixfold, file)), &mut fields);
     }
     let inspection = parsed(&text(&sixfold, "i.json"));

@@ -1,6 +1,11 @@
 //! The records of a winged-edge mesh, as textbooks show them.
 
-use sixfold_core::{Column, Described, Editing, Field, HoleSet, Probe, RecordTable};
+mod algorithms;
+
+use sixfold_core::{
+    Column, Described, Editing, Element, Field, HoleSet, Line, Probe, RecordTable, Relation,
+    RowName,
+};
 
 use crate::mesh::WingedEdgeMesh;
 
@@ -56,5 +61,17 @@ impl<P: Probe, E: Editing> Described for WingedEdgeMesh<E, P> {
             "sides" => vec![Field::row("e", *self.sides.rows().get(row)?)],
             _ => return None,
         })
+    }
+
+    fn rows_of(&self, element: Element<Self>) -> Vec<RowName> {
+        vec![match element {
+            Element::Vertex(v) => RowName::new("v", v),
+            Element::Edge(e) => RowName::new("e", e),
+            Element::Face(f) => RowName::new("f", f),
+        }]
+    }
+
+    fn algorithm(relation: Relation) -> &'static [Line] {
+        algorithms::of(relation)
     }
 }

@@ -7,18 +7,107 @@ use crate::handles::row_id::RowId;
 use crate::tables::editing::Editing;
 use crate::tables::face_spans::FaceSpans;
 use crate::tables::probe::Probe;
+use crate::traits::query::MeshQuery;
+use crate::traits::representation::Relation;
 
 /// A structure that describes its tables: what a row is, and what each field of a row means.
 ///
 /// Tools that show tables and explain queries read a structure through this trait. The values come
 /// from the tables of the structure, so there is no second copy of the layout.
-pub trait Described {
+pub trait Described: MeshQuery {
     /// Returns the tables that this mesh has, in the order in which a textbook shows them.
     fn tables(&self) -> Vec<RecordTable>;
 
     /// Returns the fields of a row, in the order of the columns of its table; `None` if there is no
     /// such row, or if the row belongs to a deleted element. A probe may record reads.
     fn record(&self, table: &str, row: usize) -> Option<Vec<Field>>;
+
+    /// Returns the names of the rows that the handle of an element gives without a read. A structure
+    /// without rows for this kind of element returns none, or the rows of the ends of an edge.
+    fn rows_of(&self, element: Element<Self>) -> Vec<RowName>;
+
+    /// Returns the steps of a query, as a textbook writes them. No steps by default.
+    fn algorithm(relation: Relation) -> &'static [Line] {
+        let _ = relation;
+        &[]
+    }
+}
+
+/// An element of a mesh.
+#[derive(Debug)]
+pub enum Element<M: MeshQuery + ?Sized> {
+    /// A vertex.
+    Vertex(M::Vertex),
+    /// An edge.
+    Edge(M::Edge),
+    /// A face.
+    Face(M::Face),
+}
+
+impl<M: MeshQuery + ?Sized> Clone for Element<M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<M: MeshQuery + ?Sized> Copy for Element<M> {}
+
+/// One line of an algorithm, with the reads that it makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// The text, indented by two spaces in a loop. A line that yields results has the word `yield`.
+    pub text: &'static str,
+    /// The tables of which the line reads rows, each with the way to the row: the name of the field
+    /// of another row that names this row, or [`ASKED`](Self::ASKED), [`SAME`](Self::SAME),
+    /// [`NEXT_ROW`](Self::NEXT_ROW), [`SCAN`](Self::SCAN) or [`SEARCH`](Self::SEARCH).
+    pub reads: &'static [(&'static str, &'static str)],
+}
+
+impl Line {
+    /// The row belongs to the element of the query.
+    pub const ASKED: &'static str = "asked";
+    /// The row has the name of a row that was read before, in the same or in another table.
+    pub const SAME: &'static str = "same";
+    /// The row is the one after the row before.
+    pub const NEXT_ROW: &'static str = "next row";
+    /// All rows of the table are read in order.
+    pub const SCAN: &'static str = "scan";
+    /// The row is found by a binary search.
+    pub const SEARCH: &'static str = "search";
+
+    /// Returns a line that reads rows.
+    pub const fn new(text: &'static str, reads: &'static [(&'static str, &'static str)]) -> Self {
+        Self { text, reads }
+    }
+
+    /// Returns a line that reads no row.
+    pub const fn text(text: &'static str) -> Self {
+        Self { text, reads: &[] }
+    }
+}
+
+/// The name of a row of a table, such as `h3`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct RowName {
+    /// The letter of the table.
+    pub letter: &'static str,
+    /// The number of the row.
+    pub row: u32,
+}
+
+impl RowName {
+    /// Returns the name of the row of `handle`.
+    pub fn new(letter: &'static str, handle: impl RowId) -> Self {
+        let row = handle.row();
+        Self { letter, row }
+    }
+}
+
+/// Writes `h3`.
+impl fmt::Display for RowName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", self.letter, self.row)
+    }
 }
 
 /// One table of a structure.
@@ -93,13 +182,8 @@ impl Column {
 /// The value of one field of a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Field {
-    /// The name of a row: the letter of its table, and its number.
-    Row {
-        /// The letter of the table.
-        letter: &'static str,
-        /// The number of the row.
-        row: u32,
-    },
+    /// The name of a row.
+    Row(RowName),
     /// There is no element, such as the face beyond a boundary.
     None,
     /// A number that is not the name of a row.
@@ -111,10 +195,7 @@ pub enum Field {
 impl Field {
     /// Returns the name of the row of `handle`.
     pub fn row(letter: &'static str, handle: impl RowId) -> Self {
-        Self::Row {
-            letter,
-            row: handle.row(),
-        }
+        Self::Row(RowName::new(letter, handle))
     }
 
     /// Returns the name of the row of `handle`, or [`None`](Self::None).
@@ -127,7 +208,7 @@ impl Field {
 impl fmt::Display for Field {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Row { letter, row } => write!(f, "{letter}{row}"),
+            Self::Row(name) => name.fmt(f),
             Self::None => f.write_str("none"),
             Self::Number(number) => write!(f, "{number}"),
             Self::Point(Point { x, y, z }) => write!(f, "({x}, {y}, {z})"),
@@ -174,10 +255,10 @@ impl<P: Probe, E: Editing> FaceSpans<P, E> {
             }
             (Self::Mixed(_), "offsets") | (Self::Scattered(_), "spans") if row < self.len() => {
                 let range = self.range(crate::FaceId::new(row as u32));
-                let first = Field::Row {
+                let first = Field::Row(RowName {
                     letter: "c",
                     row: range.start as u32,
-                };
+                });
                 Some(vec![first, Field::Number(range.len() as u32)])
             }
             _ => None,

@@ -29,18 +29,11 @@ pub(crate) struct Tables {
     /// The mesh (- for standard input); without it, a cube
     #[arg(value_name = "MESH")]
     pub(crate) mesh: Option<PathBuf>,
-    /// Show these data structures, by name
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend, default_value = "half-edge")]
-    pub(crate) backend: Vec<String>,
-    /// Show all data structures, side by side where the terminal is wide enough
-    #[arg(long, conflicts_with = "backend")]
-    pub(crate) all: bool,
+    #[command(flatten)]
+    pub(crate) explained: Explained,
     /// Show only these rows of each table, the last one included
     #[arg(long, value_name = "FROM..TO", value_parser = rows)]
     pub(crate) rows: Option<Range<usize>>,
-    /// First cut every polygon into triangles
-    #[arg(long)]
-    pub(crate) triangulate: bool,
     /// Write the tables as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
@@ -50,8 +43,68 @@ pub(crate) struct Tables {
     /// Write the tables as Markdown (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) markdown: Option<PathBuf>,
+}
+
+/// The structures to explain, and how the mesh is read.
+#[derive(Debug, Args)]
+pub(crate) struct Explained {
+    /// Show these data structures, by name
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend, default_value = "half-edge")]
+    pub(crate) backend: Vec<String>,
+    /// Show all data structures, side by side where the terminal is wide enough
+    #[arg(long, conflicts_with = "backend")]
+    pub(crate) all: bool,
+    /// First cut every polygon into triangles
+    #[arg(long)]
+    pub(crate) triangulate: bool,
     #[command(flatten)]
     pub(crate) read: ReadFiles,
+}
+
+const TRACE_EXAMPLES: &str = "Examples:
+  sixfold trace vertex_vertices v3                      a cube in a half-edge mesh
+  sixfold trace cube.obj face_faces f0 --all            all structures
+  sixfold trace cube.obj edge_faces v0-v1 --backend winged-edge,half-edge
+  sixfold trace cube.obj vertex_edges v3 --interactive  step by keys
+  sixfold trace --triangulate --edit \"flip_edge v0-v2\"  the rows before and after an edit
+  sixfold trace torus.obj --edit \"collapse_edge v0-v1 v0\" --edit compact --all
+
+An element is named by the numbers of the mesh file, from 0: v3 is a vertex, v0-v1 is the edge
+between two vertices, f2 is a face. The relations are vertex_vertices, vertex_edges, vertex_faces,
+edge_vertices, edge_edges, edge_faces, face_vertices, face_edges and face_faces. `sixfold tables`
+shows the rows that a query reads.
+
+Edits: set_position v0 0.5,1,0; add_vertex 0.5,1,0; add_face v0 v1 v2; remove_face f0;
+remove_vertex v0; remove_isolated_vertices; split_edge v0-v1; bisect_edge v0-v1; poke_face f0;
+split_face f0 v0 v2; dissolve_edge v0-v1; flip_edge v0-v1; collapse_edge v0-v1 v0 (v0 stays);
+split_vertex v0 v1 v2 (left and right, none at a boundary); compact. A position x,y,z can follow
+each edit that makes or moves a vertex; without it, the middle is taken. New elements get the next
+numbers.
+
+Exit codes: 0 success; 2 wrong usage or unusable input; 3 the structure cannot hold the mesh.";
+
+/// Step through a query or an edit: what it reads and writes, and why.
+///
+/// The queries and edits are those that programs run. Each read of a query is shown with the reason for
+/// which its row is read, and with the line of the algorithm that it belongs to. An edit is shown with
+/// the rows before and after it. Without a mesh, the command uses a cube.
+#[derive(Debug, Args)]
+#[command(after_help = TRACE_EXAMPLES, verbatim_doc_comment)]
+pub(crate) struct Trace {
+    /// The mesh (- for standard input; without it, a cube), the relation, and the element
+    #[arg(value_name = "[MESH] RELATION ELEMENT", num_args = 0..=3)]
+    pub(crate) query: Vec<String>,
+    /// Show this edit instead of a query; several edits follow one another
+    #[arg(long, value_name = "EDIT", conflicts_with = "interactive")]
+    pub(crate) edit: Vec<String>,
+    #[command(flatten)]
+    pub(crate) explained: Explained,
+    /// Step through the query by keys
+    #[arg(short, long, conflicts_with = "json")]
+    pub(crate) interactive: bool,
+    /// Write the traces as JSON (- for standard output)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
 }
 
 /// Parses `3..7`: the rows 3 to 7.

@@ -4,18 +4,15 @@ use std::io;
 use std::process::ExitCode;
 
 use serde::Serialize;
-use sixfold::{PolygonMesh, shapes};
-use sixfold_explain::{Record, RecordColumn, Records, Structure};
-use sixfold_study::StudyMesh;
+use sixfold_explain::{Record, RecordColumn, Records};
 use sixfold_study::numbers::{counted, grouped};
 
 use crate::arguments::Tables;
 use crate::column_table::{Column, column_table};
 use crate::failure::Failure;
-use crate::load;
 use crate::output::{Output, check_outputs, is_stdout};
-use crate::text::{TextOutput, hanging_indent, width};
-use crate::triangulate::triangulated;
+use crate::teaching::{Refused, explain, mesh, print_refused, side_by_side};
+use crate::text::{TextOutput, hanging_indent};
 
 /// Maximum number of rows of a table, if the rows are not named.
 const MOST_ROWS: usize = 200;
@@ -25,13 +22,6 @@ const MOST_ROWS: usize = 200;
 struct Shown {
     backend: &'static str,
     records: Vec<Records>,
-}
-
-/// A structure that cannot hold the mesh.
-#[derive(Serialize)]
-struct Refused {
-    backend: &'static str,
-    reason: String,
 }
 
 #[derive(Serialize)]
@@ -54,8 +44,16 @@ pub(crate) fn run(arguments: &Tables) -> Result<ExitCode, Failure> {
         .iter()
         .any(|(_, path)| path.is_some_and(|p| is_stdout(p)));
     let mut text = TextOutput::new(!to_stdout);
-    let (name, polygons) = mesh(arguments)?;
-    let (shown, refused) = structures(arguments, &polygons)?;
+    let (name, polygons) = mesh(arguments.mesh.as_deref(), &arguments.explained)?;
+    let rows = arguments.rows.clone().unwrap_or(0..MOST_ROWS);
+    let (shown, refused) = explain(&arguments.explained, |structure| {
+        let backend = structure.name();
+        let records = structure.records(&polygons, rows.clone())?;
+        Ok(Shown { backend, records })
+    })?;
+    if arguments.rows.is_none() {
+        check_rows(&shown)?;
+    }
     print(&name, &shown, &refused, &mut text);
     let mut done = text.finish();
     if let Some(output) = json {
@@ -74,50 +72,6 @@ pub(crate) fn run(arguments: &Tables) -> Result<ExitCode, Failure> {
         done = done.and(output.finish(|writer| writer.write_all(text.as_bytes())));
     }
     done.map(|()| ExitCode::SUCCESS)
-}
-
-/// Returns the name of the mesh, and the mesh: a cube if no mesh is named.
-fn mesh(arguments: &Tables) -> Result<(String, PolygonMesh), Failure> {
-    let Some(path) = arguments.mesh.as_deref() else {
-        let cube = StudyMesh::new("cube", shapes::cube());
-        let cube = match arguments.triangulate {
-            true => triangulated(cube)?,
-            false => cube,
-        };
-        return Ok((cube.name, cube.polygons));
-    };
-    let study_mesh = load::for_study(path, arguments.read, false, arguments.triangulate)?;
-    Ok((study_mesh.name, study_mesh.polygons))
-}
-
-/// Returns the records of the selected structures, and the structures that cannot hold the mesh. An
-/// error if none can hold it, or if a table has too many rows.
-fn structures(
-    arguments: &Tables,
-    polygons: &PolygonMesh,
-) -> Result<(Vec<Shown>, Vec<Refused>), Failure> {
-    let is_selected =
-        |one: &Structure| arguments.all || arguments.backend.iter().any(|name| name == one.name());
-    let (mut shown, mut refused) = (Vec::new(), Vec::new());
-    let rows = arguments.rows.clone().unwrap_or(0..MOST_ROWS);
-    for structure in Structure::all().into_iter().filter(is_selected) {
-        let backend = structure.name();
-        match structure.records(polygons, rows.clone()) {
-            Ok(records) => shown.push(Shown { backend, records }),
-            Err(error) => refused.push(Refused {
-                backend,
-                reason: error.to_string(),
-            }),
-        }
-    }
-    if shown.is_empty() {
-        let reasons: Vec<&str> = refused.iter().map(|one| one.reason.as_str()).collect();
-        return Err(Failure::unsupported(reasons.join("; ")));
-    }
-    if arguments.rows.is_none() {
-        check_rows(&shown)?;
-    }
-    Ok((shown, refused))
 }
 
 /// Returns an error if a table is not shown completely.
@@ -156,10 +110,7 @@ fn print(name: &str, shown: &[Shown], refused: &[Refused], text: &mut TextOutput
              --backend NAME` says what each field means",
         ),
     });
-    for one in refused {
-        text.print_line("");
-        text.print_line(&hanging_indent("! ", &one.reason));
-    }
+    print_refused(refused, text);
 }
 
 /// Returns the tables of one structure.
@@ -220,48 +171,6 @@ fn legend(shown: &Shown) -> String {
         lines.push("* not stored: follows from the number of the row, or from other fields".into());
     }
     lines.join("\n")
-}
-
-/// Puts blocks of lines beside one another while they fit, and the rest below.
-fn side_by_side(blocks: &[String]) -> String {
-    const GAP: usize = 4;
-    let widest = |block: &str| {
-        block
-            .lines()
-            .map(|line| line.chars().count())
-            .max()
-            .unwrap_or(0)
-    };
-    let mut bands: Vec<Vec<&str>> = Vec::new();
-    let mut used = 0;
-    for block in blocks {
-        let needed = widest(block) + GAP;
-        match bands.last_mut() {
-            Some(band) if used + needed <= width() + GAP => {
-                band.push(block);
-                used += needed;
-            }
-            _ => {
-                bands.push(vec![block]);
-                used = needed;
-            }
-        }
-    }
-    let band = |band: &Vec<&str>| {
-        let height = band.iter().map(|block| block.lines().count()).max();
-        let line = |i: usize| {
-            let cells = band.iter().map(|block| {
-                let width = widest(block) + GAP;
-                format!("{:<width$}", block.lines().nth(i).unwrap_or_default())
-            });
-            cells.collect::<String>().trim_end().to_owned()
-        };
-        (0..height.unwrap_or(0))
-            .map(line)
-            .collect::<Vec<_>>()
-            .join("\n")
-    };
-    bands.iter().map(band).collect::<Vec<_>>().join("\n\n\n")
 }
 
 /// Writes one line for each field.

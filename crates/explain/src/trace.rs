@@ -1,0 +1,248 @@
+//! The reads of one query, in their order, each with the reason for which its row is read.
+
+use std::collections::BTreeSet;
+
+use serde::Serialize;
+use sixfold::{MeshQuery, PolygonMesh, Relation, Representation};
+use sixfold_core::{Access, Described, Element, Field, Line, Measured, RecordTable, Traced};
+
+use crate::element::{ElementName, Named};
+use crate::reason::{Inference, Reason};
+use crate::structure::ExplainError;
+
+/// Bytes of a cache line.
+const LINE_BYTES: usize = 64;
+
+/// One query on one structure: what it reads, why, and what it yields.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Trace {
+    /// The name of the structure.
+    #[serde(rename = "backend")]
+    pub structure: &'static str,
+    /// The relation.
+    pub relation: Relation,
+    /// The name of the element of the query, such as `e4 = v0-v1`.
+    pub element: String,
+    /// The steps of the query, as a textbook writes them; empty if the structure does not say.
+    pub algorithm: Vec<&'static str>,
+    /// The reads and the results, in their order.
+    pub steps: Vec<Step>,
+    /// The number of reads of rows. A row that is read twice counts twice.
+    pub reads: usize,
+    /// The number of different cache lines, if each table begins at the start of a line.
+    pub cache_lines: usize,
+    /// The bytes of the rows that are read. Each row counts once.
+    pub bytes: usize,
+    /// The names of the results, in their order.
+    pub results: Vec<String>,
+}
+
+/// One step of a query.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(tag = "step", rename_all = "snake_case")]
+pub enum Step {
+    /// A row of a table is read.
+    Read(Read),
+    /// The query yields a result.
+    Yield {
+        /// The name of the result.
+        result: String,
+        /// The line of the algorithm, from 0.
+        line: Option<usize>,
+    },
+}
+
+/// A read of a row, or of several rows in order that a scan reads for the same reason.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Read {
+    /// The name of the table.
+    pub table: &'static str,
+    /// The name of the row, such as `h5`.
+    pub row: String,
+    /// The number of rows, of which `row` is the first.
+    pub rows: usize,
+    /// The stored fields of the row: the name of the column and the value. Empty for several rows.
+    pub fields: Vec<(&'static str, String)>,
+    /// Why the row is read.
+    pub reason: Reason,
+    /// The line of the algorithm, from 0.
+    pub line: Option<usize>,
+}
+
+/// Traces a query on the structure `M`.
+pub(crate) fn trace<M>(
+    polygons: &PolygonMesh,
+    relation: Relation,
+    element: ElementName,
+) -> Result<Trace, ExplainError>
+where
+    M: Representation + Measured + Described,
+{
+    check_kind(relation, element)?;
+    let named = Named::<M>::new(polygons)?;
+    let handle = named.handle(element)?;
+    let probe = Traced::default();
+    let probed = named.mesh.clone().probed(probe.clone());
+    probe.take();
+    let lines = M::algorithm(relation);
+    let mut recorder = Recorder {
+        inference: Inference::new(&named.mesh, lines, named.mesh.rows_of(handle)),
+        probe,
+        steps: Vec::new(),
+        reads: Vec::new(),
+        results: Vec::new(),
+    };
+    recorder.run(&named, &probed, relation, handle);
+    let Recorder {
+        steps,
+        reads,
+        results,
+        ..
+    } = recorder;
+    let rows: BTreeSet<(&str, usize, usize)> = (reads.iter())
+        .map(|access| (access.table, access.row, access.bytes))
+        .collect();
+    let cache_lines: BTreeSet<(&str, usize)> = (rows.iter())
+        .flat_map(|&(table, row, bytes)| {
+            let first = row * bytes / LINE_BYTES;
+            let last = (row * bytes + bytes.max(1) - 1) / LINE_BYTES;
+            (first..=last).map(move |line| (table, line))
+        })
+        .collect();
+    Ok(Trace {
+        structure: M::NAME,
+        relation,
+        element: named.name(handle),
+        algorithm: lines.iter().map(|line| line.text).collect(),
+        steps,
+        reads: reads.len(),
+        cache_lines: cache_lines.len(),
+        bytes: rows.iter().map(|&(_, _, bytes)| bytes).sum(),
+        results,
+    })
+}
+
+/// Checks that the element is of the kind that the relation starts from.
+fn check_kind(relation: Relation, element: ElementName) -> Result<(), ExplainError> {
+    let wanted = match relation {
+        Relation::VertexVertices | Relation::VertexEdges | Relation::VertexFaces => "vertex",
+        Relation::EdgeVertices | Relation::EdgeEdges | Relation::EdgeFaces => "edge",
+        Relation::FaceVertices | Relation::FaceEdges | Relation::FaceFaces => "face",
+    };
+    match wanted == element.kind() {
+        true => Ok(()),
+        false => Err(ExplainError::WrongKind {
+            relation,
+            wanted,
+            element,
+        }),
+    }
+}
+
+/// Records the steps of a query while it runs.
+struct Recorder<'m, M> {
+    inference: Inference<'m, M>,
+    probe: Traced,
+    steps: Vec<Step>,
+    reads: Vec<Access>,
+    results: Vec<String>,
+}
+
+impl<M: Representation + Measured + Described> Recorder<'_, M> {
+    /// Runs the query, one result after the other.
+    fn run(
+        &mut self,
+        named: &Named<'_, M>,
+        probed: &M::Probed<Traced>,
+        relation: Relation,
+        element: Element<M>,
+    ) {
+        let vertex = |v| named.name(Element::Vertex(v));
+        let edge = |e| named.name(Element::Edge(e));
+        let face = |f| named.name(Element::Face(f));
+        match (relation, element) {
+            (Relation::VertexVertices, Element::Vertex(v)) => {
+                self.record(probed.vertex_vertices(v).map(vertex));
+            }
+            (Relation::VertexEdges, Element::Vertex(v)) => {
+                self.record(probed.vertex_edges(v).map(edge));
+            }
+            (Relation::VertexFaces, Element::Vertex(v)) => {
+                self.record(probed.vertex_faces(v).map(face));
+            }
+            (Relation::EdgeVertices, Element::Edge(e)) => {
+                self.record(probed.edge_vertices(e).into_iter().map(vertex));
+            }
+            (Relation::EdgeEdges, Element::Edge(e)) => {
+                self.record(probed.edge_edges(e).map(edge));
+            }
+            (Relation::EdgeFaces, Element::Edge(e)) => {
+                self.record(probed.edge_faces(e).map(face));
+            }
+            (Relation::FaceVertices, Element::Face(f)) => {
+                self.record(probed.face_vertices(f).map(vertex));
+            }
+            (Relation::FaceEdges, Element::Face(f)) => {
+                self.record(probed.face_edges(f).map(edge));
+            }
+            (Relation::FaceFaces, Element::Face(f)) => {
+                self.record(probed.face_faces(f).map(face));
+            }
+            _ => unreachable!("the kind of the element was checked"),
+        }
+    }
+
+    /// Records the reads before each result, the result, and the reads after the last one.
+    fn record(&mut self, mut results: impl Iterator<Item = String>) {
+        loop {
+            let result = results.next();
+            self.take_reads();
+            let Some(result) = result else { return };
+            let line = self.inference.yielding();
+            self.results.push(result.clone());
+            self.steps.push(Step::Yield { result, line });
+        }
+    }
+
+    fn take_reads(&mut self) {
+        let accesses = self.probe.take();
+        for i in 0..accesses.len() {
+            if let Some(table) = self.inference.table(&accesses[i]) {
+                let (reason, line) = self.inference.read(table, &accesses[i..]);
+                self.push_read(table, accesses[i].row, reason, line);
+            }
+        }
+        self.reads.extend(accesses);
+    }
+
+    /// Adds a read. The rows of a scan become one step.
+    fn push_read(&mut self, table: RecordTable, row: usize, reason: Reason, line: Option<usize>) {
+        if let Some(Step::Read(last)) = self.steps.last_mut()
+            && reason.way == Line::SCAN
+            && last.reason.way == Line::SCAN
+            && last.table == table.name
+            && row > 0
+        {
+            last.rows += 1;
+            last.fields.clear();
+            return;
+        }
+        let record = self
+            .inference
+            .mesh()
+            .record(table.name, row)
+            .unwrap_or_default();
+        let stored = table.columns.iter().zip(record);
+        let fields = stored.filter(|(column, _)| !column.is_derived);
+        let text =
+            |(column, field): (&sixfold_core::Column, Field)| (column.name, field.to_string());
+        self.steps.push(Step::Read(Read {
+            table: table.name,
+            row: format!("{}{row}", table.letter),
+            rows: 1,
+            fields: fields.map(text).collect(),
+            reason,
+            line,
+        }));
+    }
+}

@@ -1,0 +1,242 @@
+//! What is shown of edits: the rows before and after, on all structures.
+
+use std::collections::BTreeMap;
+
+use sixfold::{Edit, HalfEdgeMesh, PolygonMesh, shapes};
+use sixfold_explain::{EditCommand, EditTrace, ExplainError, Records, Structure};
+
+/// The stored fields of all rows, by the names of the table and of the row; `None` if records do not show
+/// the row, because the element was deleted.
+type Rows = BTreeMap<(&'static str, String), Option<Vec<String>>>;
+
+fn stored(records: &[Records]) -> Rows {
+    let mut rows = Rows::new();
+    for records in records {
+        for record in &records.rows {
+            for (i, column) in records
+                .columns
+                .iter()
+                .enumerate()
+                .filter(|(_, c)| !c.derived)
+            {
+                let row = rows.entry((column.table, record.name.clone()));
+                match record.fields.get(i) {
+                    None => *row.or_default() = None,
+                    Some(field) => {
+                        row.or_insert(Some(Vec::new()))
+                            .as_mut()
+                            .expect("shown")
+                            .push(field.clone());
+                    }
+                }
+            }
+        }
+    }
+    rows
+}
+
+/// Returns whether two rows are equal; a row that is not shown equals every row.
+fn are_equal(shown: Option<&Option<Vec<String>>>, row: Option<&Vec<String>>) -> bool {
+    match shown {
+        Some(None) => true,
+        Some(Some(shown)) => row == Some(shown),
+        None => row.is_none(),
+    }
+}
+
+/// Returns all edits of small meshes: each kind, with all elements that it can take.
+fn commands(polygons: &PolygonMesh) -> Vec<EditCommand> {
+    let mut texts = vec![
+        "set_position v0 0.25,0.5,4".to_owned(),
+        "add_vertex 5,5,5".into(),
+        "remove_isolated_vertices".into(),
+        "compact".into(),
+    ];
+    for v in 0..polygons.vertex_count() {
+        texts.push(format!("remove_vertex v{v}"));
+        let [left, right] = [1, 2].map(|step| (v + step) % polygons.vertex_count());
+        texts.push(format!("split_vertex v{v} v{left} v{right}"));
+        texts.push(format!("split_vertex v{v} none v{right}"));
+    }
+    for (f, face) in polygons.faces().iter() {
+        let f = f.index();
+        texts.push(format!("remove_face f{f}"));
+        texts.push(format!("poke_face f{f}"));
+        let [a, c] = [face[0].index(), face[2].index()];
+        texts.push(format!("split_face f{f} v{a} v{c}"));
+        let sides = face.iter().zip(face.iter().cycle().skip(1));
+        for [a, b] in sides.map(|(a, b)| [a.index(), b.index()]) {
+            texts.extend(
+                ["flip_edge", "dissolve_edge", "split_edge", "bisect_edge"]
+                    .map(|edit| format!("{edit} v{a}-v{b}")),
+            );
+            texts.push(format!("collapse_edge v{a}-v{b} v{a}"));
+            texts.push(format!(
+                "add_face v{b} v{a} v{}",
+                (a + b) % polygons.vertex_count()
+            ));
+        }
+    }
+    texts.iter().map(|text| text.parse().expect(text)).collect()
+}
+
+/// Checks one edit after the edits `before`. Returns what it did, if its elements exist.
+fn check(
+    structure: &Structure,
+    polygons: &PolygonMesh,
+    before: &[EditCommand],
+    command: &EditCommand,
+) -> Option<EditTrace> {
+    let mut edits = before.to_vec();
+    edits.push(command.clone());
+    let context = format!("{} {edits:?}", structure.name());
+    let traces = match structure.edit(polygons, &edits) {
+        Ok(traces) => traces,
+        Err(ExplainError::NoSuchElement { .. }) => return None,
+        Err(error) => panic!("{context}: {error}"),
+    };
+    let records = |edits| {
+        structure
+            .records_after(polygons, edits, 0..usize::MAX)
+            .expect(&context)
+    };
+    let mut rows = stored(&records(before));
+    let trace = traces.last().expect("one for each edit").clone();
+    for change in &trace.rows {
+        let place = (change.table, change.row.clone());
+        let is_shown = are_equal(rows.get(&place), change.before.as_ref());
+        assert!(is_shown, "{context}: {change:?}");
+        if let (Some(_), Some(_), true) = (&change.before, &change.after, change.is_changed()) {
+            assert!(
+                change.is_written || command.edit == Edit::Compact,
+                "{context}: {change:?}"
+            );
+        }
+        rows.insert(place, change.after.clone());
+    }
+    for (place, after) in stored(&records(&edits)) {
+        let row = rows.remove(&place).flatten();
+        let is_shown = are_equal(Some(&after), row.as_ref());
+        assert!(is_shown, "{context}: {place:?} {row:?}, is {after:?}");
+    }
+    rows.retain(|_, row| row.is_some());
+    assert!(
+        rows.is_empty(),
+        "{context}: rows that do not exist: {rows:?}"
+    );
+    if trace.refusal.is_some() {
+        assert!(
+            !trace.rows.iter().any(|row| row.is_changed()),
+            "{context}: {trace:?}"
+        );
+        let named = [&trace.created, &trace.removed].map(Vec::len);
+        assert_eq!((named, trace.renamed.len()), ([0, 0], 0), "{context}");
+    }
+    Some(trace)
+}
+
+#[test]
+fn the_rows_before_and_the_shown_changes_are_the_rows_after() {
+    let open = shapes::triangle_grid(2, 1).expect("a small size");
+    let mixed = shapes::mixed_grid(2, 2).expect("a small size");
+    let mut accepted: BTreeMap<(&str, Edit), usize> = BTreeMap::new();
+    for polygons in [shapes::octahedron(), open, mixed] {
+        let commands = commands(&polygons);
+        for structure in Structure::all() {
+            if structure.records(&polygons, 0..1).is_err() {
+                continue;
+            }
+            // Each edit alone, and after an edit that leaves holes.
+            let holes: EditCommand = "remove_face f0".parse().expect("an edit");
+            for before in [&[][..], &[holes]] {
+                for command in &commands {
+                    let trace = check(&structure, &polygons, before, command);
+                    if trace.is_some_and(|trace| trace.refusal.is_none()) {
+                        *accepted
+                            .entry((structure.name(), command.edit))
+                            .or_default() += 1;
+                    }
+                }
+            }
+        }
+    }
+    // The soup has no vertices without a face, and a corner table no polygons.
+    let unsupported = [
+        ("polygon-soup", Edit::AddVertex),
+        ("corner-table", Edit::SplitEdge),
+        ("corner-table", Edit::SplitFace),
+        ("corner-table", Edit::DissolveEdge),
+    ];
+    for structure in Structure::all() {
+        for edit in Edit::ALL {
+            let place = (structure.name(), edit);
+            let is_accepted = accepted.contains_key(&place);
+            assert_eq!(is_accepted, !unsupported.contains(&place), "{place:?}");
+        }
+    }
+}
+
+#[test]
+fn a_flip_shows_what_it_rewrites_and_a_refusal_shows_its_rule() {
+    let half_edge = Structure::find("half-edge").expect("one of six");
+    let [flip, again] =
+        ["flip_edge v0-v2", "flip_edge v0-v2"].map(|edit| edit.parse().expect(edit));
+    let quad = shapes::triangle_grid(1, 1).expect("a small size");
+    let (a, b) = (0, 3);
+    let traces = half_edge.edit(
+        &quad,
+        &[format!("flip_edge v{a}-v{b}").parse().expect("an edit")],
+    );
+    let trace = &traces.expect("a square")[0];
+    assert_eq!(trace.refusal, None);
+    assert!(trace.reads > 0 && trace.writes > 0);
+    let changed: Vec<&str> = (trace.rows.iter())
+        .filter(|row| row.is_changed() && row.table == "halves")
+        .map(|row| row.row.as_str())
+        .collect();
+    // The diagonal has two half-edges, and each triangle two more.
+    assert_eq!(changed.len(), 6, "{changed:?}");
+    let tetrahedron = shapes::tetrahedron();
+    let traces = half_edge
+        .edit(&tetrahedron, &[flip, again])
+        .expect("a tetrahedron");
+    for trace in traces {
+        let refusal = trace.refusal.expect("an end has three edges");
+        assert!(
+            refusal.starts_with("vertex v0 has only three edges"),
+            "{refusal}"
+        );
+    }
+    let read_only = Structure::new::<HalfEdgeMesh>();
+    let error = read_only.edit(&tetrahedron, &[]).expect_err("not editable");
+    assert_eq!(error.to_string(), "half-edge has no edits");
+}
+
+#[test]
+fn new_elements_get_the_next_numbers_and_compaction_keeps_the_names() {
+    let edits = [
+        "poke_face f0",
+        "remove_face f1",
+        "compact",
+        "remove_vertex v6",
+    ];
+    let edits = edits.map(|edit| edit.parse().expect(edit));
+    for structure in Structure::all() {
+        let traces = structure
+            .edit(&shapes::octahedron(), &edits)
+            .expect("an octahedron");
+        assert_eq!(
+            traces[0].created,
+            ["v6", "f8", "f9"],
+            "{}",
+            structure.name()
+        );
+        assert_eq!(traces[1].removed, ["f1"], "{}", structure.name());
+        assert!(!traces[2].renamed.is_empty(), "{}", structure.name());
+        assert!(
+            traces[3].removed.contains(&"v6".to_owned()),
+            "{}",
+            structure.name()
+        );
+    }
+}

@@ -1,0 +1,309 @@
+//! The traces of all queries of all structures.
+
+use std::collections::BTreeSet;
+
+use sixfold::{HalfEdgeMesh, MeshQuery, PolygonMesh, Relation, Representation, shapes};
+use sixfold_conformance::gallery;
+use sixfold_core::{Described, Element, FaceId, Field, Line, Measured, RowName, Traced, VertexId};
+use sixfold_explain::{ElementName, ExplainError, Read, Step, Structure, Trace};
+
+/// Returns the names of all elements of one kind.
+fn elements(polygons: &PolygonMesh, relation: Relation) -> Vec<ElementName> {
+    let vertices = (0..polygons.vertex_count() as u32).map(ElementName::Vertex);
+    let faces = (0..polygons.face_count() as u32).map(ElementName::Face);
+    let name = relation.to_string();
+    match name.split_once('_').expect("two kinds").0 {
+        "vertex" => vertices.collect(),
+        "face" => faces.collect(),
+        _ => {
+            let sides = polygons.faces().iter().flat_map(|(_, face)| {
+                let next = face.iter().cycle().skip(1);
+                face.iter()
+                    .zip(next)
+                    .map(|(&a, &b)| [a.index() as u32, b.index() as u32])
+            });
+            let mut edges: Vec<[u32; 2]> = sides.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+            edges.sort_unstable();
+            edges.dedup();
+            edges.into_iter().map(ElementName::Edge).collect()
+        }
+    }
+}
+
+/// A structure, the element of a query, and what the query does without a trace.
+struct Expected<M: Representation + Measured + Described> {
+    mesh: M,
+    element: Element<M>,
+    /// The reads of the probe: the table and the row.
+    reads: Vec<(&'static str, usize)>,
+    results: Vec<String>,
+}
+
+impl<M: Representation + Measured + Described> Expected<M> {
+    /// Returns `None` if the structure does not have the element.
+    fn new(
+        polygons: &PolygonMesh,
+        mesh: &M,
+        relation: Relation,
+        name: ElementName,
+    ) -> Option<Self> {
+        let vertex = |v| M::vertex_handle(polygons, VertexId::new(v));
+        let element = match name {
+            ElementName::Vertex(v) => Element::Vertex(vertex(v)),
+            ElementName::Edge([a, b]) => Element::Edge(mesh.edge_between(vertex(a), vertex(b))?),
+            ElementName::Face(f) => Element::Face(M::face_handle(polygons, FaceId::new(f))),
+        };
+        if let Element::Vertex(v) = element
+            && !mesh.contains_vertex(v)
+        {
+            return None;
+        }
+        let number = |v: M::Vertex| {
+            let all = 0..polygons.vertex_count() as u32;
+            all.into_iter()
+                .find(|&n| vertex(n) == v)
+                .expect("a vertex of the mesh")
+        };
+        let vertex_name = |v| format!("v{}", number(v));
+        let edge_name = |e| {
+            let mut ends = mesh.edge_vertices(e).map(number);
+            ends.sort_unstable();
+            format!("v{}-v{}", ends[0], ends[1])
+        };
+        let face_name = |f| {
+            let all = 0..polygons.face_count() as u32;
+            let mut all = all.into_iter();
+            let found = all.find(|&n| M::face_handle(polygons, FaceId::new(n)) == f);
+            format!("f{}", found.expect("a face of the mesh"))
+        };
+        let probe = Traced::default();
+        let probed = mesh.clone().probed(probe.clone());
+        probe.take();
+        let results = match (relation, element) {
+            (Relation::VertexVertices, Element::Vertex(v)) => {
+                stepped(probed.vertex_vertices(v), vertex_name)
+            }
+            (Relation::VertexEdges, Element::Vertex(v)) => {
+                stepped(probed.vertex_edges(v), edge_name)
+            }
+            (Relation::VertexFaces, Element::Vertex(v)) => {
+                stepped(probed.vertex_faces(v), face_name)
+            }
+            (Relation::EdgeVertices, Element::Edge(e)) => {
+                stepped(probed.edge_vertices(e).into_iter(), vertex_name)
+            }
+            (Relation::EdgeEdges, Element::Edge(e)) => stepped(probed.edge_edges(e), edge_name),
+            (Relation::EdgeFaces, Element::Edge(e)) => stepped(probed.edge_faces(e), face_name),
+            (Relation::FaceVertices, Element::Face(f)) => {
+                stepped(probed.face_vertices(f), vertex_name)
+            }
+            (Relation::FaceEdges, Element::Face(f)) => stepped(probed.face_edges(f), edge_name),
+            (Relation::FaceFaces, Element::Face(f)) => stepped(probed.face_faces(f), face_name),
+            _ => unreachable!("the element has the kind of the relation"),
+        };
+        let reads = probe
+            .take()
+            .into_iter()
+            .map(|access| (access.table, access.row));
+        Some(Self {
+            mesh: mesh.clone(),
+            element,
+            reads: reads.collect(),
+            results,
+        })
+    }
+
+    /// Returns the first fault of a trace.
+    fn fault(&self, trace: &Trace, lines: &[Line]) -> Option<String> {
+        let results: Vec<&str> = (trace.results.iter())
+            .map(|result| result.rsplit(' ').next().expect("a word"))
+            .collect();
+        if results != self.results {
+            return Some(format!("results {results:?}, expected {:?}", self.results));
+        }
+        let reads = trace.steps.iter().filter_map(|step| match step {
+            Step::Read(read) => Some(read),
+            _ => None,
+        });
+        let row = |read: &Read| read.row[1..].parse::<usize>().expect("a number");
+        let rows: Vec<(&str, usize)> = reads
+            .clone()
+            .flat_map(|read| (row(read)..row(read) + read.rows).map(|row| (read.table, row)))
+            .collect();
+        if rows != self.reads || trace.reads != rows.len() {
+            return Some(format!("reads {rows:?}, expected {:?}", self.reads));
+        }
+        let mut known: BTreeSet<RowName> = BTreeSet::new();
+        let tables = self.mesh.tables();
+        let learn = |known: &mut BTreeSet<RowName>, name: RowName, is_read: bool| {
+            known.insert(name);
+            for table in tables.iter().filter(|table| table.letter == name.letter) {
+                let fields = self
+                    .mesh
+                    .record(table.name, name.row as usize)
+                    .unwrap_or_default();
+                let fields = table.columns.iter().zip(fields);
+                known.extend(fields.filter_map(|(column, field)| match field {
+                    Field::Row(to) if is_read || column.is_derived => Some(to),
+                    _ => None,
+                }));
+            }
+        };
+        for name in self.mesh.rows_of(self.element) {
+            learn(&mut known, name, false);
+        }
+        for read in reads {
+            let Some(line) = read.line else {
+                return Some(format!("{read:?} is on no line"));
+            };
+            let way = read.reason.way;
+            if !lines[line].reads.contains(&(read.table, way)) {
+                return Some(format!("{read:?} is on line {line}: {:?}", lines[line]));
+            }
+            let letter = tables
+                .iter()
+                .find(|table| table.name == read.table)
+                .expect("a table")
+                .letter;
+            let name = RowName {
+                letter,
+                row: row(read) as u32,
+            };
+            if let Some(of) = &read.reason.of {
+                let Some(of) = known.iter().copied().find(|name| name.to_string() == *of) else {
+                    return Some(format!("{read:?}: {of} is not known"));
+                };
+                if way != Line::NEXT_ROW && way != Line::ASKED && !self.is_field(of, way, name) {
+                    return Some(format!("{read:?}: {of} does not name it"));
+                }
+            }
+            for row in row(read)..row(read) + read.rows {
+                let name = RowName {
+                    letter,
+                    row: row as u32,
+                };
+                learn(&mut known, name, true);
+                // The names in a field are known with their derived fields.
+                for name in known.clone() {
+                    if known.len() < 400 {
+                        learn(&mut known, name, false);
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    /// Returns whether the field `way` of the row `of` names `name`, or, for a part of an element, the
+    /// field `way` of `name` names `of`.
+    fn is_field(&self, of: RowName, way: &str, name: RowName) -> bool {
+        let names = |from: RowName, to: RowName| {
+            let tables = self.mesh.tables();
+            tables
+                .iter()
+                .filter(|table| table.letter == from.letter)
+                .any(|table| {
+                    let fields = self
+                        .mesh
+                        .record(table.name, from.row as usize)
+                        .unwrap_or_default();
+                    let mut fields = table.columns.iter().zip(fields);
+                    fields.any(|(column, field)| column.name == way && field == Field::Row(to))
+                })
+        };
+        names(of, name) || names(name, of)
+    }
+}
+
+/// Asks for the results one after the other, as a trace does.
+fn stepped<T>(mut results: impl Iterator<Item = T>, name: impl Fn(T) -> String) -> Vec<String> {
+    std::iter::from_fn(|| results.next()).map(name).collect()
+}
+
+/// Checks the traces of all queries of a structure on a mesh. Returns the number of traces.
+fn check<M: Representation + Measured + Described>(
+    polygons: &PolygonMesh,
+    mesh_name: &str,
+) -> usize {
+    let Ok(mesh) = M::from_polygons(polygons) else {
+        return 0;
+    };
+    let structure = Structure::new::<M>();
+    let mut traces = 0;
+    for relation in Relation::ALL {
+        for name in elements(polygons, relation) {
+            let context = format!("{} of {mesh_name}: {relation} of {name}", M::NAME);
+            let Some(expected) = Expected::new(polygons, &mesh, relation, name) else {
+                let error = structure
+                    .trace(polygons, relation, name)
+                    .expect_err(&context);
+                assert!(
+                    matches!(error, ExplainError::NoSuchElement { .. }),
+                    "{error}"
+                );
+                continue;
+            };
+            let trace = structure.trace(polygons, relation, name).expect(&context);
+            if let Some(fault) = expected.fault(&trace, M::algorithm(relation)) {
+                panic!("{context}: {fault}");
+            }
+            traces += 1;
+        }
+    }
+    traces
+}
+
+#[test]
+fn every_read_has_a_reason_on_a_line_of_the_algorithm() {
+    let mut traces = 0;
+    let meshes = gallery()
+        .into_iter()
+        .filter(|mesh| mesh.polygons.face_count() < 30);
+    for mesh in meshes {
+        sixfold::for_each_representation!(M => {
+            traces += check::<M>(&mesh.polygons, mesh.name);
+        });
+    }
+    assert!(traces > 10_000, "{traces}");
+}
+
+/// Returns the fault that the check finds in a trace of VV on an octahedron, after `plant`.
+fn fault_after(plant: impl FnOnce(&mut Trace)) -> Option<String> {
+    let polygons = shapes::octahedron();
+    let mesh = HalfEdgeMesh::from_polygons(&polygons).expect("a manifold");
+    let (relation, name) = (Relation::VertexVertices, ElementName::Vertex(2));
+    let expected = Expected::new(&polygons, &mesh, relation, name).expect("a vertex");
+    let structure = Structure::new::<HalfEdgeMesh>();
+    let mut trace = structure
+        .trace(&polygons, relation, name)
+        .expect("a vertex");
+    plant(&mut trace);
+    expected.fault(&trace, HalfEdgeMesh::algorithm(relation))
+}
+
+/// Returns the second read of a trace.
+fn second(trace: &mut Trace) -> &mut Read {
+    let reads = trace.steps.iter_mut().filter_map(|step| match step {
+        Step::Read(read) => Some(read),
+        _ => None,
+    });
+    reads.into_iter().nth(1).expect("two reads")
+}
+
+#[test]
+fn a_planted_fault_is_found() {
+    assert_eq!(fault_after(|_| ()), None);
+    let found = |plant: fn(&mut Trace)| fault_after(plant).expect("a fault");
+    let other_row = found(|trace| second(trace).reason.of = Some("h0".into()));
+    assert!(other_row.contains("h0 is not known") || other_row.contains("does not name it"));
+    let other_way = found(|trace| second(trace).reason.way = "next");
+    assert!(other_way.contains("is on line"), "{other_way}");
+    let no_line = found(|trace| second(trace).line = None);
+    assert!(no_line.contains("is on no line"), "{no_line}");
+    let other_line = found(|trace| second(trace).line = Some(0));
+    assert!(other_line.contains("is on line 0"), "{other_line}");
+    let no_read = found(|trace| drop(trace.steps.remove(0)));
+    assert!(no_read.contains("reads"), "{no_read}");
+    let other_result = found(|trace| trace.results.swap(0, 1));
+    assert!(other_result.contains("results"), "{other_result}");
+}

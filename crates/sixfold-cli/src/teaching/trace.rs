@@ -1,0 +1,260 @@
+//! `sixfold trace`: steps through a query, and shows what an edit reads and writes.
+
+mod edits;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use console::{Key, Term};
+use serde::Serialize;
+use sixfold::Relation;
+use sixfold_explain::{ElementName, Read, Step, Trace};
+use sixfold_study::numbers::counted;
+
+use crate::arguments;
+use crate::column_table::{Column, column_table};
+use crate::failure::Failure;
+use crate::output::{Output, check_outputs, is_stdout};
+use crate::teaching::{Refused, explain, mesh, print_refused, side_by_side};
+use crate::text::{TextOutput, hanging_indent};
+
+#[derive(Serialize)]
+struct Document<'d> {
+    mesh: &'d str,
+    traces: &'d [Trace],
+    refused: &'d [Refused],
+}
+
+pub(crate) fn run(arguments: &arguments::Trace) -> Result<ExitCode, Failure> {
+    match arguments.query.as_slice() {
+        [] if !arguments.edit.is_empty() => edits::run(None, arguments),
+        [path] if !arguments.edit.is_empty() => edits::run(Some(Path::new(path)), arguments),
+        [relation, element] if arguments.edit.is_empty() => {
+            queries(None, [relation, element], arguments)
+        }
+        [path, relation, element] if arguments.edit.is_empty() => {
+            queries(Some(Path::new(path)), [relation, element], arguments)
+        }
+        _ => Err(Failure::usage(
+            "name a relation and an element, such as vertex_vertices v3, or an edit, such as --edit \
+             \"flip_edge v0-v1\"",
+        )),
+    }
+}
+
+/// Traces a query.
+fn queries(
+    path: Option<&Path>,
+    [relation, element]: [&String; 2],
+    arguments: &arguments::Trace,
+) -> Result<ExitCode, Failure> {
+    let relation: Relation = relation.parse().map_err(Failure::usage)?;
+    let element: ElementName = element.parse().map_err(Failure::usage)?;
+    check_outputs(path, &[("--json", arguments.json.as_ref())])?;
+    let json = Output::open_if(arguments.json.as_ref())?;
+    let to_stdout = arguments.json.as_deref().is_some_and(is_stdout);
+    let mut text = TextOutput::new(!to_stdout);
+    let (name, polygons) = mesh(path, &arguments.explained)?;
+    let (traces, refused) = explain(&arguments.explained, |structure| {
+        structure.trace(&polygons, relation, element)
+    })?;
+    if arguments.interactive {
+        return step(&name, &traces).map(|()| ExitCode::SUCCESS);
+    }
+    let blocks: Vec<String> = traces.iter().map(|trace| block(&name, trace)).collect();
+    text.print_line(&side_by_side(&blocks));
+    if traces.len() > 1 {
+        text.print_line(&format!("\n{}", costs(&traces)));
+    }
+    print_refused(&refused, &mut text);
+    let document = Document {
+        mesh: &name,
+        traces: &traces,
+        refused: &refused,
+    };
+    text.finish_with_json(json, &document)
+}
+
+/// Returns the trace of one structure.
+fn block(mesh: &str, trace: &Trace) -> String {
+    let parts = [
+        hanging_indent("", &headline(mesh, trace)),
+        algorithm(trace, None),
+        steps(trace, trace.steps.len()),
+    ];
+    parts
+        .into_iter()
+        .filter(|part| !part.is_empty())
+        .collect::<Vec<_>>()
+        .join("\n\n")
+}
+
+/// Returns what the query yields, and what this costs.
+fn headline(mesh: &str, trace: &Trace) -> String {
+    let results = counted(trace.results.len(), "result", "results");
+    let cost = match trace.reads {
+        0 => "no reads".to_owned(),
+        _ => format!(
+            "{} of rows, {}, {}",
+            counted(trace.reads, "read", "reads"),
+            counted(trace.cache_lines, "cache line", "cache lines"),
+            counted(trace.bytes, "byte", "bytes"),
+        ),
+    };
+    format!(
+        "{} of {} in {}, {mesh}: {results}, {cost}",
+        trace.relation, trace.element, trace.structure
+    )
+}
+
+/// Returns the lines of the algorithm, with a mark at the current line.
+fn algorithm(trace: &Trace, current: Option<usize>) -> String {
+    let lines = trace.algorithm.iter().enumerate().map(|(i, line)| {
+        let mark = if current == Some(i) { '>' } else { ' ' };
+        format!("{mark} {}  {line}", i + 1)
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// Maximum number of steps that are printed.
+const MOST_STEPS: usize = 200;
+
+/// Returns the first steps as a table. Its last column is broken into lines.
+fn steps(trace: &Trace, count: usize) -> String {
+    const HEADS: [&str; 4] = ["line", "reads", "because", "finds"];
+    let shown = &trace.steps[..count.min(MOST_STEPS)];
+    let cells: Vec<[String; 4]> = shown.iter().map(cells).collect();
+    let width = |i: usize| {
+        let widths = cells.iter().map(|cells| cells[i].chars().count());
+        widths.max().unwrap_or(0).max(HEADS[i].len())
+    };
+    let widths = [0, 1, 2].map(width);
+    let start = |cells: [&str; 3]| {
+        let [line, reads, because] = cells;
+        let [a, b, c] = widths;
+        format!("{line:>a$}  {reads:<b$}  {because:<c$}  ")
+    };
+    let mut lines = vec![start([HEADS[0], HEADS[1], HEADS[2]]) + HEADS[3]];
+    lines.push("─".repeat(lines[0].chars().count()));
+    for [line, reads, because, finds] in &cells {
+        let line = hanging_indent(&start([line, reads, because]), finds);
+        lines.push(line.trim_end().to_owned());
+    }
+    if count > shown.len() {
+        let more = counted(count - shown.len(), "more step", "more steps");
+        lines.push(format!("… {more}: --json FILE has all"));
+    }
+    lines.join("\n")
+}
+
+/// Returns the line, what is read, why, and what is found.
+fn cells(step: &Step) -> [String; 4] {
+    let number =
+        |line: &Option<usize>| line.map_or_else(String::new, |line| (line + 1).to_string());
+    match step {
+        Step::Read(read) => [
+            number(&read.line),
+            format!("{} {}", read.table, rows(read)),
+            read.reason.text.clone(),
+            fields(read),
+        ],
+        Step::Yield { result, line } => [
+            number(line),
+            format!("yield {result}"),
+            String::new(),
+            String::new(),
+        ],
+    }
+}
+
+fn rows(read: &Read) -> String {
+    match read.rows {
+        1 => read.row.clone(),
+        rows => {
+            let number = read
+                .row
+                .trim_start_matches(|c: char| c.is_ascii_lowercase());
+            let first: usize = number.parse().unwrap_or(0);
+            let letter = &read.row[..read.row.len() - number.len()];
+            format!("{} to {letter}{}", read.row, first + rows - 1)
+        }
+    }
+}
+
+fn fields(read: &Read) -> String {
+    if read.rows > 1 {
+        return counted(read.rows, "row", "rows");
+    }
+    let fields = read
+        .fields
+        .iter()
+        .map(|(name, value)| format!("{name} {value}"));
+    fields.collect::<Vec<_>>().join(", ")
+}
+
+/// Returns what the query costs in each structure.
+fn costs(traces: &[Trace]) -> String {
+    let names = Column::words("", traces.iter().map(|trace| trace.structure.to_owned()));
+    let figures = |head, figure: fn(&Trace) -> usize| {
+        Column::figures(
+            head,
+            traces
+                .iter()
+                .map(|trace| sixfold_study::numbers::grouped(figure(trace))),
+        )
+    };
+    column_table(
+        &names,
+        &[
+            figures("reads", |trace| trace.reads),
+            figures("cache lines", |trace| trace.cache_lines),
+            figures("bytes", |trace| trace.bytes),
+        ],
+    )
+}
+
+/// Steps through the traces by keys, one trace after the other.
+fn step(mesh: &str, traces: &[Trace]) -> Result<(), Failure> {
+    let terminal = Term::stdout();
+    if !terminal.is_term() {
+        return Err(Failure::usage("--interactive needs a terminal"));
+    }
+    let failed = |cause| crate::output::cannot_write("the terminal", &cause);
+    for trace in traces {
+        let mut count: usize = 0;
+        loop {
+            let current = count
+                .checked_sub(1)
+                .and_then(|last| match &trace.steps[last] {
+                    Step::Read(read) => read.line,
+                    Step::Yield { line, .. } => *line,
+                });
+            terminal.clear_screen().map_err(failed)?;
+            let parts = [
+                headline(mesh, trace),
+                algorithm(trace, current),
+                steps(trace, count),
+                format!(
+                    "step {count} of {}: space next, b back, n next structure, q quit",
+                    trace.steps.len()
+                ),
+            ];
+            terminal.write_line(&parts.join("\n\n")).map_err(failed)?;
+            match terminal.read_key().map_err(failed)? {
+                Key::Char('q') | Key::Escape | Key::CtrlC => return Ok(()),
+                Key::Char('b') | Key::ArrowLeft | Key::ArrowUp | Key::Backspace => {
+                    count = count.saturating_sub(1);
+                }
+                Key::Char('n') => break,
+                Key::Char(_) | Key::Enter | Key::ArrowRight | Key::ArrowDown => {
+                    if count == trace.steps.len() {
+                        break;
+                    }
+                    count += 1;
+                }
+                _ => {}
+            }
+        }
+    }
+    Ok(())
+}

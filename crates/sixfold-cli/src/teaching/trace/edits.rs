@@ -1,0 +1,193 @@
+//! The rows that an edit reads, writes, makes and deletes.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use serde::Serialize;
+use sixfold_explain::{EditCommand, EditTrace, RowChange};
+use sixfold_study::numbers::{counted, grouped};
+
+use crate::arguments;
+use crate::column_table::{Column, column_table};
+use crate::failure::Failure;
+use crate::output::{Output, check_outputs, is_stdout};
+use crate::teaching::{Refused, explain, mesh, print_refused};
+use crate::text::{TextOutput, hanging_indent};
+
+#[derive(Serialize)]
+struct Document<'d> {
+    mesh: &'d str,
+    edits: &'d [Vec<EditTrace>],
+    refused: &'d [Refused],
+}
+
+pub(super) fn run(path: Option<&Path>, arguments: &arguments::Trace) -> Result<ExitCode, Failure> {
+    let edits = arguments.edit.iter().map(|text| text.parse());
+    let edits: Vec<EditCommand> = edits.collect::<Result<_, _>>().map_err(Failure::usage)?;
+    check_outputs(path, &[("--json", arguments.json.as_ref())])?;
+    let json = Output::open_if(arguments.json.as_ref())?;
+    let to_stdout = arguments.json.as_deref().is_some_and(is_stdout);
+    let mut text = TextOutput::new(!to_stdout);
+    let (name, polygons) = mesh(path, &arguments.explained)?;
+    let (traces, refused) = explain(&arguments.explained, |structure| {
+        structure.edit(&polygons, &edits)
+    })?;
+    let blocks = traces.iter().flatten().map(|trace| block(&name, trace));
+    text.print_line(&blocks.collect::<Vec<_>>().join("\n\n\n"));
+    if traces.len() > 1 {
+        for i in 0..edits.len() {
+            let of_edit: Vec<&EditTrace> = traces.iter().map(|of| &of[i]).collect();
+            text.print_line(&format!("\n{}\n{}", edits[i], costs(&of_edit)));
+        }
+    }
+    print_refused(&refused, &mut text);
+    let document = Document {
+        mesh: &name,
+        edits: &traces,
+        refused: &refused,
+    };
+    text.finish_with_json(json, &document)
+}
+
+/// Returns one edit on one structure.
+fn block(mesh: &str, trace: &EditTrace) -> String {
+    let EditTrace {
+        structure, edit, ..
+    } = trace;
+    if let Some(refusal) = &trace.refusal {
+        let head = format!("{edit} in {structure}, {mesh}: refused, {}", reads(trace));
+        return format!(
+            "{}\n\n{}",
+            hanging_indent("", &head),
+            hanging_indent("! ", refusal)
+        );
+    }
+    let changed: Vec<&RowChange> = trace.rows.iter().filter(|row| row.is_changed()).collect();
+    let head = format!(
+        "{edit} in {structure}, {mesh}: {}, {}",
+        counted(changed.len(), "row changes", "rows change"),
+        reads(trace)
+    );
+    let mut lines = vec![hanging_indent("", &head), String::new()];
+    let name = |row: &RowChange| format!("{} {}", row.table, row.row);
+    let width = changed
+        .iter()
+        .map(|row| name(row).chars().count())
+        .max()
+        .unwrap_or(0);
+    for row in &changed {
+        lines.push(hanging_indent(
+            &format!("  {:<width$}  ", name(row)),
+            &change(row),
+        ));
+    }
+    let only_read = trace
+        .rows
+        .iter()
+        .filter(|row| !row.is_changed() && row.is_read);
+    let lists = [
+        ("only read: ", runs(only_read)),
+        ("new elements: ", trace.created.clone()),
+        ("deleted elements: ", trace.removed.clone()),
+        (
+            "moved to other rows: ",
+            trace.renamed.iter().map(renamed).collect(),
+        ),
+    ];
+    for (title, items) in lists {
+        if !items.is_empty() {
+            lines.push(hanging_indent(title, &items.join(", ")));
+        }
+    }
+    lines.join("\n")
+}
+
+fn reads(trace: &EditTrace) -> String {
+    format!(
+        "{}, {}",
+        counted(trace.reads, "read", "reads"),
+        counted(trace.writes, "write", "writes")
+    )
+}
+
+fn renamed([name, old, new]: &[String; 3]) -> String {
+    format!("{name} from {old} to {new}")
+}
+
+/// Lists rows: the first of each table with the name of the table, and rows that follow one another as
+/// `c1 to c5`.
+fn runs<'r>(rows: impl Iterator<Item = &'r RowChange>) -> Vec<String> {
+    let mut runs: Vec<(&RowChange, usize)> = Vec::new();
+    for row in rows {
+        match runs.last_mut() {
+            Some((first, rows))
+                if first.table == row.table && number(first) + *rows == number(row) =>
+            {
+                *rows += 1;
+            }
+            _ => runs.push((row, 1)),
+        }
+    }
+    let mut table = "";
+    let text = runs.into_iter().map(|(first, rows)| {
+        let title = if first.table == table {
+            String::new()
+        } else {
+            format!("{} ", first.table)
+        };
+        table = first.table;
+        let letter = first.row.trim_end_matches(|c: char| c.is_ascii_digit());
+        match rows {
+            1 => format!("{title}{}", first.row),
+            _ => format!(
+                "{title}{} to {letter}{}",
+                first.row,
+                number(first) + rows - 1
+            ),
+        }
+    });
+    text.collect()
+}
+
+/// Returns the number of a row.
+fn number(row: &RowChange) -> usize {
+    let digits = row.row.trim_start_matches(|c: char| !c.is_ascii_digit());
+    digits.parse().unwrap_or(0)
+}
+
+/// Returns the fields that change, or all fields of a new or deleted row.
+fn change(row: &RowChange) -> String {
+    let all = |fields: &Vec<String>| {
+        let fields = row.columns.iter().zip(fields);
+        let fields = fields.map(|(column, field)| format!("{column} {field}"));
+        fields.collect::<Vec<_>>().join(", ")
+    };
+    match (&row.before, &row.after) {
+        (None, Some(after)) => format!("new: {}", all(after)),
+        (Some(before), None) => format!("deleted: {}", all(before)),
+        (Some(before), Some(after)) => {
+            let fields = row.columns.iter().zip(before.iter().zip(after));
+            let fields = fields.filter(|(_, (old, new))| old != new);
+            let fields = fields.map(|(column, (old, new))| format!("{column} {old} → {new}"));
+            fields.collect::<Vec<_>>().join(", ")
+        }
+        (None, None) => String::new(),
+    }
+}
+
+/// Returns what an edit costs in each structure.
+fn costs(traces: &[&EditTrace]) -> String {
+    let names = Column::words("", traces.iter().map(|trace| trace.structure.to_owned()));
+    let figures = |head, figure: fn(&EditTrace) -> usize| {
+        Column::figures(head, traces.iter().map(|trace| grouped(figure(trace))))
+    };
+    let changed = |trace: &EditTrace| trace.rows.iter().filter(|row| row.is_changed()).count();
+    column_table(
+        &names,
+        &[
+            figures("rows changed", changed),
+            figures("reads", |trace| trace.reads),
+            figures("writes", |trace| trace.writes),
+        ],
+    )
+}

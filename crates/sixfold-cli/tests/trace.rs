@@ -1,0 +1,149 @@
+//! `sixfold trace`.
+
+use serde_json::Value;
+
+use crate::run::{Sixfold, run_ok, text};
+
+#[test]
+fn a_query_is_shown_read_by_read() {
+    let sixfold = Sixfold::new();
+    let run = run_ok(&sixfold, &["trace", "vertex_vertices", "v3"]);
+    let lines: Vec<&str> = run.stdout.lines().collect();
+    assert_eq!(
+        lines[..3],
+        [
+            "vertex_vertices of v3 in half-edge, cube: 3 results, 4 reads of rows, 4 cache",
+            "lines, 40 bytes",
+            "",
+        ]
+    );
+    for part in [
+        "  3    t = twin(h)",
+        "   3  halves h0   twin of h1",
+        "   4  yield v7",
+    ] {
+        assert!(run.stdout.contains(part), "{part}: {}", run.stdout);
+    }
+}
+
+#[test]
+fn all_structures_are_traced_and_their_costs_compared() {
+    let sixfold = Sixfold::new();
+    sixfold.grid("grid.obj", 20);
+    let arguments = [
+        "trace",
+        "grid.obj",
+        "edge_faces",
+        "v21-v22",
+        "--all",
+        "--triangulate",
+    ];
+    let run = run_ok(
+        &sixfold,
+        &[&arguments[..], &["--json", "traces.json"]].concat(),
+    );
+    assert!(
+        run.stdout.lines().all(|line| line.chars().count() <= 80),
+        "{}",
+        run.stdout
+    );
+    // A scan is one line, although it reads thousands of rows.
+    assert!(run.stdout.contains("every row in order"), "{}", run.stdout);
+    let document: Value = serde_json::from_str(&text(&sixfold, "traces.json")).expect("JSON");
+    let traces = document["traces"].as_array().expect("a list");
+    assert_eq!(traces.len(), 6);
+    for trace in traces {
+        assert_eq!(
+            trace["results"].as_array().expect("a list").len(),
+            2,
+            "{trace}"
+        );
+        let steps = trace["steps"].as_array().expect("a list");
+        let rows = steps
+            .iter()
+            .filter_map(|step| step["rows"].as_u64())
+            .sum::<u64>();
+        assert_eq!(Some(rows), trace["reads"].as_u64(), "{trace}");
+    }
+    assert_eq!(traces[0]["backend"], "polygon-soup");
+    assert!(traces[0]["reads"].as_u64().expect("a number") > 2_000);
+}
+
+#[test]
+fn an_edit_is_shown_with_the_rows_before_and_after() {
+    let sixfold = Sixfold::new();
+    let edits = ["--edit", "flip_edge v0-v2", "--edit", "compact"];
+    let run = run_ok(
+        &sixfold,
+        &[&["trace", "--triangulate", "--all"][..], &edits].concat(),
+    );
+    assert!(
+        run.stdout.lines().all(|line| line.chars().count() <= 80),
+        "{}",
+        run.stdout
+    );
+    for part in [
+        "flip_edge v0-v2 in half-edge, cube: 7 rows change, 16 reads, 8 writes",
+        "  halves h2   origin v0 → v3, next h11 → h5",
+        "half-edge                    7     16       8",
+        "only read: spokes v0, v2, edges e6 to e7, e11 to e12",
+    ] {
+        assert!(run.stdout.contains(part), "{part}: {}", run.stdout);
+    }
+    let refused = run_ok(&sixfold, &["trace", "--edit", "flip_edge v0-v1"]);
+    assert!(refused.stdout.contains("refused"), "{}", refused.stdout);
+    assert!(
+        refused.stdout.contains("! face f1 has 4 corners"),
+        "{}",
+        refused.stdout
+    );
+}
+
+#[test]
+fn what_cannot_be_traced_is_one_clear_line() {
+    let sixfold = Sixfold::new();
+    let cases: [(&[&str], i32, &str); 9] = [
+        (&["trace"], 2, "name a relation and an element"),
+        (&["trace", "v3"], 2, "name a relation and an element"),
+        (
+            &["trace", "v3", "vertex_vertices"],
+            2,
+            "no relation is called `v3`",
+        ),
+        (
+            &["trace", "vertex_vertices", "3"],
+            2,
+            "`3` names no element: write v3",
+        ),
+        (
+            &["trace", "vertex_vertices", "v8"],
+            2,
+            "half-edge has no vertex v8",
+        ),
+        (
+            &["trace", "vertex_vertices", "f0"],
+            2,
+            "vertex_vertices starts from a vertex",
+        ),
+        (
+            &["trace", "edge_faces", "v0-v6", "--all"],
+            2,
+            "has no edge v0-v6",
+        ),
+        (
+            &["trace", "face_faces", "f0", "--backend", "corner-table"],
+            3,
+            "corner-table cannot hold the mesh",
+        ),
+        (&["trace", "--edit", "flip"], 2, "no edit is called `flip`"),
+    ];
+    for (arguments, code, message) in cases {
+        let run = sixfold.run(arguments);
+        assert_eq!(run.code, Some(code), "{arguments:?}: {run:?}");
+        assert!(
+            run.stderr.starts_with("error: ") && run.stderr.contains(message),
+            "{run:?}"
+        );
+        assert_eq!(run.stderr.lines().count(), 1, "{run:?}");
+    }
+}
