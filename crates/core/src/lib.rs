@@ -136,7 +136,7 @@ pub use tables::pairing::{LinkFaces, SideRows, TwinPairs, pair_triangle_sides};
 pub use tables::ranks::Ranks;
 pub use tables::table::Table;
 pub use tables::threads::join;
-pub use traits::described::{Column, Described, Element, Field, Line, RecordTable, RowName};
+pub use traits::described::{Column, Described, Element, Field, Line, RecordTable, RowName, Word};
 pub use traits::invariant_checks;
 pub use traits::query::ring;
 pub use traits::refine::{

@@ -4,7 +4,7 @@ mod algorithms;
 
 use sixfold_core::{
     Column, Described, Editing, Element, Field, HoleSet, Line, Probe, RecordTable, Relation,
-    RowName,
+    RowName, Word,
 };
 
 use crate::mesh::{CornerId, CornerTable};
@@ -68,6 +68,12 @@ impl<P: Probe, E: Editing> Described for CornerTable<E, P> {
             Element::Face(f) => RowName::new("f", f),
         }]
     }
+
+    const WORDS: &'static [Word] = &[
+        Word::new("c", "right", "opposite(next(x))"),
+        Word::new("c", "left", "opposite(prev(x))"),
+        Word::new("c", "swing", "next(opposite(next(x)))"),
+    ];
 
     fn algorithm(relation: Relation) -> &'static [Line] {
         algorithms::of(relation)

@@ -25,6 +25,10 @@ pub struct EditTrace {
     pub edit: String,
     /// The rule that the edit breaks, if the structure refuses it. Then nothing is changed.
     pub refusal: Option<String>,
+    /// The numbers of elements before the edit.
+    pub before: Elements,
+    /// The numbers of elements after the edit.
+    pub after: Elements,
     /// The number of reads of rows.
     pub reads: usize,
     /// The number of writes of rows.
@@ -38,6 +42,24 @@ pub struct EditTrace {
     /// The elements whose rows have other numbers after the edit: the name of the element, and the rows
     /// before and after.
     pub renamed: Vec<[String; 3]>,
+}
+
+/// The numbers of elements of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Elements {
+    /// The number of vertices.
+    pub vertices: usize,
+    /// The number of edges.
+    pub edges: usize,
+    /// The number of faces.
+    pub faces: usize,
+}
+
+impl Elements {
+    /// Returns the Euler characteristic: V − E + F.
+    pub fn euler(&self) -> i64 {
+        self.vertices as i64 - self.edges as i64 + self.faces as i64
+    }
 }
 
 /// A row before and after an edit.
@@ -198,7 +220,7 @@ where
     fn run(&mut self, command: &EditCommand) -> Result<EditTrace, ExplainError> {
         // An edit can add tables, for example if the faces no longer have the same degree.
         let mut tables = self.mesh.tables();
-        let before = self.rows();
+        let (before, elements) = (self.rows(), self.elements());
         let mut record = EditRecord::new();
         let refusal = self.apply(command, &mut record)?;
         let accesses = self.probe.take();
@@ -243,6 +265,8 @@ where
             structure: M::NAME,
             edit: command.to_string(),
             refusal,
+            before: elements,
+            after: self.elements(),
             reads,
             writes,
             rows,
@@ -250,6 +274,16 @@ where
             removed: [vertices.removed, faces.removed].concat(),
             renamed: [vertices.renamed, faces.renamed].concat(),
         })
+    }
+
+    fn elements(&self) -> Elements {
+        let elements = Elements {
+            vertices: self.mesh.vertex_count(),
+            edges: self.mesh.edge_count(),
+            faces: self.mesh.face_count(),
+        };
+        self.probe.take();
+        elements
     }
 
     /// Returns the stored fields of all rows.

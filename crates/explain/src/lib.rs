@@ -20,7 +20,7 @@
 //! assert_eq!(half_edges.rows[1].name, "h1");
 //!
 //! let trace = half_edge.trace(&shapes::cube(), Relation::VertexVertices, "v3".parse()?)?;
-//! assert_eq!((trace.results.len(), trace.reads), (3, 4));
+//! assert_eq!((trace.results.len(), trace.cost.reads), (3, 4));
 //! let Step::Read(second) = &trace.steps[1] else { unreachable!("a walk begins with two reads") };
 //! assert_eq!((second.row.as_str(), second.reason.text.as_str()), ("h0", "twin of h1"));
 //!
@@ -36,11 +36,14 @@ mod reason;
 mod records;
 mod structure;
 mod trace;
+mod walk;
+mod walk_parser;
 
-pub use edit::{EditTrace, RowChange};
+pub use edit::{EditTrace, Elements, RowChange};
 pub use edit_command::EditCommand;
 pub use element::ElementName;
 pub use reason::Reason;
 pub use records::{Record, RecordColumn, Records};
-pub use structure::{ExplainError, Structure};
-pub use trace::{Read, Step, Trace};
+pub use structure::{ExplainError, Query, Structure};
+pub use trace::{Cost, Read, Step, Trace};
+pub use walk::{Comparison, Walk};

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use sixfold::{BuildError, MeshEdit, PolygonMesh, Relation, Representation};
+use sixfold::{BuildError, MeshEdit, PolygonMesh, Relation, Representation, UnknownName};
 use sixfold_core::{Described, Measured, Traced};
 
 use crate::edit::{EditTrace, edit, edited_records};
@@ -10,6 +10,10 @@ use crate::edit_command::EditCommand;
 use crate::element::ElementName;
 use crate::records::{Records, records};
 use crate::trace::{Trace, trace};
+use crate::walk::{Walk, walk};
+
+/// A relation, and the element from which a query starts.
+pub type Query = (Relation, ElementName);
 
 type Explained<T> = Result<Vec<T>, ExplainError>;
 
@@ -26,6 +30,7 @@ pub struct Structure {
     name: &'static str,
     records: fn(&PolygonMesh, &Range<usize>) -> Result<Vec<Records>, BuildError>,
     trace: fn(&PolygonMesh, Relation, ElementName) -> Result<Trace, ExplainError>,
+    walk: fn(&PolygonMesh, &str, Option<Query>) -> Result<Walk, ExplainError>,
     edits: Option<Edits>,
 }
 
@@ -55,6 +60,15 @@ pub enum ExplainError {
     /// The structure was given without its editable form.
     #[error("{structure} has no edits")]
     NoEdits { structure: &'static str },
+    /// A text that is not a walk, or that names a row that does not exist.
+    #[error("{reason}")]
+    BadWalk { reason: String },
+    /// A step of a walk that has no answer.
+    #[error("{reason}")]
+    Stopped { reason: String },
+    /// A word of a walk that the structure does not know.
+    #[error(transparent)]
+    UnknownWord(#[from] UnknownName),
     /// The relation starts from another kind of element.
     #[error("{relation} starts from {}, and {element} is {}", an(wanted), an(element.kind()))]
     WrongKind {
@@ -71,11 +85,16 @@ fn an(kind: &str) -> String {
 
 impl Structure {
     /// Returns the structure `M`, which need not be part of Sixfold.
-    pub fn new<M: Representation + Measured + Described>() -> Self {
+    pub fn new<M>() -> Self
+    where
+        M: Representation + Measured + Described,
+        M::Probed<Traced>: Described,
+    {
         Self {
             name: M::NAME,
             records: |polygons, rows| Ok(records(&M::from_polygons(polygons)?, rows)),
             trace: trace::<M>,
+            walk: walk::<M>,
             edits: None,
         }
     }
@@ -151,6 +170,30 @@ impl Structure {
         element: ElementName,
     ) -> Result<Trace, ExplainError> {
         (self.trace)(polygons, relation, element)
+    }
+
+    /// Builds the structure from `polygons`, and runs a walk in the words of the structure: the names of
+    /// its fields. Compares the results with the relation `expected`. O(corners of the mesh).
+    ///
+    /// ```text
+    /// h = leaving(v3); repeat { yield target(h); h = next(twin(h)) }
+    /// ```
+    ///
+    /// A loop ends when its variable has the first value again. A step that has no answer, such as the
+    /// opposite of a corner at a boundary, ends the walk ([`Walk::stopped`]).
+    ///
+    /// # Errors
+    ///
+    /// Returns [`ExplainError::Refused`] if the structure cannot hold the mesh, and
+    /// [`ExplainError::BadWalk`] or [`ExplainError::UnknownWord`] for a text that is not a walk on this
+    /// structure.
+    pub fn walk(
+        &self,
+        polygons: &PolygonMesh,
+        walk: &str,
+        expected: Option<Query>,
+    ) -> Result<Walk, ExplainError> {
+        (self.walk)(polygons, walk, expected)
     }
 
     /// Builds the structure from `polygons`, runs the edits one after the other, and returns what each

@@ -27,14 +27,22 @@ pub struct Trace {
     pub algorithm: Vec<&'static str>,
     /// The reads and the results, in their order.
     pub steps: Vec<Step>,
+    /// What the reads cost.
+    #[serde(flatten)]
+    pub cost: Cost,
+    /// The names of the results, in their order.
+    pub results: Vec<String>,
+}
+
+/// What the reads of a query or of a walk cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Cost {
     /// The number of reads of rows. A row that is read twice counts twice.
     pub reads: usize,
     /// The number of different cache lines, if each table begins at the start of a line.
     pub cache_lines: usize,
     /// The bytes of the rows that are read. Each row counts once.
     pub bytes: usize,
-    /// The names of the results, in their order.
-    pub results: Vec<String>,
 }
 
 /// One step of a query.
@@ -99,6 +107,19 @@ where
         results,
         ..
     } = recorder;
+    Ok(Trace {
+        structure: M::NAME,
+        relation,
+        element: named.name(handle),
+        algorithm: lines.iter().map(|line| line.text).collect(),
+        steps,
+        cost: cost(&reads),
+        results,
+    })
+}
+
+/// Returns what reads cost.
+pub(crate) fn cost(reads: &[Access]) -> Cost {
     let rows: BTreeSet<(&str, usize, usize)> = (reads.iter())
         .map(|access| (access.table, access.row, access.bytes))
         .collect();
@@ -109,17 +130,11 @@ where
             (first..=last).map(move |line| (table, line))
         })
         .collect();
-    Ok(Trace {
-        structure: M::NAME,
-        relation,
-        element: named.name(handle),
-        algorithm: lines.iter().map(|line| line.text).collect(),
-        steps,
+    Cost {
         reads: reads.len(),
         cache_lines: cache_lines.len(),
         bytes: rows.iter().map(|&(_, _, bytes)| bytes).sum(),
-        results,
-    })
+    }
 }
 
 /// Checks that the element is of the kind that the relation starts from.

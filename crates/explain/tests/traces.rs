@@ -130,7 +130,7 @@ impl<M: Representation + Measured + Described> Expected<M> {
             .clone()
             .flat_map(|read| (row(read)..row(read) + read.rows).map(|row| (read.table, row)))
             .collect();
-        if rows != self.reads || trace.reads != rows.len() {
+        if rows != self.reads || trace.cost.reads != rows.len() {
             return Some(format!("reads {rows:?}, expected {:?}", self.reads));
         }
         let mut known: BTreeSet<RowName> = BTreeSet::new();
@@ -221,10 +221,11 @@ fn stepped<T>(mut results: impl Iterator<Item = T>, name: impl Fn(T) -> String) 
 }
 
 /// Checks the traces of all queries of a structure on a mesh. Returns the number of traces.
-fn check<M: Representation + Measured + Described>(
-    polygons: &PolygonMesh,
-    mesh_name: &str,
-) -> usize {
+fn check<M>(polygons: &PolygonMesh, mesh_name: &str) -> usize
+where
+    M: Representation + Measured + Described,
+    M::Probed<Traced>: Described,
+{
     let Ok(mesh) = M::from_polygons(polygons) else {
         return 0;
     };

@@ -11,7 +11,7 @@ use crate::mesh::{BLANK_CORNER, BLANK_PLACE, FaceVertexMesh, Fan};
 
 const CORNERS: &[Column] = &[
     Column::stored("vertex", "the vertex at the corner"),
-    Column::derived("face", "the face of the corner"),
+    Column::searched("face", "the face of the corner"),
 ];
 const FANS: &[Column] = &[
     Column::stored(

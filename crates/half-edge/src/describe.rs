@@ -4,7 +4,7 @@ mod algorithms;
 
 use sixfold_core::{
     Column, Described, Editing, Element, Field, HoleSet, Line, Probe, RecordTable, Relation,
-    RowName,
+    RowName, Word,
 };
 
 use crate::mesh::{HalfEdgeId, HalfEdgeMesh};
@@ -21,7 +21,7 @@ const HALVES: &[Column] = &[
     ),
     Column::stored("face", "the face on the left; none on a boundary loop"),
     Column::derived("twin", "the half-edge in the opposite direction"),
-    Column::derived("prev", "the half-edge before it, which a walk finds"),
+    Column::searched("prev", "the half-edge before it, which a walk finds"),
     Column::derived("edge", "the edge of the half-edge and its twin"),
 ];
 const FIRST: &[Column] = &[Column::stored(
@@ -79,6 +79,8 @@ impl<P: Probe, E: Editing> Described for HalfEdgeMesh<E, P> {
             Element::Face(f) => vec![RowName::new("f", f)],
         }
     }
+
+    const WORDS: &'static [Word] = &[Word::new("h", "target", "origin(twin(x))")];
 
     fn algorithm(relation: Relation) -> &'static [Line] {
         algorithms::of(relation)

@@ -4,7 +4,7 @@ use sixfold_core::{Column, Editing, Field, HoleSet, Probe, RecordTable};
 
 use crate::scanned::{ScannedFaces, ScannedVertex};
 
-const FACE: Column = Column::derived("face", "the face of the corner");
+const FACE: Column = Column::searched("face", "the face of the corner");
 const VERTICES: &[Column] = &[Column::stored("vertex", "the vertex at the corner"), FACE];
 const POSITIONS: &[Column] = &[
     Column::stored("position", "the coordinates of the corner"),

@@ -42,7 +42,7 @@ pub(crate) use repair::{Repair, repair_options};
 pub(crate) use reshaping::{Dual, Smooth, Triangulate};
 pub(crate) use results::ResultFiles;
 pub(crate) use subdivision::{Schemes, Select, Subdivide};
-pub(crate) use teaching::{Explained, Tables, Trace};
+pub(crate) use teaching::{Explained, Lessons, Tables, Trace};
 pub(crate) use why::Why;
 
 use crate::many::{LabSelection, Shard};
@@ -162,6 +162,8 @@ pub(crate) enum Command {
     Tables(Tables),
     /// Step through a query or an edit: what it reads and writes, and why
     Trace(Trace),
+    /// Learn how the structures work: short lessons with questions
+    Lessons(Lessons),
     /// Measure how the order of vertices and faces in memory affects the times
     Orders(Orders),
     /// Measure how the times grow with the size of the mesh

@@ -31,7 +31,7 @@ const GROUPS: [(&str, &[&str]); 6] = [
             "schemes",
         ],
     ),
-    ("See how structures work", &["tables", "trace"]),
+    ("See how structures work", &["tables", "trace", "lessons"]),
     ("Saved results", &["report", "compare", "merge"]),
     (
         "Meshes",

@@ -78,6 +78,15 @@ fn written_fields() -> BTreeSet<String> {
     run_ok(&sixfold, &query);
     let edit = ["trace", "--edit", "poke_face f0", "--json", "edit.json"];
     run_ok(&sixfold, &edit);
+    let walk = [
+        "trace",
+        "--walk",
+        "yield v0",
+        "--expect",
+        "vertex_vertices v3",
+    ];
+    let walk = [&walk[..], &["--json", "walk.json"]].concat();
+    assert_eq!(sixfold.run(&walk).code, Some(1));
     let mut fields = BTreeSet::new();
     let documents = [
         "all.json",
@@ -85,6 +94,7 @@ fn written_fields() -> BTreeSet<String> {
         "tables.json",
         "trace.json",
         "edit.json",
+        "walk.json",
     ];
     for file in documents {
         add_fields(&parsed(&text(&sixfold, file)), &mut fields);

@@ -100,6 +100,74 @@ fn an_edit_is_shown_with_the_rows_before_and_after() {
 }
 
 #[test]
+fn a_walk_is_compared_with_a_relation() {
+    let sixfold = Sixfold::new();
+    let right = "h = leaving(v3); repeat { yield target(h); h = next(twin(h)) }";
+    let expect = ["--expect", "vertex_vertices v3"];
+    let run = run_ok(
+        &sixfold,
+        &[&["trace", "--walk", right][..], &expect].concat(),
+    );
+    let answer = "Right: the walk yields vertex_vertices of v3.";
+    assert!(run.stdout.contains(answer), "{}", run.stdout);
+    let wrong = right.replace("target", "origin");
+    let run = sixfold.run(&[&["trace", "--walk", &wrong][..], &expect].concat());
+    assert_eq!(run.code, Some(1), "{run:?}");
+    let answer = "Not vertex_vertices of v3: the walk does not yield";
+    assert!(run.stdout.contains(answer), "{}", run.stdout);
+    let stopped = sixfold.run(&[
+        "trace",
+        "--triangulate",
+        "--backend",
+        "corner-table",
+        "--walk",
+        "yield next(none)",
+    ]);
+    assert_eq!(stopped.code, Some(1), "{stopped:?}");
+    assert!(
+        stopped
+            .stdout
+            .contains("! the walk ends here: line 1: none is none"),
+        "{stopped:?}"
+    );
+    for (walk, message) in [
+        ("h =", "the walk ends where a value"),
+        ("yield nxt(h0)", "`nxt`"),
+    ] {
+        let run = sixfold.run(&["trace", "--walk", walk]);
+        assert_eq!(run.code, Some(2), "{run:?}");
+        assert!(run.stderr.contains(message), "{run:?}");
+    }
+}
+
+#[test]
+fn lessons_are_listed_and_run() {
+    let sixfold = Sixfold::new();
+    let list = run_ok(&sixfold, &["lessons"]);
+    assert!(list.stdout.lines().count() > 12, "{}", list.stdout);
+    for line in list.stdout.lines().take_while(|line| !line.is_empty()) {
+        let name = line.split_whitespace().next().expect("a name");
+        assert!(line.len() > name.len() + 2, "{line}");
+    }
+    // Standard input is no terminal, so the lesson does not wait.
+    let lesson = run_ok(&sixfold, &["lessons", "flip"]);
+    for part in [
+        "HOW MANY ROWS",
+        "$ sixfold trace --triangulate --all",
+        "? When is a flip refused?",
+    ] {
+        assert!(lesson.stdout.contains(part), "{part}: {}", lesson.stdout);
+    }
+    assert_eq!(sixfold.names(), Vec::<String>::new());
+    let unknown = sixfold.run(&["lessons", "flap"]);
+    assert_eq!(unknown.code, Some(2));
+    assert!(
+        unknown.stderr.contains("did you mean `flip`?"),
+        "{unknown:?}"
+    );
+}
+
+#[test]
 fn what_cannot_be_traced_is_one_clear_line() {
     let sixfold = Sixfold::new();
     let cases: [(&[&str], i32, &str); 9] = [

@@ -26,6 +26,9 @@ pub trait Described: MeshQuery {
     /// without rows for this kind of element returns none, or the rows of the ends of an edge.
     fn rows_of(&self, element: Element<Self>) -> Vec<RowName>;
 
+    /// Words of textbooks that stand for several fields. None by default.
+    const WORDS: &'static [Word] = &[];
+
     /// Returns the steps of a query, as a textbook writes them. No steps by default.
     fn algorithm(relation: Relation) -> &'static [Line] {
         let _ = relation;
@@ -83,6 +86,28 @@ impl Line {
     /// Returns a line that reads no row.
     pub const fn text(text: &'static str) -> Self {
         Self { text, reads: &[] }
+    }
+}
+
+/// A word of textbooks for several fields, such as `target` for the origin of the twin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Word {
+    /// The letter of the rows to which the word applies.
+    pub letter: &'static str,
+    /// The word.
+    pub name: &'static str,
+    /// The fields of the row `x`, such as `origin(twin(x))`.
+    pub means: &'static str,
+}
+
+impl Word {
+    /// Returns a word. The arguments are the fields, in their order.
+    pub const fn new(letter: &'static str, name: &'static str, means: &'static str) -> Self {
+        Self {
+            letter,
+            name,
+            means,
+        }
     }
 }
 
@@ -154,6 +179,8 @@ pub struct Column {
     pub about: &'static str,
     /// True if the field is not stored: it follows from the number of the row, or from other fields.
     pub is_derived: bool,
+    /// True if a derived field is found by reading other rows.
+    pub is_searched: bool,
 }
 
 impl Column {
@@ -163,6 +190,7 @@ impl Column {
             name,
             about,
             is_derived: false,
+            is_searched: false,
         }
     }
 
@@ -172,6 +200,16 @@ impl Column {
             name,
             about,
             is_derived: true,
+            is_searched: false,
+        }
+    }
+
+    /// Returns a column that is not stored, whose fields are found by reading other rows. A table has
+    /// at most one such column.
+    pub const fn searched(name: &'static str, about: &'static str) -> Self {
+        Self {
+            is_searched: true,
+            ..Self::derived(name, about)
         }
     }
 

@@ -68,6 +68,8 @@ const TRACE_EXAMPLES: &str = "Examples:
   sixfold trace cube.obj vertex_edges v3 --interactive  step by keys
   sixfold trace --triangulate --edit \"flip_edge v0-v2\"  the rows before and after an edit
   sixfold trace torus.obj --edit \"collapse_edge v0-v1 v0\" --edit compact --all
+  sixfold trace --walk \"h = leaving(v3); repeat { yield target(h); h = next(twin(h)) }\"
+                --expect \"vertex_vertices v3\"          a walk of your own
 
 An element is named by the numbers of the mesh file, from 0: v3 is a vertex, v0-v1 is the edge
 between two vertices, f2 is a face. The relations are vertex_vertices, vertex_edges, vertex_faces,
@@ -81,7 +83,12 @@ split_vertex v0 v1 v2 (left and right, none at a boundary); compact. A position 
 each edit that makes or moves a vertex; without it, the middle is taken. New elements get the next
 numbers.
 
-Exit codes: 0 success; 2 wrong usage or unusable input; 3 the structure cannot hold the mesh.";
+A walk has statements of these forms, with ; between them: h = VALUE; yield VALUE; repeat { … };
+if VALUE = VALUE { … } else { … } (also !=). A value is a name such as h, a row such as v3, none, or
+a field of a value, such as next(h): the columns of `sixfold tables`, with _ for spaces. A loop ends
+when its variable, the last one that it sets, has the first value again.
+
+Exit codes: 0 success; 1 a walk has no answer, or other results than --expect; 2 wrong usage or unusable input; 3 the structure cannot hold the mesh.";
 
 /// Step through a query or an edit: what it reads and writes, and why.
 ///
@@ -97,6 +104,12 @@ pub(crate) struct Trace {
     /// Show this edit instead of a query; several edits follow one another
     #[arg(long, value_name = "EDIT", conflicts_with = "interactive")]
     pub(crate) edit: Vec<String>,
+    /// Run this walk in the words of the structure instead of a query
+    #[arg(long, value_name = "WALK", conflicts_with_all = ["interactive", "edit"])]
+    pub(crate) walk: Option<String>,
+    /// Compare the results of the walk with a relation, such as "vertex_vertices v3"
+    #[arg(long, value_name = "RELATION ELEMENT", requires = "walk")]
+    pub(crate) expect: Option<String>,
     #[command(flatten)]
     pub(crate) explained: Explained,
     /// Step through the query by keys
@@ -105,6 +118,31 @@ pub(crate) struct Trace {
     /// Write the traces as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
+}
+
+const LESSONS_EXAMPLES: &str = "Examples:
+  sixfold lessons                           the list
+  sixfold lessons around-a-vertex           one lesson, with questions
+  sixfold lessons flip --no-wait            all at once
+
+Exit codes: 0 success; 2 wrong usage.";
+
+/// Learn how the structures work: short lessons with questions.
+///
+/// Each lesson shows meshes and commands, asks questions, waits for your answer, and shows its own. Without
+/// a name, the command lists the lessons.
+#[derive(Debug, Args)]
+#[command(after_help = LESSONS_EXAMPLES, verbatim_doc_comment)]
+pub(crate) struct Lessons {
+    /// The lesson
+    #[arg(value_name = "NAME")]
+    pub(crate) name: Option<String>,
+    /// Print everything without waiting for an answer
+    #[arg(long)]
+    pub(crate) no_wait: bool,
+    /// Write all lessons as Markdown pages with the output of their commands
+    #[arg(long, value_name = "DIR", conflicts_with = "name")]
+    pub(crate) markdown: Option<PathBuf>,
 }
 
 /// Parses `3..7`: the rows 3 to 7.

@@ -1,14 +1,16 @@
 //! `sixfold trace`: steps through a query, and shows what an edit reads and writes.
 
 mod edits;
+mod walks;
 
+use std::fmt::Display;
 use std::path::Path;
 use std::process::ExitCode;
 
 use console::{Key, Term};
 use serde::Serialize;
 use sixfold::Relation;
-use sixfold_explain::{ElementName, Read, Step, Trace};
+use sixfold_explain::{Cost, ElementName, Read, Step, Trace};
 use sixfold_study::numbers::counted;
 
 use crate::arguments;
@@ -26,13 +28,12 @@ struct Document<'d> {
 }
 
 pub(crate) fn run(arguments: &arguments::Trace) -> Result<ExitCode, Failure> {
-    match arguments.query.as_slice() {
-        [] if !arguments.edit.is_empty() => edits::run(None, arguments),
-        [path] if !arguments.edit.is_empty() => edits::run(Some(Path::new(path)), arguments),
-        [relation, element] if arguments.edit.is_empty() => {
-            queries(None, [relation, element], arguments)
-        }
-        [path, relation, element] if arguments.edit.is_empty() => {
+    let (edits, walk) = (!arguments.edit.is_empty(), arguments.walk.as_deref());
+    match (arguments.query.as_slice(), walk) {
+        (path @ ([] | [_]), Some(walk)) => walks::run(path.first().map(Path::new), walk, arguments),
+        (path @ ([] | [_]), None) if edits => edits::run(path.first().map(Path::new), arguments),
+        ([relation, element], None) if !edits => queries(None, [relation, element], arguments),
+        ([path, relation, element], None) if !edits => {
             queries(Some(Path::new(path)), [relation, element], arguments)
         }
         _ => Err(Failure::usage(
@@ -79,8 +80,8 @@ fn queries(
 fn block(mesh: &str, trace: &Trace) -> String {
     let parts = [
         hanging_indent("", &headline(mesh, trace)),
-        algorithm(trace, None),
-        steps(trace, trace.steps.len()),
+        algorithm(&trace.algorithm, None),
+        steps(&trace.steps),
     ];
     parts
         .into_iter()
@@ -91,25 +92,32 @@ fn block(mesh: &str, trace: &Trace) -> String {
 
 /// Returns what the query yields, and what this costs.
 fn headline(mesh: &str, trace: &Trace) -> String {
-    let results = counted(trace.results.len(), "result", "results");
-    let cost = match trace.reads {
-        0 => "no reads".to_owned(),
-        _ => format!(
-            "{} of rows, {}, {}",
-            counted(trace.reads, "read", "reads"),
-            counted(trace.cache_lines, "cache line", "cache lines"),
-            counted(trace.bytes, "byte", "bytes"),
-        ),
-    };
     format!(
-        "{} of {} in {}, {mesh}: {results}, {cost}",
-        trace.relation, trace.element, trace.structure
+        "{} of {} in {}, {mesh}: {}",
+        trace.relation,
+        trace.element,
+        trace.structure,
+        cost(&trace.results, trace.cost)
     )
 }
 
+/// Returns the number of results, and what they cost.
+fn cost(results: &[String], cost: Cost) -> String {
+    let results = counted(results.len(), "result", "results");
+    match cost.reads {
+        0 => format!("{results}, no reads"),
+        _ => format!(
+            "{results}, {} of rows, {}, {}",
+            counted(cost.reads, "read", "reads"),
+            counted(cost.cache_lines, "cache line", "cache lines"),
+            counted(cost.bytes, "byte", "bytes"),
+        ),
+    }
+}
+
 /// Returns the lines of the algorithm, with a mark at the current line.
-fn algorithm(trace: &Trace, current: Option<usize>) -> String {
-    let lines = trace.algorithm.iter().enumerate().map(|(i, line)| {
+fn algorithm(lines: &[impl Display], current: Option<usize>) -> String {
+    let lines = lines.iter().enumerate().map(|(i, line)| {
         let mark = if current == Some(i) { '>' } else { ' ' };
         format!("{mark} {}  {line}", i + 1)
     });
@@ -119,10 +127,10 @@ fn algorithm(trace: &Trace, current: Option<usize>) -> String {
 /// Maximum number of steps that are printed.
 const MOST_STEPS: usize = 200;
 
-/// Returns the first steps as a table. Its last column is broken into lines.
-fn steps(trace: &Trace, count: usize) -> String {
+/// Returns the steps as a table. Its last column is broken into lines.
+fn steps(steps: &[Step]) -> String {
     const HEADS: [&str; 4] = ["line", "reads", "because", "finds"];
-    let shown = &trace.steps[..count.min(MOST_STEPS)];
+    let shown = &steps[..steps.len().min(MOST_STEPS)];
     let cells: Vec<[String; 4]> = shown.iter().map(cells).collect();
     let width = |i: usize| {
         let widths = cells.iter().map(|cells| cells[i].chars().count());
@@ -140,8 +148,8 @@ fn steps(trace: &Trace, count: usize) -> String {
         let line = hanging_indent(&start([line, reads, because]), finds);
         lines.push(line.trim_end().to_owned());
     }
-    if count > shown.len() {
-        let more = counted(count - shown.len(), "more step", "more steps");
+    if steps.len() > shown.len() {
+        let more = counted(steps.len() - shown.len(), "more step", "more steps");
         lines.push(format!("… {more}: --json FILE has all"));
     }
     lines.join("\n")
@@ -206,9 +214,9 @@ fn costs(traces: &[Trace]) -> String {
     column_table(
         &names,
         &[
-            figures("reads", |trace| trace.reads),
-            figures("cache lines", |trace| trace.cache_lines),
-            figures("bytes", |trace| trace.bytes),
+            figures("reads", |trace| trace.cost.reads),
+            figures("cache lines", |trace| trace.cost.cache_lines),
+            figures("bytes", |trace| trace.cost.bytes),
         ],
     )
 }
@@ -232,8 +240,8 @@ fn step(mesh: &str, traces: &[Trace]) -> Result<(), Failure> {
             terminal.clear_screen().map_err(failed)?;
             let parts = [
                 headline(mesh, trace),
-                algorithm(trace, current),
-                steps(trace, count),
+                algorithm(&trace.algorithm, current),
+                steps(&trace.steps[..count]),
                 format!(
                     "step {count} of {}: space next, b back, n next structure, q quit",
                     trace.steps.len()

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use serde::Serialize;
-use sixfold_explain::{EditCommand, EditTrace, RowChange};
+use sixfold_explain::{EditCommand, EditTrace, Elements, RowChange};
 use sixfold_study::numbers::{counted, grouped};
 
 use crate::arguments;
@@ -68,7 +68,7 @@ fn block(mesh: &str, trace: &EditTrace) -> String {
         counted(changed.len(), "row changes", "rows change"),
         reads(trace)
     );
-    let mut lines = vec![hanging_indent("", &head), String::new()];
+    let mut lines = vec![hanging_indent("", &head), euler(trace), String::new()];
     let name = |row: &RowChange| format!("{} {}", row.table, row.row);
     let width = changed
         .iter()
@@ -100,6 +100,26 @@ fn block(mesh: &str, trace: &EditTrace) -> String {
         }
     }
     lines.join("\n")
+}
+
+/// Returns V − E + F before and after the edit.
+fn euler(trace: &EditTrace) -> String {
+    let sum = |of: Elements| {
+        let Elements {
+            vertices,
+            edges,
+            faces,
+        } = of;
+        format!("{vertices} − {edges} + {faces} = {}", of.euler())
+    };
+    match trace.before == trace.after {
+        true => format!("V − E + F stays {}", sum(trace.before)),
+        false => format!(
+            "V − E + F was {}, is {}",
+            sum(trace.before),
+            sum(trace.after)
+        ),
+    }
 }
 
 fn reads(trace: &EditTrace) -> String {

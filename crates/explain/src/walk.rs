@@ -1,0 +1,394 @@
+//! Walks that a reader writes, in the words of one structure.
+
+use std::collections::{BTreeMap, HashSet};
+
+use serde::Serialize;
+use sixfold::{PolygonMesh, Relation, Representation, UnknownName};
+use sixfold_core::{
+    Access, AccessKind, Column, Described, Field, Measured, RecordTable, RowName, Traced,
+};
+
+use crate::element::ElementName;
+use crate::reason::Reason;
+use crate::structure::{ExplainError, Query};
+use crate::trace::{Cost, Read, Step, cost, trace};
+use crate::walk_parser::{Kind, Program, Statement, Value, loop_variable, parse, text};
+
+/// A walk on one structure: what it reads, and what it yields.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Walk {
+    /// The name of the structure.
+    #[serde(rename = "backend")]
+    pub structure: &'static str,
+    /// The lines of the walk.
+    pub algorithm: Vec<String>,
+    /// The reads and the results, in their order.
+    pub steps: Vec<Step>,
+    /// What the reads cost.
+    #[serde(flatten)]
+    pub cost: Cost,
+    /// The names of the results, in their order.
+    pub results: Vec<String>,
+    /// Why the walk ended before its last line, if it did.
+    pub stopped: Option<String>,
+    /// The comparison with a relation, if one was asked for.
+    pub expected: Option<Comparison>,
+}
+
+/// The comparison of the results of a walk with a relation. The order does not count.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Comparison {
+    /// The relation.
+    pub relation: Relation,
+    /// The name of the element.
+    pub element: String,
+    /// The results of the relation that the walk does not yield.
+    pub missing: Vec<String>,
+    /// The results of the walk that the relation does not have, or has less often.
+    pub extra: Vec<String>,
+}
+
+/// Runs a walk on the structure `M`.
+pub(crate) fn walk<M>(
+    polygons: &PolygonMesh,
+    source: &str,
+    expected: Option<Query>,
+) -> Result<Walk, ExplainError>
+where
+    M: Representation + Measured + Described,
+    M::Probed<Traced>: Described,
+{
+    let program = parse(source)?;
+    let mesh = M::from_polygons(polygons).map_err(|refusal| ExplainError::Refused {
+        structure: M::NAME,
+        refusal,
+    })?;
+    let tables = mesh.memory().tables.into_iter();
+    let row_bytes = tables.map(|table| (table.table.into_owned(), table.row_bytes));
+    let row_bytes = row_bytes.collect();
+    let probe = Traced::default();
+    let mesh = mesh.probed(probe.clone());
+    let mut walker = Walker {
+        structure: M::NAME,
+        tables: mesh.tables(),
+        mesh: &mesh,
+        probe,
+        row_bytes,
+        variables: BTreeMap::new(),
+        steps: Vec::new(),
+        reads: Vec::new(),
+        results: Vec::new(),
+        line: 0,
+    };
+    let stopped = match walker.block(&program.statements) {
+        Ok(()) => None,
+        Err(ExplainError::Stopped { reason }) => Some(reason),
+        Err(error) => return Err(error),
+    };
+    let Walker {
+        steps,
+        reads,
+        results,
+        ..
+    } = walker;
+    let compared = |(relation, element)| compare::<M>(polygons, relation, element, &results);
+    Ok(Walk {
+        structure: M::NAME,
+        expected: expected.map(compared).transpose()?,
+        algorithm: program.lines,
+        steps,
+        cost: cost(&reads),
+        results,
+        stopped,
+    })
+}
+
+/// Compares the results of a walk with those of a query.
+fn compare<M: Representation + Measured + Described>(
+    polygons: &PolygonMesh,
+    relation: Relation,
+    element: ElementName,
+    results: &[String],
+) -> Result<Comparison, ExplainError> {
+    let query = trace::<M>(polygons, relation, element)?;
+    // The name of an edge is its row and its ends.
+    let row = |name: &String| name.split(' ').next().unwrap_or_default().to_owned();
+    let mut missing: Vec<String> = query.results.iter().map(row).collect();
+    let mut extra = Vec::new();
+    for result in results {
+        match missing.iter().position(|name| name == result) {
+            Some(place) => drop(missing.remove(place)),
+            None => extra.push(result.clone()),
+        }
+    }
+    Ok(Comparison {
+        relation,
+        element: query.element,
+        missing,
+        extra,
+    })
+}
+
+/// A walk that runs.
+struct Walker<'m, M> {
+    structure: &'static str,
+    mesh: &'m M,
+    probe: Traced,
+    tables: Vec<RecordTable>,
+    row_bytes: BTreeMap<String, usize>,
+    /// The values of the variables; `None` for none.
+    variables: BTreeMap<String, Option<RowName>>,
+    steps: Vec<Step>,
+    reads: Vec<Access>,
+    results: Vec<String>,
+    /// The current line.
+    line: usize,
+}
+
+impl<M: Described> Walker<'_, M> {
+    fn block(&mut self, statements: &[Statement]) -> Result<(), ExplainError> {
+        statements
+            .iter()
+            .try_for_each(|statement| self.statement(statement))
+    }
+
+    fn statement(&mut self, statement: &Statement) -> Result<(), ExplainError> {
+        self.line = statement.line;
+        match &statement.kind {
+            Kind::Assign(name, value) => {
+                let value = self.value(value)?;
+                self.variables.insert(name.clone(), value);
+                Ok(())
+            }
+            Kind::Yield(value) => {
+                let Some(row) = self.value(value)? else {
+                    return Err(self.stopped(format!("{} is none", text(value))));
+                };
+                let (result, line) = (row.to_string(), Some(self.line));
+                self.results.push(result.clone());
+                self.steps.push(Step::Yield { result, line });
+                Ok(())
+            }
+            Kind::If {
+                left,
+                is_equal,
+                right,
+                then,
+                otherwise,
+            } => {
+                let is_met = (self.value(left)? == self.value(right)?) == *is_equal;
+                self.block(if is_met { then } else { otherwise })
+            }
+            Kind::Repeat(body) => self.repeat(body),
+        }
+    }
+
+    /// Runs a loop until its variable has the first value again.
+    fn repeat(&mut self, body: &[Statement]) -> Result<(), ExplainError> {
+        let variable = loop_variable(body).unwrap_or_default();
+        let Some(&Some(first)) = self.variables.get(variable) else {
+            return Err(self.stopped(format!("{variable} names no row before the loop")));
+        };
+        let mut visited = HashSet::from([first]);
+        loop {
+            self.block(body)?;
+            match self.variables.get(variable).copied().flatten() {
+                None => {
+                    return Err(self.stopped(format!("{variable} is none at the end of the loop")));
+                }
+                Some(row) if row == first => return Ok(()),
+                Some(row) if !visited.insert(row) => {
+                    return Err(self.stopped(format!(
+                        "the loop never comes back to {first}: it is at {row} for the second time"
+                    )));
+                }
+                Some(_) => {}
+            }
+        }
+    }
+
+    fn stopped(&self, reason: String) -> ExplainError {
+        let reason = format!("line {}: {reason}", self.line + 1);
+        ExplainError::Stopped { reason }
+    }
+
+    fn value(&mut self, value: &Value) -> Result<Option<RowName>, ExplainError> {
+        match value {
+            Value::None => Ok(None),
+            Value::Name(name) => match self.variables.get(name) {
+                Some(row) => Ok(*row),
+                None => self.row(name).map(Some),
+            },
+            Value::Field(word, argument) => match self.value(argument)? {
+                Some(row) => self.field(word, row),
+                None => {
+                    let (argument, whole) = (text(argument), text(value));
+                    Err(self.stopped(format!("{argument} is none, so there is no {whole}")))
+                }
+            },
+        }
+    }
+
+    /// Returns the row with this name.
+    fn row(&self, name: &str) -> Result<RowName, ExplainError> {
+        let digits = name.trim_start_matches(|c: char| !c.is_ascii_digit());
+        let letter = &name[..name.len() - digits.len()];
+        let mut tables = self.tables.iter();
+        let table = tables.find(|table| table.letter == letter);
+        let row = digits.parse::<u32>().ok();
+        if let (Some(table), Some(row)) = (table, row)
+            && self.mesh.record(table.name, row as usize).is_some()
+        {
+            self.probe.take();
+            let letter = table.letter;
+            return Ok(RowName { letter, row });
+        }
+        let reason = match (table, row) {
+            (Some(table), Some(_)) => {
+                format!(
+                    "{} has no {} {name} in this mesh",
+                    self.structure, table.element
+                )
+            }
+            _ => format!("{name} has no value, and is not the name of a row, such as v3"),
+        };
+        Err(ExplainError::BadWalk { reason })
+    }
+
+    /// Reads a field of a row.
+    fn field(&mut self, word: &str, row: RowName) -> Result<Option<RowName>, ExplainError> {
+        let Some((table, place)) = self.find(word, row.letter) else {
+            return self.alias(word, row);
+        };
+        let column = table.columns[place];
+        self.probe.take();
+        let record = self.mesh.record(table.name, row.row as usize);
+        let searched = self.probe.take();
+        let record = record.unwrap_or_default();
+        let line = Some(self.line);
+        if column.is_searched {
+            for access in searched {
+                let table = self.tables.iter().find(|table| table.name == access.table);
+                if let Some(&table) = table {
+                    let fields = self.stored(table, access.row);
+                    let text = format!("to find {word} of {row}");
+                    self.push(table, access.row, fields, text, line);
+                }
+            }
+        } else if !column.is_derived {
+            let fields = stored_fields(&table, &record);
+            self.push(
+                table,
+                row.row as usize,
+                fields,
+                format!("{word}({row})"),
+                line,
+            );
+        }
+        match record.get(place) {
+            Some(Field::Row(to)) => Ok(Some(*to)),
+            Some(Field::None) => Ok(None),
+            Some(_) => Err(ExplainError::BadWalk {
+                reason: format!("{word}({row}) is no row"),
+            }),
+            None => Err(self.stopped(format!("{row} was deleted"))),
+        }
+    }
+
+    fn stored(&self, table: RecordTable, row: usize) -> Vec<(&'static str, String)> {
+        let record = self.mesh.record(table.name, row).unwrap_or_default();
+        self.probe.take();
+        stored_fields(&table, &record)
+    }
+
+    fn push(
+        &mut self,
+        table: RecordTable,
+        row: usize,
+        fields: Vec<(&'static str, String)>,
+        text: String,
+        line: Option<usize>,
+    ) {
+        self.reads.push(Access {
+            kind: AccessKind::Read,
+            table: table.name,
+            row,
+            bytes: self.row_bytes.get(table.name).copied().unwrap_or(0),
+        });
+        self.steps.push(Step::Read(Read {
+            table: table.name,
+            row: format!("{}{row}", table.letter),
+            rows: 1,
+            fields,
+            reason: Reason {
+                way: "walk",
+                of: None,
+                text,
+            },
+            line,
+        }));
+    }
+
+    /// Returns the table and the column that a word names: the name of a column, or of a table with one
+    /// column.
+    fn find(&self, word: &str, letter: &str) -> Option<(RecordTable, usize)> {
+        let tables = self.tables.iter().filter(|table| table.letter == letter);
+        let of_column = |table: &RecordTable| {
+            let column = table
+                .columns
+                .iter()
+                .position(|column| as_word(column.name) == word);
+            column.map(|column| (*table, column))
+        };
+        let of_table = |table: &&RecordTable| table.name == word && table.columns.len() == 1;
+        let mut columns = tables.clone().filter_map(of_column);
+        let mut names = tables.filter(of_table).map(|table| (*table, 0));
+        columns.next().or_else(|| names.next())
+    }
+
+    /// Evaluates a word that stands for several fields, such as `target` for `origin(twin(x))`.
+    fn alias(&mut self, word: &str, row: RowName) -> Result<Option<RowName>, ExplainError> {
+        let words = M::WORDS.iter().filter(|known| known.letter == row.letter);
+        let Some(known) = words.clone().find(|known| known.name == word) else {
+            let tables = self
+                .tables
+                .iter()
+                .filter(|table| table.letter == row.letter);
+            let columns = tables.flat_map(|table| table.columns.iter());
+            let mut names: Vec<String> = columns.map(|column| as_word(column.name)).collect();
+            names.extend(words.map(|word| word.name.to_owned()));
+            return Err(UnknownName::new("field", word, names).into());
+        };
+        // The steps of the word are those of the line that uses it.
+        let Program { statements, .. } = parse(&format!("x = {}", known.means))?;
+        let [
+            Statement {
+                kind: Kind::Assign(name, value),
+                ..
+            },
+        ] = statements.as_slice()
+        else {
+            unreachable!("one assignment was written above")
+        };
+        let hidden = self.variables.insert(name.clone(), Some(row));
+        let result = self.value(value);
+        match hidden {
+            Some(hidden) => self.variables.insert(name.clone(), hidden),
+            None => self.variables.remove(name),
+        };
+        result
+    }
+}
+
+/// Returns a name of a column as a word: `left next` is `left_next`.
+fn as_word(name: &str) -> String {
+    name.replace([' ', '-'], "_")
+}
+
+fn stored_fields(table: &RecordTable, record: &[Field]) -> Vec<(&'static str, String)> {
+    let fields = table.columns.iter().zip(record);
+    let stored = fields.filter(|(column, _): &(&Column, _)| !column.is_derived);
+    stored
+        .map(|(column, field)| (column.name, field.to_string()))
+        .collect()
+}

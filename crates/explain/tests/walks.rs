@@ -1,0 +1,222 @@
+//! Walks that a reader writes.
+
+use sixfold::{Relation, shapes};
+use sixfold_explain::{ElementName, ExplainError, Structure, Walk};
+
+/// A relation, and the walk that answers it in the words of one structure. `V`, `F` and `E` stand for
+/// the row of the element.
+const WALKS: [(&str, Relation, &str); 14] = [
+    (
+        "half-edge",
+        Relation::VertexVertices,
+        "h = leaving(V); repeat { yield target(h); h = next(twin(h)) }",
+    ),
+    (
+        "half-edge",
+        Relation::VertexEdges,
+        "h = half_edge(V); repeat { yield edge(h); h = twin(prev(h)) }",
+    ),
+    (
+        "half-edge",
+        Relation::VertexFaces,
+        "h = leaving(V); repeat { if face(h) != none { yield face(h) }; h = next(twin(h)); }",
+    ),
+    (
+        "half-edge",
+        Relation::FaceVertices,
+        "h = first(F); repeat { yield origin(h); h = next(h) }",
+    ),
+    (
+        "half-edge",
+        Relation::FaceEdges,
+        "h = first(F); repeat { h = next(h); yield edge(h) }",
+    ),
+    (
+        "half-edge",
+        Relation::FaceFaces,
+        "h = first(F); repeat { if face(twin(h)) != none { yield face(twin(h)) } h = next(h) }",
+    ),
+    (
+        "winged-edge",
+        Relation::VertexVertices,
+        "e = spokes(V); repeat { if start(e) = V { yield end(e); e = left_prev(e) } else { yield \
+         start(e); e = right_prev(e) } }",
+    ),
+    (
+        "winged-edge",
+        Relation::VertexEdges,
+        "e = edge(V); repeat { yield e; if start(e) = V { e = left_prev(e) } else { e = \
+         right_prev(e) } }",
+    ),
+    (
+        "winged-edge",
+        Relation::FaceEdges,
+        "e = sides(F); repeat { yield e; if left(e) = F { e = left_next(e) } else { e = \
+         right_next(e) } }",
+    ),
+    (
+        "winged-edge",
+        Relation::EdgeVertices,
+        "yield start(E); yield end(E)",
+    ),
+    (
+        "corner-table",
+        Relation::VertexFaces,
+        "c = corner(V); repeat { yield triangle(c); c = prev(left(c)) }",
+    ),
+    (
+        "corner-table",
+        Relation::VertexVertices,
+        "c = corner(V); repeat { yield vertex(next(c)); c = prev(left(c)) }",
+    ),
+    (
+        "corner-table",
+        Relation::VertexFaces,
+        "c = corner(V); repeat { yield triangle(c); c = swing(c) }",
+    ),
+    ("face-vertex", Relation::EdgeVertices, "yield v0; yield v2"),
+];
+
+fn walk(
+    structure: &str,
+    walk: &str,
+    expected: Option<(Relation, ElementName)>,
+) -> Result<Walk, ExplainError> {
+    let structure = Structure::find(structure).expect("one of six");
+    structure.walk(&shapes::octahedron(), walk, expected)
+}
+
+#[test]
+fn walks_of_textbooks_answer_the_relations() {
+    for (structure, relation, source) in WALKS {
+        let elements = match relation.to_string().split('_').next() {
+            Some("vertex") => (0..6).map(ElementName::Vertex).collect::<Vec<_>>(),
+            Some("face") => (0..8).map(ElementName::Face).collect(),
+            _ => vec![ElementName::Edge([0, 2])],
+        };
+        for name in elements {
+            let source = match name {
+                ElementName::Vertex(_) => source.replace('V', &name.to_string()),
+                ElementName::Face(_) => source.replace('F', &name.to_string()),
+                ElementName::Edge(_) => source.replace('E', "e0"),
+            };
+            let walk = walk(structure, &source, Some((relation, name))).expect(&source);
+            assert_eq!(walk.stopped, None, "{structure}: {source}");
+            let compared = walk.expected.expect("asked for");
+            let differences = [compared.missing, compared.extra];
+            assert_eq!(
+                differences,
+                [vec![], Vec::<String>::new()],
+                "{structure}: {source}"
+            );
+            assert_eq!(walk.cost.reads > 0, structure != "face-vertex", "{source}");
+        }
+    }
+}
+
+#[test]
+fn a_walk_is_counted_like_a_query() {
+    let source = "h = leaving(v3); repeat { t = twin(h); yield origin(t); h = next(t) }";
+    let walk = walk("half-edge", source, None).expect("a walk");
+    // Each field is a read: one for the vertex, and two for each of the four neighbours.
+    assert_eq!((walk.cost.reads, walk.results.len()), (9, 4));
+    // Both fields are in one row of 12 bytes, and the row of the vertex has 4.
+    assert_eq!(walk.cost.bytes, 4 * 12 + 4);
+    let searched = "h = prev(h0); yield h";
+    let searched = self::walk("half-edge", searched, None).expect("a walk");
+    // `prev` is not stored: a walk around the triangle finds it.
+    assert!(searched.cost.reads >= 2, "{searched:?}");
+    let derived = self::walk("half-edge", "yield twin(h0)", None).expect("a walk");
+    assert_eq!(
+        (derived.cost.reads, derived.results),
+        (0, vec!["h1".to_owned()])
+    );
+}
+
+#[test]
+fn a_wrong_walk_differs_from_the_relation() {
+    let vertex = Some((Relation::VertexVertices, ElementName::Vertex(0)));
+    let source = "h = leaving(v0); repeat { yield origin(h); h = next(twin(h)) }";
+    let compared = walk("half-edge", source, vertex)
+        .expect("a walk")
+        .expected
+        .expect("asked for");
+    assert_eq!(
+        (compared.missing.len(), compared.extra),
+        (4, vec!["v0".to_owned(); 4])
+    );
+}
+
+#[test]
+fn a_step_without_an_answer_ends_the_walk_with_its_element() {
+    let square = shapes::triangle_grid(1, 1).expect("a small size");
+    let cases = [
+        (
+            "corner-table",
+            "c = corner(v3); repeat { yield triangle(c); c = prev(left(c)) }",
+            "line 4: left(c) is none, so there is no prev(left(c))",
+        ),
+        (
+            "half-edge",
+            "h = leaving(v0); yield face(h)",
+            "line 2: face(h) is none",
+        ),
+        (
+            "half-edge",
+            "h = leaving(v0); repeat { h = next(h0) }",
+            "line 3: the loop never comes back to h4: it is at h6 for the second time",
+        ),
+        (
+            "half-edge",
+            "f = face(leaving(v0)); repeat { f = face(h0) }",
+            "line 2: f names no row before the loop",
+        ),
+        (
+            "corner-table",
+            "c = c0; repeat { c = opposite(c) }",
+            "line 3: c is none at the end of the loop",
+        ),
+    ];
+    for (structure, source, message) in cases {
+        let known = Structure::find(structure).expect("one of six");
+        let walk = known.walk(&square, source, None).expect(source);
+        let stopped = walk.stopped.unwrap_or_default();
+        assert_eq!(stopped, message, "{structure}: {source}");
+    }
+}
+
+#[test]
+fn what_is_no_walk_on_the_structure_is_an_error() {
+    let cases = [
+        (
+            "half-edge",
+            "h = nxt(h0)",
+            "no field is called `nxt` (did you mean `next`?)",
+        ),
+        (
+            "half-edge",
+            "h = opposite(h0)",
+            "choose from origin, next, face, twin, prev, edge, target",
+        ),
+        (
+            "half-edge",
+            "yield h99",
+            "half-edge has no half-edge h99 in this mesh",
+        ),
+        (
+            "half-edge",
+            "yield x",
+            "x has no value, and is not the name of a row",
+        ),
+        (
+            "corner-table",
+            "yield h0",
+            "h0 has no value, and is not the name of a row",
+        ),
+        ("half-edge", "yield position(v0)", "position(v0) is no row"),
+    ];
+    for (structure, source, message) in cases {
+        let error = walk(structure, source, None).expect_err(source).to_string();
+        assert!(error.contains(message), "{structure}: {source}: {error}");
+    }
+}

@@ -1,0 +1,111 @@
+//! Walks that the user writes.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use serde::Serialize;
+use sixfold_explain::{Comparison, Query, Walk};
+
+use super::{algorithm, cost, steps};
+use crate::arguments;
+use crate::failure::Failure;
+use crate::output::{Output, check_outputs, is_stdout};
+use crate::teaching::{Refused, explain, mesh, print_refused};
+use crate::text::{TextOutput, hanging_indent};
+
+#[derive(Serialize)]
+struct Document<'d> {
+    mesh: &'d str,
+    walks: &'d [Walk],
+    refused: &'d [Refused],
+}
+
+pub(super) fn run(
+    path: Option<&Path>,
+    walk: &str,
+    arguments: &arguments::Trace,
+) -> Result<ExitCode, Failure> {
+    let expected = arguments.expect.as_deref().map(expected).transpose()?;
+    check_outputs(path, &[("--json", arguments.json.as_ref())])?;
+    let json = Output::open_if(arguments.json.as_ref())?;
+    let to_stdout = arguments.json.as_deref().is_some_and(is_stdout);
+    let mut text = TextOutput::new(!to_stdout);
+    let (name, polygons) = mesh(path, &arguments.explained)?;
+    let (walks, refused) = explain(&arguments.explained, |structure| {
+        structure.walk(&polygons, walk, expected)
+    })?;
+    let blocks: Vec<String> = walks.iter().map(|walk| block(&name, walk)).collect();
+    text.print_line(&blocks.join("\n\n\n"));
+    print_refused(&refused, &mut text);
+    let document = Document {
+        mesh: &name,
+        walks: &walks,
+        refused: &refused,
+    };
+    text.finish_with_json(json, &document)?;
+    let is_right =
+        |walk: &Walk| walk.stopped.is_none() && walk.expected.as_ref().is_none_or(is_equal);
+    Ok(match walks.iter().all(is_right) {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::from(1),
+    })
+}
+
+/// Parses `vertex_vertices v3`.
+fn expected(text: &str) -> Result<Query, Failure> {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let [relation, element] = words[..] else {
+        return Err(Failure::usage(
+            "--expect: name a relation and an element, such as \"vertex_vertices v3\"",
+        ));
+    };
+    let relation = relation.parse().map_err(Failure::usage)?;
+    let element = element.parse().map_err(Failure::usage)?;
+    Ok((relation, element))
+}
+
+fn is_equal(comparison: &Comparison) -> bool {
+    comparison.missing.is_empty() && comparison.extra.is_empty()
+}
+
+fn block(mesh: &str, walk: &Walk) -> String {
+    let head = format!(
+        "walk in {}, {mesh}: {}",
+        walk.structure,
+        cost(&walk.results, walk.cost)
+    );
+    let mut parts = vec![
+        hanging_indent("", &head),
+        algorithm(&walk.algorithm, None),
+        steps(&walk.steps),
+    ];
+    if let Some(reason) = &walk.stopped {
+        parts.push(hanging_indent(
+            "! ",
+            &format!("the walk ends here: {reason}"),
+        ));
+    }
+    if let Some(comparison) = &walk.expected {
+        parts.push(hanging_indent("", &compared(comparison)));
+    }
+    parts.join("\n\n")
+}
+
+/// Says whether the results are those of the relation.
+fn compared(comparison: &Comparison) -> String {
+    let Comparison {
+        relation, element, ..
+    } = comparison;
+    if is_equal(comparison) {
+        return format!("Right: the walk yields {relation} of {element}.");
+    }
+    let mut differences = Vec::new();
+    if !comparison.missing.is_empty() {
+        differences.push(format!("does not yield {}", comparison.missing.join(", ")));
+    }
+    if !comparison.extra.is_empty() {
+        differences.push(format!("also yields {}", comparison.extra.join(", ")));
+    }
+    let differences = differences.join(", and ");
+    format!("Not {relation} of {element}: the walk {differences}.")
+}
