@@ -183,19 +183,19 @@ impl<M: Described> Walker<'_, M> {
         }
     }
 
-    /// Runs a loop until its variable has the first value again.
+    /// Runs a loop until its variable has the first value again, or is none.
     fn repeat(&mut self, body: &[Statement]) -> Result<(), ExplainError> {
         let variable = loop_variable(body).unwrap_or_default();
-        let Some(&Some(first)) = self.variables.get(variable) else {
-            return Err(self.stopped(format!("{variable} names no row before the loop")));
+        let first = match self.variables.get(variable) {
+            Some(&Some(first)) => first,
+            Some(None) => return Ok(()),
+            None => return Err(self.stopped(format!("{variable} has no value before the loop"))),
         };
         let mut visited = HashSet::from([first]);
         loop {
             self.block(body)?;
             match self.variables.get(variable).copied().flatten() {
-                None => {
-                    return Err(self.stopped(format!("{variable} is none at the end of the loop")));
-                }
+                None => return Ok(()),
                 Some(row) if row == first => return Ok(()),
                 Some(row) if !visited.insert(row) => {
                     return Err(self.stopped(format!(
@@ -250,7 +250,10 @@ impl<M: Described> Walker<'_, M> {
                     self.structure, table.element
                 )
             }
-            _ => format!("{name} has no value, and is not the name of a row, such as v3"),
+            _ => format!(
+                "{name} has no value, and {} has no row of this name",
+                self.structure
+            ),
         };
         Err(ExplainError::BadWalk { reason })
     }
@@ -309,6 +312,12 @@ impl<M: Described> Walker<'_, M> {
         text: String,
         line: Option<usize>,
     ) {
+        // A program that has just read a row still has all of its fields.
+        if let Some(last) = self.reads.last()
+            && (last.table, last.row) == (table.name, row)
+        {
+            return;
+        }
         self.reads.push(Access {
             kind: AccessKind::Read,
             table: table.name,
@@ -354,8 +363,14 @@ impl<M: Described> Walker<'_, M> {
                 .tables
                 .iter()
                 .filter(|table| table.letter == row.letter);
-            let columns = tables.flat_map(|table| table.columns.iter());
+            let is_row = |column: &&Column| column.name != Column::POSITION.name;
+            let columns = tables
+                .clone()
+                .flat_map(|table| table.columns.iter().filter(is_row));
             let mut names: Vec<String> = columns.map(|column| as_word(column.name)).collect();
+            let single = tables.filter(|table| table.columns.len() == 1);
+            names.extend(single.map(|table| table.name.to_owned()));
+            names.retain(|name| name != "positions");
             names.extend(words.map(|word| word.name.to_owned()));
             return Err(UnknownName::new("field", word, names).into());
         };

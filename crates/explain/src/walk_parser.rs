@@ -173,7 +173,7 @@ impl Parser {
                 })?;
                 self.indent(line + 1);
                 self.lines
-                    .push(format!("until {variable} is the first one again"));
+                    .push(format!("until {variable} is the first one again, or none"));
                 ("repeat".into(), Kind::Repeat(body))
             }
             "if" => self.condition(line)?,
@@ -310,7 +310,7 @@ mod tests {
             "    e = left_prev(e)",
             "  else",
             "    e = right_prev(e)",
-            "  until e is the first one again",
+            "  until e is the first one again, or none",
         ];
         assert_eq!(
             program.lines,

@@ -72,23 +72,27 @@ const TRACE_EXAMPLES: &str = "Examples:
                 --expect \"vertex_vertices v3\"          a walk of your own
 
 An element is named by the numbers of the mesh file, from 0: v3 is a vertex, v0-v1 is the edge
-between two vertices, f2 is a face. The relations are vertex_vertices, vertex_edges, vertex_faces,
-edge_vertices, edge_edges, edge_faces, face_vertices, face_edges and face_faces. `sixfold tables`
-shows the rows that a query reads.
+between two vertices, f2 is a face. The relations (also VV, VE and so on) are vertex_vertices,
+vertex_edges, vertex_faces, edge_vertices, edge_edges, edge_faces, face_vertices, face_edges and
+face_faces. `sixfold tables` shows the rows that a query reads.
 
 Edits: set_position v0 0.5,1,0; add_vertex 0.5,1,0; add_face v0 v1 v2; remove_face f0;
 remove_vertex v0; remove_isolated_vertices; split_edge v0-v1; bisect_edge v0-v1; poke_face f0;
 split_face f0 v0 v2; dissolve_edge v0-v1; flip_edge v0-v1; collapse_edge v0-v1 v0 (v0 stays);
 split_vertex v0 v1 v2 (left and right, none at a boundary); compact. A position x,y,z can follow
 each edit that makes or moves a vertex; without it, the middle is taken. New elements get the next
-numbers.
+numbers, and an element keeps its name when compact moves it to another row. Rows change if a field
+differs, or if the row is made, deleted or moved to another table.
 
 A walk has statements of these forms, with ; between them: h = VALUE; yield VALUE; repeat { … };
 if VALUE = VALUE { … } else { … } (also !=). A value is a name such as h, a row such as v3, none, or
-a field of a value, such as next(h): the columns of `sixfold tables`, with _ for spaces. A loop ends
-when its variable, the last one that it sets, has the first value again.
+a field of a value, such as next(h): a column of `sixfold tables`, with _ for spaces and hyphens, a
+table with one column such as leaving, or a short word such as target. A loop ends when the variable
+of its last assignment has its first value again, or is none. A loop has no loop inside. Several
+fields of the row that was read last are one read.
 
-Exit codes: 0 success; 1 a walk has no answer, or other results than --expect; 2 wrong usage or unusable input; 3 the structure cannot hold the mesh.";
+Exit codes: 0 success, also if an edit is refused; 1 a walk has no answer, or other results than
+--expect; 2 wrong usage or unusable input; 3 the structure cannot hold the mesh.";
 
 /// Step through a query or an edit: what it reads and writes, and why.
 ///

@@ -1,7 +1,8 @@
 //! `sixfold lessons`: short lessons, whose answers the program works out.
 //!
 //! A lesson is a text file. Its first line is the title, after `# `. A line that begins with `$ ` is a
-//! command, `$! ` a command that is refused, `$~ ` a command that measures time. Lines that begin with `? `
+//! command, `$! ` a command that is refused, `$~ ` a command that measures time, and `$- ` a command whose
+//! output is not shown. Lines that begin with `? `
 //! ask a question, and lines that begin with `! ` answer it. A block that begins with `file` and a name after
 //! three backticks is a file, which the commands read.
 
@@ -18,7 +19,7 @@ use crate::output::cannot_write;
 use crate::text::{TextOutput, WIDTH, hanging_indent, width, wrap};
 
 /// The lessons, in the order in which a course takes them.
-const LESSONS: [(&str, &str); 15] = [
+const LESSONS: [(&str, &str); 20] = [
     ("six-tables", include_str!("lessons/six-tables.md")),
     ("memory", include_str!("lessons/memory.md")),
     ("relations", include_str!("lessons/relations.md")),
@@ -35,6 +36,11 @@ const LESSONS: [(&str, &str); 15] = [
     ("names", include_str!("lessons/names.md")),
     ("euler", include_str!("lessons/euler.md")),
     ("dual", include_str!("lessons/dual.md")),
+    ("masks", include_str!("lessons/masks.md")),
+    ("creases", include_str!("lessons/creases.md")),
+    ("order", include_str!("lessons/order.md")),
+    ("growth", include_str!("lessons/growth.md")),
+    ("criteria", include_str!("lessons/criteria.md")),
     ("choose", include_str!("lessons/choose.md")),
     ("exercises", include_str!("lessons/exercises.md")),
 ];
@@ -52,10 +58,20 @@ enum Part<'l> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Shown<'l> {
     line: &'l str,
-    /// True if the command measures time, so that its output differs from run to run.
-    is_timed: bool,
-    /// True if the command fails, which the lesson explains.
-    fails: bool,
+    kind: Kind,
+}
+
+/// What a lesson does with the output of a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// Shows what the command prints.
+    Output,
+    /// Shows the error: the command fails, which the lesson explains.
+    Failure,
+    /// Runs the command only in a terminal, because it measures time.
+    Timed,
+    /// Runs the command, and does not show what it prints.
+    Hidden,
 }
 
 /// A lesson that was read.
@@ -110,17 +126,14 @@ fn read(source: &str) -> Lesson<'_> {
             parts.push(Part::File { name, content });
         } else if let Some(command) = line.strip_prefix('$') {
             let kinds = [
-                (" ", false, false),
-                ("~ ", true, false),
-                ("! ", false, true),
+                (" ", Kind::Output),
+                ("! ", Kind::Failure),
+                ("~ ", Kind::Timed),
+                ("- ", Kind::Hidden),
             ];
-            let kind = kinds.into_iter().find_map(|(mark, is_timed, fails)| {
+            let kind = kinds.into_iter().find_map(|(mark, kind)| {
                 let line = command.strip_prefix(mark)?;
-                Some(Shown {
-                    line,
-                    is_timed,
-                    fails,
-                })
+                Some(Shown { line, kind })
             });
             parts.extend(kind.map(Part::Command));
         } else if !line.is_empty() {
@@ -158,9 +171,10 @@ fn teach(lesson: &Lesson<'_>, waits: bool) -> Result<ExitCode, Failure> {
             }
             Part::Command(command) => {
                 text.print_line(&format!("$ {}", command.line));
-                match command.is_timed && !waits {
-                    true => text.print_line("(measures time)"),
-                    false => text.print_line(output(*command, folder.path(), width())?.trim_end()),
+                if command.kind == Kind::Timed && !waits {
+                    text.print_line("(measures time)");
+                } else {
+                    text.print_line(output(*command, folder.path(), width())?.trim_end());
                 }
             }
             Part::Question { question, answer } => {
@@ -202,9 +216,14 @@ fn output(command: Shown<'_>, folder: &Path, width: usize) -> Result<String, Fai
         .env("COLUMNS", width.to_string())
         .output()
         .map_err(|cause| cannot_write("a lesson", &cause))?;
-    let printed = [run.stdout, run.stderr].concat();
+    // Progress and times are on standard error.
+    let printed = match (run.status.success(), command.kind) {
+        (true, Kind::Hidden) => Vec::new(),
+        (true, _) => run.stdout,
+        (false, _) => run.stderr,
+    };
     let printed = String::from_utf8_lossy(&printed).into_owned();
-    match run.status.success() == command.fails {
+    match run.status.success() == (command.kind == Kind::Failure) {
         true => Err(Failure::usage(format!("{}: {printed}", command.line))),
         false => Ok(printed),
     }
@@ -239,9 +258,9 @@ fn chapter(lesson: &Lesson<'_>) -> Result<String, Failure> {
                 format!("The file `{name}`:\n\n```text\n{content}```\n")
             }
             Part::Command(command) => {
-                let printed = match command.is_timed {
-                    true => String::new(),
-                    false => output(*command, folder.path(), WIDTH)?,
+                let printed = match command.kind {
+                    Kind::Timed => String::new(),
+                    _ => output(*command, folder.path(), WIDTH)?,
                 };
                 format!(
                     "```console\n$ {}\n{}\n```\n",
@@ -319,21 +338,15 @@ mod tests {
                       ? Why\n? so?\n! Thus\n! it is.\nMore.\n";
         let lesson = read(source);
         assert_eq!(lesson.title, "Title");
-        let command = |line, fails| {
-            Part::Command(Shown {
-                line,
-                is_timed: false,
-                fails,
-            })
-        };
+        let command = |line, kind| Part::Command(Shown { line, kind });
         let expected = [
             Part::Text("A text of two lines.".into()),
             Part::File {
                 name: "m.obj",
                 content: "v 0 0 0\n".into(),
             },
-            command("sixfold a", false),
-            command("sixfold b", true),
+            command("sixfold a", Kind::Output),
+            command("sixfold b", Kind::Failure),
             Part::Question {
                 question: "Why so?".into(),
                 answer: "Thus it is.".into(),

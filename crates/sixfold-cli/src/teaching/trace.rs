@@ -36,11 +36,40 @@ pub(crate) fn run(arguments: &arguments::Trace) -> Result<ExitCode, Failure> {
         ([path, relation, element], None) if !edits => {
             queries(Some(Path::new(path)), [relation, element], arguments)
         }
+        ([_, _, ..], _) if edits || walk.is_some() => Err(Failure::usage(
+            "--edit and --walk take the place of a relation and an element: name only the mesh",
+        )),
         _ => Err(Failure::usage(
             "name a relation and an element, such as vertex_vertices v3, or an edit, such as --edit \
              \"flip_edge v0-v1\"",
         )),
     }
+}
+
+/// Parses the name of a relation, such as `vertex_faces` or VF.
+fn relation(text: &str) -> Result<Relation, Failure> {
+    let kind = |letter| match letter {
+        'V' => Some("vertex"),
+        'E' => Some("edge"),
+        'F' => Some("face"),
+        _ => None,
+    };
+    let many = |letter| match letter {
+        'V' => Some("vertices"),
+        'E' => Some("edges"),
+        'F' => Some("faces"),
+        _ => None,
+    };
+    let mut letters = text.chars();
+    let long = match (
+        letters.next().and_then(kind),
+        letters.next().and_then(many),
+        letters.next(),
+    ) {
+        (Some(from), Some(to), None) => format!("{from}_{to}"),
+        _ => text.to_owned(),
+    };
+    long.parse().map_err(Failure::usage)
 }
 
 /// Traces a query.
@@ -49,7 +78,7 @@ fn queries(
     [relation, element]: [&String; 2],
     arguments: &arguments::Trace,
 ) -> Result<ExitCode, Failure> {
-    let relation: Relation = relation.parse().map_err(Failure::usage)?;
+    let relation = self::relation(relation)?;
     let element: ElementName = element.parse().map_err(Failure::usage)?;
     check_outputs(path, &[("--json", arguments.json.as_ref())])?;
     let json = Output::open_if(arguments.json.as_ref())?;

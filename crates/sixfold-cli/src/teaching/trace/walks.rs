@@ -59,7 +59,7 @@ fn expected(text: &str) -> Result<Query, Failure> {
             "--expect: name a relation and an element, such as \"vertex_vertices v3\"",
         ));
     };
-    let relation = relation.parse().map_err(Failure::usage)?;
+    let relation = super::relation(relation)?;
     let element = element.parse().map_err(Failure::usage)?;
     Ok((relation, element))
 }
@@ -104,7 +104,8 @@ fn compared(comparison: &Comparison) -> String {
         differences.push(format!("does not yield {}", comparison.missing.join(", ")));
     }
     if !comparison.extra.is_empty() {
-        differences.push(format!("also yields {}", comparison.extra.join(", ")));
+        let extra = comparison.extra.join(", ");
+        differences.push(format!("yields {extra} too often"));
     }
     let differences = differences.join(", and ");
     format!("Not {relation} of {element}: the walk {differences}.")
