@@ -218,6 +218,7 @@ where
 
     /// Runs one edit.
     fn run(&mut self, command: &EditCommand) -> Result<EditTrace, ExplainError> {
+        command.check()?;
         // An edit can add tables, for example if the faces no longer have the same degree.
         let mut tables = self.mesh.tables();
         let (before, elements) = (self.rows(), self.elements());
@@ -355,7 +356,7 @@ where
                 .get(i)
                 .copied()
                 .flatten()
-                .expect("checked by the parser")
+                .expect("the command was checked")
         };
         let optional = |i: usize| match names.get(i).copied().flatten() {
             Some(name) => self.vertex(name).map(Some),

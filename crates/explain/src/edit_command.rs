@@ -80,7 +80,6 @@ impl FromStr for EditCommand {
         let edit: Edit = name.parse().map_err(|error| ExplainError::BadEdit {
             reason: format!("{error}"),
         })?;
-        let (letters, takes_position) = parameters(edit);
         let mut elements = Vec::new();
         let mut at = None;
         for word in words {
@@ -91,18 +90,27 @@ impl FromStr for EditCommand {
             }
         }
         let command = Self { edit, elements, at };
-        let fits = command.fits(letters) && (takes_position || at.is_none());
-        let needs_position = matches!(edit, Edit::SetPosition | Edit::AddVertex);
-        match fits && (at.is_some() || !needs_position) {
-            true => Ok(command),
-            false => Err(ExplainError::BadEdit {
-                reason: format!("`{text}`: write {}", example(edit)),
-            }),
-        }
+        command.check().map(|()| command)
     }
 }
 
 impl EditCommand {
+    /// Checks that the edit has the elements and the position that its kind takes.
+    pub(crate) fn check(&self) -> Result<(), ExplainError> {
+        let (letters, takes_position) = parameters(self.edit);
+        let needs_position = matches!(self.edit, Edit::SetPosition | Edit::AddVertex);
+        let position_fits = match self.at {
+            Some(_) => takes_position,
+            None => !needs_position,
+        };
+        match self.fits(letters) && position_fits {
+            true => Ok(()),
+            false => Err(ExplainError::BadEdit {
+                reason: format!("`{self}`: write {}", example(self.edit)),
+            }),
+        }
+    }
+
     /// Returns whether the elements are of the kinds that `letters` name.
     fn fits(&self, letters: &str) -> bool {
         let (letters, more) = match letters.strip_suffix('*') {

@@ -288,17 +288,9 @@ impl<'m, M: Described> Inference<'m, M> {
         if let Some((way, distance)) = nearest {
             return (way, Some(self.after(distance)));
         }
-        let unknown = Way {
-            name: UNKNOWN,
-            of: None,
-            time: 0,
-            is_part: false,
-        };
         let is_reason = |way: &&Way| way.name != Line::SAME && way.name != Line::SEARCH;
-        (
-            ways.iter().find(is_reason).copied().unwrap_or(unknown),
-            None,
-        )
+        let reason = ways.iter().find(is_reason).copied();
+        (reason.unwrap_or(Way::plain(UNKNOWN)), None)
     }
 
     /// Returns whether the reads can be a scan of the whole table: they begin at its first row, or where
@@ -325,7 +317,7 @@ impl<'m, M: Described> Inference<'m, M> {
     /// Returns the line that is `distance` lines after the current line, from the first line again
     /// after the last.
     fn after(&self, distance: usize) -> usize {
-        let from = self.line.map_or(self.lines.len() - 1, |line| line);
+        let from = self.line.unwrap_or(self.lines.len() - 1);
         (from + distance) % self.lines.len()
     }
 

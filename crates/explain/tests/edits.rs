@@ -240,3 +240,18 @@ fn new_elements_get_the_next_numbers_and_compaction_keeps_the_names() {
         );
     }
 }
+
+#[test]
+fn an_edit_without_its_elements_is_an_error() {
+    let half_edge = Structure::find("half-edge").expect("one of six");
+    for edit in Edit::ALL {
+        let command = EditCommand {
+            edit,
+            elements: vec![None, None],
+            at: None,
+        };
+        let error = half_edge.edit(&shapes::octahedron(), &[command]);
+        let error = error.expect_err("no edit takes two times none").to_string();
+        assert!(error.contains(": write "), "{edit}: {error}");
+    }
+}

@@ -9,9 +9,9 @@ use std::process::ExitCode;
 
 use console::{Key, Term};
 use serde::Serialize;
-use sixfold::Relation;
+use sixfold::{PolygonMesh, Relation};
 use sixfold_explain::{Cost, ElementName, Read, Step, Trace};
-use sixfold_study::numbers::counted;
+use sixfold_study::numbers::{counted, grouped};
 
 use crate::arguments;
 use crate::column_table::{Column, column_table};
@@ -44,6 +44,29 @@ pub(crate) fn run(arguments: &arguments::Trace) -> Result<ExitCode, Failure> {
              \"flip_edge v0-v1\"",
         )),
     }
+}
+
+/// The mesh of a command, and the places where its results go.
+struct Begun {
+    json: Option<Output>,
+    text: TextOutput,
+    name: String,
+    polygons: PolygonMesh,
+}
+
+/// Opens the outputs, and reads the mesh.
+fn begin(path: Option<&Path>, arguments: &arguments::Trace) -> Result<Begun, Failure> {
+    check_outputs(path, &[("--json", arguments.json.as_ref())])?;
+    let json = Output::open_if(arguments.json.as_ref())?;
+    let to_stdout = arguments.json.as_deref().is_some_and(is_stdout);
+    let text = TextOutput::new(!to_stdout);
+    let (name, polygons) = mesh(path, &arguments.explained)?;
+    Ok(Begun {
+        json,
+        text,
+        name,
+        polygons,
+    })
 }
 
 /// Parses the name of a relation, such as `vertex_faces` or VF.
@@ -80,11 +103,12 @@ fn queries(
 ) -> Result<ExitCode, Failure> {
     let relation = self::relation(relation)?;
     let element: ElementName = element.parse().map_err(Failure::usage)?;
-    check_outputs(path, &[("--json", arguments.json.as_ref())])?;
-    let json = Output::open_if(arguments.json.as_ref())?;
-    let to_stdout = arguments.json.as_deref().is_some_and(is_stdout);
-    let mut text = TextOutput::new(!to_stdout);
-    let (name, polygons) = mesh(path, &arguments.explained)?;
+    let Begun {
+        json,
+        mut text,
+        name,
+        polygons,
+    } = begin(path, arguments)?;
     let (traces, refused) = explain(&arguments.explained, |structure| {
         structure.trace(&polygons, relation, element)
     })?;
@@ -191,7 +215,7 @@ fn cells(step: &Step) -> [String; 4] {
     match step {
         Step::Read(read) => [
             number(&read.line),
-            format!("{} {}", read.table, rows(read)),
+            format!("{} {}", read.table, rows(&read.row, read.rows)),
             read.reason.text.clone(),
             fields(read),
         ],
@@ -204,17 +228,18 @@ fn cells(step: &Step) -> [String; 4] {
     }
 }
 
-fn rows(read: &Read) -> String {
-    match read.rows {
-        1 => read.row.clone(),
-        rows => {
-            let number = read
-                .row
-                .trim_start_matches(|c: char| c.is_ascii_lowercase());
-            let first: usize = number.parse().unwrap_or(0);
-            let letter = &read.row[..read.row.len() - number.len()];
-            format!("{} to {letter}{}", read.row, first + rows - 1)
-        }
+/// Returns the letter and the number of a row.
+fn parts(row: &str) -> (&str, usize) {
+    let letter = row.trim_end_matches(|c: char| c.is_ascii_digit());
+    (letter, row[letter.len()..].parse().unwrap_or(0))
+}
+
+/// Returns the names of `rows` rows from `first` on, such as `c1 to c5`.
+fn rows(first: &str, rows: usize) -> String {
+    let (letter, number) = parts(first);
+    match rows {
+        1 => first.to_owned(),
+        _ => format!("{first} to {letter}{}", number + rows - 1),
     }
 }
 
@@ -233,12 +258,7 @@ fn fields(read: &Read) -> String {
 fn costs(traces: &[Trace]) -> String {
     let names = Column::words("", traces.iter().map(|trace| trace.structure.to_owned()));
     let figures = |head, figure: fn(&Trace) -> usize| {
-        Column::figures(
-            head,
-            traces
-                .iter()
-                .map(|trace| sixfold_study::numbers::grouped(figure(trace))),
-        )
+        Column::figures(head, traces.iter().map(|trace| grouped(figure(trace))))
     };
     column_table(
         &names,

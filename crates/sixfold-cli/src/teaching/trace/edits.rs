@@ -7,12 +7,12 @@ use serde::Serialize;
 use sixfold_explain::{EditCommand, EditTrace, Elements, RowChange};
 use sixfold_study::numbers::{counted, grouped};
 
+use super::{Begun, begin, parts, rows};
 use crate::arguments;
 use crate::column_table::{Column, column_table};
 use crate::failure::Failure;
-use crate::output::{Output, check_outputs, is_stdout};
-use crate::teaching::{Refused, explain, mesh, print_refused};
-use crate::text::{TextOutput, hanging_indent};
+use crate::teaching::{Refused, explain, print_refused};
+use crate::text::hanging_indent;
 
 #[derive(Serialize)]
 struct Document<'d> {
@@ -24,11 +24,12 @@ struct Document<'d> {
 pub(super) fn run(path: Option<&Path>, arguments: &arguments::Trace) -> Result<ExitCode, Failure> {
     let edits = arguments.edit.iter().map(|text| text.parse());
     let edits: Vec<EditCommand> = edits.collect::<Result<_, _>>().map_err(Failure::usage)?;
-    check_outputs(path, &[("--json", arguments.json.as_ref())])?;
-    let json = Output::open_if(arguments.json.as_ref())?;
-    let to_stdout = arguments.json.as_deref().is_some_and(is_stdout);
-    let mut text = TextOutput::new(!to_stdout);
-    let (name, polygons) = mesh(path, &arguments.explained)?;
+    let Begun {
+        json,
+        mut text,
+        name,
+        polygons,
+    } = begin(path, arguments)?;
     let (traces, refused) = explain(&arguments.explained, |structure| {
         structure.edit(&polygons, &edits)
     })?;
@@ -136,43 +137,30 @@ fn renamed([name, old, new]: &[String; 3]) -> String {
 
 /// Lists rows: the first of each table with the name of the table, and rows that follow one another as
 /// `c1 to c5`.
-fn runs<'r>(rows: impl Iterator<Item = &'r RowChange>) -> Vec<String> {
+fn runs<'r>(changes: impl Iterator<Item = &'r RowChange>) -> Vec<String> {
+    let number = |row: &RowChange| parts(&row.row).1;
     let mut runs: Vec<(&RowChange, usize)> = Vec::new();
-    for row in rows {
+    for row in changes {
         match runs.last_mut() {
-            Some((first, rows))
-                if first.table == row.table && number(first) + *rows == number(row) =>
+            Some((first, count))
+                if first.table == row.table && number(first) + *count == number(row) =>
             {
-                *rows += 1;
+                *count += 1;
             }
             _ => runs.push((row, 1)),
         }
     }
     let mut table = "";
-    let text = runs.into_iter().map(|(first, rows)| {
+    let text = runs.into_iter().map(|(first, count)| {
         let title = if first.table == table {
             String::new()
         } else {
             format!("{} ", first.table)
         };
         table = first.table;
-        let letter = first.row.trim_end_matches(|c: char| c.is_ascii_digit());
-        match rows {
-            1 => format!("{title}{}", first.row),
-            _ => format!(
-                "{title}{} to {letter}{}",
-                first.row,
-                number(first) + rows - 1
-            ),
-        }
+        title + &rows(&first.row, count)
     });
     text.collect()
-}
-
-/// Returns the number of a row.
-fn number(row: &RowChange) -> usize {
-    let digits = row.row.trim_start_matches(|c: char| !c.is_ascii_digit());
-    digits.parse().unwrap_or(0)
 }
 
 /// Returns the fields that change, or all fields of a new or deleted row.

@@ -6,12 +6,11 @@ use std::process::ExitCode;
 use serde::Serialize;
 use sixfold_explain::{Comparison, Query, Walk};
 
-use super::{algorithm, cost, steps};
+use super::{Begun, algorithm, begin, cost, steps};
 use crate::arguments;
 use crate::failure::Failure;
-use crate::output::{Output, check_outputs, is_stdout};
-use crate::teaching::{Refused, explain, mesh, print_refused};
-use crate::text::{TextOutput, hanging_indent};
+use crate::teaching::{Refused, explain, print_refused};
+use crate::text::hanging_indent;
 
 #[derive(Serialize)]
 struct Document<'d> {
@@ -26,11 +25,12 @@ pub(super) fn run(
     arguments: &arguments::Trace,
 ) -> Result<ExitCode, Failure> {
     let expected = arguments.expect.as_deref().map(expected).transpose()?;
-    check_outputs(path, &[("--json", arguments.json.as_ref())])?;
-    let json = Output::open_if(arguments.json.as_ref())?;
-    let to_stdout = arguments.json.as_deref().is_some_and(is_stdout);
-    let mut text = TextOutput::new(!to_stdout);
-    let (name, polygons) = mesh(path, &arguments.explained)?;
+    let Begun {
+        json,
+        mut text,
+        name,
+        polygons,
+    } = begin(path, arguments)?;
     let (walks, refused) = explain(&arguments.explained, |structure| {
         structure.walk(&polygons, walk, expected)
     })?;
