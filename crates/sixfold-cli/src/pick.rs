@@ -215,7 +215,7 @@ fn predicted_lines(prediction: &Prediction, of: &str) -> Vec<(&'static str, Stri
             format!(" on a patch of {} faces", grouped(faces))
         });
         let text = format!(
-            "{} table rows per operation (counted{patch}{of}, not timed; equal numbers by bytes)",
+            "{} table rows per operation (counted{patch}{of}, not timed; sorted by rows, then by bytes)",
             counted.join(", ")
         );
         lines.push(("Reads:    ", text));
