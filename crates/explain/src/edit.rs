@@ -1,18 +1,13 @@
 //! What an edit reads and writes: the rows before and after.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
+use std::collections::HashSet;
 
 use serde::Serialize;
-use sixfold::{Changes, Edit, EditRecord, MeshEdit, MeshQuery, Point, PolygonMesh, Refusal};
-use sixfold_core::{
-    AccessKind, Column, Described, FaceId, Handle, Measured, RecordTable, Representation, Traced,
-    VertexId, row,
-};
+use sixfold::{Edit, EditRecord, MeshEdit, Point, Refusal};
+use sixfold_core::{Access, AccessKind, Described, Field, RecordTable};
 
 use crate::edit_command::EditCommand;
-use crate::element::ElementName;
-use crate::records::{Records, records};
+use crate::named_mesh::NamedMesh;
 use crate::structure::ExplainError;
 
 /// One edit on one structure: the rows that it reads, writes, makes and deletes.
@@ -90,184 +85,36 @@ impl RowChange {
     }
 }
 
-/// A structure that is edited, with the names of its elements.
-struct Edited<M: Representation + Measured + MeshEdit>
-where
-    M::Probed<Traced>: MeshEdit<Vertex = M::Vertex, Edge = M::Edge, Face = M::Face> + Described,
-{
-    mesh: M::Probed<Traced>,
-    probe: Traced,
-    vertices: Names<M::Vertex>,
-    faces: Names<M::Face>,
-}
-
-/// The handles of elements by number: first those of the mesh, then new ones in the order in which they
-/// are made. The handle of a deleted element is `None`.
-struct Names<H> {
-    handles: Vec<Option<H>>,
-}
-
-impl<H: Handle> Names<H> {
-    fn number(&self, handle: H) -> Option<usize> {
-        self.handles.iter().position(|&known| known == Some(handle))
-    }
-
-    fn handle(&self, number: u32) -> Option<H> {
-        self.handles.get(number as usize).copied().flatten()
-    }
-
-    /// Follows the changes of one edit. Returns the names of new, deleted and renamed elements.
-    fn follow(&mut self, letter: char, changes: &Changes<H>) -> Followed {
-        let name = |number: usize| format!("{letter}{number}");
-        let mut followed = Followed::default();
-        for &removed in &changes.removed {
-            if let Some(number) = self.number(removed) {
-                self.handles[number] = None;
-                followed.removed.push(name(number));
-            }
-        }
-        let renamed: Vec<_> = (changes.renamed.iter())
-            .filter(|[old, new]| old != new)
-            .filter_map(|&[old, new]| Some((self.number(old)?, old, new)))
-            .collect();
-        for (number, old, new) in renamed {
-            self.handles[number] = Some(new);
-            followed
-                .renamed
-                .push([name(number), format!("{old:?}"), format!("{new:?}")]);
-        }
-        for &created in &changes.created {
-            followed.created.push(name(self.handles.len()));
-            self.handles.push(Some(created));
-        }
-        followed
-    }
-}
-
-#[derive(Default)]
-struct Followed {
-    created: Vec<String>,
-    removed: Vec<String>,
-    renamed: Vec<[String; 3]>,
-}
-
-/// The stored fields of all rows, by the name of the table and the number of the row.
-type Rows = BTreeMap<(&'static str, usize), Vec<String>>;
-
-/// Returns the stored columns of a table, each with its place.
-fn stored(table: &RecordTable) -> impl Iterator<Item = (usize, &'static Column)> + use<> {
-    let columns = table.columns.iter().enumerate();
-    columns.filter(|(_, column)| !column.is_derived)
-}
-
-/// Runs edits one after the other on the structure `M`, and returns what each of them does.
-pub(crate) fn edit<M>(
-    polygons: &PolygonMesh,
-    edits: &[EditCommand],
-) -> Result<Vec<EditTrace>, ExplainError>
-where
-    M: Representation + Measured + MeshEdit,
-    M::Probed<Traced>: MeshEdit<Vertex = M::Vertex, Edge = M::Edge, Face = M::Face> + Described,
-{
-    let mut edited = Edited::<M>::new(polygons)?;
-    edits.iter().map(|command| edited.run(command)).collect()
-}
-
-/// Returns the records of the structure `M` after edits.
-pub(crate) fn edited_records<M>(
-    polygons: &PolygonMesh,
-    edits: &[EditCommand],
-    rows: &Range<usize>,
-) -> Result<Vec<Records>, ExplainError>
-where
-    M: Representation + Measured + MeshEdit,
-    M::Probed<Traced>: MeshEdit<Vertex = M::Vertex, Edge = M::Edge, Face = M::Face> + Described,
-{
-    let mut edited = Edited::<M>::new(polygons)?;
-    for command in edits {
-        edited.run(command)?;
-    }
-    Ok(records(&edited.mesh, rows))
-}
-
-impl<M> Edited<M>
-where
-    M: Representation + Measured + MeshEdit,
-    M::Probed<Traced>: MeshEdit<Vertex = M::Vertex, Edge = M::Edge, Face = M::Face> + Described,
-{
-    fn new(polygons: &PolygonMesh) -> Result<Self, ExplainError> {
-        let mesh = M::from_polygons(polygons).map_err(|refusal| ExplainError::Refused {
-            structure: M::NAME,
-            refusal,
-        })?;
-        let vertices = (0..row(polygons.vertex_count())).map(VertexId::new);
-        let vertices = vertices.map(|v| M::vertex_handle(polygons, v));
-        let vertices = vertices
-            .map(|v| mesh.contains_vertex(v).then_some(v))
-            .collect();
-        let faces = (0..row(polygons.face_count())).map(FaceId::new);
-        let faces = faces.map(|f| Some(M::face_handle(polygons, f))).collect();
-        let probe = Traced::default();
-        Ok(Self {
-            mesh: mesh.probed(probe.clone()),
-            probe,
-            vertices: Names { handles: vertices },
-            faces: Names { handles: faces },
-        })
-    }
-
-    /// Runs one edit.
-    fn run(&mut self, command: &EditCommand) -> Result<EditTrace, ExplainError> {
-        command.check()?;
-        // An edit can add tables, for example if the faces no longer have the same degree.
-        let mut tables = self.mesh.tables();
-        let (before, elements) = (self.rows(), self.elements());
+impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
+    /// Runs an edit. Returns the rule that it breaks, if the structure refuses it.
+    pub(crate) fn run(&mut self, command: &EditCommand) -> Result<Option<String>, ExplainError> {
         let mut record = EditRecord::new();
-        let refusal = self.apply(command, &mut record)?;
+        let refusal = self.run_recorded(command, &mut record)?;
+        self.probe.take();
+        self.vertices.follow('v', &record.vertices);
+        self.faces.follow('f', &record.faces);
+        Ok(refusal)
+    }
+
+    /// Runs an edit, and returns what it does. O(size of the mesh), because all rows are compared.
+    pub(crate) fn run_shown(&mut self, command: &EditCommand) -> Result<EditTrace, ExplainError> {
+        let (before, elements) = (self.mesh.clone(), self.elements());
+        let mut record = EditRecord::new();
+        let refusal = self.run_recorded(command, &mut record)?;
         let accesses = self.probe.take();
-        let after = self.rows();
-        for table in self.mesh.tables() {
-            if !tables.iter().any(|known| known.name == table.name) {
-                tables.push(table);
-            }
-        }
-        let is_described = |name| tables.iter().any(|table| table.name == name);
-        let touched = |kind| {
-            let of_kind = accesses.iter().filter(move |access| access.kind == kind);
-            let described = of_kind.filter(|access| is_described(access.table));
-            described
-                .map(|access| (access.table, access.row))
-                .collect::<BTreeSet<_>>()
-        };
-        let (read, written) = (touched(AccessKind::Read), touched(AccessKind::Write));
-        let changed = before.keys().chain(after.keys()).copied();
-        let changed = changed.filter(|place| before.get(place) != after.get(place));
-        let places: BTreeSet<_> = changed
-            .chain(read.iter().chain(&written).copied())
-            .collect();
-        let mut rows = Vec::new();
-        for table in &tables {
-            let of_table = places.iter().filter(|(name, _)| *name == table.name);
-            rows.extend(of_table.map(|place| RowChange {
-                table: table.name,
-                row: format!("{}{}", table.letter, place.1),
-                columns: stored(table).map(|(_, column)| column.name).collect(),
-                before: before.get(place).cloned(),
-                after: after.get(place).cloned(),
-                is_read: read.contains(place),
-                is_written: written.contains(place),
-            }));
-        }
+        let rows = changes(&before, &self.mesh, &accesses);
+        let after = self.elements();
+        self.probe.take();
         let count = |kind| accesses.iter().filter(|access| access.kind == kind).count();
         let (reads, writes) = (count(AccessKind::Read), count(AccessKind::Write));
         let vertices = self.vertices.follow('v', &record.vertices);
         let faces = self.faces.follow('f', &record.faces);
         Ok(EditTrace {
-            structure: M::NAME,
+            structure: self.structure,
             edit: command.to_string(),
             refusal,
             before: elements,
-            after: self.elements(),
+            after,
             reads,
             writes,
             rows,
@@ -278,78 +125,29 @@ where
     }
 
     fn elements(&self) -> Elements {
-        let elements = Elements {
+        Elements {
             vertices: self.mesh.vertex_count(),
             edges: self.mesh.edge_count(),
             faces: self.mesh.face_count(),
-        };
-        self.probe.take();
-        elements
-    }
-
-    /// Returns the stored fields of all rows.
-    fn rows(&self) -> Rows {
-        let mut rows = Rows::new();
-        for table in self.mesh.tables() {
-            for number in 0..table.rows {
-                if let Some(fields) = self.mesh.record(table.name, number) {
-                    let fields = stored(&table).map(|(place, _)| fields[place].to_string());
-                    rows.insert((table.name, number), fields.collect());
-                }
-            }
         }
-        // The description of the rows reads, too.
-        self.probe.take();
-        rows
-    }
-
-    fn missing(name: ElementName) -> ExplainError {
-        ExplainError::NoSuchElement {
-            structure: M::NAME,
-            name,
-        }
-    }
-
-    fn vertex(&self, name: ElementName) -> Result<M::Vertex, ExplainError> {
-        let handle = match name {
-            ElementName::Vertex(v) => self.vertices.handle(v),
-            _ => None,
-        };
-        handle.ok_or_else(|| Self::missing(name))
-    }
-
-    fn edge(&self, name: ElementName) -> Result<M::Edge, ExplainError> {
-        let ends = match name {
-            ElementName::Edge(ends) => ends,
-            _ => return Err(Self::missing(name)),
-        };
-        let [a, b] = ends.map(|v| self.vertices.handle(v).ok_or_else(|| Self::missing(name)));
-        let edge = self.mesh.edge_between(a?, b?);
-        edge.ok_or_else(|| Self::missing(name))
-    }
-
-    fn face(&self, name: ElementName) -> Result<M::Face, ExplainError> {
-        let handle = match name {
-            ElementName::Face(f) => self.faces.handle(f),
-            _ => None,
-        };
-        handle.ok_or_else(|| Self::missing(name))
     }
 
     /// Returns the mean of positions.
-    fn middle(&self, vertices: impl IntoIterator<Item = M::Vertex>) -> Point {
+    fn middle(&self, vertices: impl IntoIterator<Item = P::Vertex>) -> Point {
         let mut count = 0.0;
         let positions = vertices.into_iter().map(|v| self.mesh.position(v));
         let sum: Point = positions.inspect(|_| count += 1.0).sum();
         sum / count
     }
 
-    /// Applies an edit. Returns the message if the structure refuses it.
-    fn apply(
+    /// Runs an edit, whose reads and writes the probe then has. Returns the rule that it breaks, if the
+    /// structure refuses it.
+    fn run_recorded(
         &mut self,
         command: &EditCommand,
-        record: &mut EditRecord<M::Probed<Traced>>,
+        record: &mut EditRecord<P>,
     ) -> Result<Option<String>, ExplainError> {
+        command.check()?;
         let names = &command.elements;
         let name = |i: usize| {
             names
@@ -376,7 +174,7 @@ where
             }
             Edit::AddFace => {
                 let corners = (0..names.len()).map(|i| self.vertex(name(i)));
-                let corners: Vec<M::Vertex> = corners.collect::<Result<_, _>>()?;
+                let corners: Vec<P::Vertex> = corners.collect::<Result<_, _>>()?;
                 self.clean().add_face_logged(&corners, record).map(drop)
             }
             Edit::RemoveFace => {
@@ -440,14 +238,76 @@ where
                 Ok(())
             }
         };
-        Ok(refused
-            .err()
-            .map(|refusal: Refusal<M::Probed<Traced>>| refusal.to_string()))
+        Ok(refused.err().map(|refusal: Refusal<P>| refusal.to_string()))
     }
 
     /// Returns the mesh, after the reads that looked up the arguments are forgotten.
-    fn clean(&mut self) -> &mut M::Probed<Traced> {
+    fn clean(&mut self) -> &mut P {
         self.probe.take();
         &mut self.mesh
+    }
+}
+
+/// Returns the rows that differ before and after an edit, or that it reads or writes.
+fn changes<P: Described>(before: &P, after: &P, accesses: &[Access]) -> Vec<RowChange> {
+    let touched = |kind| {
+        let of_kind = accesses.iter().filter(move |access| access.kind == kind);
+        of_kind
+            .map(|access| (access.table, access.row))
+            .collect::<HashSet<_>>()
+    };
+    let (read, written) = (touched(AccessKind::Read), touched(AccessKind::Write));
+    // An edit can add tables, for example if the faces no longer have the same degree.
+    let mut tables = before.tables();
+    for table in after.tables() {
+        match tables.iter_mut().find(|known| known.name == table.name) {
+            Some(known) => known.rows = known.rows.max(table.rows),
+            None => tables.push(table),
+        }
+    }
+    let mut rows = Vec::new();
+    for table in tables {
+        for row in 0..table.rows {
+            let place = (table.name, row);
+            let (is_read, is_written) = (read.contains(&place), written.contains(&place));
+            let [before, after] = [before, after].map(|mesh| stored(mesh, &table, row));
+            if !is_read && !is_written && are_equal(before.as_ref(), after.as_ref()) {
+                continue;
+            }
+            let text = |fields: Vec<Field>| fields.iter().map(ToString::to_string).collect();
+            let columns = table.columns.iter().filter(|column| !column.is_derived);
+            rows.push(RowChange {
+                table: table.name,
+                row: format!("{}{row}", table.letter),
+                columns: columns.map(|column| column.name).collect(),
+                before: before.map(text),
+                after: after.map(text),
+                is_read,
+                is_written,
+            });
+        }
+    }
+    rows
+}
+
+/// Returns the stored fields of a row; `None` if there is no element in the row.
+fn stored(mesh: &impl Described, table: &RecordTable, row: usize) -> Option<Vec<Field>> {
+    let fields = mesh.record(table.name, row)?;
+    let fields = table.columns.iter().zip(fields);
+    let stored = fields.filter(|(column, _)| !column.is_derived);
+    Some(stored.map(|(_, field)| field).collect())
+}
+
+/// Returns whether two rows have the same fields. A coordinate that is not a number equals itself.
+fn are_equal(before: Option<&Vec<Field>>, after: Option<&Vec<Field>>) -> bool {
+    let are_equal = |pair: (&Field, &Field)| match pair {
+        (Field::Point(a), Field::Point(b)) => {
+            a.to_array().map(f32::to_bits) == b.to_array().map(f32::to_bits)
+        }
+        (a, b) => a == b,
+    };
+    match (before, after) {
+        (Some(before), Some(after)) => before.iter().zip(after).all(are_equal),
+        (before, after) => before.is_none() && after.is_none(),
     }
 }

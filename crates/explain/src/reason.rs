@@ -93,11 +93,6 @@ impl<'m, M: Described> Inference<'m, M> {
         inference
     }
 
-    /// Returns the mesh, which records no reads.
-    pub(crate) fn mesh(&self) -> &'m M {
-        self.mesh
-    }
-
     /// Returns the table of an access, or `None` if the structure does not describe the table.
     pub(crate) fn table(&self, access: &Access) -> Option<RecordTable> {
         let mut tables = self.tables.iter();

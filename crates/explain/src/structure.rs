@@ -1,37 +1,24 @@
 //! The structures that can be explained.
 
-use std::ops::Range;
-
 use sixfold::{BuildError, MeshEdit, PolygonMesh, Relation, Representation, UnknownName};
 use sixfold_core::{Described, Measured, Traced};
 
-use crate::edit::{EditTrace, edit, edited_records};
+use crate::built_mesh::BuiltMesh;
 use crate::edit_command::EditCommand;
 use crate::element::ElementName;
-use crate::records::{Records, records};
-use crate::trace::{Trace, trace};
-use crate::walk::{Walk, walk};
+use crate::named_mesh::named_mesh;
 
 /// A relation, and the element from which a query starts.
 pub type Query = (Relation, ElementName);
 
-type Explained<T> = Result<Vec<T>, ExplainError>;
-
-/// The functions of the editable form of a structure.
-#[derive(Clone, Copy, Debug)]
-struct Edits {
-    edit: fn(&PolygonMesh, &[EditCommand]) -> Explained<EditTrace>,
-    records: fn(&PolygonMesh, &[EditCommand], &Range<usize>) -> Explained<Records>,
-}
+type Build = fn(&PolygonMesh) -> Result<BuiltMesh, ExplainError>;
 
 /// A structure whose tables can be shown.
 #[derive(Clone, Copy, Debug)]
 pub struct Structure {
     name: &'static str,
-    records: fn(&PolygonMesh, &Range<usize>) -> Result<Vec<Records>, BuildError>,
-    trace: fn(&PolygonMesh, Relation, ElementName) -> Result<Trace, ExplainError>,
-    walk: fn(&PolygonMesh, &str, Option<Query>) -> Result<Walk, ExplainError>,
-    edits: Option<Edits>,
+    build: Build,
+    build_editable: Option<Build>,
 }
 
 /// The reason why a structure cannot be explained on a mesh.
@@ -53,6 +40,13 @@ pub enum ExplainError {
     NoSuchElement {
         structure: &'static str,
         name: ElementName,
+    },
+    /// The structure refuses an edit that comes before what is shown.
+    #[error("{structure} refuses {edit}: {reason}")]
+    RefusedEdit {
+        structure: &'static str,
+        edit: String,
+        reason: String,
     },
     /// A text that is not an edit.
     #[error("{reason}")]
@@ -87,15 +81,13 @@ impl Structure {
     /// Returns the structure `M`, which need not be part of Sixfold.
     pub fn new<M>() -> Self
     where
-        M: Representation + Measured + Described,
-        M::Probed<Traced>: Described,
+        M: Representation + Measured,
+        M::Probed<Traced>: Described + 'static,
     {
         Self {
             name: M::NAME,
-            records: |polygons, rows| Ok(records(&M::from_polygons(polygons)?, rows)),
-            trace: trace::<M>,
-            walk: walk::<M>,
-            edits: None,
+            build: |polygons| named_mesh::<M>(polygons).map(BuiltMesh::fixed),
+            build_editable: None,
         }
     }
 
@@ -103,14 +95,11 @@ impl Structure {
     #[must_use]
     pub fn with_edits<M>(self) -> Self
     where
-        M: Representation + Measured + MeshEdit,
-        M::Probed<Traced>: MeshEdit<Vertex = M::Vertex, Edge = M::Edge, Face = M::Face> + Described,
+        M: Representation + Measured,
+        M::Probed<Traced>: MeshEdit + Described + Clone + 'static,
     {
         Self {
-            edits: Some(Edits {
-                edit: edit::<M>,
-                records: edited_records::<M>,
-            }),
+            build_editable: Some(|polygons| named_mesh::<M>(polygons).map(BuiltMesh::editable)),
             ..self
         }
     }
@@ -138,99 +127,56 @@ impl Structure {
         self.name
     }
 
-    /// Builds the structure from `polygons`, and returns its records in the rows `rows`, for each kind
-    /// of element. O(corners of the mesh).
+    /// Builds the structure from `polygons`. O(corners).
     ///
     /// # Errors
     ///
     /// Returns [`ExplainError::Refused`] if the structure cannot hold the mesh.
-    pub fn records(
-        &self,
-        polygons: &PolygonMesh,
-        rows: Range<usize>,
-    ) -> Result<Vec<Records>, ExplainError> {
-        (self.records)(polygons, &rows).map_err(|refusal| ExplainError::Refused {
-            structure: self.name,
-            refusal,
-        })
+    pub fn build(&self, polygons: &PolygonMesh) -> Result<BuiltMesh, ExplainError> {
+        (self.build)(polygons)
     }
 
-    /// Builds the structure from `polygons`, runs one query, and returns its reads and results.
-    /// O(corners of the mesh).
+    /// Builds the editable form of the structure from `polygons`. O(corners).
     ///
-    /// # Errors
-    ///
-    /// Returns [`ExplainError::Refused`] if the structure cannot hold the mesh,
-    /// [`ExplainError::NoSuchElement`] if it does not have the element, and
-    /// [`ExplainError::WrongKind`] if the relation starts from another kind of element.
-    pub fn trace(
-        &self,
-        polygons: &PolygonMesh,
-        relation: Relation,
-        element: ElementName,
-    ) -> Result<Trace, ExplainError> {
-        (self.trace)(polygons, relation, element)
-    }
-
-    /// Builds the structure from `polygons`, and runs a walk in the words of the structure: the names of
-    /// its fields. Compares the results with the relation `expected`. O(corners of the mesh).
-    ///
-    /// ```text
-    /// h = leaving(v3); repeat { yield target(h); h = next(twin(h)) }
-    /// ```
-    ///
-    /// A loop ends when its variable has the first value again. A step that has no answer, such as the
-    /// opposite of a corner at a boundary, ends the walk ([`Walk::stopped`]).
+    /// To undo edits, build the mesh again, and run only the edits before them
+    /// ([`build_after`](Self::build_after)).
     ///
     /// # Errors
     ///
     /// Returns [`ExplainError::Refused`] if the structure cannot hold the mesh, and
-    /// [`ExplainError::BadWalk`] or [`ExplainError::UnknownWord`] for a text that is not a walk on this
-    /// structure.
-    pub fn walk(
-        &self,
-        polygons: &PolygonMesh,
-        walk: &str,
-        expected: Option<Query>,
-    ) -> Result<Walk, ExplainError> {
-        (self.walk)(polygons, walk, expected)
-    }
-
-    /// Builds the structure from `polygons`, runs the edits one after the other, and returns what each
-    /// of them reads and writes. A refused edit changes nothing, and the next one runs. O(size of the mesh)
-    /// for each edit, because all rows are compared.
-    ///
-    /// To undo the last edit, leave it out: the rows are then those before the edit.
-    ///
-    /// # Errors
-    ///
-    /// Returns [`ExplainError::Refused`] if the structure cannot hold the mesh,
-    /// [`ExplainError::NoSuchElement`] if an edit names an element that does not exist, and
     /// [`ExplainError::NoEdits`] without [`with_edits`](Self::with_edits).
-    pub fn edit(
-        &self,
-        polygons: &PolygonMesh,
-        edits: &[EditCommand],
-    ) -> Result<Vec<EditTrace>, ExplainError> {
-        (self.editable()?.edit)(polygons, edits)
+    pub fn build_editable(&self, polygons: &PolygonMesh) -> Result<BuiltMesh, ExplainError> {
+        let structure = self.name;
+        let build = self.build_editable;
+        let build = build.ok_or(ExplainError::NoEdits { structure })?;
+        build(polygons)
     }
 
-    /// Does the same as [`records`](Self::records), after edits.
+    /// Builds the structure from `polygons`, and runs `edits`. Without edits, does the same as
+    /// [`build`](Self::build). O(corners), and the time of the edits.
     ///
     /// # Errors
     ///
-    /// The errors of [`edit`](Self::edit).
-    pub fn records_after(
+    /// The errors of [`build_editable`](Self::build_editable) and of [`BuiltMesh::apply`], and
+    /// [`ExplainError::RefusedEdit`] if the structure refuses an edit.
+    pub fn build_after(
         &self,
         polygons: &PolygonMesh,
         edits: &[EditCommand],
-        rows: Range<usize>,
-    ) -> Result<Vec<Records>, ExplainError> {
-        (self.editable()?.records)(polygons, edits, &rows)
-    }
-
-    fn editable(&self) -> Result<Edits, ExplainError> {
-        let structure = self.name;
-        self.edits.ok_or(ExplainError::NoEdits { structure })
+    ) -> Result<BuiltMesh, ExplainError> {
+        if edits.is_empty() {
+            return self.build(polygons);
+        }
+        let mut mesh = self.build_editable(polygons)?;
+        for edit in edits {
+            if let Some(reason) = mesh.apply(edit)? {
+                return Err(ExplainError::RefusedEdit {
+                    structure: self.name,
+                    edit: edit.to_string(),
+                    reason,
+                });
+            }
+        }
+        Ok(mesh)
     }
 }

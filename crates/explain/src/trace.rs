@@ -3,10 +3,11 @@
 use std::collections::BTreeSet;
 
 use serde::Serialize;
-use sixfold::{MeshQuery, PolygonMesh, Relation, Representation};
-use sixfold_core::{Access, Described, Element, Field, Line, Measured, RecordTable, Traced};
+use sixfold::Relation;
+use sixfold_core::{Access, Column, Described, Element, Field, Line, RecordTable};
 
-use crate::element::{ElementName, Named};
+use crate::element::ElementName;
+use crate::named_mesh::NamedMesh;
 use crate::reason::{Inference, Reason};
 use crate::structure::ExplainError;
 
@@ -77,40 +78,36 @@ pub struct Read {
     pub line: Option<usize>,
 }
 
-/// Traces a query on the structure `M`.
-pub(crate) fn trace<M>(
-    polygons: &PolygonMesh,
+/// Traces a query.
+pub(crate) fn trace<P: Described>(
+    named: &NamedMesh<P>,
     relation: Relation,
     element: ElementName,
-) -> Result<Trace, ExplainError>
-where
-    M: Representation + Measured + Described,
-{
+) -> Result<Trace, ExplainError> {
     check_kind(relation, element)?;
-    let named = Named::<M>::new(polygons)?;
     let handle = named.handle(element)?;
-    let probe = Traced::default();
-    let probed = named.mesh.clone().probed(probe.clone());
-    probe.take();
-    let lines = M::algorithm(relation);
+    let lines = P::algorithm(relation);
     let mut recorder = Recorder {
         inference: Inference::new(&named.mesh, lines, named.mesh.rows_of(handle)),
-        probe,
+        named,
         steps: Vec::new(),
         reads: Vec::new(),
         results: Vec::new(),
     };
-    recorder.run(&named, &probed, relation, handle);
+    named.probe.take();
+    recorder.run(relation, handle);
     let Recorder {
         steps,
         reads,
         results,
         ..
     } = recorder;
+    let name = named.name(handle);
+    named.probe.take();
     Ok(Trace {
-        structure: M::NAME,
+        structure: named.structure,
         relation,
-        element: named.name(handle),
+        element: name,
         algorithm: lines.iter().map(|line| line.text).collect(),
         steps,
         cost: cost(&reads),
@@ -155,63 +152,59 @@ fn check_kind(relation: Relation, element: ElementName) -> Result<(), ExplainErr
 }
 
 /// Records the steps of a query while it runs.
-struct Recorder<'m, M> {
-    inference: Inference<'m, M>,
-    probe: Traced,
+struct Recorder<'m, P: Described> {
+    inference: Inference<'m, P>,
+    named: &'m NamedMesh<P>,
     steps: Vec<Step>,
     reads: Vec<Access>,
     results: Vec<String>,
 }
 
-impl<M: Representation + Measured + Described> Recorder<'_, M> {
+impl<P: Described> Recorder<'_, P> {
     /// Runs the query, one result after the other.
-    fn run(
-        &mut self,
-        named: &Named<'_, M>,
-        probed: &M::Probed<Traced>,
-        relation: Relation,
-        element: Element<M>,
-    ) {
-        let vertex = |v| named.name(Element::Vertex(v));
-        let edge = |e| named.name(Element::Edge(e));
-        let face = |f| named.name(Element::Face(f));
+    fn run(&mut self, relation: Relation, element: Element<P>) {
+        let mesh = &self.named.mesh;
         match (relation, element) {
             (Relation::VertexVertices, Element::Vertex(v)) => {
-                self.record(probed.vertex_vertices(v).map(vertex));
+                self.record(mesh.vertex_vertices(v).map(Element::Vertex));
             }
             (Relation::VertexEdges, Element::Vertex(v)) => {
-                self.record(probed.vertex_edges(v).map(edge));
+                self.record(mesh.vertex_edges(v).map(Element::Edge));
             }
             (Relation::VertexFaces, Element::Vertex(v)) => {
-                self.record(probed.vertex_faces(v).map(face));
+                self.record(mesh.vertex_faces(v).map(Element::Face));
             }
             (Relation::EdgeVertices, Element::Edge(e)) => {
-                self.record(probed.edge_vertices(e).into_iter().map(vertex));
+                self.record(mesh.edge_vertices(e).into_iter().map(Element::Vertex));
             }
             (Relation::EdgeEdges, Element::Edge(e)) => {
-                self.record(probed.edge_edges(e).map(edge));
+                self.record(mesh.edge_edges(e).map(Element::Edge));
             }
             (Relation::EdgeFaces, Element::Edge(e)) => {
-                self.record(probed.edge_faces(e).map(face));
+                self.record(mesh.edge_faces(e).map(Element::Face));
             }
             (Relation::FaceVertices, Element::Face(f)) => {
-                self.record(probed.face_vertices(f).map(vertex));
+                self.record(mesh.face_vertices(f).map(Element::Vertex));
             }
             (Relation::FaceEdges, Element::Face(f)) => {
-                self.record(probed.face_edges(f).map(edge));
+                self.record(mesh.face_edges(f).map(Element::Edge));
             }
             (Relation::FaceFaces, Element::Face(f)) => {
-                self.record(probed.face_faces(f).map(face));
+                self.record(mesh.face_faces(f).map(Element::Face));
             }
             _ => unreachable!("the kind of the element was checked"),
         }
     }
 
     /// Records the reads before each result, the result, and the reads after the last one.
-    fn record(&mut self, mut results: impl Iterator<Item = String>) {
+    fn record(&mut self, mut results: impl Iterator<Item = Element<P>>) {
         loop {
             let result = results.next();
-            self.take_reads();
+            let accesses = self.named.probe.take();
+            self.explain(accesses);
+            let result = result.map(|result| self.named.name(result));
+            // The descriptions and names above have read rows, too.
+            self.named.probe.take();
             let Some(result) = result else { return };
             let line = self.inference.yielding();
             self.results.push(result.clone());
@@ -219,8 +212,7 @@ impl<M: Representation + Measured + Described> Recorder<'_, M> {
         }
     }
 
-    fn take_reads(&mut self) {
-        let accesses = self.probe.take();
+    fn explain(&mut self, accesses: Vec<Access>) {
         for i in 0..accesses.len() {
             if let Some(table) = self.inference.table(&accesses[i]) {
                 let (reason, line) = self.inference.read(table, &accesses[i..]);
@@ -242,22 +234,23 @@ impl<M: Representation + Measured + Described> Recorder<'_, M> {
             last.fields.clear();
             return;
         }
-        let record = self
-            .inference
-            .mesh()
-            .record(table.name, row)
-            .unwrap_or_default();
-        let stored = table.columns.iter().zip(record);
-        let fields = stored.filter(|(column, _)| !column.is_derived);
-        let text =
-            |(column, field): (&sixfold_core::Column, Field)| (column.name, field.to_string());
+        let record = self.named.mesh.record(table.name, row).unwrap_or_default();
         self.steps.push(Step::Read(Read {
             table: table.name,
             row: format!("{}{row}", table.letter),
             rows: 1,
-            fields: fields.map(text).collect(),
+            fields: stored_fields(&table, &record),
             reason,
             line,
         }));
     }
+}
+
+/// Returns the stored fields of a record: the name of the column and the value.
+pub(crate) fn stored_fields(table: &RecordTable, record: &[Field]) -> Vec<(&'static str, String)> {
+    let fields = table.columns.iter().zip(record);
+    let stored = fields.filter(|(column, _): &(&Column, _)| !column.is_derived);
+    stored
+        .map(|(column, field)| (column.name, field.to_string()))
+        .collect()
 }

@@ -3,15 +3,14 @@
 use std::collections::{BTreeMap, HashSet};
 
 use serde::Serialize;
-use sixfold::{PolygonMesh, Relation, Representation, UnknownName};
-use sixfold_core::{
-    Access, AccessKind, Column, Described, Field, Measured, RecordTable, RowName, Traced,
-};
+use sixfold::{Relation, UnknownName};
+use sixfold_core::{Access, AccessKind, Column, Described, Field, RecordTable, RowName};
 
 use crate::element::ElementName;
+use crate::named_mesh::NamedMesh;
 use crate::reason::Reason;
 use crate::structure::{ExplainError, Query};
-use crate::trace::{Cost, Read, Step, cost, trace};
+use crate::trace::{Cost, Read, Step, cost, stored_fields, trace};
 use crate::walk_parser::{Kind, Program, Statement, Value, loop_variable, parse, text};
 
 /// A walk on one structure: what it reads, and what it yields.
@@ -48,32 +47,16 @@ pub struct Comparison {
     pub extra: Vec<String>,
 }
 
-/// Runs a walk on the structure `M`.
-pub(crate) fn walk<M>(
-    polygons: &PolygonMesh,
+/// Runs a walk.
+pub(crate) fn walk<P: Described>(
+    named: &NamedMesh<P>,
     source: &str,
     expected: Option<Query>,
-) -> Result<Walk, ExplainError>
-where
-    M: Representation + Measured + Described,
-    M::Probed<Traced>: Described,
-{
+) -> Result<Walk, ExplainError> {
     let program = parse(source)?;
-    let mesh = M::from_polygons(polygons).map_err(|refusal| ExplainError::Refused {
-        structure: M::NAME,
-        refusal,
-    })?;
-    let tables = mesh.memory().tables.into_iter();
-    let row_bytes = tables.map(|table| (table.table.into_owned(), table.row_bytes));
-    let row_bytes = row_bytes.collect();
-    let probe = Traced::default();
-    let mesh = mesh.probed(probe.clone());
     let mut walker = Walker {
-        structure: M::NAME,
-        tables: mesh.tables(),
-        mesh: &mesh,
-        probe,
-        row_bytes,
+        named,
+        tables: named.mesh.tables(),
         variables: BTreeMap::new(),
         steps: Vec::new(),
         reads: Vec::new(),
@@ -91,9 +74,9 @@ where
         results,
         ..
     } = walker;
-    let compared = |(relation, element)| compare::<M>(polygons, relation, element, &results);
+    let compared = |(relation, element)| compare(named, relation, element, &results);
     Ok(Walk {
-        structure: M::NAME,
+        structure: named.structure,
         expected: expected.map(compared).transpose()?,
         algorithm: program.lines,
         steps,
@@ -104,13 +87,13 @@ where
 }
 
 /// Compares the results of a walk with those of a query.
-fn compare<M: Representation + Measured + Described>(
-    polygons: &PolygonMesh,
+fn compare<P: Described>(
+    named: &NamedMesh<P>,
     relation: Relation,
     element: ElementName,
     results: &[String],
 ) -> Result<Comparison, ExplainError> {
-    let query = trace::<M>(polygons, relation, element)?;
+    let query = trace(named, relation, element)?;
     // The name of an edge is its row and its ends.
     let row = |name: &String| name.split(' ').next().unwrap_or_default().to_owned();
     let mut missing: Vec<String> = query.results.iter().map(row).collect();
@@ -130,12 +113,9 @@ fn compare<M: Representation + Measured + Described>(
 }
 
 /// A walk that runs.
-struct Walker<'m, M> {
-    structure: &'static str,
-    mesh: &'m M,
-    probe: Traced,
+struct Walker<'m, P: Described> {
+    named: &'m NamedMesh<P>,
     tables: Vec<RecordTable>,
-    row_bytes: BTreeMap<String, usize>,
     /// The values of the variables; `None` for none.
     variables: BTreeMap<String, Option<RowName>>,
     steps: Vec<Step>,
@@ -145,7 +125,7 @@ struct Walker<'m, M> {
     line: usize,
 }
 
-impl<M: Described> Walker<'_, M> {
+impl<P: Described> Walker<'_, P> {
     fn block(&mut self, statements: &[Statement]) -> Result<(), ExplainError> {
         statements
             .iter()
@@ -237,9 +217,9 @@ impl<M: Described> Walker<'_, M> {
         let table = tables.find(|table| table.letter == letter);
         let row = digits.parse::<u32>().ok();
         if let (Some(table), Some(row)) = (table, row)
-            && self.mesh.record(table.name, row as usize).is_some()
+            && self.named.mesh.record(table.name, row as usize).is_some()
         {
-            self.probe.take();
+            self.named.probe.take();
             let letter = table.letter;
             return Ok(RowName { letter, row });
         }
@@ -247,12 +227,12 @@ impl<M: Described> Walker<'_, M> {
             (Some(table), Some(_)) => {
                 format!(
                     "{} has no {} {name} in this mesh",
-                    self.structure, table.element
+                    self.named.structure, table.element
                 )
             }
             _ => format!(
                 "{name} has no value, and {} has no row of this name",
-                self.structure
+                self.named.structure
             ),
         };
         Err(ExplainError::BadWalk { reason })
@@ -264,9 +244,9 @@ impl<M: Described> Walker<'_, M> {
             return self.alias(word, row);
         };
         let column = table.columns[place];
-        self.probe.take();
-        let record = self.mesh.record(table.name, row.row as usize);
-        let searched = self.probe.take();
+        self.named.probe.take();
+        let record = self.named.mesh.record(table.name, row.row as usize);
+        let searched = self.named.probe.take();
         let record = record.unwrap_or_default();
         let line = Some(self.line);
         if column.is_searched {
@@ -299,8 +279,8 @@ impl<M: Described> Walker<'_, M> {
     }
 
     fn stored(&self, table: RecordTable, row: usize) -> Vec<(&'static str, String)> {
-        let record = self.mesh.record(table.name, row).unwrap_or_default();
-        self.probe.take();
+        let record = self.named.mesh.record(table.name, row).unwrap_or_default();
+        self.named.probe.take();
         stored_fields(&table, &record)
     }
 
@@ -322,7 +302,7 @@ impl<M: Described> Walker<'_, M> {
             kind: AccessKind::Read,
             table: table.name,
             row,
-            bytes: self.row_bytes.get(table.name).copied().unwrap_or(0),
+            bytes: self.named.row_bytes.get(table.name).copied().unwrap_or(0),
         });
         self.steps.push(Step::Read(Read {
             table: table.name,
@@ -357,7 +337,7 @@ impl<M: Described> Walker<'_, M> {
 
     /// Evaluates a word that stands for several fields, such as `target` for `origin(twin(x))`.
     fn alias(&mut self, word: &str, row: RowName) -> Result<Option<RowName>, ExplainError> {
-        let words = M::WORDS.iter().filter(|known| known.letter == row.letter);
+        let words = P::WORDS.iter().filter(|known| known.letter == row.letter);
         let Some(known) = words.clone().find(|known| known.name == word) else {
             let tables = self
                 .tables
@@ -398,12 +378,4 @@ impl<M: Described> Walker<'_, M> {
 /// Returns a name of a column as a word: `left next` is `left_next`.
 fn as_word(name: &str) -> String {
     name.replace([' ', '-'], "_")
-}
-
-fn stored_fields(table: &RecordTable, record: &[Field]) -> Vec<(&'static str, String)> {
-    let fields = table.columns.iter().zip(record);
-    let stored = fields.filter(|(column, _): &(&Column, _)| !column.is_derived);
-    stored
-        .map(|(column, field)| (column.name, field.to_string()))
-        .collect()
 }

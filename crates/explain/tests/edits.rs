@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use sixfold::{Edit, HalfEdgeMesh, PolygonMesh, shapes};
-use sixfold_explain::{EditCommand, EditTrace, ExplainError, Records, Structure};
+use sixfold_explain::{BuiltMesh, EditCommand, EditTrace, ExplainError, Records, Structure};
 
 /// The stored fields of all rows, by the names of the table and of the row; `None` if records do not show
 /// the row, because the element was deleted.
@@ -80,6 +80,24 @@ fn commands(polygons: &PolygonMesh) -> Vec<EditCommand> {
     texts.iter().map(|text| text.parse().expect(text)).collect()
 }
 
+/// Returns the structure after edits.
+fn edited(structure: &Structure, polygons: &PolygonMesh, edits: &[EditCommand]) -> BuiltMesh {
+    let mut mesh = structure.build_editable(polygons).expect("held");
+    for edit in edits {
+        mesh.apply(edit).expect("elements of the mesh");
+    }
+    mesh
+}
+
+/// Runs edits, and returns what each of them does.
+fn run(structure: &Structure, polygons: &PolygonMesh, edits: &[&str]) -> Vec<EditTrace> {
+    let mut mesh = edited(structure, polygons, &[]);
+    let edits = edits.iter().map(|edit| edit.parse().expect(edit));
+    edits
+        .map(|edit| mesh.edit(&edit).expect("elements of the mesh"))
+        .collect()
+}
+
 /// Checks one edit after the edits `before`. Returns what it did, if its elements exist.
 fn check(
     structure: &Structure,
@@ -90,18 +108,17 @@ fn check(
     let mut edits = before.to_vec();
     edits.push(command.clone());
     let context = format!("{} {edits:?}", structure.name());
-    let traces = match structure.edit(polygons, &edits) {
-        Ok(traces) => traces,
+    let mut mesh = edited(structure, polygons, before);
+    let records = mesh.records(0..usize::MAX);
+    let trace = match mesh.edit(command) {
+        Ok(trace) => trace,
         Err(ExplainError::NoSuchElement { .. }) => return None,
         Err(error) => panic!("{context}: {error}"),
     };
-    let records = |edits| {
-        structure
-            .records_after(polygons, edits, 0..usize::MAX)
-            .expect(&context)
-    };
-    let mut rows = stored(&records(before));
-    let trace = traces.last().expect("one for each edit").clone();
+    // An edit that is left out is undone.
+    let again = edited(structure, polygons, before);
+    assert_eq!(again.records(0..usize::MAX), records, "{context}");
+    let mut rows = stored(&records);
     for change in &trace.rows {
         let place = (change.table, change.row.clone());
         let is_shown = are_equal(rows.get(&place), change.before.as_ref());
@@ -114,7 +131,7 @@ fn check(
         }
         rows.insert(place, change.after.clone());
     }
-    for (place, after) in stored(&records(&edits)) {
+    for (place, after) in stored(&mesh.records(0..usize::MAX)) {
         let row = rows.remove(&place).flatten();
         let is_shown = are_equal(Some(&after), row.as_ref());
         assert!(is_shown, "{context}: {place:?} {row:?}, is {after:?}");
@@ -143,7 +160,7 @@ fn the_rows_before_and_the_shown_changes_are_the_rows_after() {
     for polygons in [shapes::octahedron(), open, mixed] {
         let commands = commands(&polygons);
         for structure in Structure::all() {
-            if structure.records(&polygons, 0..1).is_err() {
+            if structure.build(&polygons).is_err() {
                 continue;
             }
             // Each edit alone, and after an edit that leaves holes.
@@ -179,15 +196,9 @@ fn the_rows_before_and_the_shown_changes_are_the_rows_after() {
 #[test]
 fn a_flip_shows_what_it_rewrites_and_a_refusal_shows_its_rule() {
     let half_edge = Structure::find("half-edge").expect("one of six");
-    let [flip, again] =
-        ["flip_edge v0-v2", "flip_edge v0-v2"].map(|edit| edit.parse().expect(edit));
     let quad = shapes::triangle_grid(1, 1).expect("a small size");
     let (a, b) = (0, 3);
-    let traces = half_edge.edit(
-        &quad,
-        &[format!("flip_edge v{a}-v{b}").parse().expect("an edit")],
-    );
-    let trace = &traces.expect("a square")[0];
+    let trace = &run(&half_edge, &quad, &[&format!("flip_edge v{a}-v{b}")])[0];
     assert_eq!(trace.refusal, None);
     assert!(trace.reads > 0 && trace.writes > 0);
     let changed: Vec<&str> = (trace.rows.iter())
@@ -197,10 +208,7 @@ fn a_flip_shows_what_it_rewrites_and_a_refusal_shows_its_rule() {
     // The diagonal has two half-edges, and each triangle two more.
     assert_eq!(changed.len(), 6, "{changed:?}");
     let tetrahedron = shapes::tetrahedron();
-    let traces = half_edge
-        .edit(&tetrahedron, &[flip, again])
-        .expect("a tetrahedron");
-    for trace in traces {
+    for trace in run(&half_edge, &tetrahedron, &["flip_edge v0-v2"; 2]) {
         let refusal = trace.refusal.expect("an end has three edges");
         assert!(
             refusal.starts_with("vertex v0 has only three edges"),
@@ -208,8 +216,19 @@ fn a_flip_shows_what_it_rewrites_and_a_refusal_shows_its_rule() {
         );
     }
     let read_only = Structure::new::<HalfEdgeMesh>();
-    let error = read_only.edit(&tetrahedron, &[]).expect_err("not editable");
-    assert_eq!(error.to_string(), "half-edge has no edits");
+    let refused = read_only.build_editable(&tetrahedron).err();
+    let mut fixed = half_edge.build(&tetrahedron).expect("a manifold");
+    let compact = "compact".parse().expect("an edit");
+    for error in [
+        refused,
+        fixed.edit(&compact).err(),
+        fixed.apply(&compact).err(),
+    ] {
+        assert_eq!(
+            error.expect("not editable").to_string(),
+            "half-edge has no edits"
+        );
+    }
 }
 
 #[test]
@@ -220,11 +239,8 @@ fn new_elements_get_the_next_numbers_and_compaction_keeps_the_names() {
         "compact",
         "remove_vertex v6",
     ];
-    let edits = edits.map(|edit| edit.parse().expect(edit));
     for structure in Structure::all() {
-        let traces = structure
-            .edit(&shapes::octahedron(), &edits)
-            .expect("an octahedron");
+        let traces = run(&structure, &shapes::octahedron(), &edits);
         assert_eq!(
             traces[0].created,
             ["v6", "f8", "f9"],
@@ -250,7 +266,7 @@ fn an_edit_without_its_elements_is_an_error() {
             elements: vec![None, None],
             at: None,
         };
-        let error = half_edge.edit(&shapes::octahedron(), &[command]);
+        let error = edited(&half_edge, &shapes::octahedron(), &[]).edit(&command);
         let error = error.expect_err("no edit takes two times none").to_string();
         assert!(error.contains(": write "), "{edit}: {error}");
     }

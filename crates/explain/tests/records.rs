@@ -61,7 +61,8 @@ fn column<'r>(records: &'r Records, name: &str) -> Vec<&'r str> {
 #[test]
 fn a_half_edge_cube_is_the_one_of_the_lecture_up_to_numbering() {
     let half_edge = Structure::find("half-edge").expect("one of six");
-    let records = half_edge.records(&lecture_cube(), 0..100).expect("a cube");
+    let built = half_edge.build(&lecture_cube()).expect("a cube");
+    let records = built.records(0..100);
     let halves = of(&records, "half-edge");
     let [origin, next, prev, twin, face] =
         ["origin", "next", "prev", "twin", "face"].map(|name| column(halves, name));
@@ -103,11 +104,12 @@ fn each_field_has_a_column_and_each_named_row_exists() {
     for mesh in gallery() {
         let mesh = mesh.polygons;
         for structure in Structure::all() {
-            let Ok(records) = structure.records(&mesh, 0..usize::MAX) else {
+            let Ok(built) = structure.build(&mesh) else {
                 // An indexed face set holds every mesh.
                 assert_ne!(structure.name(), "indexed-face-set");
                 continue;
             };
+            let records = built.records(0..usize::MAX);
             let name = structure.name();
             // An edge of the half-edge mesh is two of its rows.
             let faces = (0..mesh.face_count()).map(|f| format!("f{f}"));
@@ -146,7 +148,8 @@ fn requested_rows_are_cut_at_the_end_of_the_table() {
     let structure = Structure::new::<HalfEdgeMesh>();
     assert_eq!(structure.name(), "half-edge");
     let names = |rows| {
-        let records = structure.records(&shapes::cube(), rows).expect("a cube");
+        let built = structure.build(&shapes::cube()).expect("a cube");
+        let records = built.records(rows);
         let faces = of(&records, "face");
         assert_eq!(faces.total, 6);
         faces
@@ -164,9 +167,7 @@ fn requested_rows_are_cut_at_the_end_of_the_table() {
 #[test]
 fn a_structure_that_cannot_hold_the_mesh_says_why() {
     let corner_table = Structure::find("corner-table").expect("one of six");
-    let error = corner_table
-        .records(&shapes::cube(), 0..1)
-        .expect_err("quads");
+    let error = corner_table.build(&shapes::cube()).err().expect("quads");
     assert!(matches!(error, ExplainError::Refused { .. }));
     let message = error.to_string();
     assert!(

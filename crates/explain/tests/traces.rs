@@ -224,27 +224,25 @@ fn stepped<T>(mut results: impl Iterator<Item = T>, name: impl Fn(T) -> String) 
 fn check<M>(polygons: &PolygonMesh, mesh_name: &str) -> usize
 where
     M: Representation + Measured + Described,
-    M::Probed<Traced>: Described,
+    M::Probed<Traced>: Described + 'static,
 {
     let Ok(mesh) = M::from_polygons(polygons) else {
         return 0;
     };
-    let structure = Structure::new::<M>();
+    let shown = Structure::new::<M>().build(polygons).expect("held");
     let mut traces = 0;
     for relation in Relation::ALL {
         for name in elements(polygons, relation) {
             let context = format!("{} of {mesh_name}: {relation} of {name}", M::NAME);
             let Some(expected) = Expected::new(polygons, &mesh, relation, name) else {
-                let error = structure
-                    .trace(polygons, relation, name)
-                    .expect_err(&context);
+                let error = shown.trace(relation, name).expect_err(&context);
                 assert!(
                     matches!(error, ExplainError::NoSuchElement { .. }),
                     "{error}"
                 );
                 continue;
             };
-            let trace = structure.trace(polygons, relation, name).expect(&context);
+            let trace = shown.trace(relation, name).expect(&context);
             if let Some(fault) = expected.fault(&trace, M::algorithm(relation)) {
                 panic!("{context}: {fault}");
             }
@@ -268,16 +266,63 @@ fn every_read_has_a_reason_on_a_line_of_the_algorithm() {
     assert!(traces > 10_000, "{traces}");
 }
 
+#[test]
+fn traces_after_edits_are_those_of_the_edited_mesh() {
+    let edits = [
+        "poke_face f0",
+        "flip_edge v1-v2",
+        "collapse_edge v3-v4 v3",
+        "remove_face f6",
+        "compact",
+        "poke_face f9",
+    ];
+    for structure in Structure::all() {
+        let built = structure.build_editable(&shapes::octahedron());
+        let mut mesh = built.expect("a closed mesh of triangles");
+        for edit in edits {
+            mesh.apply(&edit.parse().expect(edit)).expect(edit);
+            let faces: Vec<Vec<u32>> = mesh.geometry().faces.into_iter().flatten().collect();
+            for (v, _) in mesh.geometry().vertices.iter().enumerate() {
+                let context = format!("{} after {edit}: v{v}", structure.name());
+                let sides = faces.iter().flat_map(|face| {
+                    let next = face.iter().cycle().skip(1);
+                    face.iter().zip(next).flat_map(|(&a, &b)| [(a, b), (b, a)])
+                });
+                let adjacent: BTreeSet<String> = sides
+                    .filter(|&(a, _)| a as usize == v)
+                    .map(|(_, b)| format!("v{b}"))
+                    .collect();
+                let trace = mesh.trace(Relation::VertexVertices, ElementName::Vertex(v as u32));
+                let trace = match trace {
+                    Ok(trace) => trace,
+                    Err(ExplainError::NoSuchElement { .. }) => {
+                        assert!(adjacent.is_empty(), "{context}");
+                        continue;
+                    }
+                    Err(error) => panic!("{context}: {error}"),
+                };
+                assert_eq!(trace.results.len(), adjacent.len(), "{context}: {trace:?}");
+                assert_eq!(BTreeSet::from_iter(trace.results), adjacent, "{context}");
+                for step in trace.steps {
+                    if let Step::Read(read) = step {
+                        let is_known = read.line.is_some() && read.reason.way != "unknown";
+                        assert!(is_known, "{context}: {read:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// Returns the fault that the check finds in a trace of VV on an octahedron, after `plant`.
 fn fault_after(plant: impl FnOnce(&mut Trace)) -> Option<String> {
     let polygons = shapes::octahedron();
     let mesh = HalfEdgeMesh::from_polygons(&polygons).expect("a manifold");
     let (relation, name) = (Relation::VertexVertices, ElementName::Vertex(2));
     let expected = Expected::new(&polygons, &mesh, relation, name).expect("a vertex");
-    let structure = Structure::new::<HalfEdgeMesh>();
-    let mut trace = structure
-        .trace(&polygons, relation, name)
-        .expect("a vertex");
+    let shown = Structure::new::<HalfEdgeMesh>().build(&polygons);
+    let shown = shown.expect("a manifold");
+    let mut trace = shown.trace(relation, name).expect("a vertex");
     plant(&mut trace);
     expected.fault(&trace, HalfEdgeMesh::algorithm(relation))
 }

@@ -83,7 +83,7 @@ fn walk(
     expected: Option<(Relation, ElementName)>,
 ) -> Result<Walk, ExplainError> {
     let structure = Structure::find(structure).expect("one of six");
-    structure.walk(&shapes::octahedron(), walk, expected)
+    structure.build(&shapes::octahedron())?.walk(walk, expected)
 }
 
 #[test]
@@ -174,7 +174,8 @@ fn a_step_without_an_answer_ends_the_walk_with_its_element() {
     ];
     for (structure, source, message) in cases {
         let known = Structure::find(structure).expect("one of six");
-        let walk = known.walk(&square, source, None).expect(source);
+        let built = known.build(&square).expect("a manifold");
+        let walk = built.walk(source, None).expect(source);
         let stopped = walk.stopped.unwrap_or_default();
         assert_eq!(stopped, message, "{structure}: {source}");
     }
@@ -223,13 +224,14 @@ fn a_loop_ends_at_a_boundary() {
     let source = "n = next(corner(v0)); repeat { yield vertex(n); c = n; if opposite(n) = none { n = none } \
                   else { n = prev(opposite(n)) } } if n = none { yield vertex(next(c)) }";
     let expected = Some((Relation::VertexVertices, ElementName::Vertex(0)));
-    let walk = corner_table.walk(&square, source, expected).expect(source);
+    let corner_table = corner_table.build(&square).expect("a manifold");
+    let walk = corner_table.walk(source, expected).expect(source);
     assert_eq!((walk.stopped, walk.results.len()), (None, 3));
     assert!(
         walk.expected
             .is_some_and(|compared| compared.missing.is_empty())
     );
     // A loop that begins at none does nothing.
-    let none = corner_table.walk(&square, "c = none; repeat { c = next(c) } yield v0", None);
+    let none = corner_table.walk("c = none; repeat { c = next(c) } yield v0", None);
     assert_eq!(none.expect("a walk").results, ["v0"]);
 }

@@ -50,9 +50,11 @@ fn explain<T>(
     for structure in Structure::all().into_iter().filter(is_selected) {
         match explanation(&structure) {
             Ok(one) => shown.push(one),
-            Err(error @ (ExplainError::Refused { .. } | ExplainError::NoSuchElement { .. })) => {
-                refused.push((structure.name(), error));
-            }
+            Err(
+                error @ (ExplainError::Refused { .. }
+                | ExplainError::RefusedEdit { .. }
+                | ExplainError::NoSuchElement { .. }),
+            ) => refused.push((structure.name(), error)),
             Err(error) => return Err(Failure::usage(error)),
         }
     }

@@ -27,6 +27,40 @@ fn a_query_is_shown_read_by_read() {
 }
 
 #[test]
+fn queries_and_walks_run_after_edits() {
+    let sixfold = Sixfold::new();
+    let edit = ["--triangulate", "--edit", "flip_edge v0-v2"];
+    let query = [&["trace", "VV", "v0"][..], &edit].concat();
+    let run = run_ok(&sixfold, &query);
+    let headline = "vertex_vertices of v0 in half-edge, cube after flip_edge v0-v2: 4 results";
+    assert!(run.stdout.starts_with(headline), "{}", run.stdout);
+    assert!(!run.stdout.contains("yield v2"), "{}", run.stdout);
+    let walk = "h = leaving(v0); repeat { yield target(h); h = next(twin(h)) }";
+    let walk = [
+        "trace", "--walk", walk, "--expect", "VV v0", "--edit", "compact",
+    ];
+    let run = run_ok(&sixfold, &[&walk[..], &edit].concat());
+    assert!(
+        run.stdout
+            .starts_with("walk in half-edge, cube after 2 edits: ")
+    );
+    assert!(run.stdout.contains("Right: "), "{}", run.stdout);
+    // A structure that refuses the edit has no trace.
+    let refused = [
+        "trace",
+        "VV",
+        "v0",
+        "--triangulate",
+        "--edit",
+        "dissolve_edge v0-v2",
+        "--all",
+    ];
+    let run = run_ok(&sixfold, &refused);
+    let reason = "! corner-table refuses dissolve_edge v0-v2: ";
+    assert!(run.stdout.contains(reason), "{}", run.stdout);
+}
+
+#[test]
 fn all_structures_are_traced_and_their_costs_compared() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 20);

@@ -68,6 +68,7 @@ const TRACE_EXAMPLES: &str = "Examples:
   sixfold trace cube.obj vertex_edges v3 --interactive  step by keys
   sixfold trace --triangulate --edit \"flip_edge v0-v2\"  the rows before and after an edit
   sixfold trace torus.obj --edit \"collapse_edge v0-v1 v0\" --edit compact --all
+  sixfold trace VV v0 --triangulate --edit \"flip_edge v0-v2\"  a query after an edit
   sixfold trace --walk \"h = leaving(v3); repeat { yield target(h); h = next(twin(h)) }\"
                 --expect \"vertex_vertices v3\"          a walk of your own
 
@@ -105,11 +106,11 @@ pub(crate) struct Trace {
     /// The mesh (- for standard input; without it, a cube), the relation, and the element
     #[arg(value_name = "[MESH] RELATION ELEMENT", num_args = 0..=3)]
     pub(crate) query: Vec<String>,
-    /// Show this edit instead of a query; several edits follow one another
-    #[arg(long, value_name = "EDIT", conflicts_with = "interactive")]
+    /// Run this edit first; without a query or a walk, show what it does
+    #[arg(long, value_name = "EDIT")]
     pub(crate) edit: Vec<String>,
     /// Run this walk in the words of the structure instead of a query
-    #[arg(long, value_name = "WALK", conflicts_with_all = ["interactive", "edit"])]
+    #[arg(long, value_name = "WALK", conflicts_with = "interactive")]
     pub(crate) walk: Option<String>,
     /// Compare the results of the walk with a relation, such as "vertex_vertices v3"
     #[arg(long, value_name = "RELATION ELEMENT", requires = "walk")]

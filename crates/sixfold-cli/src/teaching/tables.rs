@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &Tables) -> Result<ExitCode, Failure> {
     let rows = arguments.rows.clone().unwrap_or(0..MOST_ROWS);
     let (shown, refused) = explain(&arguments.explained, |structure| {
         let backend = structure.name();
-        let records = structure.records(&polygons, rows.clone())?;
+        let records = structure.build(&polygons)?.records(rows.clone());
         Ok(Shown { backend, records })
     })?;
     if arguments.rows.is_none() {

@@ -10,7 +10,7 @@ use std::process::ExitCode;
 use console::{Key, Term};
 use serde::Serialize;
 use sixfold::{PolygonMesh, Relation};
-use sixfold_explain::{Cost, ElementName, Read, Step, Trace};
+use sixfold_explain::{Cost, EditCommand, ElementName, Read, Step, Trace};
 use sixfold_study::numbers::{counted, grouped};
 
 use crate::arguments;
@@ -28,21 +28,27 @@ struct Document<'d> {
 }
 
 pub(crate) fn run(arguments: &arguments::Trace) -> Result<ExitCode, Failure> {
-    let (edits, walk) = (!arguments.edit.is_empty(), arguments.walk.as_deref());
-    match (arguments.query.as_slice(), walk) {
-        (path @ ([] | [_]), Some(walk)) => walks::run(path.first().map(Path::new), walk, arguments),
-        (path @ ([] | [_]), None) if edits => edits::run(path.first().map(Path::new), arguments),
-        ([relation, element], None) if !edits => queries(None, [relation, element], arguments),
-        ([path, relation, element], None) if !edits => {
-            queries(Some(Path::new(path)), [relation, element], arguments)
-        }
-        ([_, _, ..], _) if edits || walk.is_some() => Err(Failure::usage(
-            "--edit and --walk take the place of a relation and an element: name only the mesh",
+    let (path, query) = match arguments.query.as_slice() {
+        [] => (None, None),
+        [path] => (Some(Path::new(path)), None),
+        [relation, element] => (None, Some([relation, element])),
+        [path, relation, element, ..] => (Some(Path::new(path)), Some([relation, element])),
+    };
+    match (query, arguments.walk.as_deref()) {
+        (Some(_), Some(_)) => Err(Failure::usage(
+            "--walk takes the place of a relation and an element: name only the mesh, and compare with \
+             --expect",
         )),
-        _ => Err(Failure::usage(
+        (None, Some(walk)) => walks::run(path, walk, arguments),
+        (Some(query), None) => queries(path, query, arguments),
+        (None, None) if arguments.edit.is_empty() => Err(Failure::usage(
             "name a relation and an element, such as vertex_vertices v3, or an edit, such as --edit \
              \"flip_edge v0-v1\"",
         )),
+        (None, None) if arguments.interactive => Err(Failure::usage(
+            "--interactive steps through a query: name a relation and an element, such as vertex_vertices v3",
+        )),
+        (None, None) => edits::run(path, arguments),
     }
 }
 
@@ -52,11 +58,26 @@ struct Begun {
     text: TextOutput,
     name: String,
     polygons: PolygonMesh,
+    edits: Vec<EditCommand>,
 }
 
-/// Opens the outputs, and reads the mesh.
+impl Begun {
+    /// Returns the same mesh, whose name says that edits come before what is shown.
+    fn after_edits(mut self) -> Self {
+        match &self.edits[..] {
+            [] => {}
+            [edit] => self.name = format!("{} after {edit}", self.name),
+            edits => self.name = format!("{} after {} edits", self.name, edits.len()),
+        }
+        self
+    }
+}
+
+/// Opens the outputs, and reads the edits and the mesh.
 fn begin(path: Option<&Path>, arguments: &arguments::Trace) -> Result<Begun, Failure> {
     check_outputs(path, &[("--json", arguments.json.as_ref())])?;
+    let edits = arguments.edit.iter().map(|text| text.parse());
+    let edits = edits.collect::<Result<_, _>>().map_err(Failure::usage)?;
     let json = Output::open_if(arguments.json.as_ref())?;
     let to_stdout = arguments.json.as_deref().is_some_and(is_stdout);
     let text = TextOutput::new(!to_stdout);
@@ -66,6 +87,7 @@ fn begin(path: Option<&Path>, arguments: &arguments::Trace) -> Result<Begun, Fai
         text,
         name,
         polygons,
+        edits,
     })
 }
 
@@ -108,9 +130,11 @@ fn queries(
         mut text,
         name,
         polygons,
-    } = begin(path, arguments)?;
+        edits,
+    } = begin(path, arguments)?.after_edits();
     let (traces, refused) = explain(&arguments.explained, |structure| {
-        structure.trace(&polygons, relation, element)
+        let mesh = structure.build_after(&polygons, &edits)?;
+        mesh.trace(relation, element)
     })?;
     if arguments.interactive {
         return step(&name, &traces).map(|()| ExitCode::SUCCESS);

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use serde::Serialize;
-use sixfold_explain::{EditCommand, EditTrace, Elements, RowChange};
+use sixfold_explain::{EditTrace, Elements, RowChange};
 use sixfold_study::numbers::{counted, grouped};
 
 use super::{Begun, begin, parts, rows};
@@ -22,16 +22,18 @@ struct Document<'d> {
 }
 
 pub(super) fn run(path: Option<&Path>, arguments: &arguments::Trace) -> Result<ExitCode, Failure> {
-    let edits = arguments.edit.iter().map(|text| text.parse());
-    let edits: Vec<EditCommand> = edits.collect::<Result<_, _>>().map_err(Failure::usage)?;
     let Begun {
         json,
         mut text,
         name,
         polygons,
+        edits,
     } = begin(path, arguments)?;
+    // An edit that a structure refuses changes nothing, and the next one runs.
     let (traces, refused) = explain(&arguments.explained, |structure| {
-        structure.edit(&polygons, &edits)
+        let mut mesh = structure.build_editable(&polygons)?;
+        let traces = edits.iter().map(|edit| mesh.edit(edit));
+        traces.collect::<Result<Vec<_>, _>>()
     })?;
     let blocks = traces.iter().flatten().map(|trace| block(&name, trace));
     text.print_line(&blocks.collect::<Vec<_>>().join("\n\n\n"));

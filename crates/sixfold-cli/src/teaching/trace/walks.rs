@@ -30,9 +30,11 @@ pub(super) fn run(
         mut text,
         name,
         polygons,
-    } = begin(path, arguments)?;
+        edits,
+    } = begin(path, arguments)?.after_edits();
     let (walks, refused) = explain(&arguments.explained, |structure| {
-        structure.walk(&polygons, walk, expected)
+        let mesh = structure.build_after(&polygons, &edits)?;
+        mesh.walk(walk, expected)
     })?;
     let blocks: Vec<String> = walks.iter().map(|walk| block(&name, walk)).collect();
     text.print_line(&blocks.join("\n\n\n"));

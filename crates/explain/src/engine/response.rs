@@ -1,0 +1,98 @@
+//! What a request is answered with.
+
+use serde::Serialize;
+use sixfold::Facts;
+use sixfold::repair::{FaultKind, Place, Step, StepReport};
+
+use super::refinement::Parent;
+use crate::built_mesh::Geometry;
+use crate::edit::EditTrace;
+use crate::records::Records;
+use crate::trace::Trace;
+use crate::walk::Walk;
+
+/// A response: its content, and what reading the mesh left out or changed.
+#[derive(Serialize)]
+pub(super) struct Response {
+    #[serde(flatten)]
+    pub(super) content: Content,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) notes: Vec<String>,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+pub(super) enum Content {
+    Structures {
+        answers: Vec<Answer>,
+        refused: Vec<Refused>,
+    },
+    Facts {
+        facts: Facts,
+    },
+    Verdicts {
+        verdicts: Vec<Verdict>,
+        faults: Vec<Found>,
+    },
+    Levels {
+        levels: Vec<Geometry>,
+    },
+    Stencil {
+        parents: Vec<Parent>,
+    },
+    Error {
+        error: String,
+    },
+}
+
+/// The answer of one structure.
+#[derive(Serialize)]
+#[serde(untagged)]
+pub(super) enum Answer {
+    Tables {
+        backend: &'static str,
+        records: Vec<Records>,
+    },
+    Trace(Trace),
+    Edit(EditTrace),
+    Walk(Walk),
+    Geometry {
+        backend: &'static str,
+        #[serde(flatten)]
+        geometry: Geometry,
+    },
+    Repair {
+        backend: &'static str,
+        steps: Vec<StepReport>,
+        #[serde(flatten)]
+        geometry: Geometry,
+    },
+}
+
+/// A structure that does not answer.
+#[derive(Serialize)]
+pub(super) struct Refused {
+    pub(super) backend: &'static str,
+    pub(super) reason: String,
+}
+
+/// Whether a structure holds the mesh.
+#[derive(Serialize)]
+pub(super) struct Verdict {
+    pub(super) backend: &'static str,
+    pub(super) holds: bool,
+    pub(super) reason: Option<String>,
+    /// The kinds of faults for which the structure refuses the mesh.
+    pub(super) faults: Vec<FaultKind>,
+}
+
+/// A fault of the mesh, with its repairs.
+#[derive(Serialize)]
+pub(super) struct Found {
+    pub(super) kind: FaultKind,
+    pub(super) title: &'static str,
+    pub(super) count: usize,
+    /// The first of the elements with the fault.
+    pub(super) places: Vec<Place>,
+    pub(super) repairs: Vec<Step>,
+}

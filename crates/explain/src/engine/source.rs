@@ -1,0 +1,131 @@
+//! The mesh of a request.
+
+use std::collections::BTreeMap;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde::Deserialize;
+use sixfold::io::{FileMesh, ReadOptions, read_from};
+use sixfold::shapes::{GENERATORS, generator};
+use sixfold::{Creases, PolygonMesh, UnknownName};
+
+use super::Error;
+
+/// Maximum number of corners of a mesh.
+pub(super) const MOST_CORNERS: usize = 400_000;
+
+/// Maximum number of faces that a note lists.
+const SHOWN: usize = 5;
+
+/// Where the mesh comes from.
+#[derive(Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub(super) enum MeshSource {
+    Shape {
+        name: String,
+        #[serde(default)]
+        parameters: BTreeMap<String, f64>,
+    },
+    File {
+        name: String,
+        #[serde(default)]
+        text: Option<String>,
+        #[serde(default)]
+        base64: Option<String>,
+    },
+    Polygons {
+        positions: Vec<[f32; 3]>,
+        faces: Vec<Vec<u32>>,
+    },
+}
+
+/// A mesh that was read.
+pub(super) struct Sourced {
+    pub(super) polygons: PolygonMesh,
+    pub(super) creases: Creases,
+    /// What reading the file left out or changed.
+    pub(super) notes: Vec<String>,
+}
+
+impl MeshSource {
+    pub(super) fn read(&self) -> Result<Sourced, Error> {
+        let sourced = match self {
+            Self::Shape { name, parameters } => Sourced::plain(shape(name, parameters)?),
+            Self::Polygons { positions, faces } => {
+                Sourced::plain(PolygonMesh::new(positions.iter().copied(), faces)?)
+            }
+            Self::File { name, text, base64 } => {
+                let decoded;
+                let content = match (text, base64) {
+                    (Some(text), None) => text.as_bytes(),
+                    (None, Some(base64)) => {
+                        decoded = STANDARD.decode(base64)?;
+                        &decoded
+                    }
+                    _ => return Err("a file has either a text or base64".into()),
+                };
+                Sourced::from_file(read_from(name, content, &ReadOptions::default())?)
+            }
+        };
+        check_size(sourced.polygons.corner_count())?;
+        Ok(sourced)
+    }
+}
+
+/// Returns an error for a mesh with too many corners.
+pub(super) fn check_size(corners: usize) -> Result<(), Error> {
+    match corners <= MOST_CORNERS {
+        true => Ok(()),
+        false => Err(format!(
+            "the mesh has {corners} corners, and a request at most {MOST_CORNERS}: reduce it with `sixfold remesh \
+             --decimate`, or use the commands `sixfold tables` and `sixfold trace`"
+        )
+        .into()),
+    }
+}
+
+fn shape(name: &str, parameters: &BTreeMap<String, f64>) -> Result<PolygonMesh, Error> {
+    let known = GENERATORS.iter().map(|generator| generator.name);
+    let generator = generator(name).ok_or_else(|| UnknownName::new("shape", name, known))?;
+    let values: Vec<(&str, f64)> = (parameters.iter())
+        .map(|(name, &value)| (name.as_str(), value))
+        .collect();
+    Ok(generator.build(&values)?)
+}
+
+impl Sourced {
+    fn plain(polygons: PolygonMesh) -> Self {
+        Self {
+            polygons,
+            creases: Creases::default(),
+            notes: Vec::new(),
+        }
+    }
+
+    fn from_file(mesh: FileMesh) -> Self {
+        let mut notes: Vec<String> = mesh.notices.iter().map(ToString::to_string).collect();
+        if mesh.welded_vertices > 0 {
+            let corners = mesh.welded_vertices + mesh.positions.len();
+            let vertices = mesh.positions.len();
+            notes.push(format!(
+                "joined {corners} corners at equal positions to {vertices} vertices"
+            ));
+        }
+        if mesh.narrowing.merged_vertices > 0 {
+            notes.push(mesh.narrowing.to_string());
+        }
+        let (creases, unused) = mesh.creases();
+        notes.extend(unused.iter().map(ToString::to_string));
+        let (polygons, left_out) = mesh.into_polygons();
+        let listed = left_out.iter().take(SHOWN);
+        notes.extend(listed.map(|face| format!("left out {face}")));
+        if left_out.len() > SHOWN {
+            notes.push(format!("left out {} more faces", left_out.len() - SHOWN));
+        }
+        Self {
+            polygons,
+            creases,
+            notes,
+        }
+    }
+}

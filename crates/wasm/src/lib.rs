@@ -1,0 +1,33 @@
+//! The explanations of Sixfold as a WebAssembly module without imports.
+//!
+//! The module exports its memory and three functions. A block is a text in this memory: at its address are
+//! four bytes with the length of the text (the lowest byte first), and then the text as UTF-8.
+//!
+//! | function | what it does |
+//! |---|---|
+//! | `reserve(length) -> address` | makes a block for a request of `length` bytes |
+//! | `call(address) -> address` | answers the request in a block, releases this block, and returns the block of the response |
+//! | `release(address)` | releases the block of a response |
+//!
+//! [`respond`] describes requests and responses. In JavaScript:
+//!
+//! ```js
+//! const { instance } = await WebAssembly.instantiate(bytes, {});
+//! const { memory, reserve, call, release } = instance.exports;
+//! function respond(request) {
+//!   const text = new TextEncoder().encode(JSON.stringify(request));
+//!   const asked = reserve(text.length);
+//!   new Uint8Array(memory.buffer, asked + 4, text.length).set(text);
+//!   const answered = call(asked);
+//!   const length = new DataView(memory.buffer).getUint32(answered, true);
+//!   const response = new TextDecoder().decode(new Uint8Array(memory.buffer, answered + 4, length));
+//!   release(answered);
+//!   return JSON.parse(response);
+//! }
+//! ```
+
+mod blocks;
+#[cfg(target_family = "wasm")]
+mod exports;
+
+pub use sixfold_explain::respond;
