@@ -49,13 +49,38 @@ impl Folder {
     }
 }
 
-/// Returns the first paragraph of what a command prints. If it shows several edits, of the last one.
-pub(super) fn summary(printed: &str) -> &str {
-    let last = printed.rsplit("\n\n\n").next().unwrap_or(printed);
-    last.split("\n\n").next().unwrap_or(last).trim_end()
+/// Returns what a trace shows, and its counts: the heading of the trace without the name of the structure. If
+/// it shows several edits, the heading is that of the last one. None if the output is no trace of one structure.
+pub(super) fn trace_heading(shown: Shown<'_>, printed: &str) -> Option<(String, String)> {
+    if !shown.line.starts_with("sixfold trace ") || shown.line.contains("--all") {
+        return None;
+    }
+    let last = printed.rsplit("\n\n\n").next()?;
+    let heading = last.split("\n\n").next()?.trim_end().replace('\n', " ");
+    let (what, rest) = heading.split(" V − E + F").next()?.split_once(" in ")?;
+    let (_, counts) = rest.split_once(": ")?;
+    Some((what.to_owned(), counts.to_owned()))
 }
 
 pub(super) fn write_file(folder: &Path, name: &str, content: &str) -> Result<(), Failure> {
     let path = folder.join(name);
     fs::write(&path, content).map_err(|cause| cannot_write(&path.display().to_string(), &cause))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_heading_of_a_trace_has_its_counts() {
+        let kind = Kind::Folded;
+        let printed = "flip_edge v0-v2 in half-edge, cube: 7 rows change, 16 reads, 8\nwrites\nV − E + F stays 8\n\n  \
+                       halves\n";
+        let heading = |line| trace_heading(Shown { line, kind }, printed);
+        let expected = ("flip_edge v0-v2", "7 rows change, 16 reads, 8 writes");
+        let expected = (expected.0.to_owned(), expected.1.to_owned());
+        assert_eq!(heading("sixfold trace --edit"), Some(expected));
+        assert_eq!(heading("sixfold trace --all"), None);
+        assert_eq!(heading("sixfold tables"), None);
+    }
 }

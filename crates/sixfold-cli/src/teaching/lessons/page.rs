@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::command::{Folder, summary, write_file};
+use super::command::{Folder, trace_heading, write_file};
 use super::source::{Kind, Lesson, Part, Shown, read, with_parts};
 use super::{CHAPTERS, CONTENTS, LESSONS, paragraph_of};
 use crate::failure::Failure;
@@ -52,7 +52,7 @@ fn write_page(target: &Path, name: &str, lesson: &Lesson<'_>) -> Result<(), Fail
                     _ => folder.run(*command, WIDTH)?,
                 };
                 match command.kind {
-                    Kind::Folded => folded(command.line, &printed),
+                    Kind::Folded => folded(*command, &printed),
                     _ => console(command.line, &printed),
                 }
             }
@@ -77,21 +77,15 @@ fn console(command: &str, printed: &str) -> String {
         .replace("\n\n```\n", "\n```\n")
 }
 
-/// Returns a command and its output in a block that is closed at first. Its heading is the heading of a trace
-/// without the name of the structure, or the command.
-fn folded(command: &str, printed: &str) -> String {
-    let heading = summary(printed).replace('\n', " ");
-    let counts = heading.split(" V − E + F").next().unwrap_or_default();
-    let trace = counts
-        .split_once(" in ")
-        .and_then(|(what, rest)| Some((what, rest.split_once(": ")?.1)));
-    let heading = match trace {
+/// Returns a command and its output in a block that is closed at first.
+fn folded(command: Shown<'_>, printed: &str) -> String {
+    let heading = match trace_heading(command, printed) {
         Some((what, counts)) => format!("<code>{what}</code>: {counts}"),
-        None => format!("<code>{command}</code>"),
+        None => format!("<code>{}</code>", command.line),
     };
     format!(
         "<details><summary>{heading}</summary>\n\n{}\n</details>\n",
-        console(command, printed)
+        console(command.line, printed)
     )
 }
 
@@ -111,24 +105,4 @@ fn draw(command: &str, folder: &Folder, target: &Path) -> Result<String, Failure
     fs::copy(folder.path().join(&file), target.join(&file))
         .map_err(|cause| cannot_write(&file, &cause))?;
     Ok(file)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_heading_of_a_folded_trace_has_its_counts() {
-        let printed = "flip_edge v0-v2 in half-edge, cube: 7 rows change, 16 reads, 8\nwrites\nV − E + F stays 8\n\n  \
-                       halves\n";
-        let page = folded("sixfold trace", printed);
-        let heading =
-            "<summary><code>flip_edge v0-v2</code>: 7 rows change, 16 reads, 8 writes</summary>";
-        assert!(page.contains(heading), "{page}");
-        let page = folded("sixfold tables", "half-edge of cube\n\n8 vertices\n");
-        assert!(
-            page.contains("<summary><code>sixfold tables</code></summary>"),
-            "{page}"
-        );
-    }
 }

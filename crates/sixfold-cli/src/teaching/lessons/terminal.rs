@@ -3,7 +3,7 @@
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::process::ExitCode;
 
-use super::command::{Folder, summary};
+use super::command::{Folder, trace_heading};
 use super::paragraph_of;
 use super::source::{Kind, Lesson, Part};
 use crate::failure::Failure;
@@ -19,7 +19,7 @@ pub(super) fn teach(lesson: &Lesson<'_>, waits: bool) -> Result<ExitCode, Failur
     for part in &lesson.parts {
         match part {
             Part::Text(paragraph) => {
-                text.print_line(&paragraph_of(&without_links(paragraph), width()));
+                text.print_line(&paragraph_of(&without_marks(paragraph), width()));
             }
             Part::Kept(block) => text.print_line(&kept(block)),
             Part::File { name, content } => {
@@ -30,11 +30,14 @@ pub(super) fn teach(lesson: &Lesson<'_>, waits: bool) -> Result<ExitCode, Failur
                 text.print_line(&format!("$ {}", command.line));
                 if command.kind == Kind::Timed && !waits {
                     text.print_line("(measures time)");
+                } else if command.kind == Kind::Hidden {
+                    folder.run(*command, width())?;
                 } else {
                     let printed = folder.run(*command, width())?;
-                    text.print_line(match command.kind {
-                        Kind::Folded => summary(&printed),
-                        _ => printed.trim_end(),
+                    text.print_line(&match (command.kind, trace_heading(*command, &printed)) {
+                        (Kind::Folded, Some((_, counts))) => hanging_indent("", &counts),
+                        (Kind::Folded, None) => "(long: run it to see the output)".to_owned(),
+                        _ => printed.trim_end().to_owned(),
                     });
                 }
             }
@@ -75,11 +78,50 @@ fn kept(block: &str) -> String {
     if block.starts_with('#') {
         return block.trim_start_matches('#').trim_start().to_uppercase();
     }
-    without_links(block)
+    let plain = without_marks(block);
+    match block.starts_with('|') {
+        true => table(&plain),
+        false => list(&plain),
+    }
 }
 
-/// Returns the text of links without their targets.
-fn without_links(text: &str) -> String {
+/// Returns the rows of a table, with its first column on the left and the other cells beside it.
+fn table(block: &str) -> String {
+    let rows = block.lines().filter(|line| !line.starts_with("|---"));
+    let rows: Vec<Vec<&str>> = rows
+        .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
+        .collect();
+    let widest = rows.iter().map(|row| row[0].chars().count()).max();
+    let widest = widest.unwrap_or(0) + 2;
+    let lines = rows.iter().map(|row| {
+        let others: Vec<&str> = row[1..]
+            .iter()
+            .copied()
+            .filter(|cell| !cell.is_empty())
+            .collect();
+        hanging_indent(&format!("{:<widest$}", row[0]), &others.join(" · "))
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// Returns the items of a list, broken into lines that are not too wide.
+fn list(block: &str) -> String {
+    let mut items: Vec<String> = Vec::new();
+    for line in block.lines() {
+        match items.last_mut() {
+            Some(item) if line.starts_with(' ') => *item += &format!(" {}", line.trim_start()),
+            _ => items.push(line.to_owned()),
+        }
+    }
+    let items = items.iter().map(|item| match item.split_once(' ') {
+        Some((mark, text)) => hanging_indent(&format!("{mark} "), text),
+        None => item.clone(),
+    });
+    items.collect::<Vec<_>>().join("\n")
+}
+
+/// Returns the text without the targets of links, and without the marks of bold words.
+fn without_marks(text: &str) -> String {
     let mut plain = String::new();
     let mut rest = text;
     while let Some((before, link)) = rest.split_once('[') {
@@ -96,7 +138,7 @@ fn without_links(text: &str) -> String {
             _ => plain.push('['),
         }
     }
-    plain + rest
+    (plain + rest).replace("**", "")
 }
 
 fn indented(text: &str) -> String {
@@ -115,9 +157,14 @@ mod tests {
         assert_eq!(kept("## Its tables"), "ITS TABLES");
         assert_eq!(kept("```text\na ── b\n```"), "a ── b");
         assert_eq!(
-            kept("- the [lesson](lessons/flip.md), next"),
-            "- the lesson, next"
+            kept("- the [lesson](lessons/flip.md),\n  next\n- last"),
+            "- the lesson, next\n- last"
         );
-        assert_eq!(without_links("[a](b) [0, 1] (c)"), "a [0, 1] (c)");
+        assert_eq!(
+            kept("| a | b | c |\n|---|---|---|\n| long | d | e |"),
+            "a     b · c\nlong  d · e"
+        );
+        assert_eq!(without_marks("[a](b) [0, 1] (c)"), "a [0, 1] (c)");
+        assert_eq!(without_marks("**a** b"), "a b");
     }
 }
