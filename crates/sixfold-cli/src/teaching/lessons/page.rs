@@ -90,16 +90,10 @@ fn folded(command: Shown<'_>, printed: &str) -> String {
 }
 
 /// Runs a command that draws a picture, and copies the picture to `target`. Returns its name.
-fn draw(command: &str, folder: &Folder, target: &Path) -> Result<String, Failure> {
+fn draw(line: &str, folder: &Folder, target: &Path) -> Result<String, Failure> {
     let kind = Kind::Hidden;
-    folder.run(
-        Shown {
-            line: command,
-            kind,
-        },
-        WIDTH,
-    )?;
-    let words = shlex::split(command).unwrap_or_default();
+    folder.run(Shown { line, kind }, WIDTH)?;
+    let words = shlex::split(line).unwrap_or_default();
     let mut words = words.into_iter().skip_while(|word| word != "-o");
     let file = words.nth(1).unwrap_or_default();
     fs::copy(folder.path().join(&file), target.join(&file))
