@@ -36,10 +36,12 @@ class Claims:
     """The claims of one text, and its definitions: phrases whose numbers are not results, one in each line.
 
     `printed` says that the text blocks of the page are the printed output of a command, and the source of its claims.
+    `measured` is the heading of the only section whose numbers are results.
     """
 
-    def __init__(self, path, definitions="", printed=False):
+    def __init__(self, path, definitions="", printed=False, measured=""):
         phrases = [line.strip() for line in definitions.splitlines()]
+        self.measured = measured
         self.path, self.definitions, self.printed, self.all = path, [p for p in phrases if p], printed, []
 
     def says(self, sentence, section=""):

@@ -5,10 +5,10 @@ import pathlib
 import unittest
 
 from checks import claims, commits, data, text
-from checks import conclusions, edits, front_page, guide, repeatability, shorter, subdivision, validity
+from checks import chapters, conclusions, edits, front_page, guide, repeatability, shorter, subdivision, validity
 
 TEXTS = [*conclusions.TEXTS, *edits.TEXTS, *subdivision.TEXTS, *repeatability.TEXTS, *validity.TEXTS, *guide.TEXTS]
-TEXTS += [*shorter.TEXTS, *front_page.TEXTS]
+TEXTS += [*shorter.TEXTS, *front_page.TEXTS, *chapters.TEXTS]
 
 
 class Result:
@@ -55,7 +55,7 @@ def check_numbers(said, result):
         covered += spans
         if not spans:
             result.problem(page.nearest(definition), f'the definition "{definition}" is not in the text')
-    for number in text.NUMBER.finditer(page.flat):
+    for number in text.NUMBER.finditer(page.flat, *page.section(said.measured)):
         if not any(start <= number.start() and number.end() <= end for start, end in covered):
             message = f'no claim covers the number "{number[0]}" in "{page.context(number.start())}"'
             result.problem(number.start(), message)

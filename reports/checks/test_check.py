@@ -9,7 +9,7 @@ import sys
 import tempfile
 import unittest
 
-from checks import claims, commits, conclusions, data, figures, front_page, main, repeatability
+from checks import chapters, claims, commits, conclusions, data, figures, front_page, main, repeatability
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 README = "reports/README.md"
@@ -23,7 +23,7 @@ class Changed(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.root = pathlib.Path(folder.name)
         skipped = shutil.ignore_patterns("*.svg", "*.png", "*.html", "__pycache__")
-        for name in ("reports", "docs"):
+        for name in ("reports", "docs", chapters.SOURCES):
             shutil.copytree(ROOT / name, self.root / name, ignore=skipped)
         shutil.copy(ROOT / "README.md", self.root)
         data.use(self.root)
@@ -67,6 +67,13 @@ class Changed(unittest.TestCase):
     def test_a_number_without_a_claim(self):
         line = self.change(README, "Choose it if you do not know the workload.", "Choose it if you do not know the workload. This took 17 minutes.")
         self.assert_problem(self.problems(conclusions.page), f"{README}:{line}", 'no claim covers the number "17"')
+
+    def test_only_measured_sections_need_claims(self):
+        path = chapters.halves.path
+        self.change(path, "One\nhalf-edge for each vertex", "17\nhalf-edges for each vertex")
+        self.assertEqual(self.problems(chapters.halves), [])
+        line = self.change(path, "[corner table](corner-table.md) 64", "[corner table](corner-table.md) 65")
+        self.assert_problem(self.problems(chapters.halves), f"{path}:{line}", "corner-table.md) 65", "corner-table.md) 64")
 
     def test_a_number_as_a_word(self):
         line = self.change(README, "Choose it if you do not know the workload.", "Choose it if you do not know the workload. It won three times.")

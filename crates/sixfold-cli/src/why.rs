@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use sixfold_study::{Effort, Policy, Settings, StudyError, StudyMesh, Timing, WhySettings};
+use sixfold_study::{Effort, Policy, Settings, StudyError, StudyMesh, Timing, WhyRow, WhySettings};
 
 use crate::arguments::Why;
 use crate::facts_text::print_before_measuring;
@@ -12,7 +12,7 @@ use crate::load;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::progress::Bar;
 use crate::text::TextOutput;
-use crate::why_text::{legend, memory_text, relation_text};
+use crate::why_text::{legend, memory_text, rows_text};
 
 pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     let mesh = arguments.mesh.as_deref();
@@ -54,8 +54,8 @@ pub(crate) fn measure(
     })
 }
 
-/// Prints the answer, then the tables and their legend. If `detailed` is set, each relation has two
-/// tables.
+/// Prints the answer, then the tables and their legend. There is a table for each relation; if there is
+/// only one backend, one table has all relations. If `detailed` is set, each relation has two tables.
 fn print(why: &sixfold_study::Why, detailed: bool, text: &mut TextOutput) {
     text.print_line("");
     text.print_list("- ", &why.sentences);
@@ -64,12 +64,16 @@ fn print(why: &sixfold_study::Why, detailed: bool, text: &mut TextOutput) {
         text.print_line("");
         text.print_line(&memory_text(buffers));
     }
-    for rows in why
+    let is_one_backend = why
         .rows
-        .chunk_by(|a, b| a.reads.relation == b.reads.relation)
-    {
+        .iter()
+        .all(|row| row.backend == why.rows[0].backend);
+    let is_one_table = |a: &WhyRow, b: &WhyRow| {
+        a.reads.relation == b.reads.relation || (is_one_backend && !detailed)
+    };
+    for rows in why.rows.chunk_by(is_one_table) {
         text.print_line("");
-        text.print_line(&relation_text(rows, why.memory.is_some(), detailed));
+        text.print_line(&rows_text(rows, why.memory.is_some(), detailed));
     }
     text.print_line("");
     text.print_line(&legend(why, detailed));

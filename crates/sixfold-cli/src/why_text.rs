@@ -1,4 +1,5 @@
-//! The tables of `sixfold why`, one per relation, with a row per backend.
+//! The tables of `sixfold why`: one per relation with a row per backend, or one with a row per relation if
+//! there is only one backend.
 
 use sixfold_study::numbers::{figure, grouped};
 use sixfold_study::{BufferSpeed, Model, TableReads, Timed, Why, WhyRow};
@@ -21,17 +22,25 @@ pub(crate) fn memory_text(buffers: &[BufferSpeed]) -> String {
     column_table(&Column::words("memory", names), &columns)
 }
 
-/// Returns the table of one relation. If `detailed` is set, a second table has the jumps, the moved
-/// bytes and the reads of each table.
-pub(crate) fn relation_text(rows: &[WhyRow], timed: bool, detailed: bool) -> String {
+/// Returns the table of one relation, with a row per backend. If the rows have several relations of one
+/// backend, each row is a relation. If `detailed` is set, a second table has the jumps, the moved bytes and
+/// the reads of each table.
+pub(crate) fn rows_text(rows: &[WhyRow], timed: bool, detailed: bool) -> String {
     let Some(first) = rows.first() else {
         return String::new();
     };
+    let relation = |row: &WhyRow| row.reads.relation.name().to_owned();
+    let backend = |row: &WhyRow| row.backend.clone();
+    let is_one_relation = rows.iter().all(|row| relation(row) == relation(first));
+    let (head, name): (String, &dyn Fn(&WhyRow) -> String) = match is_one_relation {
+        true => (relation(first), &backend),
+        false => (backend(first), &relation),
+    };
     let names = rows.iter().map(|row| match row.reads.sampled {
-        true => format!("{} ~", row.backend),
-        false => row.backend.clone(),
+        true => format!("{} ~", name(row)),
+        false => name(row),
     });
-    let names = Column::words(first.reads.relation.name(), names);
+    let names = Column::words(&head, names);
     let counts = |head: &str, count: &dyn Fn(&WhyRow) -> f64| {
         Column::figures(head, rows.iter().map(|row| short_figure(count(row))))
     };

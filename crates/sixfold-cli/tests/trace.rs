@@ -192,6 +192,16 @@ fn lessons_are_listed_and_run() {
     ] {
         assert!(lesson.stdout.contains(part), "{part}: {}", lesson.stdout);
     }
+    // A chapter leaves out its pictures, and shows only the counts of folded traces.
+    let chapter = run_ok(&sixfold, &["lessons", "corner-table"]);
+    for part in [
+        "CORNER TABLE",
+        "Picture: The cube of this chapter.",
+        "$ sixfold trace face_faces f0 --triangulate --backend corner-table\n3 results, 3 reads",
+    ] {
+        assert!(chapter.stdout.contains(part), "{part}: {}", chapter.stdout);
+    }
+    assert!(!chapter.stdout.contains("](") && !chapter.stdout.contains("```"));
     assert_eq!(sixfold.names(), Vec::<String>::new());
     let unknown = sixfold.run(&["lessons", "flap"]);
     assert_eq!(unknown.code, Some(2));

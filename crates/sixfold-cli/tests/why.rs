@@ -185,3 +185,13 @@ fn a_short_budget_leaves_out_large_buffers() {
         "{warnings}"
     );
 }
+
+#[test]
+fn one_backend_has_one_table_of_all_relations() {
+    let sixfold = Sixfold::new();
+    let arguments = ["why", "--counts-only", "--backends", "half-edge"];
+    let printed = run_ok(&sixfold, &arguments).stdout;
+    let heads = printed.lines().filter(|line| line.contains("jumps  moved"));
+    assert_eq!(heads.count(), 1, "{printed}");
+    assert!(printed.contains("\nface_faces "), "{printed}");
+}

@@ -129,23 +129,26 @@ const LESSONS_EXAMPLES: &str = "Examples:
   sixfold lessons                           the list
   sixfold lessons around-a-vertex           one lesson, with questions
   sixfold lessons flip --no-wait            all at once
+  sixfold lessons half-edge                 a chapter about one structure
+  sixfold lessons --markdown guide          the whole guide, with pictures
 
 Exit codes: 0 success; 2 wrong usage.";
 
 /// Learn how the structures work: short lessons with questions.
 ///
-/// Each lesson shows meshes and commands, asks questions, waits for your answer, and shows its own. Without
-/// a name, the command lists the lessons.
+/// Each lesson shows meshes and commands, asks questions, waits for your answer, and shows its own. A chapter
+/// describes one structure: records, invariants, and the costs of queries and edits. Without a name, the
+/// command lists the lessons and the chapters.
 #[derive(Debug, Args)]
 #[command(after_help = LESSONS_EXAMPLES, verbatim_doc_comment)]
 pub(crate) struct Lessons {
-    /// The lesson
+    /// The lesson or the chapter
     #[arg(value_name = "NAME")]
     pub(crate) name: Option<String>,
     /// Print everything without waiting for an answer
     #[arg(long)]
     pub(crate) no_wait: bool,
-    /// Write all lessons as Markdown pages with the output of their commands
+    /// Write all lessons and chapters as Markdown pages with the output of their commands, and pictures
     #[arg(long, value_name = "DIR", conflicts_with = "name")]
     pub(crate) markdown: Option<PathBuf>,
 }
