@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use sixfold_core::PolygonMesh;
 
-use crate::edges::Edges;
+use crate::edges::{Edges, Side};
 use crate::error::MeshFault;
 use crate::layout::Panel;
 use crate::light::{BACKGROUND, Colour};
@@ -58,7 +58,7 @@ pub(crate) fn labels(
         let row = sixfold_core::row(f.index());
         add(format!("f{row}"), middle / face.len() as f64, &[row]);
     }
-    for (number, sides) in edges.iter().enumerate() {
+    for (number, sides) in numbered(edges).into_iter().enumerate() {
         let [a, b] = sides[0].edge.ends().map(|v| panel.position(v));
         let faces: Vec<u32> = sides.iter().map(|side| side.face).collect();
         add(format!("e{number}"), (a + b) / 2.0, &faces);
@@ -67,6 +67,17 @@ pub(crate) fn labels(
         add(format!("v{}", v.index()), panel.position(v), &[]);
     }
     labels
+}
+
+/// Returns the edges in the order in which structures with rows for edges number them: by the lower end,
+/// and then by the first side.
+fn numbered(edges: &Edges) -> Vec<&[Side]> {
+    let mut numbered: Vec<&[Side]> = edges.iter().collect();
+    numbered.sort_by_key(|sides| {
+        let first = sides.iter().map(|side| side.corners[0]).min();
+        (sides[0].edge.ends()[0], first)
+    });
+    numbered
 }
 
 /// Width and height of a glyph, and the distance from one to the next.
@@ -149,5 +160,30 @@ impl LabelPixels {
             .get(row * self.width + column)
             .copied()
             .flatten()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold_core::TwinPairs;
+    use sixfold_shapes as shapes;
+
+    use super::*;
+
+    #[test]
+    fn edges_have_the_numbers_of_structures_with_rows_for_edges() {
+        let grid = shapes::mixed_grid(4, 3).expect("a small size");
+        for mesh in [shapes::cube(), shapes::icosahedron(), grid] {
+            let edges = Edges::new(&mesh);
+            let pairs = TwinPairs::new(mesh.vertex_count(), mesh.faces()).expect("a manifold");
+            let numbered = numbered(&edges);
+            assert_eq!(numbered.len(), pairs.edge_count);
+            for (number, sides) in numbered.into_iter().enumerate() {
+                for side in sides {
+                    let half = pairs.half_of_corner[side.corners[0] as usize];
+                    assert_eq!(half as usize / 2, number);
+                }
+            }
+        }
     }
 }
