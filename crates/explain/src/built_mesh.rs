@@ -9,10 +9,10 @@ use sixfold_core::{Described, VertexId};
 use crate::edit::EditTrace;
 use crate::edit_command::EditCommand;
 use crate::element::ElementName;
+use crate::error::ExplainError;
 use crate::named_mesh::NamedMesh;
 use crate::records::{Records, records};
-use crate::structure::{ExplainError, Query};
-use crate::trace::{Trace, trace};
+use crate::trace::{Query, Trace, trace};
 use crate::walk::{Walk, walk};
 
 /// A structure that was built from a mesh ([`Structure::build`](crate::Structure::build)).

@@ -7,8 +7,8 @@ use sixfold::{Edit, EditRecord, MeshEdit, Point, Refusal};
 use sixfold_core::{Access, AccessKind, Described, Field, RecordTable};
 
 use crate::edit_command::EditCommand;
+use crate::error::ExplainError;
 use crate::named_mesh::NamedMesh;
-use crate::structure::ExplainError;
 
 /// One edit on one structure: the rows that it reads, writes, makes and deletes.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use sixfold::{Edit, Point};
 
 use crate::element::ElementName;
-use crate::structure::ExplainError;
+use crate::error::ExplainError;
 
 /// An edit, with its arguments by name. Without a position, an edit that needs one takes the middle of
 /// the edge, of the face, or, for `split_vertex`, of the vertex and its neighbours `left` and `right`.

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::structure::ExplainError;
+use crate::error::ExplainError;
 
 /// The name of an element. The numbers are those of the mesh file, from 0; elements that edits make have
 /// the next numbers.

@@ -14,7 +14,8 @@ use sixfold::{Creases, Facts, PolygonMesh, Relation, StructureInfo, UnknownName,
 
 use crate::built_mesh::{BuiltMesh, Geometry};
 use crate::edit_command::EditCommand;
-use crate::structure::{ExplainError, Structure};
+use crate::error::ExplainError;
+use crate::structure::Structure;
 use refinement::{levels, stencil};
 use response::{Answer, Content, Found, Refused, Response, Verdict};
 use source::{MeshSource, Sourced};
@@ -98,11 +99,11 @@ struct Query {
 ///     r#"{"mesh": {"shape": {"name": "cube"}}, "structures": ["half-edge"],
 ///         "ask": {"trace": {"relation": "vertex_vertices", "element": "v3"}}}"#,
 /// );
-/// assert!(response.starts_with(r#"{"answers":[{"algorithm":"#), "{response}");
+/// assert!(response.starts_with(r#"{"answers":[{"backend":"half-edge","#), "{response}");
 /// assert!(response.contains(r#""reads":4,"#), "{response}");
 ///
 /// let response = respond(r#"{"mesh": {"shape": {"name": "cub"}}, "ask": "facts"}"#);
-/// assert!(response.starts_with(r#"{"error":"unknown shape 'cub': "#), "{response}");
+/// assert!(response.starts_with(r#"{"error":"no shape is called `cub`"#), "{response}");
 /// ```
 ///
 /// # Request

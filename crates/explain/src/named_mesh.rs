@@ -6,7 +6,7 @@ use sixfold::{Changes, PolygonMesh, Representation};
 use sixfold_core::{Described, Element, FaceId, Handle, Measured, Traced, VertexId, row};
 
 use crate::element::ElementName;
-use crate::structure::ExplainError;
+use crate::error::ExplainError;
 
 /// A structure that was built from a mesh. A probe records all reads, also those of descriptions, so the
 /// log is emptied before a query and after each description.

@@ -1,15 +1,12 @@
 //! The structures that can be explained.
 
-use sixfold::{BuildError, MeshEdit, PolygonMesh, Relation, Representation, UnknownName};
+use sixfold::{MeshEdit, PolygonMesh, Representation};
 use sixfold_core::{Described, Measured, Traced};
 
 use crate::built_mesh::BuiltMesh;
 use crate::edit_command::EditCommand;
-use crate::element::ElementName;
+use crate::error::ExplainError;
 use crate::named_mesh::named_mesh;
-
-/// A relation, and the element from which a query starts.
-pub type Query = (Relation, ElementName);
 
 type Build = fn(&PolygonMesh) -> Result<BuiltMesh, ExplainError>;
 
@@ -19,62 +16,6 @@ pub struct Structure {
     name: &'static str,
     build: Build,
     build_editable: Option<Build>,
-}
-
-/// The reason why a structure cannot be explained on a mesh.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-#[expect(missing_docs, reason = "the message says what each field is")]
-pub enum ExplainError {
-    /// The structure cannot hold the mesh.
-    #[error("{structure} cannot hold the mesh: {refusal}")]
-    Refused {
-        structure: &'static str,
-        refusal: BuildError,
-    },
-    /// A text that is not the name of an element.
-    #[error("`{name}` names no element: write v3 for a vertex, v0-v1 for an edge, f2 for a face")]
-    BadName { name: String },
-    /// The structure has no element of this name.
-    #[error("{structure} has no {} {name} in this mesh", name.kind())]
-    NoSuchElement {
-        structure: &'static str,
-        name: ElementName,
-    },
-    /// The structure refuses an edit that comes before what is shown.
-    #[error("{structure} refuses {edit}: {reason}")]
-    RefusedEdit {
-        structure: &'static str,
-        edit: String,
-        reason: String,
-    },
-    /// A text that is not an edit.
-    #[error("{reason}")]
-    BadEdit { reason: String },
-    /// The structure was given without its editable form.
-    #[error("{structure} has no edits")]
-    NoEdits { structure: &'static str },
-    /// A text that is not a walk, or that names a row that does not exist.
-    #[error("{reason}")]
-    BadWalk { reason: String },
-    /// A step of a walk that has no answer.
-    #[error("{reason}")]
-    Stopped { reason: String },
-    /// A word of a walk that the structure does not know.
-    #[error(transparent)]
-    UnknownWord(#[from] UnknownName),
-    /// The relation starts from another kind of element.
-    #[error("{relation} starts from {}, and {element} is {}", an(wanted), an(element.kind()))]
-    WrongKind {
-        relation: Relation,
-        wanted: &'static str,
-        element: ElementName,
-    },
-}
-
-fn an(kind: &str) -> String {
-    let article = if kind == "edge" { "an" } else { "a" };
-    format!("{article} {kind}")
 }
 
 impl Structure {

@@ -7,12 +7,15 @@ use sixfold::Relation;
 use sixfold_core::{Access, Column, Described, Element, Field, Line, RecordTable};
 
 use crate::element::ElementName;
+use crate::error::ExplainError;
 use crate::named_mesh::NamedMesh;
 use crate::reason::{Inference, Reason};
-use crate::structure::ExplainError;
 
 /// Bytes of a cache line.
 const LINE_BYTES: usize = 64;
+
+/// A relation, and the element from which a query starts.
+pub type Query = (Relation, ElementName);
 
 /// One query on one structure: what it reads, why, and what it yields.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

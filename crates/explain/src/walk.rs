@@ -7,10 +7,10 @@ use sixfold::{Relation, UnknownName};
 use sixfold_core::{Access, AccessKind, Column, Described, Field, RecordTable, RowName};
 
 use crate::element::ElementName;
+use crate::error::ExplainError;
 use crate::named_mesh::NamedMesh;
 use crate::reason::Reason;
-use crate::structure::{ExplainError, Query};
-use crate::trace::{Cost, Read, Step, cost, stored_fields, trace};
+use crate::trace::{Cost, Query, Read, Step, cost, stored_fields, trace};
 use crate::walk_parser::{Kind, Program, Statement, Value, loop_variable, parse, text};
 
 /// A walk on one structure: what it reads, and what it yields.
@@ -65,8 +65,8 @@ pub(crate) fn walk<P: Described>(
     };
     let stopped = match walker.block(&program.statements) {
         Ok(()) => None,
-        Err(ExplainError::Stopped { reason }) => Some(reason),
-        Err(error) => return Err(error),
+        Err(End::NoAnswer(reason)) => Some(reason),
+        Err(End::Error(error)) => return Err(error),
     };
     let Walker {
         steps,
@@ -112,6 +112,20 @@ fn compare<P: Described>(
     })
 }
 
+/// Why a walk ends before its last line.
+enum End {
+    /// A step has no answer.
+    NoAnswer(String),
+    /// The text is not a walk on this structure.
+    Error(ExplainError),
+}
+
+impl From<ExplainError> for End {
+    fn from(error: ExplainError) -> Self {
+        Self::Error(error)
+    }
+}
+
 /// A walk that runs.
 struct Walker<'m, P: Described> {
     named: &'m NamedMesh<P>,
@@ -126,13 +140,13 @@ struct Walker<'m, P: Described> {
 }
 
 impl<P: Described> Walker<'_, P> {
-    fn block(&mut self, statements: &[Statement]) -> Result<(), ExplainError> {
+    fn block(&mut self, statements: &[Statement]) -> Result<(), End> {
         statements
             .iter()
             .try_for_each(|statement| self.statement(statement))
     }
 
-    fn statement(&mut self, statement: &Statement) -> Result<(), ExplainError> {
+    fn statement(&mut self, statement: &Statement) -> Result<(), End> {
         self.line = statement.line;
         match &statement.kind {
             Kind::Assign(name, value) => {
@@ -164,7 +178,7 @@ impl<P: Described> Walker<'_, P> {
     }
 
     /// Runs a loop until its variable has the first value again, or is none.
-    fn repeat(&mut self, body: &[Statement]) -> Result<(), ExplainError> {
+    fn repeat(&mut self, body: &[Statement]) -> Result<(), End> {
         let variable = loop_variable(body).unwrap_or_default();
         let first = match self.variables.get(variable) {
             Some(&Some(first)) => first,
@@ -187,12 +201,12 @@ impl<P: Described> Walker<'_, P> {
         }
     }
 
-    fn stopped(&self, reason: String) -> ExplainError {
+    fn stopped(&self, reason: String) -> End {
         let reason = format!("line {}: {reason}", self.line + 1);
-        ExplainError::Stopped { reason }
+        End::NoAnswer(reason)
     }
 
-    fn value(&mut self, value: &Value) -> Result<Option<RowName>, ExplainError> {
+    fn value(&mut self, value: &Value) -> Result<Option<RowName>, End> {
         match value {
             Value::None => Ok(None),
             Value::Name(name) => match self.variables.get(name) {
@@ -210,7 +224,7 @@ impl<P: Described> Walker<'_, P> {
     }
 
     /// Returns the row with this name.
-    fn row(&self, name: &str) -> Result<RowName, ExplainError> {
+    fn row(&self, name: &str) -> Result<RowName, End> {
         let digits = name.trim_start_matches(|c: char| !c.is_ascii_digit());
         let letter = &name[..name.len() - digits.len()];
         let mut tables = self.tables.iter();
@@ -235,11 +249,11 @@ impl<P: Described> Walker<'_, P> {
                 self.named.structure
             ),
         };
-        Err(ExplainError::BadWalk { reason })
+        Err(ExplainError::BadWalk { reason }.into())
     }
 
     /// Reads a field of a row.
-    fn field(&mut self, word: &str, row: RowName) -> Result<Option<RowName>, ExplainError> {
+    fn field(&mut self, word: &str, row: RowName) -> Result<Option<RowName>, End> {
         let Some((table, place)) = self.find(word, row.letter) else {
             return self.alias(word, row);
         };
@@ -271,9 +285,10 @@ impl<P: Described> Walker<'_, P> {
         match record.get(place) {
             Some(Field::Row(to)) => Ok(Some(*to)),
             Some(Field::None) => Ok(None),
-            Some(_) => Err(ExplainError::BadWalk {
-                reason: format!("{word}({row}) is no row"),
-            }),
+            Some(_) => {
+                let reason = format!("{word}({row}) is no row");
+                Err(ExplainError::BadWalk { reason }.into())
+            }
             None => Err(self.stopped(format!("{row} was deleted"))),
         }
     }
@@ -336,7 +351,7 @@ impl<P: Described> Walker<'_, P> {
     }
 
     /// Evaluates a word that stands for several fields, such as `target` for `origin(twin(x))`.
-    fn alias(&mut self, word: &str, row: RowName) -> Result<Option<RowName>, ExplainError> {
+    fn alias(&mut self, word: &str, row: RowName) -> Result<Option<RowName>, End> {
         let words = P::WORDS.iter().filter(|known| known.letter == row.letter);
         let Some(known) = words.clone().find(|known| known.name == word) else {
             let tables = self
@@ -352,7 +367,7 @@ impl<P: Described> Walker<'_, P> {
             names.extend(single.map(|table| table.name.to_owned()));
             names.retain(|name| name != "positions");
             names.extend(words.map(|word| word.name.to_owned()));
-            return Err(UnknownName::new("field", word, names).into());
+            return Err(ExplainError::from(UnknownName::new("field", word, names)).into());
         };
         // The steps of the word are those of the line that uses it.
         let Program { statements, .. } = parse(&format!("x = {}", known.means))?;

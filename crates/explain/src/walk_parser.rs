@@ -14,7 +14,7 @@
 use std::iter::Peekable;
 use std::vec::IntoIter;
 
-use crate::structure::ExplainError;
+use crate::error::ExplainError;
 
 /// Maximum depth of nested values and blocks.
 const MAX_DEPTH: usize = 50;

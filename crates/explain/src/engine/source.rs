@@ -77,8 +77,8 @@ pub(super) fn check_size(corners: usize) -> Result<(), Error> {
     match corners <= MOST_CORNERS {
         true => Ok(()),
         false => Err(format!(
-            "the mesh has {corners} corners, and a request at most {MOST_CORNERS}: reduce it with `sixfold remesh \
-             --decimate`, or use the commands `sixfold tables` and `sixfold trace`"
+            "the mesh has {corners} corners, and a request at most {MOST_CORNERS}: make it smaller with `sixfold \
+             decimate`, or use the commands `sixfold tables` and `sixfold trace`"
         )
         .into()),
     }
