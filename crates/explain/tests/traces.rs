@@ -133,24 +133,28 @@ impl<M: Representation + Measured + Described> Expected<M> {
         if rows != self.reads || trace.cost.reads != rows.len() {
             return Some(format!("reads {rows:?}, expected {:?}", self.reads));
         }
-        let mut known: BTreeSet<RowName> = BTreeSet::new();
         let tables = self.mesh.tables();
-        let learn = |known: &mut BTreeSet<RowName>, name: RowName, is_read: bool| {
-            known.insert(name);
+        // The names that are known, and those of them whose derived fields are not yet known.
+        let (mut known, mut new) = (BTreeSet::new(), Vec::new());
+        let learn = |known: &mut BTreeSet<RowName>, new: &mut Vec<RowName>, name, is_read| {
+            let mut add = |name| {
+                if known.insert(name) {
+                    new.push(name);
+                }
+            };
+            add(name);
             for table in tables.iter().filter(|table| table.letter == name.letter) {
-                let fields = self
-                    .mesh
-                    .record(table.name, name.row as usize)
-                    .unwrap_or_default();
-                let fields = table.columns.iter().zip(fields);
-                known.extend(fields.filter_map(|(column, field)| match field {
+                let fields = self.mesh.record(table.name, name.row as usize);
+                let fields = table.columns.iter().zip(fields.unwrap_or_default());
+                let named = fields.filter_map(|(column, field)| match field {
                     Field::Row(to) if is_read || column.is_derived => Some(to),
                     _ => None,
-                }));
+                });
+                named.for_each(&mut add);
             }
         };
         for name in self.mesh.rows_of(self.element) {
-            learn(&mut known, name, false);
+            learn(&mut known, &mut new, name, false);
         }
         for read in reads {
             let Some(line) = read.line else {
@@ -170,7 +174,11 @@ impl<M: Representation + Measured + Described> Expected<M> {
                 row: row(read) as u32,
             };
             if let Some(of) = &read.reason.of {
-                let Some(of) = known.iter().copied().find(|name| name.to_string() == *of) else {
+                let is_named = |name: &&RowName| {
+                    let row = of.strip_prefix(name.letter);
+                    row.is_some_and(|row| row.parse() == Ok(name.row))
+                };
+                let Some(&of) = known.iter().find(is_named) else {
                     return Some(format!("{read:?}: {of} is not known"));
                 };
                 if way != Line::NEXT_ROW && way != Line::ASKED && !self.is_field(of, way, name) {
@@ -182,12 +190,9 @@ impl<M: Representation + Measured + Described> Expected<M> {
                     letter,
                     row: row as u32,
                 };
-                learn(&mut known, name, true);
-                // The names in a field are known with their derived fields.
-                for name in known.clone() {
-                    if known.len() < 400 {
-                        learn(&mut known, name, false);
-                    }
+                learn(&mut known, &mut new, name, true);
+                for name in std::mem::take(&mut new) {
+                    learn(&mut known, &mut new, name, false);
                 }
             }
         }
