@@ -28,8 +28,10 @@ pub struct EditTrace {
     pub reads: usize,
     /// The number of writes of rows.
     pub writes: usize,
-    /// The rows that the edit reads or changes, by table and row.
+    /// The rows that the edit changes or writes, by table and row.
     pub rows: Vec<RowChange>,
+    /// The rows that the edit only reads, by table and row.
+    pub only_read: Vec<ReadRows>,
     /// The names of elements that the edit made.
     pub created: Vec<String>,
     /// The names of elements that the edit deleted.
@@ -55,6 +57,17 @@ impl Elements {
     pub fn euler(&self) -> i64 {
         self.vertices as i64 - self.edges as i64 + self.faces as i64
     }
+}
+
+/// Rows in order that an edit reads and does not change.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct ReadRows {
+    /// The name of the table.
+    pub table: &'static str,
+    /// The name of the first row, such as `h5`.
+    pub row: String,
+    /// The number of rows.
+    pub rows: usize,
 }
 
 /// A row before and after an edit.
@@ -102,7 +115,7 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
         let mut record = EditRecord::new();
         let refusal = self.run_recorded(command, &mut record)?;
         let accesses = self.probe.take();
-        let rows = changes(&before, &self.mesh, &accesses);
+        let (rows, only_read) = changes(&before, &self.mesh, &accesses);
         let after = self.elements();
         self.probe.take();
         let count = |kind| accesses.iter().filter(|access| access.kind == kind).count();
@@ -118,6 +131,7 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
             reads,
             writes,
             rows,
+            only_read,
             created: [vertices.created, faces.created].concat(),
             removed: [vertices.removed, faces.removed].concat(),
             renamed: [vertices.renamed, faces.renamed].concat(),
@@ -248,8 +262,12 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
     }
 }
 
-/// Returns the rows that differ before and after an edit, or that it reads or writes.
-fn changes<P: Described>(before: &P, after: &P, accesses: &[Access]) -> Vec<RowChange> {
+/// Returns the rows that differ before and after an edit or that it writes, and those that it only reads.
+fn changes<P: Described>(
+    before: &P,
+    after: &P,
+    accesses: &[Access],
+) -> (Vec<RowChange>, Vec<ReadRows>) {
     let touched = |kind| {
         let of_kind = accesses.iter().filter(move |access| access.kind == kind);
         of_kind
@@ -265,13 +283,25 @@ fn changes<P: Described>(before: &P, after: &P, accesses: &[Access]) -> Vec<RowC
             None => tables.push(table),
         }
     }
-    let mut rows = Vec::new();
+    let (mut rows, mut only_read) = (Vec::new(), Vec::<ReadRows>::new());
     for table in tables {
+        // The row after the last one that is only read.
+        let mut next = None;
         for row in 0..table.rows {
             let place = (table.name, row);
             let (is_read, is_written) = (read.contains(&place), written.contains(&place));
             let [before, after] = [before, after].map(|mesh| stored(mesh, &table, row));
-            if !is_read && !is_written && are_equal(before.as_ref(), after.as_ref()) {
+            if !is_written && are_equal(before.as_ref(), after.as_ref()) {
+                match only_read.last_mut() {
+                    Some(last) if is_read && next == Some(row) => last.rows += 1,
+                    _ if is_read => only_read.push(ReadRows {
+                        table: table.name,
+                        row: format!("{}{row}", table.letter),
+                        rows: 1,
+                    }),
+                    _ => continue,
+                }
+                next = Some(row + 1);
                 continue;
             }
             let text = |fields: Vec<Field>| fields.iter().map(ToString::to_string).collect();
@@ -287,7 +317,7 @@ fn changes<P: Described>(before: &P, after: &P, accesses: &[Access]) -> Vec<RowC
             });
         }
     }
-    rows
+    (rows, only_read)
 }
 
 /// Returns the stored fields of a row; `None` if there is no element in the row.

@@ -8,6 +8,7 @@ use std::fmt::Display;
 
 use serde::Deserialize;
 use serde_json::json;
+use sixfold::io::parse_creases;
 use sixfold::repair::{Fault, diagnose, repair_for};
 use sixfold::subdivision::Scheme;
 use sixfold::{Creases, Facts, PolygonMesh, Relation, StructureInfo, UnknownName, structure_infos};
@@ -24,7 +25,7 @@ use source::{MeshSource, Sourced};
 const MOST_PLACES: usize = 1_000;
 
 /// Maximum number of rows of a table, if the request does not name the rows.
-const MOST_ROWS: usize = 200;
+const MOST_ROWS: u32 = 200;
 
 /// What a request about a mesh says if it has edits.
 const AFTER_EDITS: &str = "this is asked of a mesh without edits: ask for the geometry after the edits, and \
@@ -41,6 +42,9 @@ struct Request {
     /// Cuts every polygon into a fan of triangles first.
     #[serde(default)]
     triangulate: bool,
+    /// Sharp edges and corners, as a crease file.
+    #[serde(default)]
+    creases: Option<String>,
     /// The edits before what is asked, in their order.
     #[serde(default)]
     edits: Vec<String>,
@@ -54,9 +58,9 @@ struct Request {
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 enum Ask {
     Tables {
-        /// The first row, and the row after the last.
+        /// The first and the last row.
         #[serde(default)]
-        rows: Option<[usize; 2]>,
+        rows: Option<[u32; 2]>,
     },
     Trace(Query),
     Edit(String),
@@ -76,7 +80,7 @@ enum Ask {
     Stencil {
         scheme: String,
         level: u32,
-        point: usize,
+        point: u32,
     },
 }
 
@@ -110,35 +114,40 @@ struct Query {
 ///
 /// | field | value |
 /// |---|---|
-/// | `mesh` | `{"shape": {"name": "torus", "parameters": {"m": 8}}}`, a shape of `sixfold generate`; `{"file": {"name": "a.obj", "text": "…"}}`, or `"base64"` for a binary file; `{"polygons": {"positions": [[0, 0, 0], …], "faces": [[0, 1, 2], …]}}` |
+/// | `mesh` | `{"shape": {"name": "torus", "parameters": {"m": 8}}}`, a shape of `sixfold generate`; `{"file": {"name": "a.obj", "text": "…"}}`, or `"base64"` for a binary file; `{"polygons": {"positions": [[0, 0, 0], …], "faces": [[0, 1, 2], …]}}`, in which `null` is a number without an element |
 /// | `triangulate` | `true` cuts every polygon into a fan of triangles |
+/// | `creases` | sharp edges and corners, as the text of a crease file ([`parse_creases`]); they are added to those of the mesh file |
 /// | `edits` | edits before what is asked, as text ([`EditCommand`](crate::EditCommand)) |
 /// | `structures` | names; all six if missing |
 /// | `ask` | one of the following |
 ///
 /// | `ask` | each answer, or the response |
 /// |---|---|
-/// | `{"tables": {"rows": [0, 20]}}` | for each structure the [`Records`](crate::Records) |
+/// | `{"tables": {"rows": [0, 20]}}` | for each structure the [`Records`](crate::Records) from the first to the last of these rows; without `rows`, the first 200 |
 /// | `{"trace": {"relation": "vertex_faces", "element": "v3"}}` | a [`Trace`](crate::Trace) |
 /// | `{"edit": "flip_edge v0-v1"}` | an [`EditTrace`](crate::EditTrace) |
 /// | `{"walk": {"walk": "…", "expect": {"relation": …, "element": …}}}` | a [`Walk`](crate::Walk) |
 /// | `"geometry"` | for each structure the [`Geometry`] after the edits |
 /// | `"facts"` | `{"facts": …}`: [`Facts`] of the mesh |
-/// | `"verdicts"` | `{"verdicts": …, "faults": …}`: which structures hold the mesh, and all its faults |
+/// | `"verdicts"` | `{"verdicts": …, "faults": …}`: which structures hold the mesh, and all kinds of faults with the number of places and the first 1,000 |
 /// | `"repair"` | for each structure the steps, and the repaired mesh |
 /// | `{"subdivide": {"scheme": "loop", "levels": 2}}` | `{"levels": …}`: the mesh before the first step, and after each step |
-/// | `{"stencil": {"scheme": "loop", "level": 1, "point": 8}}` | `{"parents": …}`: the points of the level before with their weights |
+/// | `{"stencil": {"scheme": "loop", "level": 1, "point": 8}}` | `{"parents": …}`: the points of the level before with their weights, without those below 10⁻⁷ |
+///
+/// Points have the numbers of `sixfold subdivide --backend face-vertex --method gather`.
 ///
 /// # Response
 ///
-/// `{"answers": […], "refused": […]}` if structures answer; a structure that cannot hold the mesh, does
+/// `{"answers": […], "refused": […]}` if structures answer. A structure that cannot hold the mesh, does
 /// not have the element, or refuses one of `edits`, is in `refused` with its reason. `{"error": "…"}`
-/// for a request that is wrong. `notes` lists what reading the file left out or changed.
+/// for a request that is wrong. `notes` lists what reading the mesh left out or changed.
 ///
-/// Meshes have at most 400,000 corners, also after a subdivision step. Facts, verdicts, repairs and
-/// subdivision are those of the mesh without edits: send the geometry after the edits as polygons.
+/// Facts, verdicts, repairs and subdivision are those of the mesh without edits: send the geometry after
+/// the edits as polygons. A mesh has at most 400,000 corners, also after a subdivision step; there are at
+/// most 16 levels, and weights in meshes of at most 20,000 vertices.
 pub fn respond(request: &str) -> String {
-    let read = serde_json::from_str(request).map_err(Error::from);
+    let read = serde_json::from_str(request);
+    let read = read.map_err(|error| Error::from(format!("the request: {error}")));
     let answered = read.and_then(|request: Request| request.answer());
     let response = answered.unwrap_or_else(|error| Response {
         content: Content::Error {
@@ -154,13 +163,20 @@ impl Request {
     fn answer(&self) -> Result<Response, Error> {
         let Sourced {
             mut polygons,
-            creases,
+            mut creases,
             notes,
         } = self.mesh.read()?;
         if self.triangulate {
             polygons = polygons.fan_triangulated()?;
         }
-        let edits = self.edits.iter().map(|edit| edit.parse());
+        if let Some(text) = &self.creases {
+            let listed = parse_creases("creases", text.as_bytes(), &polygons)?;
+            creases = creases.updated_with(&listed);
+        }
+        let edits = self.edits.iter().enumerate().map(|(i, edit)| {
+            edit.parse()
+                .map_err(|error: ExplainError| format!("edits, number {}: {error}", i + 1))
+        });
         let subject = Subject {
             structures: self.chosen(Structure::all(), Structure::name)?,
             infos: self.chosen(structure_infos(), |info| info.name)?,
@@ -169,7 +185,7 @@ impl Request {
             creases,
         };
         let content = match &self.ask {
-            Ask::Tables { rows } => subject.tables(rows.unwrap_or([0, MOST_ROWS])),
+            Ask::Tables { rows } => subject.tables(rows.unwrap_or([0, MOST_ROWS - 1]))?,
             Ask::Trace(query) => subject.trace(query.parsed()?),
             Ask::Edit(edit) => subject.edit(&edit.parse()?),
             Ask::Walk { walk, expect } => {
@@ -248,13 +264,19 @@ impl Subject {
         structure.build_after(&self.polygons, &self.edits)
     }
 
-    fn tables(&self, [from, to]: [usize; 2]) -> Content {
-        self.each(|structure| {
+    fn tables(&self, [first, last]: [u32; 2]) -> Result<Content, Error> {
+        if first > last {
+            return Err(
+                format!("row {first} comes after row {last}: ask for [{last}, {first}]").into(),
+            );
+        }
+        let rows = first as usize..last as usize + 1;
+        Ok(self.each(|structure| {
             Ok::<_, ExplainError>(Answer::Tables {
                 backend: structure.name(),
-                records: self.build(structure)?.records(from..to),
+                records: self.build(structure)?.records(rows.clone()),
             })
-        })
+        }))
     }
 
     fn trace(&self, (relation, element): crate::Query) -> Content {
@@ -341,7 +363,7 @@ impl Subject {
         })
     }
 
-    fn stencil(&self, scheme: Scheme, level: u32, point: usize) -> Result<Content, Error> {
+    fn stencil(&self, scheme: Scheme, level: u32, point: u32) -> Result<Content, Error> {
         let parents = stencil(scheme, &self.polygons, &self.creases, level, point)?;
         Ok(Content::Stencil { parents })
     }

@@ -46,7 +46,7 @@ mod walk;
 mod walk_parser;
 
 pub use built_mesh::{BuiltMesh, Geometry};
-pub use edit::{EditTrace, Elements, RowChange};
+pub use edit::{EditTrace, Elements, ReadRows, RowChange};
 pub use edit_command::EditCommand;
 pub use element::ElementName;
 pub use engine::respond;

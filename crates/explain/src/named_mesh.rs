@@ -1,6 +1,6 @@
 //! A structure that was built from a mesh, with the names of its elements and a probe.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use sixfold::{Changes, PolygonMesh, Representation};
 use sixfold_core::{Described, Element, FaceId, Handle, Measured, Traced, VertexId, row};
@@ -36,7 +36,8 @@ where
     let vertices = (0..row(polygons.vertex_count())).map(VertexId::new);
     let vertices = vertices.map(|v| M::vertex_handle(polygons, v));
     // A soup has no vertex without a face.
-    let vertices = Names::new(vertices.map(|v| mesh.contains_vertex(v).then_some(v)));
+    let held: HashSet<M::Vertex> = mesh.vertices().collect();
+    let vertices = Names::new(vertices.map(|v| held.contains(&v).then_some(v)));
     let faces = (0..row(polygons.face_count())).map(FaceId::new);
     let faces = Names::new(faces.map(|f| Some(M::face_handle(polygons, f))));
     let tables = mesh.memory().tables.into_iter();

@@ -99,7 +99,7 @@ impl Structure {
     /// # Errors
     ///
     /// The errors of [`build_editable`](Self::build_editable) and of [`BuiltMesh::apply`], and
-    /// [`ExplainError::RefusedEdit`] if the structure refuses an edit.
+    /// [`ExplainError::RefusedEdit`] if the structure refuses an edit or does not have its elements.
     pub fn build_after(
         &self,
         polygons: &PolygonMesh,
@@ -110,13 +110,17 @@ impl Structure {
         }
         let mut mesh = self.build_editable(polygons)?;
         for edit in edits {
-            if let Some(reason) = mesh.apply(edit)? {
-                return Err(ExplainError::RefusedEdit {
-                    structure: self.name,
-                    edit: edit.to_string(),
-                    reason,
-                });
-            }
+            let reason = match mesh.apply(edit) {
+                Ok(None) => continue,
+                Ok(Some(refusal)) => refusal,
+                Err(error @ ExplainError::NoSuchElement { .. }) => error.to_string(),
+                Err(error) => return Err(error),
+            };
+            return Err(ExplainError::RefusedEdit {
+                structure: self.name,
+                edit: edit.to_string(),
+                reason,
+            });
         }
         Ok(mesh)
     }

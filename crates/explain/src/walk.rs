@@ -367,6 +367,13 @@ impl<P: Described> Walker<'_, P> {
             names.extend(single.map(|table| table.name.to_owned()));
             names.retain(|name| name != "positions");
             names.extend(words.map(|word| word.name.to_owned()));
+            if names.is_empty() {
+                let (structure, letter) = (self.named.structure, row.letter);
+                let reason = format!(
+                    "{structure} stores no fields of {letter}, so there is no {word}({row})"
+                );
+                return Err(ExplainError::BadWalk { reason }.into());
+            }
             return Err(ExplainError::from(UnknownName::new("field", word, names)).into());
         };
         // The steps of the word are those of the line that uses it.

@@ -121,6 +121,11 @@ fn check(
     let mut rows = stored(&records);
     for change in &trace.rows {
         let place = (change.table, change.row.clone());
+        let is_touched = change.is_written || change.is_changed();
+        assert!(is_touched, "{context}: {change:?}");
+        for fields in [&change.before, &change.after].into_iter().flatten() {
+            assert_eq!(fields.len(), change.columns.len(), "{context}: {change:?}");
+        }
         let is_shown = are_equal(rows.get(&place), change.before.as_ref());
         assert!(is_shown, "{context}: {change:?}");
         if let (Some(_), Some(_), true) = (&change.before, &change.after, change.is_changed()) {
@@ -141,6 +146,13 @@ fn check(
         rows.is_empty(),
         "{context}: rows that do not exist: {rows:?}"
     );
+    // Several tables can have a row, and a row can be read several times.
+    let only_read: usize = trace.only_read.iter().map(|read| read.rows).sum();
+    let read = trace.rows.iter().filter(|row| row.is_read).count() + only_read;
+    assert!(read <= trace.reads, "{context}: {trace:?}");
+    if command.edit != Edit::Compact {
+        assert_eq!(read > 0, trace.reads > 0, "{context}: {trace:?}");
+    }
     if trace.refusal.is_some() {
         assert!(
             !trace.rows.iter().any(|row| row.is_changed()),

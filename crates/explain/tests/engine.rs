@@ -52,7 +52,7 @@ fn answers_are_what_the_functions_return() {
         assert_eq!(one(&json!({ "trace": query }), &[edit]), json!(trace));
         let expected = json!({ "backend": name, "records": mesh.records(1..3) });
         assert_eq!(
-            one(&json!({ "tables": { "rows": [1, 3] } }), &[edit]),
+            one(&json!({ "tables": { "rows": [1, 2] } }), &[edit]),
             expected
         );
         let geometry = one(&json!("geometry"), &[edit]);
@@ -82,6 +82,9 @@ fn an_edit_that_is_left_out_is_undone_and_a_refused_one_is_named() {
     assert_eq!(before["answers"].as_array().map(Vec::len), Some(6));
     assert_ne!(before, after);
     assert_eq!(before, tables(&["poke_face f1"]));
+    let missing = tables(&["flip_edge v0-v2", "flip_edge v0-v2"]);
+    let reason = missing["refused"][0]["reason"].as_str().expect("a reason");
+    assert!(reason.contains("refuses flip_edge v0-v2: "), "{reason}");
     // A structure that refuses an edit has no tables after it.
     let refused = tables(&["dissolve_edge v0-v2"]);
     assert_eq!(
@@ -165,6 +168,61 @@ fn a_binary_file_is_read_like_a_text() {
     assert!(error(&file(json!({ "name": "a.obj" }))).contains("either a text or base64"));
 }
 
+#[test]
+fn geometry_after_edits_can_be_sent_back() {
+    let edited = ask(&json!({
+        "mesh": { "shape": { "name": "cube" } },
+        "edits": ["remove_vertex v3"],
+        "structures": ["half-edge"],
+        "ask": "geometry",
+    }));
+    let Value::Object(answer) = &edited["answers"][0] else {
+        panic!("{edited}")
+    };
+    let polygons = json!({ "positions": answer["vertices"], "faces": answer["faces"] });
+    let facts = ask(&json!({ "mesh": { "polygons": polygons }, "ask": "facts" }));
+    assert_eq!(facts["facts"]["vertices"], 7, "{facts}");
+    assert_eq!(facts["facts"]["faces"], 3, "{facts}");
+    assert_eq!(facts["notes"].as_array().map(Vec::len), Some(2), "{facts}");
+    let missing = json!({ "positions": [[0, 0, 0], null, [1, 0, 0]], "faces": [[0, 2, 1]] });
+    let message = error(&json!({ "mesh": { "polygons": missing }, "ask": "facts" }));
+    assert_eq!(message, "face f0 has the corner v1, which has no position");
+}
+
+#[test]
+fn positions_that_are_not_finite_are_refused() {
+    let triangle = |z: f64| {
+        json!({ "polygons": {
+            "positions": [[0, 0, z], [1, 0, -z], [0, 1, z]],
+            "faces": [[0, 1, 2]],
+        } })
+    };
+    let message = error(&json!({ "mesh": triangle(1e39), "ask": "geometry" }));
+    assert!(
+        message.starts_with("v0 of the mesh has a coordinate"),
+        "{message}"
+    );
+    let subdivide = json!({ "subdivide": { "scheme": "loop", "levels": 1 } });
+    let message = error(&json!({ "mesh": triangle(3e38), "ask": subdivide }));
+    assert!(message.contains("of the refined mesh"), "{message}");
+}
+
+#[test]
+fn creases_of_a_request_are_added_to_those_of_the_file() {
+    let request = |creases: &str| {
+        json!({
+            "mesh": { "shape": { "name": "octahedron" } },
+            "creases": creases,
+            "ask": { "stencil": { "scheme": "loop", "level": 1, "point": 6 } },
+        })
+    };
+    let parents = |creases: &str| ask(&request(creases))["parents"].as_array().map(Vec::len);
+    assert_eq!(parents(""), Some(4));
+    assert_eq!(parents("edge 0 2 inf"), Some(2));
+    let message = error(&request("edge 0 1 inf"));
+    assert!(message.starts_with("creases:1"), "{message}");
+}
+
 /// The parents of a point, with their weights.
 fn parents(mesh: &Value, scheme: Scheme, level: u32, point: usize) -> Vec<(usize, f64)> {
     let stencil = json!({ "scheme": scheme.to_string(), "level": level, "point": point });
@@ -185,6 +243,7 @@ fn weights_add_up_to_one_and_give_the_points() {
         json!({ "shape": { "name": "octahedron" } }),
         json!({ "shape": { "name": "triangle-grid", "parameters": { "m": 2, "n": 2 } } }),
         json!({ "shape": { "name": "cube" } }),
+        json!({ "shape": { "name": "triangle-torus", "parameters": { "m": 5, "n": 4 } } }),
     ];
     for mesh in &meshes {
         for scheme in Scheme::ALL {
@@ -315,7 +374,17 @@ fn a_wrong_request_says_what_is_wrong() {
             "ask for the geometry after the edits",
         ),
     ];
-    for (request, part) in cases {
+    let more = [
+        (
+            about(cube.clone(), json!({ "tables": { "rows": [5, 2] } })),
+            "ask for [2, 5]",
+        ),
+        (
+            json!({ "mesh": cube, "edits": ["compact", "flip v0-v1"], "ask": "geometry" }),
+            "edits, number 2: ",
+        ),
+    ];
+    for (request, part) in cases.into_iter().chain(more) {
         let message = error(&request);
         assert!(message.contains(part), "{request}: {message}");
     }

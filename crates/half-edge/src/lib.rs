@@ -4,8 +4,8 @@
 //! Use a half-edge mesh to walk around vertices and to change connectivity. A half-edge mesh cannot
 //! hold edges with three faces: if the input has an edge with three faces, building returns an
 //! error. [`generic::HalfEdgeMesh`] documents the tables and their numbered invariants. The
-//! structure follows Weiler (1985) and Mäntylä (1988). The pairs of twins follow Campagna, Kobbelt
-//! & Seidel (1998).
+//! structure follows Weiler (1985) and Mäntylä (1988). The pairs of twins are those of
+//! OpenMesh (Botsch et al. 2002).
 //!
 //! | holds | |
 //! |---|---|

@@ -1,10 +1,5 @@
 //! Blocks of memory that the host of the module reads and writes.
 
-#![cfg_attr(
-    not(target_family = "wasm"),
-    expect(dead_code, reason = "only the module has a host")
-)]
-
 use crate::respond;
 
 /// Bytes of the length of a text.
@@ -41,8 +36,8 @@ impl Blocks {
 
     /// Removes a block.
     pub(crate) fn release(&mut self, address: usize) -> Option<Box<[u8]>> {
-        let is_at = |block: &Box<[u8]>| block.as_ptr().addr() == address;
-        let place = self.0.iter().position(is_at)?;
+        let mut blocks = self.0.iter();
+        let place = blocks.position(|block| block.as_ptr().addr() == address)?;
         Some(self.0.swap_remove(place))
     }
 

@@ -5,7 +5,7 @@
 //!
 //! | function | what it does |
 //! |---|---|
-//! | `reserve(length) -> address` | makes a block for a request of `length` bytes |
+//! | `reserve(length) -> address` | makes a block for a request of `length` bytes; 0 if there is not so much memory |
 //! | `call(address) -> address` | answers the request in a block, releases this block, and returns the block of the response |
 //! | `release(address)` | releases the block of a response |
 //!
@@ -17,6 +17,7 @@
 //! function respond(request) {
 //!   const text = new TextEncoder().encode(JSON.stringify(request));
 //!   const asked = reserve(text.length);
+//!   if (asked === 0) throw new Error("the request is too large");
 //!   new Uint8Array(memory.buffer, asked + 4, text.length).set(text);
 //!   const answered = call(asked);
 //!   const length = new DataView(memory.buffer).getUint32(answered, true);
@@ -26,6 +27,8 @@
 //! }
 //! ```
 
+// Only the module has a host.
+#[cfg(any(test, target_family = "wasm"))]
 mod blocks;
 #[cfg(target_family = "wasm")]
 mod exports;

@@ -8,7 +8,7 @@ use sixfold::subdivision::{Extent, Scheme, Step, Subdivision, SubdivisionError, 
 use sixfold::{Creases, FaceVertexMesh, Point, PolygonMesh};
 
 use super::Error;
-use super::source::check_size;
+use super::source::{check_positions, check_size};
 use crate::element::ElementName;
 
 /// Maximum number of levels. A mesh with one triangle has more corners than allowed before.
@@ -16,6 +16,15 @@ const MOST_LEVELS: u32 = 16;
 
 /// Maximum number of vertices of a mesh whose weights are computed.
 const MOST_PARENTS: usize = 20_000;
+
+/// Smaller sums are rounding errors of weights that are 0: weights are at most a few times 1.
+const LEAST_WEIGHT: f32 = 1e-7;
+
+/// Maximum difference between a point and the sum of its parents, whose coordinates are at most 2.
+const TOLERANCE: f32 = 1e-5;
+
+/// Number of attempts to find the weights.
+const SEEDS: u32 = 4;
 
 /// A point of the level before, with its weight in a new point.
 #[derive(Debug, Serialize)]
@@ -47,12 +56,9 @@ pub(super) fn levels(
     }];
     for level in 0..levels {
         let parent = &steps[level as usize];
-        steps.push(refined(
-            &subdivision,
-            &parent.polygons,
-            &parent.creases,
-            level,
-        )?);
+        let step = refined(&subdivision, &parent.polygons, &parent.creases, level)?;
+        check_positions(&step.polygons, "the refined mesh")?;
+        steps.push(step);
     }
     Ok(steps)
 }
@@ -78,7 +84,7 @@ pub(super) fn stencil(
     polygons: &PolygonMesh,
     creases: &Creases,
     level: u32,
-    point: usize,
+    point: u32,
 ) -> Result<Vec<Parent>, Error> {
     let Some(before) = level.checked_sub(1) else {
         return Err("the points of level 0 have no parents: ask for level 1 or higher".into());
@@ -97,10 +103,49 @@ pub(super) fn stencil(
         )
         .into());
     }
+    let point = point as usize;
     if point >= points {
         return Err(format!("level {level} has {points} points, from v0, and no v{point}").into());
     }
-    let subdivision = Subdivision::new(scheme);
+    let step = |positions| {
+        let probed = PolygonMesh::from_faces(positions, parent.polygons.faces().clone())?;
+        let child = refined(&Subdivision::new(scheme), &probed, &parent.creases, before)?;
+        Ok(child.polygons.positions()[point])
+    };
+    let weights = weights(parents, step)?;
+    let parent = |(vertex, weight)| Parent {
+        vertex: ElementName::Vertex(vertex as u32).to_string(),
+        weight,
+    };
+    Ok(weights.into_iter().map(parent).collect())
+}
+
+/// Returns the points with a weight, and the weights. `step` returns the new point for given positions of
+/// `parents` points.
+fn weights(
+    parents: usize,
+    step: impl Fn(Vec<Point>) -> Result<Point, Error>,
+) -> Result<Vec<(usize, f32)>, Error> {
+    for seed in 0..SEEDS {
+        let weights = weights_with(parents, seed, &step)?;
+        // Positive and negative weights of a set can add up to 0. Then other positions show it.
+        let other = |vertex| Point::from([1, 2, 3].map(|axis| probe(vertex, SEEDS * axis)));
+        let expected = step((0..parents).map(other).collect())?;
+        let sum: Point = (weights.iter())
+            .map(|&(vertex, weight)| weight * other(vertex))
+            .sum();
+        if (sum - expected).abs().max_element() < TOLERANCE {
+            return Ok(weights);
+        }
+    }
+    Err("the weights of this point were not found".into())
+}
+
+fn weights_with(
+    parents: usize,
+    seed: u32,
+    step: &impl Fn(Vec<Point>) -> Result<Point, Error>,
+) -> Result<Vec<(usize, f32)>, Error> {
     let mut weights = Vec::new();
     let mut sets: Vec<Range<usize>> = iter::once(0..parents).collect();
     while !sets.is_empty() {
@@ -110,32 +155,30 @@ pub(super) fn stencil(
         for (coordinate, set) in tested.iter().enumerate() {
             let is_single = set.len() == 1;
             for vertex in set.clone() {
-                positions[vertex][coordinate] = if is_single { 1.0 } else { probe(vertex) };
+                positions[vertex][coordinate] = if is_single { 1.0 } else { probe(vertex, seed) };
             }
         }
-        let faces = parent.polygons.faces().clone();
-        let probed = PolygonMesh::from_faces(positions, faces)?;
-        let child = refined(&subdivision, &probed, &parent.creases, before)?;
-        let sums = child.polygons.positions()[point];
+        let sums = step(positions)?;
         for (coordinate, set) in tested.into_iter().enumerate() {
-            let middle = set.start + set.len() / 2;
-            match sums[coordinate] {
-                0.0 => {}
-                weight if set.len() == 1 => weights.push((set.start, weight)),
+            let (sum, middle) = (sums[coordinate], set.start + set.len() / 2);
+            match set.len() {
+                0 => {}
+                1 if sum.abs() < LEAST_WEIGHT => {}
+                1 => weights.push((set.start, sum)),
+                _ if sum == 0.0 => {}
                 _ => sets.extend([set.start..middle, middle..set.end]),
             }
         }
     }
     weights.sort_by_key(|&(vertex, _)| vertex);
-    let parent = |(vertex, weight)| Parent {
-        vertex: ElementName::Vertex(vertex as u32).to_string(),
-        weight,
-    };
-    Ok(weights.into_iter().map(parent).collect())
+    Ok(weights)
 }
 
-/// Returns a number between 1 and 2, so that positive and negative weights of a set do not add up to 0.
-fn probe(vertex: usize) -> f32 {
-    let golden = (vertex as u32).wrapping_mul(2_654_435_769);
-    1.0 + (golden >> 8) as f32 / (1 << 24) as f32
+/// Returns a number between 1 and 2 without a pattern (the mixing function of Wellons, 2018).
+fn probe(vertex: usize, seed: u32) -> f32 {
+    let mut mixed = (vertex as u32).wrapping_add(seed.wrapping_mul(0x9e37_79b9));
+    mixed = (mixed ^ (mixed >> 16)).wrapping_mul(0x7feb_352d);
+    mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x846c_a68b);
+    mixed ^= mixed >> 16;
+    1.0 + (mixed >> 8) as f32 / (1 << 24) as f32
 }

@@ -33,9 +33,10 @@ pub(super) enum MeshSource {
         #[serde(default)]
         base64: Option<String>,
     },
+    /// Numbers without an element are null, as in [`Geometry`](crate::Geometry).
     Polygons {
-        positions: Vec<[f32; 3]>,
-        faces: Vec<Vec<u32>>,
+        positions: Vec<Option<[f32; 3]>>,
+        faces: Vec<Option<Vec<u32>>>,
     },
 }
 
@@ -51,15 +52,14 @@ impl MeshSource {
     pub(super) fn read(&self) -> Result<Sourced, Error> {
         let sourced = match self {
             Self::Shape { name, parameters } => Sourced::plain(shape(name, parameters)?),
-            Self::Polygons { positions, faces } => {
-                Sourced::plain(PolygonMesh::new(positions.iter().copied(), faces)?)
-            }
+            Self::Polygons { positions, faces } => from_polygons(positions, faces)?,
             Self::File { name, text, base64 } => {
                 let decoded;
                 let content = match (text, base64) {
                     (Some(text), None) => text.as_bytes(),
                     (None, Some(base64)) => {
-                        decoded = STANDARD.decode(base64)?;
+                        decoded = (STANDARD.decode(base64))
+                            .map_err(|error| format!("base64 of {name}: {error}"))?;
                         &decoded
                     }
                     _ => return Err("a file has either a text or base64".into()),
@@ -68,6 +68,7 @@ impl MeshSource {
             }
         };
         check_size(sourced.polygons.corner_count())?;
+        check_positions(&sourced.polygons, "the mesh")?;
         Ok(sourced)
     }
 }
@@ -82,6 +83,60 @@ pub(super) fn check_size(corners: usize) -> Result<(), Error> {
         )
         .into()),
     }
+}
+
+/// Returns an error for a vertex whose coordinates are not finite in 32 bits.
+pub(super) fn check_positions(polygons: &PolygonMesh, mesh: &str) -> Result<(), Error> {
+    let mut positions = polygons.positions().iter();
+    match positions.position(|position| !position.is_finite()) {
+        None => Ok(()),
+        Some(v) => Err(format!(
+            "v{v} of {mesh} has a coordinate that is too large for 32 bits: scale the mesh"
+        )
+        .into()),
+    }
+}
+
+/// Returns a mesh without the numbers that have no element.
+fn from_polygons(
+    positions: &[Option<[f32; 3]>],
+    faces: &[Option<Vec<u32>>],
+) -> Result<Sourced, Error> {
+    let mut held = 0;
+    let numbers: Vec<Option<u32>> = (positions.iter())
+        .map(|position| {
+            held += u32::from(position.is_some());
+            position.map(|_| held - 1)
+        })
+        .collect();
+    let number = |f: usize, corner: u32| match numbers.get(corner as usize) {
+        Some(Some(number)) => Ok(*number),
+        _ => Err(format!(
+            "face f{f} has the corner v{corner}, which has no position"
+        )),
+    };
+    let held_faces = (faces.iter().enumerate()).filter_map(|(f, face)| Some((f, face.as_ref()?)));
+    let corners = held_faces.map(|(f, face)| {
+        let corners = face.iter().map(|&corner| number(f, corner));
+        corners.collect::<Result<Vec<u32>, _>>()
+    });
+    let polygons = PolygonMesh::new(
+        positions.iter().copied().flatten(),
+        corners.collect::<Result<Vec<_>, _>>()?,
+    )?;
+    let mut sourced = Sourced::plain(polygons);
+    let left = |all: usize, kept: usize, element: &str| match all - kept {
+        0 => None,
+        gaps => Some(format!(
+            "{gaps} numbers of {element} have no element: the elements after them have lower numbers here"
+        )),
+    };
+    let notes = [
+        left(positions.len(), sourced.polygons.vertex_count(), "vertices"),
+        left(faces.len(), sourced.polygons.face_count(), "faces"),
+    ];
+    sourced.notes.extend(notes.into_iter().flatten());
+    Ok(sourced)
 }
 
 fn shape(name: &str, parameters: &BTreeMap<String, f64>) -> Result<PolygonMesh, Error> {

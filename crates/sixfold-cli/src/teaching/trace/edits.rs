@@ -4,10 +4,11 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use serde::Serialize;
-use sixfold_explain::{EditTrace, Elements, RowChange};
+use sixfold::Edit;
+use sixfold_explain::{EditTrace, Elements, ReadRows, RowChange};
 use sixfold_study::numbers::{counted, grouped};
 
-use super::{Begun, begin, parts, rows};
+use super::{Begun, begin, rows};
 use crate::arguments;
 use crate::column_table::{Column, column_table};
 use crate::failure::Failure;
@@ -72,6 +73,9 @@ fn block(mesh: &str, trace: &EditTrace) -> String {
         reads(trace)
     );
     let mut lines = vec![hanging_indent("", &head), euler(trace), String::new()];
+    if trace.edit == Edit::Compact.name() {
+        lines.push("Whole tables are moved; the counts do not have these moves.\n".into());
+    }
     let name = |row: &RowChange| format!("{} {}", row.table, row.row);
     let width = changed
         .iter()
@@ -84,12 +88,18 @@ fn block(mesh: &str, trace: &EditTrace) -> String {
             &change(row),
         ));
     }
-    let only_read = trace
-        .rows
-        .iter()
-        .filter(|row| !row.is_changed() && row.is_read);
+    let rewritten = trace.rows.iter().filter(|row| !row.is_changed());
+    let rewritten = rewritten.map(|row| ReadRows {
+        table: row.table,
+        row: row.row.clone(),
+        rows: 1,
+    });
     let lists = [
-        ("only read: ", runs(only_read)),
+        (
+            "written as before: ",
+            row_names(&rewritten.collect::<Vec<_>>()),
+        ),
+        ("only read: ", row_names(&trace.only_read)),
         ("new elements: ", trace.created.clone()),
         ("deleted elements: ", trace.removed.clone()),
         (
@@ -137,30 +147,16 @@ fn renamed([name, old, new]: &[String; 3]) -> String {
     format!("{name} from {old} to {new}")
 }
 
-/// Lists rows: the first of each table with the name of the table, and rows that follow one another as
-/// `c1 to c5`.
-fn runs<'r>(changes: impl Iterator<Item = &'r RowChange>) -> Vec<String> {
-    let number = |row: &RowChange| parts(&row.row).1;
-    let mut runs: Vec<(&RowChange, usize)> = Vec::new();
-    for row in changes {
-        match runs.last_mut() {
-            Some((first, count))
-                if first.table == row.table && number(first) + *count == number(row) =>
-            {
-                *count += 1;
-            }
-            _ => runs.push((row, 1)),
-        }
-    }
+/// Lists rows: the first of each table with the name of the table.
+fn row_names(read: &[ReadRows]) -> Vec<String> {
     let mut table = "";
-    let text = runs.into_iter().map(|(first, count)| {
-        let title = if first.table == table {
-            String::new()
-        } else {
-            format!("{} ", first.table)
+    let text = read.iter().map(|read| {
+        let title = match read.table == table {
+            true => String::new(),
+            false => format!("{} ", read.table),
         };
-        table = first.table;
-        title + &rows(&first.row, count)
+        table = read.table;
+        title + &rows(&read.row, read.rows)
     });
     text.collect()
 }
