@@ -244,6 +244,23 @@ fn a_flip_shows_what_it_rewrites_and_a_refusal_shows_its_rule() {
 }
 
 #[test]
+fn rows_that_are_only_read_are_listed_in_runs() {
+    let winged_edge = Structure::find("winged-edge").expect("one of six");
+    let flip = &run(&winged_edge, &shapes::octahedron(), &["flip_edge v0-v2"])[0];
+    let runs = flip.only_read.iter();
+    let runs: Vec<_> = runs
+        .map(|run| (run.table, run.row.as_str(), run.rows))
+        .collect();
+    let spokes = [("spokes", "v0", 1), ("spokes", "v2", 1)];
+    let edges = [("edges", "e5", 1), ("edges", "e7", 1), ("edges", "e10", 2)];
+    assert_eq!(runs, [&spokes[..], &edges].concat());
+    // These rows are written, and have the values that they had.
+    let same = flip.rows.iter().filter(|row| !row.is_changed());
+    let same: Vec<_> = same.map(|row| (row.row.as_str(), row.is_written)).collect();
+    assert_eq!(same, [("f0", true), ("f4", true)]);
+}
+
+#[test]
 fn new_elements_get_the_next_numbers_and_compaction_keeps_the_names() {
     let edits = [
         "poke_face f0",

@@ -117,7 +117,10 @@ fn verdicts_name_the_faults_and_repairs_mend_them() {
     assert_eq!(verdict("indexed-face-set")["holds"], true);
     assert_eq!(verdict("half-edge")["holds"], false);
     assert_eq!(verdict("half-edge")["faults"][0], "non_manifold_edge");
-    assert_eq!(response["faults"][0]["places"], json!([{ "edge": [0, 1] }]));
+    let fault = &response["faults"][0];
+    assert_eq!(fault["places"], json!([{ "edge": [0, 1] }]));
+    assert_eq!(fault["title"], "edge with three or more faces", "{fault}");
+    assert_eq!(fault["count"], 1);
     assert_eq!(
         response["notes"],
         json!(["left out line 9: face 3 3 1 names vertex 3 twice"])
@@ -429,6 +432,27 @@ proptest! {
         let response: Value = serde_json::from_str(&respond(&request)).expect("JSON");
         prop_assert!(response.is_object());
     }
+}
+
+#[test]
+fn tables_have_the_first_two_hundred_rows_unless_rows_are_named() {
+    let tables = |rows: Value| {
+        let mesh = json!({ "shape": { "name": "grid", "parameters": { "m": 20, "n": 20 } } });
+        let response = ask(&json!({
+            "mesh": mesh,
+            "structures": ["indexed-face-set"],
+            "ask": { "tables": rows },
+        }));
+        let rows = response["answers"][0]["records"][0]["rows"].clone();
+        let rows = rows.as_array().expect("the vertices").clone();
+        let names = [rows.first(), rows.last()].map(|row| row.expect("rows")["name"].clone());
+        (rows.len(), names)
+    };
+    assert_eq!(tables(json!({})), (200, [json!("v0"), json!("v199")]));
+    let named = json!({ "rows": [7, 9] });
+    assert_eq!(tables(named), (3, [json!("v7"), json!("v9")]));
+    let one = json!({ "rows": [7, 7] });
+    assert_eq!(tables(one), (1, [json!("v7"), json!("v7")]));
 }
 
 #[test]

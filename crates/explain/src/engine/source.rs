@@ -35,7 +35,7 @@ pub(super) enum MeshSource {
     },
     /// Numbers without an element are null, as in [`Geometry`](crate::Geometry).
     Polygons {
-        positions: Vec<Option<[f32; 3]>>,
+        positions: Vec<Option<[f64; 3]>>,
         faces: Vec<Option<Vec<u32>>>,
     },
 }
@@ -99,7 +99,7 @@ pub(super) fn check_positions(polygons: &PolygonMesh, mesh: &str) -> Result<(), 
 
 /// Returns a mesh without the numbers that have no element.
 fn from_polygons(
-    positions: &[Option<[f32; 3]>],
+    positions: &[Option<[f64; 3]>],
     faces: &[Option<Vec<u32>>],
 ) -> Result<Sourced, Error> {
     let mut held = 0;
@@ -120,8 +120,9 @@ fn from_polygons(
         let corners = face.iter().map(|&corner| number(f, corner));
         corners.collect::<Result<Vec<u32>, _>>()
     });
+    let positions = positions.iter().flatten();
     let polygons = PolygonMesh::new(
-        positions.iter().copied().flatten(),
+        positions.map(|position| position.map(|coordinate| coordinate as f32)),
         corners.collect::<Result<Vec<_>, _>>()?,
     )?;
     let mut sourced = Sourced::plain(polygons);
@@ -132,7 +133,7 @@ fn from_polygons(
         )),
     };
     let notes = [
-        left(positions.len(), sourced.polygons.vertex_count(), "vertices"),
+        left(numbers.len(), sourced.polygons.vertex_count(), "vertices"),
         left(faces.len(), sourced.polygons.face_count(), "faces"),
     ];
     sourced.notes.extend(notes.into_iter().flatten());
