@@ -89,8 +89,8 @@ impl BuiltMesh {
     /// # Errors
     ///
     /// Returns [`ExplainError::NoSuchElement`] if the edit names an element that does not exist,
-    /// [`ExplainError::BadEdit`] if it lacks one, and [`ExplainError::NoEdits`] if the mesh was not built
-    /// with [`build_editable`](crate::Structure::build_editable).
+    /// [`ExplainError::BadEdit`] if it lacks one, and [`ExplainError::NoEdits`] if the structure was not
+    /// given with its edits ([`Structure::with_edits`](crate::Structure::with_edits)).
     pub fn edit(&mut self, edit: &EditCommand) -> Result<EditTrace, ExplainError> {
         self.edited()?.edit(edit)
     }

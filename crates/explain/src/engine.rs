@@ -295,11 +295,7 @@ impl Subject {
 
     fn edit(&self, edit: &EditCommand) -> Content {
         self.each(|structure| {
-            // The editable form, also without edits before.
-            let mut mesh = match self.edits.is_empty() {
-                true => structure.build_editable(&self.polygons)?,
-                false => self.build(structure)?,
-            };
+            let mut mesh = self.build(structure)?;
             mesh.edit(edit).map(Answer::Edit)
         })
     }

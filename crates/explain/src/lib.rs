@@ -25,7 +25,7 @@
 //! let Step::Read(second) = &trace.steps[1] else { unreachable!("a walk begins with two reads") };
 //! assert_eq!((second.row.as_str(), second.reason.text.as_str()), ("h0", "twin of h1"));
 //!
-//! let mut octahedron = half_edge.build_editable(&shapes::octahedron())?;
+//! let mut octahedron = half_edge.build(&shapes::octahedron())?;
 //! let flip = octahedron.edit(&"flip_edge v0-v2".parse()?)?;
 //! assert!(flip.rows.iter().any(|row| row.is_changed()));
 //! # Ok::<(), sixfold_explain::ExplainError>(())

@@ -8,18 +8,15 @@ use crate::edit_command::EditCommand;
 use crate::error::ExplainError;
 use crate::named_mesh::named_mesh;
 
-type Build = fn(&PolygonMesh) -> Result<BuiltMesh, ExplainError>;
-
 /// A structure whose tables can be shown.
 #[derive(Clone, Copy, Debug)]
 pub struct Structure {
     name: &'static str,
-    build: Build,
-    build_editable: Option<Build>,
+    build: fn(&PolygonMesh) -> Result<BuiltMesh, ExplainError>,
 }
 
 impl Structure {
-    /// Returns the structure `M`, which need not be part of Sixfold.
+    /// Returns the structure `M`, which need not be part of Sixfold. Its edits are not shown.
     pub fn new<M>() -> Self
     where
         M: Representation + Measured,
@@ -28,33 +25,26 @@ impl Structure {
         Self {
             name: M::NAME,
             build: |polygons| named_mesh::<M>(polygons).map(BuiltMesh::fixed),
-            build_editable: None,
         }
     }
 
-    /// Returns the same structure, whose editable form is `M`.
-    #[must_use]
-    pub fn with_edits<M>(self) -> Self
+    /// Returns the structure whose editable form is `M`. Queries read the same rows in both forms, so
+    /// this form is used for all that is shown.
+    pub fn with_edits<M>() -> Self
     where
         M: Representation + Measured,
         M::Probed<Traced>: MeshEdit + Described + Clone + 'static,
     {
         Self {
-            build_editable: Some(|polygons| named_mesh::<M>(polygons).map(BuiltMesh::editable)),
-            ..self
+            name: M::NAME,
+            build: |polygons| named_mesh::<M>(polygons).map(BuiltMesh::editable),
         }
     }
 
     /// Returns the six structures of Sixfold.
     pub fn all() -> Vec<Self> {
         let mut all = Vec::new();
-        sixfold::for_each_representation!(M => { all.push(Self::new::<M>()); });
-        sixfold::for_each_editable!(M => {
-            let own = all.iter_mut().find(|one| one.name == M::NAME);
-            if let Some(own) = own {
-                *own = own.with_edits::<M>();
-            }
-        });
+        sixfold::for_each_editable!(M => { all.push(Self::with_edits::<M>()); });
         all
     }
 
@@ -70,6 +60,9 @@ impl Structure {
 
     /// Builds the structure from `polygons`. O(corners).
     ///
+    /// To undo edits, build the mesh again, and run only the edits before them
+    /// ([`build_after`](Self::build_after)).
+    ///
     /// # Errors
     ///
     /// Returns [`ExplainError::Refused`] if the structure cannot hold the mesh.
@@ -77,38 +70,18 @@ impl Structure {
         (self.build)(polygons)
     }
 
-    /// Builds the editable form of the structure from `polygons`. O(corners).
-    ///
-    /// To undo edits, build the mesh again, and run only the edits before them
-    /// ([`build_after`](Self::build_after)).
+    /// Builds the structure from `polygons`, and runs `edits`. O(corners), and the time of the edits.
     ///
     /// # Errors
     ///
-    /// Returns [`ExplainError::Refused`] if the structure cannot hold the mesh, and
-    /// [`ExplainError::NoEdits`] without [`with_edits`](Self::with_edits).
-    pub fn build_editable(&self, polygons: &PolygonMesh) -> Result<BuiltMesh, ExplainError> {
-        let structure = self.name;
-        let build = self.build_editable;
-        let build = build.ok_or(ExplainError::NoEdits { structure })?;
-        build(polygons)
-    }
-
-    /// Builds the structure from `polygons`, and runs `edits`. Without edits, does the same as
-    /// [`build`](Self::build). O(corners), and the time of the edits.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`build_editable`](Self::build_editable) and of [`BuiltMesh::apply`], and
+    /// The errors of [`build`](Self::build) and of [`BuiltMesh::apply`], and
     /// [`ExplainError::RefusedEdit`] if the structure refuses an edit or does not have its elements.
     pub fn build_after(
         &self,
         polygons: &PolygonMesh,
         edits: &[EditCommand],
     ) -> Result<BuiltMesh, ExplainError> {
-        if edits.is_empty() {
-            return self.build(polygons);
-        }
-        let mut mesh = self.build_editable(polygons)?;
+        let mut mesh = self.build(polygons)?;
         for edit in edits {
             let reason = match mesh.apply(edit) {
                 Ok(None) => continue,

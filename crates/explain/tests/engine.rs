@@ -41,7 +41,7 @@ fn answers_are_what_the_functions_return() {
             assert_eq!(response["answers"].as_array().map(Vec::len), Some(1));
             response["answers"][0].clone()
         };
-        let mut mesh = structure.build_editable(&octahedron).expect("held");
+        let mut mesh = structure.build(&octahedron).expect("held");
         let flip = mesh.edit(&edit.parse().expect(edit)).expect("an edge");
         assert_eq!(one(&json!({ "edit": edit }), &[]), json!(flip));
         let element = "v3".parse().expect("a name");

@@ -271,6 +271,28 @@ fn every_read_has_a_reason_on_a_line_of_the_algorithm() {
     assert!(traces > 10_000, "{traces}");
 }
 
+/// `Structure::all` shows the editable forms of the structures.
+#[test]
+fn both_forms_of_a_structure_have_the_same_rows_and_traces() {
+    let open = shapes::triangle_grid(3, 2).expect("a small size");
+    let mixed = shapes::mixed_grid(2, 2).expect("a small size");
+    for polygons in [shapes::octahedron(), open, mixed] {
+        sixfold::for_each_representation!(M => {
+            let editable = Structure::find(M::NAME).expect("one of six");
+            let forms = [Structure::new::<M>(), editable].map(|form| form.build(&polygons));
+            if let [Ok(fixed), Ok(editable)] = forms {
+                assert_eq!(fixed.records(0..100), editable.records(0..100), "{}", M::NAME);
+                for relation in Relation::ALL {
+                    for name in elements(&polygons, relation) {
+                        let [fixed, editable] = [&fixed, &editable].map(|form| form.trace(relation, name));
+                        assert_eq!(fixed, editable, "{}: {relation} of {name}", M::NAME);
+                    }
+                }
+            }
+        });
+    }
+}
+
 #[test]
 fn traces_after_edits_are_those_of_the_edited_mesh() {
     let edits = [
@@ -282,7 +304,7 @@ fn traces_after_edits_are_those_of_the_edited_mesh() {
         "poke_face f9",
     ];
     for structure in Structure::all() {
-        let built = structure.build_editable(&shapes::octahedron());
+        let built = structure.build(&shapes::octahedron());
         let mut mesh = built.expect("a closed mesh of triangles");
         for edit in edits {
             mesh.apply(&edit.parse().expect(edit)).expect(edit);

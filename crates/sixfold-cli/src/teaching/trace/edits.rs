@@ -32,7 +32,7 @@ pub(super) fn run(path: Option<&Path>, arguments: &arguments::Trace) -> Result<E
     } = begin(path, arguments)?;
     // An edit that a structure refuses changes nothing, and the next one runs.
     let (traces, refused) = explain(&arguments.explained, |structure| {
-        let mut mesh = structure.build_editable(&polygons)?;
+        let mut mesh = structure.build(&polygons)?;
         let traces = edits.iter().map(|edit| mesh.edit(edit));
         traces.collect::<Result<Vec<_>, _>>()
     })?;
