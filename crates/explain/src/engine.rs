@@ -15,10 +15,10 @@ use sixfold::{Creases, Facts, PolygonMesh, Relation, StructureInfo, UnknownName,
 
 use crate::built_mesh::{BuiltMesh, Geometry};
 use crate::edit_command::EditCommand;
-use crate::error::ExplainError;
+use crate::error::{ExplainError, Refused};
 use crate::structure::Structure;
 use refinement::{levels, stencil};
-use response::{Answer, Content, Found, Refused, Response, Verdict};
+use response::{Answer, Content, Found, Response, Verdict};
 use source::{MeshSource, Sourced};
 
 /// Maximum number of places that a response lists for each kind of fault.
@@ -251,7 +251,7 @@ impl Subject {
             match answer(structure) {
                 Ok(answer) => answers.push(answer),
                 Err(error) => refused.push(Refused {
-                    backend: structure.name(),
+                    structure: structure.name(),
                     reason: error.to_string(),
                 }),
             }

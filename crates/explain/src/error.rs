@@ -1,8 +1,19 @@
 //! The reasons why a mesh, a query, an edit or a walk cannot be shown.
 
+use serde::Serialize;
 use sixfold::{BuildError, Relation, UnknownName};
 
 use crate::element::ElementName;
+
+/// A structure that shows nothing, among others that do.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Refused {
+    /// The name of the structure.
+    #[serde(rename = "backend")]
+    pub structure: &'static str,
+    /// Why it shows nothing.
+    pub reason: String,
+}
 
 /// The reason why a structure cannot be explained on a mesh.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

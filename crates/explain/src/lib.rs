@@ -5,7 +5,8 @@
 //! The values come from the tables of the structure, through [`Described`](sixfold_core::Described).
 //! A [`Trace`] has the reads of a query, each with its [`Reason`], and an [`EditTrace`] has the rows
 //! before and after an edit. The queries and edits are those that programs run; a probe records their
-//! reads and writes. The crate does no input and output.
+//! reads and writes. [`respond`] answers requests about all of this in JSON. The crate does no input and
+//! output.
 //!
 //! ```
 //! use sixfold::{Relation, shapes};
@@ -50,7 +51,7 @@ pub use edit::{EditTrace, Elements, ReadRows, RowChange};
 pub use edit_command::EditCommand;
 pub use element::ElementName;
 pub use engine::respond;
-pub use error::ExplainError;
+pub use error::{ExplainError, Refused};
 pub use reason::Reason;
 pub use records::{Record, RecordColumn, Records};
 pub use structure::Structure;

@@ -55,7 +55,7 @@ where
 }
 
 impl<P: Described> NamedMesh<P> {
-    pub(crate) fn missing(&self, name: ElementName) -> ExplainError {
+    fn missing(&self, name: ElementName) -> ExplainError {
         ExplainError::NoSuchElement {
             structure: self.structure,
             name,
@@ -116,7 +116,6 @@ impl<P: Described> NamedMesh<P> {
 
 /// The handles of the elements of one kind, by number: first those of the mesh, then new ones in the
 /// order in which they are made.
-#[derive(Clone)]
 pub(crate) struct Names<H> {
     /// `None` if the element was deleted, or if the structure does not have it.
     handles: Vec<Option<H>>,

@@ -6,9 +6,8 @@ pub(crate) mod trace;
 
 use std::path::Path;
 
-use serde::Serialize;
 use sixfold::{PolygonMesh, shapes};
-use sixfold_explain::{ExplainError, Structure};
+use sixfold_explain::{ExplainError, Refused, Structure};
 use sixfold_study::StudyMesh;
 
 use crate::arguments::Explained;
@@ -16,13 +15,6 @@ use crate::failure::Failure;
 use crate::load;
 use crate::text::{TextOutput, hanging_indent, width};
 use crate::triangulate::triangulated;
-
-/// A structure that cannot hold the mesh, or does not have an element.
-#[derive(Serialize)]
-struct Refused {
-    backend: &'static str,
-    reason: String,
-}
 
 /// Returns the name of the mesh, and the mesh: a cube if no mesh is named.
 fn mesh(path: Option<&Path>, explained: &Explained) -> Result<(String, PolygonMesh), Failure> {
@@ -67,8 +59,8 @@ fn explain<T>(
         let reasons: Vec<String> = refused.iter().map(|(_, error)| error.to_string()).collect();
         return Err(Failure::unsupported(reasons.join("; ")));
     }
-    let refused = refused.into_iter().map(|(backend, error)| Refused {
-        backend,
+    let refused = refused.into_iter().map(|(structure, error)| Refused {
+        structure,
         reason: error.to_string(),
     });
     Ok((shown, refused.collect()))

@@ -11,7 +11,8 @@ use super::Error;
 use super::source::{check_positions, check_size};
 use crate::element::ElementName;
 
-/// Maximum number of levels. A mesh with one triangle has more corners than allowed before.
+/// Maximum number of levels. Most meshes reach the maximum number of corners before, but a mesh without
+/// faces does not grow.
 const MOST_LEVELS: u32 = 16;
 
 /// Maximum number of vertices of a mesh whose weights are computed.

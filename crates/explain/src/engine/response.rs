@@ -7,6 +7,7 @@ use sixfold::repair::{FaultKind, Place, Step, StepReport};
 use super::refinement::Parent;
 use crate::built_mesh::Geometry;
 use crate::edit::EditTrace;
+use crate::error::Refused;
 use crate::records::Records;
 use crate::trace::Trace;
 use crate::walk::Walk;
@@ -67,13 +68,6 @@ pub(super) enum Answer {
         #[serde(flatten)]
         geometry: Geometry,
     },
-}
-
-/// A structure that does not answer.
-#[derive(Serialize)]
-pub(super) struct Refused {
-    pub(super) backend: &'static str,
-    pub(super) reason: String,
 }
 
 /// Whether a structure holds the mesh.

@@ -4,14 +4,14 @@ use std::io;
 use std::process::ExitCode;
 
 use serde::Serialize;
-use sixfold_explain::{Record, RecordColumn, Records};
+use sixfold_explain::{Record, RecordColumn, Records, Refused};
 use sixfold_study::numbers::{counted, grouped};
 
 use crate::arguments::Tables;
 use crate::column_table::{Column, column_table};
 use crate::failure::Failure;
 use crate::output::{Output, check_outputs, is_stdout};
-use crate::teaching::{Refused, explain, mesh, print_refused, side_by_side};
+use crate::teaching::{explain, mesh, print_refused, side_by_side};
 use crate::text::{TextOutput, hanging_indent};
 
 /// Maximum number of rows of a table, if the rows are not named.

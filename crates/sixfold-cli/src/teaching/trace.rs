@@ -10,14 +10,16 @@ use std::process::ExitCode;
 use console::{Key, Term};
 use serde::Serialize;
 use sixfold::{PolygonMesh, Relation};
-use sixfold_explain::{Cost, EditCommand, ElementName, Read, Step, Trace};
+use sixfold_explain::{
+    BuiltMesh, Cost, EditCommand, ElementName, ExplainError, Read, Refused, Step, Trace,
+};
 use sixfold_study::numbers::{counted, grouped};
 
-use crate::arguments;
+use crate::arguments::{self, Explained};
 use crate::column_table::{Column, column_table};
 use crate::failure::Failure;
 use crate::output::{Output, check_outputs, is_stdout};
-use crate::teaching::{Refused, explain, mesh, print_refused, side_by_side};
+use crate::teaching::{explain, mesh, print_refused, side_by_side};
 use crate::text::{TextOutput, hanging_indent};
 
 #[derive(Serialize)]
@@ -62,14 +64,24 @@ struct Begun {
 }
 
 impl Begun {
-    /// Returns the same mesh, whose name says that edits come before what is shown.
-    fn after_edits(mut self) -> Self {
+    /// Returns the name of the mesh, with the edits that come before what is shown.
+    fn name_after_edits(&self) -> String {
         match &self.edits[..] {
-            [] => {}
-            [edit] => self.name = format!("{} after {edit}", self.name),
-            edits => self.name = format!("{} after {} edits", self.name, edits.len()),
+            [] => self.name.clone(),
+            [edit] => format!("{} after {edit}", self.name),
+            edits => format!("{} after {} edits", self.name, edits.len()),
         }
-        self
+    }
+
+    /// Shows the mesh after the edits in each of the selected structures.
+    fn explain<T>(
+        &self,
+        explained: &Explained,
+        explanation: impl Fn(&BuiltMesh) -> Result<T, ExplainError>,
+    ) -> Result<(Vec<T>, Vec<Refused>), Failure> {
+        explain(explained, |structure| {
+            explanation(&structure.build_after(&self.polygons, &self.edits)?)
+        })
     }
 }
 
@@ -125,32 +137,25 @@ fn queries(
 ) -> Result<ExitCode, Failure> {
     let relation = self::relation(relation)?;
     let element: ElementName = element.parse().map_err(Failure::usage)?;
-    let Begun {
-        json,
-        mut text,
-        name,
-        polygons,
-        edits,
-    } = begin(path, arguments)?.after_edits();
-    let (traces, refused) = explain(&arguments.explained, |structure| {
-        let mesh = structure.build_after(&polygons, &edits)?;
-        mesh.trace(relation, element)
-    })?;
+    let mut begun = begin(path, arguments)?;
+    let name = begun.name_after_edits();
+    let trace = |mesh: &BuiltMesh| mesh.trace(relation, element);
+    let (traces, refused) = begun.explain(&arguments.explained, trace)?;
     if arguments.interactive {
         return step(&name, &traces).map(|()| ExitCode::SUCCESS);
     }
     let blocks: Vec<String> = traces.iter().map(|trace| block(&name, trace)).collect();
-    text.print_line(&side_by_side(&blocks));
+    begun.text.print_line(&side_by_side(&blocks));
     if traces.len() > 1 {
-        text.print_line(&format!("\n{}", costs(&traces)));
+        begun.text.print_line(&format!("\n{}", costs(&traces)));
     }
-    print_refused(&refused, &mut text);
+    print_refused(&refused, &mut begun.text);
     let document = Document {
         mesh: &name,
         traces: &traces,
         refused: &refused,
     };
-    text.finish_with_json(json, &document)
+    begun.text.finish_with_json(begun.json, &document)
 }
 
 /// Returns the trace of one structure.

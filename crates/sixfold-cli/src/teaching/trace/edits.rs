@@ -5,14 +5,14 @@ use std::process::ExitCode;
 
 use serde::Serialize;
 use sixfold::Edit;
-use sixfold_explain::{EditTrace, Elements, ReadRows, RowChange};
+use sixfold_explain::{EditTrace, Elements, ReadRows, Refused, RowChange};
 use sixfold_study::numbers::{counted, grouped};
 
 use super::{Begun, begin, rows};
 use crate::arguments;
 use crate::column_table::{Column, column_table};
 use crate::failure::Failure;
-use crate::teaching::{Refused, explain, print_refused};
+use crate::teaching::{explain, print_refused};
 use crate::text::hanging_indent;
 
 #[derive(Serialize)]

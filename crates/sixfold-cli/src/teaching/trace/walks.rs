@@ -4,12 +4,12 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use serde::Serialize;
-use sixfold_explain::{Comparison, Query, Walk};
+use sixfold_explain::{BuiltMesh, Comparison, Query, Refused, Walk};
 
-use super::{Begun, algorithm, begin, cost, steps};
+use super::{algorithm, begin, cost, steps};
 use crate::arguments;
 use crate::failure::Failure;
-use crate::teaching::{Refused, explain, print_refused};
+use crate::teaching::print_refused;
 use crate::text::hanging_indent;
 
 #[derive(Serialize)]
@@ -25,26 +25,19 @@ pub(super) fn run(
     arguments: &arguments::Trace,
 ) -> Result<ExitCode, Failure> {
     let expected = arguments.expect.as_deref().map(expected).transpose()?;
-    let Begun {
-        json,
-        mut text,
-        name,
-        polygons,
-        edits,
-    } = begin(path, arguments)?.after_edits();
-    let (walks, refused) = explain(&arguments.explained, |structure| {
-        let mesh = structure.build_after(&polygons, &edits)?;
-        mesh.walk(walk, expected)
-    })?;
+    let mut begun = begin(path, arguments)?;
+    let name = begun.name_after_edits();
+    let walk = |mesh: &BuiltMesh| mesh.walk(walk, expected);
+    let (walks, refused) = begun.explain(&arguments.explained, walk)?;
     let blocks: Vec<String> = walks.iter().map(|walk| block(&name, walk)).collect();
-    text.print_line(&blocks.join("\n\n\n"));
-    print_refused(&refused, &mut text);
+    begun.text.print_line(&blocks.join("\n\n\n"));
+    print_refused(&refused, &mut begun.text);
     let document = Document {
         mesh: &name,
         walks: &walks,
         refused: &refused,
     };
-    text.finish_with_json(json, &document)?;
+    begun.text.finish_with_json(begun.json, &document)?;
     let is_right =
         |walk: &Walk| walk.stopped.is_none() && walk.expected.as_ref().is_none_or(is_equal);
     Ok(match walks.iter().all(is_right) {
