@@ -1,5 +1,6 @@
 //! A structure that was built from a mesh, whatever its type.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use serde::Serialize;
@@ -11,7 +12,7 @@ use crate::edit_command::EditCommand;
 use crate::element::ElementName;
 use crate::error::ExplainError;
 use crate::named_mesh::NamedMesh;
-use crate::records::{Records, records};
+use crate::records::{Records, RowsOf, records, row_name};
 use crate::trace::{Query, Trace, trace};
 use crate::walk::{Walk, walk};
 
@@ -52,7 +53,20 @@ impl Geometry {
 impl BuiltMesh {
     /// Returns the records in the rows `rows`, for each kind of element. O(records in `rows`).
     pub fn records(&self, rows: Range<usize>) -> Vec<Records> {
-        self.shown().records(&rows)
+        self.shown()
+            .records(&|_, total| (rows.start..rows.end.min(total)).collect())
+    }
+
+    /// Returns the records of the rows with these names, such as `h5`, for each kind of element in the
+    /// order of the rows. A name that is not that of a row of the structure is ignored.
+    /// O(k log k) for k names.
+    pub fn named_records<'n>(&self, names: impl IntoIterator<Item = &'n str>) -> Vec<Records> {
+        let names: BTreeSet<(&str, u32)> = names.into_iter().filter_map(row_name).collect();
+        self.shown().records(&|letter, total| {
+            let of_letter = names.range((letter, 0)..=(letter, u32::MAX));
+            let rows = of_letter.map(|&(_, row)| row as usize);
+            rows.take_while(|&row| row < total).collect()
+        })
     }
 
     /// Runs one query, and returns its reads and results.
@@ -105,6 +119,21 @@ impl BuiltMesh {
         self.edited()?.apply(edit)
     }
 
+    /// Runs one edit, like [`apply`](Self::apply). A refused edit is an error.
+    pub(crate) fn apply_accepted(&mut self, edit: &EditCommand) -> Result<(), ExplainError> {
+        let reason = match self.apply(edit) {
+            Ok(None) => return Ok(()),
+            Ok(Some(refusal)) => refusal,
+            Err(error @ ExplainError::NoSuchElement { .. }) => error.to_string(),
+            Err(error) => return Err(error),
+        };
+        Err(ExplainError::RefusedEdit {
+            structure: self.shown().structure(),
+            edit: edit.to_string(),
+            reason,
+        })
+    }
+
     /// Returns the vertices and faces by the numbers of their names. O(corners).
     pub fn geometry(&self) -> Geometry {
         self.shown().geometry()
@@ -140,7 +169,7 @@ impl BuiltMesh {
 /// What is shown of a mesh of any type.
 trait Shown {
     fn structure(&self) -> &'static str;
-    fn records(&self, rows: &Range<usize>) -> Vec<Records>;
+    fn records(&self, rows: RowsOf<'_>) -> Vec<Records>;
     fn trace(&self, relation: Relation, element: ElementName) -> Result<Trace, ExplainError>;
     fn walk(&self, walk: &str, expected: Option<Query>) -> Result<Walk, ExplainError>;
     fn geometry(&self) -> Geometry;
@@ -157,7 +186,7 @@ impl<P: Described> Shown for NamedMesh<P> {
         self.structure
     }
 
-    fn records(&self, rows: &Range<usize>) -> Vec<Records> {
+    fn records(&self, rows: RowsOf<'_>) -> Vec<Records> {
         let records = records(&self.mesh, rows);
         self.probe.take();
         records

@@ -95,6 +95,12 @@ impl FromStr for EditCommand {
 }
 
 impl EditCommand {
+    /// Returns whether both edits always do the same. Unlike with `==`, the position 0 is not that of -0.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        let bits = |edit: &Self| edit.at.map(|at| at.to_array().map(f32::to_bits));
+        self == other && bits(self) == bits(other)
+    }
+
     /// Checks that the edit has the elements and the position that its kind takes.
     pub(crate) fn check(&self) -> Result<(), ExplainError> {
         let (letters, takes_position) = parameters(self.edit);

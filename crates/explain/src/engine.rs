@@ -1,22 +1,25 @@
-//! One function from request to response, both JSON: for pages, and for programs in other languages.
+//! From request to response, both JSON: for pages, and for programs in other languages.
 
+mod kept;
 mod refinement;
 mod response;
 mod source;
 
-use std::fmt::Display;
+use std::fmt::{self, Display};
 
 use serde::Deserialize;
 use serde_json::json;
 use sixfold::io::parse_creases;
 use sixfold::repair::{Fault, diagnose, repair_for};
 use sixfold::subdivision::Scheme;
-use sixfold::{Creases, Facts, PolygonMesh, Relation, StructureInfo, UnknownName, structure_infos};
+use sixfold::{Facts, PolygonMesh, Relation, StructureInfo, UnknownName, structure_infos};
 
-use crate::built_mesh::{BuiltMesh, Geometry};
+use crate::built_mesh::Geometry;
 use crate::edit_command::EditCommand;
 use crate::error::{ExplainError, Refused};
+use crate::records::row_name;
 use crate::structure::Structure;
+use kept::{EditedMesh, Kept};
 use refinement::{levels, stencil};
 use response::{Answer, Content, Found, Response, Verdict};
 use source::{MeshSource, Sourced};
@@ -26,6 +29,16 @@ const MOST_PLACES: usize = 1_000;
 
 /// Maximum number of rows of a table, if the request does not name the rows.
 const MOST_ROWS: u32 = 200;
+
+/// Maximum number of rows that a request names.
+const MOST_NAMES: usize = 2_000;
+
+/// The error of a request that changes the kept mesh.
+const TOO_LATE: &str = "`triangulate` and `creases` come with a mesh, and the last mesh keeps its own: leave them out, \
+                        or send the mesh again";
+
+/// The error of a request about the last mesh, if the engine has none.
+const NO_LAST: &str = "there is no last mesh: send the mesh with the first request";
 
 /// What a request about a mesh says if it has edits.
 const AFTER_EDITS: &str = "this is asked of a mesh without edits: ask for the geometry after the edits, and \
@@ -41,7 +54,7 @@ struct Request {
     mesh: MeshSource,
     /// Cuts every polygon into a fan of triangles first.
     #[serde(default)]
-    triangulate: bool,
+    triangulate: Option<bool>,
     /// Sharp edges and corners, as a crease file.
     #[serde(default)]
     creases: Option<String>,
@@ -61,6 +74,9 @@ enum Ask {
         /// The first and the last row.
         #[serde(default)]
         rows: Option<[u32; 2]>,
+        /// The names of the rows.
+        #[serde(default)]
+        names: Option<Vec<String>>,
     },
     Trace(Query),
     Edit(String),
@@ -91,10 +107,11 @@ struct Query {
     element: String,
 }
 
-/// Answers a request. Both are JSON.
+/// Answers a request, without a mesh from an earlier one. Both are JSON.
 ///
-/// A request names the mesh, the structures, and what is asked. The response depends on nothing else:
-/// nothing is stored between requests, and to undo an edit, a request leaves it out.
+/// A request names the mesh, the structures, and what is asked. The response depends on nothing else: to
+/// undo an edit, a request leaves it out. An [`Engine`] gives the same responses, and saves the time to
+/// read and build a mesh again.
 ///
 /// ```
 /// use sixfold_explain::respond;
@@ -114,9 +131,9 @@ struct Query {
 ///
 /// | field | value |
 /// |---|---|
-/// | `mesh` | `{"shape": {"name": "torus", "parameters": {"m": 8}}}`, a shape of `sixfold generate`; `{"file": {"name": "a.obj", "text": "…"}}`, or `"base64"` for a binary file; `{"polygons": {"positions": [[0, 0, 0], …], "faces": [[0, 1, 2], …]}}`, in which `null` is a number without an element |
-/// | `triangulate` | `true` cuts every polygon into a fan of triangles |
-/// | `creases` | sharp edges and corners, as the text of a crease file ([`parse_creases`]); they are added to those of the mesh file |
+/// | `mesh` | `{"shape": {"name": "torus", "parameters": {"m": 8}}}`, a shape of `sixfold generate`; `{"file": {"name": "a.obj", "text": "…"}}`, or `"base64"` for a binary file; `{"polygons": {"positions": [[0, 0, 0], …], "faces": [[0, 1, 2], …]}}`, in which `null` is a number without an element; `"last"`, the mesh that the [`Engine`] keeps |
+/// | `triangulate` | `true` cuts every polygon into a fan of triangles; not with the mesh `"last"` |
+/// | `creases` | sharp edges and corners, as the text of a crease file ([`parse_creases`]); they are added to those of the mesh file; not with the mesh `"last"` |
 /// | `edits` | edits before what is asked, as text ([`EditCommand`](crate::EditCommand)) |
 /// | `structures` | names; all six if missing |
 /// | `ask` | one of the following |
@@ -124,6 +141,7 @@ struct Query {
 /// | `ask` | each answer, or the response |
 /// |---|---|
 /// | `{"tables": {"rows": [0, 20]}}` | for each structure the [`Records`](crate::Records) from the first to the last of these rows; without `rows`, the first 200 |
+/// | `{"tables": {"names": ["h5", "v3"]}}` | for each structure those [`Records`](crate::Records) that have one of these names, in the order of the rows; at most 2,000 names, of which a structure ignores those that it does not have |
 /// | `{"trace": {"relation": "vertex_faces", "element": "v3"}}` | a [`Trace`](crate::Trace) |
 /// | `{"edit": "flip_edge v0-v1"}` | an [`EditTrace`](crate::EditTrace) |
 /// | `{"walk": {"walk": "…", "expect": {"relation": …, "element": …}}}` | a [`Walk`](crate::Walk) |
@@ -146,46 +164,121 @@ struct Query {
 /// the edits as polygons. A mesh has at most 400,000 corners, also after a subdivision step; there are at
 /// most 16 levels, and weights in meshes of at most 20,000 vertices.
 pub fn respond(request: &str) -> String {
-    let read = serde_json::from_str(request);
-    let read = read.map_err(|error| Error::from(format!("the request: {error}")));
-    let answered = read.and_then(|request: Request| request.answer());
-    let response = answered.unwrap_or_else(|error| Response {
-        content: Content::Error {
-            error: error.to_string(),
-        },
-        notes: Vec::new(),
-    });
-    let written = serde_json::to_string(&response);
-    written.unwrap_or_else(|error| json!({ "error": error.to_string() }).to_string())
+    Engine::new().respond(request)
+}
+
+/// Answers requests about a mesh, one after the other, and keeps this mesh and its structures.
+///
+/// The last mesh is that of the latest request that brought one and whose response is not an `error`, after
+/// its `triangulate` and `creases`. A later request can name it: `"mesh": "last"`. The response is the same
+/// as that of [`respond`] for the whole mesh, also its `notes`, but the mesh is not read again.
+///
+/// The engine also keeps each structure that was built from the last mesh, with the edits that it has run:
+/// those of `edits`, and the edit of the question `edit` if the structure accepted it. If the `edits` of a
+/// request begin with these, only the others are run. Otherwise the structure is built again. So a page that
+/// adds an edit at the end of its list pays only for this edit, and undoing an edit costs a new structure
+/// and the edits before it.
+///
+/// ```
+/// use sixfold_explain::Engine;
+///
+/// let mut engine = Engine::new();
+/// let missing = engine.respond(r#"{"mesh": "last", "ask": "facts"}"#);
+/// assert!(missing.starts_with(r#"{"error":"there is no last mesh"#), "{missing}");
+///
+/// engine.respond(r#"{"mesh": {"shape": {"name": "octahedron"}}, "ask": {"edit": "poke_face f0"}}"#);
+/// // The structures have run this edit already.
+/// let trace = engine.respond(
+///     r#"{"mesh": "last", "edits": ["poke_face f0"],
+///         "ask": {"trace": {"relation": "vertex_edges", "element": "v6"}}}"#,
+/// );
+/// assert!(trace.starts_with(r#"{"answers":[{"#), "{trace}");
+/// ```
+///
+/// # Complexity
+///
+/// For a mesh of n corners whose structures have run `edits`, a question costs its reads (the soup and the
+/// indexed face set read all rows for many questions). Edits, geometry and facts are O(n).
+#[derive(Default)]
+pub struct Engine {
+    kept: Option<Kept>,
+}
+
+impl Engine {
+    /// Returns an engine without a mesh.
+    pub const fn new() -> Self {
+        Self { kept: None }
+    }
+
+    /// Answers a request; [`respond`] describes requests and responses.
+    pub fn respond(&mut self, request: &str) -> String {
+        let read = serde_json::from_str(request);
+        let read = read.map_err(|error| Error::from(format!("the request: {error}")));
+        let answered = read.and_then(|request: Request| self.answer(&request));
+        let response = answered.unwrap_or_else(|error| Response {
+            content: Content::Error {
+                error: error.to_string(),
+            },
+            notes: Vec::new(),
+        });
+        let written = serde_json::to_string(&response);
+        written.unwrap_or_else(|error| json!({ "error": error.to_string() }).to_string())
+    }
+
+    fn answer(&mut self, request: &Request) -> Result<Response, Error> {
+        let Some(sourced) = request.mesh()? else {
+            return request.answer(self.kept.as_mut().ok_or(NO_LAST)?);
+        };
+        // The new mesh needs the memory of the old structures.
+        if let Some(old) = &mut self.kept {
+            old.free_structures();
+        }
+        let mut kept = Kept::new(sourced);
+        let response = request.answer(&mut kept)?;
+        self.kept = Some(kept);
+        Ok(response)
+    }
+}
+
+impl fmt::Debug for Engine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Engine").finish_non_exhaustive()
+    }
 }
 
 impl Request {
-    fn answer(&self) -> Result<Response, Error> {
-        let Sourced {
-            mut polygons,
-            mut creases,
-            notes,
-        } = self.mesh.read()?;
-        if self.triangulate {
-            polygons = polygons.fan_triangulated()?;
+    /// Reads the mesh of the request; `None` if it is the one that the engine keeps.
+    fn mesh(&self) -> Result<Option<Sourced>, Error> {
+        let Some(mut sourced) = self.mesh.read()? else {
+            if self.triangulate.is_some() || self.creases.is_some() {
+                return Err(TOO_LATE.into());
+            }
+            return Ok(None);
+        };
+        if self.triangulate == Some(true) {
+            sourced.polygons = sourced.polygons.fan_triangulated()?;
         }
         if let Some(text) = &self.creases {
-            let listed = parse_creases("creases", text.as_bytes(), &polygons)?;
-            creases = creases.updated_with(&listed);
+            let listed = parse_creases("creases", text.as_bytes(), &sourced.polygons)?;
+            sourced.creases = sourced.creases.updated_with(&listed);
         }
+        Ok(Some(sourced))
+    }
+
+    /// Answers the request about a mesh.
+    fn answer(&self, kept: &mut Kept) -> Result<Response, Error> {
         let edits = self.edits.iter().enumerate().map(|(i, edit)| {
             edit.parse()
                 .map_err(|error: ExplainError| format!("edits, number {}: {error}", i + 1))
         });
-        let subject = Subject {
+        let mut subject = Subject {
             structures: self.chosen(Structure::all(), Structure::name)?,
             infos: self.chosen(structure_infos(), |info| info.name)?,
             edits: edits.collect::<Result<_, _>>()?,
-            polygons,
-            creases,
+            kept,
         };
         let content = match &self.ask {
-            Ask::Tables { rows } => subject.tables(rows.unwrap_or([0, MOST_ROWS - 1]))?,
+            Ask::Tables { rows, names } => subject.tables(*rows, names.as_deref())?,
             Ask::Trace(query) => subject.trace(query.parsed()?),
             Ask::Edit(edit) => subject.edit(&edit.parse()?),
             Ask::Walk { walk, expect } => {
@@ -194,7 +287,7 @@ impl Request {
             Ask::Geometry => subject.geometry(),
             _ if !self.edits.is_empty() => return Err(AFTER_EDITS.into()),
             Ask::Facts => Content::Facts {
-                facts: Facts::from_polygons(&subject.polygons),
+                facts: Facts::from_polygons(subject.polygons()),
             },
             Ask::Verdicts => subject.verdicts(),
             Ask::Repair => subject.repair(),
@@ -205,6 +298,7 @@ impl Request {
                 point,
             } => subject.stencil(scheme.parse()?, *level, *point)?,
         };
+        let notes = subject.kept.sourced.notes.clone();
         Ok(Response { content, notes })
     }
 
@@ -235,85 +329,120 @@ impl Query {
 }
 
 /// What a request asks about.
-struct Subject {
-    polygons: PolygonMesh,
-    creases: Creases,
+struct Subject<'k> {
+    kept: &'k mut Kept,
     edits: Vec<EditCommand>,
     structures: Vec<Structure>,
     infos: Vec<StructureInfo>,
 }
 
-impl Subject {
-    /// Collects the answers of the structures, and the reasons of those that have none.
-    fn each<E: Display>(&self, answer: impl Fn(&Structure) -> Result<Answer, E>) -> Content {
-        let (mut answers, mut refused) = (Vec::new(), Vec::new());
-        for structure in &self.structures {
-            match answer(structure) {
-                Ok(answer) => answers.push(answer),
-                Err(error) => refused.push(Refused {
-                    structure: structure.name(),
-                    reason: error.to_string(),
-                }),
-            }
+/// Collects the answers of the structures, and the reasons of those that have none.
+fn each<E: Display>(
+    structures: &[Structure],
+    mut answer: impl FnMut(&Structure) -> Result<Answer, E>,
+) -> Content {
+    let (mut answers, mut refused) = (Vec::new(), Vec::new());
+    for structure in structures {
+        match answer(structure) {
+            Ok(answer) => answers.push(answer),
+            Err(error) => refused.push(Refused {
+                structure: structure.name(),
+                reason: error.to_string(),
+            }),
         }
-        Content::Structures { answers, refused }
+    }
+    Content::Structures { answers, refused }
+}
+
+impl Subject<'_> {
+    fn polygons(&self) -> &PolygonMesh {
+        &self.kept.sourced.polygons
     }
 
-    /// Builds a structure, and runs the edits.
-    fn build(&self, structure: &Structure) -> Result<BuiltMesh, ExplainError> {
-        structure.build_after(&self.polygons, &self.edits)
+    /// Collects the answers of the structures after the edits.
+    fn each_built(
+        &mut self,
+        answer: impl Fn(&Structure, &mut EditedMesh) -> Result<Answer, ExplainError>,
+    ) -> Content {
+        each(&self.structures, |structure| {
+            self.kept
+                .with_built(structure, &self.edits, |mesh| answer(structure, mesh))
+        })
     }
 
-    fn tables(&self, [first, last]: [u32; 2]) -> Result<Content, Error> {
+    fn tables(
+        &mut self,
+        rows: Option<[u32; 2]>,
+        names: Option<&[String]>,
+    ) -> Result<Content, Error> {
+        let [first, last] = match (rows, names) {
+            (Some(_), Some(_)) => return Err("tables have either rows or names".into()),
+            (None, Some(names)) => return self.named_rows(names),
+            (rows, None) => rows.unwrap_or([0, MOST_ROWS - 1]),
+        };
         if first > last {
             return Err(
                 format!("row {first} comes after row {last}: ask for [{last}, {first}]").into(),
             );
         }
-        let rows = first as usize..last as usize + 1;
-        Ok(self.each(|structure| {
-            Ok::<_, ExplainError>(Answer::Tables {
+        let rows = first as usize..(last as usize).saturating_add(1);
+        Ok(self.each_built(|structure, edited| {
+            Ok(Answer::Tables {
                 backend: structure.name(),
-                records: self.build(structure)?.records(rows.clone()),
+                records: edited.mesh().records(rows.clone()),
             })
         }))
     }
 
-    fn trace(&self, (relation, element): crate::Query) -> Content {
-        self.each(|structure| {
-            let trace = self.build(structure)?.trace(relation, element);
+    fn named_rows(&mut self, names: &[String]) -> Result<Content, Error> {
+        if names.len() > MOST_NAMES {
+            let count = names.len();
+            return Err(format!("a request has at most {MOST_NAMES} names, not {count}").into());
+        }
+        if let Some(name) = names.iter().find(|name| row_name(name).is_none()) {
+            return Err(format!("`{name}` names no row: write h5").into());
+        }
+        Ok(self.each_built(|structure, edited| {
+            let names = names.iter().map(String::as_str);
+            Ok(Answer::Tables {
+                backend: structure.name(),
+                records: edited.mesh().named_records(names),
+            })
+        }))
+    }
+
+    fn trace(&mut self, (relation, element): crate::Query) -> Content {
+        self.each_built(|_, edited| {
+            let trace = edited.mesh().trace(relation, element);
             trace.map(Answer::Trace)
         })
     }
 
-    fn walk(&self, walk: &str, expected: Option<crate::Query>) -> Content {
-        self.each(|structure| {
-            let walk = self.build(structure)?.walk(walk, expected);
+    fn walk(&mut self, walk: &str, expected: Option<crate::Query>) -> Content {
+        self.each_built(|_, edited| {
+            let walk = edited.mesh().walk(walk, expected);
             walk.map(Answer::Walk)
         })
     }
 
-    fn edit(&self, edit: &EditCommand) -> Content {
-        self.each(|structure| {
-            let mut mesh = self.build(structure)?;
-            mesh.edit(edit).map(Answer::Edit)
-        })
+    fn edit(&mut self, edit: &EditCommand) -> Content {
+        self.each_built(|_, edited| edited.edit(edit).map(Answer::Edit))
     }
 
-    fn geometry(&self) -> Content {
-        self.each(|structure| {
-            Ok::<_, ExplainError>(Answer::Geometry {
+    fn geometry(&mut self) -> Content {
+        self.each_built(|structure, edited| {
+            Ok(Answer::Geometry {
                 backend: structure.name(),
-                geometry: self.build(structure)?.geometry(),
+                geometry: edited.mesh().geometry(),
             })
         })
     }
 
     /// Returns which structures hold the mesh, and all faults of the mesh.
     fn verdicts(&self) -> Content {
-        let diagnosis = diagnose(&self.polygons, MOST_PLACES);
+        let diagnosis = diagnose(self.polygons(), MOST_PLACES);
         let verdict = |info: &StructureInfo| {
-            let refusal = info.capabilities.check(&self.polygons).err();
+            let refusal = info.capabilities.check(self.polygons()).err();
             let faults = diagnosis.refusals(&info.capabilities);
             Verdict {
                 backend: info.name,
@@ -337,11 +466,11 @@ impl Subject {
 
     /// Returns the repairs that each structure needs, and the mesh that it then holds.
     fn repair(&self) -> Content {
-        self.each(|structure| {
+        each(&self.structures, |structure| {
             let backend = structure.name();
             let info = self.infos.iter().find(|info| info.name == backend);
             let info = info.expect("the same structures");
-            repair_for(&self.polygons, &info.capabilities).map(|repaired| Answer::Repair {
+            repair_for(self.polygons(), &info.capabilities).map(|repaired| Answer::Repair {
                 backend,
                 geometry: Geometry::from_polygons(&repaired.polygons),
                 steps: repaired.steps,
@@ -350,7 +479,7 @@ impl Subject {
     }
 
     fn subdivide(&self, scheme: Scheme, count: u32) -> Result<Content, Error> {
-        let levels = levels(scheme, &self.polygons, &self.creases, count)?;
+        let levels = levels(scheme, self.polygons(), &self.kept.sourced.creases, count)?;
         let levels = levels
             .iter()
             .map(|step| Geometry::from_polygons(&step.polygons));
@@ -360,7 +489,13 @@ impl Subject {
     }
 
     fn stencil(&self, scheme: Scheme, level: u32, point: u32) -> Result<Content, Error> {
-        let parents = stencil(scheme, &self.polygons, &self.creases, level, point)?;
+        let parents = stencil(
+            scheme,
+            self.polygons(),
+            &self.kept.sourced.creases,
+            level,
+            point,
+        )?;
         Ok(Content::Stencil { parents })
     }
 }

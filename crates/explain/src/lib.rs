@@ -50,7 +50,7 @@ pub use built_mesh::{BuiltMesh, Geometry};
 pub use edit::{EditTrace, Elements, ReadRows, RowChange};
 pub use edit_command::EditCommand;
 pub use element::ElementName;
-pub use engine::respond;
+pub use engine::{Engine, respond};
 pub use error::{ExplainError, Refused};
 pub use reason::Reason;
 pub use records::{Record, RecordColumn, Records};

@@ -1,7 +1,5 @@
 //! The records of a structure: one for each element, from all tables about this kind of element.
 
-use std::ops::Range;
-
 use serde::Serialize;
 use sixfold_core::{Column, Described, RecordTable};
 
@@ -41,8 +39,18 @@ pub struct Record {
     pub fields: Vec<String>,
 }
 
-/// Returns the records of `mesh` whose rows are in `rows`; O(records in `rows`).
-pub(crate) fn records(mesh: &impl Described, rows: &Range<usize>) -> Vec<Records> {
+/// Returns the rows of the records to show, for the letter and the number of the rows of one kind.
+pub(crate) type RowsOf<'r> = &'r dyn Fn(&str, usize) -> Vec<usize>;
+
+/// Returns the letter and the number in the name of a row, such as `h5`; `None` for another text.
+pub(crate) fn row_name(name: &str) -> Option<(&str, u32)> {
+    let (letter, digits) = name.split_at(name.find(|c: char| c.is_ascii_digit())?);
+    let row = digits.parse().ok().filter(|_| !letter.is_empty())?;
+    Some((letter, row))
+}
+
+/// Returns the records of `mesh` in `rows`. O(records in `rows`).
+pub(crate) fn records(mesh: &impl Described, rows: RowsOf<'_>) -> Vec<Records> {
     let tables = mesh.tables();
     let mut letters: Vec<&str> = Vec::new();
     for table in &tables {
@@ -58,7 +66,7 @@ pub(crate) fn records(mesh: &impl Described, rows: &Range<usize>) -> Vec<Records
 }
 
 /// Returns the records of tables that describe the same elements.
-fn records_of(mesh: &impl Described, tables: &[&RecordTable], rows: &Range<usize>) -> Records {
+fn records_of(mesh: &impl Described, tables: &[&RecordTable], rows: RowsOf<'_>) -> Records {
     let column = |table: &RecordTable, column: &Column| RecordColumn {
         name: column.name,
         about: column.about,
@@ -85,6 +93,9 @@ fn records_of(mesh: &impl Described, tables: &[&RecordTable], rows: &Range<usize
         element: tables[0].element,
         columns: columns.collect(),
         total,
-        rows: (rows.start..rows.end.min(total)).map(record).collect(),
+        rows: rows(tables[0].letter, total)
+            .into_iter()
+            .map(record)
+            .collect(),
     }
 }

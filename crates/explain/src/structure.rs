@@ -83,17 +83,7 @@ impl Structure {
     ) -> Result<BuiltMesh, ExplainError> {
         let mut mesh = self.build(polygons)?;
         for edit in edits {
-            let reason = match mesh.apply(edit) {
-                Ok(None) => continue,
-                Ok(Some(refusal)) => refusal,
-                Err(error @ ExplainError::NoSuchElement { .. }) => error.to_string(),
-                Err(error) => return Err(error),
-            };
-            return Err(ExplainError::RefusedEdit {
-                structure: self.name,
-                edit: edit.to_string(),
-                reason,
-            });
+            mesh.apply_accepted(edit)?;
         }
         Ok(mesh)
     }

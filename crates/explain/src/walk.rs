@@ -10,6 +10,7 @@ use crate::element::ElementName;
 use crate::error::ExplainError;
 use crate::named_mesh::NamedMesh;
 use crate::reason::Reason;
+use crate::records::row_name;
 use crate::trace::{Cost, Query, Read, Step, cost, stored_fields, trace};
 use crate::walk_parser::{Kind, Program, Statement, Value, loop_variable, parse, text};
 
@@ -225,11 +226,9 @@ impl<P: Described> Walker<'_, P> {
 
     /// Returns the row with this name.
     fn row(&self, name: &str) -> Result<RowName, End> {
-        let digits = name.trim_start_matches(|c: char| !c.is_ascii_digit());
-        let letter = &name[..name.len() - digits.len()];
+        let (letter, row) = row_name(name).unzip();
         let mut tables = self.tables.iter();
-        let table = tables.find(|table| table.letter == letter);
-        let row = digits.parse::<u32>().ok();
+        let table = tables.find(|table| Some(table.letter) == letter);
         if let (Some(table), Some(row)) = (table, row)
             && self.named.mesh.record(table.name, row as usize).is_some()
         {

@@ -1,18 +1,24 @@
 //! Blocks of memory that the host of the module reads and writes.
 
-use crate::respond;
+use crate::Engine;
 
 /// Bytes of the length of a text.
 const HEADER: usize = 4;
 
-/// Blocks by their addresses. An address that is not that of a block is ignored, so no call of the host
+/// Blocks by their addresses, and the engine that answers the requests in them. An address that is not that of a block is ignored, so no call of the host
 /// reads or frees memory that is in use.
 #[derive(Debug)]
-pub(crate) struct Blocks(Vec<Box<[u8]>>);
+pub(crate) struct Blocks {
+    blocks: Vec<Box<[u8]>>,
+    engine: Engine,
+}
 
 impl Blocks {
     pub(crate) const fn new() -> Self {
-        Self(Vec::new())
+        Self {
+            blocks: Vec::new(),
+            engine: Engine::new(),
+        }
     }
 
     /// Makes a block for `length` bytes. Returns its address, or 0 if there is not so much memory.
@@ -30,22 +36,22 @@ impl Blocks {
     fn push(&mut self, block: Vec<u8>) -> usize {
         let block = block.into_boxed_slice();
         let address = block.as_ptr().addr();
-        self.0.push(block);
+        self.blocks.push(block);
         address
     }
 
     /// Removes a block.
     pub(crate) fn release(&mut self, address: usize) -> Option<Box<[u8]>> {
-        let mut blocks = self.0.iter();
+        let mut blocks = self.blocks.iter();
         let place = blocks.position(|block| block.as_ptr().addr() == address)?;
-        Some(self.0.swap_remove(place))
+        Some(self.blocks.swap_remove(place))
     }
 
     /// Answers the request in a block. Returns the address of the block of the response.
     pub(crate) fn call(&mut self, address: usize) -> usize {
         let block = self.release(address).unwrap_or_default();
         let request = block.get(HEADER..).unwrap_or_default();
-        let response = respond(&String::from_utf8_lossy(request));
+        let response = self.engine.respond(&String::from_utf8_lossy(request));
         let mut block = Vec::with_capacity(HEADER + response.len());
         block.extend((response.len() as u32).to_le_bytes());
         block.extend(response.as_bytes());
@@ -56,6 +62,7 @@ impl Blocks {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::respond;
 
     /// Returns the text of a block, as a host reads it.
     fn text(blocks: &mut Blocks, address: usize) -> String {
@@ -69,7 +76,7 @@ mod tests {
     /// Makes a block with a request, as a host writes it.
     fn request(blocks: &mut Blocks, text: &[u8]) -> usize {
         let address = blocks.reserve(text.len() as u32);
-        let block = blocks.0.last_mut().expect("the block");
+        let block = blocks.blocks.last_mut().expect("the block");
         block[HEADER..].copy_from_slice(text);
         address
     }
@@ -81,12 +88,12 @@ mod tests {
         let asked_at = request(&mut blocks, asked);
         let other_at = request(&mut blocks, b"\xff");
         let answered_at = blocks.call(asked_at);
-        assert_eq!(blocks.0.len(), 2);
+        assert_eq!(blocks.blocks.len(), 2);
         let expected = respond(str::from_utf8(asked).expect("a text"));
         assert_eq!(text(&mut blocks, answered_at), expected);
         let answered_at = blocks.call(other_at);
         assert!(text(&mut blocks, answered_at).starts_with(r#"{"error":"#));
-        assert_eq!(blocks.0.len(), 0);
+        assert_eq!(blocks.blocks.len(), 0);
     }
 
     #[test]

@@ -5,27 +5,26 @@
     reason = "an exported name must not be that of another function; no other code exports names"
 )]
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::cell::RefCell;
 
 use crate::blocks::Blocks;
 
-static BLOCKS: Mutex<Blocks> = Mutex::new(Blocks::new());
-
-fn blocks() -> MutexGuard<'static, Blocks> {
-    BLOCKS.lock().unwrap_or_else(PoisonError::into_inner)
+// A module has one thread.
+thread_local! {
+    static BLOCKS: RefCell<Blocks> = const { RefCell::new(Blocks::new()) };
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn reserve(length: u32) -> usize {
-    blocks().reserve(length)
+    BLOCKS.with_borrow_mut(|blocks| blocks.reserve(length))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn call(address: usize) -> usize {
-    blocks().call(address)
+    BLOCKS.with_borrow_mut(|blocks| blocks.call(address))
 }
 
 #[unsafe(no_mangle)]
 extern "C" fn release(address: usize) {
-    blocks().release(address);
+    BLOCKS.with_borrow_mut(|blocks| drop(blocks.release(address)));
 }

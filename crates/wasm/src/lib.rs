@@ -9,7 +9,8 @@
 //! | `call(address) -> address` | answers the request in a block, releases this block, and returns the block of the response |
 //! | `release(address)` | releases the block of a response |
 //!
-//! [`respond`] describes requests and responses. In JavaScript:
+//! [`respond`] describes requests and responses. The module has one [`Engine`], so a request can name the
+//! mesh of an earlier one as `"last"`. In JavaScript:
 //!
 //! ```js
 //! const { instance } = await WebAssembly.instantiate(bytes, {});
@@ -33,4 +34,4 @@ mod blocks;
 #[cfg(target_family = "wasm")]
 mod exports;
 
-pub use sixfold_explain::respond;
+pub use sixfold_explain::{Engine, respond};

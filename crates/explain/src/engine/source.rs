@@ -21,6 +21,8 @@ const SHOWN: usize = 5;
 #[derive(Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(super) enum MeshSource {
+    /// The mesh that the engine keeps.
+    Last,
     Shape {
         name: String,
         #[serde(default)]
@@ -49,8 +51,10 @@ pub(super) struct Sourced {
 }
 
 impl MeshSource {
-    pub(super) fn read(&self) -> Result<Sourced, Error> {
+    /// Reads the mesh; `None` if it is the one that the engine keeps.
+    pub(super) fn read(&self) -> Result<Option<Sourced>, Error> {
         let sourced = match self {
+            Self::Last => return Ok(None),
             Self::Shape { name, parameters } => Sourced::plain(shape(name, parameters)?),
             Self::Polygons { positions, faces } => from_polygons(positions, faces)?,
             Self::File { name, text, base64 } => {
@@ -69,7 +73,7 @@ impl MeshSource {
         };
         check_size(sourced.polygons.corner_count())?;
         check_positions(&sourced.polygons, "the mesh")?;
-        Ok(sourced)
+        Ok(Some(sourced))
     }
 }
 

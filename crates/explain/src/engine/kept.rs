@@ -1,0 +1,102 @@
+//! The mesh that an engine keeps, and the structures that were built from it.
+
+use std::collections::BTreeMap;
+
+use super::source::Sourced;
+use crate::built_mesh::BuiltMesh;
+use crate::edit::EditTrace;
+use crate::edit_command::EditCommand;
+use crate::error::ExplainError;
+use crate::structure::Structure;
+
+/// A mesh, and the structures that were built from it so far.
+pub(super) struct Kept {
+    pub(super) sourced: Sourced,
+    /// By the names of the structures. A structure that cannot hold the mesh has its error.
+    built: BTreeMap<&'static str, Result<EditedMesh, ExplainError>>,
+}
+
+impl Kept {
+    pub(super) fn new(sourced: Sourced) -> Self {
+        Self {
+            sourced,
+            built: BTreeMap::new(),
+        }
+    }
+
+    /// Frees the memory of the structures. They are built again when they are needed.
+    pub(super) fn free_structures(&mut self) {
+        self.built.clear();
+    }
+
+    /// Calls `answer` with a structure after `edits`, and keeps the structure.
+    ///
+    /// O(edits) and the time of the edits that the kept structure has not run yet. If it has run others,
+    /// or there is none, also the time to build the structure.
+    pub(super) fn with_built<T>(
+        &mut self,
+        structure: &Structure,
+        edits: &[EditCommand],
+        answer: impl FnOnce(&mut EditedMesh) -> Result<T, ExplainError>,
+    ) -> Result<T, ExplainError> {
+        // The structure is taken out, so that one that panics is not kept.
+        let built = match self.built.remove(structure.name()) {
+            Some(Ok(edited)) if !edited.has_run_only(edits) => None,
+            built => built,
+        };
+        let mut built = built.unwrap_or_else(|| {
+            let built = structure.build(&self.sourced.polygons);
+            built.map(EditedMesh::new)
+        });
+        let answered = match &mut built {
+            Ok(edited) => edited.run_others(edits).and_then(|()| answer(edited)),
+            Err(refused) => Err(refused.clone()),
+        };
+        self.built.insert(structure.name(), built);
+        answered
+    }
+}
+
+/// A structure, with the edits that it has run.
+pub(super) struct EditedMesh {
+    mesh: BuiltMesh,
+    /// The accepted edits: a refused one changes nothing.
+    edits: Vec<EditCommand>,
+}
+
+impl EditedMesh {
+    fn new(mesh: BuiltMesh) -> Self {
+        Self {
+            mesh,
+            edits: Vec::new(),
+        }
+    }
+
+    pub(super) fn mesh(&self) -> &BuiltMesh {
+        &self.mesh
+    }
+
+    /// Returns whether `edits` begin with the edits that were run.
+    fn has_run_only(&self, edits: &[EditCommand]) -> bool {
+        let mut pairs = edits.iter().zip(&self.edits);
+        edits.len() >= self.edits.len() && pairs.all(|(a, b)| a.is_same(b))
+    }
+
+    /// Runs those of `edits` that were not run yet, up to the first one that is refused.
+    fn run_others(&mut self, edits: &[EditCommand]) -> Result<(), ExplainError> {
+        for edit in &edits[self.edits.len()..] {
+            self.mesh.apply_accepted(edit)?;
+            self.edits.push(edit.clone());
+        }
+        Ok(())
+    }
+
+    /// Runs one more edit, and returns what it does.
+    pub(super) fn edit(&mut self, edit: &EditCommand) -> Result<EditTrace, ExplainError> {
+        let trace = self.mesh.edit(edit)?;
+        if trace.refusal.is_none() {
+            self.edits.push(edit.clone());
+        }
+        Ok(trace)
+    }
+}
