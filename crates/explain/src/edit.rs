@@ -1,7 +1,6 @@
 //! What an edit reads and writes: the rows before and after.
 
-use std::collections::HashSet;
-
+use rustc_hash::FxHashSet;
 use serde::Serialize;
 use sixfold::{Edit, EditRecord, MeshEdit, Point, Refusal};
 use sixfold_core::{Access, AccessKind, Described, Field, RecordTable};
@@ -9,6 +8,7 @@ use sixfold_core::{Access, AccessKind, Described, Field, RecordTable};
 use crate::edit_command::EditCommand;
 use crate::error::ExplainError;
 use crate::named_mesh::NamedMesh;
+use crate::trace::stored_fields;
 
 /// One edit on one structure: the rows that it reads, writes, makes and deletes.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -272,7 +272,7 @@ fn changes<P: Described>(
         let of_kind = accesses.iter().filter(move |access| access.kind == kind);
         of_kind
             .map(|access| (access.table, access.row))
-            .collect::<HashSet<_>>()
+            .collect::<FxHashSet<_>>()
     };
     let (read, written) = (touched(AccessKind::Read), touched(AccessKind::Write));
     // An edit can add tables, for example if the faces no longer have the same degree.
@@ -290,8 +290,8 @@ fn changes<P: Described>(
         for row in 0..table.rows {
             let place = (table.name, row);
             let (is_read, is_written) = (read.contains(&place), written.contains(&place));
-            let [before, after] = [before, after].map(|mesh| stored(mesh, &table, row));
-            if !is_written && are_equal(before.as_ref(), after.as_ref()) {
+            let [before, after] = [before, after].map(|mesh| mesh.record(table.name, row));
+            if !is_written && are_equal(&table, before.as_deref(), after.as_deref()) {
                 match only_read.last_mut() {
                     Some(last) if is_read && next == Some(row) => last.rows += 1,
                     _ if is_read => only_read.push(ReadRows {
@@ -304,7 +304,10 @@ fn changes<P: Described>(
                 next = Some(row + 1);
                 continue;
             }
-            let text = |fields: Vec<Field>| fields.iter().map(ToString::to_string).collect();
+            let text = |record: Vec<Field>| {
+                let fields = stored_fields(&table, &record).into_iter();
+                fields.map(|(_, field)| field).collect()
+            };
             let columns = table.columns.iter().filter(|column| !column.is_derived);
             rows.push(RowChange {
                 table: table.name,
@@ -320,16 +323,9 @@ fn changes<P: Described>(
     (rows, only_read)
 }
 
-/// Returns the stored fields of a row; `None` if there is no element in the row.
-fn stored(mesh: &impl Described, table: &RecordTable, row: usize) -> Option<Vec<Field>> {
-    let fields = mesh.record(table.name, row)?;
-    let fields = table.columns.iter().zip(fields);
-    let stored = fields.filter(|(column, _)| !column.is_derived);
-    Some(stored.map(|(_, field)| field).collect())
-}
-
-/// Returns whether two rows have the same fields. A coordinate that is not a number equals itself.
-fn are_equal(before: Option<&Vec<Field>>, after: Option<&Vec<Field>>) -> bool {
+/// Returns whether two records of a table have the same stored fields. A coordinate that is not a number
+/// equals itself.
+fn are_equal(table: &RecordTable, before: Option<&[Field]>, after: Option<&[Field]>) -> bool {
     let are_equal = |pair: (&Field, &Field)| match pair {
         (Field::Point(a), Field::Point(b)) => {
             a.to_array().map(f32::to_bits) == b.to_array().map(f32::to_bits)
@@ -337,7 +333,10 @@ fn are_equal(before: Option<&Vec<Field>>, after: Option<&Vec<Field>>) -> bool {
         (a, b) => a == b,
     };
     match (before, after) {
-        (Some(before), Some(after)) => before.iter().zip(after).all(are_equal),
+        (Some(before), Some(after)) => {
+            let mut columns = table.columns.iter().zip(before.iter().zip(after));
+            columns.all(|(column, pair)| column.is_derived || are_equal(pair))
+        }
         (before, after) => before.is_none() && after.is_none(),
     }
 }

@@ -1,9 +1,11 @@
 //! A structure that was built from a mesh, with the names of its elements and a probe.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
+use rustc_hash::{FxHashMap, FxHashSet};
 use sixfold::{Changes, PolygonMesh, Representation};
 use sixfold_core::{Described, Element, FaceId, Handle, Measured, Traced, VertexId, row};
+use smallvec::SmallVec;
 
 use crate::element::ElementName;
 use crate::error::ExplainError;
@@ -36,7 +38,7 @@ where
     let vertices = (0..row(polygons.vertex_count())).map(VertexId::new);
     let vertices = vertices.map(|v| M::vertex_handle(polygons, v));
     // A soup has no vertex without a face.
-    let held: HashSet<M::Vertex> = mesh.vertices().collect();
+    let held: FxHashSet<M::Vertex> = mesh.vertices().collect();
     let vertices = Names::new(vertices.map(|v| held.contains(&v).then_some(v)));
     let faces = (0..row(polygons.face_count())).map(FaceId::new);
     let faces = Names::new(faces.map(|f| Some(M::face_handle(polygons, f))));
@@ -120,14 +122,14 @@ pub(crate) struct Names<H> {
     /// `None` if the element was deleted, or if the structure does not have it.
     handles: Vec<Option<H>>,
     /// The numbers of a handle. Vertices of a soup at one position have one handle.
-    numbers: HashMap<H, Vec<u32>>,
+    numbers: FxHashMap<H, SmallVec<[u32; 1]>>,
 }
 
 impl<H: Handle> Names<H> {
     fn new(handles: impl Iterator<Item = Option<H>>) -> Self {
         let mut names = Self {
             handles: Vec::new(),
-            numbers: HashMap::new(),
+            numbers: FxHashMap::default(),
         };
         handles.for_each(|handle| names.push(handle));
         names
@@ -157,7 +159,7 @@ impl<H: Handle> Names<H> {
 
     /// Gives the numbers of `old` the handle `new`; `None` if the element was deleted. Returns the
     /// numbers.
-    fn replace(&mut self, old: H, new: Option<H>) -> Vec<u32> {
+    fn replace(&mut self, old: H, new: Option<H>) -> SmallVec<[u32; 1]> {
         let numbers = self.numbers.remove(&old).unwrap_or_default();
         for &number in &numbers {
             self.handles[number as usize] = new;

@@ -7,8 +7,10 @@
 
 use std::collections::{HashMap, HashSet};
 
+use rustc_hash::FxHashMap;
 use serde::Serialize;
-use sixfold_core::{Access, Described, Field, Line, RecordTable, RowName};
+use sixfold_core::{Access, Column, Described, Field, Line, RecordTable, RowName};
+use smallvec::SmallVec;
 
 /// Number of rows in order that are a scan, not the corners of one face.
 const SCANNED_ROWS: usize = 16;
@@ -59,7 +61,8 @@ pub(crate) struct Inference<'m, M> {
     mesh: &'m M,
     tables: Vec<RecordTable>,
     lines: &'static [Line],
-    known: HashMap<RowName, Vec<Way>>,
+    /// A scan has one way to each of its rows.
+    known: FxHashMap<RowName, SmallVec<[Way; 1]>>,
     /// The rows of the element of the query.
     asked: HashSet<RowName>,
     /// The number of reads.
@@ -79,7 +82,7 @@ impl<'m, M: Described> Inference<'m, M> {
             mesh,
             tables: mesh.tables(),
             lines,
-            known: HashMap::new(),
+            known: FxHashMap::default(),
             asked: asked.iter().copied().collect(),
             time: 0,
             line: None,
@@ -155,9 +158,10 @@ impl<'m, M: Described> Inference<'m, M> {
         whole: Option<RowName>,
     ) {
         self.add(name, way, of);
-        let same = self.tables.clone();
-        for table in same.iter().filter(|table| table.letter == name.letter) {
-            if !table.columns.iter().any(|column| column.is_derived) {
+        for place in 0..self.tables.len() {
+            let table = self.tables[place];
+            let is_derived = |column: &Column| column.is_derived;
+            if table.letter != name.letter || !table.columns.iter().any(is_derived) {
                 continue;
             }
             let fields = self
@@ -192,7 +196,8 @@ impl<'m, M: Described> Inference<'m, M> {
 
     /// Returns the ways to a row, the latest first.
     fn ways(&self, table: RecordTable, name: RowName) -> Vec<Way> {
-        let mut ways = self.known.get(&name).cloned().unwrap_or_default();
+        let known = self.known.get(&name);
+        let mut ways = known.map(|known| known.to_vec()).unwrap_or_default();
         // The row is a part of a known element, such as a corner of f3.
         for same in self
             .tables

@@ -1,7 +1,5 @@
 //! The reads of one query, in their order, each with the reason for which its row is read.
 
-use std::collections::BTreeSet;
-
 use serde::Serialize;
 use sixfold::Relation;
 use sixfold_core::{Access, Column, Described, Element, Field, Line, RecordTable};
@@ -120,21 +118,25 @@ pub(crate) fn trace<P: Described>(
 
 /// Returns what reads cost.
 pub(crate) fn cost(reads: &[Access]) -> Cost {
-    let rows: BTreeSet<(&str, usize, usize)> = (reads.iter())
-        .map(|access| (access.table, access.row, access.bytes))
-        .collect();
-    let cache_lines: BTreeSet<(&str, usize)> = (rows.iter())
-        .flat_map(|&(table, row, bytes)| {
-            let first = row * bytes / LINE_BYTES;
-            let last = (row * bytes + bytes.max(1) - 1) / LINE_BYTES;
-            (first..=last).map(move |line| (table, line))
-        })
-        .collect();
+    let rows = reads.iter().map(|read| (read.table, read.row, read.bytes));
+    let rows = distinct(rows.collect());
+    let cache_lines = rows.iter().flat_map(|&(table, row, bytes)| {
+        let first = row * bytes / LINE_BYTES;
+        let last = (row * bytes + bytes.max(1) - 1) / LINE_BYTES;
+        (first..=last).map(move |line| (table, line))
+    });
     Cost {
         reads: reads.len(),
-        cache_lines: cache_lines.len(),
+        cache_lines: distinct(cache_lines.collect()).len(),
         bytes: rows.iter().map(|&(_, _, bytes)| bytes).sum(),
     }
+}
+
+/// Returns the different values in order. Fast for the reads of a scan, which are in order already.
+fn distinct<T: Ord>(mut values: Vec<T>) -> Vec<T> {
+    values.sort();
+    values.dedup();
+    values
 }
 
 /// Checks that the element is of the kind that the relation starts from.
