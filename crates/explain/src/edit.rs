@@ -7,7 +7,7 @@ use sixfold_core::{Access, AccessKind, Described, Field, RecordTable};
 
 use crate::edit_command::EditCommand;
 use crate::error::ExplainError;
-use crate::named_mesh::NamedMesh;
+use crate::named_mesh::{NamedMesh, RecordSource};
 use crate::trace::stored_fields;
 
 /// One edit on one structure: the rows that it reads, writes, makes and deletes.
@@ -263,9 +263,9 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
 }
 
 /// Returns the rows that differ before and after an edit or that it writes, and those that it only reads.
-fn changes<P: Described>(
-    before: &P,
-    after: &P,
+fn changes(
+    before: &dyn RecordSource,
+    after: &dyn RecordSource,
     accesses: &[Access],
 ) -> (Vec<RowChange>, Vec<ReadRows>) {
     let touched = |kind| {
@@ -276,8 +276,8 @@ fn changes<P: Described>(
     };
     let (read, written) = (touched(AccessKind::Read), touched(AccessKind::Write));
     // An edit can add tables, for example if the faces no longer have the same degree.
-    let mut tables = before.tables();
-    for table in after.tables() {
+    let mut tables = before.record_tables();
+    for table in after.record_tables() {
         match tables.iter_mut().find(|known| known.name == table.name) {
             Some(known) => known.rows = known.rows.max(table.rows),
             None => tables.push(table),
@@ -290,7 +290,7 @@ fn changes<P: Described>(
         for row in 0..table.rows {
             let place = (table.name, row);
             let (is_read, is_written) = (read.contains(&place), written.contains(&place));
-            let [before, after] = [before, after].map(|mesh| mesh.record(table.name, row));
+            let [before, after] = [before, after].map(|mesh| mesh.fields(table.name, row));
             if !is_written && are_equal(&table, before.as_deref(), after.as_deref()) {
                 match only_read.last_mut() {
                     Some(last) if is_read && next == Some(row) => last.rows += 1,

@@ -4,7 +4,9 @@ use std::collections::HashMap;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use sixfold::{Changes, PolygonMesh, Representation};
-use sixfold_core::{Described, Element, FaceId, Handle, Measured, Traced, VertexId, row};
+use sixfold_core::{
+    Described, Element, FaceId, Field, Handle, Measured, RecordTable, Traced, VertexId, row,
+};
 use smallvec::SmallVec;
 
 use crate::element::ElementName;
@@ -21,6 +23,25 @@ pub(crate) struct NamedMesh<P: Described> {
     pub(crate) row_bytes: HashMap<String, usize>,
     pub(crate) vertices: Names<P::Vertex>,
     pub(crate) faces: Names<P::Face>,
+}
+
+/// The tables of a mesh of any type. What needs no more is compiled once, and not for each structure.
+pub(crate) trait RecordSource {
+    /// Calls [`Described::tables`].
+    fn record_tables(&self) -> Vec<RecordTable>;
+
+    /// Calls [`Described::record`].
+    fn fields(&self, table: &str, row: usize) -> Option<Vec<Field>>;
+}
+
+impl<P: Described> RecordSource for P {
+    fn record_tables(&self) -> Vec<RecordTable> {
+        self.tables()
+    }
+
+    fn fields(&self, table: &str, row: usize) -> Option<Vec<Field>> {
+        self.record(table, row)
+    }
 }
 
 /// Builds the structure `M` from `polygons`. O(corners).

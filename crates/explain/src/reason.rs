@@ -2,15 +2,17 @@
 //!
 //! A row is read because a row that was read before names it, because the query names it, or because all
 //! rows are searched. No query says why it reads a row: the description of the tables
-//! ([`Described::record`]) has the names, and the steps of the query ([`Described::algorithm`]) decide
+//! ([`Described::record`](sixfold_core::Described::record)) has the names, and the steps of the query ([`Described::algorithm`](sixfold_core::Described::algorithm)) decide
 //! between several reasons.
 
 use std::collections::{HashMap, HashSet};
 
 use rustc_hash::FxHashMap;
 use serde::Serialize;
-use sixfold_core::{Access, Column, Described, Field, Line, RecordTable, RowName};
+use sixfold_core::{Access, Column, Field, Line, RecordTable, RowName};
 use smallvec::SmallVec;
+
+use crate::named_mesh::RecordSource;
 
 /// Number of rows in order that are a scan, not the corners of one face.
 const SCANNED_ROWS: usize = 16;
@@ -57,8 +59,8 @@ impl Way {
 }
 
 /// What a query knows after each of its reads.
-pub(crate) struct Inference<'m, M> {
-    mesh: &'m M,
+pub(crate) struct Inference<'m> {
+    mesh: &'m dyn RecordSource,
     tables: Vec<RecordTable>,
     lines: &'static [Line],
     /// A scan has one way to each of its rows.
@@ -75,12 +77,16 @@ pub(crate) struct Inference<'m, M> {
     is_scanning: bool,
 }
 
-impl<'m, M: Described> Inference<'m, M> {
+impl<'m> Inference<'m> {
     /// Returns the knowledge of a query that names the rows `asked`.
-    pub(crate) fn new(mesh: &'m M, lines: &'static [Line], asked: Vec<RowName>) -> Self {
+    pub(crate) fn new(
+        mesh: &'m dyn RecordSource,
+        lines: &'static [Line],
+        asked: Vec<RowName>,
+    ) -> Self {
         let mut inference = Self {
             mesh,
-            tables: mesh.tables(),
+            tables: mesh.record_tables(),
             lines,
             known: FxHashMap::default(),
             asked: asked.iter().copied().collect(),
@@ -137,7 +143,7 @@ impl<'m, M: Described> Inference<'m, M> {
             self.asked.insert(name);
         }
         self.learn(name, Line::SAME, None, whole);
-        let fields = self.mesh.record(table.name, row).unwrap_or_default();
+        let fields = self.mesh.fields(table.name, row).unwrap_or_default();
         for (column, field) in table.columns.iter().zip(fields) {
             if let Field::Row(to) = field
                 && !column.is_derived
@@ -166,7 +172,7 @@ impl<'m, M: Described> Inference<'m, M> {
             }
             let fields = self
                 .mesh
-                .record(table.name, name.row as usize)
+                .fields(table.name, name.row as usize)
                 .unwrap_or_default();
             for (column, field) in table.columns.iter().zip(fields) {
                 if let Field::Row(to) = field
@@ -206,7 +212,7 @@ impl<'m, M: Described> Inference<'m, M> {
         {
             let fields = self
                 .mesh
-                .record(same.name, name.row as usize)
+                .fields(same.name, name.row as usize)
                 .unwrap_or_default();
             for (column, field) in same.columns.iter().zip(fields) {
                 if let Field::Row(of) = field

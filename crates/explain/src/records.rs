@@ -1,7 +1,9 @@
 //! The records of a structure: one for each element, from all tables about this kind of element.
 
 use serde::Serialize;
-use sixfold_core::{Column, Described, RecordTable};
+use sixfold_core::{Column, RecordTable};
+
+use crate::named_mesh::RecordSource;
 
 /// The records of all elements of one kind. If a structure has several tables with a row for each of
 /// these elements, a record has the fields of all of them.
@@ -50,8 +52,8 @@ pub(crate) fn row_name(name: &str) -> Option<(&str, u32)> {
 }
 
 /// Returns the records of `mesh` in `rows`. O(records in `rows`).
-pub(crate) fn records(mesh: &impl Described, rows: RowsOf<'_>) -> Vec<Records> {
-    let tables = mesh.tables();
+pub(crate) fn records(mesh: &dyn RecordSource, rows: RowsOf<'_>) -> Vec<Records> {
+    let tables = mesh.record_tables();
     let mut letters: Vec<&str> = Vec::new();
     for table in &tables {
         if !letters.contains(&table.letter) {
@@ -66,7 +68,7 @@ pub(crate) fn records(mesh: &impl Described, rows: RowsOf<'_>) -> Vec<Records> {
 }
 
 /// Returns the records of tables that describe the same elements.
-fn records_of(mesh: &impl Described, tables: &[&RecordTable], rows: RowsOf<'_>) -> Records {
+fn records_of(mesh: &dyn RecordSource, tables: &[&RecordTable], rows: RowsOf<'_>) -> Records {
     let column = |table: &RecordTable, column: &Column| RecordColumn {
         name: column.name,
         about: column.about,
@@ -81,7 +83,7 @@ fn records_of(mesh: &impl Described, tables: &[&RecordTable], rows: RowsOf<'_>) 
     let record = |row: usize| {
         let fields: Option<Vec<_>> = tables
             .iter()
-            .map(|table| mesh.record(table.name, row))
+            .map(|table| mesh.fields(table.name, row))
             .collect();
         let fields = fields.unwrap_or_default().concat();
         Record {

@@ -6,7 +6,7 @@ use sixfold_core::{Access, Column, Described, Element, Field, Line, RecordTable}
 
 use crate::element::ElementName;
 use crate::error::ExplainError;
-use crate::named_mesh::NamedMesh;
+use crate::named_mesh::{NamedMesh, RecordSource};
 use crate::reason::{Inference, Reason};
 
 /// Bytes of a cache line.
@@ -90,13 +90,13 @@ pub(crate) fn trace<P: Described>(
     let lines = P::algorithm(relation);
     let mut recorder = Recorder {
         inference: Inference::new(&named.mesh, lines, named.mesh.rows_of(handle)),
-        named,
+        mesh: &named.mesh,
         steps: Vec::new(),
         reads: Vec::new(),
         results: Vec::new(),
     };
     named.probe.take();
-    recorder.run(relation, handle);
+    run(named, relation, handle, &mut recorder);
     let Recorder {
         steps,
         reads,
@@ -114,6 +114,60 @@ pub(crate) fn trace<P: Described>(
         cost: cost(&reads),
         results,
     })
+}
+
+/// Runs a query, one result after the other.
+fn run<P: Described>(
+    named: &NamedMesh<P>,
+    relation: Relation,
+    element: Element<P>,
+    recorder: &mut Recorder<'_>,
+) {
+    let mesh = &named.mesh;
+    // Records the reads before each result, the result, and the reads after the last one.
+    let mut record = |results: &mut dyn Iterator<Item = Element<P>>| {
+        loop {
+            let result = results.next();
+            recorder.explain(named.probe.take());
+            let result = result.map(|result| named.name(result));
+            // The descriptions and names above have read rows, too.
+            named.probe.take();
+            match result {
+                Some(result) => recorder.push_result(result),
+                None => return,
+            }
+        }
+    };
+    match (relation, element) {
+        (Relation::VertexVertices, Element::Vertex(v)) => {
+            record(&mut mesh.vertex_vertices(v).map(Element::Vertex));
+        }
+        (Relation::VertexEdges, Element::Vertex(v)) => {
+            record(&mut mesh.vertex_edges(v).map(Element::Edge));
+        }
+        (Relation::VertexFaces, Element::Vertex(v)) => {
+            record(&mut mesh.vertex_faces(v).map(Element::Face));
+        }
+        (Relation::EdgeVertices, Element::Edge(e)) => {
+            record(&mut mesh.edge_vertices(e).into_iter().map(Element::Vertex));
+        }
+        (Relation::EdgeEdges, Element::Edge(e)) => {
+            record(&mut mesh.edge_edges(e).map(Element::Edge));
+        }
+        (Relation::EdgeFaces, Element::Edge(e)) => {
+            record(&mut mesh.edge_faces(e).map(Element::Face));
+        }
+        (Relation::FaceVertices, Element::Face(f)) => {
+            record(&mut mesh.face_vertices(f).map(Element::Vertex));
+        }
+        (Relation::FaceEdges, Element::Face(f)) => {
+            record(&mut mesh.face_edges(f).map(Element::Edge));
+        }
+        (Relation::FaceFaces, Element::Face(f)) => {
+            record(&mut mesh.face_faces(f).map(Element::Face));
+        }
+        _ => unreachable!("the kind of the element was checked"),
+    }
 }
 
 /// Returns what reads cost.
@@ -157,64 +211,19 @@ fn check_kind(relation: Relation, element: ElementName) -> Result<(), ExplainErr
 }
 
 /// Records the steps of a query while it runs.
-struct Recorder<'m, P: Described> {
-    inference: Inference<'m, P>,
-    named: &'m NamedMesh<P>,
+struct Recorder<'m> {
+    inference: Inference<'m>,
+    mesh: &'m dyn RecordSource,
     steps: Vec<Step>,
     reads: Vec<Access>,
     results: Vec<String>,
 }
 
-impl<P: Described> Recorder<'_, P> {
-    /// Runs the query, one result after the other.
-    fn run(&mut self, relation: Relation, element: Element<P>) {
-        let mesh = &self.named.mesh;
-        match (relation, element) {
-            (Relation::VertexVertices, Element::Vertex(v)) => {
-                self.record(mesh.vertex_vertices(v).map(Element::Vertex));
-            }
-            (Relation::VertexEdges, Element::Vertex(v)) => {
-                self.record(mesh.vertex_edges(v).map(Element::Edge));
-            }
-            (Relation::VertexFaces, Element::Vertex(v)) => {
-                self.record(mesh.vertex_faces(v).map(Element::Face));
-            }
-            (Relation::EdgeVertices, Element::Edge(e)) => {
-                self.record(mesh.edge_vertices(e).into_iter().map(Element::Vertex));
-            }
-            (Relation::EdgeEdges, Element::Edge(e)) => {
-                self.record(mesh.edge_edges(e).map(Element::Edge));
-            }
-            (Relation::EdgeFaces, Element::Edge(e)) => {
-                self.record(mesh.edge_faces(e).map(Element::Face));
-            }
-            (Relation::FaceVertices, Element::Face(f)) => {
-                self.record(mesh.face_vertices(f).map(Element::Vertex));
-            }
-            (Relation::FaceEdges, Element::Face(f)) => {
-                self.record(mesh.face_edges(f).map(Element::Edge));
-            }
-            (Relation::FaceFaces, Element::Face(f)) => {
-                self.record(mesh.face_faces(f).map(Element::Face));
-            }
-            _ => unreachable!("the kind of the element was checked"),
-        }
-    }
-
-    /// Records the reads before each result, the result, and the reads after the last one.
-    fn record(&mut self, mut results: impl Iterator<Item = Element<P>>) {
-        loop {
-            let result = results.next();
-            let accesses = self.named.probe.take();
-            self.explain(accesses);
-            let result = result.map(|result| self.named.name(result));
-            // The descriptions and names above have read rows, too.
-            self.named.probe.take();
-            let Some(result) = result else { return };
-            let line = self.inference.yielding();
-            self.results.push(result.clone());
-            self.steps.push(Step::Yield { result, line });
-        }
+impl Recorder<'_> {
+    fn push_result(&mut self, result: String) {
+        let line = self.inference.yielding();
+        self.results.push(result.clone());
+        self.steps.push(Step::Yield { result, line });
     }
 
     fn explain(&mut self, accesses: Vec<Access>) {
@@ -239,7 +248,7 @@ impl<P: Described> Recorder<'_, P> {
             last.fields.clear();
             return;
         }
-        let record = self.named.mesh.record(table.name, row).unwrap_or_default();
+        let record = self.mesh.fields(table.name, row).unwrap_or_default();
         self.steps.push(Step::Read(Read {
             table: table.name,
             row: format!("{}{row}", table.letter),

@@ -1,14 +1,16 @@
 //! Walks that a reader writes, in the words of one structure.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use serde::Serialize;
 use sixfold::{Relation, UnknownName};
-use sixfold_core::{Access, AccessKind, Column, Described, Field, RecordTable, RowName};
+use sixfold_core::{
+    Access, AccessKind, Column, Described, Field, RecordTable, RowName, Traced, Word,
+};
 
 use crate::element::ElementName;
 use crate::error::ExplainError;
-use crate::named_mesh::NamedMesh;
+use crate::named_mesh::{NamedMesh, RecordSource};
 use crate::reason::Reason;
 use crate::records::row_name;
 use crate::trace::{Cost, Query, Read, Step, cost, stored_fields, trace};
@@ -56,7 +58,11 @@ pub(crate) fn walk<P: Described>(
 ) -> Result<Walk, ExplainError> {
     let program = parse(source)?;
     let mut walker = Walker {
-        named,
+        structure: named.structure,
+        mesh: &named.mesh,
+        probe: &named.probe,
+        row_bytes: &named.row_bytes,
+        words: P::WORDS,
         tables: named.mesh.tables(),
         variables: BTreeMap::new(),
         steps: Vec::new(),
@@ -128,8 +134,13 @@ impl From<ExplainError> for End {
 }
 
 /// A walk that runs.
-struct Walker<'m, P: Described> {
-    named: &'m NamedMesh<P>,
+struct Walker<'m> {
+    /// The name of the structure.
+    structure: &'static str,
+    mesh: &'m dyn RecordSource,
+    probe: &'m Traced,
+    row_bytes: &'m HashMap<String, usize>,
+    words: &'static [Word],
     tables: Vec<RecordTable>,
     /// The values of the variables; `None` for none.
     variables: BTreeMap<String, Option<RowName>>,
@@ -140,7 +151,7 @@ struct Walker<'m, P: Described> {
     line: usize,
 }
 
-impl<P: Described> Walker<'_, P> {
+impl Walker<'_> {
     fn block(&mut self, statements: &[Statement]) -> Result<(), End> {
         statements
             .iter()
@@ -230,9 +241,9 @@ impl<P: Described> Walker<'_, P> {
         let mut tables = self.tables.iter();
         let table = tables.find(|table| Some(table.letter) == letter);
         if let (Some(table), Some(row)) = (table, row)
-            && self.named.mesh.record(table.name, row as usize).is_some()
+            && self.mesh.fields(table.name, row as usize).is_some()
         {
-            self.named.probe.take();
+            self.probe.take();
             let letter = table.letter;
             return Ok(RowName { letter, row });
         }
@@ -240,12 +251,12 @@ impl<P: Described> Walker<'_, P> {
             (Some(table), Some(_)) => {
                 format!(
                     "{} has no {} {name} in this mesh",
-                    self.named.structure, table.element
+                    self.structure, table.element
                 )
             }
             _ => format!(
                 "{name} has no value, and {} has no row of this name",
-                self.named.structure
+                self.structure
             ),
         };
         Err(ExplainError::BadWalk { reason }.into())
@@ -257,9 +268,9 @@ impl<P: Described> Walker<'_, P> {
             return self.alias(word, row);
         };
         let column = table.columns[place];
-        self.named.probe.take();
-        let record = self.named.mesh.record(table.name, row.row as usize);
-        let searched = self.named.probe.take();
+        self.probe.take();
+        let record = self.mesh.fields(table.name, row.row as usize);
+        let searched = self.probe.take();
         let record = record.unwrap_or_default();
         let line = Some(self.line);
         if column.is_searched {
@@ -293,8 +304,8 @@ impl<P: Described> Walker<'_, P> {
     }
 
     fn stored(&self, table: RecordTable, row: usize) -> Vec<(&'static str, String)> {
-        let record = self.named.mesh.record(table.name, row).unwrap_or_default();
-        self.named.probe.take();
+        let record = self.mesh.fields(table.name, row).unwrap_or_default();
+        self.probe.take();
         stored_fields(&table, &record)
     }
 
@@ -316,7 +327,7 @@ impl<P: Described> Walker<'_, P> {
             kind: AccessKind::Read,
             table: table.name,
             row,
-            bytes: self.named.row_bytes.get(table.name).copied().unwrap_or(0),
+            bytes: self.row_bytes.get(table.name).copied().unwrap_or(0),
         });
         self.steps.push(Step::Read(Read {
             table: table.name,
@@ -351,7 +362,7 @@ impl<P: Described> Walker<'_, P> {
 
     /// Evaluates a word that stands for several fields, such as `target` for `origin(twin(x))`.
     fn alias(&mut self, word: &str, row: RowName) -> Result<Option<RowName>, End> {
-        let words = P::WORDS.iter().filter(|known| known.letter == row.letter);
+        let words = self.words.iter().filter(|known| known.letter == row.letter);
         let Some(known) = words.clone().find(|known| known.name == word) else {
             let tables = self
                 .tables
@@ -367,7 +378,7 @@ impl<P: Described> Walker<'_, P> {
             names.retain(|name| name != "positions");
             names.extend(words.map(|word| word.name.to_owned()));
             if names.is_empty() {
-                let (structure, letter) = (self.named.structure, row.letter);
+                let (structure, letter) = (self.structure, row.letter);
                 let reason = format!(
                     "{structure} stores no fields of {letter}, so there is no {word}({row})"
                 );
