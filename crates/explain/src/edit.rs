@@ -115,7 +115,7 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
         let mut record = EditRecord::new();
         let refusal = self.run_recorded(command, &mut record)?;
         let accesses = self.probe.take();
-        let (rows, only_read) = changes(&before, &self.mesh, &accesses);
+        let (rows, only_read) = self.probe.pause(|| changes(&before, &self.mesh, &accesses));
         let after = self.elements();
         self.probe.take();
         let count = |kind| accesses.iter().filter(|access| access.kind == kind).count();

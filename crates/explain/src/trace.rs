@@ -128,10 +128,12 @@ fn run<P: Described>(
     let mut record = |results: &mut dyn Iterator<Item = Element<P>>| {
         loop {
             let result = results.next();
-            recorder.explain(named.probe.take());
-            let result = result.map(|result| named.name(result));
-            // The descriptions and names above have read rows, too.
-            named.probe.take();
+            let accesses = named.probe.take();
+            // The descriptions and names read rows, too.
+            let result = named.probe.pause(|| {
+                recorder.explain(accesses);
+                result.map(|result| named.name(result))
+            });
             match result {
                 Some(result) => recorder.push_result(result),
                 None => return,

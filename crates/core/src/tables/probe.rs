@@ -1,7 +1,7 @@
 //! Observation of the reads and writes of queries and edits.
 
 use std::fmt::Debug;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// An observer of the reads and writes of a [`Table`](crate::Table).
 pub trait Probe: Clone + Debug + Send + Sync {
@@ -49,18 +49,38 @@ pub struct Access {
 /// A probe that records every access in order. All clones of the probe share one log.
 #[derive(Clone, Debug, Default)]
 pub struct Traced {
-    log: Arc<Mutex<Vec<Access>>>,
+    log: Arc<Mutex<Log>>,
+}
+
+#[derive(Debug, Default)]
+struct Log {
+    accesses: Vec<Access>,
+    is_paused: bool,
 }
 
 impl Traced {
     /// Returns all accesses since the previous call of `take`, in order, and empties the log.
     pub fn take(&self) -> Vec<Access> {
-        std::mem::take(&mut *self.log.lock().unwrap_or_else(PoisonError::into_inner))
+        std::mem::take(&mut self.log().accesses)
+    }
+
+    /// Calls `observed`, and records none of the accesses during the call.
+    pub fn pause<T>(&self, observed: impl FnOnce() -> T) -> T {
+        let was_paused = std::mem::replace(&mut self.log().is_paused, true);
+        let result = observed();
+        self.log().is_paused = was_paused;
+        result
     }
 
     fn push(&self, access: Access) {
-        let mut log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
-        log.push(access);
+        let mut log = self.log();
+        if !log.is_paused {
+            log.accesses.push(access);
+        }
+    }
+
+    fn log(&self) -> MutexGuard<'_, Log> {
+        self.log.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

@@ -277,6 +277,10 @@ mod tests {
         assert_eq!(log[..3], reads);
         assert_eq!(log[3..], [touched(AccessKind::Write, 1)]);
         assert!(probe.take().is_empty());
+        assert_eq!(*probe.pause(|| table.read(0)), 5);
+        assert!(probe.take().is_empty());
+        table.read(0);
+        assert_eq!(probe.take(), [touched(AccessKind::Read, 0)]);
     }
 
     #[test]
