@@ -1,6 +1,7 @@
 //! A structure that was built from a mesh, whatever its type.
 
 use std::collections::BTreeSet;
+use std::iter;
 use std::ops::Range;
 
 use serde::Serialize;
@@ -69,6 +70,24 @@ impl BuiltMesh {
         })
     }
 
+    /// Returns the rows of vertices and faces that have another number than their element, because an edit
+    /// moved them: the name of the row, and the name of the element. O(elements) if an edit moved a row.
+    pub fn moved_rows(&self) -> Vec<[String; 2]> {
+        self.shown().moved_rows()
+    }
+
+    /// Returns those of [`moved_rows`](Self::moved_rows) whose names are in `records`.
+    pub(crate) fn moved_rows_in(&self, records: &[Records]) -> Vec<[String; 2]> {
+        let mut moved = self.moved_rows();
+        if !moved.is_empty() {
+            let rows = records.iter().flat_map(|table| &table.rows);
+            let names = rows.flat_map(|row| iter::once(&row.name).chain(&row.fields));
+            let names: BTreeSet<&String> = names.collect();
+            moved.retain(|[row, _]| names.contains(row));
+        }
+        moved
+    }
+
     /// Runs one query, and returns its reads and results.
     ///
     /// # Errors
@@ -106,7 +125,20 @@ impl BuiltMesh {
     /// [`ExplainError::BadEdit`] if it lacks one, and [`ExplainError::NoEdits`] if the structure was not
     /// given with its edits ([`Structure::with_edits`](crate::Structure::with_edits)).
     pub fn edit(&mut self, edit: &EditCommand) -> Result<EditTrace, ExplainError> {
-        self.edited()?.edit(edit)
+        self.edited()?.edit(edit, usize::MAX)
+    }
+
+    /// Runs one edit, like [`edit`](Self::edit), and returns what it does with at most `most` entries in each list.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`edit`](Self::edit).
+    pub fn edit_briefly(
+        &mut self,
+        edit: &EditCommand,
+        most: usize,
+    ) -> Result<EditTrace, ExplainError> {
+        self.edited()?.edit(edit, most)
     }
 
     /// Runs one edit, like [`edit`](Self::edit), in the time of the edit. Returns the rule that the edit
@@ -170,6 +202,7 @@ impl BuiltMesh {
 trait Shown {
     fn structure(&self) -> &'static str;
     fn records(&self, rows: RowsOf<'_>) -> Vec<Records>;
+    fn moved_rows(&self) -> Vec<[String; 2]>;
     fn trace(&self, relation: Relation, element: ElementName) -> Result<Trace, ExplainError>;
     fn walk(&self, walk: &str, expected: Option<Query>) -> Result<Walk, ExplainError>;
     fn geometry(&self) -> Geometry;
@@ -177,7 +210,7 @@ trait Shown {
 
 /// The edits of a mesh of any editable type.
 trait Edited: Shown {
-    fn edit(&mut self, edit: &EditCommand) -> Result<EditTrace, ExplainError>;
+    fn edit(&mut self, edit: &EditCommand, most: usize) -> Result<EditTrace, ExplainError>;
     fn apply(&mut self, edit: &EditCommand) -> Result<Option<String>, ExplainError>;
 }
 
@@ -190,6 +223,12 @@ impl<P: Described> Shown for NamedMesh<P> {
         let records = records(&self.mesh, rows);
         self.probe.take();
         records
+    }
+
+    fn moved_rows(&self) -> Vec<[String; 2]> {
+        let moved = NamedMesh::moved_rows(self);
+        self.probe.take();
+        moved
     }
 
     fn trace(&self, relation: Relation, element: ElementName) -> Result<Trace, ExplainError> {
@@ -217,8 +256,8 @@ impl<P: Described> Shown for NamedMesh<P> {
 }
 
 impl<P: MeshEdit + Described + Clone> Edited for NamedMesh<P> {
-    fn edit(&mut self, edit: &EditCommand) -> Result<EditTrace, ExplainError> {
-        self.run_shown(edit)
+    fn edit(&mut self, edit: &EditCommand, most: usize) -> Result<EditTrace, ExplainError> {
+        self.run_shown(edit, most)
     }
 
     fn apply(&mut self, edit: &EditCommand) -> Result<Option<String>, ExplainError> {

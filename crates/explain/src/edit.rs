@@ -28,6 +28,8 @@ pub struct EditTrace {
     pub reads: usize,
     /// The number of writes of rows.
     pub writes: usize,
+    /// The number of rows whose fields differ before and after the edit.
+    pub changed: usize,
     /// The rows that the edit changes or writes, by table and row.
     pub rows: Vec<RowChange>,
     /// The rows that the edit only reads, by table and row.
@@ -109,13 +111,20 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
         Ok(refusal)
     }
 
-    /// Runs an edit, and returns what it does. O(size of the mesh), because all rows are compared.
-    pub(crate) fn run_shown(&mut self, command: &EditCommand) -> Result<EditTrace, ExplainError> {
+    /// Runs an edit, and returns what it does, with at most `most` entries in each list. O(size of the mesh),
+    /// because all rows are compared.
+    pub(crate) fn run_shown(
+        &mut self,
+        command: &EditCommand,
+        most: usize,
+    ) -> Result<EditTrace, ExplainError> {
         let (before, elements) = (self.mesh.clone(), self.elements());
         let mut record = EditRecord::new();
         let refusal = self.run_recorded(command, &mut record)?;
         let accesses = self.probe.take();
-        let (rows, only_read) = self.probe.pause(|| changes(&before, &self.mesh, &accesses));
+        let mut changes = Changed::new(most);
+        self.probe
+            .pause(|| changes.compare(&before, &self.mesh, &accesses));
         let after = self.elements();
         self.probe.take();
         let count = |kind| accesses.iter().filter(|access| access.kind == kind).count();
@@ -130,11 +139,12 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
             after,
             reads,
             writes,
-            rows,
-            only_read,
-            created: [vertices.created, faces.created].concat(),
-            removed: [vertices.removed, faces.removed].concat(),
-            renamed: [vertices.renamed, faces.renamed].concat(),
+            changed: changes.changed,
+            rows: changes.rows,
+            only_read: changes.only_read,
+            created: first(most, vertices.created, faces.created),
+            removed: first(most, vertices.removed, faces.removed),
+            renamed: first(most, vertices.renamed, faces.renamed),
         })
     }
 
@@ -262,65 +272,110 @@ impl<P: MeshEdit + Described + Clone> NamedMesh<P> {
     }
 }
 
-/// Returns the rows that differ before and after an edit or that it writes, and those that it only reads.
-fn changes(
-    before: &dyn RecordSource,
-    after: &dyn RecordSource,
-    accesses: &[Access],
-) -> (Vec<RowChange>, Vec<ReadRows>) {
-    let touched = |kind| {
-        let of_kind = accesses.iter().filter(move |access| access.kind == kind);
-        of_kind
-            .map(|access| (access.table, access.row))
-            .collect::<FxHashSet<_>>()
-    };
-    let (read, written) = (touched(AccessKind::Read), touched(AccessKind::Write));
-    // An edit can add tables, for example if the faces no longer have the same degree.
-    let mut tables = before.record_tables();
-    for table in after.record_tables() {
-        match tables.iter_mut().find(|known| known.name == table.name) {
-            Some(known) => known.rows = known.rows.max(table.rows),
-            None => tables.push(table),
+/// Returns the first `most` entries of two lists.
+fn first<T>(most: usize, one: Vec<T>, other: Vec<T>) -> Vec<T> {
+    one.into_iter().chain(other).take(most).collect()
+}
+
+/// The rows that an edit changes, writes or reads.
+struct Changed {
+    /// Maximum number of entries of a list.
+    most: usize,
+    changed: usize,
+    rows: Vec<RowChange>,
+    only_read: Vec<ReadRows>,
+}
+
+impl Changed {
+    fn new(most: usize) -> Self {
+        Self {
+            most,
+            changed: 0,
+            rows: Vec::new(),
+            only_read: Vec::new(),
         }
     }
-    let (mut rows, mut only_read) = (Vec::new(), Vec::<ReadRows>::new());
-    for table in tables {
-        // The row after the last one that is only read.
-        let mut next = None;
-        for row in 0..table.rows {
-            let place = (table.name, row);
-            let (is_read, is_written) = (read.contains(&place), written.contains(&place));
-            let [before, after] = [before, after].map(|mesh| mesh.fields(table.name, row));
-            if !is_written && are_equal(&table, before.as_deref(), after.as_deref()) {
-                match only_read.last_mut() {
-                    Some(last) if is_read && next == Some(row) => last.rows += 1,
-                    _ if is_read => only_read.push(ReadRows {
-                        table: table.name,
-                        row: format!("{}{row}", table.letter),
-                        rows: 1,
-                    }),
-                    _ => continue,
-                }
-                next = Some(row + 1);
-                continue;
+
+    /// Compares all rows before and after an edit.
+    fn compare(
+        &mut self,
+        before: &dyn RecordSource,
+        after: &dyn RecordSource,
+        accesses: &[Access],
+    ) {
+        let touched = |kind| {
+            let of_kind = accesses.iter().filter(move |access| access.kind == kind);
+            of_kind
+                .map(|access| (access.table, access.row))
+                .collect::<FxHashSet<_>>()
+        };
+        let (read, written) = (touched(AccessKind::Read), touched(AccessKind::Write));
+        // An edit can add tables, for example if the faces no longer have the same degree.
+        let mut tables = before.record_tables();
+        for table in after.record_tables() {
+            match tables.iter_mut().find(|known| known.name == table.name) {
+                Some(known) => known.rows = known.rows.max(table.rows),
+                None => tables.push(table),
             }
-            let text = |record: Vec<Field>| {
-                let fields = stored_fields(&table, &record).into_iter();
-                fields.map(|(_, field)| field).collect()
-            };
-            let columns = table.columns.iter().filter(|column| !column.is_derived);
-            rows.push(RowChange {
+        }
+        for table in tables {
+            // The row after the last one that is only read.
+            let mut next = None;
+            for row in 0..table.rows {
+                let place = (table.name, row);
+                let (is_read, is_written) = (read.contains(&place), written.contains(&place));
+                let [before, after] = [before, after].map(|mesh| mesh.fields(table.name, row));
+                let are_equal = are_equal(&table, before.as_deref(), after.as_deref());
+                if is_written || !are_equal {
+                    self.changed += usize::from(!are_equal);
+                    if self.rows.len() < self.most {
+                        let row = change(&table, row, [before, after], is_read, is_written);
+                        self.rows.push(row);
+                    }
+                } else if is_read {
+                    match self.only_read.last_mut() {
+                        Some(last) if next == Some(row) => last.rows += 1,
+                        _ => self.push_read(&table, row),
+                    }
+                    next = Some(row + 1);
+                }
+            }
+        }
+    }
+
+    fn push_read(&mut self, table: &RecordTable, row: usize) {
+        if self.only_read.len() < self.most {
+            self.only_read.push(ReadRows {
                 table: table.name,
                 row: format!("{}{row}", table.letter),
-                columns: columns.map(|column| column.name).collect(),
-                before: before.map(text),
-                after: after.map(text),
-                is_read,
-                is_written,
+                rows: 1,
             });
         }
     }
-    (rows, only_read)
+}
+
+fn change(
+    table: &RecordTable,
+    row: usize,
+    records: [Option<Vec<Field>>; 2],
+    is_read: bool,
+    is_written: bool,
+) -> RowChange {
+    let text = |record: Vec<Field>| {
+        let fields = stored_fields(table, &record).into_iter();
+        fields.map(|(_, field)| field).collect()
+    };
+    let columns = table.columns.iter().filter(|column| !column.is_derived);
+    let [before, after] = records.map(|record| record.map(text));
+    RowChange {
+        table: table.name,
+        row: format!("{}{row}", table.letter),
+        columns: columns.map(|column| column.name).collect(),
+        before,
+        after,
+        is_read,
+        is_written,
+    }
 }
 
 /// Returns whether two records of a table have the same stored fields. A coordinate that is not a number

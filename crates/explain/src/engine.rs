@@ -17,7 +17,7 @@ use sixfold::{Facts, PolygonMesh, Relation, StructureInfo, UnknownName, structur
 use crate::built_mesh::Geometry;
 use crate::edit_command::EditCommand;
 use crate::error::{ExplainError, Refused};
-use crate::records::row_name;
+use crate::records::{Records, row_name};
 use crate::structure::Structure;
 use kept::{EditedMesh, Kept};
 use refinement::{levels, stencil};
@@ -39,6 +39,9 @@ const TOO_LATE: &str = "`triangulate` and `creases` come with a mesh, and the la
 
 /// The error of a request about the last mesh, if the engine has none.
 const NO_LAST: &str = "there is no last mesh: send the mesh with the first request";
+
+/// Maximum number of queries of a sweep.
+const MOST_QUERIES: u32 = 10_000_000;
 
 /// What a request about a mesh says if it has edits.
 const AFTER_EDITS: &str = "this is asked of a mesh without edits: ask for the geometry after the edits, and \
@@ -86,6 +89,10 @@ enum Ask {
         expect: Option<Query>,
     },
     Geometry,
+    Sweep {
+        relation: Relation,
+        queries: u32,
+    },
     Facts,
     Verdicts,
     Repair,
@@ -140,12 +147,13 @@ struct Query {
 ///
 /// | `ask` | each answer, or the response |
 /// |---|---|
-/// | `{"tables": {"rows": [0, 20]}}` | for each structure the [`Records`](crate::Records) from the first to the last of these rows; without `rows`, the first 200 |
+/// | `{"tables": {"rows": [0, 20]}}` | for each structure the [`Records`](crate::Records) from the first to the last of these rows; without `rows`, the first 200. `moved` has the rows in them that an edit moved ([`BuiltMesh::moved_rows`]) |
 /// | `{"tables": {"names": ["h5", "v3"]}}` | for each structure those [`Records`](crate::Records) that have one of these names, in the order of the rows; at most 2,000 names, of which a structure ignores those that it does not have |
 /// | `{"trace": {"relation": "vertex_faces", "element": "v3"}}` | a [`Trace`](crate::Trace) |
-/// | `{"edit": "flip_edge v0-v1"}` | an [`EditTrace`](crate::EditTrace) |
+/// | `{"edit": "flip_edge v0-v1"}` | an [`EditTrace`](crate::EditTrace) with at most 2,000 entries in each list |
 /// | `{"walk": {"walk": "…", "expect": {"relation": …, "element": …}}}` | a [`Walk`](crate::Walk) |
 /// | `"geometry"` | for each structure the [`Geometry`] after the edits |
+/// | `{"sweep": {"relation": "vertex_faces", "queries": 1000}}` | for each structure the number of `results` of so many queries, from one element to the next and from the first again after the last; for pages that measure the time. At most 10,000,000 queries |
 /// | `"facts"` | `{"facts": …}`: [`Facts`] of the mesh |
 /// | `"verdicts"` | `{"verdicts": …, "faults": …}`: which structures hold the mesh, and all kinds of faults with the number of places and the first 1,000 |
 /// | `"repair"` | for each structure the steps, and the repaired mesh |
@@ -197,8 +205,9 @@ pub fn respond(request: &str) -> String {
 ///
 /// # Complexity
 ///
-/// For a mesh of n corners whose structures have run `edits`, a question costs its reads (the soup and the
-/// indexed face set read all rows for many questions). Edits, geometry and facts are O(n).
+/// For a mesh of n corners whose structures have run `edits`, tables, traces and walks cost the rows that they
+/// read or show; the soup and the indexed face set read all rows in many traces. The other questions are O(n)
+/// or more, also `edit`, which compares all rows.
 #[derive(Default)]
 pub struct Engine {
     kept: Option<Kept>,
@@ -286,6 +295,7 @@ impl Request {
             }
             Ask::Geometry => subject.geometry(),
             _ if !self.edits.is_empty() => return Err(AFTER_EDITS.into()),
+            Ask::Sweep { relation, queries } => subject.sweep(*relation, *queries)?,
             Ask::Facts => Content::Facts {
                 facts: Facts::from_polygons(subject.polygons()),
             },
@@ -354,6 +364,14 @@ fn each<E: Display>(
     Content::Structures { answers, refused }
 }
 
+fn tables(structure: &Structure, edited: &EditedMesh, records: Vec<Records>) -> Answer {
+    Answer::Tables {
+        backend: structure.name(),
+        moved: edited.mesh().moved_rows_in(&records),
+        records,
+    }
+}
+
 impl Subject<'_> {
     fn polygons(&self) -> &PolygonMesh {
         &self.kept.sourced.polygons
@@ -387,10 +405,11 @@ impl Subject<'_> {
         }
         let rows = first as usize..(last as usize).saturating_add(1);
         Ok(self.each_built(|structure, edited| {
-            Ok(Answer::Tables {
-                backend: structure.name(),
-                records: edited.mesh().records(rows.clone()),
-            })
+            Ok(tables(
+                structure,
+                edited,
+                edited.mesh().records(rows.clone()),
+            ))
         }))
     }
 
@@ -404,10 +423,11 @@ impl Subject<'_> {
         }
         Ok(self.each_built(|structure, edited| {
             let names = names.iter().map(String::as_str);
-            Ok(Answer::Tables {
-                backend: structure.name(),
-                records: edited.mesh().named_records(names),
-            })
+            Ok(tables(
+                structure,
+                edited,
+                edited.mesh().named_records(names),
+            ))
         }))
     }
 
@@ -476,6 +496,24 @@ impl Subject<'_> {
                 steps: repaired.steps,
             })
         })
+    }
+
+    fn sweep(&mut self, relation: Relation, queries: u32) -> Result<Content, Error> {
+        if queries > MOST_QUERIES {
+            return Err(
+                format!("a sweep has at most {MOST_QUERIES} queries, not {queries}").into(),
+            );
+        }
+        let Self {
+            structures, kept, ..
+        } = self;
+        Ok(each(structures, |structure| {
+            let results = kept.sweep(structure, relation, queries as usize)?;
+            Ok::<_, ExplainError>(Answer::Sweep {
+                backend: structure.name(),
+                results,
+            })
+        }))
     }
 
     fn subdivide(&self, scheme: Scheme, count: u32) -> Result<Content, Error> {

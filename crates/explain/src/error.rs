@@ -48,6 +48,9 @@ pub enum ExplainError {
     /// The structure was given without its editable form.
     #[error("{structure} has no edits")]
     NoEdits { structure: &'static str },
+    /// The structure is not part of Sixfold.
+    #[error("{structure} has no sweeps: it is not a structure of Sixfold")]
+    NoSweeps { structure: &'static str },
     /// A text that is not a walk, or that names a row that does not exist.
     #[error("{reason}")]
     BadWalk { reason: String },

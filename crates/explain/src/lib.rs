@@ -42,6 +42,7 @@ mod named_mesh;
 mod reason;
 mod records;
 mod structure;
+mod sweep;
 mod trace;
 mod walk;
 mod walk_parser;

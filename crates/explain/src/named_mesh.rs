@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use rustc_hash::{FxHashMap, FxHashSet};
 use sixfold::{Changes, PolygonMesh, Representation};
 use sixfold_core::{
-    Described, Element, FaceId, Field, Handle, Measured, RecordTable, Traced, VertexId, row,
+    Described, Element, FaceId, Field, Handle, Measured, RecordTable, RowName, Traced, VertexId,
+    row,
 };
 use smallvec::SmallVec;
 
@@ -119,6 +120,33 @@ impl<P: Described> NamedMesh<P> {
         handle.ok_or_else(|| self.missing(name))
     }
 
+    /// Returns the rows of vertices and faces whose elements have other numbers: the name of the row, and the
+    /// name of the element. An element with several names has the lowest.
+    pub(crate) fn moved_rows(&self) -> Vec<[String; 2]> {
+        if !self.vertices.has_moved && !self.faces.has_moved {
+            return Vec::new();
+        }
+        let mut moved = Vec::new();
+        let mut add = |letter: char, number: usize, rows: Vec<RowName>| {
+            let rows = rows
+                .into_iter()
+                .filter(|name| name.letter.starts_with(letter));
+            let rows = rows.filter(|name| name.row as usize != number);
+            moved.extend(rows.map(|name| [name.to_string(), format!("{letter}{number}")]));
+        };
+        for (number, handle) in self.vertices.handles().iter().enumerate() {
+            if let &Some(v) = handle {
+                add('v', number, self.mesh.rows_of(Element::Vertex(v)));
+            }
+        }
+        for (number, handle) in self.faces.handles().iter().enumerate() {
+            if let &Some(f) = handle {
+                add('f', number, self.mesh.rows_of(Element::Face(f)));
+            }
+        }
+        moved
+    }
+
     /// Returns the name of an element: of an edge also its row, such as `e4 = v0-v1`.
     pub(crate) fn name(&self, element: Element<P>) -> String {
         match element {
@@ -144,6 +172,8 @@ pub(crate) struct Names<H> {
     handles: Vec<Option<H>>,
     /// The numbers of a handle. Vertices of a soup at one position have one handle.
     numbers: FxHashMap<H, SmallVec<[u32; 1]>>,
+    /// True if an edit has given an element another handle.
+    has_moved: bool,
 }
 
 impl<H: Handle> Names<H> {
@@ -151,6 +181,7 @@ impl<H: Handle> Names<H> {
         let mut names = Self {
             handles: Vec::new(),
             numbers: FxHashMap::default(),
+            has_moved: false,
         };
         handles.for_each(|handle| names.push(handle));
         names
@@ -201,6 +232,7 @@ impl<H: Handle> Names<H> {
         let renamed: Vec<_> = renamed
             .map(|&[old, new]| (old, new, self.replace(old, Some(new))))
             .collect();
+        self.has_moved |= !renamed.is_empty();
         for (old, new, numbers) in renamed {
             let [old_row, new_row] = [old, new].map(|handle| format!("{handle:?}"));
             let names = numbers.iter().map(|&number| name(number));

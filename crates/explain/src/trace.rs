@@ -36,7 +36,8 @@ pub struct Trace {
     pub results: Vec<String>,
 }
 
-/// What the reads of a query or of a walk cost.
+/// What the reads of a query or of a walk cost. The marks of deleted elements do not count: the form of a structure
+/// without edits, which programs query and studies measure, has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Cost {
     /// The number of reads of rows. A row that is read twice counts twice.
@@ -71,6 +72,8 @@ pub struct Read {
     pub row: String,
     /// The number of rows, of which `row` is the first.
     pub rows: usize,
+    /// The bytes of one row.
+    pub bytes: usize,
     /// The stored fields of the row: the name of the column and the value. Empty for several rows.
     pub fields: Vec<(&'static str, String)>,
     /// Why the row is read.
@@ -232,14 +235,21 @@ impl Recorder<'_> {
         for i in 0..accesses.len() {
             if let Some(table) = self.inference.table(&accesses[i]) {
                 let (reason, line) = self.inference.read(table, &accesses[i..]);
-                self.push_read(table, accesses[i].row, reason, line);
+                self.push_read(table, &accesses[i], reason, line);
+                self.reads.push(accesses[i]);
             }
         }
-        self.reads.extend(accesses);
     }
 
     /// Adds a read. The rows of a scan become one step.
-    fn push_read(&mut self, table: RecordTable, row: usize, reason: Reason, line: Option<usize>) {
+    fn push_read(
+        &mut self,
+        table: RecordTable,
+        access: &Access,
+        reason: Reason,
+        line: Option<usize>,
+    ) {
+        let row = access.row;
         if let Some(Step::Read(last)) = self.steps.last_mut()
             && reason.way == Line::SCAN
             && last.reason.way == Line::SCAN
@@ -255,6 +265,7 @@ impl Recorder<'_> {
             table: table.name,
             row: format!("{}{row}", table.letter),
             rows: 1,
+            bytes: access.bytes,
             fields: stored_fields(&table, &record),
             reason,
             line,

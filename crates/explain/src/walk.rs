@@ -323,16 +323,18 @@ impl Walker<'_> {
         {
             return;
         }
+        let bytes = self.row_bytes.get(table.name).copied().unwrap_or(0);
         self.reads.push(Access {
             kind: AccessKind::Read,
             table: table.name,
             row,
-            bytes: self.row_bytes.get(table.name).copied().unwrap_or(0),
+            bytes,
         });
         self.steps.push(Step::Read(Read {
             table: table.name,
             row: format!("{}{row}", table.letter),
             rows: 1,
+            bytes,
             fields,
             reason: Reason {
                 way: "walk",

@@ -1,9 +1,9 @@
 //! What is shown of edits: the rows before and after, on all structures.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
-use sixfold::{Edit, HalfEdgeMesh, PolygonMesh, shapes};
-use sixfold_explain::{BuiltMesh, EditCommand, EditTrace, ExplainError, Records, Structure};
+use sixfold::{Edit, HalfEdgeMesh, PolygonMesh, Relation, shapes};
+use sixfold_explain::{BuiltMesh, EditCommand, EditTrace, ExplainError, Records, Step, Structure};
 
 /// The stored fields of all rows, by the names of the table and of the row; `None` if records do not show
 /// the row, because the element was deleted.
@@ -277,6 +277,93 @@ fn new_elements_get_the_next_numbers_and_compaction_keeps_the_names() {
             "{}",
             structure.name()
         );
+    }
+}
+
+#[test]
+fn a_brief_edit_has_the_counts_of_all_rows() {
+    let compact: EditCommand = "compact".parse().expect("an edit");
+    let removal = ["remove_vertex v0".parse().expect("an edit")];
+    for structure in Structure::all() {
+        let name = structure.name();
+        let whole = edited(&structure, &shapes::octahedron(), &removal).edit(&compact);
+        let whole = whole.expect("an edit");
+        let changed = whole.rows.iter().filter(|row| row.is_changed()).count();
+        assert_eq!(whole.changed, changed, "{name}");
+        assert!(changed > 2, "{name}");
+        let brief = edited(&structure, &shapes::octahedron(), &removal).edit_briefly(&compact, 2);
+        let brief = brief.expect("an edit");
+        assert_eq!((brief.changed, brief.rows.len()), (changed, 2), "{name}");
+        assert_eq!(brief.rows, whole.rows[..2], "{name}");
+        assert_eq!(
+            brief.only_read.len(),
+            whole.only_read.len().min(2),
+            "{name}"
+        );
+        assert_eq!(brief.renamed.len(), whole.renamed.len().min(2), "{name}");
+        assert_eq!(
+            (brief.reads, brief.after),
+            (whole.reads, whole.after),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn the_counts_of_a_query_after_a_deletion_are_those_of_its_steps() {
+    let edits = ["remove_face f0".parse().expect("an edit")];
+    let queries = [
+        (Relation::FaceVertices, "f1"),
+        (Relation::FaceFaces, "f2"),
+        (Relation::VertexFaces, "v1"),
+        (Relation::EdgeFaces, "v1-v4"),
+    ];
+    for structure in Structure::all() {
+        let mesh = edited(&structure, &shapes::octahedron(), &edits);
+        for (relation, element) in queries {
+            let trace = mesh.trace(relation, element.parse().expect("a name"));
+            let trace = trace.expect("a trace");
+            let rows = trace.steps.iter().map(|step| match step {
+                Step::Read(read) => read.rows,
+                Step::Yield { .. } => 0,
+            });
+            assert_eq!(
+                rows.sum::<usize>(),
+                trace.cost.reads,
+                "{} {relation}",
+                structure.name()
+            );
+        }
+    }
+}
+
+#[test]
+fn rows_that_an_edit_moved_have_the_names_of_their_elements() {
+    let edits = ["remove_vertex v0", "poke_face f1", "compact"];
+    let edits = edits.map(|edit| edit.parse().expect("an edit"));
+    for structure in Structure::all() {
+        let name = structure.name();
+        let before = edited(&structure, &shapes::octahedron(), &edits[..2]);
+        assert_eq!(before.moved_rows(), Vec::<[String; 2]>::new(), "{name}");
+        let mesh = edited(&structure, &shapes::octahedron(), &edits);
+        let moved: HashMap<String, String> =
+            mesh.moved_rows().into_iter().map(<[_; 2]>::into).collect();
+        let geometry = mesh.geometry();
+        let records = mesh.records(0..20);
+        for table in records.iter().filter(|table| table.element == "vertex") {
+            assert!(!moved.is_empty(), "{name}");
+            for row in &table.rows {
+                let element = moved.get(&row.name).unwrap_or(&row.name);
+                let number: usize = element[1..].parse().expect("a number");
+                let [x, y, z] = geometry.vertices[number].expect("a vertex");
+                assert_eq!(
+                    row.fields[0],
+                    format!("({x}, {y}, {z})"),
+                    "{name} {}",
+                    row.name
+                );
+            }
+        }
     }
 }
 

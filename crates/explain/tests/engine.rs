@@ -148,6 +148,22 @@ fn verdicts_name_the_faults_and_repairs_mend_them() {
 }
 
 #[test]
+fn sweeps_count_results_and_structures_agree() {
+    let torus = json!({ "shape": { "name": "torus", "parameters": { "m": 5, "n": 4 } } });
+    let sweep = |queries: u32| json!({ "mesh": torus, "ask": { "sweep": { "relation": "vertex_faces", "queries": queries } } });
+    let response = ask(&sweep(20));
+    let answers = response["answers"].as_array().expect("a list");
+    assert_eq!(answers.len(), 5, "{response}");
+    assert!(
+        answers.iter().all(|answer| answer["results"] == 80),
+        "{response}"
+    );
+    assert_eq!(response["refused"][0]["backend"], "corner-table");
+    let error = ask(&sweep(10_000_001))["error"].to_string();
+    assert!(error.contains("at most 10000000 queries"), "{error}");
+}
+
+#[test]
 fn a_binary_file_is_read_like_a_text() {
     use base64::Engine;
     let mut stl = vec![0; 80];

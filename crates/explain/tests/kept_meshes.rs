@@ -134,7 +134,13 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
             structures,
             ask,
         });
-    prop::collection::vec(step, 1..16)
+    // Most sequences begin with a mesh.
+    let first = prop_oneof![1 => Just(None), 9 => (0..meshes().len()).prop_map(Some)];
+    let steps = prop::collection::vec(step, 1..20);
+    (first, steps).prop_map(|(first, mut steps)| {
+        steps[0].mesh = first;
+        steps
+    })
 }
 
 /// Changes the edits of the request before, in which `asked` was the question.
@@ -196,7 +202,7 @@ fn check(steps: &[Step]) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(600))]
+    #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
     fn an_engine_gives_the_responses_for_the_whole_mesh(steps in steps()) {
@@ -232,6 +238,21 @@ fn edits_that_are_refused_in_the_middle_leave_the_structures_right() {
         step(Change::None, json!("geometry")),
         step(Change::None, edit("split_edge v0-v3")),
         step(Change::Accept, json!({ "tables": {} })),
+    ]);
+}
+
+#[test]
+fn an_edit_to_minus_zero_is_another_edit() {
+    let replaced = "set_position v0 0,-0,0".into();
+    check(&[
+        Step {
+            mesh: Some(0),
+            ..step(
+                Change::Add("set_position v0 0,0,0".into()),
+                json!("geometry"),
+            )
+        },
+        step(Change::Replace(0, replaced), json!("geometry")),
     ]);
 }
 

@@ -1,6 +1,6 @@
 //! The traces of all queries of all structures.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use sixfold::{HalfEdgeMesh, MeshQuery, PolygonMesh, Relation, Representation, shapes};
 use sixfold_conformance::gallery;
@@ -132,6 +132,17 @@ impl<M: Representation + Measured + Described> Expected<M> {
             .collect();
         if rows != self.reads || trace.cost.reads != rows.len() {
             return Some(format!("reads {rows:?}, expected {:?}", self.reads));
+        }
+        let sizes = reads.clone().flat_map(|read| {
+            let rows = row(read)..row(read) + read.rows;
+            rows.map(|row| ((read.table, row), read.bytes))
+        });
+        let bytes: usize = sizes.collect::<BTreeMap<_, _>>().values().sum();
+        if bytes != trace.cost.bytes {
+            return Some(format!(
+                "{bytes} bytes of rows, expected {}",
+                trace.cost.bytes
+            ));
         }
         let tables = self.mesh.tables();
         // The names that are known, and those of them whose derived fields are not yet known.

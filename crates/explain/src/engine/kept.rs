@@ -2,18 +2,26 @@
 
 use std::collections::BTreeMap;
 
+use sixfold::Relation;
+
 use super::source::Sourced;
 use crate::built_mesh::BuiltMesh;
 use crate::edit::EditTrace;
 use crate::edit_command::EditCommand;
 use crate::error::ExplainError;
 use crate::structure::Structure;
+use crate::sweep::{Swept, swept};
+
+/// Maximum number of entries in each list of an edit.
+const MOST_ENTRIES: usize = 2_000;
 
 /// A mesh, and the structures that were built from it so far.
 pub(super) struct Kept {
     pub(super) sourced: Sourced,
     /// By the names of the structures. A structure that cannot hold the mesh has its error.
     built: BTreeMap<&'static str, Result<EditedMesh, ExplainError>>,
+    /// The structures without probes, for sweeps.
+    swept: BTreeMap<&'static str, Result<Box<dyn Swept>, ExplainError>>,
 }
 
 impl Kept {
@@ -21,12 +29,34 @@ impl Kept {
         Self {
             sourced,
             built: BTreeMap::new(),
+            swept: BTreeMap::new(),
         }
     }
 
     /// Frees the memory of the structures. They are built again when they are needed.
     pub(super) fn free_structures(&mut self) {
         self.built.clear();
+        self.swept.clear();
+    }
+
+    /// Runs queries on a structure without a probe, and keeps the structure. Returns the number of results.
+    ///
+    /// The time of the queries, and for the first sweep the time to build the structure.
+    pub(super) fn sweep(
+        &mut self,
+        structure: &Structure,
+        relation: Relation,
+        queries: usize,
+    ) -> Result<usize, ExplainError> {
+        let name = structure.name();
+        let polygons = &self.sourced.polygons;
+        let mesh = self.swept.entry(name).or_insert_with(|| {
+            swept(name, polygons).unwrap_or(Err(ExplainError::NoSweeps { structure: name }))
+        });
+        match mesh {
+            Ok(mesh) => Ok(mesh.sweep(relation, queries)),
+            Err(error) => Err(error.clone()),
+        }
     }
 
     /// Calls `answer` with a structure after `edits`, and keeps the structure.
@@ -93,7 +123,7 @@ impl EditedMesh {
 
     /// Runs one more edit, and returns what it does.
     pub(super) fn edit(&mut self, edit: &EditCommand) -> Result<EditTrace, ExplainError> {
-        let trace = self.mesh.edit(edit)?;
+        let trace = self.mesh.edit_briefly(edit, MOST_ENTRIES)?;
         if trace.refusal.is_none() {
             self.edits.push(edit.clone());
         }

@@ -53,6 +53,9 @@ pub(super) enum Answer {
     Tables {
         backend: &'static str,
         records: Vec<Records>,
+        /// The rows that an edit moved, and the names of their elements.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        moved: Vec<[String; 2]>,
     },
     Trace(Trace),
     Edit(EditTrace),
@@ -61,6 +64,10 @@ pub(super) enum Answer {
         backend: &'static str,
         #[serde(flatten)]
         geometry: Geometry,
+    },
+    Sweep {
+        backend: &'static str,
+        results: usize,
     },
     Repair {
         backend: &'static str,
