@@ -51,6 +51,15 @@ pub(crate) fn column_colour(name: &str) -> &'static str {
     known.map_or(OTHERS[turn], |(_, colours)| colours).0
 }
 
+/// Returns the name of each structure with its colours on light pages and on dark pages, as `#rrggbb`.
+pub fn structure_colours() -> Vec<(&'static str, &'static str, &'static str)> {
+    let infos = structure_infos().into_iter();
+    let colours = infos.zip(STRUCTURES);
+    colours
+        .map(|(info, (light, dark))| (info.name, light, dark))
+        .collect()
+}
+
 pub(crate) fn table_colour(number: usize) -> &'static str {
     TABLES[number % TABLES.len()].0
 }

@@ -19,6 +19,7 @@ mod panels;
 
 use sixfold_study::Results;
 
+pub use colours::structure_colours;
 pub use figure::{Figure, Table, TitledTable};
 pub use panels::{Panel, panels};
 

@@ -42,7 +42,7 @@ pub(crate) use repair::{Repair, repair_options};
 pub(crate) use reshaping::{Dual, Smooth, Triangulate};
 pub(crate) use results::ResultFiles;
 pub(crate) use subdivision::{Schemes, Select, Subdivide};
-pub(crate) use teaching::{Explained, Lessons, Tables, Trace};
+pub(crate) use teaching::{Explained, Explore, Lessons, Tables, Trace};
 pub(crate) use why::Why;
 
 use crate::many::{LabSelection, Shard};
@@ -51,6 +51,7 @@ const EXAMPLES: &str = "Examples:
   sixfold                                    study the built-in mesh
   sixfold study bunny.obj                    study your own mesh
   sixfold pick --workload smoothing bunny.obj
+  sixfold explore bunny.obj                  see the structures at work, in a browser
   sixfold inspect bunny.obj                  facts about the mesh; structures that can hold it
   sixfold generate geodesic frequency=20 -o ball.obj
   sixfold subdivide --scheme loop --levels 2 bunny.obj -o smooth.obj
@@ -164,6 +165,8 @@ pub(crate) enum Command {
     Trace(Trace),
     /// Learn how the structures work: short lessons with questions
     Lessons(Lessons),
+    /// Open a page that shows the structures at work, in the browser
+    Explore(Explore),
     /// Measure how the order of vertices and faces in memory affects the times
     Orders(Orders),
     /// Measure how the times grow with the size of the mesh

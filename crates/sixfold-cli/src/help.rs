@@ -31,7 +31,10 @@ const GROUPS: [(&str, &[&str]); 6] = [
             "schemes",
         ],
     ),
-    ("See how structures work", &["tables", "trace", "lessons"]),
+    (
+        "See how structures work",
+        &["explore", "tables", "trace", "lessons"],
+    ),
     ("Saved results", &["report", "compare", "merge"]),
     (
         "Meshes",

@@ -137,6 +137,7 @@ pub fn sixfold(counters: &dyn AllocatorCounters) -> ExitCode {
         Ok(Some(Command::Why(arguments))) => why::run(&arguments),
         Ok(Some(Command::Tables(arguments))) => teaching::tables::run(&arguments),
         Ok(Some(Command::Lessons(arguments))) => teaching::lessons::run(&arguments),
+        Ok(Some(Command::Explore(arguments))) => teaching::explore::run(&arguments),
         Ok(Some(Command::Trace(arguments))) => teaching::trace::run(&arguments),
         Ok(Some(Command::Orders(arguments))) => orders::run(&arguments),
         Ok(Some(Command::Growth(arguments))) => growth::run(&arguments),

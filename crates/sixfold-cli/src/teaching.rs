@@ -1,5 +1,6 @@
 //! The commands that show how structures work.
 
+pub(crate) mod explore;
 pub(crate) mod lessons;
 pub(crate) mod tables;
 pub(crate) mod trace;

@@ -4,6 +4,7 @@ mod bad_input;
 mod changes;
 mod comparing;
 mod distance;
+mod explore;
 mod external;
 mod formats;
 mod golden;

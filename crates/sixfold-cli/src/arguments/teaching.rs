@@ -125,12 +125,46 @@ pub(crate) struct Trace {
     pub(crate) json: Option<PathBuf>,
 }
 
+const EXPLORE_EXAMPLES: &str = "Examples:
+  sixfold explore                           a small mesh
+  sixfold explore bunny.obj                 your own mesh
+  sixfold explore --lesson flip
+  sixfold explore cube.obj -o cube.html --no-open    a page to keep or to publish
+
+The page needs no server and no network. It shows six data structures side by side: it steps through
+queries, with the rows that are read and their cost; it edits, subdivides, checks and repairs the mesh;
+it runs walks that you write; it has all lessons, and a quiz. Meshes can be dropped on the page. The
+page runs Sixfold as WebAssembly, in any browser of 2023 or later.
+
+Exit codes: 0 success; 2 wrong usage or unusable input.";
+
+/// Open a page that shows the structures at work, in the browser.
+///
+/// Writes one HTML file, prints its path, and opens it in the browser. A mesh has at most 400,000 corners.
+#[derive(Debug, Args)]
+#[command(after_help = EXPLORE_EXAMPLES, verbatim_doc_comment)]
+pub(crate) struct Explore {
+    /// The mesh; without it, an octahedron
+    #[arg(value_name = "MESH")]
+    pub(crate) mesh: Option<PathBuf>,
+    /// Write the page to FILE [default: a file in the folder for temporary files]
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Do not open the browser
+    #[arg(long)]
+    pub(crate) no_open: bool,
+    /// Open this lesson
+    #[arg(long, value_name = "NAME")]
+    pub(crate) lesson: Option<String>,
+}
+
 const LESSONS_EXAMPLES: &str = "Examples:
   sixfold lessons                           the list
   sixfold lessons around-a-vertex           one lesson, with questions
   sixfold lessons flip --no-wait            all at once
   sixfold lessons half-edge                 a chapter about one structure
-  sixfold lessons --markdown guide          the whole guide, with pictures
+  sixfold lessons --export course           the whole course as a site, with the explorer
+  sixfold lessons --markdown guide          the whole guide as Markdown, with pictures
 
 Exit codes: 0 success; 2 wrong usage.";
 
@@ -148,9 +182,15 @@ pub(crate) struct Lessons {
     /// Print everything without waiting for an answer
     #[arg(long)]
     pub(crate) no_wait: bool,
+    /// Write all lessons and chapters as a site of static files, with the explorer in each lesson
+    #[arg(long, value_name = "DIR", conflicts_with = "name")]
+    pub(crate) export: Option<PathBuf>,
     /// Write all lessons and chapters as Markdown pages with the output of their commands, and pictures
     #[arg(long, value_name = "DIR", conflicts_with = "name")]
     pub(crate) markdown: Option<PathBuf>,
+    /// Write all lessons as JSON, with the output of their commands, for the explorer (- for standard output)
+    #[arg(long, value_name = "FILE", conflicts_with = "name")]
+    pub(crate) json: Option<PathBuf>,
 }
 
 /// Parses `3..7`: the rows 3 to 7.

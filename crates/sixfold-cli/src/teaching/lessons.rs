@@ -1,10 +1,13 @@
 //! `sixfold lessons`: short lessons, and the chapters of the guide. The program works out all answers and outputs.
 //!
 //! Lessons and chapters are text files of one format (`source.rs`). They are printed in the terminal
-//! (`terminal.rs`), or written as pages (`page.rs`).
+//! (`terminal.rs`), or written as pages of Markdown (`page.rs`), as a site (`site.rs`) and as data for the explorer
+//! (`data.rs`).
 
 mod command;
+mod data;
 mod page;
+mod site;
 mod source;
 mod terminal;
 
@@ -14,10 +17,11 @@ use sixfold_core::UnknownName;
 
 use crate::arguments::Lessons;
 use crate::failure::Failure;
+use crate::output::Output;
 use crate::text::{TextOutput, wrap};
 
 /// The lessons, in the order in which a course takes them.
-const LESSONS: [(&str, &str); 20] = [
+pub(crate) const LESSONS: [(&str, &str); 20] = [
     ("six-tables", include_str!("lessons/six-tables.md")),
     ("memory", include_str!("lessons/memory.md")),
     ("relations", include_str!("lessons/relations.md")),
@@ -74,6 +78,14 @@ const PARTS: [(&str, &str); 3] = [
 pub(crate) fn run(arguments: &Lessons) -> Result<ExitCode, Failure> {
     if let Some(folder) = &arguments.markdown {
         page::write_guide(folder)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    if let Some(folder) = &arguments.export {
+        site::write(folder)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    if let Some(file) = &arguments.json {
+        Output::open(file)?.write_json(&data::lessons()?)?;
         return Ok(ExitCode::SUCCESS);
     }
     let Some(name) = &arguments.name else {

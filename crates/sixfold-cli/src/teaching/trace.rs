@@ -104,7 +104,7 @@ fn begin(path: Option<&Path>, arguments: &arguments::Trace) -> Result<Begun, Fai
 }
 
 /// Parses the name of a relation, such as `vertex_faces` or VF.
-fn relation(text: &str) -> Result<Relation, Failure> {
+pub(super) fn relation(text: &str) -> Result<Relation, Failure> {
     let kind = |letter| match letter {
         'V' => Some("vertex"),
         'E' => Some("edge"),

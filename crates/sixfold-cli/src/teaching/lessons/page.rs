@@ -35,6 +35,17 @@ pub(super) fn write_guide(folder: &Path) -> Result<(), Failure> {
 
 /// Writes a page, and its pictures beside it.
 fn write_page(target: &Path, name: &str, lesson: &Lesson<'_>) -> Result<(), Failure> {
+    let page = page(target, lesson, |_, _| None)?;
+    write_file(target, &format!("{name}.md"), &page)
+}
+
+/// Returns a page, and writes its pictures to `target`. `link` returns, for the line of a command and the folder with
+/// its files, a link to a page that shows the same as the command. The output is then folded.
+pub(super) fn page(
+    target: &Path,
+    lesson: &Lesson<'_>,
+    mut link: impl FnMut(&str, &Path) -> Option<String>,
+) -> Result<String, Failure> {
     let folder = Folder::new()?;
     let mut page = format!("# {}\n", lesson.title);
     for part in &lesson.parts {
@@ -51,9 +62,10 @@ fn write_page(target: &Path, name: &str, lesson: &Lesson<'_>) -> Result<(), Fail
                     Kind::Timed => String::new(),
                     _ => folder.run(*command, WIDTH)?,
                 };
-                match command.kind {
-                    Kind::Folded => folded(*command, &printed),
-                    _ => console(command.line, &printed),
+                match (link(command.line, folder.path()), command.kind) {
+                    (Some(link), _) => format!("{link}\n\n{}", folded(*command, &printed)),
+                    (None, Kind::Folded) => folded(*command, &printed),
+                    (None, _) => console(command.line, &printed),
                 }
             }
             Part::Picture { command, caption } => {
@@ -69,7 +81,7 @@ fn write_page(target: &Path, name: &str, lesson: &Lesson<'_>) -> Result<(), Fail
             ),
         };
     }
-    write_file(target, &format!("{name}.md"), &page)
+    Ok(page)
 }
 
 fn console(command: &str, printed: &str) -> String {

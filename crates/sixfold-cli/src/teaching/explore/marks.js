@@ -1,0 +1,76 @@
+// What is marked on the mesh: the chosen element, the row that is read, results, faults, changes and weights.
+
+import { namesOf } from "./check.js";
+import { plus, scale, minus, mix } from "./mesh.js";
+import { placeOfRow, styleOf } from "./places.js";
+import { fraction } from "./subdivide.js";
+
+// Maximum number of places of a fault that are marked without being asked for.
+const MOST_FAULTS = 100;
+
+// The marks of what the explorer shows. `rowsOf(structure)` are the rows of a card by their names.
+export function marks(explorer, rowsOf, colour) {
+  const { view, model, picked, marked, lastEdit } = explorer;
+  if (view.tab === "subdivide" && view.level > 0) return stencilMarks(explorer, colour);
+  const list = [];
+  const add = (name, shade, label = name) => {
+    const place = model.place(name);
+    if (place) list.push({ place, colour: shade, label, style: styleOf(place) });
+  };
+  if (view.tab === "edit" && lastEdit) {
+    for (const name of [...lastEdit.answers.values()][0]?.created ?? []) add(name, colour("--changed"));
+  }
+  if (view.tab === "query" || view.tab === "walk") list.push(...stepMarks(explorer, rowsOf(view.focus), colour));
+  for (const name of marked.length || view.tab !== "check" ? marked : faultNames(explorer.checked)) add(name, colour("--fault"));
+  for (const name of picked) add(name, colour("--picked"));
+  if (view.tab !== "check") {
+    const place = model.place(view.element);
+    if (place) list.push({ place, colour: colour("--chosen"), label: view.element, style: place.kind === "vertex" ? "ring" : styleOf(place) });
+  }
+  return list;
+}
+
+// The elements for which structures refuse the mesh.
+function faultNames(checked) {
+  const kinds = new Set(checked?.verdicts.flatMap(({ faults }) => faults));
+  const faults = checked?.faults.filter(({ kind }) => kinds.has(kind)) ?? [];
+  return faults.flatMap(({ places }) => places.slice(0, MOST_FAULTS).flatMap(namesOf));
+}
+
+// The results so far, the row that is read, and an arrow from the row that was read before.
+function stepMarks({ view, model, timelines }, rows, colour) {
+  const timeline = timelines.get(view.focus);
+  if (!timeline) return [];
+  const list = [];
+  for (const result of timeline.resultsAt(view.time)) {
+    const place = model.place(result) ?? placeOfRow(model, rows, result);
+    if (place) list.push({ place, colour: colour("--result"), label: result.split(" = ").pop(), style: styleOf(place) });
+  }
+  const read = timeline.readAt(view.time);
+  const place = read && placeOfRow(model, rows, read.row);
+  if (!place) return list;
+  const own = colour(`--${view.focus}`) || colour("--other");
+  const before = timeline.readAt(timeline.starts[read.number]);
+  const from = before && placeOfRow(model, rows, before.row);
+  if (from && before.row !== read.row) {
+    const points = [from.at, mix(from.at, place.at, 0.9)];
+    list.push({ place: { kind: "move", points, at: place.at }, colour: own, style: "arrow" });
+  }
+  list.push({ place, colour: own, label: rows.nameOf(read.row), style: styleOf(place) });
+  return list;
+}
+
+// The chosen point of a level, and its parents with their weights: the mesh before the step is drawn as lines.
+function stencilMarks({ view, refined, stencil }, colour) {
+  if (!refined || !stencil) return [];
+  const [before, now] = [refined.models[view.level - 1], refined.models[view.level]];
+  const at = now.vertices[Number(stencil.point.slice(1))];
+  const list = [];
+  for (const { vertex, weight } of stencil.parents) {
+    const place = before.place(vertex);
+    const points = [place.at, plus(at, scale(minus(place.at, at), 0.12))];
+    list.push({ place: { kind: "move", points, at: place.at }, colour: colour("--result"), label: `${vertex} · ${fraction(weight)}`, style: "arrow" });
+  }
+  list.push({ place: { kind: "vertex", points: [at], at }, colour: colour("--chosen"), label: stencil.point, style: "ring" });
+  return list;
+}

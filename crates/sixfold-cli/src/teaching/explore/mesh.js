@@ -1,0 +1,166 @@
+// The mesh as the page draws it: positions, faces and edges by the numbers of their names.
+
+// A mesh with its edges, its bounds and the triangles that cover its faces. `geometry` is that of the engine:
+// an element that was deleted is null.
+export class Model {
+  constructor(geometry) {
+    this.vertices = geometry.vertices;
+    this.faces = geometry.faces;
+    // The edges by their names, the lower number first: each with its ends and its faces.
+    this.edges = new Map();
+    this.vertexCount = this.vertices.filter((vertex) => vertex).length;
+    this.faceCount = 0;
+    this.faces.forEach((face, f) => {
+      if (!face) return;
+      this.faceCount += 1;
+      face.forEach((from, i) => {
+        const to = face[(i + 1) % face.length];
+        const name = edgeName(from, to);
+        const edge = this.edges.get(name);
+        if (edge) edge.faces.push(f);
+        else this.edges.set(name, { name, ends: [Math.min(from, to), Math.max(from, to)], faces: [f] });
+      });
+    });
+    this.measure();
+    this.cover();
+  }
+
+  // The centre and the radius of the mesh.
+  measure() {
+    const low = [Infinity, Infinity, Infinity];
+    const high = [-Infinity, -Infinity, -Infinity];
+    for (const vertex of this.vertices) {
+      if (!vertex) continue;
+      for (let axis = 0; axis < 3; axis += 1) {
+        low[axis] = Math.min(low[axis], vertex[axis]);
+        high[axis] = Math.max(high[axis], vertex[axis]);
+      }
+    }
+    this.centre = this.vertexCount ? mix(low, high, 0.5) : [0, 0, 0];
+    this.radius = (this.vertexCount && length(minus(high, low)) / 2) || 1;
+  }
+
+  // Cuts the faces into triangles: three numbers of vertices and one of a face for each.
+  cover() {
+    const triangles = [];
+    this.faces.forEach((face, f) => {
+      if (!face) return;
+      for (const [a, b, c] of cut(face.map((v) => this.vertices[v]))) triangles.push(face[a], face[b], face[c], f);
+    });
+    this.triangles = Uint32Array.from(triangles);
+  }
+
+  // Whether the mesh has the element.
+  has(name) {
+    return this.nameOf(name) !== null;
+  }
+
+  // The name of an element as this page writes it, the lower number of an edge first. Null if there is none.
+  nameOf(name) {
+    if (!this.place(name)) return null;
+    const { kind, numbers: [a, b] } = parseName(name);
+    return kind === "edge" ? edgeName(a, b) : `${kind[0]}${a}`;
+  }
+
+  // Where an element is: { kind, points, at }: the points of its outline and its centre. Null if there is none.
+  place(name) {
+    const parsed = parseName(name);
+    if (!parsed) return null;
+    const [a, b] = parsed.numbers;
+    if (parsed.kind === "vertex") {
+      const at = this.vertices[a];
+      return at ? { kind: "vertex", points: [at], at } : null;
+    }
+    if (parsed.kind === "edge") {
+      if (!this.edges.has(edgeName(a, b))) return null;
+      const points = [this.vertices[a], this.vertices[b]];
+      return { kind: "edge", points, at: mix(...points, 0.5) };
+    }
+    const face = this.faces[a];
+    if (!face) return null;
+    const points = face.map((v) => this.vertices[v]);
+    return { kind: "face", points, at: average(points) };
+  }
+
+  // The corner of a face at a vertex, moved a little into the face.
+  corner(face, vertex) {
+    const at = this.vertices[vertex];
+    const place = this.place(`f${face}`);
+    if (!at || !place) return null;
+    const inside = mix(at, place.at, 0.25);
+    return { kind: "corner", points: [inside], at: inside };
+  }
+
+  // The side of an edge as a face runs along it from a vertex, moved a little into the face.
+  side(face, from) {
+    const corners = this.faces[face];
+    const i = corners ? corners.indexOf(from) : -1;
+    if (i < 0) return null;
+    return this.arrow(from, corners[(i + 1) % corners.length], this.place(`f${face}`).at);
+  }
+
+  // An arrow from one vertex to another, moved towards a point.
+  arrow(from, to, towards) {
+    const [a, b] = [this.vertices[from], this.vertices[to]];
+    if (!a || !b) return null;
+    const points = [mix(a, b, 0.12), mix(a, b, 0.88)].map((point) => mix(point, towards, 0.1));
+    return { kind: "side", points, at: mix(...points, 0.5) };
+  }
+}
+
+export function edgeName(a, b) {
+  return a < b ? `v${a}-v${b}` : `v${b}-v${a}`;
+}
+
+// Reads v3, v0-v1 or f2, also in a longer name such as e4 = v0-v1. Null if the text is not the name of an element.
+export function parseName(text) {
+  const name = text.split(" = ").pop().trim();
+  const edge = /^v(\d{1,9})-v(\d{1,9})$/.exec(name);
+  if (edge) return { kind: "edge", numbers: [Number(edge[1]), Number(edge[2])] };
+  const one = /^([vf])(\d{1,9})$/.exec(name);
+  return one && { kind: one[1] === "v" ? "vertex" : "face", numbers: [Number(one[2])] };
+}
+
+// Cuts a polygon into triangles that do not overlap, if it has no hole and does not cross itself: ears are cut off
+// (Meisters, 1975). O(n²), so a polygon of many corners becomes a fan.
+function cut(points) {
+  const n = points.length;
+  if (n === 3) return [[0, 1, 2]];
+  if (n > 64) return Array.from({ length: n - 2 }, (_, i) => [0, i + 1, i + 2]);
+  const normal = areaOf(points);
+  const rest = points.map((_, i) => i);
+  const triangles = [];
+  while (rest.length > 3) {
+    const isEar = (i) => {
+      const [a, b, c] = [rest.at(i - 1), rest[i], rest[(i + 1) % rest.length]];
+      const [p, q, r] = [points[a], points[b], points[c]];
+      if (dot(cross(minus(q, p), minus(r, q)), normal) <= 0) return false;
+      const isInside = (s) => [[p, q], [q, r], [r, p]].every(([from, to]) =>
+        dot(cross(minus(to, from), minus(points[s], from)), normal) >= 0);
+      return !rest.some((s) => s !== a && s !== b && s !== c && isInside(s));
+    };
+    const found = rest.findIndex((_, i) => isEar(i));
+    const ear = Math.max(found, 0);
+    triangles.push([rest.at(ear - 1), rest[ear], rest[(ear + 1) % rest.length]]);
+    rest.splice(ear, 1);
+  }
+  return [...triangles, rest];
+}
+
+// The vector of a polygon's area (Newell): normal to it.
+export function areaOf(points) {
+  let sum = [0, 0, 0];
+  points.forEach((point, i) => {
+    sum = plus(sum, cross(minus(point, points[0]), minus(points[(i + 1) % points.length], points[0])));
+  });
+  return sum;
+}
+
+export const plus = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+export const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+export const scale = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
+export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+export const length = (a) => Math.hypot(...a);
+export const mix = (a, b, t) => [0, 1, 2].map((axis) => a[axis] * (1 - t) + b[axis] * t);
+export const average = (points) => scale(points.reduce(plus, [0, 0, 0]), 1 / points.length);

@@ -1,0 +1,104 @@
+// The panel of subdivision: level by level, with the weights of a chosen point.
+
+import { button, count, el, select } from "./dom.js";
+import { EngineFailure } from "./engine.js";
+import { Model, parseName } from "./mesh.js";
+
+const MOST_LEVELS = 6;
+
+// The levels of each mesh, by scheme and number of levels.
+const refinements = new WeakMap();
+
+// Asks for the levels, and for the weights of the chosen point.
+export async function refine(engine, shown) {
+  const { subject, view: { scheme, level, point } } = shown;
+  const key = `${scheme} ${level}`;
+  shown.refined = shown.stencil = null;
+  try {
+    if (refinements.get(subject)?.key !== key) {
+      const { levels } = await engine.ask(subject, { ask: { subdivide: { scheme, levels: level } } });
+      refinements.set(subject, { key, levels, models: levels.map((one) => new Model(one)) });
+    }
+    shown.refined = refinements.get(subject);
+    const number = point === null ? null : parseName(point)?.numbers[0];
+    if (level === 0 || number === null || !shown.refined.levels[level].vertices[number]) return;
+    const { parents } = await engine.ask(subject, { ask: { stencil: { scheme, level, point: number } } });
+    shown.stencil = { point, parents };
+  } catch (error) {
+    if (error instanceof EngineFailure) throw error;
+    shown.failed = error.message;
+  }
+}
+
+export function subdividePanel(explorer) {
+  const { scheme, level, point } = explorer.view;
+  const look = (change) => explorer.run(() => explorer.look(change));
+  const models = explorer.refined?.models ?? [];
+  const shown = models[level];
+  return [
+    el("div", { class: "grow" },
+      el("p", {}, el("label", {}, "scheme ", select(explorer.schemes, scheme, (name) => look({ scheme: name, point: null }), { id: "scheme" })),
+        " ", el("label", {}, "level ", el("input", {
+          type: "range", min: 0, max: MOST_LEVELS, value: String(level), id: "level",
+          onchange: (event) => look({ level: Number(event.target.value), point: null }),
+        })), ` ${level}`,
+        button("use this level as the mesh", () => explorer.run(() =>
+          explorer.replace(explorer.refined.levels[level], `${scheme} level ${level}`, { tab: "query" })), { disabled: !shown })),
+      level > 0 && shown ? pointField(shown, point, look) : null,
+      creaseForm(explorer),
+      explorer.failed ? el("p", { class: "refusal" }, explorer.failed) : null,
+      shown ? el("table", { class: "list" },
+        el("tr", {}, ["level", "vertices", "edges", "faces"].map((text) => el("th", {}, text))),
+        models.map((model, i) => el("tr", {}, [i, model.vertexCount, model.edges.size, model.faceCount].map((value) =>
+          el("td", { class: "count" }, value.toLocaleString("en")))))) : null,
+      stencilTable(explorer.stencil, level) ?? el("p", { class: "hint" }, point === null
+        ? "Click a point of a level above 0: the points of the level before that it is made of are shown with their weights."
+        : "")),
+  ];
+}
+
+function pointField(shown, point, look) {
+  const take = (event) => {
+    const name = event.target.value.trim();
+    look({ point: shown.place(name)?.kind === "vertex" ? name : null });
+  };
+  return el("p", {}, el("label", {}, "point ", el("input", { value: point ?? "", size: 7, id: "point", placeholder: "v8", spellcheck: "false", onchange: take })));
+}
+
+function stencilTable(stencil, level) {
+  if (!stencil) return null;
+  const { point, parents } = stencil;
+  const sum = parents.reduce((total, { weight }) => total + weight, 0);
+  return el("table", { class: "list", id: "stencil" },
+    el("caption", {}, `${point} of level ${level} = ${count(parents.length, "point")} of level ${level - 1}, weights ${fraction(sum)}`),
+    parents.map(({ vertex, weight }) => el("tr", {}, el("th", { scope: "row" }, vertex), el("td", { class: "count" }, fraction(weight)))));
+}
+
+// A weight as a fraction of a power of two, if it is one, else as a number.
+export function fraction(weight) {
+  for (let below = 1; below <= 1024; below *= 2) {
+    const above = weight * below;
+    if (Math.abs(above - Math.round(above)) < 1e-5 && Math.round(above) !== 0) return below === 1 ? `${Math.round(above)}` : `${Math.round(above)}/${below}`;
+  }
+  return weight.toFixed(4);
+}
+
+// Sharp edges and corners of the control mesh.
+function creaseForm(explorer) {
+  const { state: { subject }, view: { element } } = explorer;
+  const { kind, numbers } = parseName(element);
+  const lines = (subject.creases ?? "").split("\n").filter((line) => line.trim());
+  const form = [lines.length ? count(lines.length, "sharp element") : "no sharp elements added"];
+  const mesh = { ...explorer.subject };
+  if (kind !== "face") {
+    const value = el("select", { "aria-label": "Sharpness" }, ["1", "2", "3", "inf"].map((text) => el("option", {}, text)));
+    const key = kind === "edge" ? `edge ${numbers.join(" ")}` : `corner ${numbers[0]}`;
+    const add = () => explorer.run(async () => {
+      const others = lines.filter((line) => !line.startsWith(`${key} `));
+      await explorer.withSubject({ ...mesh, creases: [...others, `${key} ${value.value}`].join("\n") });
+    });
+    form.push(` · ${element} of level 0: sharpness `, value, button("make sharp", add));
+  }
+  if (lines.length) form.push(button("none sharp", () => explorer.run(() => explorer.withSubject({ ...mesh, creases: undefined }))));
+  return el("p", { class: "buttons" }, form);
+}

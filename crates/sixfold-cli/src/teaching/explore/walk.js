@@ -1,0 +1,40 @@
+// The panel of walks: a walk that the student writes, in the words of one structure.
+
+import { button, count, el, select, withCode } from "./dom.js";
+import { elementField, relations } from "./query.js";
+
+export function walkPanel(explorer) {
+  const { walk, focus, relation, element } = explorer.view;
+  const text = el("textarea", { rows: 5, "aria-label": "Walk", spellcheck: "false", id: "walk-text" });
+  text.value = walk;
+  text.addEventListener("input", () => { explorer.view.walk = text.value; });
+  const run = () => explorer.run(() => explorer.look({ walk: text.value }));
+  const columns = (explorer.base.records.get(focus)?.records ?? []).flatMap((table) => table.columns);
+  const isOnly = ({ table }) => columns.filter((column) => column.table === table).length === 1;
+  const words = columns.flatMap((column) => (isOnly(column) ? [column.name, column.table] : [column.name]));
+  const answer = explorer.timelines.get(focus)?.answer;
+  return [
+    relations(explorer),
+    el("div", { class: "grow" },
+      el("p", {}, elementField(explorer)),
+      el("p", {}, "A walk in the words of ",
+        select(explorer.structures, focus, (name) => explorer.run(() => explorer.look({ focus: name })), { "aria-label": "Structure" }),
+        `, compared with ${relation} of ${element}: `, button("Run", run, { class: "main", id: "run-walk" })),
+      text,
+      el("p", { class: "hint" }, "Fields: ", [...new Set(words)].map((name) => name.replace(/[ -]/g, "_")).join(", "),
+        ...withCode(". Statements: `h = VALUE`, `yield VALUE`, `repeat { … }`, `if VALUE = VALUE { … } else { … }`; a value is a name, a row such as `v3`, `none`, or `next(h)`."))),
+    explorer.failed ? el("p", { class: "refusal", id: "walk-result" }, explorer.failed) : walkResult(answer),
+  ];
+}
+
+function walkResult(answer) {
+  if (!answer) return null;
+  const { stopped, expected } = answer;
+  const parts = [`${count(answer.reads, "read")}, ${count(answer.cache_lines, "cache line")}, ${count(answer.bytes, "byte")}. `];
+  if (stopped) parts.push(`The walk stopped: ${stopped}. `);
+  const isSame = expected && expected.missing.length === 0 && expected.extra.length === 0;
+  if (isSame) parts.push(`The results are those of ${expected.relation}.`);
+  if (expected?.missing.length) parts.push(`Missing: ${expected.missing.join(", ")}. `);
+  if (expected?.extra.length) parts.push(`Not in ${expected.relation}: ${expected.extra.join(", ")}. `);
+  return el("p", { id: "walk-result", class: isSame && !stopped ? "good" : "refusal" }, parts.join(""));
+}

@@ -1,0 +1,452 @@
+"""Opens the page of `sixfold explore` in headless Chromium, and does what a student does.
+
+    python3 tests/browser/check_explorer.py SIXFOLD RESPOND [FOLDER FOR SCREENSHOTS]
+
+SIXFOLD is the program, and RESPOND the example `respond` of sixfold-explain: the lit rows, the results and the counters of the
+page are compared with the responses of the native engine. The script opens the page from the disk, and waits for events, not
+for times.
+"""
+
+import base64
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+from browser import Browser
+
+STRUCTURES = ["polygon-soup", "indexed-face-set", "face-vertex", "winged-edge", "half-edge", "corner-table"]
+SIZES = {"laptop": (1440, 900), "projector": (1024, 768), "telephone": (390, 844)}
+MAX_BYTES = 3_000_000
+
+# The counters and the results of each structure.
+SHOWN = """
+const shown = {};
+for (const row of document.querySelectorAll('#race tbody tr')) {
+    const counts = [...row.querySelectorAll('td')].slice(1).map(cell => Number(cell.textContent.replaceAll(',', '')));
+    const card = document.querySelector(`.card[data-structure=${row.dataset.structure}]`);
+    const lit = [...card.querySelectorAll('tr[data-row]')].filter(line => line.querySelector('.read, .read-now'));
+    shown[row.dataset.structure] = {
+        counts,
+        results: card.querySelector('.results').textContent.replace(/^.*?: /, ''),
+        lit: lit.map(line => line.dataset.row),
+        isWhole: !card.querySelector('.gap'),
+        line: [...card.querySelectorAll('.code li')].findIndex(line => line.classList.contains('marked')),
+    };
+}
+return shown;
+"""
+
+
+class Page:
+    def __init__(self, browser, respond):
+        self.browser = browser
+        self.respond = respond
+
+    def open(self, path, hash=""):
+        """Opens the page, also if only the part after # is another one."""
+        browser = self.browser
+        browser.ask("POST", f"{browser.session}/url", {"url": "about:blank"})
+        browser.ask("POST", f"{browser.session}/url", {"url": path.resolve().as_uri() + hash})
+        browser.wait("return document.documentElement.dataset.ready === 'yes'")
+
+    def settle(self):
+        self.browser.wait("return !document.documentElement.hasAttribute('data-busy')")
+
+    def click(self, selector):
+        self.browser.run("document.querySelector(arguments[0]).click()", selector)
+        self.settle()
+
+    def type(self, selector, value):
+        self.browser.run(
+            "const field = document.querySelector(arguments[0]); field.value = arguments[1];"
+            "field.dispatchEvent(new Event('change'))", selector, value)
+        self.settle()
+
+    def edit(self, text):
+        self.click("[data-tab=edit]")
+        self.browser.run("document.getElementById('edit-text').value = arguments[0]", text)
+        self.click("#run-edit")
+
+    def text(self, selector):
+        return self.browser.run(
+            "const found = document.querySelector(arguments[0]); return found && !found.hidden ? found.textContent : ''", selector)
+
+    def native(self, **request):
+        asked = json.dumps(request)
+        ran = subprocess.run([self.respond], input=asked + "\n", capture_output=True, text=True, check=True)
+        return json.loads(ran.stdout)
+
+
+def check(condition, *what):
+    if not condition:
+        raise AssertionError(" ".join(str(part) for part in what))
+
+
+def rows_of(steps):
+    rows = set()
+    for step in steps:
+        if step["step"] == "read":
+            first = int(step["row"][1:])
+            rows |= {f"{step['row'][0]}{first + k}" for k in range(step["rows"])}
+    return rows
+
+
+def compare_queries(page, mesh, queries, edits=()):
+    """Steps each query to its end, and compares rows, results and counters with the native engine."""
+    for relation, element in queries:
+        page.click("[data-tab=query]")
+        page.type("#element", element)
+        page.click(f"[data-relation={relation}]")
+        response = page.native(mesh=mesh, edits=list(edits), ask={"trace": {"relation": relation, "element": element}})
+        page.click("#next")
+        first = page.browser.run(SHOWN)
+        page.click("#last")
+        last = page.browser.run(SHOWN)
+        check(response["answers"], relation, response)
+        for answer in response["answers"]:
+            name = answer["backend"]
+            shown = last[name]
+            check(shown["counts"] == [answer["reads"], answer["cache_lines"], answer["bytes"]], name, relation, shown, answer)
+            check(shown["results"] == (", ".join(answer["results"]) or "none"), name, relation, shown["results"])
+            lit, rows = set(shown["lit"]), rows_of(answer["steps"])
+            check(lit == rows if shown["isWhole"] else lit and lit <= rows, name, relation, shown["lit"])
+            check(set(first[name]["lit"]) <= rows_of(answer["steps"][:1]), name, relation, first[name]["lit"])
+            check(len(first[name]["lit"]) == (answer["steps"][0]["step"] == "read"), name, relation, "rows after one step")
+            check(first[name]["line"] == answer["steps"][0]["line"], name, relation, "the marked line")
+        for refused in response["refused"]:
+            # A structure that refused an edit waits in its state before.
+            if refused["backend"] in waiting(page):
+                continue
+            check(refused["reason"] in page.text(f".card[data-structure={refused['backend']}] .refusal"), refused)
+
+
+def waiting(page):
+    """The structures that refused an edit, and wait until it is undone."""
+    return page.browser.run("return [...document.querySelectorAll('.card.stopped')].map(card => card.dataset.structure)")
+
+
+def edges(page):
+    """The names of the edges of the mesh in the page, from its tables."""
+    pairs = page.browser.run("""
+        const rows = document.querySelectorAll('.card[data-structure=winged-edge] tr[data-row^=e]');
+        return [...rows].map(row => [...row.cells].slice(1, 3).map(cell => cell.lastChild.textContent.trim()));
+    """)
+    return [sorted(pair, key=lambda name: int(name[1:])) for pair in pairs]
+
+
+def check_queries(page, path):
+    page.open(path)
+    mesh = {"shape": {"name": "octahedron"}}
+    compare_queries(page, mesh, [
+        ("vertex_vertices", "v3"), ("vertex_edges", "v0"), ("vertex_faces", "v5"),
+        ("edge_vertices", "v0-v2"), ("edge_edges", "v0-v2"), ("edge_faces", "v1-v4"),
+        ("face_vertices", "f7"), ("face_edges", "f2"), ("face_faces", "f0"),
+    ])
+    page.click("#first")
+    check(page.text("#clock").startswith("step 0 of"), page.text("#clock"))
+    page.click("#next")
+    page.click("#next")
+    page.click("#back")
+    check(page.text("#clock").startswith("step 1 of"), page.text("#clock"))
+    page.browser.run("document.getElementById('speed').value = '1000'")
+    page.click("#play")
+    page.browser.wait("return document.getElementById('play').textContent.includes('Play')")
+    ended = re.fullmatch(r"step (\d+) of (\d+)", page.text("#clock"))
+    check(ended and ended[1] == ended[2], page.text("#clock"))
+
+
+def check_pointer(page, path):
+    """Clicks on the mesh: each place on the canvas chooses an element that the mesh has."""
+    page.open(path)
+    box = page.browser.run("const box = document.getElementById('overlay').getBoundingClientRect(); return [box.x, box.y, box.width, box.height]")
+    chosen = set()
+    for i in range(5):
+        for j in range(5):
+            x, y = (round(box[0] + box[2] * (0.3 + 0.1 * i)), round(box[1] + box[3] * (0.3 + 0.1 * j)))
+            click = [{"type": "pointerMove", "x": x, "y": y}, {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0}]
+            actions = [{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": click}]
+            page.browser.ask("POST", f"{page.browser.session}/actions", {"actions": actions})
+            page.settle()
+            chosen.add(page.browser.run("return document.getElementById('element').value"))
+    check(len(chosen) > 5, chosen)
+    check({name[0] for name in chosen} == {"v", "f"}, chosen)
+    check(page.text("#message") == "", page.text("#message"))
+
+
+def check_edits(page, path):
+    page.open(path)
+    tables = "return document.getElementById('cards').textContent"
+    page.click("[data-tab=edit]")
+    before = page.browser.run(tables)
+    edits = []
+    # Splits and flips of edges that exist, as a student would click them.
+    for round in range(20):
+        [a, b] = edges(page)[(7 * round) % len(edges(page))]
+        kind = "split_edge" if round % 3 == 0 else "flip_edge"
+        page.type("#element", f"{a}-{b}")
+        page.click(f'[data-edit="{kind} {a}-{b}"]')
+        if "nothing is changed" in page.text("#edit-result summary"):
+            page.edit("split_edge " + "-".join(edges(page)[0]))
+        edits.append(page.text("#edit-result summary code"))
+    changed = page.browser.run("return document.querySelectorAll('.changed').length")
+    check(changed > 0, "no row is marked after an edit")
+    compare_queries(page, {"shape": {"name": "octahedron"}}, [("vertex_vertices", "v0"), ("face_faces", "f0")], edits)
+    for _ in range(20):
+        check(page.text("#undo") and not page.browser.run("return document.getElementById('undo').disabled"), "nothing to undo")
+        page.click("#undo")
+    check(page.browser.run("return document.getElementById('undo').disabled"), "more than 20 edits")
+    page.type("#element", "v0")
+    page.click("[data-tab=edit]")
+    check(page.browser.run(tables) == before, "the tables after twenty undos")
+    for _ in range(20):
+        page.click("#redo")
+    # Compaction moves rows, and the elements keep their names.
+    for edit in ("remove_vertex v0", "compact"):
+        page.edit(edit)
+        edits.append(page.text("#edit-result summary code"))
+    compare_queries(page, {"shape": {"name": "octahedron"}}, [("vertex_edges", "v1")], edits)
+
+
+def check_refusals(page, path):
+    page.open(path)
+    # A third face at an edge: half of the structures refuse the mesh, and a repair makes one that they hold.
+    page.click("[data-tab=edit]")
+    page.type("#element", "v0-v2")
+    page.click("button.fault")
+    verdicts = page.browser.run("return Object.fromEntries([...document.querySelectorAll('#verdicts tr')].map(row => [row.dataset.structure, row.cells[1].className]))")
+    check([verdicts[name] for name in STRUCTURES] == ["good"] * 3 + ["refusal"] * 3, verdicts)
+    check("edge v0–v2 has 3 faces" in page.text("#verdicts"), page.text("#verdicts"))
+    page.click("[data-repair=half-edge]")
+    page.click("#take-repair")
+    check("refusal" not in page.browser.run("return document.getElementById('verdicts').innerHTML"), page.text("#verdicts"))
+    # Some structures accept this edit, and others refuse it and wait.
+    page.open(path)
+    page.edit("add_face v0 v1 v2")
+    refusing = waiting(page)
+    check(refusing and "polygon-soup" not in refusing, refusing)
+    page.edit("split_edge v0-v2")
+    check(set(refusing) <= set(waiting(page)), waiting(page))
+    mesh = {"shape": {"name": "octahedron"}}
+    page.click("[data-tab=query]")
+    native = page.native(mesh=mesh, edits=[], structures=refusing, ask={"trace": {"relation": "vertex_vertices", "element": "v0"}})
+    page.type("#element", "v0")
+    page.click("[data-relation=vertex_vertices]")
+    page.click("#last")
+    shown = page.browser.run(SHOWN)
+    for answer in native["answers"]:
+        check(shown[answer["backend"]]["results"] == ", ".join(answer["results"]), "a waiting structure", answer)
+    page.click("#undo")
+    page.click("#undo")
+    check(not waiting(page), "still waiting", waiting(page))
+    # All refuse this one.
+    page.edit("remove_face f99")
+    check("f99" in page.text("#say"), page.text("#say"))
+    check(page.browser.run("return document.getElementById('undo').disabled"), "a refused edit is no change")
+
+
+def stl():
+    """A tetrahedron as a binary STL file."""
+    corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    faces = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]
+    import struct
+    facets = b"".join(
+        struct.pack("<12fH", 0, 0, 0, *(float(x) for corner in face for x in corners[corner]), 0) for face in faces)
+    return b"\0" * 80 + struct.pack("<I", len(faces)) + facets
+
+
+def drop(page, name, content):
+    page.browser.run("""
+        const bytes = Uint8Array.from(atob(arguments[1]), letter => letter.charCodeAt(0));
+        const data = new DataTransfer();
+        data.items.add(new File([bytes], arguments[0]));
+        document.dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }));
+    """, name, base64.b64encode(content).decode())
+    page.settle()
+
+
+def check_files(page, path):
+    page.open(path)
+    drop(page, "four.stl", stl())
+    check(page.text("#mesh-size") == "4 vertices, 6 edges, 4 faces", page.text("#mesh-size"))
+    mesh = {"file": {"name": "four.stl", "base64": base64.b64encode(stl()).decode()}}
+    compare_queries(page, mesh, [("vertex_faces", "v2"), ("edge_edges", "v0-v1")])
+    # A bad file has the message of the command line, and changes nothing.
+    for name, content in [("bad.obj", b"v 0 0\nf 1 2 9\n"), ("none.xyz", b"1 2 3\n"), ("cut.stl", stl()[:100]), ("x.json", b"{}")]:
+        drop(page, name, content)
+        message = page.text("#message")
+        check(message, name, "has no message")
+        if not name.endswith(".json"):
+            file = {"name": name, "base64": base64.b64encode(content).decode()}
+            check(page.native(mesh={"file": file}, ask="facts")["error"] in message, message)
+        check(page.text("#mesh-name") == "four.stl", page.text("#mesh-name"))
+    # Text from files stays text.
+    drop(page, "<img src=x onerror=alert(1)>.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    check(page.text("#mesh-name").startswith("<img"), page.text("#mesh-name"))
+    check(page.browser.run("return document.querySelectorAll('img').length") == 0, "markup from a file name")
+
+
+def check_failure(page, path):
+    """The engine fails once: the page shows it, starts the engine again, and has lost nothing."""
+    page.open(path)
+    page.edit("flip_edge v0-v2")
+    page.browser.run("""
+        const post = Worker.prototype.postMessage;
+        Worker.prototype.postMessage = function (message) {
+            Worker.prototype.postMessage = post;
+            post.call(this, { number: message.number, bytes: Uint8Array.of(0) });
+        };
+    """)
+    page.click("[data-tab=query]")
+    check("Please report it" in page.text("#message"), page.text("#message"))
+    compare_queries(page, {"shape": {"name": "octahedron"}}, [("vertex_faces", "v2")], ["flip_edge v0-v2"])
+    check(page.text("#message") == "", page.text("#message"))
+
+
+def check_links(page, path):
+    page.open(path)
+    page.edit("flip_edge v0-v2")
+    page.edit("split_edge v1-v4")
+    page.click("[data-tab=query]")
+    page.type("#element", "v6")
+    page.click("#next")
+    page.click("#next")
+    before = page.browser.run(SHOWN)
+    clock = page.text("#clock")
+    page.click("#share-button")
+    link = page.browser.run("return document.getElementById('link').value")
+    page.open(path, link[link.index("#"):])
+    check(page.text("#clock") == clock, page.text("#clock"), clock)
+    check(page.browser.run(SHOWN) == before, "the state of the link")
+    page.click("#undo")
+    page.click("#undo")
+    check(page.browser.run("return document.getElementById('undo').disabled"), "the edits of a link can be undone")
+    state = {"sixfold": 1, "subject": {"mesh": {"shape": {"name": "cube"}}}, "name": "mine", "edits": [], "view": {"element": "f3", "relation": "face_faces"}}
+    drop(page, "state.json", json.dumps(state).encode())
+    check(page.text("#mesh-name") == "mine", page.text("#message"))
+    check(page.browser.run("return document.getElementById('element').value") == "f3", "the element of a state file")
+    page.open(path, "#s=AAAA")
+    check("damaged" in page.text("#message"), page.text("#message"))
+
+
+def check_quiz(page, path):
+    page.open(path)
+    page.click("#quiz")
+    check(page.browser.run("return document.getElementById('next').disabled"), "the next step is not hidden")
+    native = page.native(mesh={"shape": {"name": "octahedron"}}, structures=["half-edge"], ask={"trace": {"relation": "vertex_vertices", "element": "v0"}})
+    reads = [step["row"] for step in native["answers"][0]["steps"] if step["step"] == "read"]
+    row = ".card[data-structure=half-edge] tr[data-row={}] th"
+    page.click(row.format("h9"))
+    check(page.text("#quiz-line").startswith("Not h9"), page.text("#quiz-line"))
+    for name in reads:
+        page.click(row.format(name))
+        check(page.text("#quiz-line").startswith(f"Right: {name}"), page.text("#quiz-line"))
+    check(f"{len(reads) - 1} right at once, 1 wrong" in page.text("#quiz-line"), page.text("#quiz-line"))
+
+
+def check_walks(page, path):
+    page.open(path)
+    page.click("[data-tab=walk]")
+    page.click("#run-walk")
+    check("The results are those of vertex_vertices" in page.text("#walk-result"), page.text("#walk-result"))
+    page.browser.run("document.getElementById('walk-text').value = 'h = leaving(v0)\\nyield frobnicate(h)'")
+    page.click("#run-walk")
+    check("frobnicate" in page.text("#walk-result"), page.text("#walk-result"))
+
+
+def check_measurements(page, path):
+    page.open(path)
+    page.click("[data-tab=measure]")
+    page.click("#measure")
+    rows = page.browser.run("return [...document.querySelectorAll('#times tr[data-structure]')].map(row => row.dataset.structure)")
+    check(sorted(rows) == sorted(STRUCTURES), rows)
+    check(page.text("#message") == "", page.text("#message"))
+
+
+def check_levels(page, path):
+    page.open(path)
+    page.click("[data-tab=subdivide]")
+    check(page.text("#mesh-size") == "18 vertices, 48 edges, 32 faces", page.text("#mesh-size"))
+    page.type("#point", "v8")
+    native = page.native(mesh={"shape": {"name": "octahedron"}}, ask={"stencil": {"scheme": "loop", "level": 1, "point": 8}})
+    shown = page.browser.run("return [...document.querySelectorAll('#stencil tr')].map(row => [...row.cells].map(cell => cell.textContent))")
+    value = lambda text: int(text.split("/")[0]) / int((text + "/1").split("/")[1])
+    expected = [[parent["vertex"], parent["weight"]] for parent in native["parents"]]
+    check([[name, value(weight)] for name, weight in shown] == expected, shown, expected)
+    page.type("#scheme", "doo-sabin")
+    check(page.text("#mesh-size") == "24 vertices, 48 edges, 26 faces", page.text("#mesh-size"))
+
+
+def check_lessons(page, path):
+    """Opens each lesson, and shows all that its commands show."""
+    page.open(path)
+    page.click("#lessons-button")
+    names = page.browser.run("return [...document.querySelectorAll('[data-lesson]')].map(one => one.dataset.lesson)")
+    check(len(names) == 20, names)
+    shown = 0
+    for name in names:
+        page.open(path, f"#lesson={name}")
+        count = page.browser.run("return document.querySelectorAll('#lesson .show').length")
+        for i in range(count):
+            page.browser.run("document.querySelectorAll('#lesson .show')[arguments[0]].click()", i)
+            page.settle()
+            check(page.text("#message") == "", name, i, page.text("#message"))
+            shown += 1
+    check(shown > 30, shown)
+
+
+def check_sizes(page, path, folder):
+    for name, (width, height) in SIZES.items():
+        page.browser.devtools("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 500)
+        for scheme in ("light", "dark"):
+            page.browser.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+            page.open(path)
+            for _ in range(5):
+                page.click("#next")
+            wide = page.browser.run("return document.documentElement.scrollWidth")
+            check(wide <= width, name, "is", wide, "pixels wide")
+            for button in ("#next", "#undo", "#share-button", "[data-tab=edit]"):
+                box = page.browser.run("const box = document.querySelector(arguments[0]).getBoundingClientRect(); return [box.width, box.height]", button)
+                check(min(box) >= 24, name, button, box)
+            if folder:
+                shot = page.browser.devtools("Page.captureScreenshot")
+                (folder / f"{name}-{scheme}.png").write_bytes(base64.b64decode(shot["data"]))
+
+
+def check_quiet(browser):
+    """No errors in the console, and no request but for the page itself."""
+    errors = [entry["message"] for entry in browser.log("browser") if entry["level"] == "SEVERE"]
+    check(not errors, errors)
+    for entry in browser.log("performance"):
+        message = json.loads(entry["message"])["message"]
+        if message["method"] == "Network.requestWillBeSent":
+            url = message["params"]["request"]["url"]
+            check(url.startswith(("file:", "data:", "blob:", "about:")), "a request to", url)
+
+
+def main():
+    sixfold, respond = sys.argv[1:3]
+    folder = pathlib.Path(sys.argv[3]) if len(sys.argv) > 3 else None
+    with tempfile.TemporaryDirectory() as scratch:
+        path = pathlib.Path(scratch) / "explorer.html"
+        subprocess.run([sixfold, "explore", "--no-open", "-o", path], check=True, stdout=subprocess.DEVNULL)
+        check(path.stat().st_size <= MAX_BYTES, path.stat().st_size, "bytes")
+        browser = Browser()
+        try:
+            page = Page(browser, respond)
+            browser.devtools("Emulation.setDeviceMetricsOverride", width=1440, height=900, deviceScaleFactor=1, mobile=False)
+            for part in (check_queries, check_pointer, check_edits, check_refusals, check_files, check_failure, check_links, check_quiz,
+                         check_walks, check_measurements, check_levels, check_lessons):
+                part(page, path)
+                check_quiet(browser)
+            check_sizes(page, path, folder)
+            check_quiet(browser)
+        finally:
+            browser.close()
+    print("the explorer does what it should")
+
+
+if __name__ == "__main__":
+    main()
