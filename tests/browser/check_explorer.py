@@ -327,8 +327,24 @@ def check_links(page, path):
     drop(page, "state.json", json.dumps(state).encode())
     check(page.text("#mesh-name") == "mine", page.text("#message"))
     check(page.browser.run("return document.getElementById('element').value") == "f3", "the element of a state file")
-    page.open(path, "#s=AAAA")
-    check("damaged" in page.text("#message"), page.text("#message"))
+    for link, message in [("#s=AAAA", "damaged"), ("#s=!", "damaged"), ("#what", "not known"), ("#lesson=flap", "no lesson flap"), ("#show=flip/9", "number 9")]:
+        page.open(path, link)
+        check(message in page.text("#message"), link, page.text("#message"))
+        check(page.text("#mesh-name") == "octahedron", link, page.text("#mesh-name"))
+    # A state that is not one changes nothing.
+    page.edit("flip_edge v0-v2")
+    cube = {"mesh": {"shape": {"name": "cube"}}}
+    for state in ({}, {"sixfold": 9, "subject": cube}, {"sixfold": 1, "subject": {"mesh": "last"}}, {"sixfold": 1, "subject": {"mesh": {"shape": {"name": "cub"}}}}):
+        drop(page, "state.json", json.dumps(state).encode())
+        check(page.text("#message") and page.text("#mesh-name") == "octahedron", state, page.text("#message"))
+    # Fields of a state that cannot be are those of a new page.
+    view = {"tab": "__proto__", "element": "v99", "time": -5, "focus": "none", "level": 1.5, "point": "v0-v1", "lesson": 7, "__proto__": {"tab": "x"}}
+    drop(page, "state.json", json.dumps({"sixfold": 1, "subject": cube, "view": view, "edits": ["remove_face f99", "poke_face f0"]}).encode())
+    check("remove_face f99" in page.text("#message"), page.text("#message"))
+    check(page.text("#mesh-size") == "9 vertices, 16 edges, 9 faces", page.text("#mesh-size"))
+    for _ in range(3):
+        page.click("#undo")
+    check(page.text("#mesh-name") == "octahedron", "a state that is opened can be undone")
 
 
 def check_quiz(page, path):
@@ -354,6 +370,17 @@ def check_walks(page, path):
     page.browser.run("document.getElementById('walk-text').value = 'h = leaving(v0)\\nyield frobnicate(h)'")
     page.click("#run-walk")
     check("frobnicate" in page.text("#walk-result"), page.text("#walk-result"))
+    # Each structure has a walk to begin with, which is that of the chosen element.
+    page.browser.run("document.getElementById('walk-text').value = ''")
+    page.click("#run-walk")
+    page.type("#element", "v3")
+    for name in ("winged-edge", "corner-table", "half-edge"):
+        page.click(f".card[data-structure={name}] h3 button")
+        check("v3" in page.browser.run("return document.getElementById('walk-text').value"), name)
+        check("The results are those of vertex_vertices" in page.text("#walk-result"), name, page.text("#walk-result"))
+    for name in STRUCTURES[:3]:
+        page.click(f".card[data-structure={name}] h3 button")
+        check("Missing:" in page.text("#walk-result"), name, page.text("#walk-result"))
 
 
 def check_measurements(page, path):

@@ -3,6 +3,9 @@
 import { el, button, count } from "./dom.js";
 import { rowNumber } from "./timeline.js";
 
+// Maximum number of results that a card lists: the last ones.
+const MOST_RESULTS = 100;
+
 // The rows that a card shows, by their names: { element, fields, values by column }. `moved` has the rows that an
 // edit moved, and the names of their elements.
 export class Rows extends Map {
@@ -157,7 +160,8 @@ export class Card {
     this.now.replaceChildren(...sentence(found, this.rows));
     const results = this.timeline.resultsAt(time);
     const isDone = time >= this.timeline.length;
-    this.results.textContent = results.length || isDone ? `${isDone ? "all results" : "results"}: ${results.join(", ") || "none"}` : "";
+    const listed = results.length > MOST_RESULTS ? `… ${results.slice(-MOST_RESULTS).join(", ")}` : results.join(", ");
+    this.results.textContent = results.length || isDone ? `${isDone ? "all results" : "results"}: ${listed || "none"}` : "";
     this.current = key;
   }
 

@@ -7,6 +7,7 @@ import { relationFor } from "./query.js";
 import { defaultView, groups, meshState, pastOf, withEdit } from "./state.js";
 import { refine } from "./subdivide.js";
 import { Timeline, rowNumber } from "./timeline.js";
+import { walkFor } from "./walk.js";
 
 // Larger tables show only the rows of the query or edit, and some rows beside them.
 const WHOLE_TABLE = 200;
@@ -207,7 +208,9 @@ export class Explorer {
 
   // Runs the walk of the student on the structure in front. A walk that is wrong is shown as such.
   async walk(shown, asked) {
-    const { state, view: { walk, focus, relation, element } } = shown;
+    const { state, view: { focus, relation, element } } = shown;
+    const walk = walkFor(shown.view.walk, focus, element);
+    shown.view.walk = walk;
     const edits = asked.find(({ structures }) => structures.includes(focus))?.edits ?? [];
     const ask = { walk: { walk: walk.replace(/\n(?!\s*else\b)/g, ";\n"), expect: { relation, element } } };
     try {

@@ -270,11 +270,13 @@ function refusalText(refusals, byAll) {
 // number (#show=flip/1). Null if it names nothing.
 async function situationOf(hash, lessons) {
   const [, kind, name, number] = /^#(lesson|show)=([\w-]+)(?:\/(\d+))?$/.exec(hash) ?? [];
+  if (!kind && hash.length > 1 && !hash.startsWith("#s=")) throw new Error("this link has nothing to show: the part after # is not known");
   if (!kind) return fromLink(hash);
   const lesson = lessons.find((one) => one.name === name);
   if (!lesson) throw new Error(`there is no lesson ${name}`);
   const shown = lesson.parts.map((part) => part.command?.situation).filter((situation) => situation);
-  const situation = shown[Math.max(1, Number(number ?? 1)) - 1];
+  if (number && !shown[number - 1]) throw new Error(`the lesson ${name} shows ${shown.length} situations, and no number ${number}`);
+  const situation = shown[(number ?? 1) - 1];
   const { state, view } = situation ? fromText(JSON.stringify(situation)) : defaultSituation();
   return { state, view: { ...view, lesson: kind === "lesson" ? name : null } };
 }

@@ -5,6 +5,9 @@ import { plus, scale, minus, mix } from "./mesh.js";
 import { placeOfRow, styleOf } from "./places.js";
 import { fraction } from "./subdivide.js";
 
+// Maximum number of results that are marked: the last ones.
+const MOST_MARKS = 200;
+
 // Maximum number of places of a fault that are marked without being asked for.
 const MOST_FAULTS = 100;
 
@@ -42,7 +45,7 @@ function stepMarks({ view, model, timelines }, rows, colour) {
   const timeline = timelines.get(view.focus);
   if (!timeline) return [];
   const list = [];
-  for (const result of timeline.resultsAt(view.time)) {
+  for (const result of timeline.resultsAt(view.time).slice(-MOST_MARKS)) {
     const place = model.place(result) ?? placeOfRow(model, rows, result);
     if (place) list.push({ place, colour: colour("--result"), label: result.split(" = ").pop(), style: styleOf(place) });
   }

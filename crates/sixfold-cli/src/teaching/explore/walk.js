@@ -3,6 +3,35 @@
 import { button, count, el, select, withCode } from "./dom.js";
 import { elementField, relations } from "./query.js";
 
+// A walk to begin with for each structure, at v0: around the vertex, as far as its fields lead.
+const EXAMPLES = {
+  "polygon-soup": "yield face(c0)",
+  "indexed-face-set": "yield vertex(c0)",
+  "face-vertex": "yield face(first(v0))",
+  "winged-edge": `e = edge(v0)
+repeat {
+  if start(e) = v0 { yield end(e); e = left_prev(e) }
+  else { yield start(e); e = right_prev(e) }
+}`,
+  "half-edge": `h = leaving(v0)
+repeat {
+  yield target(h)
+  h = next(twin(h))
+}`,
+  "corner-table": `c = next(corner(v0))
+repeat {
+  yield vertex(c)
+  c = prev(opposite(c))
+}`,
+};
+
+// The walk to run: an empty one, and an example of another structure or element, become the example of this one.
+export function walkFor(walk, structure, element) {
+  const isExample = walk.trim() === "" || Object.values(EXAMPLES).includes(walk.replace(/\bv\d+/g, "v0"));
+  if (!isExample) return walk;
+  return (EXAMPLES[structure] ?? "").replaceAll("v0", /^v\d+$/.test(element) ? element : "v0");
+}
+
 export function walkPanel(explorer) {
   const { walk, focus, relation, element } = explorer.view;
   const text = el("textarea", { rows: 5, "aria-label": "Walk", spellcheck: "false", id: "walk-text" });
