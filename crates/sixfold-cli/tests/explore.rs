@@ -89,7 +89,8 @@ fn a_mesh_that_the_page_would_refuse_is_refused() {
 #[test]
 fn the_course_is_a_site_without_dead_links() {
     let sixfold = Sixfold::new();
-    run_ok(&sixfold, &["lessons", "--export", "course"]);
+    let run = run_ok(&sixfold, &["lessons", "--export", "course"]);
+    assert_eq!(run.stdout, "course/index.html\n");
     let course = sixfold.folder().join("course");
     let mut pages = vec![course.join("index.html")];
     let mut seen = 0;

@@ -18,7 +18,7 @@ use sixfold_core::UnknownName;
 use crate::arguments::Lessons;
 use crate::failure::Failure;
 use crate::output::Output;
-use crate::text::{TextOutput, wrap};
+use crate::text::{TextOutput, sanitize, wrap};
 
 /// The lessons, in the order in which a course takes them.
 pub(crate) const LESSONS: [(&str, &str); 20] = [
@@ -82,7 +82,10 @@ pub(crate) fn run(arguments: &Lessons) -> Result<ExitCode, Failure> {
     }
     if let Some(folder) = &arguments.export {
         site::write(folder)?;
-        return Ok(ExitCode::SUCCESS);
+        let mut text = TextOutput::new(true);
+        let first = folder.join("index.html");
+        text.print_line(&sanitize(&first.display().to_string()));
+        return text.finish().map(|()| ExitCode::SUCCESS);
     }
     if let Some(file) = &arguments.json {
         Output::open(file)?.write_json(&data::lessons()?)?;
