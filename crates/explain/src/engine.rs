@@ -147,7 +147,7 @@ struct Query {
 ///
 /// | `ask` | each answer, or the response |
 /// |---|---|
-/// | `{"tables": {"rows": [0, 20]}}` | for each structure the [`Records`](crate::Records) from the first to the last of these rows; without `rows`, the first 200. `moved` has the rows in them that an edit moved ([`BuiltMesh::moved_rows`]) |
+/// | `{"tables": {"rows": [0, 20]}}` | for each structure the [`Records`](crate::Records) from the first to the last of these rows; without `rows`, the first 200. `moved` has the rows in them that an edit moved ([`BuiltMesh::moved_rows`](crate::BuiltMesh::moved_rows)) |
 /// | `{"tables": {"names": ["h5", "v3"]}}` | for each structure those [`Records`](crate::Records) that have one of these names, in the order of the rows; at most 2,000 names, of which a structure ignores those that it does not have |
 /// | `{"trace": {"relation": "vertex_faces", "element": "v3"}}` | a [`Trace`](crate::Trace) |
 /// | `{"edit": "flip_edge v0-v1"}` | an [`EditTrace`](crate::EditTrace) with at most 2,000 entries in each list |
