@@ -35,7 +35,7 @@ export function withCode(text) {
 const plural = (one) => (one === "vertex" ? "vertices" : `${one}s`);
 
 // A number with its unit: 3 faces.
-export const count = (number, one, many = plural(one)) => `${number.toLocaleString("en")} ${number === 1 ? one : many}`;
+export const count = (number, one) => `${number.toLocaleString("en")} ${number === 1 ? one : plural(one)}`;
 
 // Offers a text as a file.
 export function download(name, text, type) {

@@ -58,7 +58,7 @@ export class Explorer {
     return turn;
   }
 
-  // Shows another mesh, or the mesh after edits.
+  // Shows another mesh, or the mesh after edits. The caller tells the listeners.
   async show(state, view = this.view, lastEdit = null) {
     const begun = { ...this.view };
     const shown = await this.compute(state, { ...view }, lastEdit);
@@ -66,17 +66,21 @@ export class Explorer {
     for (const key of ["lesson", "quiz", "focus", "walk"]) {
       if (this.view[key] !== begun[key]) shown.view[key] = this.view[key];
     }
-    Object.assign(this, shown, { marked: [], isRefused: false });
+    const picked = this.picked.filter((name) => shown.model.has(name));
+    Object.assign(this, shown, { picked, marked: [], isRefused: false });
     this.view.time = Math.min(this.view.time, this.length);
-    this.tell("all");
   }
 
   // Shows another mesh; the one before comes back with undo.
-  async go(state, view, lastEdit) {
+  async advance(state, view, lastEdit) {
     const before = this.state;
     await this.show(state, view, lastEdit);
     this.past.push(before);
     this.future = [];
+  }
+
+  async go(state, view) {
+    await this.advance(state, view);
     this.tell("all");
   }
 
@@ -144,6 +148,7 @@ export class Explorer {
   async look(change) {
     const view = { ...this.view, time: 0, ...change };
     await this.show(this.state, view, this.lastEdit);
+    this.tell("all");
   }
 
   // Changes what needs no answer of the engine: the time, the structure in front.
@@ -258,20 +263,20 @@ export class Explorer {
     const refusing = structures.filter((structure) => !done.answers.has(structure));
     const edit = [...done.answers.values()][0].edit;
     this.picked = [];
-    const before = this.model;
-    await this.go(withEdit(state, edit, refusing), { ...this.view, tab: "edit", time: 0 }, done);
-    this.nameEdges(before);
+    const { model, view: { element } } = this;
+    await this.advance(withEdit(state, edit, refusing), { ...this.view, tab: "edit", time: 0 }, done);
+    this.nameEdges(model, element);
+    this.tell("all");
   }
 
-  // Notes which edges the last edit made and deleted. If the chosen edge is gone and a single one is new, as after a
-  // flip, the new one is chosen.
-  nameEdges(before) {
+  // Notes which edges the last edit made and deleted. If it replaced the edge that was chosen by another one, as a
+  // flip does, the other one is chosen.
+  nameEdges(before, chosen) {
     const { model, lastEdit, view } = this;
     const missing = (one, other) => [...one.edges.keys()].filter((name) => !other.edges.has(name));
     const [made, deleted] = [missing(model, before), missing(before, model)];
     Object.assign(lastEdit, { made, deleted });
-    if (made.length === 1 && deleted.length === 1) [view.element] = made;
-    this.tell("all");
+    if (made.length === 1 && deleted.length === 1 && deleted[0] === chosen) [view.element] = made;
   }
 
   // For tables that are too large to be shown: the rows that matter.

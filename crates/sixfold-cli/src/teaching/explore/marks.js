@@ -63,7 +63,7 @@ function stepMarks({ view, model, timelines }, rows, colour) {
   return list;
 }
 
-// The chosen point of a level, and its parents with their weights: the mesh before the step is drawn as lines.
+// The chosen point of a level, and arrows from its parents with their weights.
 function stencilMarks({ view, refined, stencil }, colour) {
   if (!refined || !stencil) return [];
   const [before, now] = [refined.models[view.level - 1], refined.models[view.level]];

@@ -6,8 +6,8 @@ const isVertex = (field) => /^v\d+$/.test(field);
 const isFace = (field) => /^f\d+$/.test(field);
 const numberOf = (name) => Number(name.slice(1));
 
-// Where a row is. `rows` are the rows that a card shows. What a row stands for follows from its
-// fields: two vertices are an edge, a vertex and a face a corner, and so on. Null if it is not known.
+// Where a row is. `rows` are the rows that a card shows. What a row stands for follows from its fields: two vertices
+// are an edge, a vertex and a face a corner, and so on. Null if it is not known.
 export function placeOfRow(model, rows, name) {
   const own = model.place(rows.elementOf(name));
   if (own) return own;

@@ -10,7 +10,7 @@ const TABS = ["query", "edit", "walk", "subdivide", "check", "measure"];
 // The mesh, and the edits since. `subject` has the fields of a request that name the mesh. `stopped` has for each
 // structure that refused an edit the number of this edit: it stays as it was before, until the edit is undone.
 export function meshState(subject, name) {
-  return { subject, name, edits: [], stopped: {}, notes: [] };
+  return { subject, name, edits: [], stopped: {} };
 }
 
 // The state after one more edit, which the structures `refusing` refuse.
@@ -56,10 +56,9 @@ export function groups(state, structures) {
   return [...groups.values()].sort((a, b) => b.edits.length - a.edits.length);
 }
 
-// Writes the state as text for a file.
-export function toText(state, view) {
-  const { subject, name, edits, stopped } = state;
-  return JSON.stringify({ sixfold: VERSION, subject, name, edits, stopped, view });
+// Writes the state as text for a file. Which structures refuse an edit follows from the edits.
+export function toText({ subject, name, edits }, view) {
+  return JSON.stringify({ sixfold: VERSION, subject, name, edits, view });
 }
 
 // Reads the state from text. Throws an Error if the text is not a state.
@@ -80,17 +79,13 @@ export function fromText(text) {
   if (triangulate === true) subject.triangulate = true;
   if (typeof creases === "string") subject.creases = creases;
   const edits = Array.isArray(read.edits) ? read.edits.map(String) : [];
-  const stopped = {};
-  for (const [structure, edit] of Object.entries(read.stopped ?? {})) {
-    if (Number.isInteger(edit) && edit >= 0 && edit < edits.length) stopped[structure] = edit;
-  }
   const view = defaultView();
   for (const [key, value] of Object.entries(read.view ?? {})) {
     if (Object.hasOwn(view, key) && isLike(view[key], value)) view[key] = value;
   }
   if (!TABS.includes(view.tab)) view.tab = TABS[0];
   if (!/^v\d{1,9}$/.test(view.point ?? "")) view.point = null;
-  return { state: { ...meshState(subject, String(read.name ?? "mesh")), edits, stopped }, view };
+  return { state: { ...meshState(subject, String(read.name ?? "mesh")), edits }, view };
 }
 
 // Whether a value can take the place of a default: null stands for a text that is missing.
