@@ -402,6 +402,21 @@ def check_levels(page, path):
     value = lambda text: int(text.split("/")[0]) / int((text + "/1").split("/")[1])
     expected = [[parent["vertex"], parent["weight"]] for parent in native["parents"]]
     check([[name, value(weight)] for name, weight in shown] == expected, shown, expected)
+    # A sharp edge stays with its mesh, and goes with an edit that deletes it.
+    page.open(path)
+    page.type("#element", "v0-v2")
+    page.click("[data-tab=subdivide]")
+    page.browser.run("[...document.querySelectorAll('#panel button')].find(one => one.textContent === 'make sharp').click()")
+    page.settle()
+    check("1 sharp element" in page.text("#panel"), page.text("#panel"))
+    page.edit("split_edge v1-v4")
+    page.click("[data-tab=subdivide]")
+    check("1 sharp element" in page.text("#panel"), page.text("#panel"))
+    page.edit("flip_edge v0-v2")
+    page.click("[data-tab=subdivide]")
+    check("no sharp elements" in page.text("#panel") and not page.text("#message"), page.text("#panel"))
+    page.open(path)
+    page.click("[data-tab=subdivide]")
     page.type("#scheme", "doo-sabin")
     check(page.text("#mesh-size") == "24 vertices, 48 edges, 26 faces", page.text("#mesh-size"))
 

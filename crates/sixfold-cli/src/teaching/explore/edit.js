@@ -36,7 +36,7 @@ export function editsOf(element, picked) {
 function faultsOf(explorer) {
   const { model, geometry, view: { element } } = explorer;
   const { kind, numbers } = parseName(element);
-  const change = { tab: "check" };
+  const change = { tab: "check", hasNumbers: true };
   if (kind === "face") {
     const turn = () => {
       const faces = geometry.faces.map((face, f) => (f === numbers[0] ? [face[0], ...face.slice(1).reverse()] : face));

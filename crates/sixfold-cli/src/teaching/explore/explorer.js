@@ -2,7 +2,7 @@
 
 import { check } from "./check.js";
 import { EngineFailure } from "./engine.js";
-import { Model, parseName } from "./mesh.js";
+import { Model, edgeName, parseName } from "./mesh.js";
 import { relationFor } from "./query.js";
 import { defaultView, groups, meshState, pastOf, withEdit } from "./state.js";
 import { refine } from "./subdivide.js";
@@ -293,10 +293,13 @@ export class Explorer {
     }
   }
 
-  // Replaces the mesh by another one, as geometry.
-  async replace(geometry, what, change = {}) {
-    const name = `${this.state.name}, ${what}`;
-    await this.go(meshState(polygonsOf(geometry, this.state.subject.creases), name), { ...this.view, time: 0, ...change });
+  // Replaces the mesh by another one, as geometry. Creases are kept only if the vertices have the numbers that they
+  // had: the name of the mesh says if they are lost.
+  async replace(geometry, what, { hasNumbers, ...change }) {
+    const { creases } = this.state.subject;
+    const lost = creases && !hasNumbers ? ", without its sharp edges" : "";
+    const subject = polygonsOf(geometry, hasNumbers ? creases : null);
+    await this.go(meshState(subject, `${this.state.name}, ${what}${lost}`), { ...this.view, time: 0, ...change });
   }
 
   // Shows the mesh with other fields of the request, such as `triangulate`.
@@ -345,12 +348,26 @@ function subjectOf(state, geometry) {
   return subjects.get(geometry);
 }
 
-// The fields of a request for a mesh by its vertices and faces. Creases name vertices by numbers, which change if
-// numbers without an element are left out.
-function polygonsOf({ vertices, faces }, creases) {
-  const subject = { mesh: { polygons: { positions: vertices, faces } } };
-  if (creases && !vertices.includes(null)) subject.creases = creases;
+// The fields of a request for a mesh by its vertices and faces.
+function polygonsOf(geometry, creases) {
+  const subject = { mesh: { polygons: { positions: geometry.vertices, faces: geometry.faces } } };
+  const kept = creases && keptCreases(creases, new Model(geometry));
+  if (kept) subject.creases = kept;
   return subject;
+}
+
+// The creases whose edges and vertices a mesh has. The engine leaves out numbers without a vertex, so all vertices
+// after them have lower numbers.
+function keptCreases(creases, model) {
+  const numbers = new Map();
+  model.vertices.forEach((vertex, v) => vertex && numbers.set(v, numbers.size));
+  const kept = creases.split("\n").flatMap((line) => {
+    const [kind, ...fields] = line.split("#")[0].trim().split(/\s+/);
+    const ends = fields.slice(0, -1).map(Number);
+    const isKept = kind === "edge" ? model.edges.has(edgeName(...ends)) : numbers.has(ends[0]);
+    return isKept ? [`${kind} ${ends.map((v) => numbers.get(v)).join(" ")} ${fields.at(-1)}`] : [];
+  });
+  return kept.join("\n");
 }
 
 // The rows of a large mesh that are shown: those of the query or edit, with the rows beside them.

@@ -85,20 +85,20 @@ export function fraction(weight) {
 
 // Sharp edges and corners of the control mesh.
 function creaseForm(explorer) {
-  const { state: { subject }, view: { element } } = explorer;
+  const { subject, geometry, view: { element } } = explorer;
   const { kind, numbers } = parseName(element);
   const lines = (subject.creases ?? "").split("\n").filter((line) => line.trim());
   const form = [lines.length ? count(lines.length, "sharp element") : "no sharp elements added"];
-  const mesh = { ...explorer.subject };
-  if (kind !== "face") {
+  // The engine counts vertices without gaps, so names and numbers are the same only in a mesh without gaps.
+  if (kind !== "face" && !geometry.vertices.includes(null)) {
     const value = el("select", { "aria-label": "Sharpness" }, ["1", "2", "3", "inf"].map((text) => el("option", {}, text)));
     const key = kind === "edge" ? `edge ${numbers.join(" ")}` : `corner ${numbers[0]}`;
     const add = () => explorer.run(async () => {
       const others = lines.filter((line) => !line.startsWith(`${key} `));
-      await explorer.withSubject({ ...mesh, creases: [...others, `${key} ${value.value}`].join("\n") });
+      await explorer.withSubject({ ...subject, creases: [...others, `${key} ${value.value}`].join("\n") });
     });
     form.push(` · ${element} of level 0: sharpness `, value, button("make sharp", add));
   }
-  if (lines.length) form.push(button("none sharp", () => explorer.run(() => explorer.withSubject({ ...mesh, creases: undefined }))));
+  if (lines.length) form.push(button("none sharp", () => explorer.run(() => explorer.withSubject({ ...subject, creases: undefined }))));
   return el("p", { class: "buttons" }, form);
 }
