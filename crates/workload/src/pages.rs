@@ -254,12 +254,13 @@ fn bracketed(modes: &str) -> Option<&str> {
 #[allow(unsafe_code)]
 mod platform {
     use std::ffi::CStr;
+    use std::sync::atomic::{AtomicBool, Ordering};
 
     /// Size of a test block in bytes. The size is unusual, so that other threads are unlikely to
     /// allocate it.
     const TEST_BLOCK_BYTES: usize = (1 << 20) + 4096 * 3;
     /// Maximum number of attempts to find the test block in the counts of the allocator.
-    const ATTEMPTS: usize = 16;
+    const ATTEMPTS: usize = 1000;
     /// Minimum growth of the heap, in bytes.
     const STEP: libc::c_int = 1 << 20;
     /// Maximum number of heaps for each processor, by default.
@@ -339,8 +340,10 @@ mod platform {
     }
 
     /// Returns whether Rust allocates from the GNU C library. If so, the counts include a test
-    /// block. Several attempts are needed, because other threads may allocate at the same time.
+    /// block. Many attempts can be needed, because other threads may allocate at the same time.
+    /// Found once, the allocator stays the same.
     pub(super) fn is_glibc_allocator() -> bool {
+        static FOUND: AtomicBool = AtomicBool::new(false);
         let is_counted = || {
             let before = used();
             let block: Vec<u8> = Vec::with_capacity(TEST_BLOCK_BYTES);
@@ -348,7 +351,10 @@ mod platform {
             std::hint::black_box(&block);
             (TEST_BLOCK_BYTES..2 * TEST_BLOCK_BYTES).contains(&grown)
         };
-        (0..ATTEMPTS).any(|_| is_counted())
+        if !FOUND.load(Ordering::Relaxed) && (0..ATTEMPTS).any(|_| is_counted()) {
+            FOUND.store(true, Ordering::Relaxed);
+        }
+        FOUND.load(Ordering::Relaxed)
     }
 
     pub(super) fn allocator() -> String {

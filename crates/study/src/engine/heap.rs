@@ -145,6 +145,12 @@ impl Memory {
         self.guard.is_none() || Room::now().holds(bytes)
     }
 
+    /// Returns whether a run can have fresh pages. A simulated machine decides by itself what such a
+    /// run costs.
+    pub(crate) fn can_release_pages(&self) -> bool {
+        self.guard.is_none() || pages::can_release_pages()
+    }
+
     /// Returns the pages of freed blocks to the kernel. Allocations then get fresh pages until
     /// [`Memory::reserve`] is called.
     pub(crate) fn release_pages(&self) {

@@ -27,7 +27,6 @@ use crate::engine::trial::Trial;
 use crate::results::rows::RefusalKind;
 use sixfold_workload::Operation;
 use sixfold_workload::Time;
-use sixfold_workload::pages;
 use sixfold_workload::{
     Job, MIN_TIMED_NS, Outcome, Run, Series, Start, Task, TimedBackend, exceeds_second_level,
 };
@@ -253,7 +252,8 @@ impl Measurement<'_, '_, '_> {
         }
         self.trial.memory.reserve();
         let allocates = entries.iter().any(|entry| entry.job.task.allocates());
-        let fresh_pages = pages::can_release_pages() && !self.trial.memory.is_cold();
+        let memory = &self.trial.memory;
+        let fresh_pages = memory.can_release_pages() && !memory.is_cold();
         let first_times = allocates && fresh_pages;
         let for_rounds = match first_times {
             true => (1.0 - FIRST_TIMES_SHARE) * limit_ns,

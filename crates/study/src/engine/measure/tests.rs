@@ -284,10 +284,7 @@ fn structures_are_built_again_between_rounds_within_a_small_part_of_the_budget()
         placed(SimulatedMachine::steady(), rebuild_ns / 2.0).2
     };
     // The third operation allocates.
-    let for_rounds_ms = match pages::can_release_pages() {
-        true => (1.0 - FIRST_TIMES_SHARE) * 2000.0,
-        false => 2000.0,
-    };
+    let for_rounds_ms = (1.0 - FIRST_TIMES_SHARE) * 2000.0;
     let last = (for_rounds_ms - 1.0) / (1.0 + REBUILDING_SHARE / 2.0);
     assert_eq!([0.9 * last, last].map(second_at), [2, 1]);
 }
@@ -370,13 +367,10 @@ fn first_times_take_a_part_of_the_budget_if_pages_can_be_new() {
         "{in_rounds}, {first_times}"
     );
     let (in_rounds, first_times) = measured(build, CacheState::Warm);
-    match pages::can_release_pages() {
-        true => assert!(
-            part.contains(&in_rounds) && first_times > 0,
-            "{in_rounds}, {first_times}"
-        ),
-        false => assert!(whole.contains(&in_rounds) && first_times == 0),
-    }
+    assert!(
+        part.contains(&in_rounds) && first_times > 0,
+        "{in_rounds}, {first_times}"
+    );
     let (_, first_times) = measured(build, CacheState::Cold);
     assert_eq!(first_times, 0);
 }
