@@ -248,7 +248,7 @@ pub(crate) fn creases_on(polygons: &PolygonMesh, choices: &[(Index, Index, f32)]
 /// soup.
 fn for_scheme(scheme: Scheme, polygons: &PolygonMesh) -> Option<PolygonMesh> {
     let polygons = match scheme.properties().takes {
-        FaceKind::Triangles => polygons.fan_triangulated().ok()?,
+        FaceKind::Triangles => polygons.triangulated().ok()?.polygons,
         _ => polygons.clone(),
     };
     welded(&polygons).ok()

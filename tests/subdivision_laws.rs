@@ -96,7 +96,7 @@ fn for_scheme(scheme: Scheme, polygons: PolygonMesh) -> Option<PolygonMesh> {
     if scheme.properties().takes != FaceKind::Triangles {
         return Some(polygons);
     }
-    let polygons = polygons.fan_triangulated().ok()?;
+    let polygons = polygons.triangulated().ok()?.polygons;
     is_plain_manifold(&polygons).then_some(polygons)
 }
 

@@ -97,7 +97,9 @@ pub use polygons::error::{
 pub use polygons::face_list::FaceList;
 pub use polygons::facts::{Distribution, Facts};
 pub use polygons::incidence::EdgeUse;
+pub use polygons::newell::area_vector;
 pub use polygons::polygon_mesh::PolygonMesh;
+pub use polygons::triangulation::{PolygonCutter, PolygonTriangles, Triangulated};
 #[cfg(feature = "serde")]
 #[doc(hidden)]
 pub use serde;
@@ -128,6 +130,7 @@ pub use polygons::classes::Classes;
 pub use polygons::faces_by_lowest::FacesByLowest;
 pub use polygons::fans::Fans;
 pub use polygons::incidence::{EdgeSides, Incidence, Side};
+pub use polygons::newell::Newell;
 pub use polygons::partition::Partition;
 pub use tables::editing::{Compact, Editable, Editing, NoScatteredFaces};
 pub use tables::face_spans::{FaceSpans, ScatteredFaces};

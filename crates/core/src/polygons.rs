@@ -10,5 +10,7 @@ pub(crate) mod faces_by_lowest;
 pub(crate) mod facts;
 pub(crate) mod fans;
 pub(crate) mod incidence;
+pub(crate) mod newell;
 pub(crate) mod partition;
 pub(crate) mod polygon_mesh;
+pub(crate) mod triangulation;

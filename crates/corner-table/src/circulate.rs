@@ -388,7 +388,7 @@ mod tests {
         let open = sixfold_shapes::grid_with_hole(4, 4).expect("a valid size");
         for polygons in [
             sixfold_shapes::octahedron(),
-            open.fan_triangulated().expect("small"),
+            open.triangulated().expect("small").polygons,
         ] {
             let mesh = CornerTable::from_polygons(&polygons).expect("manifold");
             for v in mesh.vertices() {

@@ -384,7 +384,7 @@ mod tests {
         [
             sixfold_shapes::icosahedron(),
             sixfold_shapes::triangle_grid(3, 2).expect("a valid size"),
-            hole.fan_triangulated().expect("small"),
+            hole.triangulated().expect("small").polygons,
         ]
         .map(|polygons| CornerTable::from_polygons(&polygons).expect("manifold"))
     }

@@ -22,7 +22,7 @@ use crate::structure::Structure;
 use kept::{EditedMesh, Kept};
 use refinement::{levels, stencil};
 use response::{Answer, Content, Found, Response, Verdict};
-use source::{MeshSource, Sourced};
+use source::{MeshSource, SHOWN, Sourced};
 
 /// Maximum number of places that a response lists for each kind of fault.
 const MOST_PLACES: usize = 1_000;
@@ -55,7 +55,7 @@ type Error = Box<dyn std::error::Error>;
 #[serde(deny_unknown_fields, expecting = "a request")]
 struct Request {
     mesh: MeshSource,
-    /// Cuts every polygon into a fan of triangles first.
+    /// Cuts every polygon into triangles first.
     #[serde(default)]
     triangulate: Option<bool>,
     /// Sharp edges and corners, as a crease file.
@@ -139,7 +139,7 @@ struct Query {
 /// | field | value |
 /// |---|---|
 /// | `mesh` | `{"shape": {"name": "torus", "parameters": {"m": 8}}}`, a shape of `sixfold generate`; `{"file": {"name": "a.obj", "text": "…"}}`, or `"base64"` for a binary file; `{"polygons": {"positions": [[0, 0, 0], …], "faces": [[0, 1, 2], …]}}`, in which `null` is a number without an element; `"last"`, the mesh that the [`Engine`] keeps |
-/// | `triangulate` | `true` cuts every polygon into a fan of triangles; not with the mesh `"last"` |
+/// | `triangulate` | `true` cuts every polygon into triangles; not with the mesh `"last"` |
 /// | `creases` | sharp edges and corners, as the text of a crease file ([`parse_creases`]); they are added to those of the mesh file; not with the mesh `"last"` |
 /// | `edits` | edits before what is asked, as text ([`EditCommand`](crate::EditCommand)) |
 /// | `structures` | names; all six if missing |
@@ -265,7 +265,14 @@ impl Request {
             return Ok(None);
         };
         if self.triangulate == Some(true) {
-            sourced.polygons = sourced.polygons.fan_triangulated()?;
+            let cut = sourced.polygons.triangulated()?;
+            sourced.polygons = cut.polygons;
+            let crossing = cut
+                .crossing
+                .iter()
+                .take(SHOWN)
+                .map(|face| format!("face {face} crosses itself, so its triangles overlap"));
+            sourced.notes.extend(crossing);
         }
         if let Some(text) = &self.creases {
             let listed = parse_creases("creases", text.as_bytes(), &sourced.polygons)?;

@@ -100,6 +100,11 @@ impl Format {
         matches!(self, Self::Stl | Self::StlAscii)
     }
 
+    /// Returns whether faces can have more than three corners.
+    pub(crate) const fn holds_polygons(self) -> bool {
+        !self.is_stl() && !matches!(self, Self::Gltf | Self::Glb)
+    }
+
     /// Returns the number of the first vertex, as the format and its messages count.
     pub(crate) const fn first_vertex(self) -> usize {
         match self {

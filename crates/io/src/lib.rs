@@ -146,4 +146,4 @@ pub use options::{ReadOptions, Welding};
 pub use place::{Location, Place, PolygonPlaces};
 pub use read::{read, read_from, read_with};
 pub use tags::{CornerTag, CreaseTag, Tag, UnusedCrease};
-pub use write::{Loss, WriteError, WriteOptions, losses, write, write_to, write_with};
+pub use write::{Loss, WriteError, WriteOptions, write, write_to, write_with};

@@ -8,7 +8,7 @@ mod off;
 mod ply;
 mod stl;
 
-pub use loss::{Loss, losses};
+pub use loss::Loss;
 pub(crate) use obj::ShortestDecimal;
 
 use std::fmt;
@@ -16,7 +16,8 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-use sixfold_core::{Creases, Point, PolygonMesh, VertexId};
+use loss::losses;
+use sixfold_core::{Creases, Point, PolygonError, PolygonMesh, VertexId};
 
 use crate::format::Format;
 
@@ -53,6 +54,9 @@ pub enum WriteError {
     /// The file cannot be created.
     #[error("{file}: {cause}")]
     Create { file: String, cause: io::Error },
+    /// The triangles have more corners than 32-bit indices can number.
+    #[error(transparent)]
+    Triangles(#[from] PolygonError),
     /// The destination returned an error.
     #[error("{0}")]
     Io(#[from] io::Error),
@@ -126,12 +130,10 @@ pub fn write_with(
         format,
         options,
         File::create(path).map_err(create)?,
-    )?;
-    Ok(losses(polygons, format, options))
+    )
 }
 
-/// Writes `polygons` and the data in `options` to `out`; O(corners). [`losses`] lists what `format`
-/// cannot keep.
+/// Writes `polygons` and the data in `options` to `out`; O(corners). Returns what `format` cannot keep.
 ///
 /// This function buffers the output. If the format cannot represent the mesh, nothing is written.
 ///
@@ -159,8 +161,13 @@ pub fn write_to(
     format: Format,
     options: &WriteOptions<'_>,
     out: impl Write,
-) -> Result<(), WriteError> {
+) -> Result<Vec<Loss>, WriteError> {
     options.check(polygons, format)?;
+    let cut = match format.holds_polygons() || polygons.first_polygon().is_none() {
+        true => None,
+        false => Some(polygons.triangulated()?),
+    };
+    let triangles = cut.as_ref().map_or(polygons, |cut| &cut.polygons);
     let mut out = BufWriter::with_capacity(1 << 16, out);
     match format {
         Format::Obj => {
@@ -169,20 +176,22 @@ pub fn write_to(
                 obj::write_tags(creases, &mut out)?;
             }
         }
-        Format::Stl => stl::write_binary(polygons, &mut out)?,
-        Format::StlAscii => stl::write_ascii(polygons, &mut out)?,
+        Format::Stl => stl::write_binary(triangles, &mut out)?,
+        Format::StlAscii => stl::write_ascii(triangles, &mut out)?,
         Format::Ply | Format::PlyBigEndian | Format::PlyAscii => {
             ply::write(polygons, options.complete_normals(), format, &mut out)?;
         }
         Format::Off => off::write(polygons, &mut out)?,
         #[cfg(feature = "gltf")]
         Format::Gltf | Format::Glb => {
-            gltf::write(polygons, options.complete_normals(), format, &mut out)?;
+            gltf::write(triangles, options.complete_normals(), format, &mut out)?;
         }
         #[cfg(not(feature = "gltf"))]
         Format::Gltf | Format::Glb => return Err(WriteError::NoGltf),
     }
-    Ok(out.flush()?)
+    out.flush()?;
+    let crossing = cut.map_or_else(Vec::new, |cut| cut.crossing);
+    Ok(losses(polygons, format, options, &crossing))
 }
 
 /// Options of writing; the default writes positions and faces.
@@ -272,17 +281,7 @@ impl fmt::Display for Numbers {
     }
 }
 
-/// Returns the triangles of `polygons`; each polygon is cut into a fan from its first corner.
-fn triangles(polygons: &PolygonMesh) -> impl Iterator<Item = [VertexId; 3]> {
-    let faces = polygons.faces().iter();
-    faces.flat_map(|(_, face)| {
-        face[1..]
-            .windows(2)
-            .map(move |pair| [face[0], pair[0], pair[1]])
-    })
-}
-
-/// Returns the number of triangles.
+/// Returns the number of triangles of `polygons` after each polygon was cut.
 fn triangle_count(polygons: &PolygonMesh) -> usize {
     polygons.corner_count() - 2 * polygons.face_count()
 }

@@ -6,15 +6,13 @@
 //! | [`face_normals`], [`vertex_normals`] | any | directions | corners | Newell, after Sutherland, Sproull & Schumacker 1974; Thürmer & Wüthrich 1998 |
 //! | [`projected_to_sphere`] | any | positions | vertices | |
 //! | [`dual`] | closed oriented manifolds | polygons | corners | |
-//! | [`triangulated`] | polygons | polygons | at most degree² per face | Meisters 1975 |
 //! | [`oriented`] | polygons | polygons | corners · log corners | |
 //!
 //! An operator queries each face and each edge a fixed number of times, never the neighbours of a
 //! vertex, and stores sums in maps by vertex, edge or face. So no structure scans all faces for
 //! each vertex, and reading the mesh takes O(corners) time for every structure. New positions are
-//! returned as a [`VertexMap`] for [`set_positions`]. The operators [`triangulated`] and
-//! [`oriented`] work on a [`PolygonMesh`], before a structure is built, because some structures
-//! hold only triangles or only oriented meshes.
+//! returned as a [`VertexMap`] for [`set_positions`]. The operator [`oriented`] works on a
+//! [`PolygonMesh`], before a structure is built, because some structures hold only oriented meshes.
 //!
 //! Sums are computed in double precision, so a product of three coordinates neither overflows nor
 //! underflows. Two structures may add the terms of a sum in different orders, so their results may
@@ -22,11 +20,11 @@
 //! ```
 //! use sixfold_half_edge::HalfEdgeMesh;
 //! use sixfold_core::{MeshMove, MeshQuery, Representation};
-//! use sixfold_operators::{Smoothing, Triangulation, oriented, smoothed, triangulated};
+//! use sixfold_operators::{Smoothing, oriented, smoothed};
 //!
 //! let repaired = oriented(&sixfold_shapes::cube(), Default::default())?;
 //! assert!(repaired.reversed.is_empty());
-//! let triangles = triangulated(&repaired.polygons, Triangulation::EarClipping)?;
+//! let triangles = repaired.polygons.triangulated()?.polygons;
 //! let mut mesh = HalfEdgeMesh::from_polygons(&triangles)?;
 //! let moved = smoothed(&mesh, &Smoothing::default())?;
 //! mesh.set_positions(&moved)?;
@@ -39,22 +37,19 @@
 //! [`set_positions`]: sixfold_core::MeshMove::set_positions
 
 mod dual;
-mod ear_clipping;
 mod error;
 mod laplacian;
 mod normals;
 mod orientation;
 mod smoothing;
 mod sphere;
-mod triangulation;
 
 pub use dual::dual;
 pub use error::{DualError, OrientationError, SmoothingError, SphereError};
-pub use normals::{NormalWeights, area_vector, face_normals, vertex_normals};
+pub use normals::{NormalWeights, face_normals, vertex_normals};
 pub use orientation::{
     Components, Facing, NotOrientable, Oriented, OrientedComponents, Reversal, faces_to_reverse,
     oriented, oriented_components,
 };
 pub use smoothing::{Smoothing, SmoothingBoundary, Weights, smoothed};
 pub use sphere::projected_to_sphere;
-pub use triangulation::{Triangulation, clipped_polygon, triangulated};

@@ -1,7 +1,7 @@
 //! Normals of faces and of vertices.
 
 use glam::DVec3;
-use sixfold_core::{FaceMap, MeshQuery, Point, VertexMap};
+use sixfold_core::{FaceMap, MeshQuery, Newell, Point, VertexMap};
 
 /// The weight of a face in the normal of each of its vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,14 +36,6 @@ pub fn face_normals<M: MeshQuery>(mesh: &M) -> FaceMap<M, Point> {
         normals[f] = unit(newell.normal);
     });
     normals
-}
-
-/// Returns the area vector of a polygon, by Newell's method: the direction of the vector is the
-/// normal, and its length is the area in squared units of the coordinates. O(corners).
-pub fn area_vector(corners: impl IntoIterator<Item = DVec3>) -> DVec3 {
-    let mut newell = Newell::default();
-    corners.into_iter().for_each(|p| newell.add(p));
-    newell.normal / 2.0
 }
 
 /// Returns the unit normal of every vertex: the direction of the mean of the normals of its faces,
@@ -107,27 +99,6 @@ fn angle(before: DVec3, after: DVec3, normal: DVec3) -> f64 {
 /// Returns `vector` scaled to length 1, or zero if `vector` has no direction.
 fn unit(vector: DVec3) -> Point {
     vector.normalize_or_zero().as_vec3()
-}
-
-/// Newell's vector of a polygon.
-///
-/// The vector uses corners relative to the first corner, to stay accurate far from the origin.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Newell {
-    /// The sum so far. Its length is twice the area.
-    pub(crate) normal: DVec3,
-    first: Option<DVec3>,
-    spoke: DVec3,
-}
-
-impl Newell {
-    #[inline(always)]
-    pub(crate) fn add(&mut self, at: DVec3) {
-        let first = *self.first.get_or_insert(at);
-        let next = at - first;
-        self.normal += self.spoke.cross(next);
-        self.spoke = next;
-    }
 }
 
 #[cfg(test)]

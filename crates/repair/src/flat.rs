@@ -1,8 +1,7 @@
 //! Removal of faces without area.
 
 use glam::DVec3;
-use sixfold_core::{FaceId, PolygonMesh};
-use sixfold_operators::area_vector;
+use sixfold_core::{FaceId, PolygonMesh, area_vector};
 
 use crate::error::RepairError;
 use crate::outcome::Outcome;

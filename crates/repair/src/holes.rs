@@ -4,8 +4,9 @@ mod minimum_area;
 
 use glam::DVec3;
 use rustc_hash::FxHashSet;
-use sixfold_core::{Capabilities, Incidence, Pair, PolygonMesh, RowId, Slot, VertexId};
-use sixfold_operators::clipped_polygon;
+use sixfold_core::{
+    Capabilities, Incidence, Pair, PolygonCutter, PolygonMesh, RowId, Slot, VertexId,
+};
 
 use crate::error::RepairError;
 use crate::outcome::{Left, Outcome, StepCounts};
@@ -162,7 +163,8 @@ impl Holes {
         if method == HoleFilling::MinimumArea && hole.len() <= MINIMUM_AREA_EDGES {
             return smallest();
         }
-        let ears = clipped_polygon(points.iter().copied(), is_edge);
+        let mut cutter = PolygonCutter::default();
+        let ears = cutter.cut(points.iter().copied(), is_edge).triangles;
         let is_blocked = |&[a, b, c]: &[usize; 3]| {
             let sides = [[a, b], [b, c], [c, a]];
             sides
@@ -172,7 +174,7 @@ impl Holes {
         if ears.iter().any(is_blocked) {
             return smallest();
         }
-        Some(ears)
+        Some(ears.to_vec())
     }
 }
 

@@ -78,7 +78,7 @@ pub use outcome::{Left, StepCounts};
 pub use plan::repair_for;
 pub use report::{Repaired, StepReport};
 #[doc(no_inline)]
-pub use sixfold_operators::{Components, Facing, Triangulation};
+pub use sixfold_operators::{Components, Facing};
 pub use step::{Step, repair};
 pub use trace::ElementMap;
 pub use weld::{Tolerance, Weld, WeldMethod};

@@ -76,6 +76,11 @@ pub enum Left {
         vertex: VertexId,
         edges: usize,
     },
+    /// A polygon that crosses itself; it was cut, but its triangles overlap.
+    CrossingFace {
+        #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::row"))]
+        face: FaceId,
+    },
 }
 
 impl fmt::Display for Left {
@@ -94,6 +99,9 @@ impl fmt::Display for Left {
                 f,
                 "the hole at vertex {vertex} ({edges} edges) has no triangulation without a diagonal that is already an edge"
             ),
+            Self::CrossingFace { face } => {
+                write!(f, "face {face} crosses itself, so its triangles overlap")
+            }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The steps that make a mesh fit a structure.
 
 use sixfold_core::{Capabilities, PolygonMesh};
-use sixfold_operators::{Components, Facing, Triangulation};
+use sixfold_operators::{Components, Facing};
 
 use crate::duplicates::OppositeFaces;
 use crate::error::RepairError;
@@ -38,7 +38,7 @@ fn planned() -> [Planned; 6] {
             needed_without: connectivity,
         },
         Planned {
-            step: Step::Triangulate(Triangulation::EarClipping),
+            step: Step::Triangulate,
             needed_without: |own| Capabilities {
                 polygons: own.polygons,
                 ..Capabilities::ALL
@@ -94,7 +94,7 @@ fn connectivity(own: &Capabilities) -> Capabilities {
 /// # Complexity
 ///
 /// O(n log n) for n corners, except for polygons with many corners
-/// ([`Triangulation::EarClipping`]).
+/// ([`PolygonMesh::triangulated`]).
 ///
 /// # Examples
 ///

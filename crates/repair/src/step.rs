@@ -3,7 +3,7 @@
 use std::fmt;
 
 use sixfold_core::PolygonMesh;
-use sixfold_operators::{Components, Facing, Triangulation};
+use sixfold_operators::{Components, Facing};
 
 use crate::duplicates::OppositeFaces;
 use crate::error::RepairError;
@@ -54,7 +54,7 @@ pub enum Step {
         min_faces: usize,
     },
     /// Cuts every polygon into triangles.
-    Triangulate(Triangulation),
+    Triangulate,
 }
 
 impl Step {
@@ -71,7 +71,7 @@ impl Step {
             Self::RemoveSmallComponents { min_faces } => {
                 remove::small_components(polygons, min_faces)
             }
-            Self::Triangulate(method) => triangulate::triangulate(polygons, method),
+            Self::Triangulate => triangulate::triangulate(polygons),
         }
     }
 
@@ -86,7 +86,7 @@ impl Step {
             Self::FillHoles(_) => "fill holes",
             Self::RemoveIsolatedVertices => "remove isolated vertices",
             Self::RemoveSmallComponents { .. } => "remove small components",
-            Self::Triangulate(_) => "triangulate",
+            Self::Triangulate => "triangulate",
         }
     }
 }

@@ -1,21 +1,21 @@
-//! Triangulation as a step: the algorithm is in `sixfold-operators`.
+//! Triangulation as a step: the algorithm is in `sixfold-core`.
 
-use sixfold_core::{PolygonMesh, Slot};
-use sixfold_operators::{Triangulation, triangulated};
+use sixfold_core::{PolygonMesh, Slot, Triangulated};
 
 use crate::error::RepairError;
-use crate::outcome::{Outcome, StepCounts};
+use crate::outcome::{Left, Outcome, StepCounts};
 use crate::trace::{CornerId, Trace, VertexTrace, corners_of};
 
-/// Cuts polygons into triangles; [`triangulated`] states the time.
-pub(crate) fn triangulate(
-    polygons: &PolygonMesh,
-    method: Triangulation,
-) -> Result<Outcome, RepairError> {
+/// Cuts polygons into triangles; [`PolygonMesh::triangulated`] states the time.
+pub(crate) fn triangulate(polygons: &PolygonMesh) -> Result<Outcome, RepairError> {
     if polygons.first_polygon().is_none() {
         return Ok(Outcome::unchanged());
     }
-    let triangles = triangulated(polygons, method)?;
+    let Triangulated {
+        polygons: triangles,
+        crossing,
+        ..
+    } = polygons.triangulated()?;
     let mut faces = Vec::with_capacity(triangles.face_count());
     let mut corners = Vec::with_capacity(triangles.corner_count());
     // By vertex: its corner in the current polygon.
@@ -44,5 +44,9 @@ pub(crate) fn triangulate(
         corners,
         vertices: VertexTrace::identity(polygons),
     };
-    Ok(Outcome::changed((triangles, trace), counts))
+    let left = crossing.into_iter().map(|face| Left::CrossingFace { face });
+    Ok(Outcome {
+        left: left.collect(),
+        ..Outcome::changed((triangles, trace), counts)
+    })
 }

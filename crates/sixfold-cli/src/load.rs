@@ -11,9 +11,9 @@ use sixfold_study::{Results, StudyMesh, sha256_of};
 use crate::arguments::{ReadFiles, ReadPolygons};
 use crate::failure::Failure;
 use crate::faults_text::SHOWN_PLACES;
-use crate::mesh_files::{cut_polygons, read_mesh, read_mesh_at, shown};
+use crate::mesh_files::{read_mesh, read_mesh_at, shown};
 use crate::text::print_stderr;
-use crate::triangulate::triangulated;
+use crate::triangulate::{cut_polygons, triangulated};
 use sixfold_study::numbers::counted;
 
 /// Maximum number of listed faces that were left out.
@@ -43,7 +43,7 @@ pub(crate) fn for_inspection(
         let (mut study_mesh, left_out, places) = into_study_mesh(path, mesh);
         print_left_out(path, &left_out);
         if triangulate {
-            study_mesh = triangulated(study_mesh)?;
+            study_mesh = triangulated(study_mesh, Some(&places))?;
         }
         let diagnosis = diagnose(&study_mesh.polygons, SHOWN_PLACES);
         return Ok(InspectedMesh {
@@ -74,7 +74,7 @@ pub(crate) fn for_study(
     strict: bool,
     triangulate: bool,
 ) -> Result<StudyMesh, Failure> {
-    let (mut study_mesh, left_out, _) = into_study_mesh(path, read_mesh(path, files)?);
+    let (mut study_mesh, left_out, places) = into_study_mesh(path, read_mesh(path, files)?);
     let file = shown(path);
     if !left_out.is_empty() && strict {
         let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
@@ -99,7 +99,7 @@ pub(crate) fn for_study(
     print_left_out(path, &left_out);
     study_mesh.file_sha256 = file_hash(path);
     if triangulate {
-        study_mesh = triangulated(study_mesh)?;
+        study_mesh = triangulated(study_mesh, Some(&places))?;
     }
     Ok(study_mesh)
 }
@@ -110,19 +110,25 @@ pub(crate) fn with_creases(
     chosen: ReadPolygons,
 ) -> Result<(PolygonMesh, Creases), Failure> {
     let ReadMesh {
-        polygons, creases, ..
+        polygons,
+        creases,
+        places,
+        ..
     } = for_repair(path, chosen.files)?;
-    let polygons = match chosen.triangulate {
-        true => cut_polygons(path, polygons)?,
-        false => polygons,
-    };
-    Ok((polygons, creases))
+    let is_cut = chosen.triangulate && polygons.first_polygon().is_some();
+    if !is_cut {
+        return Ok((polygons, creases));
+    }
+    let study_mesh = StudyMesh::new(shown(path), polygons);
+    Ok((triangulated(study_mesh, Some(&places))?.polygons, creases))
 }
 
 /// A mesh without its degenerate faces, and what reading changed.
 pub(crate) struct ReadMesh {
     pub(crate) polygons: PolygonMesh,
     pub(crate) creases: Creases,
+    /// The places of the vertices and faces in the file.
+    pub(crate) places: PolygonPlaces,
     /// Number of degenerate faces that were left out.
     pub(crate) left_out: usize,
     /// Number of vertices that were joined to others at equal positions.
@@ -135,46 +141,39 @@ pub(crate) struct ReadMesh {
 pub(crate) fn for_repair(path: &Path, files: ReadFiles) -> Result<ReadMesh, Failure> {
     let mut mesh = read_mesh(path, files)?;
     let (joined, ignored) = (mesh.welded_vertices, std::mem::take(&mut mesh.notices));
-    let (polygons, creases, left_out) = without_degenerate(path, mesh);
+    let (creases, unused) = mesh.creases();
+    for crease in &unused {
+        print_stderr(&format!("note: {}: {crease}", shown(path)));
+    }
+    let (polygons, left_out, places) = mesh.into_polygons_with_places();
+    print_left_out(path, &left_out);
     Ok(ReadMesh {
         polygons,
         creases,
-        left_out,
+        places,
+        left_out: left_out.len(),
         joined,
         ignored,
     })
 }
 
-/// Reads two meshes without their degenerate faces. If the option --recentre is set, both are moved
+/// Reads two meshes without their degenerate faces, and cuts polygons into triangles. If the option --recentre is set, both are moved
 /// by the centre of the first one, so that their distance stays.
 pub(crate) fn pair(
     first: &Path,
     second: &Path,
     chosen: ReadPolygons,
 ) -> Result<[PolygonMesh; 2], Failure> {
-    let polygons_of = |path: &Path, mesh: FileMesh| {
-        let (polygons, ..) = without_degenerate(path, mesh);
-        match chosen.triangulate {
-            true => cut_polygons(path, polygons),
-            false => Ok(polygons),
-        }
+    let triangles_of = |path: &Path, mesh: FileMesh| {
+        let (polygons, left_out, places) = mesh.into_polygons_with_places();
+        print_left_out(path, &left_out);
+        cut_polygons(&shown(path), &polygons, Some(&places)).map(|cut| cut.polygons)
     };
     let mesh = read_mesh(first, chosen.files)?;
     let origin = mesh.origin;
-    let first = polygons_of(first, mesh)?;
+    let first = triangles_of(first, mesh)?;
     let mesh = read_mesh_at(second, chosen.files, Some(origin))?;
-    Ok([first, polygons_of(second, mesh)?])
-}
-
-/// Returns the mesh without its degenerate faces, its creases, and the number of degenerate faces.
-fn without_degenerate(path: &Path, mesh: FileMesh) -> (PolygonMesh, Creases, usize) {
-    let (creases, unused) = mesh.creases();
-    for crease in &unused {
-        print_stderr(&format!("note: {}: {crease}", shown(path)));
-    }
-    let (polygons, left_out) = mesh.into_polygons();
-    print_left_out(path, &left_out);
-    (polygons, creases, left_out.len())
+    Ok([first, triangles_of(second, mesh)?])
 }
 
 /// Reads a mesh for a command that drops creases. Prints a note if there are creases.

@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 
 use sixfold::io::{
-    FileMesh, Format, ReadOptions, Welding, WriteOptions, losses, read_from, read_with, write_to,
+    FileMesh, Format, Loss, ReadOptions, Welding, WriteOptions, read_from, read_with, write_to,
 };
 use sixfold::{Point, PolygonMesh};
 
@@ -12,8 +12,6 @@ use crate::arguments::{ReadFiles, WriteFiles};
 use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
 use crate::text::print_stderr;
-use crate::triangulate::triangulated;
-use sixfold_study::StudyMesh;
 use sixfold_study::numbers::counted;
 
 /// Rounding is reported if it moves a vertex by more than this part of the size of the mesh. If the
@@ -108,15 +106,6 @@ fn rounding_note(mesh: &FileMesh, chosen: ReadFiles) -> Option<String> {
     Some(format!("{narrowing}{part}{way_out}"))
 }
 
-/// Cuts the polygons of the mesh in the file at `path`.
-pub(crate) fn cut_polygons(path: &Path, polygons: PolygonMesh) -> Result<PolygonMesh, Failure> {
-    if polygons.first_polygon().is_none() {
-        return Ok(polygons);
-    }
-    let study_mesh = StudyMesh::new(shown(path), polygons);
-    triangulated(study_mesh).map(|study_mesh| study_mesh.polygons)
-}
-
 /// A mesh file that is open for writing.
 pub(crate) struct MeshOutput {
     output: Output,
@@ -148,23 +137,27 @@ impl MeshOutput {
     }
 
     /// Writes a mesh with the data in `options`. Prints a note for everything that the format cannot
-    /// keep.
+    /// keep, and returns it.
     pub(crate) fn write(
         self,
         polygons: &PolygonMesh,
         options: &WriteOptions<'_>,
-    ) -> Result<(), Failure> {
+    ) -> Result<Vec<Loss>, Failure> {
         let Self {
             output,
             name,
             format,
         } = self;
-        output.finish(|to| Ok(write_to(polygons, format, options, to)?))?;
-        for loss in losses(polygons, format, options) {
+        let mut losses = Vec::new();
+        output.finish(|to| {
+            losses = write_to(polygons, format, options, to)?;
+            Ok(())
+        })?;
+        for loss in &losses {
             print_stderr(&format!(
                 "note: {name}: {loss}, because {format} cannot keep more"
             ));
         }
-        Ok(())
+        Ok(losses)
     }
 }

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use serde::Serialize;
-use sixfold::io::{Format, Loss, WriteOptions, losses};
+use sixfold::io::{Format, Loss, WriteOptions};
 use sixfold::repair::{RepairError, Repaired, Step, StepReport, Weld, repair, repair_for};
 use sixfold::{Creases, PolygonMesh, StructureInfo, structure_infos};
 
@@ -65,9 +65,8 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
     }
     let options = WriteOptions::default().with_creases(&creases);
     let format = output.format;
-    output.write(&repaired.polygons, &options)?;
+    let losses = output.write(&repaired.polygons, &options)?;
     if let Some(json) = json {
-        let losses = losses(&repaired.polygons, format, &options);
         let report = Report::new(&read, &repaired, lost, &losses);
         json.write_json(&report)?;
     }

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use sixfold::io::WriteOptions;
-use sixfold::operators::{Smoothing, SmoothingError, dual, oriented, smoothed, triangulated};
+use sixfold::operators::{Smoothing, SmoothingError, dual, oriented, smoothed};
 use sixfold::{PolygonMesh, Representation, Visitor, visit};
 
 use crate::arguments::{Dual, MeshInOut, ReadPolygons, Smooth, Triangulate};
@@ -34,19 +34,15 @@ pub(crate) fn make_dual(arguments: &Dual) -> Result<ExitCode, Failure> {
 
 pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> {
     let read = ReadPolygons {
-        triangulate: false, // the command itself cuts polygons
+        triangulate: true,
         files: arguments.read,
     };
-    reshape_file(&arguments.files, read, "triangles", |polygons| {
-        let polygons = match arguments.orient {
-            Some(facing) => {
-                oriented(polygons, facing)
-                    .map_err(Failure::unsupported)?
-                    .polygons
-            }
-            None => polygons.clone(),
+    reshape_file(&arguments.files, read, "triangles", |triangles| {
+        let Some(facing) = arguments.orient else {
+            return Ok(triangles.clone());
         };
-        triangulated(&polygons, arguments.method).map_err(Failure::unsupported)
+        let oriented = oriented(triangles, facing).map_err(Failure::unsupported)?;
+        Ok(oriented.polygons)
     })
 }
 

@@ -22,7 +22,7 @@ fn mesh(path: Option<&Path>, explained: &Explained) -> Result<(String, PolygonMe
     let Some(path) = path else {
         let cube = StudyMesh::new("cube", shapes::cube());
         let cube = match explained.triangulate {
-            true => triangulated(cube)?,
+            true => triangulated(cube, None)?,
             false => cube,
         };
         return Ok((cube.name, cube.polygons));

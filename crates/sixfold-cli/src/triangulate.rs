@@ -1,19 +1,62 @@
 //! The option `--triangulate`: cuts polygons into triangles.
 
-use sixfold::glam::DVec3;
-use sixfold::{Facts, PolygonMesh, VertexId};
+use sixfold::io::PolygonPlaces;
+use sixfold::{FaceId, Facts, PolygonMesh, Triangulated, VertexId};
 use sixfold_study::StudyMesh;
 
 use crate::failure::Failure;
 use crate::text::print_stderr;
 use sixfold_study::numbers::{counted, grouped};
 
-/// Cuts every polygon into a fan of triangles. Records and prints all other changes of the mesh.
-pub(crate) fn triangulated(study_mesh: StudyMesh) -> Result<StudyMesh, Failure> {
+/// Maximum number of listed faces.
+const SHOWN: usize = 5;
+
+/// Cuts every polygon into triangles, and prints which polygons cross themselves. `places` are those
+/// of the faces in the file with the name `name`.
+pub(crate) fn cut_polygons(
+    name: &str,
+    polygons: &PolygonMesh,
+    places: Option<&PolygonPlaces>,
+) -> Result<Triangulated, Failure> {
+    let cut = polygons
+        .triangulated()
+        .map_err(|error| Failure::usage(format!("{name}: {error}")))?;
+    if !cut.crossing.is_empty() {
+        print_stderr(&format!("note: {name}: {}:", crossing(cut.crossing.len())));
+        for &face in cut.crossing.iter().take(SHOWN) {
+            print_stderr(&format!("note:   {}", place_of(face, polygons, places)));
+        }
+        if cut.crossing.len() > SHOWN {
+            print_stderr(&format!("note:   and {} more", cut.crossing.len() - SHOWN));
+        }
+    }
+    Ok(cut)
+}
+
+/// Describes faces that cross themselves.
+fn crossing(faces: usize) -> String {
+    let faces = counted(faces, "face crosses itself", "faces cross themselves");
+    format!("{faces}, so the triangles overlap")
+}
+
+fn place_of(face: FaceId, polygons: &PolygonMesh, places: Option<&PolygonPlaces>) -> String {
+    match places {
+        Some(places) => format!("{}: face {face}", places.place(face, polygons)),
+        None => format!("face {face}"),
+    }
+}
+
+/// Cuts every polygon into triangles. Records and prints all other changes of the mesh.
+pub(crate) fn triangulated(
+    study_mesh: StudyMesh,
+    places: Option<&PolygonPlaces>,
+) -> Result<StudyMesh, Failure> {
     let old = &study_mesh.polygons;
-    let polygons = old
-        .fan_triangulated()
-        .map_err(|error| Failure::usage(format!("{}: {error}", study_mesh.name)))?;
+    let Triangulated {
+        polygons,
+        crossing: crossed,
+        ..
+    } = cut_polygons(&study_mesh.name, old, places)?;
     if polygons.face_count() == old.face_count() {
         return Ok(study_mesh);
     }
@@ -22,14 +65,7 @@ pub(crate) fn triangulated(study_mesh: StudyMesh) -> Result<StudyMesh, Failure> 
     let faces = counted(old.face_count(), "face", "faces");
     let triangles = counted(polygons.face_count(), "triangle", "triangles");
     let facts = Facts::from_polygons(&polygons);
-    let mut side_effects = differences(&Facts::from_polygons(old), &facts);
-    let folded = folded_fans(old);
-    if folded > 0 {
-        let fans = counted(folded, "fan folds over", "fans fold over");
-        side_effects.push(format!(
-            "{fans}, because the faces are not star-shaped around their first corners"
-        ));
-    }
+    let side_effects = differences(&Facts::from_polygons(old), &facts);
     for effect in &side_effects {
         print_stderr(&format!(
             "note: {}: --triangulate has a side effect: {effect}",
@@ -39,6 +75,9 @@ pub(crate) fn triangulated(study_mesh: StudyMesh) -> Result<StudyMesh, Failure> 
     let mut changes = study_mesh.changes;
     changes.push(format!("cut {faces} into {triangles}"));
     changes.extend(side_effects);
+    if !crossed.is_empty() {
+        changes.push(crossing(crossed.len()));
+    }
     Ok(StudyMesh {
         name: study_mesh.name,
         // The facts describe the cut mesh, except for the number of degenerate faces.
@@ -81,27 +120,4 @@ fn differences(old: &Facts, new: &Facts) -> Vec<String> {
     changed
         .map(|(what, old, new)| format!("{what}: {} before, {} now", grouped(old), grouped(new)))
         .collect()
-}
-
-/// Counts the faces whose fan has a triangle with the opposite orientation; O(corners).
-fn folded_fans(mesh: &PolygonMesh) -> usize {
-    let faces = mesh.faces().iter();
-    faces.filter(|(_, face)| folds(mesh, face)).count()
-}
-
-fn folds(mesh: &PolygonMesh, face: &[VertexId]) -> bool {
-    let at = |v: VertexId| mesh.position(v).as_dvec3();
-    let Some((&first, rest)) = face.split_first() else {
-        return false;
-    };
-    let first = at(first);
-    // The sum of the cross products is the normal of the face. The length of the normal is twice
-    // the area.
-    let triangles = || {
-        rest.windows(2)
-            .map(|pair| (at(pair[0]) - first).cross(at(pair[1]) - first))
-    };
-    let normal: DVec3 = triangles().sum();
-    // Collinear corners give triangles with area 0. The tolerance allows for rounding errors.
-    triangles().any(|triangle| triangle.dot(normal) < -1e-6 * normal.length_squared())
 }

@@ -253,7 +253,8 @@ pub use sixfold_core::{
 #[doc(inline)]
 pub use sixfold_core::{
     BoundaryLoop, Counts, Creases, Distribution, EdgeUse, FaceList, FaceSpans, Facts,
-    MemoryFootprint, Point, PolygonMesh, SHARPNESS_INFINITE, TableBytes,
+    MemoryFootprint, Point, PolygonCutter, PolygonMesh, PolygonTriangles, SHARPNESS_INFINITE,
+    TableBytes, Triangulated, area_vector,
 };
 // The crate that defines `Point`.
 #[doc(no_inline)]

@@ -67,8 +67,8 @@ impl MeshDistance {
 ///
 /// Each surface is sampled evenly by area, and the closest point of the other surface is computed for
 /// each sample and each vertex, as in Metro (Cignoni, Rocchini & Scopigno 1998). The closest points
-/// are exact; the means are estimates. Polygons are measured as the fans of
-/// [`polygon_triangles`]. With the feature `rayon`, the threads of the current pool share the
+/// are exact; the means are estimates. Polygons are measured as the triangles
+/// of [`polygon_triangles`]. With the feature `rayon`, the threads of the current pool share the
 /// queries; the result has the same bits on any number of threads.
 ///
 /// O((faces + samples) · log faces) expected.

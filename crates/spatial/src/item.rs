@@ -1,7 +1,7 @@
 //! The items of an index: vertices with their positions, and the triangles of faces.
 
 use glam::{DVec3, Vec3};
-use sixfold_core::{FaceId, MAX_ROWS, MeshQuery, PolygonMesh, VertexId, row};
+use sixfold_core::{FaceId, MAX_ROWS, MeshQuery, PolygonCutter, PolygonMesh, VertexId, row};
 
 use crate::bounds::Bounds;
 use crate::error::SpatialError;
@@ -39,8 +39,8 @@ impl<V: Copy + Send + Sync> Item for VertexPoint<V> {
     }
 }
 
-/// A triangle of a face. A polygon has several: the fan from its first corner. `F` is any name with
-/// an order, usually the handle of a structure.
+/// A triangle of a face. A polygon has several. `F` is any name with an order, usually the handle of a
+/// structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceTriangle<F> {
     /// The name of the face.
@@ -131,27 +131,28 @@ fn position_not_finite(vertex: usize, position: Vec3) -> SpatialError {
     }
 }
 
-/// Returns the triangles of the faces of `mesh`, in the order of `faces()`; O(corners).
+/// Returns the triangles of the faces of `mesh`, in the order of `faces()`; O(corners) for faces of
+/// bounded degree.
 ///
-/// A polygon is cut into the fan from its first corner. For convex planar polygons the fan is the
-/// polygon; for other polygons the fan *is* the surface that the queries see.
+/// A polygon is cut by a [`PolygonCutter`], whose documentation says which polygons have triangles
+/// that do not overlap, and how long this takes. The triangles of a polygon that crosses itself
+/// overlap.
 ///
 /// # Errors
 ///
 /// [`SpatialError::PositionNotFinite`] for the first vertex without a finite position, if it is a
 /// corner of a face.
 pub fn face_triangles<M: MeshQuery>(mesh: &M) -> Result<Vec<FaceTriangle<M::Face>>, SpatialError> {
-    let mut triangles = Vec::with_capacity(mesh.face_count());
+    let mut triangles = Triangles::new(mesh.face_count());
     mesh.faces().for_each(|face| {
         let corners = mesh.face_vertices(face).map(|v| mesh.position(v));
-        push_fan(&mut triangles, face, corners);
+        triangles.push_face(face, corners);
     });
     let positions = || mesh.vertices().map(|v| mesh.position(v));
-    finite_triangles(triangles, positions)
+    finite_triangles(triangles.list, positions)
 }
 
-/// Returns the triangles of the faces of `polygons`, in their order, as [`face_triangles`] does;
-/// O(corners).
+/// Returns the triangles of the faces of `polygons`, in their order, as [`face_triangles`] does.
 ///
 /// # Errors
 ///
@@ -160,30 +161,50 @@ pub fn face_triangles<M: MeshQuery>(mesh: &M) -> Result<Vec<FaceTriangle<M::Face
 pub fn polygon_triangles(
     polygons: &PolygonMesh,
 ) -> Result<Vec<FaceTriangle<FaceId>>, SpatialError> {
-    let mut triangles = Vec::with_capacity(polygons.face_count());
+    let mut triangles = Triangles::new(polygons.face_count());
     for (face, corners) in polygons.faces().iter() {
         let corners = corners.iter().map(|&v| polygons.position(v));
-        push_fan(&mut triangles, face, corners);
+        triangles.push_face(face, corners);
     }
-    finite_triangles(triangles, || polygons.positions().iter().copied())
+    finite_triangles(triangles.list, || polygons.positions().iter().copied())
 }
 
-/// Appends the fan of triangles from the first of `corners`.
-#[inline]
-fn push_fan<F: Copy>(
-    triangles: &mut Vec<FaceTriangle<F>>,
-    face: F,
-    mut corners: impl Iterator<Item = Vec3>,
-) {
-    let (Some(first), Some(mut before)) = (corners.next(), corners.next()) else {
-        return; // unreachable: a face has at least three corners
-    };
-    for corner in corners {
-        triangles.push(FaceTriangle {
+/// The triangles of the faces so far.
+struct Triangles<F> {
+    list: Vec<FaceTriangle<F>>,
+    cutter: PolygonCutter,
+    corners: Vec<Vec3>,
+}
+
+impl<F: Copy> Triangles<F> {
+    fn new(faces: usize) -> Self {
+        Self {
+            list: Vec::with_capacity(faces),
+            cutter: PolygonCutter::default(),
+            corners: Vec::new(),
+        }
+    }
+
+    /// Appends the triangles of a face.
+    #[inline]
+    fn push_face(&mut self, face: F, corners: impl Iterator<Item = Vec3>) {
+        let Self {
+            list,
+            cutter,
+            corners: points,
+        } = self;
+        points.clear();
+        points.extend(corners);
+        if let &[a, b, c] = points.as_slice() {
+            let corners = [a, b, c];
+            list.push(FaceTriangle { face, corners });
+            return;
+        }
+        let cut = cutter.cut(points.iter().map(|p| p.as_dvec3()), |_, _| false);
+        list.extend(cut.triangles.iter().map(|triangle| FaceTriangle {
             face,
-            corners: [first, before, corner],
-        });
-        before = corner;
+            corners: triangle.map(|i| points[i]),
+        }));
     }
 }
 

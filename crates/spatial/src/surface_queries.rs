@@ -188,7 +188,7 @@ pub trait SurfaceQueries<F: Copy + Ord + Send + Sync>: SpatialIndex<FaceTriangle
 
     /// Calls `visit` with each hit of `ray` up to parameter `limit`, in an order that depends on the
     /// index. Where the ray passes through a side, both faces are hit; a polygon is hit twice on a
-    /// diagonal of its fan.
+    /// diagonal along which it is cut.
     #[inline]
     fn for_each_hit(&self, ray: &Ray, limit: f64, mut visit: impl FnMut(RayHit<F>)) {
         let items = self.items();

@@ -5,7 +5,7 @@
 //! repaired mesh must be one that the structure holds.
 
 use sixfold::io::{
-    FileMesh, Format, ReadOptions, Welding, WriteOptions, losses, parse_creases, read_from, write_creases,
+    FileMesh, Format, ReadOptions, Welding, WriteOptions, parse_creases, read_from, write_creases,
     write_to,
 };
 use sixfold::repair::{Step, diagnose, repair, repair_for};
@@ -49,14 +49,14 @@ fn check_mesh(mesh: FileMesh) {
 fn round_trip(polygons: &PolygonMesh, format: Format) {
     let options = WriteOptions::default();
     let mut bytes = Vec::new();
-    if write_to(polygons, format, &options, &mut bytes).is_err() {
+    let Ok(losses) = write_to(polygons, format, &options, &mut bytes) else {
         return;
-    }
+    };
     let as_stored = ReadOptions::default().with_welding(Welding::Nothing);
     let name = format!("a.{}", format.extension());
     let back =
         read_from(&name, bytes.as_slice(), &as_stored).unwrap_or_else(|error| panic!("{error}"));
-    if losses(polygons, format, &options).is_empty() {
+    if losses.is_empty() {
         let back = back.into_polygons().0;
         assert_eq!(back.faces(), polygons.faces(), "{format}");
         assert!(back.positions() == polygons.positions(), "{format}");

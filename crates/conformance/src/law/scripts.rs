@@ -43,7 +43,7 @@ pub(super) fn on_random_scripts<M: Representation>(
         if M::CAPABILITIES.polygons {
             polygons
         } else {
-            polygons.fan_triangulated().expect("small")
+            polygons.triangulated().expect("small").polygons
         }
     });
     let cases =

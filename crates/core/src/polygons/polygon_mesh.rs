@@ -210,30 +210,6 @@ impl PolygonMesh {
         }
         Self { positions, faces }
     }
-
-    /// Returns the mesh with every polygon cut into a fan of triangles from its first corner;
-    /// O(corners).
-    ///
-    /// The triangles of a convex polygon do not overlap; the triangles of another polygon may
-    /// overlap. If two polygons share two corners that are not adjacent, both polygons may be cut
-    /// along the same edge. The vertices are unchanged.
-    ///
-    /// # Errors
-    ///
-    /// [`PolygonError::TooMany`] if the triangles have more than [`MAX_ROWS`] corners.
-    pub fn fan_triangulated(&self) -> Result<Self, PolygonError> {
-        let mut faces = FaceList::with_capacity(self.corner_count());
-        for (_, face) in self.faces.iter() {
-            for pair in face[1..].windows(2) {
-                let triangle = [face[0], pair[0], pair[1]];
-                faces.push(triangle)?;
-            }
-        }
-        Ok(Self {
-            positions: self.positions.clone(),
-            faces,
-        })
-    }
 }
 
 /// Prints the numbers of vertices and faces, for example `8 vertices, 6 faces`.
@@ -340,13 +316,6 @@ mod tests {
                 PolygonError::RepeatedVertex { face, vertex }
             );
         }
-    }
-
-    #[test]
-    fn a_fan_has_two_triangles_fewer_than_corners() {
-        let square = PolygonMesh::new(SQUARE, [[0, 1, 2, 3]]).expect("valid");
-        let fan = PolygonMesh::new(SQUARE, [[0, 1, 2], [0, 2, 3]]).expect("valid");
-        assert_eq!(square.fan_triangulated(), Ok(fan));
     }
 
     #[test]

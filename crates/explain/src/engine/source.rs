@@ -15,7 +15,7 @@ use super::Error;
 pub(super) const MOST_CORNERS: usize = 400_000;
 
 /// Maximum number of faces that a note lists.
-const SHOWN: usize = 5;
+pub(super) const SHOWN: usize = 5;
 
 /// Where the mesh comes from.
 #[derive(Deserialize)]

@@ -7,7 +7,7 @@ use base64::write::EncoderWriter;
 use serde_json::{Value, json};
 use sixfold_core::{Point, PolygonMesh, RowId};
 
-use super::{WriteError, triangle_count, triangles};
+use super::{WriteError, triangle_count};
 use crate::format::Format;
 
 /// Codes of glTF.
@@ -21,21 +21,22 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 /// The place of a `uri` in the JSON text; base64 text takes its place.
 const DATA_MARK: &str = "data:application/octet-stream;base64,";
 
+/// Writes a mesh of triangles.
 pub(super) fn write(
-    polygons: &PolygonMesh,
+    triangles: &PolygonMesh,
     normals: &[Option<Point>],
     format: Format,
     out: &mut impl Write,
 ) -> Result<(), WriteError> {
-    let layout = Layout::new(polygons, normals);
-    let json = layout.document(polygons, format).to_string();
+    let layout = Layout::new(triangles, normals);
+    let json = layout.document(triangles, format).to_string();
     if format == Format::Gltf {
         let (before, after) = json.split_once(DATA_MARK).unwrap_or((&json, ""));
         out.write_all(before.as_bytes())?;
         if !after.is_empty() {
             out.write_all(DATA_MARK.as_bytes())?;
             let mut encoder = EncoderWriter::new(&mut *out, &STANDARD);
-            write_data(polygons, normals, &mut encoder)?;
+            write_data(triangles, normals, &mut encoder)?;
             encoder.finish()?;
         }
         out.write_all(after.as_bytes())?;
@@ -57,7 +58,7 @@ pub(super) fn write(
     if data_length > 0 {
         out.write_all(&data_length.to_le_bytes())?;
         out.write_all(b"BIN\0")?;
-        write_data(polygons, normals, out)?;
+        write_data(triangles, normals, out)?;
     }
     Ok(())
 }
@@ -105,16 +106,16 @@ impl Glb {
 
 /// Writes positions, normals and indices.
 fn write_data(
-    polygons: &PolygonMesh,
+    triangles: &PolygonMesh,
     normals: &[Option<Point>],
     out: &mut impl Write,
 ) -> io::Result<()> {
-    for point in polygons.positions().iter().chain(normals.iter().flatten()) {
+    for point in triangles.positions().iter().chain(normals.iter().flatten()) {
         for x in point.to_array() {
             out.write_all(&x.to_le_bytes())?;
         }
     }
-    for v in triangles(polygons).flatten() {
+    for v in triangles.faces().corners() {
         out.write_all(&v.row().to_le_bytes())?;
     }
     Ok(())

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use sixfold_core::{Point, PolygonMesh};
+use sixfold_core::{FaceId, Point, PolygonMesh};
 
 use super::WriteOptions;
 use crate::format::Format;
@@ -20,6 +20,13 @@ pub enum Loss {
     EqualPositions(usize),
     /// This many faces with more than three corners, which are cut into triangles.
     Polygons(usize),
+    /// Faces that cross themselves, and overlap after they are cut into triangles.
+    CrossingPolygons {
+        /// How many there are.
+        count: usize,
+        /// The first of them.
+        first: FaceId,
+    },
     /// This many vertices without a face.
     IsolatedVertices(usize),
     /// The normals of this many vertices.
@@ -45,6 +52,15 @@ impl fmt::Display for Loss {
             }
             Self::Polygons(1) => f.write_str("1 polygon is cut into triangles"),
             Self::Polygons(count) => write!(f, "{count} polygons are cut into triangles"),
+            Self::CrossingPolygons { count: 1, first } => {
+                write!(f, "face {first} crosses itself, so its triangles overlap")
+            }
+            Self::CrossingPolygons { count, first } => {
+                write!(
+                    f,
+                    "{count} faces cross themselves, so their triangles overlap; the first is {first}"
+                )
+            }
             Self::IsolatedVertices(1) => f.write_str("1 vertex without a face is left out"),
             Self::IsolatedVertices(count) => {
                 write!(f, "{count} vertices without a face are left out")
@@ -66,6 +82,7 @@ impl Loss {
             Self::SharedVertices => "shared vertices",
             Self::EqualPositions(_) => "vertices at positions of other vertices",
             Self::Polygons(_) => "polygons",
+            Self::CrossingPolygons { .. } => "polygons that cross themselves",
             Self::IsolatedVertices(_) => "vertices without a face",
             Self::Normals(_) => "normals",
             Self::Creases(_) => "sharp edges and vertices",
@@ -78,6 +95,7 @@ impl Loss {
             Self::SharedVertices => None,
             Self::EqualPositions(count)
             | Self::Polygons(count)
+            | Self::CrossingPolygons { count, .. }
             | Self::IsolatedVertices(count)
             | Self::Normals(count)
             | Self::Creases(count) => Some(count),
@@ -86,7 +104,13 @@ impl Loss {
 }
 
 /// Returns what `format` cannot keep of `polygons` and of the data in `options`; O(corners) expected.
-pub fn losses(polygons: &PolygonMesh, format: Format, options: &WriteOptions<'_>) -> Vec<Loss> {
+/// `crossing` are the polygons that crossed themselves when they were cut.
+pub(super) fn losses(
+    polygons: &PolygonMesh,
+    format: Format,
+    options: &WriteOptions<'_>,
+    crossing: &[FaceId],
+) -> Vec<Loss> {
     let mut losses = Vec::new();
     let is_stl = format.is_stl();
     let mut used = Vec::new();
@@ -95,12 +119,16 @@ pub fn losses(polygons: &PolygonMesh, format: Format, options: &WriteOptions<'_>
         used = used_vertices(polygons);
         losses.push(Loss::EqualPositions(repeated_positions(polygons, &used)));
     }
-    if is_stl || matches!(format, Format::Gltf | Format::Glb) {
+    if !format.holds_polygons() {
         let faces = polygons.faces().iter();
         losses.push(Loss::Polygons(
             faces.filter(|(_, face)| face.len() > 3).count(),
         ));
     }
+    losses.extend(crossing.first().map(|&first| Loss::CrossingPolygons {
+        count: crossing.len(),
+        first,
+    }));
     if is_stl {
         losses.push(Loss::IsolatedVertices(
             used.iter().filter(|used| !**used).count(),

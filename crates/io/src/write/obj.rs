@@ -79,7 +79,7 @@ mod tests {
     use crate::write::{WriteError, WriteOptions, write_to};
 
     fn written(mesh: &PolygonMesh, out: impl Write) -> Result<(), WriteError> {
-        write_to(mesh, Format::Obj, &WriteOptions::default(), out)
+        write_to(mesh, Format::Obj, &WriteOptions::default(), out).map(drop)
     }
 
     #[test]

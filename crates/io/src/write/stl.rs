@@ -5,21 +5,20 @@ use std::io::{self, Write};
 use sixfold_core::glam::DVec3;
 use sixfold_core::{Point, PolygonMesh, row};
 
-use super::{Numbers, triangle_count, triangles};
+use super::Numbers;
 use crate::format::STL_HEADER;
 
 /// The text at the start of a binary file. It must not begin with `solid`.
 const TITLE: &[u8] = b"binary STL";
 
-pub(super) fn write_binary(polygons: &PolygonMesh, out: &mut impl Write) -> io::Result<()> {
+/// Writes a mesh of triangles.
+pub(super) fn write_binary(triangles: &PolygonMesh, out: &mut impl Write) -> io::Result<()> {
     let mut header = [b' '; STL_HEADER];
     header[..TITLE.len()].copy_from_slice(TITLE);
-    // There are at least as many corners as triangles, so the number fits 32 bits.
-    let count = row(triangle_count(polygons));
+    let count = row(triangles.face_count());
     header[STL_HEADER - 4..].copy_from_slice(&count.to_le_bytes());
     out.write_all(&header)?;
-    for triangle in triangles(polygons) {
-        let corners = triangle.map(|v| polygons.position(v));
+    for corners in corners(triangles) {
         for point in [normal(corners)].into_iter().chain(corners) {
             for x in point.to_array() {
                 out.write_all(&x.to_le_bytes())?;
@@ -30,10 +29,10 @@ pub(super) fn write_binary(polygons: &PolygonMesh, out: &mut impl Write) -> io::
     Ok(())
 }
 
-pub(super) fn write_ascii(polygons: &PolygonMesh, out: &mut impl Write) -> io::Result<()> {
+/// Writes a mesh of triangles.
+pub(super) fn write_ascii(triangles: &PolygonMesh, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "solid mesh")?;
-    for triangle in triangles(polygons) {
-        let corners = triangle.map(|v| polygons.position(v));
+    for corners in corners(triangles) {
         writeln!(out, "facet normal {}\nouter loop", Numbers(normal(corners)))?;
         for point in corners {
             writeln!(out, "vertex {}", Numbers(point))?;
@@ -41,6 +40,12 @@ pub(super) fn write_ascii(polygons: &PolygonMesh, out: &mut impl Write) -> io::R
         writeln!(out, "endloop\nendfacet")?;
     }
     writeln!(out, "endsolid mesh")
+}
+
+/// Returns the positions of the corners of each triangle.
+fn corners(triangles: &PolygonMesh) -> impl Iterator<Item = [Point; 3]> {
+    let all = triangles.faces().corners().as_chunks::<3>().0.iter();
+    all.map(|triangle| triangle.map(|v| triangles.position(v)))
 }
 
 /// Returns the unit normal of a triangle; zero if the triangle has no area.

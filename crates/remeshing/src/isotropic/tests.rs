@@ -23,8 +23,9 @@ fn lengths(mesh: &EditableHalfEdgeMesh) -> Vec<f64> {
 fn edges_get_the_requested_length() {
     let sphere = sixfold_shapes::uv_sphere(24, 9)
         .expect("small")
-        .fan_triangulated()
-        .expect("small");
+        .triangulated()
+        .expect("small")
+        .polygons;
     for length in [0.15, 0.3] {
         let (mesh, report) = remeshed(&sphere, &Remeshing::with_edge_length(length));
         assert_eq!(report.stop, Stop::Done);

@@ -3,8 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
-use sixfold_core::{FaceId, PolygonMesh, RowId};
-use sixfold_operators::area_vector;
+use sixfold_core::{FaceId, PolygonMesh, RowId, area_vector};
 
 use super::{Sides, TwoWay, faces_of_corners};
 use crate::trace::CornerId;

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use sixfold_core::{Capabilities, FaceId, VertexId};
-use sixfold_operators::{Components, Facing, Triangulation};
+use sixfold_operators::{Components, Facing};
 
 use crate::duplicates::OppositeFaces;
 use crate::holes::FillHoles;
@@ -165,7 +165,7 @@ impl FaultKind {
             which: Components::All,
         };
         match self {
-            Self::Polygon => vec![Step::Triangulate(Triangulation::EarClipping)],
+            Self::Polygon => vec![Step::Triangulate],
             Self::RepeatedSide => vec![orient, Step::Cut],
             Self::NonManifoldEdge | Self::NonManifoldVertex | Self::NotOrientable => {
                 vec![Step::Cut]

@@ -13,7 +13,7 @@ use sixfold_indexed_face_set::IndexedFaceSet;
 use sixfold_polygon_soup::PolygonSoup;
 use sixfold_repair::{
     Components, Facing, FillHoles, HoleFilling, OppositeFaces, Repaired, Step, StepCounts,
-    Tolerance, Triangulation, Weld, WeldMethod, repair, repair_for,
+    Tolerance, Weld, WeldMethod, repair, repair_for,
 };
 use sixfold_winged_edge::WingedEdgeMesh;
 
@@ -118,8 +118,7 @@ fn any_step() -> impl Strategy<Value = Step> {
         Just(Step::Cut),
         Just(Step::RemoveIsolatedVertices),
         (0..4_usize).prop_map(|min_faces| Step::RemoveSmallComponents { min_faces }),
-        Just(Step::Triangulate(Triangulation::EarClipping)),
-        Just(Step::Triangulate(Triangulation::Fan)),
+        Just(Step::Triangulate),
     ]
 }
 

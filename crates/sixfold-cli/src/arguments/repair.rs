@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use sixfold::operators::{Facing, Triangulation};
+use sixfold::operators::Facing;
 use sixfold::repair::{
     Components, FillHoles, HoleFilling, OppositeFaces, Step, Tolerance, Weld, WeldMethod,
 };
@@ -106,8 +106,7 @@ impl Repair {
             duplicates.then_some(Step::RemoveDuplicateFaces(opposite)),
             self.flat.then_some(Step::RemoveFlatFaces),
             components.map(|min_faces| Step::RemoveSmallComponents { min_faces }),
-            self.triangulate
-                .then_some(Step::Triangulate(Triangulation::EarClipping)),
+            self.triangulate.then_some(Step::Triangulate),
             orient,
             self.cut.then_some(Step::Cut),
             holes,
@@ -125,7 +124,7 @@ pub(crate) fn repair_options(steps: &[Step]) -> String {
         Step::RemoveDuplicateFaces(OppositeFaces::Keep) => "--duplicates",
         Step::RemoveDuplicateFaces(OppositeFaces::Remove) => "--opposite",
         Step::RemoveFlatFaces => "--flat",
-        Step::Triangulate(_) => "--triangulate",
+        Step::Triangulate => "--triangulate",
         Step::Orient { facing, .. } => match facing {
             Facing::Majority => "--orient majority",
             Facing::Outward => "--orient outward",

@@ -1,7 +1,7 @@
 //! Arguments of `sixfold smooth`, `dual` and `triangulate`.
 
 use clap::Args;
-use sixfold::operators::{Facing, SmoothingBoundary, Triangulation, Weights};
+use sixfold::operators::{Facing, SmoothingBoundary, Weights};
 
 use super::{MeshInOut, ReadFiles, ReadPolygons, backend};
 
@@ -71,7 +71,6 @@ pub(crate) struct Dual {
 
 const TRIANGULATE_EXAMPLES: &str = "Examples:
   sixfold triangulate plan.obj -o triangles.obj
-  sixfold triangulate quads.obj --method fan -o triangles.obj
   sixfold triangulate scan.obj --orient outward -o consistent.obj
 
 Exit codes: 0 success; 2 wrong usage or unusable input; 3 the mesh cannot be oriented;
@@ -85,9 +84,6 @@ Exit codes: 0 success; 2 wrong usage or unusable input; 3 the mesh cannot be ori
 pub(crate) struct Triangulate {
     #[command(flatten)]
     pub(crate) files: MeshInOut,
-    /// ears (for any simple polygon) or fan (for convex polygons)
-    #[arg(long, value_name = "NAME", default_value = "ears")]
-    pub(crate) method: Triangulation,
     /// Flip faces to one orientation: majority (of the faces) or outward
     #[arg(long, value_name = "RULE")]
     pub(crate) orient: Option<Facing>,

@@ -63,7 +63,8 @@ impl Limits {
         output.write(
             &self.moved,
             &WriteOptions::default().with_normals(&self.normals),
-        )
+        )?;
+        Ok(())
     }
 
     /// Describes the limits in lines. `path` is the file of the limits.

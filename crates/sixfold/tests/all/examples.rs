@@ -98,7 +98,7 @@ fn taubin_smoothing_keeps_the_boundary() {
 
 #[test]
 fn regions_are_the_sides_of_a_cube() {
-    let polygons = cube().fan_triangulated().expect("triangles");
+    let polygons = cube().triangulated().expect("triangles").polygons;
     for_each_representation!(M => {
         let mesh: M = build(&polygons);
         let (regions, count) = regions::regions(&mesh, 20.0);
@@ -113,7 +113,7 @@ fn regions_are_the_sides_of_a_cube() {
 
 #[test]
 fn feature_lines_end_at_branching_vertices_or_are_closed() {
-    let polygons = cube().fan_triangulated().expect("triangles");
+    let polygons = cube().triangulated().expect("triangles").polygons;
     for_each_representation!(M => {
         let mesh: M = build(&polygons);
         let lines = feature_lines::feature_lines(&mesh, 30.0);

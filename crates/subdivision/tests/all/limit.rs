@@ -426,7 +426,7 @@ proptest! {
     ) {
         let scheme = Subdivision { boundary, ..Subdivision::new(scheme) };
         let polygons = match scheme.scheme {
-            Scheme::Loop => polygons.fan_triangulated().expect("small"),
+            Scheme::Loop => polygons.triangulated().expect("small").polygons,
             _ => polygons,
         };
         let sharpness = |kind: usize| [0.7, 1.0, 2.5, 10.0, f32::INFINITY][kind];

@@ -1,0 +1,335 @@
+//! Triangulation: cuts polygons into triangles on the same vertices.
+
+mod conflicts;
+mod ears;
+mod exhaustive;
+mod plane;
+
+use glam::{DVec2, DVec3};
+
+use self::ears::{EarClipping, Shape};
+use crate::handles::pair::Pair;
+use crate::handles::row_id::{FaceId, VertexId};
+use crate::polygons::error::PolygonError;
+use crate::polygons::face_list::FaceList;
+use crate::polygons::polygon_mesh::PolygonMesh;
+
+/// A mesh whose polygons were cut into triangles.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Triangulated {
+    /// The mesh of triangles. A polygon of `n` corners is replaced by `n − 2` triangles, in the order
+    /// of the polygons.
+    pub polygons: PolygonMesh,
+    /// The polygons that cross themselves, ascending. Some of their triangles overlap.
+    pub crossing: Vec<FaceId>,
+}
+
+impl PolygonMesh {
+    /// Returns the mesh in which each polygon of `n` corners is replaced by `n − 2` triangles.
+    ///
+    /// ```text
+    ///    d ─────── c           d ─────── c
+    ///     ╲        │            ╲    ╱   │      The triangles do not overlap, and none is turned
+    ///      e       │     ⇒       e       │      over, also if the polygon is not convex. A fan from
+    ///     ╱        │            ╱    ╲   │      corner a would cover the hollow at e.
+    ///    a ─────── b           a ─────── b
+    /// ```
+    ///
+    /// The result has the same vertices. Triangles have the orientation of their polygon, and each
+    /// side of the polygon is a side of one of them. A face with three corners is unchanged.
+    /// [`PolygonCutter::cut`] says how a polygon is cut.
+    ///
+    /// Diagonals that are already edges of the mesh are avoided, because these edges would then have
+    /// three or more faces. If there is no other diagonal, the polygon is cut there anyway.
+    /// Structures that hold only manifolds then reject the mesh with an error that names the edge.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`PolygonError::TooMany`] if the triangles have more corners than 32-bit indices can
+    /// number.
+    ///
+    /// # Complexity
+    ///
+    /// O(corners) expected for faces of bounded degree; [`PolygonCutter::cut`] states the time for
+    /// one face.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use sixfold_core::{Point, PolygonMesh};
+    ///
+    /// // An arrow head, not convex at v3: the only diagonal inside is v1–v3.
+    /// let points = [[0.0, 0.0], [2.0, -1.0], [0.0, 2.0], [0.5, 0.5]].map(|[x, y]| Point::new(x, y, 0.0));
+    /// let arrow = PolygonMesh::new(points, [[0, 1, 2, 3]])?;
+    /// let cut = arrow.triangulated()?;
+    /// assert!(cut.crossing.is_empty());
+    /// assert!(cut.polygons.faces().iter().all(|(_, face)| {
+    ///     face.iter().any(|v| v.index() == 1) && face.iter().any(|v| v.index() == 3)
+    /// }));
+    /// # Ok::<(), sixfold_core::PolygonError>(())
+    /// ```
+    pub fn triangulated(&self) -> Result<Triangulated, PolygonError> {
+        let mut triangles = FaceList::with_capacity(self.corner_count());
+        let mut crossing = Vec::new();
+        let mut diagonals = Vec::new();
+        let mut cutter = PolygonCutter::default();
+        for (f, face) in self.faces().iter() {
+            if !cutter.is_face_cut(self, face, |_, _| false) {
+                crossing.push(f);
+            }
+            cutter
+                .triangles
+                .iter()
+                .try_for_each(|t| triangles.push(t.map(|i| face[i])))?;
+            diagonals.extend(cutter.diagonals(face).map(|diagonal| (diagonal, f)));
+        }
+        let again = conflicts::faces(self, &diagonals);
+        if !again.is_empty() {
+            triangles = self.cut_again(&triangles, &again, &diagonals)?;
+        }
+        let polygons = Self::from_faces(self.positions().to_vec(), triangles)?;
+        Ok(Triangulated { polygons, crossing })
+    }
+
+    /// Returns `triangles` with another cut of the faces `again`, which avoids all sides of faces and
+    /// all diagonals.
+    fn cut_again(
+        &self,
+        triangles: &FaceList,
+        again: &[FaceId],
+        diagonals: &[(Pair<VertexId>, FaceId)],
+    ) -> Result<FaceList, PolygonError> {
+        let is_kept = |f: &FaceId| again.binary_search(f).is_err();
+        let diagonals = diagonals.iter().filter(|(_, f)| is_kept(f));
+        let mut edges = conflicts::edges(self, again, diagonals.map(|&(diagonal, _)| diagonal));
+        let mut list = FaceList::with_capacity(triangles.corners().len());
+        let mut cutter = PolygonCutter::default();
+        let mut before = triangles.iter().map(|(_, triangle)| triangle);
+        for (f, face) in self.faces().iter() {
+            let before = before.by_ref().take(face.len() - 2);
+            if is_kept(&f) {
+                before
+                    .into_iter()
+                    .try_for_each(|triangle| list.push(triangle.iter().copied()))?;
+                continue;
+            }
+            before.for_each(drop);
+            cutter.is_face_cut(self, face, |i, j| edges[Pair::new(face[i], face[j])]);
+            cutter
+                .triangles
+                .iter()
+                .try_for_each(|t| list.push(t.map(|i| face[i])))?;
+            cutter
+                .diagonals(face)
+                .for_each(|diagonal| edges[diagonal] = true);
+        }
+        Ok(list)
+    }
+}
+
+/// The triangles of one polygon, by [`PolygonCutter::cut`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct PolygonTriangles<'a> {
+    /// For each triangle three corner numbers, from 0 to `n − 1`, in the orientation of the polygon.
+    pub triangles: &'a [[usize; 3]],
+    /// Whether the polygon crosses itself. Some of the triangles overlap, and some are turned over.
+    pub is_crossing: bool,
+}
+
+/// Cuts polygons into triangles, one polygon at a time; keeps its memory for the next one.
+///
+/// # Examples
+///
+/// ```
+/// use sixfold_core::PolygonCutter;
+/// use sixfold_core::glam::DVec3;
+///
+/// // Two squares that meet in a point.
+/// let corners = [[0, 0], [1, 0], [1, 1], [2, 1], [2, 2], [1, 2], [1, 1], [0, 1]];
+/// let at = |[x, y]: [i32; 2]| DVec3::new(f64::from(x), f64::from(y), 0.0);
+/// let mut cutter = PolygonCutter::default();
+/// let cut = cutter.cut(corners.map(at), |_, _| false);
+/// assert_eq!((cut.triangles.len(), cut.is_crossing), (6, false));
+/// let area = |t: &[usize; 3]| {
+///     let [a, b, c] = t.map(|i| at(corners[i]));
+///     0.5 * (b - a).cross(c - a).z
+/// };
+/// assert!(cut.triangles.iter().all(|t| area(t) >= 0.0));
+/// assert_eq!(cut.triangles.iter().map(area).sum::<f64>(), 2.0);
+/// ```
+#[derive(Default)]
+pub struct PolygonCutter {
+    corners: Vec<DVec3>,
+    ears: EarClipping,
+    /// The triangles of the last polygon.
+    triangles: Vec<[usize; 3]>,
+}
+
+impl PolygonCutter {
+    /// Cuts one polygon of `n` corners into `n − 2` triangles.
+    ///
+    /// - The triangles of a simple polygon do not overlap and are not flat, even if some corners of
+    ///   the polygon are collinear.
+    /// - The triangles of a polygon that touches itself, but does not cross itself, do not overlap
+    ///   either, and none is turned over. Some can be flat: a spike that runs out and back on the
+    ///   same line has no area. Corners of such a polygon may have the same position.
+    /// - A polygon that crosses itself has no such triangles. It is cut nevertheless.
+    ///
+    /// A polygon that is not planar is projected along the axis nearest to its Newell normal. If it
+    /// crosses itself there, it is projected along the normal itself. Signs of areas are exact.
+    ///
+    /// `is_edge` returns whether a diagonal between two corner numbers is already an edge of the
+    /// mesh. Such a diagonal is used only if there is no other. A polygon with fewer than three
+    /// corners has no triangles.
+    ///
+    /// # Algorithm
+    ///
+    /// Ears are clipped (Meisters 1975), the one with the best shape first. If a triangle of the
+    /// result is turned over, the polygon is not simple, and its ears are clipped by rules for
+    /// polygons that touch themselves. If this fails, too, and the polygon has at most 256 corners,
+    /// all triangulations are compared by dynamic programming (Klincsek 1980). If there is none
+    /// without a turned triangle, the polygon crosses itself.
+    ///
+    /// # Complexity
+    ///
+    /// O(n·(r + log n)) time for a simple polygon with `r` corners that are not convex. Otherwise
+    /// O(n²), and O(n³) for at most 256 corners that ear clipping does not solve.
+    pub fn cut(
+        &mut self,
+        corners: impl IntoIterator<Item = DVec3>,
+        is_edge: impl Fn(usize, usize) -> bool,
+    ) -> PolygonTriangles<'_> {
+        let is_crossing = !self.is_cut(corners, is_edge);
+        PolygonTriangles {
+            triangles: &self.triangles,
+            is_crossing,
+        }
+    }
+
+    /// Cuts a face of a mesh. Returns whether no triangle is turned over.
+    fn is_face_cut(
+        &mut self,
+        polygons: &PolygonMesh,
+        face: &[VertexId],
+        is_edge: impl Fn(usize, usize) -> bool,
+    ) -> bool {
+        self.is_cut(
+            face.iter().map(|&v| polygons.position(v).as_dvec3()),
+            is_edge,
+        )
+    }
+
+    /// Returns the sides of the triangles that are not sides of the face that was cut.
+    fn diagonals(&self, face: &[VertexId]) -> impl Iterator<Item = Pair<VertexId>> {
+        let n = face.len();
+        // Each diagonal is the side from the last corner of a triangle to its first.
+        let ends = self.triangles.iter().map(|&[a, _, c]| [a.min(c), a.max(c)]);
+        let inner = ends.filter(move |[a, c]| c - a > 1 && c - a < n - 1);
+        inner.map(|[a, c]| Pair::new(face[a], face[c]))
+    }
+
+    /// Cuts a polygon like [`cut`](Self::cut). Returns whether no triangle is turned over.
+    fn is_cut(
+        &mut self,
+        corners: impl IntoIterator<Item = DVec3>,
+        is_edge: impl Fn(usize, usize) -> bool,
+    ) -> bool {
+        self.corners.clear();
+        self.corners.extend(corners);
+        if self.corners.len() < 4 {
+            self.triangles.clear();
+            let triangle = (self.corners.len() == 3).then_some([0, 1, 2]);
+            self.triangles.extend(triangle);
+            return true;
+        }
+        let normal = plane::normal(&self.corners);
+        let along_axis = plane::along_axis(&self.corners, normal);
+        if let Some(triangles) = convex_quad(&self.corners, &along_axis, &is_edge) {
+            self.triangles.clear();
+            self.triangles.extend(triangles);
+            return true;
+        }
+        if self.cut_in_plane(&along_axis, &is_edge) {
+            return true;
+        }
+        let along_normal = plane::along_normal(&self.corners, normal);
+        if along_normal.is_some_and(|projected| self.cut_in_plane(&projected, &is_edge)) {
+            return true;
+        }
+        self.clip(&along_axis, Shape::Simple, &is_edge);
+        false
+    }
+
+    /// Cuts the polygon with the corners `projected`. Returns whether no triangle is turned over.
+    fn cut_in_plane(
+        &mut self,
+        projected: &[DVec2],
+        is_edge: &impl Fn(usize, usize) -> bool,
+    ) -> bool {
+        if self.clip(projected, Shape::Simple, is_edge)
+            || self.clip(projected, Shape::Touching, is_edge)
+        {
+            return true;
+        }
+        if projected.len() > exhaustive::MAX_CORNERS {
+            return false;
+        }
+        let best = exhaustive::triangulation(&self.corners, projected, is_edge);
+        let is_found = best.is_some();
+        self.triangles = best.unwrap_or_default();
+        is_found
+    }
+
+    fn clip(
+        &mut self,
+        projected: &[DVec2],
+        shape: Shape,
+        is_edge: &impl Fn(usize, usize) -> bool,
+    ) -> bool {
+        let Self {
+            corners,
+            ears,
+            triangles,
+        } = self;
+        triangles.clear();
+        ears.clip(corners, projected, shape, is_edge, triangles);
+        triangles.iter().all(|&t| !plane::is_turned(projected, t))
+    }
+}
+
+/// Part by which the second diagonal of a quad must be better than the first. Rounding errors then
+/// do not decide between the diagonals of equal quads.
+const BETTER: f64 = 1e-4;
+
+/// Returns the two triangles of a convex quad; `None` for any other polygon. The result is that of
+/// ear clipping, except that of two diagonals that are as good, the one from the first corner is
+/// used.
+fn convex_quad(
+    corners: &[DVec3],
+    projected: &[DVec2],
+    is_edge: impl Fn(usize, usize) -> bool,
+) -> Option<[[usize; 3]; 2]> {
+    let &[a, b, c, d] = projected else {
+        return None;
+    };
+    let turns = [[d, a, b], [a, b, c], [b, c, d], [c, d, a]];
+    if !turns
+        .iter()
+        .all(|&[a, b, c]| plane::orient2d(a, b, c) > 0.0)
+    {
+        return None;
+    }
+    let worst = |triangles: [[usize; 3]; 2]| {
+        let [one, other] = triangles.map(|t| plane::quality(t.map(|i| corners[i])));
+        one.min(other)
+    };
+    let [first, second] = [[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [0, 1, 3]]];
+    let is_second_better = match [is_edge(0, 2), is_edge(1, 3)] {
+        [true, false] => true,
+        [false, true] => false,
+        _ => worst(second) > (1.0 + BETTER) * worst(first),
+    };
+    Some(if is_second_better { second } else { first })
+}

@@ -1,0 +1,357 @@
+//! Ear clipping: cuts one polygon into triangles.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use glam::{DVec2, DVec3};
+
+use super::plane::{orient2d, quality};
+
+/// Maximum number of full tests of all corners, beyond those after the corners have halved.
+const FULL_TESTS: usize = 64;
+
+/// What is known about a polygon.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Shape {
+    /// The polygon is taken for simple: no two sides share a point, except for successive sides.
+    #[default]
+    Simple,
+    /// The polygon may touch itself, but does not cross itself.
+    Touching,
+}
+
+/// Cuts polygons into triangles, one polygon at a time.
+///
+/// ```text
+///    d ─────── c
+///     ╲        ┆ ╲        An ear is a convex corner b whose diagonal a–c runs inside: no other
+///      e       ┆  b       corner lies in the triangle a b c. Each simple polygon with four or more
+///     ╱        ┆ ╱        corners has two ears (Meisters 1975), and stays simple if one is cut.
+///    f ─────── a
+/// ```
+///
+/// In a simple polygon, only corners that are not convex, such as e, can lie in a triangle, and
+/// cutting b changes only the ears at a and c. In a polygon that touches itself:
+///
+/// - A corner or a side on the border of the triangle prevents the cut only if a side runs into the
+///   triangle from there.
+/// - The triangle must lie inside, where the polygon winds once around each point. Along a spike, or
+///   along a bridge to a hole, the polygon runs twice, and a turn to the left can be outside.
+/// - If there is no ear with an area, a corner whose triangle is flat is cut. This does not change
+///   where the rest of the polygon winds.
+///
+/// The ear with the best shape is cut first. The shape is the area of the ear relative to the
+/// square of its longest side. Ears whose diagonal is already an edge of the mesh are cut last.
+#[derive(Default)]
+pub(super) struct EarClipping {
+    shape: Shape,
+    points: Vec<DVec3>,
+    projected: Vec<DVec2>,
+    prev: Vec<u32>,
+    next: Vec<u32>,
+    /// For each corner, its number of tests. Heap entries with an older number are outdated.
+    version: Vec<u32>,
+    removed: Vec<bool>,
+    /// Corners that may lie in an ear.
+    obstacles: Vec<u32>,
+    ears: BinaryHeap<Ear>,
+}
+
+/// The kind of an ear; a better one compares greater.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    /// The corner lies between its neighbours, on the same line.
+    Flat,
+    /// The sides run out and back on the same line, or one of them has no length.
+    Spike,
+    /// The ear has an area, and its diagonal is already an edge of the mesh.
+    KnownDiagonal,
+    /// The ear has an area, and its diagonal is new.
+    NewDiagonal,
+}
+
+/// An ear. A better ear compares greater.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Ear {
+    kind: Kind,
+    quality: f64,
+    corner: u32,
+    version: u32,
+}
+
+impl Eq for Ear {}
+
+impl PartialOrd for Ear {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Ear {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_quality = self.quality.total_cmp(&other.quality);
+        let first = other.corner.cmp(&self.corner);
+        self.kind.cmp(&other.kind).then(by_quality).then(first)
+    }
+}
+
+impl EarClipping {
+    /// Appends the `n − 2` triangles of the polygon with the corners `points` to `triangles`. A
+    /// triangle has three corner numbers from 0 to `n − 1`, in the orientation of the polygon.
+    /// `projected` are the corners in a plane, in which the polygon runs counter-clockwise.
+    /// `is_edge` returns whether a diagonal is already an edge of the mesh.
+    ///
+    /// A polygon that crosses itself, or that touches itself although `shape` is
+    /// [`Shape::Simple`], may have no ear. All corners are then tested again, if their number has
+    /// halved since the last such test. If there is still no ear, the best convex corner is cut. If
+    /// no corner is convex, the best of all corners is cut. The result is always n − 2 triangles, in
+    /// O(n²) time.
+    pub(super) fn clip(
+        &mut self,
+        points: &[DVec3],
+        projected: &[DVec2],
+        shape: Shape,
+        is_edge: impl Fn(usize, usize) -> bool,
+        triangles: &mut Vec<[usize; 3]>,
+    ) {
+        self.init(points, projected, shape);
+        let mut remaining = points.len();
+        let mut last_full_test = usize::MAX;
+        let mut more_tests = match shape {
+            Shape::Simple => 0,
+            Shape::Touching => FULL_TESTS,
+        };
+        while remaining > 3 {
+            // The last cut makes two triangles. The worse triangle determines the quality of the
+            // cut, so all four corners are tested again.
+            if remaining == 4 || last_full_test == usize::MAX {
+                self.find_ears(remaining, &is_edge);
+                last_full_test = remaining;
+            }
+            let mut ear = self.best_ear();
+            let may_test = 2 * remaining <= last_full_test || more_tests > 0;
+            if ear.is_none_or(|ear| ear.kind < Kind::KnownDiagonal)
+                && may_test
+                && remaining < last_full_test
+            {
+                more_tests = more_tests.saturating_sub(1);
+                self.find_ears(remaining, &is_edge);
+                last_full_test = remaining;
+                ear = self.best_ear();
+            }
+            let tip = match ear {
+                Some(ear) => ear.corner as usize,
+                None => self.fallback_ear(&is_edge),
+            };
+            let (a, c) = (self.prev[tip], self.next[tip]);
+            triangles.push([a as usize, tip, c as usize]);
+            self.removed[tip] = true;
+            self.next[a as usize] = c;
+            self.prev[c as usize] = a;
+            remaining -= 1;
+            self.test_corner(a as usize, remaining, &is_edge);
+            self.test_corner(c as usize, remaining, &is_edge);
+        }
+        if let Some(last) = self.removed.iter().position(|&removed| !removed) {
+            triangles.push([last, self.next[last] as usize, self.prev[last] as usize]);
+        }
+    }
+
+    fn init(&mut self, points: &[DVec3], projected: &[DVec2], shape: Shape) {
+        self.shape = shape;
+        self.points.clear();
+        self.points.extend(points);
+        self.projected.clear();
+        self.projected.extend(projected);
+        let n = self.points.len() as u32;
+        self.prev.clear();
+        self.prev
+            .extend((0..n).map(|i| if i == 0 { n - 1 } else { i - 1 }));
+        self.next.clear();
+        self.next
+            .extend((0..n).map(|i| if i + 1 == n { 0 } else { i + 1 }));
+        self.version.clear();
+        self.version.resize(n as usize, 0);
+        self.removed.clear();
+        self.removed.resize(n as usize, false);
+        self.ears.clear();
+    }
+
+    fn find_ears(&mut self, remaining: usize, is_edge: &impl Fn(usize, usize) -> bool) {
+        self.ears.clear();
+        self.obstacles.clear();
+        for i in 0..self.projected.len() {
+            if !self.removed[i] && (self.shape == Shape::Touching || !self.is_convex(i)) {
+                self.obstacles.push(i as u32);
+            }
+        }
+        for i in 0..self.projected.len() {
+            if !self.removed[i] {
+                self.test_corner(i, remaining, is_edge);
+            }
+        }
+    }
+
+    /// Tests corner `i`. Adds the ear of the corner, if there is an ear.
+    fn test_corner(&mut self, i: usize, remaining: usize, is_edge: &impl Fn(usize, usize) -> bool) {
+        self.version[i] += 1;
+        let (a, c) = (self.prev[i] as usize, self.next[i] as usize);
+        let kind = match self.area(i) {
+            area if area > 0.0 => match is_edge(a, c) {
+                true => Kind::KnownDiagonal,
+                false => Kind::NewDiagonal,
+            },
+            0.0 if self.shape == Shape::Touching => self.kind_without_area(i),
+            _ => return,
+        };
+        if kind >= Kind::KnownDiagonal && (self.is_obstructed(i) || !self.is_inside(i)) {
+            return;
+        }
+        let mut quality = self.quality(i);
+        if remaining == 4 {
+            quality = quality.min(self.quality(self.next[c] as usize));
+        }
+        self.ears.push(Ear {
+            kind,
+            quality,
+            corner: i as u32,
+            version: self.version[i],
+        });
+    }
+
+    /// Returns the kind of the ear at a corner on a line with its neighbours.
+    fn kind_without_area(&self, i: usize) -> Kind {
+        let [a, b, c] = self.triangle(i).map(|j| self.projected[j]);
+        match a == b || b == c || (a - b).dot(c - b) > 0.0 {
+            true => Kind::Spike,
+            false => Kind::Flat,
+        }
+    }
+
+    fn best_ear(&mut self) -> Option<Ear> {
+        while let Some(&ear) = self.ears.peek() {
+            let corner = ear.corner as usize;
+            if !self.removed[corner] && self.version[corner] == ear.version {
+                return Some(ear);
+            }
+            self.ears.pop();
+        }
+        None
+    }
+
+    /// Returns the best corner to cut if there is no ear.
+    fn fallback_ear(&self, is_edge: &impl Fn(usize, usize) -> bool) -> usize {
+        let corners = (0..self.projected.len()).filter(|&i| !self.removed[i]);
+        let ears = corners.map(|i| {
+            let diagonal = [self.prev[i], self.next[i]].map(|j| j as usize);
+            let ear = Ear {
+                kind: match is_edge(diagonal[0], diagonal[1]) {
+                    true => Kind::KnownDiagonal,
+                    false => Kind::NewDiagonal,
+                },
+                quality: self.quality(i),
+                corner: i as u32,
+                version: 0,
+            };
+            (self.is_convex(i), ear)
+        });
+        let best = ears.max().expect("more than three corners are left");
+        best.1.corner as usize
+    }
+
+    fn triangle(&self, i: usize) -> [usize; 3] {
+        [self.prev[i] as usize, i, self.next[i] as usize]
+    }
+
+    /// Returns twice the signed area of the triangle at corner `i`.
+    fn area(&self, i: usize) -> f64 {
+        let [a, b, c] = self.triangle(i).map(|j| self.projected[j]);
+        orient2d(a, b, c)
+    }
+
+    fn is_convex(&self, i: usize) -> bool {
+        self.area(i) > 0.0
+    }
+
+    fn quality(&self, i: usize) -> f64 {
+        quality(self.triangle(i).map(|j| self.points[j]))
+    }
+
+    /// Returns whether another corner prevents the cut of the convex corner `i`.
+    fn is_obstructed(&mut self, i: usize) -> bool {
+        let triangle = self.triangle(i);
+        let mut at = 0;
+        while let Some(&q) = self.obstacles.get(at) {
+            let q = q as usize;
+            let is_gone = match self.shape {
+                Shape::Simple => self.removed[q] || self.is_convex(q),
+                Shape::Touching => self.removed[q],
+            };
+            if is_gone {
+                self.obstacles.swap_remove(at); // it never obstructs again
+                continue;
+            }
+            if !triangle.contains(&q) && self.obstructs(q, triangle) {
+                return true;
+            }
+            at += 1;
+        }
+        false
+    }
+
+    /// Returns whether corner `q` prevents the cut of the triangle.
+    ///
+    /// A corner at the position of `a`, `b` or `c` prevents the cut only if one of its sides runs
+    /// into the triangle. Such corners occur along a bridge to a hole. If the polygon may touch
+    /// itself, the same holds for corners on the sides of the triangle.
+    fn obstructs(&self, q: usize, triangle: [usize; 3]) -> bool {
+        let [a, b, c] = triangle.map(|j| self.projected[j]);
+        let at = self.projected[q];
+        let sides = [[a, b], [b, c], [c, a]];
+        let left_of = sides.map(|[from, to]| orient2d(from, to, at));
+        if left_of.iter().any(|&area| area < 0.0) {
+            return false;
+        }
+        let ends = [self.prev[q], self.next[q]].map(|to| self.projected[to as usize]);
+        let wedge = [[a, b, c], [b, c, a], [c, a, b]];
+        if let Some([tip, right, left]) = wedge.into_iter().find(|&[tip, ..]| tip == at) {
+            let runs_in =
+                |to: DVec2| orient2d(tip, right, to) > 0.0 && orient2d(tip, to, left) > 0.0;
+            return ends.into_iter().any(runs_in);
+        }
+        let on_side = left_of.iter().position(|&area| area == 0.0);
+        match on_side.filter(|_| self.shape == Shape::Touching) {
+            Some(side) => {
+                let [from, to] = sides[side];
+                ends.into_iter().any(|end| orient2d(from, to, end) > 0.0)
+            }
+            None => true,
+        }
+    }
+
+    /// Returns whether the rest of the polygon winds once around the triangle at corner `i`, which
+    /// no side enters.
+    fn is_inside(&self, i: usize) -> bool {
+        if self.shape == Shape::Simple {
+            return true;
+        }
+        let [a, b, c] = self.triangle(i).map(|j| self.projected[j]);
+        let at = (a + b + c) / 3.0;
+        let mut winding = 0;
+        let mut corner = i;
+        loop {
+            let next = self.next[corner] as usize;
+            let [from, to] = [corner, next].map(|j| self.projected[j]);
+            if from.y <= at.y && to.y > at.y && orient2d(from, to, at) > 0.0 {
+                winding += 1;
+            }
+            if from.y > at.y && to.y <= at.y && orient2d(from, to, at) < 0.0 {
+                winding -= 1;
+            }
+            corner = next;
+            if corner == i {
+                return winding == 1;
+            }
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! Polygons in a plane: projections, and the exact sign of an area.
+
+use glam::{DVec2, DVec3, Vec2Swizzles};
+use robust::Coord;
+
+use crate::polygons::newell::area_vector;
+
+/// Returns twice the signed area of the triangle. The area is above 0 if a, b, c turn left. The sign
+/// is exact (Shewchuk 1997).
+pub(super) fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    robust::orient2d(coord(a), coord(b), coord(c))
+}
+
+fn coord(p: DVec2) -> Coord<f64> {
+    Coord { x: p.x, y: p.y }
+}
+
+/// Returns whether the triangle is turned over: its corners run clockwise. A triangle whose area is
+/// not a number is not turned.
+pub(super) fn is_turned(points: &[DVec2], [a, b, c]: [usize; 3]) -> bool {
+    orient2d(points[a], points[b], points[c]) < 0.0
+}
+
+/// Returns a vector that is normal to the polygon, to the side from which most of the polygon runs
+/// counter-clockwise. If the parts that run either way have the same area, returns the normal of the
+/// largest triangle of three successive corners.
+pub(super) fn normal(corners: &[DVec3]) -> DVec3 {
+    let area = area_vector(corners.iter().copied());
+    let successive = || {
+        let n = corners.len();
+        (0..n).map(move |i| {
+            let [a, b, c] = [i, (i + 1) % n, (i + 2) % n].map(|i| corners[i]);
+            (b - a).cross(c - a)
+        })
+    };
+    let size: f64 = successive().map(DVec3::length).sum();
+    if area.length() > 1e-12 * size {
+        return area;
+    }
+    let longer = |best: DVec3, one: DVec3| match one.length() > best.length() {
+        true => one,
+        false => best,
+    };
+    successive().fold(area, longer)
+}
+
+/// Projects corners along the axis nearest to `normal`. In the projection, the polygon runs
+/// counter-clockwise. The projection copies coordinates bit by bit, so that collinear corners stay
+/// collinear. For a planar polygon it is affine.
+pub(super) fn along_axis(corners: &[DVec3], normal: DVec3) -> Vec<DVec2> {
+    let size = normal.abs();
+    let project = |p: DVec3| {
+        let (projected, component) = if size.z >= size.x && size.z >= size.y {
+            (DVec2::new(p.x, p.y), normal.z)
+        } else if size.x >= size.y {
+            (DVec2::new(p.y, p.z), normal.x)
+        } else {
+            (DVec2::new(p.z, p.x), normal.y)
+        };
+        match component < 0.0 {
+            true => projected.yx(),
+            false => projected,
+        }
+    };
+    corners.iter().map(|&p| project(p)).collect()
+}
+
+/// Projects corners onto the plane normal to `normal`. The coordinates are rounded.
+pub(super) fn along_normal(corners: &[DVec3], normal: DVec3) -> Option<Vec<DVec2>> {
+    let normal = normal.try_normalize()?;
+    let u = normal.any_orthonormal_vector();
+    let v = normal.cross(u);
+    let project = |&p: &DVec3| DVec2::new(p.dot(u), p.dot(v));
+    Some(corners.iter().map(project).collect())
+}
+
+/// Returns twice the area of a triangle divided by the square of its longest side.
+pub(super) fn quality([a, b, c]: [DVec3; 3]) -> f64 {
+    let sides = [b - a, c - b, a - c];
+    let longest = sides
+        .map(DVec3::length_squared)
+        .into_iter()
+        .fold(0.0, f64::max);
+    match longest > 0.0 {
+        true => sides[0].cross(sides[1]).length() / longest,
+        false => 0.0,
+    }
+}
