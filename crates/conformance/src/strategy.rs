@@ -7,6 +7,7 @@
 mod builder;
 mod faults;
 mod operation;
+mod touching;
 
 use std::ops::RangeInclusive;
 
@@ -17,6 +18,7 @@ use sixfold_core::{Capabilities, PolygonMesh};
 use crate::gallery::distinct_position;
 use builder::MeshBuilder;
 pub use faults::Fault;
+pub use touching::{TouchingPolygon, touching_polygon};
 
 /// A mesh with known faults.
 #[derive(Clone, Debug)]

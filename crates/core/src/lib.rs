@@ -99,7 +99,7 @@ pub use polygons::facts::{Distribution, Facts};
 pub use polygons::incidence::EdgeUse;
 pub use polygons::newell::area_vector;
 pub use polygons::polygon_mesh::PolygonMesh;
-pub use polygons::triangulation::{PolygonCutter, PolygonTriangles, Triangulated};
+pub use polygons::triangulation::{FaceParts, PolygonCutter, PolygonTriangles, Triangulated};
 #[cfg(feature = "serde")]
 #[doc(hidden)]
 pub use serde;

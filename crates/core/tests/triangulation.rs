@@ -1,10 +1,8 @@
 //! Tests with polygons of known area.
 
-use std::collections::HashMap;
-
 use proptest::collection;
 use proptest::prelude::*;
-use proptest::sample::Index;
+use sixfold_conformance::strategy::touching_polygon;
 use sixfold_core::glam::DVec3;
 use sixfold_core::{Capabilities, FaceId, Point, PolygonCutter, PolygonMesh, VertexId};
 
@@ -245,217 +243,6 @@ fn triangles_stay() {
     assert_eq!(Capabilities::ORIENTED_MANIFOLDS.check(&triangles), Ok(()));
 }
 
-/// Random corners that touch themselves, on a grid, with the area.
-///
-/// The outline goes around cells of a grid that hang together by their sides. Cells that meet in a
-/// point make corners at the same position. Holes are joined to the outline by bridges along the
-/// lines of the grid, and spikes run out and back along these lines.
-#[derive(Clone, Debug)]
-struct Outline {
-    corners: Vec<[i32; 2]>,
-    area: i32,
-}
-
-const SIZE: i32 = 6;
-
-/// The directions of the grid, counter-clockwise.
-const STEPS: [[i32; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
-
-fn step([x, y]: [i32; 2], direction: usize) -> [i32; 2] {
-    let [dx, dy] = STEPS[direction % 4];
-    [x + dx, y + dy]
-}
-
-struct Cells(Vec<bool>);
-
-impl Cells {
-    fn has(&self, [x, y]: [i32; 2]) -> bool {
-        let inside = (0..SIZE).contains(&x) && (0..SIZE).contains(&y);
-        inside && self.0[(y * SIZE + x) as usize]
-    }
-
-    /// Returns the cell to the left of the side from `at` in a direction.
-    fn left([x, y]: [i32; 2], direction: usize) -> [i32; 2] {
-        match direction % 4 {
-            0 => [x, y],
-            1 => [x - 1, y],
-            2 => [x - 1, y - 1],
-            _ => [x, y - 1],
-        }
-    }
-
-    /// Returns whether a side of the outline starts at `at` in a direction: it has a cell on its left
-    /// and none on its right.
-    fn is_side(&self, at: [i32; 2], direction: usize) -> bool {
-        let right = Self::left(step(at, direction), direction + 2);
-        self.has(Self::left(at, direction)) && !self.has(right)
-    }
-
-    /// Keeps only the cells that hang together with `start`.
-    fn keep_component(&mut self, start: [i32; 2]) {
-        let index = |[x, y]: [i32; 2]| (y * SIZE + x) as usize;
-        let mut kept = vec![false; self.0.len()];
-        let mut open = vec![start];
-        while let Some(cell) = open.pop() {
-            if self.has(cell) && !std::mem::replace(&mut kept[index(cell)], true) {
-                open.extend((0..4).map(|direction| step(cell, direction)));
-            }
-        }
-        self.0 = kept;
-    }
-
-    /// Returns the closed lines around the cells, each as a list of points, one for each unit. Where
-    /// two cells meet in a point, a line turns left or right by `turns_left`.
-    fn loops(&self, turns_left: bool) -> Vec<Vec<[i32; 2]>> {
-        let mut sides = HashMap::new();
-        for x in 0..=SIZE {
-            for y in 0..=SIZE {
-                for direction in 0..4 {
-                    if self.is_side([x, y], direction) {
-                        sides.insert(([x, y], direction), ());
-                    }
-                }
-            }
-        }
-        let mut starts: Vec<_> = sides.keys().copied().collect();
-        starts.sort_unstable();
-        let mut loops = Vec::new();
-        for start in starts {
-            let (mut at, mut direction) = start;
-            let mut points = Vec::new();
-            while sides.remove(&(at, direction)).is_some() {
-                points.push(at);
-                at = step(at, direction);
-                let turns = match turns_left {
-                    true => [1, 0, 3],
-                    false => [3, 0, 1],
-                };
-                let next = turns.into_iter().map(|turn| (direction + turn) % 4);
-                let mut next = next.filter(|&d| sides.contains_key(&(at, d)));
-                direction = next.next().unwrap_or(direction);
-            }
-            if !points.is_empty() {
-                loops.push(points);
-            }
-        }
-        loops
-    }
-}
-
-/// Joins all lines to one: walks in a direction from the farthest point of a hole until another line
-/// is met, and inserts the hole there. Returns `None` if the bridge would run along another one.
-fn join_loops(mut loops: Vec<Vec<[i32; 2]>>, direction: usize) -> Option<Vec<[i32; 2]>> {
-    let key = |&[x, y]: &[i32; 2]| {
-        let [dx, dy] = STEPS[direction];
-        (dx * x + dy * y, x, y)
-    };
-    let outer = loops.iter().position(|points| doubled_area(points) > 0)?;
-    loops.swap(0, outer);
-    loops[1..].sort_by_key(|points| points.iter().map(key).max());
-    while loops.len() > 1 {
-        let hole = loops.pop()?;
-        let from = (0..hole.len()).max_by_key(|&i| key(&hole[i]))?;
-        let mut bridge = vec![hole[from]];
-        let met = |at| loops.iter().position(|points| points.contains(&at));
-        let other = loop {
-            let at = *bridge.last()?;
-            match met(at) {
-                Some(other) => break &mut loops[other],
-                None => bridge.push(step(at, direction)),
-            }
-        };
-        let to = corner_towards(other, *bridge.last()?, (direction + 2) % 4)?;
-        let back = bridge.iter().rev().copied();
-        let around = hole.iter().copied().cycle().skip(from + 1).take(hole.len());
-        let out = bridge.iter().copied().skip(1);
-        let inserted: Vec<[i32; 2]> = back.chain(around).chain(out).collect();
-        other.splice(to..=to, inserted);
-    }
-    loops.pop()
-}
-
-/// Returns the corner at the place `at` from which a line in a direction runs into the polygon.
-fn corner_towards(points: &[[i32; 2]], at: [i32; 2], direction: usize) -> Option<usize> {
-    let n = points.len();
-    let towards = |to| (0..4).find(|&d| step(at, d) == to);
-    (0..n).filter(|&i| points[i] == at).find(|&i| {
-        let [before, after] = [i + n - 1, i + 1].map(|j| towards(points[j % n]));
-        let (Some(before), Some(after)) = (before, after) else {
-            return false;
-        };
-        let inside = match (before + 4 - after) % 4 {
-            0 => 4,
-            turn => turn,
-        };
-        (1..inside).contains(&((direction + 4 - after) % 4))
-    })
-}
-
-fn doubled_area(points: &[[i32; 2]]) -> i32 {
-    let next = points.iter().cycle().skip(1);
-    points
-        .iter()
-        .zip(next)
-        .map(|(&[x, y], &[to_x, to_y])| x * to_y - to_x * y)
-        .sum()
-}
-
-fn touching_outline() -> impl Strategy<Value = Outline> {
-    let cells = collection::vec(prop::bool::weighted(0.75), (SIZE * SIZE) as usize);
-    let spikes = collection::vec((any::<Index>(), 0..4_usize, 1..4_usize), 0..4);
-    let choices = (any::<bool>(), 0..4_usize, any::<bool>(), any::<Index>());
-    (cells, choices, spikes).prop_filter_map("no outline", |(cells, choices, spikes)| {
-        let (turns_left, direction, keeps_flat, start) = choices;
-        let mut cells = Cells(cells);
-        let mut all = (0..SIZE * SIZE).map(|i| [i % SIZE, i / SIZE]);
-        let first = all.find(|&cell| cells.has(cell))?;
-        cells.keep_component(first);
-        let area = cells.0.iter().filter(|&&cell| cell).count() as i32;
-        let mut corners = join_loops(cells.loops(turns_left), direction)?;
-        for (at, direction, length) in spikes {
-            let at = at.index(corners.len());
-            add_spike(&mut corners, at, direction, length);
-        }
-        if !keeps_flat {
-            remove_flat(&mut corners);
-        }
-        let start = start.index(corners.len());
-        corners.rotate_left(start);
-        Some(Outline { corners, area })
-    })
-}
-
-/// Adds a spike at a corner that is the only one at its place. The spike ends before the outline.
-fn add_spike(corners: &mut Vec<[i32; 2]>, at: usize, direction: usize, length: usize) {
-    let from = corners[at];
-    if corners.iter().filter(|&&p| p == from).count() > 1 {
-        return;
-    }
-    let mut out = vec![from];
-    for _ in 0..length {
-        let next = step(out[out.len() - 1], direction);
-        if corners.contains(&next) {
-            break;
-        }
-        out.push(next);
-    }
-    let back: Vec<[i32; 2]> = out.iter().rev().skip(1).copied().collect();
-    corners.splice(at..=at, out.into_iter().chain(back));
-}
-
-/// Removes corners between their neighbours on the same line.
-fn remove_flat(corners: &mut Vec<[i32; 2]>) {
-    let n = corners.len();
-    let is_flat = |i: usize| {
-        let [a, b, c] = [i + n - 1, i, i + 1].map(|j| corners[j % n]);
-        [0, 1].map(|k| b[k] - a[k]) == [0, 1].map(|k| c[k] - b[k])
-    };
-    *corners = (0..n)
-        .filter(|&i| !is_flat(i))
-        .map(|i| corners[i])
-        .collect();
-}
-
 proptest! {
     #![proptest_config(ProptestConfig {
         failure_persistence: None,
@@ -466,7 +253,7 @@ proptest! {
     /// Coordinates are integers, so areas are exact.
     #[test]
     fn polygons_that_touch_themselves_are_covered(
-        outline in touching_outline(),
+        outline in touching_polygon(),
         axes in prop::array::uniform2(prop::array::uniform3(-4..5_i8)),
     ) {
         let [u, v] = axes.map(|axis| DVec3::from_array(axis.map(f64::from)));
@@ -487,4 +274,114 @@ proptest! {
         let sum: f64 = areas.iter().sum();
         prop_assert!((sum - f64::from(outline.area)).abs() < 1e-9);
     }
+}
+
+fn corners_of(points: &[[i32; 2]]) -> Vec<DVec3> {
+    let point = |&[x, y]: &[i32; 2]| DVec3::new(f64::from(x), f64::from(y), 0.0);
+    points.iter().map(point).collect()
+}
+
+#[test]
+fn polygons_that_cross_themselves_are_named() {
+    let crosses = |points: &[[i32; 2]]| {
+        PolygonCutter::default()
+            .cut(corners_of(points), |_, _| false)
+            .is_crossing
+    };
+    let bow_tie = [[0, 0], [1, 1], [1, 0], [0, 1]];
+    let uneven = [[0, 0], [3, 3], [3, 0], [0, 1]];
+    let pentagram = [[0, 10], [6, -8], [-10, 3], [10, 3], [-6, -8]];
+    for points in [&bow_tie[..], &uneven, &pentagram] {
+        assert!(crosses(points), "{points:?}");
+        let turned: Vec<[i32; 2]> = points.iter().rev().copied().collect();
+        assert!(crosses(&turned), "{points:?}");
+        assert!(triangulated_crosses(points));
+    }
+    let on_a_line = [[0, 0], [2, 2], [1, 1], [3, 3]];
+    assert!(!crosses(&on_a_line));
+    // A corner that rounding moved across a side by a millionth of the length.
+    let notch = |depth: f64| {
+        let corners = [
+            [0.0, 0.0],
+            [4.0, 0.0],
+            [4.0, 2.0],
+            [2.0, -depth],
+            [0.0, 2.0],
+        ];
+        let corners = corners.map(|[x, y]| DVec3::new(x, y, 0.0));
+        PolygonCutter::default()
+            .cut(corners, |_, _| false)
+            .is_crossing
+    };
+    assert!(!notch(0.0) && !notch(1e-7) && notch(1e-3));
+}
+
+fn triangulated_crosses(points: &[[i32; 2]]) -> bool {
+    let points: Vec<[f32; 2]> = points.iter().map(|p| p.map(|x| x as f32)).collect();
+    let cut = polygon(&points).triangulated().expect("small");
+    cut.crossing == [FaceId::new(0)]
+}
+
+/// A strip that is bent by a right angle, so that it overlaps itself along the axis of its largest
+/// area, but not along its normal.
+#[test]
+fn bent_polygons_are_cut_along_their_normal() {
+    let corners = [
+        [0.0, 0.0, 0.0],
+        [2.0, 0.0, 1.9],
+        [2.0, 2.0, 1.9],
+        [1.9, 2.0, 4.0],
+        [0.0, 1.0, 2.0],
+    ];
+    let corners = corners.map(DVec3::from_array);
+    let mut cutter = PolygonCutter::default();
+    assert!(!cutter.cut(corners, |_, _| false).is_crossing);
+}
+
+#[test]
+fn faces_with_repeated_vertices_have_parts_without() {
+    let parts = |face: &[u32], points: &[[i32; 2]]| {
+        let face: Vec<VertexId> = face.iter().map(|&v| VertexId::new(v)).collect();
+        let corners = corners_of(points);
+        let parts = PolygonCutter::default().parts(&face, |i| corners[face[i].index()]);
+        assert!(!parts.is_crossing);
+        let part = |part: &[usize]| part.iter().map(|&i| face[i].index() as u32).collect();
+        parts.iter().map(part).collect::<Vec<Vec<u32>>>()
+    };
+    let square = [[0, 0], [1, 0], [1, 1], [0, 1]];
+    assert_eq!(parts(&[0, 1, 2, 3], &square), [[0, 1, 2, 3]]);
+    assert_eq!(parts(&[0, 0, 1, 2, 2, 3, 0], &square), [[0, 1, 2, 3]]);
+    assert_eq!(parts(&[1, 1, 2, 3, 3], &square), [[1, 2, 3]]);
+    for empty in [
+        &[][..],
+        &[0],
+        &[0, 0, 0],
+        &[0, 1],
+        &[0, 1, 0, 1],
+        &[0, 1, 1, 0],
+    ] {
+        assert_eq!(parts(empty, &square), Vec::<Vec<u32>>::new(), "{empty:?}");
+    }
+    // A spike to vertex 3.
+    assert_eq!(parts(&[0, 1, 3, 1, 2], &square).len(), 1);
+    // An outer square of side 3 and a hole of side 1, joined by a bridge from 0 to 4.
+    let places = [
+        [0, 0],
+        [3, 0],
+        [3, 3],
+        [0, 3],
+        [1, 1],
+        [1, 2],
+        [2, 2],
+        [2, 1],
+    ];
+    let keyhole = parts(&[0, 1, 2, 3, 0, 4, 5, 6, 7, 4], &places);
+    assert_eq!(keyhole.len(), 8);
+    let corners = corners_of(&places);
+    let area = |face: &Vec<u32>| {
+        let [a, b, c] = [0, 1, 2].map(|i| corners[face[i] as usize]);
+        0.5 * (b - a).cross(c - a).z
+    };
+    assert!(keyhole.iter().all(|face| area(face) > 0.0));
+    assert_eq!(keyhole.iter().map(area).sum::<f64>(), 8.0);
 }

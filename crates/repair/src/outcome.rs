@@ -76,7 +76,7 @@ pub enum Left {
         vertex: VertexId,
         edges: usize,
     },
-    /// A polygon that crosses itself; it was cut, but its triangles overlap.
+    /// A polygon that crosses itself and was cut into triangles, which overlap.
     CrossingFace {
         #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::row"))]
         face: FaceId,

@@ -23,8 +23,9 @@ use crate::{cut, duplicates, flat, holes, orient, remove, triangulate, weld};
 pub enum Step {
     /// Merges vertices within a distance. [`Weld`] describes the rule.
     ///
-    /// A face that would name a vertex twice loses the repeated corners, or is split at the vertex.
-    /// Parts with fewer than three corners are removed. The report counts all of them.
+    /// A face that would name a vertex twice in a row loses the repeated corner. A face that would
+    /// name a vertex twice elsewhere is cut into triangles first, so that its area stays. Faces with
+    /// fewer than three corners are removed. The report counts all of them.
     Weld(Weld),
     /// Removes faces that name the same vertices in the same cyclic order as an earlier face.
     RemoveDuplicateFaces(OppositeFaces),

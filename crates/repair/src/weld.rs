@@ -2,17 +2,15 @@
 
 mod grid;
 mod kd_tree;
-mod simple_loops;
 
 use glam::DVec3;
-use sixfold_core::{Point, PolygonMesh, Slot, VertexId, row};
+use sixfold_core::{Point, PolygonCutter, PolygonMesh, Slot, VertexId, row};
 
 use crate::error::RepairError;
-use crate::outcome::{Outcome, StepCounts};
+use crate::outcome::{Left, Outcome, StepCounts};
 use crate::trace::{Rebuild, VertexTrace, corners_of};
 use grid::Grid;
 use kd_tree::KdTree;
-use simple_loops::SimpleLoops;
 
 /// Options of welding.
 ///
@@ -266,21 +264,30 @@ fn merge(polygons: &PolygonMesh, representatives: &[VertexId]) -> Result<Outcome
         return Ok(Outcome::unchanged());
     }
     let mut rebuild = Rebuild::new(polygons);
-    let mut loops = SimpleLoops::default();
+    let mut cutter = PolygonCutter::default();
+    let mut left = Vec::new();
+    let (mut before, mut after) = (Vec::new(), Vec::new());
     for (f, face) in polygons.faces().iter() {
         let number = |v: VertexId| numbers[v.index()].get().expect("every vertex has one");
-        loops.find(corners_of(polygons, f).map(|(v, c)| (number(v), c)));
-        let found = loops.iter();
-        match found.len() {
+        before.clear();
+        before.extend(corners_of(polygons, f));
+        after.clear();
+        after.extend(face.iter().map(|&v| number(v)));
+        let parts = cutter.parts(&after, |i| polygons.position(face[i]).as_dvec3());
+        if parts.is_crossing {
+            left.push(Left::CrossingFace { face: f });
+        }
+        let parts = parts.iter();
+        match parts.len() {
             0 => counts.faces_removed += 1,
-            parts => {
-                let corners: usize = found.clone().map(<[_]>::len).sum();
-                counts.faces_changed += usize::from(corners < face.len() || parts > 1);
-                counts.faces_added += parts - 1;
+            1 => counts.faces_changed += usize::from(parts.clone().any(|p| p.len() < face.len())),
+            count => {
+                counts.faces_changed += 1;
+                counts.faces_added += count - 1;
             }
         }
-        for part in found {
-            rebuild.push(Some(f), part.iter().map(|&(v, c)| (v, Some(c))))?;
+        for part in parts {
+            rebuild.push(Some(f), part.iter().map(|&i| (after[i], Some(before[i].1))))?;
         }
     }
     let vertices = VertexTrace {
@@ -288,7 +295,10 @@ fn merge(polygons: &PolygonMesh, representatives: &[VertexId]) -> Result<Outcome
         origins,
     };
     let changed = rebuild.finish(positions, vertices)?;
-    Ok(Outcome::changed(changed, counts))
+    Ok(Outcome {
+        left,
+        ..Outcome::changed(changed, counts)
+    })
 }
 
 #[cfg(test)]

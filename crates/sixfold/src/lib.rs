@@ -252,7 +252,7 @@ pub use sixfold_core::{
 // Meshes as lists of faces; their topology, creases, sizes and memory.
 #[doc(inline)]
 pub use sixfold_core::{
-    BoundaryLoop, Counts, Creases, Distribution, EdgeUse, FaceList, FaceSpans, Facts,
+    BoundaryLoop, Counts, Creases, Distribution, EdgeUse, FaceList, FaceParts, FaceSpans, Facts,
     MemoryFootprint, Point, PolygonCutter, PolygonMesh, PolygonTriangles, SHARPNESS_INFINITE,
     TableBytes, Triangulated, area_vector,
 };

@@ -12,7 +12,7 @@ use crate::handles::pair::Pair;
 use crate::handles::row_id::{FaceId, VertexId};
 use crate::polygons::error::PolygonError;
 use crate::polygons::face_list::FaceList;
-use crate::polygons::polygon_mesh::PolygonMesh;
+use crate::polygons::polygon_mesh::{PolygonMesh, repeated};
 
 /// A mesh whose polygons were cut into triangles.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,7 +75,7 @@ impl PolygonMesh {
         let mut diagonals = Vec::new();
         let mut cutter = PolygonCutter::default();
         for (f, face) in self.faces().iter() {
-            if !cutter.is_face_cut(self, face, |_, _| false) {
+            if cutter.face_crosses(self, face, |_, _| false) {
                 crossing.push(f);
             }
             cutter
@@ -115,7 +115,7 @@ impl PolygonMesh {
                 continue;
             }
             before.for_each(drop);
-            cutter.is_face_cut(self, face, |i, j| edges[Pair::new(face[i], face[j])]);
+            cutter.face_crosses(self, face, |i, j| edges[Pair::new(face[i], face[j])]);
             cutter
                 .triangles
                 .iter()
@@ -136,6 +136,23 @@ pub struct PolygonTriangles<'a> {
     pub triangles: &'a [[usize; 3]],
     /// Whether the polygon crosses itself. Some of the triangles overlap, and some are turned over.
     pub is_crossing: bool,
+}
+
+/// The faces that [`PolygonCutter::parts`] makes of one face.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct FaceParts {
+    corners: Vec<usize>,
+    degree: usize,
+    /// Whether the face was cut and crosses itself, so that its parts overlap.
+    pub is_crossing: bool,
+}
+
+impl FaceParts {
+    /// Returns the parts, each as the numbers of its corners in the face.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &[usize]> + Clone {
+        self.corners.chunks_exact(self.degree)
+    }
 }
 
 /// Cuts polygons into triangles, one polygon at a time; keeps its memory for the next one.
@@ -165,6 +182,8 @@ pub struct PolygonCutter {
     ears: EarClipping,
     /// The triangles of the last polygon.
     triangles: Vec<[usize; 3]>,
+    /// The triangles of an attempt.
+    tried: Vec<[usize; 3]>,
 }
 
 impl PolygonCutter {
@@ -175,7 +194,9 @@ impl PolygonCutter {
     /// - The triangles of a polygon that touches itself, but does not cross itself, do not overlap
     ///   either, and none is turned over. Some can be flat: a spike that runs out and back on the
     ///   same line has no area. Corners of such a polygon may have the same position.
-    /// - A polygon that crosses itself has no such triangles. It is cut nevertheless.
+    /// - A polygon that crosses itself has no such triangles. It is cut nevertheless, with as little
+    ///   area turned over as was found. If this is at most a millionth of the area, the polygon does
+    ///   not count as crossing: where it touches itself, rounded coordinates cross.
     ///
     /// A polygon that is not planar is projected along the axis nearest to its Newell normal. If it
     /// crosses itself there, it is projected along the normal itself. Signs of areas are exact.
@@ -189,8 +210,7 @@ impl PolygonCutter {
     /// Ears are clipped (Meisters 1975), the one with the best shape first. If a triangle of the
     /// result is turned over, the polygon is not simple, and its ears are clipped by rules for
     /// polygons that touch themselves. If this fails, too, and the polygon has at most 256 corners,
-    /// all triangulations are compared by dynamic programming (Klincsek 1980). If there is none
-    /// without a turned triangle, the polygon crosses itself.
+    /// all triangulations are compared by dynamic programming (Klincsek 1980).
     ///
     /// # Complexity
     ///
@@ -201,21 +221,62 @@ impl PolygonCutter {
         corners: impl IntoIterator<Item = DVec3>,
         is_edge: impl Fn(usize, usize) -> bool,
     ) -> PolygonTriangles<'_> {
-        let is_crossing = !self.is_cut(corners, is_edge);
+        let is_crossing = self.crosses(corners, is_edge);
         PolygonTriangles {
             triangles: &self.triangles,
             is_crossing,
         }
     }
 
-    /// Cuts a face of a mesh. Returns whether no triangle is turned over.
-    fn is_face_cut(
+    /// Makes faces without repeated vertices of a face with the corners `face`, which may name
+    /// vertices repeatedly. `position(i)` is the position of corner `i`.
+    ///
+    /// ```text
+    ///     b ─── c       d ─── e         The face a b c a d e names a twice: it is cut into
+    ///       ╲   │       │   ╱           triangles. Of corners that repeat the corner before
+    ///         ╲ │       │ ╱             them, such as a a b c, only the first remains, and a
+    ///           a       a               part with fewer than three corners is left out.
+    /// ```
+    ///
+    /// The parts have the area of the face if corners with the same vertex have the same position
+    /// ([`cut`](Self::cut) says for which polygons). The time is that of `cut`, or O(n) if only
+    /// neighbours repeat.
+    pub fn parts(&mut self, face: &[VertexId], position: impl Fn(usize) -> DVec3) -> FaceParts {
+        let mut corners: Vec<usize> = (0..face.len())
+            .filter(|&i| i == 0 || face[i] != face[i - 1])
+            .collect();
+        while corners.len() > 1 && face[corners[corners.len() - 1]] == face[0] {
+            corners.pop();
+        }
+        let vertices: Vec<VertexId> = corners.iter().map(|&i| face[i]).collect();
+        if corners.len() < 3 || repeated(&vertices).is_none() {
+            let degree = corners.len().max(3);
+            return FaceParts {
+                corners,
+                degree,
+                is_crossing: false,
+            };
+        }
+        let is_same = |i: usize, j: usize| vertices[i] == vertices[j];
+        let is_crossing = self.crosses(corners.iter().map(|&i| position(i)), is_same);
+        let has_area =
+            |&&[a, b, c]: &&[usize; 3]| !is_same(a, b) && !is_same(b, c) && !is_same(c, a);
+        let triangles = self.triangles.iter().filter(has_area);
+        FaceParts {
+            corners: triangles.flatten().map(|&i| corners[i]).collect(),
+            degree: 3,
+            is_crossing,
+        }
+    }
+
+    /// Cuts a face of a mesh. Returns whether it crosses itself.
+    fn face_crosses(
         &mut self,
         polygons: &PolygonMesh,
         face: &[VertexId],
         is_edge: impl Fn(usize, usize) -> bool,
     ) -> bool {
-        self.is_cut(
+        self.crosses(
             face.iter().map(|&v| polygons.position(v).as_dvec3()),
             is_edge,
         )
@@ -230,74 +291,88 @@ impl PolygonCutter {
         inner.map(|[a, c]| Pair::new(face[a], face[c]))
     }
 
-    /// Cuts a polygon like [`cut`](Self::cut). Returns whether no triangle is turned over.
-    fn is_cut(
+    /// Cuts a polygon like [`cut`](Self::cut). Returns whether it crosses itself.
+    fn crosses(
         &mut self,
         corners: impl IntoIterator<Item = DVec3>,
         is_edge: impl Fn(usize, usize) -> bool,
     ) -> bool {
         self.corners.clear();
         self.corners.extend(corners);
+        self.triangles.clear();
         if self.corners.len() < 4 {
-            self.triangles.clear();
             let triangle = (self.corners.len() == 3).then_some([0, 1, 2]);
             self.triangles.extend(triangle);
-            return true;
+            return false;
         }
         let normal = plane::normal(&self.corners);
         let along_axis = plane::along_axis(&self.corners, normal);
         if let Some(triangles) = convex_quad(&self.corners, &along_axis, &is_edge) {
-            self.triangles.clear();
             self.triangles.extend(triangles);
-            return true;
-        }
-        if self.cut_in_plane(&along_axis, &is_edge) {
-            return true;
-        }
-        let along_normal = plane::along_normal(&self.corners, normal);
-        if along_normal.is_some_and(|projected| self.cut_in_plane(&projected, &is_edge)) {
-            return true;
-        }
-        self.clip(&along_axis, Shape::Simple, &is_edge);
-        false
-    }
-
-    /// Cuts the polygon with the corners `projected`. Returns whether no triangle is turned over.
-    fn cut_in_plane(
-        &mut self,
-        projected: &[DVec2],
-        is_edge: &impl Fn(usize, usize) -> bool,
-    ) -> bool {
-        if self.clip(projected, Shape::Simple, is_edge)
-            || self.clip(projected, Shape::Touching, is_edge)
-        {
-            return true;
-        }
-        if projected.len() > exhaustive::MAX_CORNERS {
             return false;
         }
-        let best = exhaustive::triangulation(&self.corners, projected, is_edge);
-        let is_found = best.is_some();
-        self.triangles = best.unwrap_or_default();
-        is_found
+        let mut least = f64::INFINITY;
+        for method in [Method::Simple, Method::Touching, Method::Exhaustive] {
+            least = self.improve(least, &along_axis, method, &is_edge);
+            if least == 0.0 {
+                return false;
+            }
+        }
+        if least > MAX_TURNED
+            && let Some(along_normal) = plane::along_normal(&self.corners, normal)
+        {
+            for method in [Method::Simple, Method::Touching] {
+                least = self.improve(least, &along_normal, method, &is_edge);
+            }
+        }
+        least > MAX_TURNED
     }
 
-    fn clip(
+    /// Cuts the polygon with the corners `projected`. Keeps the triangles and returns the part of
+    /// their area that is turned over, if this is less than `least`, the part of the triangles so far.
+    fn improve(
         &mut self,
+        least: f64,
         projected: &[DVec2],
-        shape: Shape,
+        method: Method,
         is_edge: &impl Fn(usize, usize) -> bool,
-    ) -> bool {
+    ) -> f64 {
         let Self {
             corners,
             ears,
             triangles,
+            tried,
         } = self;
-        triangles.clear();
-        ears.clip(corners, projected, shape, is_edge, triangles);
-        triangles.iter().all(|&t| !plane::is_turned(projected, t))
+        tried.clear();
+        match method {
+            Method::Simple => ears.clip(corners, projected, Shape::Simple, is_edge, tried),
+            Method::Touching => ears.clip(corners, projected, Shape::Touching, is_edge, tried),
+            Method::Exhaustive if corners.len() > exhaustive::MAX_CORNERS => return least,
+            Method::Exhaustive => exhaustive::triangulate(corners, projected, is_edge, tried),
+        }
+        let turned = plane::turned_part(projected, tried);
+        if turned >= least {
+            return least;
+        }
+        std::mem::swap(triangles, tried);
+        turned
     }
 }
+
+/// A way to cut a polygon.
+#[derive(Clone, Copy)]
+enum Method {
+    /// Ear clipping of a simple polygon.
+    Simple,
+    /// Ear clipping of a polygon that touches itself.
+    Touching,
+    /// The best of all triangulations.
+    Exhaustive,
+}
+
+/// The largest part of the area of the triangles that rounded coordinates turn over, where the polygon
+/// touches itself.
+const MAX_TURNED: f64 = 1e-6;
 
 /// Part by which the second diagonal of a quad must be better than the first. Rounding errors then
 /// do not decide between the diagonals of equal quads.

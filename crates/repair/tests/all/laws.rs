@@ -1,11 +1,13 @@
 //! Laws of repairs, on random damaged meshes.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
 use proptest::collection;
 use proptest::prelude::*;
-use sixfold_conformance::strategy::{any_capabilities, any_mesh, faulty_mesh, manifold_mesh};
-use sixfold_core::{FaceId, Facts, MeshQuery, PolygonMesh, Representation, VertexId};
+use sixfold_conformance::strategy::{
+    any_capabilities, any_mesh, faulty_mesh, manifold_mesh, touching_polygon,
+};
+use sixfold_core::{FaceId, Facts, MeshQuery, PolygonMesh, Representation, VertexId, area_vector};
 use sixfold_corner_table::CornerTable;
 use sixfold_face_vertex::FaceVertexMesh;
 use sixfold_half_edge::HalfEdgeMesh;
@@ -344,6 +346,46 @@ proptest! {
             prop_assert_eq!(capabilities.check(&filled.polygons), Ok(()));
             prop_assert!(filled.faces.new_count() >= mesh.face_count());
             mesh = filled.polygons;
+        }
+    }
+}
+
+/// Returns the area of all faces.
+fn area(polygons: &PolygonMesh) -> f64 {
+    let faces = polygons.faces().iter();
+    let areas = faces.map(|(_, face)| {
+        area_vector(face.iter().map(|&v| polygons.position(v).as_dvec3())).length()
+    });
+    areas.sum()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Corners of a polygon that touches itself become one vertex, and the area stays.
+    #[test]
+    fn welding_neither_opens_nor_closes_a_hole(
+        polygon in touching_polygon(),
+        shifts in collection::vec(prop::array::uniform2(-1.0_f32..1.0), 1..20),
+        shift in prop_oneof![Just(0.0_f32), 1e-4..1e-2_f32],
+    ) {
+        let shifts = shifts.iter().cycle();
+        let points = polygon.corners.iter().zip(shifts).map(|(&[x, y], [dx, dy])| {
+            [x as f32 + shift * dx, y as f32 + shift * dy, 0.0]
+        });
+        let face: Vec<u32> = (0..polygon.corners.len() as u32).collect();
+        let mesh = PolygonMesh::new(points, [face]).expect("valid");
+        let tolerance = Tolerance::Absolute(f64::from(3.0 * shift));
+        let weld = Weld { tolerance, ..Weld::default() };
+        let welded = repair(&mesh, &[Step::Weld(weld)]).expect("a good tolerance");
+        let places: HashSet<[i32; 2]> = polygon.corners.iter().copied().collect();
+        prop_assert_eq!(welded.polygons.vertex_count(), places.len());
+        // Each corner moves by less than twice the tolerance against its place on the grid.
+        let perimeter: f64 = 2.0 * polygon.corners.len() as f64 * 36.0;
+        let difference = (area(&welded.polygons) - f64::from(polygon.area)).abs();
+        prop_assert!(difference <= f64::from(6.0 * shift) * perimeter + 1e-6, "{}", difference);
+        if shift == 0.0 {
+            prop_assert!(welded.steps[0].left.is_empty());
         }
     }
 }

@@ -15,10 +15,21 @@ fn coord(p: DVec2) -> Coord<f64> {
     Coord { x: p.x, y: p.y }
 }
 
-/// Returns whether the triangle is turned over: its corners run clockwise. A triangle whose area is
-/// not a number is not turned.
-pub(super) fn is_turned(points: &[DVec2], [a, b, c]: [usize; 3]) -> bool {
-    orient2d(points[a], points[b], points[c]) < 0.0
+/// Returns the part of the area of the triangles that is turned over, where corners run clockwise: 0
+/// if no triangle is turned, and at most 1. Areas that are not numbers do not count.
+pub(super) fn turned_part(points: &[DVec2], triangles: &[[usize; 3]]) -> f64 {
+    let (mut turned, mut all) = (0.0, 0.0);
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|i| points[i]);
+        let area = orient2d(a, b, c);
+        turned += f64::max(0.0, -area);
+        all += f64::max(0.0, area.abs());
+    }
+    match turned > 0.0 {
+        // Areas can underflow to sizes whose quotient is 0.
+        true => (turned / all).max(f64::MIN_POSITIVE),
+        false => 0.0,
+    }
 }
 
 /// Returns a vector that is normal to the polygon, to the side from which most of the polygon runs
