@@ -3,9 +3,10 @@
 
 use proptest::prelude::*;
 use sixfold::operators::{
-    DualError, Facing, NormalWeights, OrientationError, Smoothing, SmoothingBoundary, Weights,
-    dual, face_normals, oriented, smoothed, vertex_normals,
+    DualError, NormalWeights, Smoothing, SmoothingBoundary, Weights, dual, face_normals, smoothed,
+    vertex_normals,
 };
+use sixfold::repair::{Facing, OrientationError, oriented};
 use sixfold::{
     Facts, HalfEdgeMesh, MeshQuery, Point, PolygonMesh, Representation, for_each_representation,
 };

@@ -53,18 +53,6 @@ pub enum DualError {
     NotOrientedManifold(#[from] BuildError),
 }
 
-/// The reason why the faces cannot be oriented consistently.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-#[expect(missing_docs, reason = "the message explains each field")]
-pub enum OrientationError {
-    /// A closed chain of faces returns to its first face with the opposite orientation.
-    #[error("the mesh is not orientable, because its faces cannot have the same orientation at \
-             edge {0}–{1}: cut the mesh open along this edge, or choose a structure that accepts \
-             inconsistent orientation", .ends[0], .ends[1])]
-    NotOrientable { ends: [VertexId; 2] },
-}
-
 /// The reason why a mesh cannot be projected to a sphere.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]

@@ -6,13 +6,11 @@
 //! | [`face_normals`], [`vertex_normals`] | any | directions | corners | Newell, after Sutherland, Sproull & Schumacker 1974; Thürmer & Wüthrich 1998 |
 //! | [`projected_to_sphere`] | any | positions | vertices | |
 //! | [`dual`] | closed oriented manifolds | polygons | corners | |
-//! | [`oriented`] | polygons | polygons | corners · log corners | |
 //!
 //! An operator queries each face and each edge a fixed number of times, never the neighbours of a
 //! vertex, and stores sums in maps by vertex, edge or face. So no structure scans all faces for
 //! each vertex, and reading the mesh takes O(corners) time for every structure. New positions are
-//! returned as a [`VertexMap`] for [`set_positions`]. The operator [`oriented`] works on a
-//! [`PolygonMesh`], before a structure is built, because some structures hold only oriented meshes.
+//! returned as a [`VertexMap`] for [`set_positions`].
 //!
 //! Sums are computed in double precision, so a product of three coordinates neither overflows nor
 //! underflows. Two structures may add the terms of a sum in different orders, so their results may
@@ -20,11 +18,9 @@
 //! ```
 //! use sixfold_half_edge::HalfEdgeMesh;
 //! use sixfold_core::{MeshMove, MeshQuery, Representation};
-//! use sixfold_operators::{Smoothing, oriented, smoothed};
+//! use sixfold_operators::{Smoothing, smoothed};
 //!
-//! let repaired = oriented(&sixfold_shapes::cube(), Default::default())?;
-//! assert!(repaired.reversed.is_empty());
-//! let triangles = repaired.polygons.triangulated()?.polygons;
+//! let triangles = sixfold_shapes::cube().triangulated()?.polygons;
 //! let mut mesh = HalfEdgeMesh::from_polygons(&triangles)?;
 //! let moved = smoothed(&mesh, &Smoothing::default())?;
 //! mesh.set_positions(&moved)?;
@@ -33,23 +29,17 @@
 //! ```
 //!
 //! [`VertexMap`]: sixfold_core::VertexMap
-//! [`PolygonMesh`]: sixfold_core::PolygonMesh
 //! [`set_positions`]: sixfold_core::MeshMove::set_positions
 
 mod dual;
 mod error;
 mod laplacian;
 mod normals;
-mod orientation;
 mod smoothing;
 mod sphere;
 
 pub use dual::dual;
-pub use error::{DualError, OrientationError, SmoothingError, SphereError};
+pub use error::{DualError, SmoothingError, SphereError};
 pub use normals::{NormalWeights, face_normals, vertex_normals};
-pub use orientation::{
-    Components, Facing, NotOrientable, Oriented, OrientedComponents, Reversal, faces_to_reverse,
-    oriented, oriented_components,
-};
 pub use smoothing::{Smoothing, SmoothingBoundary, Weights, smoothed};
 pub use sphere::projected_to_sphere;

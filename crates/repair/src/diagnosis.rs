@@ -4,9 +4,9 @@ mod fault;
 
 use std::collections::BTreeMap;
 
+use crate::orientation::{Components, Facing, faces_to_reverse};
 use rustc_hash::FxHashMap;
 use sixfold_core::{Capabilities, Facts, Fans, Incidence, Pair, PolygonMesh, VertexId, join};
-use sixfold_operators::{Components, Facing, faces_to_reverse};
 
 use crate::duplicates::Copies;
 use crate::flat::is_flat;

@@ -1,6 +1,6 @@
 //! Errors of repairs.
 
-use sixfold_core::{BuildError, PolygonError};
+use sixfold_core::{BuildError, PolygonError, VertexId};
 
 /// The reason why a mesh cannot be repaired with the given options; the mesh is unchanged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -24,4 +24,16 @@ pub enum RepairError {
     /// A fault for which there is no step.
     #[error("no step repairs this fault: {0}")]
     NoStep(#[source] BuildError),
+}
+
+/// The reason why the faces cannot be oriented consistently.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message explains each field")]
+pub enum OrientationError {
+    /// A closed chain of faces returns to its first face with the opposite orientation.
+    #[error("the mesh is not orientable, because its faces cannot have the same orientation at \
+             edge {0}–{1}: cut the mesh open along this edge, or choose a structure that accepts \
+             inconsistent orientation", .ends[0], .ends[1])]
+    NotOrientable { ends: [VertexId; 2] },
 }

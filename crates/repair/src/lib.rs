@@ -59,6 +59,7 @@ mod error;
 mod flat;
 mod holes;
 mod orient;
+mod orientation;
 mod outcome;
 mod plan;
 mod remove;
@@ -72,13 +73,15 @@ mod weld;
 
 pub use diagnosis::{Diagnosis, Fault, FaultKind, Place, diagnose, facts_and_diagnosis};
 pub use duplicates::OppositeFaces;
-pub use error::RepairError;
+pub use error::{OrientationError, RepairError};
 pub use holes::{FillHoles, HoleFilling};
+pub use orientation::{
+    Components, Facing, NotOrientable, Oriented, OrientedComponents, Undecided, UndecidedReason,
+    oriented, oriented_components,
+};
 pub use outcome::{Left, StepCounts};
 pub use plan::repair_for;
 pub use report::{Repaired, StepReport};
-#[doc(no_inline)]
-pub use sixfold_operators::{Components, Facing};
 pub use step::{Step, repair};
 pub use trace::ElementMap;
 pub use weld::{Tolerance, Weld, WeldMethod};

@@ -1,8 +1,8 @@
-//! Orientation as a step: the algorithm is in `sixfold-operators`.
+//! Orientation as a step: the algorithm is in `orientation.rs`.
 
 use sixfold_core::{PolygonMesh, Slot};
-use sixfold_operators::{Components, Facing, OrientedComponents, oriented_components};
 
+use crate::orientation::{Components, Facing, OrientedComponents, oriented_components};
 use crate::outcome::{Left, Outcome, StepCounts};
 use crate::trace::{CornerId, Trace, VertexTrace, corners_of};
 
@@ -12,12 +12,18 @@ pub(crate) fn orient(polygons: &PolygonMesh, facing: Facing, which: Components) 
         polygons: oriented,
         reversed,
         not_orientable,
+        undecided,
     } = oriented_components(polygons, facing, which);
     let left = not_orientable.iter().map(|component| Left::NotOrientable {
         face: component.face,
         faces: component.faces,
         ends: component.ends,
     });
+    let left = left.chain(undecided.iter().map(|component| Left::Undecided {
+        face: component.face,
+        faces: component.faces,
+        reason: component.reason,
+    }));
     let left = left.collect();
     if reversed.is_empty() {
         return Outcome {

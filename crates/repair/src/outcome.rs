@@ -4,6 +4,7 @@ use std::fmt;
 
 use sixfold_core::{FaceId, PolygonMesh, VertexId};
 
+use crate::orientation::UndecidedReason;
 use crate::trace::Trace;
 
 /// The numbers of elements that a step changed.
@@ -63,6 +64,14 @@ pub enum Left {
         #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::rows"))]
         ends: [VertexId; 2],
     },
+    /// A component of which the outside is not known; `face` is its first face. Its faces agree, and
+    /// most of them are as before.
+    Undecided {
+        #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::row"))]
+        face: FaceId,
+        faces: usize,
+        reason: UndecidedReason,
+    },
     /// A hole that has more edges than allowed; `vertex` is its lowest vertex.
     LargeHole {
         #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::row"))]
@@ -91,6 +100,20 @@ impl fmt::Display for Left {
                 "the component of face {face} ({faces} faces) is not orientable; its faces cannot agree at edge {}–{}",
                 ends[0], ends[1]
             ),
+            Self::Undecided {
+                face,
+                faces,
+                reason,
+            } => {
+                let faces = match faces {
+                    1 => "1 face".to_owned(),
+                    _ => format!("{faces} faces"),
+                };
+                write!(
+                    f,
+                    "the component of face {face} ({faces}) {reason}, so its outside is not known"
+                )
+            }
             Self::LargeHole { vertex, edges } => write!(
                 f,
                 "the hole at vertex {vertex} has {edges} edges, more than the limit"

@@ -1,10 +1,10 @@
 //! The steps that make a mesh fit a structure.
 
 use sixfold_core::{Capabilities, PolygonMesh};
-use sixfold_operators::{Components, Facing};
 
 use crate::duplicates::OppositeFaces;
 use crate::error::RepairError;
+use crate::orientation::{Components, Facing};
 use crate::report::Repaired;
 use crate::step::{Run, Step};
 use crate::weld::Weld;

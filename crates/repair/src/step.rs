@@ -3,11 +3,11 @@
 use std::fmt;
 
 use sixfold_core::PolygonMesh;
-use sixfold_operators::{Components, Facing};
 
 use crate::duplicates::OppositeFaces;
 use crate::error::RepairError;
 use crate::holes::FillHoles;
+use crate::orientation::{Components, Facing};
 use crate::outcome::Outcome;
 use crate::report::{Repaired, StepReport};
 use crate::trace::{Trace, element_maps};

@@ -3,14 +3,16 @@
 use std::process::ExitCode;
 
 use sixfold::io::WriteOptions;
-use sixfold::operators::{Smoothing, SmoothingError, dual, oriented, smoothed};
+use sixfold::operators::{Smoothing, SmoothingError, dual, smoothed};
+use sixfold::repair::{Components, Step, repair};
 use sixfold::{PolygonMesh, Representation, Visitor, visit};
 
 use crate::arguments::{Dual, MeshInOut, ReadPolygons, Smooth, Triangulate};
 use crate::failure::Failure;
+use crate::mesh_files::shown;
 use crate::output::is_stdout;
 use crate::progress::Spinner;
-use crate::text::{TextOutput, sanitize};
+use crate::text::{TextOutput, print_stderr, sanitize};
 use sixfold_study::numbers::counted;
 
 pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
@@ -41,8 +43,15 @@ pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> 
         let Some(facing) = arguments.orient else {
             return Ok(triangles.clone());
         };
-        let oriented = oriented(triangles, facing).map_err(Failure::unsupported)?;
-        Ok(oriented.polygons)
+        let orient = Step::Orient {
+            facing,
+            which: Components::All,
+        };
+        let repaired = repair(triangles, &[orient]).map_err(Failure::unsupported)?;
+        for left in repaired.steps.iter().flat_map(|step| &step.left) {
+            print_stderr(&format!("note: {}: {left}", shown(&arguments.files.mesh)));
+        }
+        Ok(repaired.polygons)
     })
 }
 

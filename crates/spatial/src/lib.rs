@@ -63,6 +63,7 @@
 //! and others) and [`mesh_distance`] use them. The results do not depend on the number of threads.
 
 mod bounds;
+mod contact;
 mod distance;
 mod error;
 mod grid;
@@ -76,6 +77,7 @@ mod tree;
 mod triangle;
 
 pub use bounds::Bounds;
+pub use contact::triangles_touch;
 pub use distance::{MeshDistance, OneSidedDistance, mesh_distance, one_sided_distance};
 pub use error::{DistanceError, SpatialError};
 pub use grid::UniformGrid;

@@ -3,10 +3,10 @@
 use std::fmt;
 
 use sixfold_core::{Capabilities, FaceId, VertexId};
-use sixfold_operators::{Components, Facing};
 
 use crate::duplicates::OppositeFaces;
 use crate::holes::FillHoles;
+use crate::orientation::{Components, Facing};
 use crate::step::Step;
 use crate::weld::Weld;
 

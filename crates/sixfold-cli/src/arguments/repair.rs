@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use sixfold::operators::Facing;
 use sixfold::repair::{
-    Components, FillHoles, HoleFilling, OppositeFaces, Step, Tolerance, Weld, WeldMethod,
+    Components, Facing, FillHoles, HoleFilling, OppositeFaces, Step, Tolerance, Weld, WeldMethod,
 };
 
 use super::{MeshInOut, ReadFiles, backend};

@@ -1,7 +1,8 @@
 //! Arguments of `sixfold smooth`, `dual` and `triangulate`.
 
 use clap::Args;
-use sixfold::operators::{Facing, SmoothingBoundary, Weights};
+use sixfold::operators::{SmoothingBoundary, Weights};
+use sixfold::repair::Facing;
 
 use super::{MeshInOut, ReadFiles, ReadPolygons, backend};
 
@@ -73,8 +74,7 @@ const TRIANGULATE_EXAMPLES: &str = "Examples:
   sixfold triangulate plan.obj -o triangles.obj
   sixfold triangulate scan.obj --orient outward -o consistent.obj
 
-Exit codes: 0 success; 2 wrong usage or unusable input; 3 the mesh cannot be oriented;
-4 interrupted, nothing written.";
+Exit codes: 0 success; 2 wrong usage or unusable input; 4 interrupted, nothing written.";
 
 /// Cut polygons into triangles.
 ///

@@ -1,9 +1,13 @@
 //! Orientation repair: reverses faces until adjacent faces run along their shared edges in opposite
 //! directions.
 
-use glam::DVec3;
+mod outward;
+
+use std::fmt;
+
 use sixfold_core::{Classes, FaceId, FaceList, Incidence, PolygonMesh, VertexId, row};
 
+use self::outward::outward;
 use crate::error::OrientationError;
 
 sixfold_core::named! {
@@ -15,8 +19,10 @@ sixfold_core::named! {
         /// its orientation.
         #[default]
         Majority = "majority",
-        /// The faces of a closed component that encloses a volume face outward. For other
-        /// components, the rule [`Majority`](Self::Majority) applies.
+        /// Closed components face outward, or inward if they are the wall of a cavity: if an odd
+        /// number of closed components is around them. Open components face the side to which they
+        /// bulge. For components that are [`Undecided`], the rule [`Majority`](Self::Majority)
+        /// applies.
         Outward = "outward",
     }
 }
@@ -54,6 +60,50 @@ pub struct OrientedComponents {
     /// The components that are not orientable, in the order of their first faces. The faces of
     /// these components are not reversed.
     pub not_orientable: Vec<NotOrientable>,
+    /// With [`Facing::Outward`] and [`Components::All`], the components of which the outside is not
+    /// known, in the order of their first faces.
+    pub undecided: Vec<Undecided>,
+}
+
+/// A component of which the outside is not known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Undecided {
+    /// The first face of the component.
+    pub face: FaceId,
+    /// The number of faces of the component.
+    pub faces: usize,
+    /// The reason.
+    pub reason: UndecidedReason,
+}
+
+/// The reason why the outside of a component is not known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize),
+    serde(rename_all = "snake_case")
+)]
+#[non_exhaustive]
+pub enum UndecidedReason {
+    /// The component is closed, and touches or crosses another closed component, whose first face is
+    /// this one. Or it is inside such a component.
+    Touches(#[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::row"))] FaceId),
+    /// The component is closed, but encloses no volume.
+    NoVolume,
+    /// The component is open, and does not clearly bulge to one side.
+    Flat,
+}
+
+impl fmt::Display for UndecidedReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Touches(face) => {
+                write!(f, "touches or crosses that of face {face}, or is inside it")
+            }
+            Self::NoVolume => f.write_str("encloses no volume"),
+            Self::Flat => f.write_str("is open and nearly flat"),
+        }
+    }
 }
 
 /// A component whose faces cannot have a consistent orientation.
@@ -80,8 +130,11 @@ pub struct NotOrientable {
 ///                        ──←──
 /// ```
 ///
-/// Each component is oriented independently of the other components. Therefore, with
-/// [`Facing::Outward`], the wall of a cavity inside a solid faces away from the cavity.
+/// With [`Facing::Outward`], a closed component is outside if an even number of closed components is
+/// around it. So the wall of a cavity faces the cavity, and a solid inside the cavity faces outward
+/// again. The volume of an open component is that of the component and of a cone from its boundary to
+/// the centre of its boundary; the component faces outward if this volume is at least half as large
+/// as the volumes of its parts without their signs.
 ///
 /// # Errors
 ///
@@ -91,12 +144,13 @@ pub struct NotOrientable {
 ///
 /// # Complexity
 ///
-/// O(n log n) time for n corners.
+/// O(n log n) time for n corners; for closed components whose bounding boxes overlap, expected.
 pub fn oriented(polygons: &PolygonMesh, facing: Facing) -> Result<Oriented, OrientationError> {
     let OrientedComponents {
         polygons,
         reversed,
         not_orientable,
+        ..
     } = oriented_components(polygons, facing, Components::All);
     match not_orientable.first() {
         Some(&NotOrientable { ends, .. }) => Err(OrientationError::NotOrientable { ends }),
@@ -116,32 +170,27 @@ pub fn oriented_components(
     let Reversal {
         reversed,
         not_orientable,
+        undecided,
     } = faces_to_reverse(polygons, &incidence, facing, which);
     OrientedComponents {
         polygons: reverse_faces(polygons, &reversed),
         reversed,
         not_orientable,
+        undecided,
     }
 }
 
 /// The faces that [`oriented_components`] reverses, and the components that are not orientable.
-#[doc(hidden)]
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Reversal {
-    /// The reversed faces, in ascending order.
-    pub reversed: Vec<FaceId>,
-    /// The components that are not orientable, in the order of their first faces.
-    pub not_orientable: Vec<NotOrientable>,
+pub(crate) struct Reversal {
+    pub(crate) reversed: Vec<FaceId>,
+    pub(crate) not_orientable: Vec<NotOrientable>,
+    pub(crate) undecided: Vec<Undecided>,
 }
 
 /// Returns the faces that [`oriented_components`] reverses, without building the mesh. `incidence`
-/// must contain the sides of all faces of `polygons`. Takes O(n log n) time for n corners.
-///
-/// # Panics
-///
-/// May panic if `incidence` belongs to another mesh.
-#[doc(hidden)]
-pub fn faces_to_reverse(
+/// must contain the sides of all faces of `polygons`.
+pub(crate) fn faces_to_reverse(
     polygons: &PolygonMesh,
     incidence: &Incidence<'_>,
     facing: Facing,
@@ -152,40 +201,61 @@ pub fn faces_to_reverse(
         true => Agreement::of_consistent(faces, incidence),
         false => Agreement::new(faces, incidence),
     };
-    let inward = match facing {
-        Facing::Outward => agreement.faces_inward(polygons, incidence),
-        Facing::Majority => vec![None; agreement.conflicts.len()],
-    };
+    let count = agreement.conflicts.len();
     // By component: the number of faces, and of reversed faces.
-    let mut sizes = vec![[0_usize; 2]; agreement.conflicts.len()];
-    let mut first = vec![None; agreement.conflicts.len()];
-    for (f, component) in faces.iter().map(|(f, _)| (f, agreement.component(f))) {
+    let mut sizes = vec![[0_usize; 2]; count];
+    let mut first = vec![FaceId::new(0); count];
+    for f in faces.iter().map(|(f, _)| f) {
+        let component = agreement.component(f);
+        if sizes[component][0] == 0 {
+            first[component] = f;
+        }
         sizes[component][0] += 1;
         sizes[component][1] += usize::from(agreement.reverse[f.index()]);
-        first[component].get_or_insert(f);
     }
-    let reverse_all = sizes.iter().zip(inward).map(|(&[size, reversed], inward)| {
-        let majority = 2 * reversed > size;
-        match inward {
-            Some(inward) if which == Components::All || reversed > 0 => inward,
-            _ => majority,
+    let is_chosen = |component: usize| match which {
+        Components::All => true,
+        Components::Inconsistent => sizes[component][1] > 0,
+    };
+    let sides = match facing {
+        Facing::Outward if (0..count).any(is_chosen) => {
+            outward(polygons, incidence, &agreement, &first)
         }
-    });
-    let reverse_all: Vec<bool> = reverse_all.collect();
+        _ => vec![Ok(None); count],
+    };
+    let reverse_all: Vec<bool> = (0..count)
+        .map(|component| {
+            let [size, reversed] = sizes[component];
+            match sides[component] {
+                Ok(Some(reverse)) if is_chosen(component) => reverse,
+                _ => 2 * reversed > size,
+            }
+        })
+        .collect();
     let is_reversed = |&f: &FaceId| {
         let component = agreement.component(f);
         let orientable = agreement.conflicts[component].is_none();
         orientable && agreement.reverse[f.index()] != reverse_all[component]
     };
-    let conflicts = agreement.conflicts.iter().zip(first).zip(&sizes);
+    let components =
+        || (0..count).map(|component| (component, first[component], sizes[component][0]));
+    let not_orientable = components().filter_map(|(component, face, faces)| {
+        let ends = agreement.conflicts[component]?;
+        Some(NotOrientable { face, faces, ends })
+    });
+    let undecided = components().filter_map(|(component, face, faces)| {
+        let reason = sides[component].err()?;
+        let is_named = which == Components::All && agreement.conflicts[component].is_none();
+        is_named.then_some(Undecided {
+            face,
+            faces,
+            reason,
+        })
+    });
     Reversal {
         reversed: faces.iter().map(|(f, _)| f).filter(is_reversed).collect(),
-        not_orientable: conflicts
-            .filter_map(|((&ends, face), &[faces, _])| {
-                let (ends, face) = (ends?, face?);
-                Some(NotOrientable { face, faces, ends })
-            })
-            .collect(),
+        not_orientable: not_orientable.collect(),
+        undecided: undecided.collect(),
     }
 }
 
@@ -250,46 +320,6 @@ impl Agreement {
 
     fn component(&self, f: FaceId) -> usize {
         self.components[f.index()] as usize
-    }
-
-    /// Returns for each component whether it faces inward after its faces in `reverse` are
-    /// reversed; `None` if the component is open or encloses no volume.
-    ///
-    /// The sum of det(a, b, c) / 6 over all triangles is the signed volume. The coordinates are
-    /// relative to a vertex of the component.
-    fn faces_inward(&self, polygons: &PolygonMesh, incidence: &Incidence<'_>) -> Vec<Option<bool>> {
-        let mut is_closed = vec![true; self.conflicts.len()];
-        for edge in incidence.edges().filter(|edge| edge.len() != 2) {
-            for side in edge.sides() {
-                is_closed[self.component(side.face)] = false;
-            }
-        }
-        let mut from: Vec<Option<DVec3>> = vec![None; self.conflicts.len()];
-        let mut sums = vec![[0.0; 2]; self.conflicts.len()];
-        for (f, face) in polygons.faces().iter() {
-            let component = self.component(f);
-            if !is_closed[component] {
-                continue;
-            }
-            let at = |v: VertexId| polygons.position(v).as_dvec3();
-            let from = *from[component].get_or_insert_with(|| at(face[0]));
-            let sign = if self.reverse[f.index()] { -1.0 } else { 1.0 };
-            let [volume, size] = &mut sums[component];
-            let at = |v| at(v) - from;
-            for pair in face[1..].windows(2) {
-                let part = at(face[0]).dot(at(pair[0]).cross(at(pair[1])));
-                *volume += sign * part;
-                *size += part.abs();
-            }
-        }
-        let inward = sums
-            .iter()
-            .zip(is_closed)
-            .map(|(&[volume, size], is_closed)| {
-                // If the terms cancel, the sum is only a rounding error.
-                (is_closed && volume.abs() > 1e-9 * size).then_some(volume < 0.0)
-            });
-        inward.collect()
     }
 }
 
@@ -361,116 +391,4 @@ fn reverse_faces(polygons: &PolygonMesh, reversed: &[FaceId]) -> PolygonMesh {
 }
 
 #[cfg(test)]
-mod tests {
-    use proptest::collection;
-    use proptest::prelude::*;
-    use sixfold_conformance::strategy::manifold_mesh;
-    use sixfold_core::Facts;
-
-    use super::*;
-
-    fn with_reversed(polygons: &PolygonMesh, reverse: impl Fn(usize) -> bool) -> PolygonMesh {
-        let faces = polygons.faces().iter().map(|(f, _)| f);
-        let reversed: Vec<FaceId> = faces.filter(|f| reverse(f.index())).collect();
-        reverse_faces(polygons, &reversed)
-    }
-
-    fn face(row: u32) -> FaceId {
-        FaceId::new(row)
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
-
-        /// The repair makes all faces agree with the fewest reversals.
-        #[test]
-        fn reversed_faces_are_reversed_back(
-            polygons in manifold_mesh(),
-            reverse in collection::vec(any::<bool>(), 1..20),
-        ) {
-            let reverse = |f: usize| reverse[f % reverse.len()];
-            let repaired = oriented(&with_reversed(&polygons, reverse), Facing::Majority).expect("orientable");
-            prop_assert_eq!(Facts::from_polygons(&repaired.polygons).inconsistent_edges, 0);
-            prop_assert!(2 * repaired.reversed.len() <= polygons.face_count());
-            // A face differs from the original only if its whole component is reversed.
-            let unchanged = |f: FaceId| polygons.faces().face(f) == repaired.polygons.faces().face(f);
-            let faces = polygons.faces();
-            let incidence = Incidence::new(polygons.vertex_count(), faces, |_| true);
-            let neighbours = side_neighbours(faces, &incidence);
-            for (f, _) in polygons.faces().iter() {
-                prop_assert_eq!(unchanged(f), reverse(f.index()) == repaired.reversed.contains(&f));
-                for corner in polygons.faces().range(f) {
-                    if let Some((g, _)) = neighbours[corner] {
-                        prop_assert_eq!(unchanged(f), unchanged(g));
-                    }
-                }
-            }
-            let again = oriented(&repaired.polygons, Facing::Majority).expect("orientable");
-            prop_assert!(again.reversed.is_empty());
-        }
-
-        /// The closed shapes of this project face outward.
-        #[test]
-        fn closed_shapes_face_outward_again(reverse in collection::vec(any::<bool>(), 1..50)) {
-            let torus = sixfold_shapes::torus(6, 5).expect("small");
-            for shape in [sixfold_shapes::cube(), sixfold_shapes::dodecahedron(), torus] {
-                let mixed = with_reversed(&shape, |f| reverse[f % reverse.len()]);
-                let repaired = oriented(&mixed, Facing::Outward).expect("orientable");
-                prop_assert_eq!(repaired.polygons, shape);
-            }
-        }
-    }
-
-    #[test]
-    fn an_inside_out_shape_is_reversed_only_by_outward() {
-        let inside_out = with_reversed(&sixfold_shapes::cube(), |_| true);
-        let majority = oriented(&inside_out, Facing::Majority).expect("orientable");
-        assert!(majority.reversed.is_empty());
-        let outward = oriented(&inside_out, Facing::Outward).expect("orientable");
-        assert_eq!(outward.reversed, (0..6).map(face).collect::<Vec<_>>());
-        assert_eq!(outward.polygons, sixfold_shapes::cube());
-    }
-
-    #[test]
-    fn components_without_volume_follow_the_majority() {
-        let grid = sixfold_shapes::grid(3, 3).expect("small");
-        let mixed = with_reversed(&grid, |f| f == 4);
-        let repaired = oriented(&mixed, Facing::Outward).expect("orientable");
-        assert_eq!(repaired.reversed, [face(4)]);
-        // A pillow is closed, but flat.
-        let corners = grid.positions()[..3].to_vec();
-        let pillow = PolygonMesh::new(corners, [[0, 1, 2], [0, 1, 2]]).expect("valid");
-        let repaired = oriented(&pillow, Facing::Outward).expect("orientable");
-        assert_eq!(repaired.reversed, [face(1)]);
-    }
-
-    #[test]
-    fn an_edge_of_three_faces_is_not_crossed() {
-        let points = [0.0, 1.0, 2.0, 3.0, 4.0].map(sixfold_core::Point::splat);
-        let book = PolygonMesh::new(points, [[0, 1, 2], [0, 1, 3], [0, 1, 4]]).expect("valid");
-        let repaired = oriented(&book, Facing::Majority).expect("no faces disagree");
-        assert_eq!((repaired.polygons, repaired.reversed), (book, vec![]));
-    }
-
-    #[test]
-    fn non_orientable_surfaces_are_rejected_with_an_edge() {
-        let mut rejected = 0;
-        for specimen in sixfold_conformance::gallery() {
-            let facts = Facts::from_polygons(&specimen.polygons);
-            match oriented(&specimen.polygons, Facing::Majority) {
-                Ok(_) => assert_ne!(facts.orientable, Some(false), "{}", specimen.name),
-                Err(OrientationError::NotOrientable { ends: [a, b] }) => {
-                    assert_eq!(facts.orientable, Some(false), "{}", specimen.name);
-                    let faces = specimen.polygons.faces().iter();
-                    let along = faces.filter(|(_, f)| f.contains(&a) && f.contains(&b));
-                    assert!(a < b && along.count() >= 2, "{}", specimen.name);
-                    rejected += 1;
-                }
-            }
-        }
-        assert!(
-            rejected >= 3,
-            "expected at least the Möbius strip, the Klein bottle and the projective plane"
-        );
-    }
-}
+mod tests;

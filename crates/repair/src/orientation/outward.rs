@@ -1,0 +1,298 @@
+//! The outside of each component.
+
+use glam::DVec3;
+use sixfold_core::{FaceId, Incidence, PolygonCutter, PolygonMesh, VertexId};
+use sixfold_spatial::{
+    Bounds, Bvh, FaceTriangle, Ray, SpatialIndex, SurfaceQueries, triangles_touch,
+};
+
+use super::{Agreement, UndecidedReason};
+
+/// The least part of the volumes of its faces, without their signs, that the volume of an open
+/// component has if it clearly bulges to one side.
+const CLEAR_PART: f64 = 0.5;
+/// The least volume of such a component, in units of its area to the power of 3/2.
+const CLEAR_VOLUME: f64 = 1e-3;
+/// The least part of a closed component. A smaller volume is only a rounding error.
+const ROUNDING: f64 = 1e-9;
+
+/// The directions of rays. No face of a usual mesh is parallel to them, and no edge meets them.
+const DIRECTIONS: [[f64; 3]; 3] = [
+    [0.834_627_1, 0.412_913_7, 0.364_558_9],
+    [-0.391_742_3, 0.862_151_9, -0.321_377_1],
+    [0.274_813_1, -0.367_919_3, 0.888_316_7],
+];
+
+/// Whether all faces of a component are to be reversed after those in [`Agreement::reverse`], so that
+/// it faces outward; `None` if this was not asked.
+pub(super) type Side = Result<Option<bool>, UndecidedReason>;
+
+/// Returns for each component on which side it is. `first` has the first face of each.
+pub(super) fn outward(
+    polygons: &PolygonMesh,
+    incidence: &Incidence<'_>,
+    agreement: &Agreement,
+    first: &[FaceId],
+) -> Vec<Side> {
+    let volumes = volumes(polygons, incidence, agreement);
+    let is_solid = |component: usize| volumes[component].is_closed && volumes[component].is_clear();
+    let depths = depths(polygons, agreement, first, is_solid);
+    let sides = volumes.iter().zip(depths).map(|(volume, depth)| {
+        match (volume.is_closed, volume.is_clear()) {
+            (true, false) => Err(UndecidedReason::NoVolume),
+            (false, false) => Err(UndecidedReason::Flat),
+            (true, true) => {
+                depth.map(|depth| Some((volume.signed < 0.0) == depth.is_multiple_of(2)))
+            }
+            (false, true) => Ok(Some(volume.signed < 0.0)),
+        }
+    });
+    sides.collect()
+}
+
+/// The volume of a component with a cone from its boundary to the centre of its boundary.
+#[derive(Clone, Copy)]
+struct Volume {
+    is_closed: bool,
+    centre: DVec3,
+    /// The number of boundary vertices so far.
+    ends: usize,
+    /// Sum of the signed volumes between the centre and each triangle, times 6.
+    signed: f64,
+    /// Sum of these volumes without their signs.
+    size: f64,
+    /// Sum of twice the areas.
+    area: f64,
+}
+
+impl Volume {
+    /// Returns whether the volume decides about the side.
+    fn is_clear(&self) -> bool {
+        let volume = self.signed.abs();
+        match self.is_closed {
+            true => volume > ROUNDING * self.size,
+            false => volume > CLEAR_PART * self.size && volume > CLEAR_VOLUME * self.area.powf(1.5),
+        }
+    }
+}
+
+/// Returns the volume of each component, after the faces in [`Agreement::reverse`] are reversed.
+fn volumes(
+    polygons: &PolygonMesh,
+    incidence: &Incidence<'_>,
+    agreement: &Agreement,
+) -> Vec<Volume> {
+    let none = Volume {
+        is_closed: true,
+        centre: DVec3::ZERO,
+        ends: 0,
+        signed: 0.0,
+        size: 0.0,
+        area: 0.0,
+    };
+    let mut volumes = vec![none; agreement.conflicts.len()];
+    let at = |v: VertexId| polygons.position(v).as_dvec3();
+    for edge in incidence.edges().filter(|edge| edge.len() != 2) {
+        for side in edge.sides() {
+            let volume = &mut volumes[agreement.component(side.face)];
+            volume.is_closed = false;
+            for v in edge.ends {
+                // A running mean, which does not overflow.
+                volume.ends += 1;
+                volume.centre += (at(v) - volume.centre) / volume.ends as f64;
+            }
+        }
+    }
+    let mut seen = vec![false; volumes.len()];
+    for (f, face) in polygons.faces().iter() {
+        let component = agreement.component(f);
+        let volume = &mut volumes[component];
+        if volume.is_closed && !std::mem::replace(&mut seen[component], true) {
+            volume.centre = at(face[0]);
+        }
+        let sign = if agreement.reverse[f.index()] {
+            -1.0
+        } else {
+            1.0
+        };
+        let at = |v| at(v) - volume.centre;
+        // The signed sum does not depend on how the polygon is cut.
+        for pair in face[1..].windows(2) {
+            let [a, b, c] = [face[0], pair[0], pair[1]].map(at);
+            let part = a.dot(b.cross(c));
+            volume.signed += sign * part;
+            volume.size += part.abs();
+            volume.area += (b - a).cross(c - a).length();
+        }
+    }
+    volumes
+}
+
+/// Returns the number of solid components around each component, or why it is not known. For
+/// components that are not solid, the number is 0.
+fn depths(
+    polygons: &PolygonMesh,
+    agreement: &Agreement,
+    first: &[FaceId],
+    is_solid: impl Fn(usize) -> bool,
+) -> Vec<Result<usize, UndecidedReason>> {
+    let mut depths = vec![Ok(0); first.len()];
+    let is_near = overlapping(&bounds(polygons, agreement, is_solid));
+    if !is_near.contains(&true) {
+        return depths;
+    }
+    let Some(index) = index(polygons, agreement, &is_near) else {
+        return depths;
+    };
+    for (one, other) in contacts(&index, agreement) {
+        for (one, other) in [(one, other), (other, one)] {
+            if depths[one].is_ok() {
+                depths[one] = Err(UndecidedReason::Touches(first[other]));
+            }
+        }
+    }
+    // A point of each component: a triangle of it.
+    let mut sample = vec![None; first.len()];
+    for triangle in index.items() {
+        if triangle.area() > 0.0 {
+            sample[agreement.component(triangle.face)].get_or_insert(triangle);
+        }
+    }
+    let touching: Vec<bool> = depths.iter().map(Result::is_err).collect();
+    for (inner, sample) in sample.iter().enumerate() {
+        let (Some(sample), Ok(_)) = (sample, &depths[inner]) else {
+            continue;
+        };
+        let around = around(&index, sample, agreement);
+        depths[inner] = match around.iter().find(|&&outer| touching[outer]) {
+            Some(&outer) => Err(UndecidedReason::Touches(first[outer])),
+            None => Ok(around.len()),
+        };
+    }
+    depths
+}
+
+/// Returns the box of each solid component; `None` for the others and if a coordinate is not finite.
+fn bounds(
+    polygons: &PolygonMesh,
+    agreement: &Agreement,
+    is_solid: impl Fn(usize) -> bool,
+) -> Vec<Option<Bounds>> {
+    let components = agreement.conflicts.len();
+    let mut bounds: Vec<Option<Bounds>> = vec![None; components];
+    let mut is_finite = vec![true; components];
+    for (f, face) in polygons.faces().iter() {
+        let component = agreement.component(f);
+        let corners = face.iter().map(|&v| polygons.position(v));
+        is_finite[component] &= corners.clone().all(|p| p.is_finite());
+        let face = Bounds::from_points(corners);
+        let all = bounds[component].map_or(face, |all| all.union(face));
+        bounds[component] = Some(all);
+    }
+    for (component, one) in bounds.iter_mut().enumerate() {
+        *one = one.filter(|_| is_finite[component] && is_solid(component));
+    }
+    bounds
+}
+
+/// Returns which boxes overlap another one, by a sweep along x.
+fn overlapping(bounds: &[Option<Bounds>]) -> Vec<bool> {
+    let boxes = bounds.iter().enumerate();
+    let mut sorted: Vec<(usize, Bounds)> = boxes.filter_map(|(i, b)| Some((i, (*b)?))).collect();
+    sorted.sort_by(|(_, a), (_, b)| a.low.x.total_cmp(&b.low.x));
+    let mut found = vec![false; bounds.len()];
+    let mut open: Vec<(usize, Bounds)> = Vec::new();
+    for (i, one) in sorted {
+        open.retain(|(_, other)| other.high.x >= one.low.x);
+        for &(j, other) in &open {
+            if overlap(&one, &other) {
+                found[i] = true;
+                found[j] = true;
+            }
+        }
+        open.push((i, one));
+    }
+    found
+}
+
+fn overlap(a: &Bounds, b: &Bounds) -> bool {
+    a.low.cmple(b.high).all() && b.low.cmple(a.high).all()
+}
+
+/// Returns an index of the triangles of the chosen components.
+fn index(
+    polygons: &PolygonMesh,
+    agreement: &Agreement,
+    is_chosen: &[bool],
+) -> Option<Bvh<FaceTriangle<FaceId>>> {
+    let mut cutter = PolygonCutter::default();
+    let mut triangles = Vec::new();
+    for (face, corners) in polygons.faces().iter() {
+        if is_chosen[agreement.component(face)] {
+            let at = |i: usize| polygons.position(corners[i]);
+            let points = (0..corners.len()).map(|i| at(i).as_dvec3());
+            let cut = cutter.cut(points, |_, _| false);
+            let triangle = |t: &[usize; 3]| FaceTriangle {
+                face,
+                corners: t.map(at),
+            };
+            triangles.extend(cut.triangles.iter().map(triangle));
+        }
+    }
+    Bvh::build(triangles).ok()
+}
+
+/// Returns pairs of components that touch or cross each other. Each component that does is in a pair.
+fn contacts(index: &Bvh<FaceTriangle<FaceId>>, agreement: &Agreement) -> Vec<(usize, usize)> {
+    let mut touching = vec![false; agreement.conflicts.len()];
+    let mut pairs = Vec::new();
+    for triangle in index.items() {
+        let own = agreement.component(triangle.face);
+        let corners = triangle.corners_f64();
+        let centre = corners.iter().sum::<DVec3>() / 3.0;
+        let reach = corners.map(|corner| corner.distance_squared(centre));
+        // A little more than the radius, because the distance of a box is rounded.
+        let limit = 1.000_001 * reach.into_iter().fold(0.0, f64::max) + f64::MIN_POSITIVE;
+        index.visit_near(centre, limit, |slot| {
+            let near = &index.items()[slot];
+            let other = agreement.component(near.face);
+            let is_new = own != other && !(touching[own] && touching[other]);
+            if is_new && triangles_touch(corners, near.corners_f64()) {
+                touching[own] = true;
+                touching[other] = true;
+                pairs.push((own, other));
+            }
+            limit
+        });
+    }
+    pairs
+}
+
+/// Returns the components around the component of a triangle: those that most rays from its centre
+/// leave.
+fn around(
+    index: &Bvh<FaceTriangle<FaceId>>,
+    sample: &FaceTriangle<FaceId>,
+    agreement: &Agreement,
+) -> Vec<usize> {
+    let inner = agreement.component(sample.face);
+    let centre = sample.corners_f64().iter().sum::<DVec3>() / 3.0;
+    let mut votes: Vec<usize> = Vec::new();
+    for direction in DIRECTIONS {
+        let Ok(ray) = Ray::new(centre, direction) else {
+            continue;
+        };
+        let mut hits: Vec<usize> = Vec::new();
+        index.for_each_hit(&ray, f64::INFINITY, |hit| {
+            hits.push(agreement.component(hit.face));
+        });
+        hits.sort_unstable();
+        let odd = hits
+            .chunk_by(|a, b| a == b)
+            .filter(|same| same.len() % 2 == 1);
+        votes.extend(odd.map(|same| same[0]).filter(|&outer| outer != inner));
+    }
+    votes.sort_unstable();
+    let most = votes.chunk_by(|a, b| a == b).filter(|same| same.len() >= 2);
+    most.map(|same| same[0]).collect()
+}

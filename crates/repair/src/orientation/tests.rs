@@ -1,0 +1,229 @@
+use proptest::collection;
+use proptest::prelude::*;
+use sixfold_conformance::strategy::manifold_mesh;
+use sixfold_core::{Facts, Point, RowId};
+
+use super::*;
+
+fn with_reversed(polygons: &PolygonMesh, reverse: impl Fn(usize) -> bool) -> PolygonMesh {
+    let faces = polygons.faces().iter().map(|(f, _)| f);
+    let reversed: Vec<FaceId> = faces.filter(|f| reverse(f.index())).collect();
+    reverse_faces(polygons, &reversed)
+}
+
+fn face(row: u32) -> FaceId {
+    FaceId::new(row)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// The repair makes all faces agree with the fewest reversals.
+    #[test]
+    fn reversed_faces_are_reversed_back(
+        polygons in manifold_mesh(),
+        reverse in collection::vec(any::<bool>(), 1..20),
+    ) {
+        let reverse = |f: usize| reverse[f % reverse.len()];
+        let repaired = oriented(&with_reversed(&polygons, reverse), Facing::Majority).expect("orientable");
+        prop_assert_eq!(Facts::from_polygons(&repaired.polygons).inconsistent_edges, 0);
+        prop_assert!(2 * repaired.reversed.len() <= polygons.face_count());
+        // A face differs from the original only if its whole component is reversed.
+        let unchanged = |f: FaceId| polygons.faces().face(f) == repaired.polygons.faces().face(f);
+        let faces = polygons.faces();
+        let incidence = Incidence::new(polygons.vertex_count(), faces, |_| true);
+        let neighbours = side_neighbours(faces, &incidence);
+        for (f, _) in polygons.faces().iter() {
+            prop_assert_eq!(unchanged(f), reverse(f.index()) == repaired.reversed.contains(&f));
+            for corner in polygons.faces().range(f) {
+                if let Some((g, _)) = neighbours[corner] {
+                    prop_assert_eq!(unchanged(f), unchanged(g));
+                }
+            }
+        }
+        let again = oriented(&repaired.polygons, Facing::Majority).expect("orientable");
+        prop_assert!(again.reversed.is_empty());
+    }
+
+    /// The closed shapes of this project face outward.
+    #[test]
+    fn closed_shapes_face_outward_again(reverse in collection::vec(any::<bool>(), 1..50)) {
+        let torus = sixfold_shapes::torus(6, 5).expect("small");
+        for shape in [sixfold_shapes::cube(), sixfold_shapes::dodecahedron(), torus] {
+            let mixed = with_reversed(&shape, |f| reverse[f % reverse.len()]);
+            let repaired = oriented(&mixed, Facing::Outward).expect("orientable");
+            prop_assert_eq!(repaired.polygons, shape);
+        }
+    }
+}
+
+#[test]
+fn an_inside_out_shape_is_reversed_only_by_outward() {
+    let inside_out = with_reversed(&sixfold_shapes::cube(), |_| true);
+    let majority = oriented(&inside_out, Facing::Majority).expect("orientable");
+    assert!(majority.reversed.is_empty());
+    let outward = oriented(&inside_out, Facing::Outward).expect("orientable");
+    assert_eq!(outward.reversed, (0..6).map(face).collect::<Vec<_>>());
+    assert_eq!(outward.polygons, sixfold_shapes::cube());
+}
+
+#[test]
+fn components_without_volume_follow_the_majority() {
+    let grid = sixfold_shapes::grid(3, 3).expect("small");
+    let mixed = with_reversed(&grid, |f| f == 4);
+    let repaired = oriented(&mixed, Facing::Outward).expect("orientable");
+    assert_eq!(repaired.reversed, [face(4)]);
+    // A pillow is closed, but flat.
+    let corners = grid.positions()[..3].to_vec();
+    let pillow = PolygonMesh::new(corners, [[0, 1, 2], [0, 1, 2]]).expect("valid");
+    let repaired = oriented(&pillow, Facing::Outward).expect("orientable");
+    assert_eq!(repaired.reversed, [face(1)]);
+}
+
+#[test]
+fn an_edge_of_three_faces_is_not_crossed() {
+    let points = [0.0, 1.0, 2.0, 3.0, 4.0].map(sixfold_core::Point::splat);
+    let book = PolygonMesh::new(points, [[0, 1, 2], [0, 1, 3], [0, 1, 4]]).expect("valid");
+    let repaired = oriented(&book, Facing::Majority).expect("no faces disagree");
+    assert_eq!((repaired.polygons, repaired.reversed), (book, vec![]));
+}
+
+#[test]
+fn non_orientable_surfaces_are_rejected_with_an_edge() {
+    let mut rejected = 0;
+    for specimen in sixfold_conformance::gallery() {
+        let facts = Facts::from_polygons(&specimen.polygons);
+        match oriented(&specimen.polygons, Facing::Majority) {
+            Ok(_) => assert_ne!(facts.orientable, Some(false), "{}", specimen.name),
+            Err(OrientationError::NotOrientable { ends: [a, b] }) => {
+                assert_eq!(facts.orientable, Some(false), "{}", specimen.name);
+                let faces = specimen.polygons.faces().iter();
+                let along = faces.filter(|(_, f)| f.contains(&a) && f.contains(&b));
+                assert!(a < b && along.count() >= 2, "{}", specimen.name);
+                rejected += 1;
+            }
+        }
+    }
+    assert!(
+        rejected >= 3,
+        "expected at least the Möbius strip, the Klein bottle and the projective plane"
+    );
+}
+
+/// Returns a cube with the corners at ±`half` around a centre; turned inside out if `inward`.
+fn cube(half: f32, centre: [f32; 3], inward: bool) -> PolygonMesh {
+    let shape = sixfold_shapes::cube();
+    let centre = Point::from_array(centre);
+    let points = shape.positions().iter().map(|&p| half * p + centre);
+    let moved = PolygonMesh::from_faces(points.collect(), shape.faces().clone()).expect("valid");
+    match inward {
+        true => with_reversed(&moved, |_| true),
+        false => moved,
+    }
+}
+
+fn together(parts: &[PolygonMesh]) -> PolygonMesh {
+    let mut points = Vec::new();
+    let mut faces = FaceList::default();
+    for part in parts {
+        let before = points.len() as u32;
+        points.extend(part.positions());
+        for (_, face) in part.faces().iter() {
+            let moved = face.iter().map(|v| VertexId::new(v.row() + before));
+            faces.push(moved).expect("small");
+        }
+    }
+    PolygonMesh::from_faces(points, faces).expect("valid")
+}
+
+fn volume(mesh: &PolygonMesh) -> f64 {
+    let at = |v: VertexId| mesh.position(v).as_dvec3();
+    let faces = mesh.faces().iter().map(|(_, face)| {
+        let fan = face[1..].windows(2);
+        fan.map(|two| at(face[0]).dot(at(two[0]).cross(at(two[1]))))
+            .sum::<f64>()
+    });
+    faces.sum::<f64>() / 6.0
+}
+
+fn outward_all(mesh: &PolygonMesh) -> OrientedComponents {
+    oriented_components(mesh, Facing::Outward, Components::All)
+}
+
+#[test]
+fn walls_of_cavities_face_the_cavity() {
+    let at = [7.0, -3.0, 2.0];
+    // Shells of sides 20, 8, 4 and 2: a solid, a cavity, a solid in it, a cavity in that.
+    let halves = [10.0, 4.0, 2.0, 1.0];
+    let expected = 8.0 * (1000.0 - 64.0 + 8.0 - 1.0);
+    for pattern in 0..16_u32 {
+        for order in [[0, 1, 2, 3], [3, 1, 0, 2]] {
+            let shells = order.map(|i| cube(halves[i], at, pattern >> i & 1 == 1));
+            let oriented = outward_all(&together(&shells));
+            assert_eq!(oriented.undecided, []);
+            assert!((volume(&oriented.polygons) - expected).abs() < 1e-6);
+        }
+    }
+    // Solids beside each other, in a cavity that none of them fills.
+    let parts = [
+        cube(10.0, [0.0; 3], true),
+        cube(8.0, [0.0; 3], false),
+        cube(1.0, [-4.0, 0.0, 0.0], true),
+        cube(1.0, [4.0, 1.0, 0.0], true),
+    ];
+    let oriented = outward_all(&together(&parts));
+    assert!((volume(&oriented.polygons) - 8.0 * (1000.0 - 512.0 + 2.0)).abs() < 1e-6);
+    assert_eq!(oriented.reversed.len(), 24);
+}
+
+#[test]
+fn parts_that_touch_or_cross_are_undecided() {
+    let touching = [
+        cube(1.0, [2.0, 0.0, 0.0], false),  // shares a side
+        cube(1.0, [2.0, 2.0, 2.0], false),  // shares a corner
+        cube(1.0, [1.0, 0.5, 0.25], false), // crosses
+        cube(0.5, [0.5, 0.0, 0.0], false),  // inside, touches a side
+        cube(1.0, [0.0; 3], true),          // the same place
+    ];
+    for other in touching {
+        let oriented = outward_all(&together(&[cube(1.0, [0.0; 3], true), other]));
+        assert_eq!(oriented.reversed, []);
+        let reasons: Vec<UndecidedReason> = oriented.undecided.iter().map(|u| u.reason).collect();
+        let expected = [6, 0].map(|f| UndecidedReason::Touches(face(f)));
+        assert_eq!(reasons, expected);
+    }
+    // A part inside two that cross each other is undecided, too; one beside them is not.
+    let parts = [
+        cube(4.0, [0.0; 3], false),
+        cube(4.0, [1.0, 1.0, 1.0], false),
+        cube(1.0, [0.5; 3], false),
+        cube(1.0, [9.0; 3], true),
+    ];
+    let oriented = outward_all(&together(&parts));
+    let undecided: Vec<usize> = oriented.undecided.iter().map(|u| u.face.index()).collect();
+    assert_eq!(undecided, [0, 6, 12]);
+    assert_eq!(oriented.reversed, (18..24).map(face).collect::<Vec<_>>());
+}
+
+#[test]
+fn open_parts_face_the_side_to_which_they_bulge() {
+    let sphere = sixfold_shapes::uv_sphere(12, 16).expect("small");
+    let bowl = |least: f32| {
+        let high = |f: &[VertexId]| f.iter().all(|&v| sphere.position(v).z > least);
+        let faces = sphere.faces().iter().filter(|(_, f)| high(f));
+        let faces = faces.map(|(_, f)| f.iter().map(|v| v.row()).collect::<Vec<u32>>());
+        PolygonMesh::new(sphere.positions().iter().copied(), faces).expect("valid")
+    };
+    for least in [-0.8, 0.0, 0.5] {
+        let bowl = bowl(least);
+        assert!(outward_all(&bowl).reversed.is_empty());
+        let inside_out = with_reversed(&bowl, |_| true);
+        let oriented = outward_all(&inside_out);
+        assert_eq!((oriented.polygons, oriented.undecided), (bowl, vec![]));
+    }
+    let grid = sixfold_shapes::grid(4, 4).expect("small");
+    let flat = outward_all(&grid);
+    assert_eq!(flat.reversed, []);
+    let reasons: Vec<UndecidedReason> = flat.undecided.iter().map(|u| u.reason).collect();
+    assert_eq!(reasons, [UndecidedReason::Flat]);
+}
