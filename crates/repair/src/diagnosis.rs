@@ -1,5 +1,6 @@
 //! All faults of a mesh, with their numbers and first places.
 
+mod cracks;
 mod fault;
 
 use std::collections::BTreeMap;
@@ -12,6 +13,7 @@ use crate::duplicates::Copies;
 use crate::flat::is_flat;
 use crate::step::Step;
 use crate::weld::{PlaceNumbers, Places};
+pub use cracks::Crack;
 pub use fault::{Fault, FaultKind, Place};
 
 /// All faults of a mesh.
@@ -44,6 +46,8 @@ pub struct Diagnosis {
     /// The number of boundary edges whose two ends have the same positions as the ends of another
     /// boundary edge, which runs in the opposite direction.
     pub seam_edges: usize,
+    /// Boundaries that nearly meet, if there are any. [`Step::Weld`] closes them.
+    pub crack: Option<Crack>,
 }
 
 impl Diagnosis {
@@ -64,8 +68,12 @@ impl Diagnosis {
 
     /// Returns the steps that repair the faults of one kind in this mesh, in order: those of
     /// [`FaultKind::repairs`], after the steps that make a mesh an oriented manifold if they need one.
+    /// If most boundary edges are cracks, the step for boundary edges welds them.
     pub fn repairs(&self, kind: FaultKind) -> Vec<Step> {
         let mut steps = Vec::new();
+        if let (FaultKind::BoundaryEdge, Some(crack)) = (kind, self.wide_crack()) {
+            return vec![crack.weld()];
+        }
         if kind == FaultKind::BoundaryEdge {
             // The first kind needs the most steps.
             let before = [
@@ -80,6 +88,12 @@ impl Diagnosis {
         }
         steps.extend(kind.repairs());
         steps
+    }
+
+    /// Returns the crack if at least half of the boundary edges belong to it.
+    pub fn wide_crack(&self) -> Option<Crack> {
+        self.crack
+            .filter(|crack| 2 * crack.edges >= self.boundary_edges)
     }
 
     /// Returns whether faces have vertices of their own where they should share them, as in files
@@ -152,6 +166,10 @@ fn diagnose_with(
         positions: positions.len(),
         boundary_edges,
         seam_edges: seam_edges(incidence, positions),
+        crack: match boundary_edges {
+            0 => None,
+            _ => cracks::crack(polygons, incidence),
+        },
     }
 }
 

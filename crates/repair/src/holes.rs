@@ -5,8 +5,9 @@ mod minimum_area;
 use glam::DVec3;
 use rustc_hash::FxHashSet;
 use sixfold_core::{
-    Capabilities, Incidence, Pair, PolygonCutter, PolygonMesh, RowId, Slot, VertexId,
+    Capabilities, FaceId, Incidence, Pair, PolygonCutter, PolygonMesh, RowId, Slot, VertexId,
 };
+use sixfold_spatial::{Bvh, FaceTriangle, SpatialIndex, SurfaceQueries, polygon_triangles};
 
 use crate::error::RepairError;
 use crate::outcome::{Left, Outcome, StepCounts};
@@ -20,7 +21,9 @@ use minimum_area::minimum_area_triangulation;
 ///
 /// A hole with n edges is filled with n − 2 triangles, without new vertices. No diagonal is used
 /// that is already an edge, because that edge would get more than two faces. If this is impossible,
-/// the hole remains and is named in the report.
+/// the hole remains and is named in the report. So does a hole whose triangles would lie on faces of
+/// the mesh: the outer boundary of a flat part is one, and so are the three sides of a face that
+/// shares no edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FillHoles {
     /// Holes with more edges than this remain; `None` for no limit.
@@ -48,6 +51,9 @@ sixfold_core::named! {
 /// compared.
 const MINIMUM_AREA_EDGES: usize = 400;
 
+/// A triangle lies on a surface if its centre is nearer to the surface than this part of its height.
+const ON_SURFACE: f64 = 0.01;
+
 /// Fills holes.
 pub(crate) fn fill(polygons: &PolygonMesh, options: &FillHoles) -> Result<Outcome, RepairError> {
     let check = Capabilities::ORIENTED_MANIFOLDS.check(polygons);
@@ -59,7 +65,12 @@ pub(crate) fn fill(polygons: &PolygonMesh, options: &FillHoles) -> Result<Outcom
     }
     let mut counts = StepCounts::default();
     let mut left = Vec::new();
-    for hole in holes.loops() {
+    let loops = holes.loops();
+    if loops.is_empty() {
+        return Ok(Outcome::unchanged());
+    }
+    let surface = Surface::new(polygons);
+    for hole in loops {
         let (vertex, edges) = (hole[0], hole.len());
         if options.max_edges.is_some_and(|most| edges > most) {
             left.push(Left::LargeHole { vertex, edges });
@@ -69,6 +80,10 @@ pub(crate) fn fill(polygons: &PolygonMesh, options: &FillHoles) -> Result<Outcom
             left.push(Left::BlockedHole { vertex, edges });
             continue;
         };
+        if surface.is_covered_by(polygons, triangles.iter().map(|t| t.map(|i| hole[i]))) {
+            left.push(Left::CoveringHole { vertex, edges });
+            continue;
+        }
         counts.holes_filled += 1;
         counts.faces_added += triangles.len();
         for triangle in triangles {
@@ -82,6 +97,38 @@ pub(crate) fn fill(polygons: &PolygonMesh, options: &FillHoles) -> Result<Outcom
         false => Outcome::unchanged(),
     };
     Ok(Outcome { left, ..outcome })
+}
+
+/// The surface before holes are filled.
+struct Surface(Option<Bvh<FaceTriangle<FaceId>>>);
+
+impl Surface {
+    fn new(polygons: &PolygonMesh) -> Self {
+        // Without an index, because a coordinate is not finite, every hole is filled.
+        Self(polygon_triangles(polygons).and_then(Bvh::build).ok())
+    }
+
+    /// Returns whether more than half of the area of a patch lies on the surface.
+    fn is_covered_by(
+        &self,
+        polygons: &PolygonMesh,
+        patch: impl Iterator<Item = [VertexId; 3]>,
+    ) -> bool {
+        let Some(index) = &self.0 else { return false };
+        let (mut covered, mut all) = (0.0, 0.0);
+        for triangle in patch {
+            let [a, b, c] = triangle.map(|v| polygons.position(v).as_dvec3());
+            let area = (b - a).cross(c - a).length();
+            let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+            let closest = index.closest_point((a + b + c) / 3.0);
+            // The area is twice that of the triangle, so this is its height.
+            let near = ON_SURFACE * area / longest;
+            let is_near = closest.is_some_and(|point| point.distance() < near);
+            covered += if is_near { area } else { 0.0 };
+            all += area;
+        }
+        covered > 0.5 * all
+    }
 }
 
 /// The boundary of an oriented manifold.

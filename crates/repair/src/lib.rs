@@ -71,7 +71,7 @@ mod trace;
 mod triangulate;
 mod weld;
 
-pub use diagnosis::{Diagnosis, Fault, FaultKind, Place, diagnose, facts_and_diagnosis};
+pub use diagnosis::{Crack, Diagnosis, Fault, FaultKind, Place, diagnose, facts_and_diagnosis};
 pub use duplicates::OppositeFaces;
 pub use error::{OrientationError, RepairError};
 pub use holes::{FillHoles, HoleFilling};

@@ -391,4 +391,4 @@ fn reverse_faces(polygons: &PolygonMesh, reversed: &[FaceId]) -> PolygonMesh {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -85,6 +85,12 @@ pub enum Left {
         vertex: VertexId,
         edges: usize,
     },
+    /// A hole whose triangles would lie on faces of the mesh; `vertex` is its lowest vertex.
+    CoveringHole {
+        #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::row"))]
+        vertex: VertexId,
+        edges: usize,
+    },
     /// A polygon that crosses itself and was cut into triangles, which overlap.
     CrossingFace {
         #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::row"))]
@@ -121,6 +127,10 @@ impl fmt::Display for Left {
             Self::BlockedHole { vertex, edges } => write!(
                 f,
                 "the hole at vertex {vertex} ({edges} edges) has no triangulation without a diagonal that is already an edge"
+            ),
+            Self::CoveringHole { vertex, edges } => write!(
+                f,
+                "the hole at vertex {vertex} ({edges} edges) is not filled, because its triangles would lie on the mesh"
             ),
             Self::CrossingFace { face } => {
                 write!(f, "face {face} crosses itself, so its triangles overlap")

@@ -66,6 +66,14 @@ trait Nearby {
 
 /// Welds vertices.
 pub(crate) fn weld(polygons: &PolygonMesh, options: &Weld) -> Result<Outcome, RepairError> {
+    merge(polygons, &representatives(polygons, options)?)
+}
+
+/// Returns for each vertex the vertex that it is merged with; itself if it remains.
+pub(crate) fn representatives(
+    polygons: &PolygonMesh,
+    options: &Weld,
+) -> Result<Vec<VertexId>, RepairError> {
     let tolerance = options.tolerance.distance(polygons.positions())?;
     let mut places = Places::new(polygons.positions());
     if tolerance > 0.0 {
@@ -85,8 +93,7 @@ pub(crate) fn weld(polygons: &PolygonMesh, options: &Weld) -> Result<Outcome, Re
         }
     }
     let vertices = polygons.vertices();
-    let representatives: Vec<VertexId> = vertices.map(|v| places.representative(v)).collect();
-    merge(polygons, &representatives)
+    Ok(vertices.map(|v| places.representative(v)).collect())
 }
 
 impl Tolerance {

@@ -1,6 +1,6 @@
 use proptest::prelude::*;
 use sixfold_conformance::strategy::manifold_mesh;
-use sixfold_core::{FaceId, Facts};
+use sixfold_core::{FaceId, Facts, Point};
 
 use super::*;
 use crate::report::Repaired;
@@ -100,4 +100,27 @@ fn a_mesh_with_a_non_manifold_edge_is_refused() {
     let book = PolygonMesh::new(points, [[0, 1, 2], [1, 0, 3], [0, 1, 4]]).expect("valid");
     let refused = repair(&book, &[Step::FillHoles(FillHoles::default())]).unwrap_err();
     assert!(matches!(refused, RepairError::NotOrientedManifold(_)));
+}
+
+#[test]
+fn holes_whose_triangles_would_lie_on_the_mesh_remain() {
+    // A face that shares no edge, the outer boundary of a flat part, and a ring with two boundaries,
+    // of which the outer one has its triangles on the ring.
+    let triangle = PolygonMesh::new([Point::ZERO, Point::X, Point::Y], [[0, 1, 2]]).expect("valid");
+    let grid = sixfold_shapes::grid(4, 4).expect("small");
+    for flat in [triangle, grid] {
+        let filled = repair(&flat, &[Step::FillHoles(FillHoles::default())]).expect("a manifold");
+        assert!(!filled.is_changed());
+        let left = &filled.steps[0].left;
+        assert!(matches!(left[..], [Left::CoveringHole { .. }]), "{left:?}");
+    }
+    let grid = sixfold_shapes::grid(3, 3).expect("small");
+    let faces = grid.faces().iter().filter(|(f, _)| f.index() != 4);
+    let faces: Vec<Vec<u32>> = faces
+        .map(|(_, face)| face.iter().map(|v| v.row()).collect())
+        .collect();
+    let ring = PolygonMesh::new(grid.positions().iter().copied(), faces).expect("valid");
+    let filled = repair(&ring, &[Step::FillHoles(FillHoles::default())]).expect("a manifold");
+    assert_eq!(filled.steps[0].counts.holes_filled, 1);
+    assert_eq!(filled.steps[0].left.len(), 1);
 }

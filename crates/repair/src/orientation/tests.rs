@@ -122,7 +122,7 @@ fn cube(half: f32, centre: [f32; 3], inward: bool) -> PolygonMesh {
     }
 }
 
-fn together(parts: &[PolygonMesh]) -> PolygonMesh {
+pub(crate) fn together(parts: &[PolygonMesh]) -> PolygonMesh {
     let mut points = Vec::new();
     let mut faces = FaceList::default();
     for part in parts {
