@@ -6,6 +6,7 @@ use sixfold_core::{FaceList, MAX_ROWS, Point, VertexId, row};
 
 use crate::byte_source::{ByteSource, MAX_LINE_LENGTH};
 use crate::error::ReadError;
+use crate::face_rules::without_repeats;
 use crate::file_mesh::{FileMesh, ShortFace};
 use crate::format::Format;
 use crate::narrowing::{Finished, Origin, Positions};
@@ -230,7 +231,8 @@ impl<'a> MeshBuilder<'a> {
         }
     }
 
-    /// Adds a face; if it has fewer than three corners, it is kept apart.
+    /// Adds a face without the corners that repeat their neighbours; if it has fewer than three
+    /// corners, it is kept apart.
     #[inline]
     pub(crate) fn push_face(&mut self, corners: &[u32], place: Place) -> Result<(), ReadError> {
         if corners.len() < 3 {
@@ -238,6 +240,13 @@ impl<'a> MeshBuilder<'a> {
             self.short_faces.push(ShortFace { place, corners });
             return Ok(());
         }
+        let kept = without_repeats(corners);
+        if let Some(kept) = &kept {
+            let repeats = (corners.len() - kept.len()) as u64;
+            self.notices
+                .add_many(IgnoredKind::RepeatedCorners, repeats, place);
+        }
+        let corners = kept.as_deref().unwrap_or(corners);
         match (place, &mut self.places) {
             (Place::Line(line), FacePlaces::Lines(lines)) => lines.push(line),
             (Place::Byte(byte), places) => places.push_byte(&self.faces, byte),
@@ -389,10 +398,22 @@ impl FileMesh {
         }
         let renumber = |v: VertexId| VertexId::new(numbers[v.index()]);
         let mut faces = FaceList::with_capacity(self.faces.corners().len());
-        for (_, face) in self.faces.iter() {
-            let pushed = faces.push(face.iter().copied().map(renumber));
-            pushed.expect("as many corners as before");
+        let mut notices = Notices(std::mem::take(&mut self.notices));
+        let mut welded = Vec::new();
+        for (f, face) in self.faces.iter() {
+            welded.clear();
+            welded.extend(face.iter().copied().map(renumber));
+            let kept = without_repeats(&welded);
+            if let Some(kept) = &kept {
+                self.face_places.store(&self.faces);
+                let place = self.face_places.place(f, &self.faces);
+                let repeats = (welded.len() - kept.len()) as u64;
+                notices.add_many(IgnoredKind::RepeatedCorners, repeats, place);
+            }
+            let pushed = faces.push(kept.as_deref().unwrap_or(&welded).iter().copied());
+            pushed.expect("at most as many corners as before");
         }
+        self.notices = notices.0;
         self.faces = faces;
         let corners = self
             .short_faces

@@ -112,6 +112,7 @@ mod byte_source;
 mod crease_file;
 mod error;
 mod excerpt;
+mod face_rules;
 mod faults;
 mod file_mesh;
 mod format;

@@ -26,6 +26,8 @@ pub enum IgnoredKind {
     Elements,
     /// Triangles of a strip that have no area because they only continue it.
     StripJoints,
+    /// Corners of faces that repeat the corner next to them. The face keeps its other corners.
+    RepeatedCorners,
     /// Bytes or lines after the end of the mesh.
     Trailing,
     /// Primitives of glTF that are lines, or points by index; their vertices are kept.
@@ -113,6 +115,7 @@ impl IgnoredKind {
             Self::Properties => ["other property", "other properties"],
             Self::Elements => ["other element", "other elements"],
             Self::StripJoints => ["joint of triangle strips", "joints of triangle strips"],
+            Self::RepeatedCorners => ["repeated corner of a face", "repeated corners of faces"],
             Self::Trailing => ["byte after the mesh", "bytes after the mesh"],
             Self::OtherPrimitives => [
                 "primitive of points or lines",

@@ -118,7 +118,12 @@ fn degenerate_and_short_faces_are_left_out_with_their_lines() {
     ));
     assert_eq!(obj.faces.len(), 3);
     let facts = obj.facts();
-    assert_eq!((facts.faces, facts.degenerate_faces), (3, 5));
+    assert_eq!((facts.faces, facts.degenerate_faces), (1, 5));
+    let euler = facts.vertices as i64 - facts.edges as i64 + facts.faces as i64;
+    assert_eq!(
+        facts.euler_characteristic, euler,
+        "the facts are those of one mesh"
+    );
     let (polygons, left_out) = obj.into_polygons();
     assert_eq!(polygons.face_count(), 1);
     let face = polygons.faces().face(FaceId::new(0));
