@@ -30,6 +30,11 @@ pub enum IgnoredKind {
     RepeatedCorners,
     /// Bytes or lines after the end of the mesh.
     Trailing,
+    /// Solids of ASCII STL that do not end in `endsolid`. The file may be cut off between two
+    /// facets.
+    MissingEnds,
+    /// The number of facets in the header of a binary STL, if more facets follow. All are read.
+    SmallFacetCount,
     /// Primitives of glTF that are lines, or points by index; their vertices are kept.
     OtherPrimitives,
     /// Meshes of glTF that are not part of the scene.
@@ -62,7 +67,8 @@ pub enum IgnoredKind {
     HoleTags,
     /// `t` with another name.
     OtherTags,
-    /// A keyword that is not part of OBJ.
+    /// A line whose keyword is not part of the format: in OBJ, in the header of PLY, and outside the
+    /// solids of ASCII STL.
     Unknown,
 }
 
@@ -117,6 +123,14 @@ impl IgnoredKind {
             Self::StripJoints => ["joint of triangle strips", "joints of triangle strips"],
             Self::RepeatedCorners => ["repeated corner of a face", "repeated corners of faces"],
             Self::Trailing => ["byte after the mesh", "bytes after the mesh"],
+            Self::MissingEnds => [
+                "missing `endsolid`: the file may be cut off",
+                "missing `endsolid` lines: the file may be cut off",
+            ],
+            Self::SmallFacetCount => [
+                "number of facets that is too small: all facets of the file are read",
+                "numbers of facets that are too small: all facets of the file are read",
+            ],
             Self::OtherPrimitives => [
                 "primitive of points or lines",
                 "primitives of points or lines",
