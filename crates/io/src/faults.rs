@@ -25,6 +25,11 @@ pub enum GltfFault {
         number: usize,
         count: usize,
     },
+    /// The mode of a primitive does not exist.
+    #[error(
+        "a primitive has mode {mode}, but modes are numbers from 0 to 6: export the file again"
+    )]
+    Mode { mode: u32 },
     /// An accessor has the wrong type for its use.
     #[error("it has type {found:?}, but {expected}: export the file again")]
     Type {

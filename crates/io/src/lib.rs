@@ -13,7 +13,7 @@
 //! | STL | text and binary; several solids; normals that are not numbers; lines before and after solids, comments, `end loop`, a missing `endsolid`; facets beyond the count of a binary header; equal corners become one vertex ([`Welding`]) | facets without exactly three vertices, a count of facets larger than the file |
 //! | PLY | text and both byte orders; every type of numbers and lists, also `int64` and `uint64`; unknown lines of the header; properties and elements in any order; `vertex_index`, `vertex_indices`; triangle strips | other types of numbers, as `long` |
 //! | OFF | prefixes `ST`, `C`, `N`, `4`, `n` in any order; upper and lower case; comments and blank lines anywhere; counts beside or below the keyword, also `OFF3 1 0`; faces on several lines; trailing colours | binary OFF, other than three dimensions |
-//! | glTF | JSON and binary; triangles, strips, fans; the default scene with its transforms; 8, 16 and 32-bit indices; sparse, quantised and embedded data | Draco, meshopt |
+//! | glTF | JSON and binary; triangles, strips, fans; the default scene with its transforms; 8, 16 and 32-bit indices; sparse, quantised and embedded data; buffers in files below the folder of the file; the mesh of a skin as it is stored, without its joints | Draco and meshopt without plain data; other required extensions that change a mesh, as instances |
 //! | OBJ | see below | |
 //!
 //! glTF needs the feature `gltf`, which is on by default. The others need neither `serde` nor JSON.
@@ -21,8 +21,9 @@
 //! The content decides the format, and the ending of the name only if the content has no sign of
 //! one. A binary STL has no such sign but its size, which is 84 bytes and 50 for each facet. On a
 //! stream, whose size is not known, and in a file of another size, the normal of the first facet is the
-//! sign, whose coordinates are from −1 to 1 or not numbers; without it, the stream is a binary STL if its corners are plausible and exactly as many facets follow as byte 80
-//! says. Then a stream that is cut off is not recognised.
+//! sign, whose coordinates are from −1 to 1 or not numbers; without it, the stream is a binary STL if
+//! its corners are plausible and exactly as many facets follow as byte 80 says. Then a stream that is
+//! cut off is not recognised.
 //!
 //! Everything else is ignored, counted, and reported as a [`Notice`], once for each kind. This
 //! includes normals, colours and texture coordinates. Coordinates of 64 bits and decimal numbers
@@ -41,7 +42,7 @@
 //! and ASCII STL, whose tables grow while they are read. `tests/memory.rs` measures this. glTF
 //! refers to its buffers in any order, so they are in memory; a scene that repeats its meshes is
 //! limited to 256 vertices and corners for each byte of the file. Only files in the folder of a glTF
-//! file are opened.
+//! file or below it are opened, also if links lead elsewhere.
 //!
 //! # OBJ
 //!

@@ -39,8 +39,14 @@ pub enum IgnoredKind {
     OtherPrimitives,
     /// Meshes of glTF that are not part of the scene.
     UnusedMeshes,
-    /// Animations, skins and other shapes of glTF.
+    /// Animations and morphs of glTF.
     Deformations,
+    /// Meshes of glTF that are bound to the joints of a skin. Their vertices stay as they are stored:
+    /// neither the joints nor the place of the node move them.
+    Skins,
+    /// Nodes of glTF whose mesh is repeated at several places (`EXT_mesh_gpu_instancing`). The mesh is
+    /// read once, at the place of the node.
+    Instances,
     /// Extensions of glTF.
     Extensions,
     /// `o`.
@@ -136,7 +142,15 @@ impl IgnoredKind {
                 "primitives of points or lines",
             ],
             Self::UnusedMeshes => ["mesh outside the scene", "meshes outside the scene"],
-            Self::Deformations => ["animation, skin or morph", "animations, skins and morphs"],
+            Self::Deformations => ["animation or morph", "animations and morphs"],
+            Self::Skins => [
+                "skin: the vertices of its mesh are not moved by joints",
+                "skins: the vertices of their meshes are not moved by joints",
+            ],
+            Self::Instances => [
+                "list of instances: its mesh is read once",
+                "lists of instances: their meshes are read once",
+            ],
             Self::Extensions => ["extension", "extensions"],
             Self::Objects => ["object name", "object names"],
             Self::Groups => ["group", "groups"],
