@@ -285,9 +285,17 @@ fn a_mesh_that_cannot_be_written_does_not_change_the_file() {
     assert!(matches!(error, WriteError::NormalCount { .. }), "{error}");
     assert_eq!(std::fs::read(&path).expect("the file"), before);
 
-    let error = write(folder.path().join("a.3mf"), &mesh).expect_err("unknown");
-    assert!(matches!(error, WriteError::UnknownEnding { .. }), "{error}");
-    assert!(!folder.path().join("a.3mf").exists());
+    for name in [
+        "a.3mf", "a.step", "a.obj.gz", "a.objx", "a", "a.", "stl", ".ply",
+    ] {
+        let path = folder.path().join(name);
+        let error = write(&path, &mesh).expect_err(name);
+        assert!(matches!(error, WriteError::UnknownEnding { .. }), "{error}");
+        let message = "the ending names no format for meshes: use stl, ply, off, gltf, glb or obj, \
+                       or set a format";
+        assert_eq!(error.to_string(), format!("{}: {message}", path.display()));
+        assert!(!path.exists(), "{name}");
+    }
     let error = write(folder.path().join("no/folder.ply"), &mesh).expect_err("no folder");
     assert!(error.to_string().contains("folder.ply: "), "{error}");
 }
