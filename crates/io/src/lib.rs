@@ -31,6 +31,28 @@
 //! [`ReadOptions::recentred`] moves the mesh to the origin first. A fault is returned as a
 //! [`ReadError`] with file and line or byte.
 //!
+//! # Which vertices become one
+//!
+//! By default, only the corners of STL facets are joined, if their positions are exactly equal (−0 is
+//! 0): STL stores three positions for each facet and no vertex numbers, so without joining no facet
+//! would have a neighbour. The other formats have vertex numbers, and vertices with equal positions
+//! but different numbers stay apart, because a program may have cut the mesh there on purpose. So a
+//! mesh of glTF or OBJ can have open seams, for example where texture coordinates or normals differ
+//! on the two sides of an edge. In glTF, primitives of a mesh share vertices if they use the same
+//! accessor of positions; others do not, and each node has vertices of its own.
+//!
+//! [`Welding::All`] joins equal positions in every format, and [`Welding::Nothing`] in none.
+//! [`FileMesh::welded_vertices`] counts the joined vertices. If joined vertices are neighbours in a
+//! face, the face loses the repeat, as described next.
+//!
+//! # Faces that name a vertex twice
+//!
+//! If a corner repeats its neighbour, as in `f 1 2 2 3 4` or `f 1 2 3 4 1`, only the repeat is
+//! removed, with a notice ([`IgnoredKind::RepeatedCorners`]). [`FileMesh::into_polygons`] leaves out
+//! faces with fewer than three different corners, and faces that name a vertex twice in other
+//! corners. It returns them with their places ([`LeftOut`]). [`FileMesh::facts`] describes the mesh
+//! without these faces, and counts them.
+//!
 //! # Files that lie
 //!
 //! The reader never panics, and a file cannot make it allocate memory or loop by a number in its
