@@ -149,7 +149,31 @@ impl<'a> MeshBuilder<'a> {
     /// Returns the error of a file that ends before `missing`.
     pub(crate) fn truncated(&self, place: Place, missing: String) -> ReadError {
         let at = self.at(place);
-        ReadError::Truncated { at, missing }
+        ReadError::Truncated {
+            at,
+            missing,
+            way_out: "export it again",
+        }
+    }
+
+    /// Returns the error of a file that ends before record `number`, counted from 0, of the `count`
+    /// records of the kind `kind` that its header promises.
+    pub(crate) fn record_missing(
+        &self,
+        place: Place,
+        kind: &str,
+        number: u64,
+        count: u64,
+    ) -> ReadError {
+        ReadError::Truncated {
+            at: self.at(place),
+            missing: format!("{kind} {} of {count}", number + 1),
+            // Only the header of a text can be corrected.
+            way_out: match self.format.is_text() {
+                true => "correct its counts",
+                false => "export it again",
+            },
+        }
     }
 
     /// Returns the number that the next vertex has in the file.
@@ -191,13 +215,7 @@ impl<'a> MeshBuilder<'a> {
         place: Place,
         vertex: usize,
     ) -> ReadError {
-        let named = ['x', 'y', 'z'].into_iter().zip(coordinates);
-        let mut infinite = named.filter(|(_, c)| !c.narrow.is_finite());
-        ReadError::NonFinite {
-            at: self.at(place),
-            vertex,
-            coordinate: infinite.next().map_or('x', |(name, _)| name),
-        }
+        not_finite(self.at(place), vertex, coordinates.map(|c| c.narrow))
     }
 
     fn too_many(&self, elements: &'static str, place: Place) -> ReadError {
@@ -309,16 +327,9 @@ impl<'a> MeshBuilder<'a> {
         // Only a mesh that is moved to a given origin can exceed 32 bits here (invariant B1).
         if let Some(v) = positions.iter().position(|p| !p.is_finite()) {
             let place = self.vertex_places.place(VertexId::new(row(v)));
-            let [x, y, _] = positions[v].to_array();
-            return Err(ReadError::NonFinite {
-                at: Location::new(self.name, place.unwrap_or(Place::Byte(0))),
-                vertex: v + self.format.first_vertex(),
-                coordinate: match (x.is_finite(), y.is_finite()) {
-                    (false, _) => 'x',
-                    (_, false) => 'y',
-                    _ => 'z',
-                },
-            });
+            let at = Location::new(self.name, place.unwrap_or(Place::Byte(0)));
+            let vertex = v + self.format.first_vertex();
+            return Err(not_finite(at, vertex, positions[v].to_array()));
         }
         // Facets were welded before they were moved; rounding can make further positions equal.
         let weld_now = match is_welded_stl {
@@ -370,6 +381,24 @@ impl<'a> MeshBuilder<'a> {
             Some((place, index)) => Err(self.index_error(index, place)),
             None => Ok(()),
         }
+    }
+}
+
+/// Returns the error of the first of three coordinates that is not finite.
+fn not_finite(at: Location, vertex: usize, coordinates: [f32; 3]) -> ReadError {
+    let named = ['x', 'y', 'z'].into_iter().zip(coordinates);
+    let first = named.into_iter().find(|(_, value)| !value.is_finite());
+    match first.unwrap_or(('x', f32::INFINITY)) {
+        (coordinate, value) if value.is_nan() => ReadError::NotANumber {
+            at,
+            vertex,
+            coordinate,
+        },
+        (coordinate, _) => ReadError::NonFinite {
+            at,
+            vertex,
+            coordinate,
+        },
     }
 }
 

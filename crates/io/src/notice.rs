@@ -116,6 +116,17 @@ impl IgnoredKind {
         self.names()[1]
     }
 
+    /// Returns what the kind means for the mesh, if its name does not say it.
+    const fn remark(self) -> &'static str {
+        match self {
+            Self::MissingEnds => ": the file may be cut off",
+            Self::SmallFacetCount => ": more facets follow than it says, and all are read",
+            Self::Skins => ": vertices stay where they are stored, because joints are not read",
+            Self::Instances => ": the mesh of a node is read once",
+            _ => "",
+        }
+    }
+
     /// Returns the name in the singular and in the plural.
     const fn names(self) -> [&'static str; 2] {
         match self {
@@ -129,28 +140,16 @@ impl IgnoredKind {
             Self::StripJoints => ["joint of triangle strips", "joints of triangle strips"],
             Self::RepeatedCorners => ["repeated corner of a face", "repeated corners of faces"],
             Self::Trailing => ["byte after the mesh", "bytes after the mesh"],
-            Self::MissingEnds => [
-                "missing `endsolid`: the file may be cut off",
-                "missing `endsolid` lines: the file may be cut off",
-            ],
-            Self::SmallFacetCount => [
-                "number of facets that is too small: all facets of the file are read",
-                "numbers of facets that are too small: all facets of the file are read",
-            ],
+            Self::MissingEnds => ["missing `endsolid`", "missing `endsolid` lines"],
+            Self::SmallFacetCount => ["number of facets", "numbers of facets"],
             Self::OtherPrimitives => [
                 "primitive of points or lines",
                 "primitives of points or lines",
             ],
             Self::UnusedMeshes => ["mesh outside the scene", "meshes outside the scene"],
             Self::Deformations => ["animation or morph", "animations and morphs"],
-            Self::Skins => [
-                "skin: the vertices of its mesh are not moved by joints",
-                "skins: the vertices of their meshes are not moved by joints",
-            ],
-            Self::Instances => [
-                "list of instances: its mesh is read once",
-                "lists of instances: their meshes are read once",
-            ],
+            Self::Skins => ["skin of a mesh", "skins of meshes"],
+            Self::Instances => ["list of instances", "lists of instances"],
             Self::Extensions => ["extension", "extensions"],
             Self::Objects => ["object name", "object names"],
             Self::Groups => ["group", "groups"],
@@ -202,9 +201,10 @@ impl fmt::Display for Notice {
             write!(f, ": {}", self.names.join(", "))?;
         }
         match self.count {
-            1 => write!(f, " ({first})"),
-            _ => write!(f, " (first at {first})"),
+            1 => write!(f, " ({first})")?,
+            _ => write!(f, " (first at {first})")?,
         }
+        f.write_str(self.kind.remark())
     }
 }
 

@@ -222,8 +222,11 @@ impl<R: Read> Reader<'_, '_, R> {
     /// Reads the line of a vertex.
     fn read_vertex(&mut self, header: &Header, number: u64) -> Result<(), ReadError> {
         if !self.next_line()? {
-            let missing = format!("vertex {} of {}", number + 1, header.vertices);
-            return Err(self.builder.truncated(self.place(), missing));
+            let count = header.vertices;
+            let error = self
+                .builder
+                .record_missing(self.place(), "vertex", number, count);
+            return Err(error);
         }
         let mut words = words(&self.line);
         let mut values = [Coordinate::from(0.0_f32); 4];
@@ -280,8 +283,10 @@ impl<R: Read> Reader<'_, '_, R> {
         faces: u64,
     ) -> Result<(), ReadError> {
         if !self.next_line()? {
-            let missing = format!("face {} of {faces}", number + 1);
-            return Err(self.builder.truncated(self.place(), missing));
+            let error = self
+                .builder
+                .record_missing(self.place(), "face", number, faces);
+            return Err(error);
         }
         let place = Place::Line(self.number);
         let word = words(&self.line).next().unwrap_or_default();

@@ -43,7 +43,11 @@ pub(crate) fn read_binary_if_complete(
                 |kind| matches!(kind, IgnoredKind::Trailing | IgnoredKind::SmallFacetCount);
             Ok((!kinds.any(differs)).then_some(mesh))
         }
-        Err(ReadError::Truncated { .. } | ReadError::NonFinite { .. }) => Ok(None),
+        Err(
+            ReadError::Truncated { .. }
+            | ReadError::NonFinite { .. }
+            | ReadError::NotANumber { .. },
+        ) => Ok(None),
         Err(error) => Err(error),
     }
 }

@@ -32,8 +32,11 @@ pub(super) fn read<'a>(
         let records = bytes.as_chunks::<STL_FACET>().0;
         let taken = usize::try_from(left).map_or(records.len(), |left| left.min(records.len()));
         if taken == 0 {
-            let missing = format!("facet {} of {count}", count - left + 1);
-            return Err(facets.builder.truncated(Place::Byte(offset), missing));
+            let place = Place::Byte(offset);
+            let error = facets
+                .builder
+                .record_missing(place, "facet", count - left, count);
+            return Err(error);
         }
         read_records(&mut facets, &records[..taken], offset)?;
         source.advance(taken * STL_FACET);

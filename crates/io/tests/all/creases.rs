@@ -74,7 +74,7 @@ fn each_fault_of_a_crease_file_is_named_with_its_line() {
     let corner = "write `corner v sharpness`";
     let number = "is not a number from 0 to inf: write it like 2, 0.5 or inf";
     let vertex =
-        "is not a vertex number: use whole numbers that count from 0; the mesh has 6 vertices";
+        "is not a vertex number: use whole numbers that count from 0; the number of vertices is 6";
     for (text, message) in [
         ("face 0 1 2", format!("1: \"face\" is not an entry: {forms}")),
         ("\n\nEdge 0 1 2", format!("3: \"Edge\" is not an entry: {forms}")),

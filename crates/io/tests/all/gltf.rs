@@ -555,12 +555,18 @@ fn a_mesh_with_a_skin_stays_where_its_positions_are() {
     );
     assert_eq!(
         notices(&mesh),
-        ["ignored 1 skin: the vertices of its mesh are not moved by joints (node 2)"]
+        [
+            "ignored 1 skin of a mesh (node 2): vertices stay where they are stored, because joints \
+             are not read"
+        ]
     );
     parts.document["nodes"][3]["skin"] = json!(0);
     assert_eq!(
         notices(&parts.read()),
-        ["ignored 2 skins: the vertices of their meshes are not moved by joints (first at node 2)"]
+        [
+            "ignored 2 skins of meshes (first at node 2): vertices stay where they are stored, \
+             because joints are not read"
+        ]
     );
     parts.document["nodes"][3]["skin"] = json!(1);
     parts.assert_refused(
@@ -574,7 +580,7 @@ fn instances_are_reported() {
     let instancing = "EXT_mesh_gpu_instancing";
     parts.document["nodes"] =
         json!([{"mesh": 0, "extensions": {instancing: {"attributes": {"TRANSLATION": 0}}}}]);
-    let own = "ignored 1 list of instances: its mesh is read once (node 0)";
+    let own = "ignored 1 list of instances (node 0): the mesh of a node is read once";
     assert_eq!(notices(&parts.read()), [own]);
     parts.document["extensionsUsed"] = json!([instancing]);
     let listed = format!("ignored 1 extension: {instancing} (extension 0)");

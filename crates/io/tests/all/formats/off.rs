@@ -7,7 +7,7 @@ use super::{assert_refused, faces, notices, read, read_as};
 #[test]
 fn off_has_comments_colours_and_prefixes() {
     let text = "\u{feff}# a\n\nSTCN4OFF # b\n\n3 # c\n";
-    let end = "copy the file again, or correct its counts";
+    let end = "copy the file again, or export it again";
     assert_refused(
         "a",
         text,

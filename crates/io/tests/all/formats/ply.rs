@@ -204,12 +204,12 @@ fn faults_of_ply_headers_are_named_with_their_lines() {
     refused(
         "end_header",
         "begin",
-        "14: the file ends before `end_header`: copy the file again, or correct its counts",
+        "14: the file ends before `end_header`: copy the file again, or export it again",
     );
     assert_refused(
         "a.ply",
         "ply\nformat ascii 1.0\n",
-        "a.ply:3: the file ends before `end_header`: copy the file again, or correct its counts",
+        "a.ply:3: the file ends before `end_header`: copy the file again, or export it again",
     );
 }
 
@@ -379,7 +379,7 @@ fn numbers_of_64_bits_are_read() {
         numbers[9] = 1 << 40;
         refused(
             &numbers,
-            "the file ends before face 1 of 1: copy the file again, or correct its counts",
+            "the file ends before face 1 of 1: copy the file again, or export it again",
         );
     }
 }

@@ -40,16 +40,16 @@ fn facets_of_stl_share_equal_corners() {
 #[test]
 fn the_count_of_a_binary_stl_is_checked() {
     let message = "a.stl: byte 134: the file ends before facet 2 of 3: copy the file again, or \
-                   correct its counts";
+                   export it again";
     assert_refused("a.stl", stl(&[FACET], 3), message);
     let huge = stl(&[FACET], u32::MAX);
     let message = "a.stl: byte 134: the file ends before facet 2 of 4294967295: copy the file \
-                   again, or correct its counts";
+                   again, or export it again";
     assert_refused("a.stl", huge, message);
     let message = "a.stl: no vertex and no face: check that it is a binary STL file";
     assert_refused("a.stl", stl(&[], 0), message);
     let message = "a.stl: byte 3: the file ends before the number of facets: copy the file again, \
-                   or correct its counts";
+                   or export it again";
     assert_refused("a.stl", "abc\0", &message.replace("byte 3", "byte 4"));
 }
 
@@ -127,6 +127,10 @@ fn a_binary_stl_on_a_pipe_is_recognised_by_its_count() {
 fn coordinates_of_stl_must_be_finite() {
     let mut facet = SECOND;
     facet[1][2] = f32::NAN;
+    let message = "a.stl: byte 158: coordinate z of vertex 2 is not a number (NaN): correct \
+                   it, or export the file again";
+    assert_refused("a.stl", stl(&[FACET, facet], 2), message);
+    facet[1][2] = f32::INFINITY;
     let message = "a.stl: byte 158: coordinate z of vertex 2 is not finite: keep coordinates \
                    below 3.4e38";
     assert_refused("a.stl", stl(&[FACET, facet], 2), message);
@@ -162,7 +166,7 @@ fn faults_of_ascii_stl_are_named_with_their_lines() {
         assert_refused("a.stl", text, &format!("a.stl:{message}"));
     };
     let end = "the file ends before";
-    let rest = "copy the file again, or correct its counts";
+    let rest = "copy the file again, or export it again";
     refused("", &format!("3: {end} endfacet: {rest}"));
     refused(
         "vertex 0 0 0\nvertex 0 x 0",
@@ -202,7 +206,7 @@ fn faults_of_ascii_stl_are_named_with_their_lines() {
 }
 
 const TOO_SMALL: &str =
-    "ignored 1 number of facets that is too small: all facets of the file are read (byte 80)";
+    "ignored 1 number of facets (byte 80): more facets follow than it says, and all are read";
 
 #[test]
 fn a_binary_stl_with_a_small_count_is_read_to_its_end() {
@@ -320,7 +324,6 @@ fn ends_of_ascii_stl_may_be_odd() {
         let text = text.replace("endloop", "End Loop");
         text.replace("endfacet", "end\nfacet")
     };
-    let missing = "ignored 1 missing `endsolid`: the file may be cut off ";
     for (text, notice) in [
         (format!("solid a\n{first}{second}endsolid b c\n"), ""),
         (format!("solid a\n{first}{second}endsolid;"), ""),
@@ -347,7 +350,11 @@ fn ends_of_ascii_stl_may_be_odd() {
             .collect();
         match notice {
             "" => assert_eq!(found, [""; 0], "{text}"),
-            place => assert_eq!(found, [&format!("{missing}{place}")], "{text}"),
+            place => {
+                let message = "ignored 1 missing `endsolid` ";
+                let message = format!("{message}{place}: the file may be cut off");
+                assert_eq!(found, [&message], "{text}");
+            }
         }
     }
 }
