@@ -6,6 +6,7 @@ use sixfold_core::{FaceList, MAX_ROWS, Point, VertexId, row};
 
 use crate::byte_source::{ByteSource, MAX_LINE_LENGTH};
 use crate::error::ReadError;
+use crate::face_rules::without_repeats;
 use crate::file_mesh::{FileMesh, ShortFace};
 use crate::format::Format;
 use crate::narrowing::{Finished, Origin, Positions};
@@ -148,7 +149,31 @@ impl<'a> MeshBuilder<'a> {
     /// Returns the error of a file that ends before `missing`.
     pub(crate) fn truncated(&self, place: Place, missing: String) -> ReadError {
         let at = self.at(place);
-        ReadError::Truncated { at, missing }
+        ReadError::Truncated {
+            at,
+            missing,
+            way_out: "export it again",
+        }
+    }
+
+    /// Returns the error of a file that ends before record `number`, counted from 0, of the `count`
+    /// records of the kind `kind` that its header promises.
+    pub(crate) fn record_missing(
+        &self,
+        place: Place,
+        kind: &str,
+        number: u64,
+        count: u64,
+    ) -> ReadError {
+        ReadError::Truncated {
+            at: self.at(place),
+            missing: format!("{kind} {} of {count}", number + 1),
+            // Only the header of a text can be corrected.
+            way_out: match self.format.is_text() {
+                true => "correct its counts",
+                false => "export it again",
+            },
+        }
     }
 
     /// Returns the number that the next vertex has in the file.
@@ -190,13 +215,7 @@ impl<'a> MeshBuilder<'a> {
         place: Place,
         vertex: usize,
     ) -> ReadError {
-        let named = ['x', 'y', 'z'].into_iter().zip(coordinates);
-        let mut infinite = named.filter(|(_, c)| !c.narrow.is_finite());
-        ReadError::NonFinite {
-            at: self.at(place),
-            vertex,
-            coordinate: infinite.next().map_or('x', |(name, _)| name),
-        }
+        not_finite(self.at(place), vertex, coordinates.map(|c| c.narrow))
     }
 
     fn too_many(&self, elements: &'static str, place: Place) -> ReadError {
@@ -230,7 +249,8 @@ impl<'a> MeshBuilder<'a> {
         }
     }
 
-    /// Adds a face; if it has fewer than three corners, it is kept apart.
+    /// Adds a face without the corners that repeat their neighbours; if it has fewer than three
+    /// corners, it is kept apart.
     #[inline]
     pub(crate) fn push_face(&mut self, corners: &[u32], place: Place) -> Result<(), ReadError> {
         if corners.len() < 3 {
@@ -238,6 +258,13 @@ impl<'a> MeshBuilder<'a> {
             self.short_faces.push(ShortFace { place, corners });
             return Ok(());
         }
+        let kept = without_repeats(corners);
+        if let Some(kept) = &kept {
+            let repeats = (corners.len() - kept.len()) as u64;
+            self.notices
+                .add_many(IgnoredKind::RepeatedCorners, repeats, place);
+        }
+        let corners = kept.as_deref().unwrap_or(corners);
         match (place, &mut self.places) {
             (Place::Line(line), FacePlaces::Lines(lines)) => lines.push(line),
             (Place::Byte(byte), places) => places.push_byte(&self.faces, byte),
@@ -300,16 +327,9 @@ impl<'a> MeshBuilder<'a> {
         // Only a mesh that is moved to a given origin can exceed 32 bits here (invariant B1).
         if let Some(v) = positions.iter().position(|p| !p.is_finite()) {
             let place = self.vertex_places.place(VertexId::new(row(v)));
-            let [x, y, _] = positions[v].to_array();
-            return Err(ReadError::NonFinite {
-                at: Location::new(self.name, place.unwrap_or(Place::Byte(0))),
-                vertex: v + self.format.first_vertex(),
-                coordinate: match (x.is_finite(), y.is_finite()) {
-                    (false, _) => 'x',
-                    (_, false) => 'y',
-                    _ => 'z',
-                },
-            });
+            let at = Location::new(self.name, place.unwrap_or(Place::Byte(0)));
+            let vertex = v + self.format.first_vertex();
+            return Err(not_finite(at, vertex, positions[v].to_array()));
         }
         // Facets were welded before they were moved; rounding can make further positions equal.
         let weld_now = match is_welded_stl {
@@ -364,6 +384,24 @@ impl<'a> MeshBuilder<'a> {
     }
 }
 
+/// Returns the error of the first of three coordinates that is not finite.
+fn not_finite(at: Location, vertex: usize, coordinates: [f32; 3]) -> ReadError {
+    let named = ['x', 'y', 'z'].into_iter().zip(coordinates);
+    let first = named.into_iter().find(|(_, value)| !value.is_finite());
+    match first.unwrap_or(('x', f32::INFINITY)) {
+        (coordinate, value) if value.is_nan() => ReadError::NotANumber {
+            at,
+            vertex,
+            coordinate,
+        },
+        (coordinate, _) => ReadError::NonFinite {
+            at,
+            vertex,
+            coordinate,
+        },
+    }
+}
+
 impl FileMesh {
     /// Merges vertices with equal positions; vertices are numbered by first occurrence.
     fn weld(&mut self) {
@@ -389,10 +427,22 @@ impl FileMesh {
         }
         let renumber = |v: VertexId| VertexId::new(numbers[v.index()]);
         let mut faces = FaceList::with_capacity(self.faces.corners().len());
-        for (_, face) in self.faces.iter() {
-            let pushed = faces.push(face.iter().copied().map(renumber));
-            pushed.expect("as many corners as before");
+        let mut notices = Notices(std::mem::take(&mut self.notices));
+        let mut welded = Vec::new();
+        for (f, face) in self.faces.iter() {
+            welded.clear();
+            welded.extend(face.iter().copied().map(renumber));
+            let kept = without_repeats(&welded);
+            if let Some(kept) = &kept {
+                self.face_places.store(&self.faces);
+                let place = self.face_places.place(f, &self.faces);
+                let repeats = (welded.len() - kept.len()) as u64;
+                notices.add_many(IgnoredKind::RepeatedCorners, repeats, place);
+            }
+            let pushed = faces.push(kept.as_deref().unwrap_or(&welded).iter().copied());
+            pushed.expect("at most as many corners as before");
         }
+        self.notices = notices.0;
         self.faces = faces;
         let corners = self
             .short_faces

@@ -59,7 +59,7 @@ pub enum CreaseFileError {
     },
     /// A field is not a vertex number of the mesh.
     #[error(
-        "{at}: {text:?} is not a vertex number: use whole numbers that count from 0; the mesh has {vertices} vertices"
+        "{at}: {text:?} is not a vertex number: use whole numbers that count from 0; the number of vertices is {vertices}"
     )]
     BadVertex {
         at: Location,

@@ -63,9 +63,13 @@ pub enum ReadError {
         elements: &'static str,
         limit: usize,
     },
-    /// The file ends before everything that its header promises.
-    #[error("{at}: the file ends before {missing}: copy the file again, or correct its counts")]
-    Truncated { at: Location, missing: String },
+    /// The file ends before everything that its format or its header promises.
+    #[error("{at}: the file ends before {missing}: copy the file again, or {way_out}")]
+    Truncated {
+        at: Location,
+        missing: String,
+        way_out: &'static str,
+    },
     /// A text does not have the expected form.
     #[error("{at}: expected {expected}, found {found:?}: correct the line")]
     Unexpected {
@@ -102,11 +106,20 @@ pub enum ReadError {
         vertex: usize,
         text: String,
     },
-    /// A coordinate is infinite, NaN, or too large for 32 bits.
+    /// A coordinate is infinite or too large for 32 bits.
     #[error(
         "{at}: coordinate {coordinate} of vertex {vertex} is not finite: keep coordinates below 3.4e38"
     )]
     NonFinite {
+        at: Location,
+        vertex: usize,
+        coordinate: char,
+    },
+    /// A coordinate is NaN.
+    #[error(
+        "{at}: coordinate {coordinate} of vertex {vertex} is not a number (NaN): correct it, or export the file again"
+    )]
+    NotANumber {
         at: Location,
         vertex: usize,
         coordinate: char,

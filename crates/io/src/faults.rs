@@ -25,6 +25,11 @@ pub enum GltfFault {
         number: usize,
         count: usize,
     },
+    /// The mode of a primitive does not exist.
+    #[error(
+        "a primitive has mode {mode}, but modes are numbers from 0 to 6: export the file again"
+    )]
+    Mode { mode: u32 },
     /// An accessor has the wrong type for its use.
     #[error("it has type {found:?}, but {expected}: export the file again")]
     Type {
@@ -77,17 +82,17 @@ pub enum PlyHeaderFault {
         "{text:?} is not a form of PLY: use ascii, binary_little_endian or binary_big_endian, and version 1.0"
     )]
     UnknownForm { text: String },
-    /// A line does not start with a keyword.
-    #[error(
-        "{text:?} is not a line of a PLY header: use format, comment, obj_info, element, property or end_header"
-    )]
-    UnknownKeyword { text: String },
     /// An `element` line is not a name and a number.
     #[error("{text:?} is not an element: write `element`, a name and a count")]
     Element { text: String },
     /// A `property` line is not a type and a name.
     #[error("{text:?} is not a property: write `property float x` or `property list uchar int x`")]
     Property { text: String },
+    /// The type of a property does not exist.
+    #[error(
+        "{text:?} is not a type of numbers: use int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32 or float64"
+    )]
+    Type { text: String },
     /// A `property` line precedes all elements.
     #[error("the property {name:?} precedes all elements: move it below its element")]
     PropertyWithoutElement { name: String },

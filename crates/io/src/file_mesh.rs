@@ -2,8 +2,9 @@
 
 use std::fmt;
 
-use sixfold_core::{Creases, FaceId, FaceList, Facts, IteratorExt, Point, PolygonMesh, VertexId};
+use sixfold_core::{Creases, FaceId, FaceList, Facts, Point, PolygonMesh, VertexId};
 
+use crate::face_rules::repeated_vertex;
 use crate::format::Format;
 use crate::narrowing::Narrowing;
 use crate::notice::Notice;
@@ -23,7 +24,9 @@ pub struct FileMesh {
     pub format: Format,
     /// Positions of all vertices of the file, including unused vertices.
     pub positions: Vec<Point>,
-    /// All faces with three corners or more, including faces that use a vertex twice.
+    /// All faces with three corners or more, including faces that use a vertex twice. A corner that
+    /// repeats its neighbour was removed, if three different corners remain
+    /// ([`IgnoredKind::RepeatedCorners`](crate::IgnoredKind::RepeatedCorners)).
     pub faces: FaceList,
     /// Place of each face.
     pub(crate) face_places: FacePlaces,
@@ -83,21 +86,39 @@ pub enum LeftOutReason {
 }
 
 impl FileMesh {
-    /// Returns the topology of the file. Faces with fewer than three corners count as
-    /// degenerate. O(corners) expected.
+    /// Returns the topology of the mesh that [`into_polygons`](Self::into_polygons) returns, and in
+    /// `degenerate_faces` the number of faces that it leaves out. O(corners) expected.
     ///
     /// # Panics
     ///
     /// Panics if `faces` was changed and uses a vertex that does not exist.
     pub fn facts(&self) -> Facts {
-        let facts = Facts::from_faces(self.positions.len(), &self.faces);
-        let mut facts = facts.unwrap_or_else(|error| panic!("{error}"));
-        facts.degenerate_faces += self.short_faces.len();
-        facts
+        let kept = self.kept_faces();
+        let kept = kept.as_ref().unwrap_or(&self.faces);
+        let facts = Facts::from_faces(self.positions.len(), kept);
+        let facts = facts.unwrap_or_else(|error| panic!("{error}"));
+        let left_out = self.faces.len() - kept.len() + self.short_faces.len();
+        Facts {
+            degenerate_faces: left_out,
+            ..facts
+        }
     }
 
-    /// Returns whether [`into_polygons`](Self::into_polygons) leaves out faces. If not, the facts of
-    /// that mesh are the facts of the file. O(corners) expected.
+    /// Returns the faces that are not left out; `None` if these are all `faces`. O(corners) expected.
+    fn kept_faces(&self) -> Option<FaceList> {
+        let is_kept = |face: &[VertexId]| repeated_vertex(face).is_none();
+        if self.faces.iter().all(|(_, face)| is_kept(face)) {
+            return None;
+        }
+        let mut kept = FaceList::with_capacity(self.faces.corners().len());
+        for (_, face) in self.faces.iter().filter(|(_, face)| is_kept(face)) {
+            let pushed = kept.push(face.iter().copied());
+            pushed.expect("fewer faces than before");
+        }
+        Some(kept)
+    }
+
+    /// Returns whether [`into_polygons`](Self::into_polygons) leaves out faces. O(corners) expected.
     pub fn has_degenerate_faces(&self) -> bool {
         let mut faces = self.faces.iter();
         !self.short_faces.is_empty() || faces.any(|(_, face)| repeated_vertex(face).is_some())
@@ -180,19 +201,9 @@ impl FileMesh {
             }
         }
         left_out.sort_by_key(|left_out| left_out.place);
-        let faces = if gaps.is_empty() {
-            self.faces
-        } else {
-            let mut kept = FaceList::with_capacity(self.faces.corners().len());
-            for (_, face) in self
-                .faces
-                .iter()
-                .filter(|(_, face)| repeated_vertex(face).is_none())
-            {
-                let face = face.iter().copied();
-                kept.push(face).expect("fewer faces than before");
-            }
-            kept
+        let faces = match gaps.is_empty() {
+            true => self.faces,
+            false => self.kept_faces().unwrap_or_default(),
         };
         let polygons = PolygonMesh::from_faces(self.positions, faces);
         let polygons = polygons.unwrap_or_else(|error| panic!("{error}"));
@@ -233,17 +244,4 @@ impl fmt::Display for LeftOut {
 /// Returns the number of `vertex` in a file that counts from `first`.
 fn number(vertex: VertexId, first: usize) -> u32 {
     sixfold_core::row(vertex.index() + first)
-}
-
-/// Returns the first vertex that occurs twice in `face`; O(corners) expected.
-pub(crate) fn repeated_vertex(face: &[VertexId]) -> Option<VertexId> {
-    if let &[a, b, c] = face {
-        return match (a == b || a == c, b == c) {
-            (true, _) => Some(a),
-            (_, true) => Some(b),
-            _ => None,
-        };
-    }
-    let mut distinct = face.iter().copied().distinct();
-    face.iter().copied().find(|&v| distinct.next() != Some(v))
 }

@@ -136,8 +136,7 @@ pub(crate) fn detect(start: &[u8], size: Option<u64>) -> Option<Format> {
     if is_binary_stl(start, size) {
         return Some(Format::Stl);
     }
-    let begins_solid = |text: &[u8]| text.len() > 4 && text[..5].eq_ignore_ascii_case(b"solid");
-    if begins_solid(text.trim_ascii_start()) && !text.contains(&0) {
+    if is_ascii_stl(text) {
         return Some(Format::StlAscii);
     }
     if text.trim_ascii_start().first() == Some(&b'{') {
@@ -161,11 +160,54 @@ fn is_binary_stl(start: &[u8], size: Option<u64>) -> bool {
     };
     let numbers = facet.as_chunks::<4>().0.iter();
     let mut numbers = numbers.map(|&bytes| f32::from_le_bytes(bytes));
-    // A text has no zero bytes; a binary STL has them in its count or in a coordinate.
+    // A text has no zero bytes; a binary STL has them in its count or in a coordinate. Some programs
+    // write no count, and normals that are not numbers.
     start[..STL_HEADER + 48].contains(&0)
-        && facets > 0
-        && numbers.by_ref().take(3).all(|x| x.abs() <= 1.01)
+        && (facets > 0 || facet.iter().any(|&byte| byte != 0))
+        && numbers
+            .by_ref()
+            .take(3)
+            .all(|x| x.is_nan() || x.abs() <= 1.01)
         && numbers.all(|x| x.abs() <= 1e15)
+}
+
+/// Returns whether the corners of a facet of a binary STL have a plausible size.
+pub(crate) fn has_plausible_corners(facet: &[u8; STL_FACET]) -> bool {
+    let corners = facet[12..48].as_chunks::<4>().0.iter();
+    let mut corners = corners.map(|&bytes| f32::from_le_bytes(bytes));
+    corners.all(|x| x.abs() <= 1e15)
+}
+
+/// Returns whether a text is an ASCII STL: it begins with `solid`, or it has lines before it, such as
+/// comments, and the line after `solid` is one of STL. Zero bytes may follow the text.
+fn is_ascii_stl(text: &[u8]) -> bool {
+    let padding = text.iter().rev().take_while(|byte| **byte == 0).count();
+    let text = &text[..text.len() - padding];
+    if text.contains(&0) || (padding > 0 && !is_text(text)) {
+        return false;
+    }
+    let start = text.trim_ascii_start().get(..5);
+    if start.is_some_and(|start| start.eq_ignore_ascii_case(b"solid")) {
+        return true;
+    }
+    let mut keywords = text
+        .split(|byte| matches!(byte, b'\n' | b'\r'))
+        .filter_map(|line| words(line).next())
+        .filter(|word| !is_stl_comment(word));
+    let is_one_of = |word: &[u8], names: &[&str]| {
+        let mut names = names.iter();
+        names.any(|name| word.eq_ignore_ascii_case(name.as_bytes()))
+    };
+    let next = ["facet", "color", "colour", "endsolid", "end"];
+    keywords.any(|word| is_one_of(word, &["solid"]))
+        && keywords.next().is_some_and(|word| is_one_of(word, &next))
+}
+
+/// Returns whether a comment of ASCII STL begins with `word`. The format has no comments, but some
+/// programs write them.
+pub(crate) fn is_stl_comment(word: &[u8]) -> bool {
+    let signs: [&[u8]; 3] = [b"#", b";", b"//"];
+    signs.iter().any(|sign| word.starts_with(sign))
 }
 
 /// Returns whether the start of a stream, whose size is not known, can be that of a binary STL: it is
@@ -180,15 +222,10 @@ pub(crate) fn may_be_binary_stl(start: &[u8]) -> bool {
     };
     let facets = u32::from_le_bytes([a, b, c, d]) as usize;
     let records = rest.as_chunks::<STL_FACET>().0;
-    let are_plausible = |record: &[u8; STL_FACET]| {
-        let corners = record[12..48].as_chunks::<4>().0.iter();
-        let mut corners = corners.map(|&bytes| f32::from_le_bytes(bytes));
-        corners.all(|x| x.abs() <= 1e15)
-    };
     start.contains(&0)
         && !records.is_empty()
         && facets >= rest.len() / STL_FACET
-        && records.iter().all(are_plausible)
+        && records.iter().all(has_plausible_corners)
 }
 
 /// Returns whether the start of a file is text, and not white space only.

@@ -73,12 +73,13 @@ fn item<'a, T>(
 
 /// Counts the parts of the document that are not read.
 fn note_ignored(builder: &mut MeshBuilder, document: &Document) {
-    let first = |kind| Place::Item { kind, number: 0 };
     let notices = &mut builder.notices;
     let animations = document.animations.len() as u64;
-    notices.add_many(IgnoredKind::Deformations, animations, first("animation"));
-    let skins = document.skins.len() as u64;
-    notices.add_many(IgnoredKind::Deformations, skins, first("skin"));
+    let first = Place::Item {
+        kind: "animation",
+        number: 0,
+    };
+    notices.add_many(IgnoredKind::Deformations, animations, first);
     for (number, extension) in document.extensions_used.iter().enumerate() {
         if extension != "KHR_mesh_quantization" {
             let place = Place::Item {

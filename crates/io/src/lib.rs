@@ -10,25 +10,48 @@
 //!
 //! | format | read | refused |
 //! |---|---|---|
-//! | STL | text and binary; several solids; equal corners become one vertex ([`Welding`]) | facets without exactly three vertices |
-//! | PLY | text and both byte orders; every type of numbers and lists; properties and elements in any order; `vertex_index`, `vertex_indices`; triangle strips | |
-//! | OFF | prefixes `ST`, `C`, `N`, `4`, `n` in any order; upper and lower case; comments and blank lines anywhere; counts beside or below the keyword; trailing colours | binary OFF, other than three dimensions |
-//! | glTF | JSON and binary; triangles, strips, fans; the default scene with its transforms; 8, 16 and 32-bit indices; sparse, quantised and embedded data | Draco, meshopt |
+//! | STL | text and binary; several solids; normals that are not numbers; lines before and after solids, comments, `end loop`, a missing `endsolid`; facets beyond the count of a binary header; equal corners become one vertex ([`Welding`]) | facets without exactly three vertices, a count of facets larger than the file |
+//! | PLY | text and both byte orders; every type of numbers and lists, also `int64` and `uint64`; unknown lines of the header; properties and elements in any order; `vertex_index`, `vertex_indices`; triangle strips | other types of numbers, as `long` |
+//! | OFF | prefixes `ST`, `C`, `N`, `4`, `n` in any order; upper and lower case; comments and blank lines anywhere; counts beside or below the keyword, also `OFF3 1 0`; faces on several lines; trailing colours | binary OFF, other than three dimensions |
+//! | glTF | JSON and binary; triangles, strips, fans; the default scene with its transforms; 8, 16 and 32-bit indices; sparse, quantised and embedded data; buffers in files below the folder of the file; the mesh of a skin as it is stored, without its joints | Draco and meshopt without plain data; other required extensions that change a mesh, as instances |
 //! | OBJ | see below | |
 //!
 //! glTF needs the feature `gltf`, which is on by default. The others need neither `serde` nor JSON.
 //!
 //! The content decides the format, and the ending of the name only if the content has no sign of
 //! one. A binary STL has no such sign but its size, which is 84 bytes and 50 for each facet. On a
-//! stream, whose size is not known, the unit normal of the first facet is the sign; without it, the
-//! stream is a binary STL if its corners are plausible and exactly as many facets follow as byte 80
-//! says. Then a stream that is cut off is not recognised.
+//! stream, whose size is not known, and in a file of another size, the normal of the first facet is the
+//! sign, whose coordinates are from −1 to 1 or not numbers; without it, the stream is a binary STL if
+//! its corners are plausible and exactly as many facets follow as byte 80 says. Then a stream that is
+//! cut off is not recognised.
 //!
 //! Everything else is ignored, counted, and reported as a [`Notice`], once for each kind. This
 //! includes normals, colours and texture coordinates. Coordinates of 64 bits and decimal numbers
 //! are rounded to 32 bits; [`FileMesh::narrowing`] says what this changed, and
 //! [`ReadOptions::recentred`] moves the mesh to the origin first. A fault is returned as a
 //! [`ReadError`] with file and line or byte.
+//!
+//! # Which vertices become one
+//!
+//! By default, only the corners of STL facets are joined, if their positions are exactly equal (−0 is
+//! 0): STL stores three positions for each facet and no vertex numbers, so without joining no facet
+//! would have a neighbour. The other formats have vertex numbers, and vertices with equal positions
+//! but different numbers stay apart, because a program may have cut the mesh there on purpose. So a
+//! mesh of glTF or OBJ can have open seams, for example where texture coordinates or normals differ
+//! on the two sides of an edge. In glTF, primitives of a mesh share vertices if they use the same
+//! accessor of positions; others do not, and each node has vertices of its own.
+//!
+//! [`Welding::All`] joins equal positions in every format, and [`Welding::Nothing`] in none.
+//! [`FileMesh::welded_vertices`] counts the joined vertices. If joined vertices are neighbours in a
+//! face, the face loses the repeat, as described next.
+//!
+//! # Faces that name a vertex twice
+//!
+//! If a corner repeats its neighbour, as in `f 1 2 2 3 4` or `f 1 2 3 4 1`, only the repeat is
+//! removed, with a notice ([`IgnoredKind::RepeatedCorners`]). [`FileMesh::into_polygons`] leaves out
+//! faces with fewer than three different corners, and faces that name a vertex twice in other
+//! corners. It returns them with their places ([`LeftOut`]). [`FileMesh::facts`] describes the mesh
+//! without these faces, and counts them.
 //!
 //! # Files that lie
 //!
@@ -41,7 +64,7 @@
 //! and ASCII STL, whose tables grow while they are read. `tests/memory.rs` measures this. glTF
 //! refers to its buffers in any order, so they are in memory; a scene that repeats its meshes is
 //! limited to 256 vertices and corners for each byte of the file. Only files in the folder of a glTF
-//! file are opened.
+//! file or below it are opened, also if links lead elsewhere.
 //!
 //! # OBJ
 //!
@@ -112,6 +135,7 @@ mod byte_source;
 mod crease_file;
 mod error;
 mod excerpt;
+mod face_rules;
 mod faults;
 mod file_mesh;
 mod format;

@@ -26,14 +26,27 @@ pub enum IgnoredKind {
     Elements,
     /// Triangles of a strip that have no area because they only continue it.
     StripJoints,
+    /// Corners of faces that repeat the corner next to them. The face keeps its other corners.
+    RepeatedCorners,
     /// Bytes or lines after the end of the mesh.
     Trailing,
+    /// Solids of ASCII STL that do not end in `endsolid`. The file may be cut off between two
+    /// facets.
+    MissingEnds,
+    /// The number of facets in the header of a binary STL, if more facets follow. All are read.
+    SmallFacetCount,
     /// Primitives of glTF that are lines, or points by index; their vertices are kept.
     OtherPrimitives,
     /// Meshes of glTF that are not part of the scene.
     UnusedMeshes,
-    /// Animations, skins and other shapes of glTF.
+    /// Animations and morphs of glTF.
     Deformations,
+    /// Meshes of glTF that are bound to the joints of a skin. Their vertices stay as they are stored:
+    /// neither the joints nor the place of the node move them.
+    Skins,
+    /// Nodes of glTF whose mesh is repeated at several places (`EXT_mesh_gpu_instancing`). The mesh is
+    /// read once, at the place of the node.
+    Instances,
     /// Extensions of glTF.
     Extensions,
     /// `o`.
@@ -60,7 +73,8 @@ pub enum IgnoredKind {
     HoleTags,
     /// `t` with another name.
     OtherTags,
-    /// A keyword that is not part of OBJ.
+    /// A line whose keyword is not part of the format: in OBJ, in the header of PLY, and outside the
+    /// solids of ASCII STL.
     Unknown,
 }
 
@@ -102,6 +116,17 @@ impl IgnoredKind {
         self.names()[1]
     }
 
+    /// Returns what the kind means for the mesh, if its name does not say it.
+    const fn remark(self) -> &'static str {
+        match self {
+            Self::MissingEnds => ": the file may be cut off",
+            Self::SmallFacetCount => ": more facets follow than it says, and all are read",
+            Self::Skins => ": vertices stay where they are stored, because joints are not read",
+            Self::Instances => ": the mesh of a node is read once",
+            _ => "",
+        }
+    }
+
     /// Returns the name in the singular and in the plural.
     const fn names(self) -> [&'static str; 2] {
         match self {
@@ -113,13 +138,18 @@ impl IgnoredKind {
             Self::Properties => ["other property", "other properties"],
             Self::Elements => ["other element", "other elements"],
             Self::StripJoints => ["joint of triangle strips", "joints of triangle strips"],
+            Self::RepeatedCorners => ["repeated corner of a face", "repeated corners of faces"],
             Self::Trailing => ["byte after the mesh", "bytes after the mesh"],
+            Self::MissingEnds => ["missing `endsolid`", "missing `endsolid` lines"],
+            Self::SmallFacetCount => ["number of facets", "numbers of facets"],
             Self::OtherPrimitives => [
                 "primitive of points or lines",
                 "primitives of points or lines",
             ],
             Self::UnusedMeshes => ["mesh outside the scene", "meshes outside the scene"],
-            Self::Deformations => ["animation, skin or morph", "animations, skins and morphs"],
+            Self::Deformations => ["animation or morph", "animations and morphs"],
+            Self::Skins => ["skin of a mesh", "skins of meshes"],
+            Self::Instances => ["list of instances", "lists of instances"],
             Self::Extensions => ["extension", "extensions"],
             Self::Objects => ["object name", "object names"],
             Self::Groups => ["group", "groups"],
@@ -171,9 +201,10 @@ impl fmt::Display for Notice {
             write!(f, ": {}", self.names.join(", "))?;
         }
         match self.count {
-            1 => write!(f, " ({first})"),
-            _ => write!(f, " (first at {first})"),
+            1 => write!(f, " ({first})")?,
+            _ => write!(f, " (first at {first})")?,
         }
+        f.write_str(self.kind.remark())
     }
 }
 

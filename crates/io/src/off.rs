@@ -3,7 +3,7 @@
 use std::io::Read;
 
 use crate::builder::MeshBuilder;
-use crate::byte_source::ByteSource;
+use crate::byte_source::{ByteSource, words};
 use crate::error::ReadError;
 use crate::excerpt::shortened;
 use crate::file_mesh::FileMesh;
@@ -120,11 +120,15 @@ impl<R: Read> Reader<'_, '_, R> {
             return Err(ReadError::Empty { file, format });
         }
         let mut words = self.words();
-        let keyword = words.first().and_then(|word| OffKeyword::parse(word));
-        if keyword.is_some() {
-            words.remove(0);
-        }
-        let keyword = keyword.unwrap_or_default();
+        let parsed = words.first().and_then(|word| OffKeyword::parse(word));
+        let parsed = parsed.map(|(keyword, digits)| (keyword, digits.to_vec()));
+        let keyword = parsed.map_or_else(OffKeyword::default, |(keyword, digits)| {
+            match digits.is_empty() {
+                true => drop(words.remove(0)),
+                false => words[0] = digits,
+            }
+            keyword
+        });
         let is_binary = |word: &Vec<u8>| word.eq_ignore_ascii_case(b"binary");
         if words.first().is_some_and(is_binary) {
             let feature = "the file is binary OFF".to_owned();
@@ -143,8 +147,7 @@ impl<R: Read> Reader<'_, '_, R> {
 
     /// Returns the words of the current line.
     fn words(&self) -> Vec<Vec<u8>> {
-        let words = crate::byte_source::words(&self.line);
-        words.map(<[u8]>::to_vec).collect()
+        words(&self.line).map(<[u8]>::to_vec).collect()
     }
 
     /// Removes the number of coordinates, which must be 3, from `words` or from the next line.
@@ -219,10 +222,13 @@ impl<R: Read> Reader<'_, '_, R> {
     /// Reads the line of a vertex.
     fn read_vertex(&mut self, header: &Header, number: u64) -> Result<(), ReadError> {
         if !self.next_line()? {
-            let missing = format!("vertex {} of {}", number + 1, header.vertices);
-            return Err(self.builder.truncated(self.place(), missing));
+            let count = header.vertices;
+            let error = self
+                .builder
+                .record_missing(self.place(), "vertex", number, count);
+            return Err(error);
         }
-        let mut words = crate::byte_source::words(&self.line);
+        let mut words = words(&self.line);
         let mut values = [Coordinate::from(0.0_f32); 4];
         let wanted = if header.keyword.homogeneous { 4 } else { 3 };
         for (i, value) in values[..wanted].iter_mut().enumerate() {
@@ -269,7 +275,7 @@ impl<R: Read> Reader<'_, '_, R> {
         }
     }
 
-    /// Reads the line of a face. What follows its vertices is a colour.
+    /// Reads a face. Its vertices may continue on further lines; what follows them is a colour.
     fn read_face(
         &mut self,
         corners: &mut Vec<u32>,
@@ -277,31 +283,57 @@ impl<R: Read> Reader<'_, '_, R> {
         faces: u64,
     ) -> Result<(), ReadError> {
         if !self.next_line()? {
-            let missing = format!("face {} of {faces}", number + 1);
-            return Err(self.builder.truncated(self.place(), missing));
+            let error = self
+                .builder
+                .record_missing(self.place(), "face", number, faces);
+            return Err(error);
         }
         let place = Place::Line(self.number);
-        let mut words = crate::byte_source::words(&self.line);
-        let bad = |what, word: &[u8]| ReadError::BadWhole {
-            at: self.builder.at(place),
-            what,
-            text: shortened(&String::from_utf8_lossy(word)),
-        };
-        let word = words.next().unwrap_or_default();
-        let degree = parse_whole::<u64>(word).ok_or_else(|| bad("a number of corners", word))?;
+        let word = words(&self.line).next().unwrap_or_default();
+        let degree: u64 = parse_whole(word).ok_or_else(|| self.bad("a number of corners", word))?;
         corners.clear();
-        for found in 0..degree {
-            let Some(word) = words.next() else {
+        let mut has_rest = self.read_corners(corners, degree, 1)?;
+        while (corners.len() as u64) < degree {
+            let missing = degree - corners.len() as u64;
+            // A line with more numbers than are missing is the next face.
+            if !self.next_line()? || words(&self.line).count() as u64 > missing {
                 let expected = format!("{degree} vertices of a face");
-                let found = format!("{found} of them");
+                let found = format!("{} of them", corners.len());
                 return Err(self.builder.unexpected(place, &expected, found.as_bytes()));
-            };
-            let index = parse_whole(word).ok_or_else(|| bad("a vertex number", word))?;
-            corners.push(self.builder.vertex_row(index, || place)?);
+            }
+            has_rest = self.read_corners(corners, degree, 0)?;
         }
-        if words.next().is_some() {
+        if has_rest {
             self.builder.notices.add(IgnoredKind::Colours, place);
         }
         self.builder.push_face(corners, place)
+    }
+
+    /// Adds the vertices in the current line after its first `skipped` words, until the face has
+    /// `degree` of them; returns whether further words follow.
+    fn read_corners(
+        &self,
+        corners: &mut Vec<u32>,
+        degree: u64,
+        skipped: usize,
+    ) -> Result<bool, ReadError> {
+        let mut words = words(&self.line).skip(skipped);
+        while (corners.len() as u64) < degree {
+            let Some(word) = words.next() else {
+                return Ok(false);
+            };
+            let index = parse_whole(word).ok_or_else(|| self.bad("a vertex number", word))?;
+            corners.push(self.builder.vertex_row(index, || self.place())?);
+        }
+        Ok(words.next().is_some())
+    }
+
+    /// Returns the error of a word of the current line that is not a whole number.
+    fn bad(&self, what: &'static str, word: &[u8]) -> ReadError {
+        ReadError::BadWhole {
+            at: self.builder.at(self.place()),
+            what,
+            text: shortened(&String::from_utf8_lossy(word)),
+        }
     }
 }

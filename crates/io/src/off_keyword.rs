@@ -20,9 +20,12 @@ pub(crate) struct OffKeyword {
 }
 
 impl OffKeyword {
-    /// Parses a keyword; `None` if `word` is not one. Each prefix may occur once, in any order.
-    /// Only `N` and `n` depend on upper and lower case.
-    pub(crate) fn parse(word: &[u8]) -> Option<Self> {
+    /// Parses a keyword and returns it with the digits that follow it without a blank, as in `OFF4 4
+    /// 0`; `None` if `word` is not a keyword. Each prefix may occur once, in any order. Only `N` and
+    /// `n` depend on upper and lower case.
+    pub(crate) fn parse(word: &[u8]) -> Option<(Self, &[u8])> {
+        let digits = word.iter().rev().take_while(|byte| byte.is_ascii_digit());
+        let (word, digits) = word.split_at(word.len() - digits.count());
         let (mut rest, off) = word.split_at_checked(word.len().checked_sub(3)?)?;
         if !off.eq_ignore_ascii_case(b"OFF") {
             return None;
@@ -42,6 +45,6 @@ impl OffKeyword {
             }
             rest = after;
         }
-        Some(keyword)
+        Some((keyword, digits))
     }
 }

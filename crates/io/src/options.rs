@@ -3,7 +3,8 @@
 use crate::format::Format;
 use crate::narrowing::Origin;
 
-/// Which vertices with equal positions become one vertex.
+/// Which vertices with equal positions become one vertex. [The documentation of the
+/// crate](crate#which-vertices-become-one) says why.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Welding {

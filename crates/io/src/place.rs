@@ -112,13 +112,21 @@ impl FacePlaces {
     pub(crate) fn push_byte(&mut self, faces: &FaceList, byte: u64) {
         let (face, corners) = (faces.len(), faces.corners().len());
         if matches!(self, Self::Records { .. }) && self.predicted(face, corners) != byte {
-            let before = faces
-                .iter()
-                .map(|(f, _)| self.predicted(f.index(), faces.range(f).start));
-            *self = Self::Bytes(before.collect());
+            self.store(faces);
         }
         if let Self::Bytes(bytes) = self {
             bytes.push(byte);
+        }
+    }
+
+    /// Stores the places of `faces`, if they are computed: then they no longer depend on the numbers
+    /// of corners.
+    pub(crate) fn store(&mut self, faces: &FaceList) {
+        if matches!(self, Self::Records { .. }) {
+            let places = faces
+                .iter()
+                .map(|(f, _)| self.predicted(f.index(), faces.range(f).start));
+            *self = Self::Bytes(places.collect());
         }
     }
 

@@ -70,8 +70,7 @@ impl Reading<'_, '_> {
     /// Returns the error of a file that ends before record `number`, counted from 0.
     fn truncated(&self, place: Place, number: u64) -> ReadError {
         let Element { name, count, .. } = self.element;
-        let missing = format!("{name} {} of {count}", number + 1);
-        self.builder.truncated(place, missing)
+        self.builder.record_missing(place, name, number, *count)
     }
 
     /// Returns the error of a value that is not a number of corners or of a vertex.

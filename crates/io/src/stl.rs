@@ -39,10 +39,15 @@ pub(crate) fn read_binary_if_complete(
     match read_binary(name, source, options) {
         Ok(mesh) => {
             let mut kinds = mesh.notices.iter().map(|notice| notice.kind);
-            let is_complete = kinds.all(|kind| kind != IgnoredKind::Trailing);
-            Ok(is_complete.then_some(mesh))
+            let differs =
+                |kind| matches!(kind, IgnoredKind::Trailing | IgnoredKind::SmallFacetCount);
+            Ok((!kinds.any(differs)).then_some(mesh))
         }
-        Err(ReadError::Truncated { .. } | ReadError::NonFinite { .. }) => Ok(None),
+        Err(
+            ReadError::Truncated { .. }
+            | ReadError::NonFinite { .. }
+            | ReadError::NotANumber { .. },
+        ) => Ok(None),
         Err(error) => Err(error),
     }
 }

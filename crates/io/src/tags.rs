@@ -5,8 +5,9 @@ use std::fmt;
 use sixfold_core::{CreaseError, Creases, FaceList, MAX_ROWS, Pair, VertexId, row};
 
 use crate::excerpt::shortened;
+use crate::face_rules::repeated_vertex;
 use crate::faults::TagFault;
-use crate::file_mesh::{ShortFace, repeated_vertex};
+use crate::file_mesh::ShortFace;
 use crate::sharpness::sharpness;
 
 /// One edge of a `t crease` tag. A tag can have several edges.

@@ -20,8 +20,9 @@ pub enum RenderError {
     TooLarge { width: u32, height: u32 },
     /// The part of the picture for one mesh would be too small.
     #[error(
-        "a picture of {width} × {height} pixels is too small for {panels} meshes in a row: \
-         give each mesh at least {MIN_PANEL} × {MIN_PANEL} pixels"
+        "a picture of {width} × {height} pixels is too small for {meshes} in a row: \
+         give each mesh at least {MIN_PANEL} × {MIN_PANEL} pixels",
+        meshes = meshes(*panels)
     )]
     TooSmall {
         width: u32,
@@ -40,6 +41,14 @@ pub enum RenderError {
     /// The mesh with the number `mesh`, counted from 0, cannot be drawn.
     #[error("mesh {} of the row: {fault}", .mesh + 1)]
     Mesh { mesh: usize, fault: MeshFault },
+}
+
+/// Returns `1 mesh` or `3 meshes`, for the given number.
+fn meshes(count: usize) -> String {
+    match count {
+        1 => "1 mesh".to_owned(),
+        _ => format!("{count} meshes"),
+    }
 }
 
 /// The reason why a mesh cannot be drawn.

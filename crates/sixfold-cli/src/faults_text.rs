@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::path::Path;
 
 use sixfold::io::{self, LeftOut, PolygonPlaces};
-use sixfold::repair::{Diagnosis, Fault, FaultKind, Place};
+use sixfold::repair::{Crack, Diagnosis, Fault, FaultKind, Place, Step};
 use sixfold::{Capabilities, FaceId, PolygonMesh, structure_infos};
 use sixfold_study::numbers::grouped;
 
@@ -43,7 +43,17 @@ pub(crate) struct DiagnosisRecord {
     positions: usize,
     boundary_edges: usize,
     seam_edges: usize,
+    /// Boundaries that nearly meet.
+    crack: Option<CrackRecord>,
     left_out: LeftOutRecord,
+}
+
+/// Boundaries that nearly meet, and the command that welds them.
+#[derive(Serialize)]
+struct CrackRecord {
+    #[serde(flatten)]
+    crack: Crack,
+    repair: String,
 }
 
 /// The degenerate faces of the file, which the mesh does not have.
@@ -131,6 +141,10 @@ impl Diagnosed<'_> {
             positions,
             boundary_edges,
             seam_edges,
+            crack: self.diagnosis.crack.map(|crack| CrackRecord {
+                crack,
+                repair: self.command(&repair_options(&[crack.weld()])),
+            }),
             left_out: self.left_out_record(),
         }
     }
@@ -205,6 +219,13 @@ impl Diagnosed<'_> {
             title += &self.places_text(fault, &faces);
             lines.push(hanging_indent(&label(&lines), &title));
             let mut notes = Vec::new();
+            if let (FaultKind::BoundaryEdge, Some(crack)) = (fault.kind, self.diagnosis.crack) {
+                notes.push(format!(
+                    "{} of them nearly meet and close at distance {}",
+                    grouped(crack.edges),
+                    crack.distance
+                ));
+            }
             let refusing = refusing(|own| fault.kind.is_refused_by(own));
             if !refusing.is_empty() {
                 notes.push(format!("refused by {}", refusing.join(", ")));
@@ -247,10 +268,16 @@ impl Diagnosed<'_> {
             .map(|fault| self.options(fault));
         let options = left_out.into_iter().chain(faults).filter(|o| !o.is_empty());
         let options: Vec<String> = options.collect();
+        let crack = self.diagnosis.wide_crack();
         let (text, options) = match (names.split_first(), options.first()) {
             (_, Some(options)) if self.diagnosis.looks_unwelded() => {
                 let text = "join the vertices, then inspect the result for the other faults:";
                 (text.to_owned(), options.clone())
+            }
+            (_, Some(_)) if crack.is_some() => {
+                let text = "close the cracks, then inspect the result for the other faults:";
+                let steps: Vec<Step> = crack.iter().map(Crack::weld).collect();
+                (text.to_owned(), repair_options(&steps))
             }
             (Some((first, others)), _) => {
                 let others = match others {

@@ -223,8 +223,7 @@ struct Reading {
 #[derive(Serialize)]
 struct Lost {
     what: &'static str,
-    /// `None` if all are lost.
-    count: Option<u64>,
+    count: u64,
 }
 
 impl<'a> Report<'a> {
@@ -234,14 +233,14 @@ impl<'a> Report<'a> {
         let mut lost: Vec<Lost> = ignored
             .map(|notice| Lost {
                 what: notice.kind.title(),
-                count: Some(notice.count),
+                count: notice.count,
             })
             .collect();
         let creases = (creases > 0).then_some(Loss::Creases(creases));
         for loss in creases.iter().chain(losses) {
-            let count = loss.count().map(|count| count as u64);
+            let count = loss.count() as u64;
             match lost.iter_mut().find(|lost| lost.what == loss.title()) {
-                Some(lost) => lost.count = lost.count.zip(count).map(|(a, b)| a + b),
+                Some(lost) => lost.count += count,
                 None => lost.push(Lost {
                     what: loss.title(),
                     count,

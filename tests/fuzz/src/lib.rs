@@ -58,9 +58,19 @@ fn round_trip(polygons: &PolygonMesh, format: Format) {
         read_from(&name, bytes.as_slice(), &as_stored).unwrap_or_else(|error| panic!("{error}"));
     if losses.is_empty() {
         let back = back.into_polygons().0;
-        assert_eq!(back.faces(), polygons.faces(), "{format}");
-        assert!(back.positions() == polygons.positions(), "{format}");
+        assert!(corners(&back) == corners(polygons), "{format}");
+        // STL has no vertex numbers.
+        if !matches!(format, Format::Stl | Format::StlAscii) {
+            assert_eq!(back.faces(), polygons.faces(), "{format}");
+            assert!(back.positions() == polygons.positions(), "{format}");
+        }
     }
+}
+
+/// Returns the positions of the corners of all faces.
+fn corners(polygons: &PolygonMesh) -> Vec<[f32; 3]> {
+    let corners = polygons.faces().corners().iter();
+    corners.map(|&v| polygons.position(v).to_array()).collect()
 }
 
 /// Reads `bytes` as a crease file of a cube, and writes the creases again.

@@ -111,17 +111,19 @@ fn check_length(data: &[u8], expected: u64) -> Result<(), GltfFault> {
 /// The files of buffers. A file is read once, however many buffers it contains.
 struct Files {
     /// The bytes of each file that are needed.
-    lengths: HashMap<String, u64>,
-    loaded: HashMap<String, Rc<Vec<u8>>>,
+    lengths: HashMap<PathBuf, u64>,
+    loaded: HashMap<PathBuf, Rc<Vec<u8>>>,
 }
 
 impl Files {
     /// Prepares for the files of the `used` buffers.
     fn new(document: &Document, used: &[bool]) -> Self {
-        let mut lengths: HashMap<String, u64> = HashMap::new();
+        let mut lengths: HashMap<PathBuf, u64> = HashMap::new();
         for (buffer, _) in document.buffers.iter().zip(used).filter(|(_, used)| **used) {
-            if let Some(Uri::File(uri)) = &buffer.uri {
-                let length = lengths.entry(percent_decoded(uri)).or_default();
+            if let Some(Uri::File(uri)) = &buffer.uri
+                && let Some(path) = path_below(uri)
+            {
+                let length = lengths.entry(path).or_default();
                 *length = buffer.byte_length.max(*length);
             }
         }
@@ -133,14 +135,20 @@ impl Files {
 
     /// Returns the data of a file, and the number of bytes that were read for it now.
     fn load(&mut self, uri: &str, folder: Option<&Path>) -> Result<(Rc<Vec<u8>>, u64), GltfFault> {
-        let name = percent_decoded(uri);
-        if let Some(data) = self.loaded.get(&name) {
+        let shown = || shortened(uri);
+        let path = path_below(uri).ok_or_else(|| GltfFault::Uri { uri: shown() })?;
+        if let Some(data) = self.loaded.get(&path) {
             return Ok((Rc::clone(data), 0));
         }
-        let length = self.lengths.get(&name).copied().unwrap_or_default();
-        let data = Rc::new(load_file(uri, folder, length)?);
+        let folder = folder.ok_or_else(|| GltfFault::NeedsFolder { uri: shown() })?;
+        let length = self.lengths.get(&path).copied().unwrap_or_default();
+        let read = read_below(folder, &path, length).map_err(|cause| GltfFault::BufferFile {
+            path: folder.join(&path).display().to_string(),
+            cause,
+        })?;
+        let data = Rc::new(read.ok_or_else(|| GltfFault::Uri { uri: shown() })?);
         let bytes = data.len() as u64;
-        self.loaded.insert(name, Rc::clone(&data));
+        self.loaded.insert(path, Rc::clone(&data));
         Ok((data, bytes))
     }
 }
@@ -169,26 +177,34 @@ fn used_buffers(name: &str, document: &Document) -> Result<Vec<bool>, ReadError>
     Ok(used)
 }
 
-/// Returns the first `length` bytes of the file at `uri`, relative to `folder`.
-fn load_file(uri: &str, folder: Option<&Path>, length: u64) -> Result<Vec<u8>, GltfFault> {
-    let shown = || shortened(uri);
-    let relative = PathBuf::from(percent_decoded(uri));
-    let is_below = relative
-        .components()
-        .all(|part| matches!(part, Component::Normal(_)));
-    if !is_below || uri.contains(':') || uri.is_empty() {
-        return Err(GltfFault::Uri { uri: shown() });
+/// Returns the path of the file that `uri` names, relative to the folder of the glTF file and without
+/// `.` and `..`; `None` if it is not below this folder.
+fn path_below(uri: &str) -> Option<PathBuf> {
+    let mut path = PathBuf::new();
+    for part in Path::new(&percent_decoded(uri)).components() {
+        match part {
+            Component::Normal(name) => path.push(name),
+            Component::CurDir => {}
+            Component::ParentDir if path.pop() => {}
+            Component::ParentDir | Component::RootDir | Component::Prefix(_) => return None,
+        }
     }
-    let folder = folder.ok_or_else(|| GltfFault::NeedsFolder { uri: shown() })?;
-    let path = folder.join(relative);
-    read_file(&path, length).map_err(|cause| GltfFault::BufferFile {
-        path: path.display().to_string(),
-        cause,
-    })
+    let has_scheme = uri.contains(':');
+    (!has_scheme && path.file_name().is_some()).then_some(path)
 }
 
-fn read_file(path: &Path, length: u64) -> io::Result<Vec<u8>> {
-    if !std::fs::metadata(path)?.is_file() {
+/// Returns the first `length` bytes of the file at `path` in `folder`; `None` if links lead out of the
+/// folder.
+fn read_below(folder: &Path, path: &Path, length: u64) -> io::Result<Option<Vec<u8>>> {
+    let folder = match folder.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => folder,
+    };
+    let path = folder.join(path).canonicalize()?;
+    if !path.starts_with(folder.canonicalize()?) {
+        return Ok(None);
+    }
+    if !std::fs::metadata(&path)?.is_file() {
         return Err(io::Error::new(
             io::ErrorKind::InvalidInput,
             "not a regular file",
@@ -196,7 +212,7 @@ fn read_file(path: &Path, length: u64) -> io::Result<Vec<u8>> {
     }
     let mut data = Vec::new();
     File::open(path)?.take(length).read_to_end(&mut data)?;
-    Ok(data)
+    Ok(Some(data))
 }
 
 /// Replaces `%20` and similar sequences by the bytes that they mean.
@@ -225,29 +241,43 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_files_below_the_folder_are_read() {
-        let folder = Some(Path::new("nowhere"));
+    fn only_paths_below_the_folder_are_accepted() {
         for uri in [
             "../a.bin",
+            "..",
+            ".",
+            "a/..",
             "/etc/passwd",
             "a/../../b",
+            "a/../../a/b",
+            "./../a",
             "http://a/b.bin",
+            "file:///a.bin",
+            "file:a.bin",
             "%2e%2e/a",
+            "%2E%2e%2Fa",
+            ".%2e/a",
+            "%2fetc/passwd",
+            "a/%2e%2e/%2e%2e/b",
             "",
         ] {
-            let found = load_file(uri, folder, 1);
-            assert!(
-                matches!(found, Err(GltfFault::Uri { .. })),
-                "{uri}: {found:?}"
-            );
+            assert_eq!(path_below(uri), None, "{uri}");
         }
-        assert!(matches!(
-            load_file("a.bin", None, 1),
-            Err(GltfFault::NeedsFolder { .. })
-        ));
-        let missing = load_file("my%20data/a.bin", folder, 1)
-            .expect_err("missing")
-            .to_string();
-        assert!(missing.contains("my data"), "{missing}");
+        for (uri, path) in [
+            ("a.bin", "a.bin"),
+            ("./a.bin", "a.bin"),
+            ("./sub/./a.bin", "sub/a.bin"),
+            ("sub//a.bin", "sub/a.bin"),
+            ("sub/../a.bin", "a.bin"),
+            ("a/b/../../c/d.bin", "c/d.bin"),
+            ("my%20data/%61.bin", "my data/a.bin"),
+            ("sub%2Fa.bin", "sub/a.bin"),
+            ("sub/%2e%2e/a.bin", "a.bin"),
+            ("..a/...bin", "..a/...bin"),
+            ("%252e%252e/a", "%2e%2e/a"),
+            ("100%.bin", "100%.bin"),
+        ] {
+            assert_eq!(path_below(uri), Some(PathBuf::from(path)), "{uri}");
+        }
     }
 }

@@ -65,12 +65,15 @@ pub(super) struct Node {
     #[serde(default)]
     pub(super) children: Vec<usize>,
     pub(super) mesh: Option<usize>,
+    pub(super) skin: Option<usize>,
     /// By columns.
     pub(super) matrix: Option<[f64; 16]>,
     pub(super) translation: Option<[f64; 3]>,
     /// A unit quaternion x, y, z, w.
     pub(super) rotation: Option<[f64; 4]>,
     pub(super) scale: Option<[f64; 3]>,
+    #[serde(default)]
+    pub(super) extensions: BTreeMap<String, IgnoredAny>,
 }
 
 #[derive(Deserialize)]

@@ -55,12 +55,20 @@ pub(super) fn check(
         .iter()
         .map(String::as_str)
         .collect();
+    // The compression that the file says it uses, for data that is in no buffer.
+    let is_compression = |name: &&String| *name == DRACO || MESHOPT.contains(&name.as_str());
+    let listed = document.extensions_used.iter().find(is_compression);
+    let compression = |primitive: &Primitive| {
+        if primitive.extensions.contains_key(DRACO) {
+            let is_plain = !required.contains(DRACO) && has_plain_data(primitive, document);
+            return (!is_plain).then_some(DRACO);
+        }
+        let extension = listed.map(String::as_str)?;
+        (!has_any_data(primitive, document)).then_some(extension)
+    };
     for (number, mesh) in document.meshes.iter().enumerate() {
-        let mut draco = mesh.primitives.iter();
-        let mut draco = draco.by_ref().filter(|p| p.extensions.contains_key(DRACO));
-        let is_refused = |p: &Primitive| required.contains(DRACO) || !has_plain_data(p, document);
-        if draco.any(is_refused) {
-            return Err(compressed("mesh", number, DRACO));
+        if let Some(extension) = mesh.primitives.iter().find_map(compression) {
+            return Err(compressed("mesh", number, extension));
         }
     }
     let used = used_views(document);
@@ -96,12 +104,23 @@ fn is_known(name: &str) -> bool {
         || name.starts_with("KHR_materials_")
 }
 
-/// Returns whether the positions and indices of a primitive are in buffers.
+/// Returns whether a primitive with compressed data has its positions and indices in buffers, too.
 fn has_plain_data(primitive: &Primitive, document: &Document) -> bool {
+    let mut accessors = accessors(primitive);
+    primitive.attributes.contains_key("POSITION")
+        && accessors.all(|number| {
+            // An accessor that does not exist is reported when its mesh is read.
+            let accessor = document.accessors.get(number);
+            accessor.is_none_or(|accessor| accessor.buffer_view.is_some())
+        })
+}
+
+/// Returns whether the positions and indices of a primitive are in buffers, or some of them are:
+/// without a buffer, all numbers are zero.
+fn has_any_data(primitive: &Primitive, document: &Document) -> bool {
     accessors(primitive).all(|number| {
-        // An accessor that does not exist is reported when its mesh is read.
         let accessor = document.accessors.get(number);
-        accessor.is_none_or(|accessor| accessor.buffer_view.is_some())
+        accessor.is_none_or(|accessor| accessor.views().next().is_some())
     })
 }
 

@@ -22,6 +22,9 @@ use crate::place::Place;
 const MAX_GROWTH: u64 = 256;
 const MAX_SMALL: u64 = 1 << 20;
 
+/// The extension that repeats the mesh of a node.
+const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+
 /// How many vertices a primitive, and each of its attributes, counts as.
 const PRIMITIVE_COST: u64 = 16;
 
@@ -121,11 +124,38 @@ impl<'a, 'b> SceneReader<'a, 'b> {
             let place = parent * local_transform(node);
             let by = ("node", number);
             if let Some(mesh) = node.mesh {
+                let place = self.mesh_place(node, place, number)?;
                 self.read_mesh(mesh, place, by)?;
             }
             stack.extend(node.children.iter().rev().map(|&child| (child, place, by)));
         }
         Ok(())
+    }
+
+    /// Returns the place of the mesh of node `number`, which is at `place`, and notes what is not
+    /// applied to it. The place of a node does not move a mesh with a skin: its joints do, which are
+    /// not read.
+    fn mesh_place(&mut self, node: &Node, place: DMat4, number: usize) -> Result<DMat4, ReadError> {
+        let by = Place::Item {
+            kind: "node",
+            number,
+        };
+        if node.extensions.contains_key(INSTANCING) {
+            self.builder.notices.add(IgnoredKind::Instances, by);
+        }
+        let Some(skin) = node.skin else {
+            return Ok(place);
+        };
+        let by_node = ("node", number);
+        item(
+            &self.document.skins,
+            "skin",
+            skin,
+            by_node,
+            self.buffers.name,
+        )?;
+        self.builder.notices.add(IgnoredKind::Skins, by);
+        Ok(DMat4::IDENTITY)
     }
 
     /// Adds a mesh at a place.

@@ -152,7 +152,7 @@ fn list_size(
     match size {
         Some(size) => Ok(Some(size)),
         None => {
-            let text = value.unwrap_or(-1).to_string();
+            let text = value.map_or("2^63 or more".to_owned(), |value| value.to_string());
             Err(reading.bad_whole(place, "the length of a list", text))
         }
     }

@@ -10,6 +10,7 @@ use crate::error::ReadError;
 use crate::excerpt::shortened;
 use crate::faults::PlyHeaderFault;
 use crate::format::Format;
+use crate::notice::IgnoredKind;
 use crate::number::parse_whole;
 use crate::place::Place;
 
@@ -75,8 +76,12 @@ impl Header {
                 continue;
             }
             match parser.read_line(line.text, line.number) {
-                Ok(true) => {}
-                Ok(false) => break,
+                Ok(Line::Header) => {}
+                Ok(Line::Unknown(keyword)) => {
+                    let notices = &mut builder.notices;
+                    notices.add_named(IgnoredKind::Unknown, 1, place, &keyword);
+                }
+                Ok(Line::End) => break,
                 Err(fault) => {
                     let at = builder.at(place);
                     return Err(ReadError::PlyHeader { at, fault });
@@ -94,6 +99,14 @@ impl Header {
     }
 }
 
+/// A line of a header.
+enum Line {
+    Header,
+    /// A line that is not part of PLY, with this keyword.
+    Unknown(String),
+    End,
+}
+
 /// A header while it is parsed.
 #[derive(Default)]
 struct Parser {
@@ -106,8 +119,8 @@ struct Parser {
 }
 
 impl Parser {
-    /// Parses a line; returns whether the header continues.
-    fn read_line(&mut self, text: &[u8], number: u32) -> Result<bool, PlyHeaderFault> {
+    /// Parses a line.
+    fn read_line(&mut self, text: &[u8], number: u32) -> Result<Line, PlyHeaderFault> {
         let mut words = words(text);
         let keyword = words.next().unwrap_or_default();
         let words: Vec<&[u8]> = match keyword {
@@ -116,19 +129,16 @@ impl Parser {
         };
         match keyword {
             b"" | b"comment" | b"obj_info" => {}
-            b"end_header" => return Ok(false),
+            b"end_header" => return Ok(Line::End),
             b"format" => self.format = Some(parse_form(&words)?),
             b"element" | b"property" if self.format.is_none() => {
                 return Err(PlyHeaderFault::NoFormat);
             }
             b"element" => self.add_element(parse_element(&words, text, number)?)?,
             b"property" => self.add_property(parse_property(&words, text, number)?)?,
-            _ => {
-                let text = shown(text);
-                return Err(PlyHeaderFault::UnknownKeyword { text });
-            }
+            _ => return Ok(Line::Unknown(shown(keyword))),
         }
-        Ok(true)
+        Ok(Line::Header)
     }
 
     fn add_element(&mut self, element: Element) -> Result<(), PlyHeaderFault> {
@@ -186,7 +196,10 @@ fn parse_element(words: &[&[u8]], text: &[u8], line: u32) -> Result<Element, Ply
 
 fn parse_property(words: &[&[u8]], text: &[u8], line: u32) -> Result<Property, PlyHeaderFault> {
     let fault = || PlyHeaderFault::Property { text: shown(text) };
-    let scalar = |name| Scalar::from_name(name).ok_or_else(fault);
+    let scalar = |name| {
+        let unknown = || PlyHeaderFault::Type { text: shown(name) };
+        Scalar::from_name(name).ok_or_else(unknown)
+    };
     let (name, kind) = match *words {
         [b"list", length, item, name] => {
             let (length, item) = (scalar(length)?, scalar(item)?);

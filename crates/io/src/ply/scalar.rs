@@ -11,6 +11,8 @@ pub(crate) enum Scalar {
     U16,
     I32,
     U32,
+    I64,
+    U64,
     F32,
     F64,
 }
@@ -23,7 +25,8 @@ pub(crate) enum ByteOrder {
 }
 
 impl Scalar {
-    /// Returns the type with this name in a header; each type has two names.
+    /// Returns the type with this name in a header; most types have two names. The types of 64 bits
+    /// are an extension. `long` has 4 or 8 bytes, so it is not a type.
     pub(crate) fn from_name(name: &[u8]) -> Option<Self> {
         Some(match name {
             b"char" | b"int8" => Self::I8,
@@ -32,6 +35,8 @@ impl Scalar {
             b"ushort" | b"uint16" => Self::U16,
             b"int" | b"int32" => Self::I32,
             b"uint" | b"uint32" => Self::U32,
+            b"int64" => Self::I64,
+            b"uint64" => Self::U64,
             b"float" | b"float32" => Self::F32,
             b"double" | b"float64" => Self::F64,
             _ => return None,
@@ -44,7 +49,7 @@ impl Scalar {
             Self::I8 | Self::U8 => 1,
             Self::I16 | Self::U16 => 2,
             Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::F64 => 8,
+            Self::I64 | Self::U64 | Self::F64 => 8,
         }
     }
 
@@ -60,11 +65,9 @@ impl Scalar {
         Some(match self {
             Self::F32 => f32::from_bits(u32::from_bytes(bytes, order)?).into(),
             Self::F64 => f64::from_bits(u64::from_bytes(bytes, order)?).into(),
-            _ => {
-                let whole = self.whole(bytes, order)??;
-                // All whole numbers of these types fit 53 bits.
-                (whole as f64).into()
-            }
+            Self::U64 => (u64::from_bytes(bytes, order)? as f64).into(),
+            // Whole numbers above 53 bits are rounded.
+            _ => (self.whole(bytes, order)?? as f64).into(),
         })
     }
 
@@ -79,6 +82,8 @@ impl Scalar {
             Self::U16 => i64::from(u16::from_bytes(bytes, order)?),
             Self::I32 => i64::from(u32::from_bytes(bytes, order)? as i32),
             Self::U32 => i64::from(u32::from_bytes(bytes, order)?),
+            Self::I64 => u64::from_bytes(bytes, order)? as i64,
+            Self::U64 => return Some(i64::try_from(u64::from_bytes(bytes, order)?).ok()),
             Self::F32 | Self::F64 => {
                 let value = self.coordinate(bytes, order)?.wide;
                 let whole = value as i64;
@@ -134,8 +139,18 @@ mod tests {
         both(Scalar::U16, vec![0xFF, 0xFE], 65_534.0);
         both(Scalar::I32, vec![0x80, 0, 0, 1], -2_147_483_647.0);
         both(Scalar::U32, vec![0x80, 0, 0, 1], 2_147_483_649.0);
+        both(
+            Scalar::I64,
+            vec![0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFE],
+            -2.0,
+        );
+        both(Scalar::U64, vec![0, 0, 0, 1, 0, 0, 0, 1], 4_294_967_297.0);
         both(Scalar::F32, 1.5_f32.to_be_bytes().to_vec(), 1.5);
         both(Scalar::F64, (-7.0_f64).to_be_bytes().to_vec(), -7.0);
+        let largest = u64::MAX.to_le_bytes();
+        assert_eq!(Scalar::U64.whole(&largest, ByteOrder::Little), Some(None));
+        let rounded = Scalar::U64.coordinate(&largest, ByteOrder::Little);
+        assert_eq!(rounded.expect("enough bytes").wide, 2_f64.powi(64));
         assert_eq!(
             Scalar::F64.whole(&f64::NAN.to_le_bytes(), ByteOrder::Little),
             Some(None)

@@ -6,15 +6,19 @@ use super::Facets;
 use crate::byte_source::{ByteSource, words};
 use crate::error::ReadError;
 use crate::excerpt::shortened;
+use crate::format::is_stl_comment;
 use crate::notice::IgnoredKind;
 use crate::number::{Coordinate, parse_coordinate};
 use crate::place::Place;
 
-/// What the parser expects next. Line ends have no meaning, except after `solid` and `endsolid`.
+/// What the parser expects next. Line ends have no meaning, except after `solid` and `endsolid`, and
+/// outside of solids.
 enum Expect {
     Solid,
     FacetOrEnd,
-    /// The numbers of a normal, or `outer`.
+    /// This many words of a normal, or `outer`.
+    Normal(usize),
+    /// Further numbers of a normal, or `outer`.
     Outer,
     Loop,
     VertexOrEnd,
@@ -35,6 +39,8 @@ struct Parser<'a> {
     solids: u32,
     /// Whether the numbers of a colour may follow.
     in_colour: bool,
+    /// Whether the last word was `end`: `end loop` is `endloop`.
+    after_end: bool,
 }
 
 /// Reads all solids.
@@ -51,6 +57,7 @@ pub(super) fn read<'a>(
         corner_count: 0,
         solids: 0,
         in_colour: false,
+        after_end: false,
     };
     loop {
         let next = Place::Line(source.line_count().saturating_add(1));
@@ -73,12 +80,32 @@ pub(super) fn read<'a>(
 }
 
 impl<'a> Parser<'a> {
-    /// Parses the next word; returns whether the rest of the line is a name.
+    /// Parses the next word; returns whether the rest of the line is a name or a comment.
     fn read(&mut self, word: &[u8], line: u32) -> Result<bool, ReadError> {
         if self.skips_colour(word, line) {
             return Ok(false);
         }
+        if is_stl_comment(word) && !matches!(self.expect, Expect::Coordinate(_) | Expect::Normal(_))
+        {
+            return Ok(true);
+        }
+        let joined;
+        let word = match std::mem::take(&mut self.after_end) {
+            true => {
+                joined = [b"end", word].concat();
+                joined.as_slice()
+            }
+            false => word,
+        };
         let is = |keyword: &str| word.eq_ignore_ascii_case(keyword.as_bytes());
+        let may_end = matches!(
+            self.expect,
+            Expect::FacetOrEnd | Expect::VertexOrEnd | Expect::EndFacet
+        );
+        if may_end && is("end") {
+            self.after_end = true;
+            return Ok(false);
+        }
         self.expect = match self.expect {
             Expect::Coordinate(number) => self.read_coordinate(word, number, line)?,
             Expect::VertexOrEnd if is("vertex") => self.start_vertex(line)?,
@@ -99,13 +126,22 @@ impl<'a> Parser<'a> {
                 self.corner_count = 0;
                 Expect::Outer
             }
-            Expect::FacetOrEnd if is("endsolid") => {
+            Expect::FacetOrEnd if starts_with(word, "endsolid") => {
                 self.expect = Expect::Solid;
                 return Ok(true);
             }
+            Expect::FacetOrEnd if is("solid") => {
+                self.note_missing_end(line);
+                self.start_solid(line);
+                return Ok(true);
+            }
             Expect::FacetOrEnd => return Err(self.unexpected(line, "facet or endsolid", word)),
-            Expect::Outer if is("outer") => Expect::Loop,
-            Expect::Outer if is("normal") || parse_coordinate(word).is_some() => Expect::Outer,
+            Expect::Outer | Expect::Normal(_) if is("outer") => Expect::Loop,
+            Expect::Outer if is("normal") => Expect::Normal(3),
+            // Normals are not used, so they need not be numbers.
+            Expect::Normal(1) => Expect::Outer,
+            Expect::Normal(words) => Expect::Normal(words - 1),
+            Expect::Outer if is_like_number(word) => Expect::Outer,
             Expect::Outer => return Err(self.unexpected(line, "outer loop", word)),
             Expect::Loop if is("loop") => Expect::VertexOrEnd,
             Expect::Loop => return Err(self.unexpected(line, "loop", word)),
@@ -113,7 +149,14 @@ impl<'a> Parser<'a> {
                 self.start_solid(line);
                 return Ok(true);
             }
-            Expect::Solid => return Err(self.unexpected(line, "solid", word)),
+            Expect::Solid if is_part_of_solid(word) => {
+                return Err(self.unexpected(line, "solid", word));
+            }
+            Expect::Solid => {
+                let notices = &mut self.facets.builder.notices;
+                notices.add(IgnoredKind::Unknown, Place::Line(line));
+                return Ok(true);
+            }
         };
         Ok(false)
     }
@@ -132,6 +175,11 @@ impl<'a> Parser<'a> {
         }
         self.in_colour = self.in_colour && parse_coordinate(word).is_some();
         self.in_colour
+    }
+
+    fn note_missing_end(&mut self, line: u32) {
+        let notices = &mut self.facets.builder.notices;
+        notices.add(IgnoredKind::MissingEnds, Place::Line(line));
     }
 
     fn start_solid(&mut self, line: u32) {
@@ -186,15 +234,38 @@ impl<'a> Parser<'a> {
 
     /// Checks that the file is complete.
     fn finish(mut self, lines: u32) -> Result<Facets<'a>, ReadError> {
-        let missing = match self.expect {
-            Expect::Solid => {
-                self.facets.flush()?;
-                return Ok(self.facets);
+        let last = lines.max(1);
+        match self.expect {
+            Expect::Solid => {}
+            Expect::FacetOrEnd => self.note_missing_end(last),
+            _ => {
+                let missing = "endfacet".to_owned();
+                let builder = &self.facets.builder;
+                return Err(builder.truncated(Place::Line(last), missing));
             }
-            Expect::FacetOrEnd => "endsolid",
-            _ => "endfacet",
-        };
-        let builder = &self.facets.builder;
-        Err(builder.truncated(Place::Line(lines.max(1)), missing.to_owned()))
+        }
+        self.facets.flush()?;
+        Ok(self.facets)
     }
+}
+
+/// Returns whether `word` is part of a solid, so that it must not precede `solid`. Lines with other
+/// words are passed over there.
+fn is_part_of_solid(word: &[u8]) -> bool {
+    let keywords = ["facet", "outer", "vertex", "endloop", "endfacet"];
+    let mut keywords = keywords.iter();
+    keywords.any(|keyword| word.eq_ignore_ascii_case(keyword.as_bytes()))
+}
+
+/// Returns whether `word` begins with `keyword`, in upper or lower case.
+fn starts_with(word: &[u8], keyword: &str) -> bool {
+    let start = word.get(..keyword.len());
+    start.is_some_and(|start| start.eq_ignore_ascii_case(keyword.as_bytes()))
+}
+
+/// Returns whether `word` is a number, or what programs write for one that is none: `nan(ind)`,
+/// `-1.#IND`, `inf`.
+fn is_like_number(word: &[u8]) -> bool {
+    let first = |byte: &u8| byte.is_ascii_digit() || matches!(byte, b'-' | b'+' | b'.');
+    word.first().is_some_and(first) || starts_with(word, "nan") || starts_with(word, "inf")
 }

@@ -5,7 +5,7 @@ use std::io::Read;
 use super::Facets;
 use crate::byte_source::ByteSource;
 use crate::error::ReadError;
-use crate::format::{STL_FACET, STL_HEADER};
+use crate::format::{STL_FACET, STL_HEADER, has_plausible_corners, is_text};
 use crate::notice::IgnoredKind;
 use crate::number::Coordinate;
 use crate::place::{FacePlaces, Place};
@@ -32,16 +32,54 @@ pub(super) fn read<'a>(
         let records = bytes.as_chunks::<STL_FACET>().0;
         let taken = usize::try_from(left).map_or(records.len(), |left| left.min(records.len()));
         if taken == 0 {
-            let missing = format!("facet {} of {count}", count - left + 1);
-            return Err(facets.builder.truncated(Place::Byte(offset), missing));
+            let place = Place::Byte(offset);
+            let error = facets
+                .builder
+                .record_missing(place, "facet", count - left, count);
+            return Err(error);
         }
         read_records(&mut facets, &records[..taken], offset)?;
         source.advance(taken * STL_FACET);
         left -= taken as u64;
     }
+    read_uncounted(&mut facets, source)?;
     facets.flush()?;
     facets.builder.note_trailing(source)?;
     Ok(facets)
+}
+
+/// Reads the facets after those that the header counts: some programs write the header first, with
+/// the number 0. The facets end where a record cannot be one.
+fn read_uncounted(
+    facets: &mut Facets,
+    source: &mut ByteSource<impl Read>,
+) -> Result<(), ReadError> {
+    let mut is_first = true;
+    loop {
+        let offset = source.offset();
+        let filled = source.fill(STL_FACET);
+        let bytes = filled.map_err(|e| facets.builder.read_error(Place::Byte(offset), e))?;
+        let records = bytes.as_chunks::<STL_FACET>().0;
+        let taken = records.iter().take_while(|record| is_facet(record)).count();
+        if taken == 0 {
+            return Ok(());
+        }
+        if std::mem::take(&mut is_first) {
+            let place = Place::Byte(STL_HEADER as u64 - 4);
+            facets
+                .builder
+                .notices
+                .add(IgnoredKind::SmallFacetCount, place);
+        }
+        read_records(facets, &records[..taken], offset)?;
+        source.advance(taken * STL_FACET);
+    }
+}
+
+/// Returns whether bytes after the facets of the header can be a facet, and not padding, text or
+/// other data.
+fn is_facet(record: &[u8; STL_FACET]) -> bool {
+    record.iter().any(|&byte| byte != 0) && !is_text(record) && has_plausible_corners(record)
 }
 
 /// Reads the number of facets.

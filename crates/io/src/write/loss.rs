@@ -12,11 +12,8 @@ use crate::welder::for_each_equal;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Loss {
-    /// Which faces share a vertex. A reader can join equal positions, but then vertices that were
-    /// different become one, and their numbers change.
-    SharedVertices,
-    /// This many vertices that have the position of another vertex. A reader that joins equal
-    /// positions makes one vertex of them.
+    /// This many vertices that have the position of another vertex, in STL. A reader joins equal
+    /// positions, and makes one vertex of them.
     EqualPositions(usize),
     /// This many faces with more than three corners, which are cut into triangles.
     Polygons(usize),
@@ -38,9 +35,6 @@ pub enum Loss {
 impl fmt::Display for Loss {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::SharedVertices => {
-                f.write_str("vertices are not shared: a reader has to join equal positions")
-            }
             Self::EqualPositions(1) => {
                 f.write_str("1 vertex has the position of another one, and readers join them")
             }
@@ -79,7 +73,6 @@ impl Loss {
     /// Returns what is lost, in the plural: `polygons`.
     pub const fn title(self) -> &'static str {
         match self {
-            Self::SharedVertices => "shared vertices",
             Self::EqualPositions(_) => "vertices at positions of other vertices",
             Self::Polygons(_) => "polygons",
             Self::CrossingPolygons { .. } => "polygons that cross themselves",
@@ -89,22 +82,25 @@ impl Loss {
         }
     }
 
-    /// Returns how many are lost; `None` if the format keeps none of them at all.
-    pub const fn count(self) -> Option<usize> {
+    /// Returns how many are lost.
+    pub const fn count(self) -> usize {
         match self {
-            Self::SharedVertices => None,
             Self::EqualPositions(count)
             | Self::Polygons(count)
             | Self::CrossingPolygons { count, .. }
             | Self::IsolatedVertices(count)
             | Self::Normals(count)
-            | Self::Creases(count) => Some(count),
+            | Self::Creases(count) => count,
         }
     }
 }
 
 /// Returns what `format` cannot keep of `polygons` and of the data in `options`; O(corners) expected.
 /// `crossing` are the polygons that crossed themselves when they were cut.
+///
+/// STL has no vertex numbers. A reader joins the corners with equal positions, and numbers the
+/// vertices in the order in which the faces list them. This is not a loss: if the list is empty, the
+/// mesh that is read has the same vertices and faces, up to the numbers of its vertices.
 pub(super) fn losses(
     polygons: &PolygonMesh,
     format: Format,
@@ -115,7 +111,6 @@ pub(super) fn losses(
     let is_stl = format.is_stl();
     let mut used = Vec::new();
     if is_stl {
-        losses.push(Loss::SharedVertices);
         used = used_vertices(polygons);
         losses.push(Loss::EqualPositions(repeated_positions(polygons, &used)));
     }
@@ -147,17 +142,7 @@ pub(super) fn losses(
         let count = creases.edges().len() + creases.corners().len();
         losses.push(Loss::Creases(count));
     }
-    let is_empty = |loss: &Loss| {
-        matches!(
-            loss,
-            Loss::EqualPositions(0)
-                | Loss::Polygons(0)
-                | Loss::IsolatedVertices(0)
-                | Loss::Normals(0)
-                | Loss::Creases(0)
-        )
-    };
-    losses.retain(|loss| !is_empty(loss));
+    losses.retain(|loss| loss.count() > 0);
     losses
 }
 

@@ -74,7 +74,7 @@ fn each_fault_of_a_crease_file_is_named_with_its_line() {
     let corner = "write `corner v sharpness`";
     let number = "is not a number from 0 to inf: write it like 2, 0.5 or inf";
     let vertex =
-        "is not a vertex number: use whole numbers that count from 0; the mesh has 6 vertices";
+        "is not a vertex number: use whole numbers that count from 0; the number of vertices is 6";
     for (text, message) in [
         ("face 0 1 2", format!("1: \"face\" is not an entry: {forms}")),
         ("\n\nEdge 0 1 2", format!("3: \"Edge\" is not an entry: {forms}")),
@@ -226,7 +226,7 @@ fn other_tags_are_ignored_with_a_notice() {
 #[test]
 fn creases_of_faces_that_are_left_out_are_unused() {
     // Side 3–4 belongs only to the degenerate face, and side 2–5 only to the short face.
-    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 2 2 2\nv 3 3 3\nf 4 5 5 1\nf 1 2 3\nf 3 6\n\
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 2 2 2\nv 3 3 3\nf 4 5 1 5\nf 1 2 3\nf 3 6\n\
                 t crease 3/2/0 2 1 0 5 6\nt crease 2/1/0 3 4 7\nt crease 2/1/0 5 2 1\nt corner 1/1/0 4 2\n";
     let obj = read(text);
     let (creases, unused) = obj.creases();

@@ -523,3 +523,200 @@ fn points_without_faces_are_kept() {
         assert_eq!(file.into_polygons().0, mesh);
     }
 }
+
+/// Returns the square twice: as a mesh with a skin, and below it without one.
+fn skinned_square() -> Parts {
+    let mut parts = Parts::square();
+    parts.document["skins"] = json!([{"joints": [1]}]);
+    parts.document["nodes"] = json!([
+        {"children": [1, 2], "translation": [10, 0, 0], "scale": [-1, 1, 1]},
+        {"translation": [0, 3, 0]},
+        {"mesh": 0, "skin": 0, "translation": [0, 0, 7], "children": [3]},
+        {"mesh": 0},
+    ]);
+    parts.document["scenes"] = json!([{"nodes": [0]}]);
+    parts
+}
+
+#[test]
+fn a_mesh_with_a_skin_stays_where_its_positions_are() {
+    let mut parts = skinned_square();
+    let plain = Parts::square().read();
+    let mesh = parts.read();
+    // The transform of the node does not move its mesh, but its children.
+    assert_eq!(mesh.positions[..4], plain.positions[..]);
+    let moved = plain.positions.iter();
+    let moved = moved.map(|p| Point::new(10.0 - p.x, p.y, p.z + 7.0));
+    assert!(mesh.positions[4..].iter().copied().eq(moved));
+    assert_eq!(
+        faces(&mesh),
+        [[0, 1, 2], [0, 2, 3], [5, 4, 6], [6, 4, 7]],
+        "only the second one is mirrored"
+    );
+    assert_eq!(
+        notices(&mesh),
+        [
+            "ignored 1 skin of a mesh (node 2): vertices stay where they are stored, because joints \
+             are not read"
+        ]
+    );
+    parts.document["nodes"][3]["skin"] = json!(0);
+    assert_eq!(
+        notices(&parts.read()),
+        [
+            "ignored 2 skins of meshes (first at node 2): vertices stay where they are stored, \
+             because joints are not read"
+        ]
+    );
+    parts.document["nodes"][3]["skin"] = json!(1);
+    parts.assert_refused(
+        "node 3: it names skin 1, but the file has 1 of them: export the file again",
+    );
+}
+
+#[test]
+fn instances_are_reported() {
+    let mut parts = Parts::square();
+    let instancing = "EXT_mesh_gpu_instancing";
+    parts.document["nodes"] =
+        json!([{"mesh": 0, "extensions": {instancing: {"attributes": {"TRANSLATION": 0}}}}]);
+    let own = "ignored 1 list of instances (node 0): the mesh of a node is read once";
+    assert_eq!(notices(&parts.read()), [own]);
+    parts.document["extensionsUsed"] = json!([instancing]);
+    let listed = format!("ignored 1 extension: {instancing} (extension 0)");
+    assert_eq!(notices(&parts.read()), [&listed, own]);
+    parts.document["extensionsRequired"] = json!([instancing]);
+    parts.assert_refused(&format!(
+        "required extension 0: the file requires the extension {instancing}, which is not read: \
+         export it without this extension"
+    ));
+}
+
+#[test]
+fn data_in_no_buffer_is_refused_if_the_file_uses_compression() {
+    for extension in [
+        "KHR_draco_mesh_compression",
+        "EXT_meshopt_compression",
+        "KHR_meshopt_compression",
+    ] {
+        let message = format!(
+            "mesh 0: the mesh is compressed with {extension}, which is not read: export it without \
+             compression"
+        );
+        let mut parts = Parts::square();
+        parts.document["extensionsUsed"] = json!(["KHR_materials_unlit", extension]);
+        assert_eq!(parts.read().faces.len(), 2, "the plain data is there");
+        for number in [1, 0] {
+            let accessor = parts.document["accessors"][number].as_object_mut();
+            accessor.expect("an object").remove("bufferView");
+            parts.assert_refused(&message);
+        }
+    }
+    let draco = "KHR_draco_mesh_compression";
+    let mut parts = Parts::square();
+    parts.document["meshes"][0]["primitives"][0] =
+        json!({"attributes": {}, "extensions": {draco: {"attributes": {"POSITION": 0}}}});
+    parts.assert_refused(&format!(
+        "mesh 0: the mesh is compressed with {draco}, which is not read: export it without \
+         compression"
+    ));
+}
+
+#[test]
+fn modes_that_do_not_exist_are_refused() {
+    for mode in [7_u32, 8, u32::MAX] {
+        let mut parts = Parts::square();
+        parts.document["meshes"][0]["primitives"][0]["mode"] = json!(mode);
+        parts.assert_refused(&format!(
+            "mesh 0: a primitive has mode {mode}, but modes are numbers from 0 to 6: export the file \
+             again"
+        ));
+    }
+}
+
+#[test]
+fn buffers_below_the_folder_are_read() {
+    let outer = tempfile::tempdir().expect("the temporary folder is writable");
+    let folder = outer.path().join("model");
+    fs::create_dir_all(folder.join("sub/deep")).expect("writable");
+    let mut parts = Parts::square();
+    let data = parts.data.clone();
+    for path in ["a.bin", "sub/b.bin", "sub/ä ö.bin", "sub/deep/c.bin"] {
+        fs::write(folder.join(path), &data).expect("writable");
+    }
+    fs::write(outer.path().join("secret.bin"), &data).expect("writable");
+    let path = folder.join("a.gltf");
+    let mut read = |uri: &str| {
+        parts.document["buffers"][0] = json!({"uri": uri, "byteLength": data.len()});
+        fs::write(&path, parts.document.to_string()).expect("writable");
+        sixfold_io::read(&path).map(|mesh| mesh.faces.len())
+    };
+    for uri in [
+        "a.bin",
+        "./a.bin",
+        "./sub/b.bin",
+        "sub/../a.bin",
+        "missing/../a.bin",
+        "sub/deep/../../a.bin",
+        "sub/%C3%A4%20%C3%B6.bin",
+        "sub/ä ö.bin",
+        "sub%2Fdeep%2fc.bin",
+    ] {
+        assert_eq!(read(uri).unwrap_or_else(|e| panic!("{uri}: {e}")), 2);
+    }
+    let absolute = outer.path().join("secret.bin").display().to_string();
+    for uri in [
+        "../secret.bin",
+        "sub/../../secret.bin",
+        "%2e%2e/secret.bin",
+        "..%2Fsecret.bin",
+        "../model/a.bin",
+        &absolute,
+        &format!("file://{absolute}"),
+        &absolute.replacen('/', "%2f", 1),
+    ] {
+        let error = read(uri).expect_err(uri).to_string();
+        assert!(
+            error.ends_with(": only files in the folder of the file, or below it, are read"),
+            "{uri}: {error}"
+        );
+    }
+    let error = read("sub").expect_err("a folder").to_string();
+    assert!(error.contains("not a regular file"), "{error}");
+    let error = read("none.bin").expect_err("missing").to_string();
+    assert!(error.contains("its data cannot be read from"), "{error}");
+}
+
+#[cfg(unix)]
+#[test]
+fn links_out_of_the_folder_are_refused() {
+    use std::os::unix::fs::symlink;
+    let outer = tempfile::tempdir().expect("the temporary folder is writable");
+    let folder = outer.path().join("model");
+    fs::create_dir_all(folder.join("sub")).expect("writable");
+    let mut parts = Parts::square();
+    let data = parts.data.clone();
+    for path in ["secret.bin", "model/a.bin"] {
+        fs::write(outer.path().join(path), &data).expect("writable");
+    }
+    symlink("../secret.bin", folder.join("link.bin")).expect("writable");
+    symlink("..", folder.join("up")).expect("writable");
+    symlink("../a.bin", folder.join("sub/inside.bin")).expect("writable");
+    let path = folder.join("a.gltf");
+    let mut read = |uri: &str| {
+        parts.document["buffers"][0] = json!({"uri": uri, "byteLength": data.len()});
+        fs::write(&path, parts.document.to_string()).expect("writable");
+        sixfold_io::read(&path).map(|mesh| mesh.faces.len())
+    };
+    for uri in ["link.bin", "up/secret.bin", "./sub/../up/secret.bin"] {
+        let error = read(uri).expect_err(uri).to_string();
+        assert!(error.contains("only files in the folder"), "{uri}: {error}");
+    }
+    for uri in ["sub/inside.bin", "up/model/a.bin"] {
+        assert_eq!(read(uri).unwrap_or_else(|e| panic!("{uri}: {e}")), 2);
+    }
+    // The folder itself may be a link.
+    symlink("model", outer.path().join("other")).expect("writable");
+    let mesh = sixfold_io::read(outer.path().join("other/a.gltf"));
+    assert_eq!(mesh.expect("below the folder").faces.len(), 2);
+}

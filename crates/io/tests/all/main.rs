@@ -6,5 +6,6 @@ mod formats;
 mod gltf;
 mod properties;
 mod real_meshes;
+mod repeated_corners;
 mod round_trips;
 mod rules;

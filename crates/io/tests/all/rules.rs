@@ -118,7 +118,12 @@ fn degenerate_and_short_faces_are_left_out_with_their_lines() {
     ));
     assert_eq!(obj.faces.len(), 3);
     let facts = obj.facts();
-    assert_eq!((facts.faces, facts.degenerate_faces), (3, 5));
+    assert_eq!((facts.faces, facts.degenerate_faces), (1, 5));
+    let euler = facts.vertices as i64 - facts.edges as i64 + facts.faces as i64;
+    assert_eq!(
+        facts.euler_characteristic, euler,
+        "the facts are those of one mesh"
+    );
     let (polygons, left_out) = obj.into_polygons();
     assert_eq!(polygons.face_count(), 1);
     let face = polygons.faces().face(FaceId::new(0));
@@ -246,7 +251,17 @@ fn invalid_coordinates_are_refused() {
             &format!("bad.obj:3: vertex 1 has {found} of three coordinates: add the missing ones"),
         );
     }
-    let values = ["nan", "-inf", "infinity", "1e39", "-1e400", "3.4028236e38"];
+    let large = "is not finite: keep coordinates below 3.4e38";
+    let nan = "is not a number (NaN): correct it, or export the file again";
+    let values = [
+        "-inf",
+        "infinity",
+        "1e39",
+        "-1e400",
+        "3.4028236e38",
+        "nan",
+        "-NaN",
+    ];
     for (i, text) in values.into_iter().enumerate() {
         let mut words = ["0"; 3];
         words[i % 3] = text;
@@ -255,8 +270,8 @@ fn invalid_coordinates_are_refused() {
         assert_refused(
             format!("f 2 2 2\nv 0 0 0\n\nv {x} {y} {z}\nv 0 0 inf\n"),
             &format!(
-                "bad.obj:4: coordinate {name} of vertex 2 is not finite: keep coordinates below \
-                 3.4e38"
+                "bad.obj:4: coordinate {name} of vertex 2 {}",
+                if i < 5 { large } else { nan }
             ),
         );
     }

@@ -118,20 +118,27 @@ impl Repair {
 /// Returns the options that choose these steps; the inverse of [`Repair::steps`] for steps with the
 /// settings of [`FaultKind::repairs`](sixfold::repair::FaultKind::repairs).
 pub(crate) fn repair_options(steps: &[Step]) -> String {
-    let option = |step: &Step| match step {
-        Step::Weld(_) => "--weld",
-        Step::RemoveDuplicateFaces(OppositeFaces::Keep) => "--duplicates",
-        Step::RemoveDuplicateFaces(OppositeFaces::Remove) => "--opposite",
-        Step::RemoveFlatFaces => "--flat",
-        Step::Triangulate => "--triangulate",
-        Step::Orient { facing, .. } => match facing {
-            Facing::Majority => "--orient majority",
-            Facing::Outward => "--orient outward",
-        },
-        Step::Cut => "--cut",
-        Step::FillHoles(_) => "--fill-holes",
-        Step::RemoveIsolatedVertices => "--isolated",
-        _ => unreachable!("no kind of fault needs the step {step}"),
+    let option = |step: &Step| {
+        let option = match step {
+            Step::Weld(Weld {
+                tolerance: Tolerance::Absolute(distance),
+                ..
+            }) => return format!("--weld={distance}"),
+            Step::Weld(_) => "--weld",
+            Step::RemoveDuplicateFaces(OppositeFaces::Keep) => "--duplicates",
+            Step::RemoveDuplicateFaces(OppositeFaces::Remove) => "--opposite",
+            Step::RemoveFlatFaces => "--flat",
+            Step::Triangulate => "--triangulate",
+            Step::Orient { facing, .. } => match facing {
+                Facing::Majority => "--orient majority",
+                Facing::Outward => "--orient outward",
+            },
+            Step::Cut => "--cut",
+            Step::FillHoles(_) => "--fill-holes",
+            Step::RemoveIsolatedVertices => "--isolated",
+            _ => unreachable!("no kind of fault needs the step {step}"),
+        };
+        option.to_owned()
     };
     steps.iter().map(option).collect::<Vec<_>>().join(" ")
 }

@@ -71,12 +71,13 @@ impl SceneReader<'_, '_> {
     /// Returns whether the primitive has triangles, and not points or lines.
     fn has_triangles(&self, primitive: &Primitive, mesh: usize) -> Result<bool, ReadError> {
         if primitive.mode > 6 {
-            let missing = GltfFault::NoItem {
-                kind: "mode",
-                number: primitive.mode as usize,
-                count: 7,
-            };
-            return Err(fault(self.buffers.name, "mesh", mesh, missing));
+            let mode = primitive.mode;
+            return Err(fault(
+                self.buffers.name,
+                "mesh",
+                mesh,
+                GltfFault::Mode { mode },
+            ));
         }
         Ok(primitive.mode >= 4)
     }

@@ -7,7 +7,7 @@ use super::{assert_refused, faces, notices, read, read_as};
 #[test]
 fn off_has_comments_colours_and_prefixes() {
     let text = "\u{feff}# a\n\nSTCN4OFF # b\n\n3 # c\n";
-    let end = "copy the file again, or correct its counts";
+    let end = "copy the file again, or export it again";
     assert_refused(
         "a",
         text,
@@ -138,4 +138,66 @@ fn counts_of_off_may_have_lines_of_their_own() {
         assert_eq!(faces(&mesh), [[0, 1, 2]], "{counts:?}");
         assert!(mesh.notices.is_empty(), "{counts:?}");
     }
+}
+
+#[test]
+fn counts_of_off_may_follow_the_keyword_without_a_blank() {
+    let body = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    for start in [
+        "OFF3 1 0",
+        "off3 1 3",
+        "OFF3\n1 3",
+        "COFF3 1",
+        "# a\nOFF3 1 0 # b",
+    ] {
+        let mesh = read(format!("{start}\n{body}"));
+        assert_eq!(mesh.positions.len(), 3, "{start}");
+        assert_eq!(faces(&mesh), [[0, 1, 2]], "{start}");
+    }
+    let mesh = read("4OFF1 0 0\n2 4 6 2\n");
+    assert_eq!(mesh.positions, [Point::new(1.0, 2.0, 3.0)]);
+    let mesh = read("nOFF3 1 0 0\n2 4 6\n");
+    assert_eq!(mesh.positions, [Point::new(2.0, 4.0, 6.0)]);
+    for text in ["OFFx 1 0 0", "OFF-3 1 0", "OFF3.5 1 0"] {
+        let message = "a.off:1: expected OFF, or the numbers of vertices, faces and edges, found ";
+        assert_refused(
+            "a.off",
+            text,
+            &format!("{message}{text:?}: correct the line"),
+        );
+    }
+}
+
+#[test]
+fn faces_of_off_may_continue_on_further_lines() {
+    let vertices = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+    let file = |faces: &str| format!("OFF\n4 2 0\n{vertices}{faces}");
+    for lines in [
+        "4 0 1 2\n3\n3 0 1 2\n",
+        "4\n0 1 2 3\n3\n0\n1\n2\n",
+        "4 0 1 # a\n\n# b\n 2 3 # c\n3 0 1 2",
+        "4 0\r\n1 2\r\n3\r\n3 0 1\r\n2\r\n",
+    ] {
+        let mesh = read(file(lines));
+        assert_eq!(faces(&mesh), [&[0, 1, 2, 3][..], &[0, 1, 2]], "{lines:?}");
+        assert!(mesh.notices.is_empty(), "{lines:?}");
+    }
+    let mesh = read(file("3 0 1 2 255 0 0\n3 0\n1 2\n"));
+    assert_eq!(notices(&mesh), ["ignored 1 colour (line 7)"]);
+    let refused = |lines: &str, message: &str| {
+        assert_refused("a.off", file(lines), &format!("a.off:{message}"));
+    };
+    // The next line is the next face.
+    refused(
+        "4 0 1 2\n3 0 1 2\n",
+        "7: expected 4 vertices of a face, found \"3 of them\": correct the line",
+    );
+    refused(
+        "3 0 1 2\n18446744073709551615 0\n1\n2\n",
+        "8: expected 18446744073709551615 vertices of a face, found \"3 of them\": correct the line",
+    );
+    refused(
+        "4 0 1\n2 x\n",
+        "8: \"x\" is not a vertex number: write a whole number",
+    );
 }

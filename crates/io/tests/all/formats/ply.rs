@@ -160,7 +160,19 @@ fn faults_of_ply_headers_are_named_with_their_lines() {
     refused(
         "property float y",
         "property real y",
-        "5: \"property real y\" is not a property: write `property float x` or `property list \
+        "5: \"real\" is not a type of numbers: use int8, uint8, int16, uint16, int32, uint32, \
+         int64, uint64, float32 or float64",
+    );
+    refused(
+        "list uchar int",
+        "list uchar long",
+        "8: \"long\" is not a type of numbers: use int8, uint8, int16, uint16, int32, uint32, \
+         int64, uint64, float32 or float64",
+    );
+    refused(
+        "property float y",
+        "property float",
+        "5: \"property float\" is not a property: write `property float x` or `property list \
          uchar int x`",
     );
     refused(
@@ -192,13 +204,12 @@ fn faults_of_ply_headers_are_named_with_their_lines() {
     refused(
         "end_header",
         "begin",
-        "9: \"begin\" is not a line of a PLY header: use format, comment, obj_info, element, \
-         property or end_header",
+        "14: the file ends before `end_header`: copy the file again, or export it again",
     );
     assert_refused(
         "a.ply",
         "ply\nformat ascii 1.0\n",
-        "a.ply:3: the file ends before `end_header`: copy the file again, or correct its counts",
+        "a.ply:3: the file ends before `end_header`: copy the file again, or export it again",
     );
 }
 
@@ -298,5 +309,77 @@ fn headers_of_many_lines_are_read() {
         let mesh = read(&text);
         assert_eq!(mesh.positions, expected.positions, "{what}");
         assert_eq!(faces(&mesh), faces(&expected), "{what}");
+    }
+}
+
+#[test]
+fn unknown_lines_of_a_ply_header_are_passed_over() {
+    let text = PLY
+        .replace("element face", "units mm\nelement face")
+        .replace("end_header", "$flags\nunits\nend_header");
+    let mesh = read(text);
+    assert_eq!(faces(&mesh), [[0, 1, 2]]);
+    assert_eq!(
+        notices(&mesh),
+        ["ignored 3 unknown statements: units, $flags (first at line 7)"]
+    );
+}
+
+#[test]
+fn numbers_of_64_bits_are_read() {
+    let text = PLY
+        .replace("float z", "int64 z")
+        .replace("uchar int", "uint64 int64")
+        .replace("0 1 0", "0 1 -9007199254740993");
+    let mesh = read(text);
+    assert_eq!(faces(&mesh), [[0, 1, 2]]);
+    assert_eq!(mesh.positions[2].z, -9_007_199_254_740_992.0);
+    for is_big in [false, true] {
+        let form = if is_big { "big" } else { "little" };
+        let number = |number: i64| match is_big {
+            true => number.to_be_bytes(),
+            false => number.to_le_bytes(),
+        };
+        let file = |numbers: &[i64]| {
+            let header = PLY
+                .split("0 0 0")
+                .next()
+                .expect("a header")
+                .replace("ascii", &format!("binary_{form}_endian"))
+                .replace("property float", "property int64")
+                .replace("uchar int", "uint64 uint64");
+            let mut bytes = header.into_bytes();
+            bytes.extend(numbers.iter().flat_map(|&n| number(n)));
+            bytes
+        };
+        let mut numbers = vec![0, 0, 0, 1, 0, 0, 0, -1, 1 << 40, 3, 0, 1, 2];
+        let mesh = read(file(&numbers));
+        assert_eq!(mesh.positions[2], Point::new(0.0, -1.0, 2_f32.powi(40)));
+        assert_eq!(faces(&mesh), [[0, 1, 2]]);
+        let refused = |numbers: &[i64], message: &str| {
+            let bytes = file(numbers);
+            let place = bytes.len() - 4 * 8;
+            assert_refused("a", &bytes, &format!("a: byte {place}: {message}"));
+        };
+        numbers[11] = 1 << 40;
+        refused(
+            &numbers,
+            "face names vertex 1099511627776, but there are 3 vertices: correct the index",
+        );
+        numbers[9] = -1;
+        refused(
+            &numbers,
+            "\"2^63 or more\" is not the length of a list: write a whole number",
+        );
+        numbers[9] = i64::MAX;
+        refused(
+            &numbers,
+            "\"9223372036854775807\" is not the length of a list: write a whole number",
+        );
+        numbers[9] = 1 << 40;
+        refused(
+            &numbers,
+            "the file ends before face 1 of 1: copy the file again, or export it again",
+        );
     }
 }
