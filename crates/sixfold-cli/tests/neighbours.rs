@@ -81,7 +81,7 @@ fn unknown_names_and_unusable_meshes_are_refused() {
         ),
         (&["neighbours", "grid.obj", "--points", "far"], "near"),
         (&["neighbours", "points.obj"], "no faces"),
-        (&["neighbours", "nan.obj"], "finite"),
+        (&["neighbours", "nan.obj"], "not a number"),
         (&["neighbours", "missing.obj"], "missing.obj"),
     ] {
         assert_refused(&sixfold, words, 2, message);
