@@ -267,7 +267,7 @@ pub(crate) struct Study {
     /// Time limit for one answer of an external program
     #[arg(long = "patience", value_name = "TIME", default_value = "60s", value_parser = duration, allow_hyphen_values = true)]
     pub(crate) external_timeout: Duration,
-    /// First cut every polygon into a fan of triangles
+    /// First cut every polygon into triangles
     #[arg(long)]
     pub(crate) triangulate: bool,
     /// Refuse a file with degenerate faces instead of leaving them out

@@ -50,7 +50,7 @@ pub(crate) struct Orders {
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) memory: MemoryState,
-    /// First cut every polygon into a fan of triangles
+    /// First cut every polygon into triangles
     #[arg(long)]
     pub(crate) triangulate: bool,
     #[command(flatten)]

@@ -12,7 +12,7 @@ const EXAMPLES: &str = "Examples:
 
 Each surface is sampled evenly by area; the closest point of the other surface is exact. `mean` and
 `root mean square` are estimates for the whole surface. `largest` also looks at all vertices; it is
-a lower bound of the Hausdorff distance. A polygon is measured as its fan of triangles.
+a lower bound of the Hausdorff distance. Polygons are cut into triangles first.
 
 Exit codes: 0 success; 2 wrong usage or unusable input; 4 interrupted.";
 

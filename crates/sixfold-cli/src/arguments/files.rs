@@ -24,7 +24,7 @@ pub(crate) struct ReadFiles {
 #[derive(Clone, Copy, Debug, Default, Args)]
 #[command(next_help_heading = "Mesh files")]
 pub(crate) struct ReadPolygons {
-    /// Cut every polygon into a fan of triangles first
+    /// Cut every polygon into triangles first
     #[arg(long)]
     pub(crate) triangulate: bool,
     #[command(flatten)]

@@ -25,7 +25,7 @@ pub(crate) struct Inspect {
     /// Meshes, or folders with meshes (- for standard input)
     #[arg(value_name = "MESH|DIR", required = true)]
     pub(crate) meshes: Vec<PathBuf>,
-    /// Cut every polygon into a fan of triangles first
+    /// Cut every polygon into triangles first
     #[arg(long)]
     pub(crate) triangulate: bool,
     /// Write the facts, verdicts and faults as JSON (- for standard output)

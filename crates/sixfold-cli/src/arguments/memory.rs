@@ -39,7 +39,7 @@ pub(crate) struct Memory {
     /// Use only these data structures (backends), by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
-    /// First cut every polygon into a fan of triangles
+    /// First cut every polygon into triangles
     #[arg(long)]
     pub(crate) triangulate: bool,
     #[command(flatten)]

@@ -75,7 +75,7 @@ pub(crate) struct Pick {
     /// Freed memory: kept (by the process) or system
     #[arg(long, value_name = "POLICY", default_value = "kept")]
     pub(crate) heap: Policy,
-    /// First cut every polygon into a fan of triangles
+    /// First cut every polygon into triangles
     #[arg(long)]
     pub(crate) triangulate: bool,
     #[command(flatten)]

@@ -40,7 +40,7 @@ pub(crate) struct Programs {
     /// Freed memory: kept (by the process) or system
     #[arg(long, value_name = "POLICY", default_value = "kept")]
     pub(crate) heap: Policy,
-    /// First cut every polygon into a fan of triangles
+    /// First cut every polygon into triangles
     #[arg(long)]
     pub(crate) triangulate: bool,
     /// Run each structure in a process of its own: if the program crashes, does not end or uses too

@@ -46,7 +46,7 @@ pub(crate) struct Why {
     /// Query only these relations, by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub(crate) relations: Vec<Relation>,
-    /// First cut every polygon into a fan of triangles
+    /// First cut every polygon into triangles
     #[arg(long)]
     pub(crate) triangulate: bool,
     /// Count the reads only, and measure no times
