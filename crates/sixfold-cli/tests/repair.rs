@@ -9,8 +9,7 @@ use crate::run::{Sixfold, TETRAHEDRON, run_ok, text};
 const BOOK: &str = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 0 0\nf 1 2 3\nf 2 1 4\nf 2 1 5\n";
 
 /// Two triangles that should share two vertices.
-const UNWELDED: &str =
-    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0.001\nv 0 1 0\nf 1 2 3\nf 4 5 6\n";
+const UNWELDED: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nf 1 2 3\nf 4 5 6\n";
 
 #[test]
 fn a_book_is_cut_for_a_structure() {

@@ -199,14 +199,13 @@ fn json_is_written_if_all_backends_refuse() {
 #[test]
 fn a_triangulation_that_changes_more_than_faces_is_reported() {
     let sixfold = Sixfold::new();
-    // The first diagonal of the quad is already an edge of two triangles.
-    let shared =
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 2 1\nv 2 2 -1\nf 1 2 3 4\nf 1 3 5\nf 3 1 6\n";
+    // Both diagonals of the quad are already edges of two triangles.
+    let shared = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 2 1\nv 2 2 -1\nf 1 2 3 4\nf 1 3 5\n\
+                  f 3 1 6\nf 2 4 5\nf 4 2 6\n";
     sixfold.file("shared.obj", shared);
-    // A fan from the reflex corner or from the opposite corner is valid. The other fans fold over.
     sixfold.file(
-        "fold.obj",
-        "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nf 2 3 4 1\n",
+        "crossing.obj",
+        "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n",
     );
     sixfold.file(
         "square.obj",
@@ -214,7 +213,7 @@ fn a_triangulation_that_changes_more_than_faces_is_reported() {
     );
     for (name, expected) in [
         ("shared.obj", "non-manifold edges: 0 before, 1 now"),
-        ("fold.obj", "1 fan folds over"),
+        ("crossing.obj", "1 face crosses itself"),
     ] {
         let study = ["study", name, "--triangulate", "--rounds", "2"];
         let run = sixfold.run(&study);
