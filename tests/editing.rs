@@ -254,8 +254,9 @@ fn without_isolated(polygons: &PolygonMesh) -> PolygonMesh {
 
 #[test]
 fn all_agree_on_triangles() {
+    // The soup numbers vertices by their first use, also after polygons were cut.
     let starts =
-        manifold_mesh().prop_map(|m| without_isolated(&m).triangulated().expect("small").polygons);
+        manifold_mesh().prop_map(|m| without_isolated(&m.triangulated().expect("small").polygons));
     run_scripts(starts, &TRIANGLE_EDITS, structures(|_| true), 8);
 }
 
