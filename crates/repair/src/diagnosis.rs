@@ -11,6 +11,7 @@ use sixfold_core::{Capabilities, Facts, Fans, Incidence, Pair, PolygonMesh, Vert
 
 use crate::duplicates::Copies;
 use crate::flat::is_flat;
+use crate::measures::{Measures, measures_with};
 use crate::step::Step;
 use crate::weld::{PlaceNumbers, Places};
 pub use cracks::Crack;
@@ -113,17 +114,22 @@ pub fn diagnose(polygons: &PolygonMesh, places: usize) -> Diagnosis {
     diagnose_with(polygons, &fans, &positions, places)
 }
 
-/// Returns the facts of a mesh and its diagnosis, as [`Facts::from_polygons`] and [`diagnose`]
-/// return them, in less time and memory than both calls.
+/// Returns the facts of a mesh, its measures and its diagnosis, as [`Facts::from_polygons`],
+/// [`measures`](crate::measures) and [`diagnose`] return them, in less time and memory than these
+/// calls.
 ///
 /// O(n log n) for n corners. With the feature `rayon`, runs on two threads.
-pub fn facts_and_diagnosis(polygons: &PolygonMesh, places: usize) -> (Facts, Diagnosis) {
+pub fn examine(polygons: &PolygonMesh, places: usize) -> (Facts, Measures, Diagnosis) {
     let (positions, incidence) = prepare(polygons);
     let fans = Fans::new(&incidence);
-    join(
-        || Facts::from_fans(&fans),
+    let ((facts, measures), diagnosis) = join(
+        || {
+            let measures = measures_with(polygons, fans.incidence());
+            (Facts::from_fans(&fans), measures)
+        },
         || diagnose_with(polygons, &fans, &positions, places),
-    )
+    );
+    (facts, measures, diagnosis)
 }
 
 fn prepare(polygons: &PolygonMesh) -> (PlaceNumbers, Incidence<'_>) {

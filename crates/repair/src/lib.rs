@@ -58,6 +58,7 @@ mod duplicates;
 mod error;
 mod flat;
 mod holes;
+mod measures;
 mod orient;
 mod orientation;
 mod outcome;
@@ -71,10 +72,11 @@ mod trace;
 mod triangulate;
 mod weld;
 
-pub use diagnosis::{Crack, Diagnosis, Fault, FaultKind, Place, diagnose, facts_and_diagnosis};
+pub use diagnosis::{Crack, Diagnosis, Fault, FaultKind, Place, diagnose, examine};
 pub use duplicates::OppositeFaces;
 pub use error::{OrientationError, RepairError};
 pub use holes::{FillHoles, HoleFilling};
+pub use measures::{Lengths, Measures, measures};
 pub use orientation::{
     Components, Facing, NotOrientable, Oriented, OrientedComponents, Undecided, UndecidedReason,
     oriented, oriented_components,

@@ -183,9 +183,10 @@ impl<'a> Run<'a> {
 /// edges are searched completely, up to a fixed number of attempts; in larger groups, pairs that
 /// would violate the condition are left open.
 ///
-/// Pairs are preferred in this order: pairs that close a fan at one of their ends; then pairs whose
-/// faces continue each other most straight (to a thousandth of a radian); then pairs with the smaller
-/// angle behind the faces, where a solid has its inside. So two solids that touch along an edge are
+/// Pairs are preferred in this order: pairs that close a fan at one of their ends; then pairs that
+/// bound the same solid, if only solids meet at the edge; then pairs whose faces continue each other
+/// most straight (to a thousandth of a radian); then pairs with the smaller angle behind the faces,
+/// where a solid has its inside. So two solids that touch along an edge or share a wall are
 /// separated, and two sheets that cross each other are two sheets again.
 ///
 /// # Errors

@@ -1,6 +1,7 @@
 //! The command-line arguments.
 
 mod comparing;
+mod convert;
 mod distance;
 mod files;
 mod inspect;
@@ -28,8 +29,9 @@ use sixfold::shapes::Order;
 use sixfold_study::{CacheState, Effort, External, Operation, Policy, Settings};
 
 pub(crate) use comparing::{Compare, GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders};
+pub(crate) use convert::Convert;
 pub(crate) use distance::Distance;
-pub(crate) use files::{MeshInOut, ReadFiles, ReadPolygons, WriteFiles};
+pub(crate) use files::{MeshInOut, ReadFiles, ReadPolygons, ShapeCheck, WriteFiles};
 pub(crate) use inspect::Inspect;
 pub(crate) use memory::Memory;
 pub(crate) use neighbours::Neighbours;
@@ -38,7 +40,7 @@ pub(crate) use picking::{Operations, Pick, Workloads};
 pub(crate) use programs::Programs;
 pub(crate) use remeshing::{Decimate, Edits, Remesh};
 pub(crate) use render::Render;
-pub(crate) use repair::{Repair, repair_options};
+pub(crate) use repair::{ChosenSteps, Repair, joined_values, repair_options};
 pub(crate) use reshaping::{Dual, Smooth, Triangulate};
 pub(crate) use results::ResultFiles;
 pub(crate) use subdivision::{Schemes, Select, Subdivide};
@@ -203,6 +205,8 @@ pub(crate) enum Command {
     Decimate(Decimate),
     /// Replace the triangles of a mesh by nearly equilateral triangles of one size
     Remesh(Remesh),
+    /// Write a mesh in another format
+    Convert(Convert),
     /// Repair a mesh: weld, orient, cut, fill holes
     Repair(Repair),
     /// Draw meshes with their edges and creases, as PNG or SVG

@@ -14,7 +14,7 @@ use crate::mesh_files::shown;
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::exit_on_interrupt;
 use crate::tables::table;
-use crate::text::{TextOutput, sanitize};
+use crate::text::{TextOutput, figure, hanging_indent, sanitize};
 
 /// The distances in one direction, or in both.
 #[derive(Serialize)]
@@ -89,40 +89,36 @@ fn diagonal(mesh: &PolygonMesh) -> f64 {
 fn rows_text(rows: &[Row]) -> String {
     let header = [
         "from",
-        "to",
         "mean",
         "root mean square",
         "largest",
         "% of diagonal",
-        "farthest",
     ];
     let mut table = table(header.map(Cell::new).to_vec());
-    for row in rows {
-        let farthest = row.farthest.map(|at| at.map(figure).join(" "));
+    let names = ["the first mesh", "the second mesh", "both"];
+    for (name, row) in names.into_iter().zip(rows) {
         let figures = [
             row.mean,
             row.root_mean_square,
             row.largest,
             row.largest_percent,
         ];
-        let names = [&row.from, &row.to].map(|name| Cell::new(sanitize(name)));
         let figures =
             figures.map(|value| Cell::new(figure(value)).set_alignment(CellAlignment::Right));
-        let last = Cell::new(farthest.unwrap_or_default());
-        table.add_row(names.into_iter().chain(figures).chain([last]));
+        table.add_row([Cell::new(name)].into_iter().chain(figures));
     }
-    table.to_string()
-}
-
-/// Returns a figure with five significant digits.
-fn figure(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
+    let mut lines = vec![
+        hanging_indent("first    ", &sanitize(&rows[0].from)),
+        hanging_indent("second   ", &sanitize(&rows[1].from)),
+        String::new(),
+        table.to_string(),
+        String::new(),
+    ];
+    for (name, row) in names.into_iter().zip(rows) {
+        if let Some(at) = row.farthest {
+            let at = at.map(figure).join(" ");
+            lines.push(format!("farthest point of {name}: {at}"));
+        }
     }
-    let digits = 4 - value.abs().log10().floor() as i32;
-    if (0..12).contains(&digits) {
-        format!("{value:.0$}", digits as usize)
-    } else {
-        format!("{value:.4e}")
-    }
+    lines.join("\n")
 }

@@ -1,10 +1,14 @@
 //! Text about the facts of a mesh and about the backends that can hold the mesh.
 
+use sixfold::repair::Measures;
 use sixfold::{Distribution, Facts, structure_infos};
 use sixfold_study::{BackendReport, MeshReport, Settings, StudyMesh};
 
-use crate::text::{TextOutput, hanging_indent, sanitize};
+use crate::text::{TextOutput, figure, hanging_indent, sanitize};
 use sixfold_study::numbers::{counted, grouped};
+
+/// Width of the labels.
+const LABEL: usize = 13;
 
 /// Prints what is known before a measurement: the facts of a mesh, and the backends that can hold
 /// it. Prints nothing if none of the named backends can hold the mesh, because an error follows.
@@ -64,6 +68,28 @@ pub(crate) fn topology_text(mesh: &MeshReport) -> String {
         lines.push(hanging_indent("degrees      ", &degrees(facts)));
     }
     lines.join("\n")
+}
+
+/// Returns the size of a mesh, in units of its coordinates; `None` without faces.
+pub(crate) fn measures_text(measures: &Measures) -> Option<String> {
+    let [low, high] = measures.bounds?;
+    let lengths = measures.edge_lengths?;
+    let coordinates = |point: [f64; 3]| point.map(figure).join(" ");
+    let size = format!(
+        "{}, from {} to {}",
+        measures.size().map(figure).join(" × "),
+        coordinates(low),
+        coordinates(high)
+    );
+    let [least, mean, largest] = [lengths.least, lengths.mean, lengths.largest].map(figure);
+    let lengths = format!("from {least} to {largest}, mean {mean}");
+    let area = match measures.volume {
+        Some(volume) => format!("{}, volume {}", figure(measures.area), figure(volume)),
+        None => figure(measures.area),
+    };
+    let lines = [("size", size), ("edge length", lengths), ("area", area)];
+    let lines = lines.map(|(label, text)| hanging_indent(&format!("{label:LABEL$}"), &text));
+    Some(lines.join("\n"))
 }
 
 fn elements(facts: &Facts) -> String {

@@ -40,6 +40,7 @@ const GROUPS: [(&str, &[&str]); 6] = [
         "Meshes",
         &[
             "generate",
+            "convert",
             "distance",
             "subdivide",
             "smooth",

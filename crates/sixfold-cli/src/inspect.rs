@@ -4,10 +4,11 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use serde::Serialize;
+use sixfold::repair::Measures;
 use sixfold_study::{Backend, Inspection, inspect_diagnosed};
 
 use crate::arguments::Inspect;
-use crate::facts_text::{topology_text, verdicts_text};
+use crate::facts_text::{measures_text, topology_text, verdicts_text};
 use crate::failure::Failure;
 use crate::faults_text::{Diagnosed, DiagnosisRecord};
 use crate::load::{self, InspectedMesh};
@@ -21,6 +22,7 @@ use crate::text::{TextOutput, print_stderr};
 struct Inspected {
     #[serde(flatten)]
     inspection: Inspection,
+    measures: Measures,
     diagnosis: DiagnosisRecord,
     narrowing: NarrowingRecord,
 }
@@ -81,6 +83,7 @@ pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
 fn inspect(path: &Path, arguments: &Inspect, text: &mut TextOutput) -> Result<Inspected, Failure> {
     let InspectedMesh {
         study_mesh,
+        measures,
         diagnosis,
         places,
         left_out,
@@ -95,6 +98,9 @@ fn inspect(path: &Path, arguments: &Inspect, text: &mut TextOutput) -> Result<In
         file: path,
     };
     text.print_line(&topology_text(&inspection.mesh));
+    if let Some(size) = measures_text(&measures) {
+        text.print_line(&size);
+    }
     text.print_line("");
     // The list of faults has the reasons, except the reason that the mesh is too large.
     let mut verdicts = inspection.backends.clone();
@@ -110,6 +116,7 @@ fn inspect(path: &Path, arguments: &Inspect, text: &mut TextOutput) -> Result<In
     let diagnosis = diagnosed.record();
     Ok(Inspected {
         inspection,
+        measures,
         diagnosis,
         narrowing: NarrowingRecord {
             merged_vertices: narrowing.merged_vertices,

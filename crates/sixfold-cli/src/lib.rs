@@ -51,6 +51,7 @@
 mod arguments;
 mod column_table;
 mod compare;
+mod convert;
 mod distance;
 mod edits;
 mod facts_text;
@@ -82,6 +83,8 @@ mod repair;
 mod reshape;
 mod results_table;
 mod schemes;
+mod seams;
+mod shape_check;
 mod signs;
 mod study;
 mod subdivide;
@@ -157,6 +160,7 @@ pub fn sixfold(counters: &dyn AllocatorCounters) -> ExitCode {
         Ok(Some(Command::Edits(arguments))) => edits::run(&arguments),
         Ok(Some(Command::Decimate(arguments))) => remesh::decimate(&arguments),
         Ok(Some(Command::Remesh(arguments))) => remesh::remesh(&arguments),
+        Ok(Some(Command::Convert(arguments))) => convert::run(&arguments),
         Ok(Some(Command::Repair(arguments))) => repair::run(&arguments),
         Ok(Some(Command::Render(arguments))) => render::run(&arguments),
         Ok(Some(Command::New(arguments))) => new::run(&arguments),
@@ -183,7 +187,7 @@ fn words() -> Vec<OsString> {
     if words.get(1).is_some_and(|word| word == "help") {
         words.retain(|word| word != "--help" && word != "-h");
     }
-    words
+    arguments::joined_values(words)
 }
 
 /// Prints the message of clap: the help, the version, or an error in the arguments.

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use sixfold::io::{FileMesh, LeftOut, Narrowing, Notice, PolygonPlaces};
-use sixfold::repair::{Diagnosis, diagnose, facts_and_diagnosis};
+use sixfold::repair::{Diagnosis, Measures, diagnose, examine, measures};
 use sixfold::{Creases, PolygonMesh, shapes};
 use sixfold_study::{Results, StudyMesh, sha256_of};
 
@@ -22,6 +22,7 @@ const SHOWN: usize = 5;
 /// A mesh for `sixfold inspect`, without its degenerate faces.
 pub(crate) struct InspectedMesh {
     pub(crate) study_mesh: StudyMesh,
+    pub(crate) measures: Measures,
     pub(crate) diagnosis: Diagnosis,
     /// The places of the vertices and faces; `None` if polygons were cut.
     pub(crate) places: Option<PolygonPlaces>,
@@ -46,8 +47,10 @@ pub(crate) fn for_inspection(
             study_mesh = triangulated(study_mesh, Some(&places))?;
         }
         let diagnosis = diagnose(&study_mesh.polygons, SHOWN_PLACES);
+        let measures = measures(&study_mesh.polygons);
         return Ok(InspectedMesh {
             study_mesh,
+            measures,
             diagnosis,
             places: (!triangulate).then_some(places),
             left_out,
@@ -56,10 +59,11 @@ pub(crate) fn for_inspection(
     }
     // The facts of the file are those of the polygons.
     let (polygons, _, places) = mesh.into_polygons_with_places();
-    let (facts, diagnosis) = facts_and_diagnosis(&polygons, SHOWN_PLACES);
+    let (facts, measures, diagnosis) = examine(&polygons, SHOWN_PLACES);
     let study_mesh = StudyMesh::with_facts(shown(path), polygons, facts);
     Ok(InspectedMesh {
         study_mesh,
+        measures,
         diagnosis,
         places: Some(places),
         left_out: Vec::new(),

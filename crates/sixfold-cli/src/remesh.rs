@@ -7,15 +7,20 @@ use sixfold::io::WriteOptions;
 use sixfold::remeshing::{
     Decimation, DecimationBoundary, RemeshError, Remeshing, Stop, decimate_watched, remesh_watched,
 };
+use sixfold::repair::measures;
 use sixfold::{
-    Edit, MeshEdit, PolygonMesh, QueryCost, Representation, for_each_editable, structure_infos,
+    Creases, Edit, MeshEdit, PolygonMesh, QueryCost, Representation, for_each_editable,
+    structure_infos,
 };
 
-use crate::arguments::{Decimate, MeshInOut, ReadPolygons, Remesh};
+use crate::arguments::{Decimate, MeshInOut, ReadPolygons, Remesh, ShapeCheck};
 use crate::failure::Failure;
+use crate::mesh_files::shown;
 use crate::output::is_stdout;
 use crate::progress::StepBar;
-use crate::text::{TextOutput, print_stderr, sanitize};
+use crate::seams::without_seams;
+use crate::shape_check::check_shape;
+use crate::text::{TextOutput, figure, print_stderr, sanitize};
 use sixfold_study::numbers::{counted, grouped};
 
 /// Minimum number of faces for a note about a structure that scans.
@@ -30,33 +35,46 @@ pub(crate) fn decimate(arguments: &Decimate) -> Result<ExitCode, Failure> {
         &arguments.files,
         arguments.read,
         &arguments.backend,
-        &decimation,
+        arguments.check,
+        |_| Ok(decimation),
     )
 }
 
 pub(crate) fn remesh(arguments: &Remesh) -> Result<ExitCode, Failure> {
-    let remeshing = Remeshing {
-        edge_length: arguments.edge_length,
-        iterations: arguments.iterations,
-        max_faces: arguments.max_faces,
+    let remeshing = |polygons: &PolygonMesh| {
+        let mean = || measures(polygons).edge_lengths.map(|lengths| lengths.mean);
+        let edge_length = arguments.edge_length.or_else(mean);
+        let edge_length = edge_length.ok_or_else(|| {
+            let file = shown(&arguments.files.mesh);
+            Failure::usage(format!("{file}: there are no edges to remesh"))
+        })?;
+        Ok(Remeshing {
+            edge_length,
+            iterations: arguments.iterations,
+            max_faces: arguments.max_faces,
+        })
     };
     edit_file(
         &arguments.files,
         arguments.read,
         &arguments.backend,
-        &remeshing,
+        arguments.check,
+        remeshing,
     )
 }
 
-fn edit_file(
+/// Edits a mesh by the work that `work` returns for it.
+fn edit_file<W: Work>(
     files: &MeshInOut,
     read: ReadPolygons,
     backend: &str,
-    work: &impl Work,
+    check: ShapeCheck,
+    work: impl FnOnce(&PolygonMesh) -> Result<W, Failure>,
 ) -> Result<ExitCode, Failure> {
     // Check here, because the error of a structure would not name the command that helps.
-    let (polygons, output) = files.open(read, check_triangles)?;
-    let done = edited_by(backend, &polygons, work);
+    let (before, output) = files.open(read, check_triangles)?;
+    let (before, _) = without_seams(&files.mesh, before, Creases::default(), read.files);
+    let done = edited_by(backend, &before, &work(&before)?);
     let (polygons, EditSummary { edits, shortfall }) =
         done.ok_or_else(|| Failure::unsupported(not_editable(backend)))??;
     output.write(&polygons, &WriteOptions::default())?;
@@ -72,7 +90,7 @@ fn edit_file(
         "{place}: {vertices}, {faces}; {edits} on {backend}"
     ));
     text.finish()?;
-    Ok(ExitCode::SUCCESS)
+    Ok(check_shape(&before, &polygons, to, check))
 }
 
 /// Explains that `backend` has no edits, and lists the backends with edits.
@@ -202,7 +220,10 @@ impl Work for Remeshing {
         let collapses = counted(report.collapses, "collapse", "collapses");
         let flips = counted(report.flips, "flip", "flips");
         Ok(EditSummary {
-            edits: format!("{splits}, {collapses} and {flips} in {iterations}"),
+            edits: format!(
+                "edge length {}: {splits}, {collapses} and {flips} in {iterations}",
+                figure(self.edge_length)
+            ),
             shortfall,
         })
     }

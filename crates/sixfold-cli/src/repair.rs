@@ -7,12 +7,13 @@ use sixfold::io::{Format, Loss, WriteOptions};
 use sixfold::repair::{RepairError, Repaired, Step, StepReport, Weld, repair, repair_for};
 use sixfold::{Creases, PolygonMesh, StructureInfo, structure_infos};
 
-use crate::arguments::Repair;
+use crate::arguments::{ChosenSteps, Repair};
 use crate::failure::Failure;
 use crate::load::{self, ReadMesh};
 use crate::mesh_files::{MeshOutput, shown};
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{Spinner, exit_on_interrupt};
+use crate::shape_check::check_faces;
 use crate::text::{TextOutput, print_stderr, sanitize};
 use sixfold_study::numbers::{counted, grouped};
 
@@ -29,8 +30,8 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
         ("--json", arguments.json.as_ref()),
     ];
     check_outputs(Some(&arguments.files.mesh), &outputs)?;
-    let steps = arguments.steps();
-    if steps.is_empty() && arguments.structure.is_none() {
+    let ChosenSteps { steps, structure } = &arguments.steps;
+    if steps.is_empty() && structure.is_none() {
         return Err(Failure::usage(
             "no repair is chosen: name a structure with --for, or choose steps such as --weld",
         ));
@@ -43,9 +44,9 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
     let json = Output::open_if(arguments.json.as_ref())?;
     let faces = counted(polygons.face_count(), "face", "faces");
     let spinner = Spinner::start(format!("repairing {faces}"));
-    let done = repair(polygons, &steps).and_then(|chosen| {
+    let done = repair(polygons, steps).and_then(|chosen| {
         let sharp = chosen.carried_creases(&read.creases);
-        match &arguments.structure {
+        match structure {
             Some(name) => for_structure(chosen, name, sharp),
             None => Ok((chosen, sharp)),
         }
@@ -78,7 +79,7 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
     let place = sanitize(&arguments.files.output.display().to_string());
     text.print_line(&format!("{place}: {}", repaired.polygons));
     text.finish()?;
-    let refusing = arguments.structure.as_deref();
+    let refusing = structure.as_deref();
     if let Some(name) = refusing.filter(|name| undoes_repair(format, &repaired.polygons, name)) {
         print_stderr(&format!(
             "warning: {}: readers of STL join vertices at equal positions, and {name} refuses the \
@@ -87,7 +88,11 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
         ));
         return Ok(ExitCode::from(NOT_KEPT));
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(check_faces(
+        polygons,
+        &repaired.polygons,
+        &arguments.files.output,
+    ))
 }
 
 /// Returns whether the written file is STL, and the structure called `name` refuses the mesh that

@@ -5,13 +5,15 @@ use std::process::ExitCode;
 use sixfold::io::WriteOptions;
 use sixfold::operators::{Smoothing, SmoothingError, dual, smoothed};
 use sixfold::repair::{Components, Step, repair};
-use sixfold::{PolygonMesh, Representation, Visitor, visit};
+use sixfold::{Creases, PolygonMesh, Representation, Visitor, visit};
 
 use crate::arguments::{Dual, MeshInOut, ReadPolygons, Smooth, Triangulate};
 use crate::failure::Failure;
 use crate::mesh_files::shown;
 use crate::output::is_stdout;
 use crate::progress::Spinner;
+use crate::seams::without_seams;
+use crate::shape_check::check_shape;
 use crate::text::{TextOutput, print_stderr, sanitize};
 use sixfold_study::numbers::counted;
 
@@ -23,15 +25,25 @@ pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
         step_back: arguments.step_back,
         iterations: arguments.iterations,
     });
-    reshape_file(&arguments.files, arguments.read, "smoothed", |polygons| {
-        on_backend(&arguments.backend, polygons, &work)
-    })
+    let mut before = PolygonMesh::default();
+    let after = reshape_file(&arguments.files, arguments.read, "smoothed", |polygons| {
+        let (mesh, files) = (&arguments.files.mesh, arguments.read.files);
+        (before, _) = without_seams(mesh, polygons, Creases::default(), files);
+        on_backend(&arguments.backend, &before, &work)
+    })?;
+    Ok(check_shape(
+        &before,
+        &after,
+        &arguments.files.output,
+        arguments.check,
+    ))
 }
 
 pub(crate) fn make_dual(arguments: &Dual) -> Result<ExitCode, Failure> {
     reshape_file(&arguments.files, arguments.read, "the dual", |polygons| {
-        on_backend(&arguments.backend, polygons, &DualWork)
-    })
+        on_backend(&arguments.backend, &polygons, &DualWork)
+    })?;
+    Ok(ExitCode::SUCCESS)
 }
 
 pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> {
@@ -41,30 +53,32 @@ pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> 
     };
     reshape_file(&arguments.files, read, "triangles", |triangles| {
         let Some(facing) = arguments.orient else {
-            return Ok(triangles.clone());
+            return Ok(triangles);
         };
         let orient = Step::Orient {
             facing,
             which: Components::All,
         };
-        let repaired = repair(triangles, &[orient]).map_err(Failure::unsupported)?;
+        let repaired = repair(&triangles, &[orient]).map_err(Failure::unsupported)?;
         for left in repaired.steps.iter().flat_map(|step| &step.left) {
             print_stderr(&format!("note: {}: {left}", shown(&arguments.files.mesh)));
         }
         Ok(repaired.polygons)
-    })
+    })?;
+    Ok(ExitCode::SUCCESS)
 }
 
+/// Reads a mesh, changes it and writes it. Returns the changed mesh.
 fn reshape_file(
     files: &MeshInOut,
     read: ReadPolygons,
     what: &str,
-    change: impl FnOnce(&PolygonMesh) -> Result<PolygonMesh, Failure>,
-) -> Result<ExitCode, Failure> {
+    change: impl FnOnce(PolygonMesh) -> Result<PolygonMesh, Failure>,
+) -> Result<PolygonMesh, Failure> {
     let (polygons, output) = files.open(read, |_| Ok(()))?;
     let faces = counted(polygons.face_count(), "face", "faces");
     let spinner = Spinner::start(format!("working on {faces}"));
-    let changed = change(&polygons);
+    let changed = change(polygons);
     spinner.clear();
     let changed = changed?;
     output.write(&changed, &WriteOptions::default())?;
@@ -75,7 +89,7 @@ fn reshape_file(
     let faces = counted(changed.face_count(), "face", "faces");
     text.print_line(&format!("{place}: {what}, {vertices}, {faces}"));
     text.finish()?;
-    Ok(ExitCode::SUCCESS)
+    Ok(changed)
 }
 
 trait Work {

@@ -25,6 +25,8 @@ use crate::load;
 use crate::mesh_files::{MeshOutput, shown};
 use crate::output::{Output, check_not_overwritten, check_outputs, is_stdout};
 use crate::progress::{FaceBar, exit_on_interrupt};
+use crate::seams::without_seams;
+use crate::shape_check::check_faces;
 use crate::text::{TextOutput, sanitize};
 use forecast::Forecast;
 use limit::Limits;
@@ -48,7 +50,9 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         return local::run(arguments, select);
     }
     let method = method(arguments)?;
-    let (polygons, mut creases) = load::with_creases(&arguments.files.mesh, arguments.read)?;
+    let mesh = &arguments.files.mesh;
+    let (polygons, creases) = load::with_creases(mesh, arguments.read)?;
+    let (polygons, mut creases) = without_seams(mesh, polygons, creases, arguments.read.files);
     check_tags(arguments, &creases)?;
     if let Some(path) = &arguments.creases {
         let listed = read_creases(path, &polygons).map_err(Failure::usage)?;
@@ -106,7 +110,11 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         "{place}: {vertices}, {faces}; {scheme} by {method} on {backend}"
     ));
     text.finish()?;
-    Ok(ExitCode::SUCCESS)
+    Ok(check_faces(
+        &polygons,
+        &step.polygons,
+        &arguments.files.output,
+    ))
 }
 
 /// Returns the scheme with its options. Refuses options that the scheme does not have.

@@ -209,9 +209,53 @@ fn broken(line: &str, width: usize) -> Vec<String> {
     indented.collect()
 }
 
+/// Returns a figure with five significant digits, without zeros at its end: `0.25`, `1.0972e-15`.
+pub(crate) fn figure(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return (value + 0.0).to_string();
+    }
+    // The exponent after rounding to five digits.
+    let scientific = format!("{value:.4e}");
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    let short = |digits: &str| match digits.contains('.') {
+        true => digits
+            .trim_end_matches('0')
+            .trim_end_matches('.')
+            .to_owned(),
+        false => digits.to_owned(),
+    };
+    match exponent {
+        -4..=4 => short(&format!("{value:.0$}", (4 - exponent) as usize)),
+        5..=8 => format!("{value:.0}"),
+        _ => format!("{}e{exponent}", short(mantissa)),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn figures_have_five_digits_and_no_zeros_at_the_end() {
+        let figures = [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (2.0, "2"),
+            (0.1, "0.1"),
+            (-1.0 / 3.0, "-0.33333"),
+            (9999.96, "10000"),
+            (123_456.7, "123457"),
+            (4.5e6, "4500000"),
+            (1e-4, "0.0001"),
+            (1.097_17e-15, "1.0972e-15"),
+            (2e12, "2e12"),
+            (99_999.6, "100000"),
+        ];
+        for (value, expected) in figures {
+            assert_eq!(figure(value), expected);
+        }
+    }
 
     #[test]
     fn paths_are_words_of_a_shell() {

@@ -18,8 +18,13 @@ fn parallel_squares_have_one_distance() {
         &sixfold,
         &["distance", "low.obj", "high.obj", "--samples", "500"],
     );
-    // Nine distances and a farthest point. The diagonal of the first square is 1.4142.
-    assert_eq!(run.stdout.matches("0.50000").count(), 10, "{}", run.stdout);
+    // Nine distances and the height of a farthest point. The diagonal of the first square is 1.4142.
+    assert_eq!(run.stdout.matches(" 0.5 ").count(), 9, "{}", run.stdout);
+    assert!(
+        run.stdout.contains("farthest point of the second mesh: "),
+        "{}",
+        run.stdout
+    );
     assert_eq!(run.stdout.matches("35.355").count(), 3, "{}", run.stdout);
     let arguments = ["distance", "low.obj", "high.obj", "--json", "-"];
     let rows: Value = serde_json::from_str(&run_ok(&sixfold, &arguments).stdout).expect("JSON");

@@ -60,6 +60,7 @@ fn text_is_not_wider_than_the_terminal() {
         "report",
         "compare",
         "inspect",
+        "convert",
         "distance",
         "neighbours",
         "memory",

@@ -210,7 +210,8 @@ fn a_target_that_is_not_reached_gets_a_note() {
         ),
     ] {
         let run = run_ok(&sixfold, &[arguments, &["-o", "out.obj"]].concat());
-        let notes = run.stderr.lines();
+        let is_warning = |line: &&str| line.starts_with("warning: out.obj: the shape has changed");
+        let notes = run.stderr.lines().filter(|line| !is_warning(line));
         assert!(
             notes.clone().count() == 1 && notes.clone().all(|line| line.starts_with("note: ")),
             "{run:?}"
@@ -315,7 +316,6 @@ fn invalid_input_is_refused_before_anything_is_written() {
             2,
             "follow, fixed",
         ),
-        (&["remesh"], 2, "--edge-length"),
         (&["remesh", "--edge-length", "0"], 2, "above 0"),
         (&["remesh", "--edge-length", "-1"], 2, "above 0"),
         (&["remesh", "--edge-length", "nan"], 2, "above 0"),

@@ -392,7 +392,11 @@ fn smooth_dual_and_triangulate_write_meshes_or_refuse() {
         ),
     ] {
         let run = run_ok(&sixfold, &[arguments, &["-o", "out.obj"]].concat());
-        assert_eq!(run.stderr, "", "{run:?}");
+        // Ten iterations shrink a tetrahedron to a point, and the command says so.
+        let shrinks = arguments.contains(&"cotangent");
+        let warning = "warning: out.obj: the shape has changed: the area is ";
+        assert_eq!(run.stderr.starts_with(warning), shrinks, "{run:?}");
+        assert!(shrinks || run.stderr.is_empty(), "{run:?}");
         assert_eq!(
             Obj::parse(&text(&sixfold, "out.obj")).counts(),
             counts,

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use rustc_hash::FxHashMap;
 use sixfold_core::{Partition, RowId, Slot};
 
-use super::angles::{Angles, Preference, opposite_order, preference};
+use super::angles::{Angles, Preference, opposite_order, preferences};
 use super::{Mates, Sides};
 use crate::trace::CornerId;
 
@@ -76,11 +76,8 @@ impl<'a> Joins<'a> {
                 bundles.push(opposite_order([up, down], &around));
                 continue;
             }
-            for (&side, &angle) in up.iter().zip(&around[0]) {
-                for (&other, &other_angle) in down.iter().zip(&around[1]) {
-                    pairs.push((preference(angle, other_angle), [side, other]));
-                }
-            }
+            let preferred = preferences(&around).into_iter();
+            pairs.extend(preferred.map(|(preference, [i, j])| (preference, [up[i], down[j]])));
         }
         self.join_closing();
         pairs.sort_unstable_by_key(|&(preference, pair)| (preference, pair.map(RowId::row)));

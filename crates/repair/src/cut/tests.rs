@@ -256,3 +256,41 @@ fn vertices_without_a_fault_keep_their_numbers() {
         [11, 9, 10].map(VertexId::new)
     );
 }
+
+/// Returns boxes that fill a grid of cells, each with six faces; the boxes share vertices.
+fn blocks(size: [u32; 3]) -> PolygonMesh {
+    let [nx, ny, nz] = size.map(|n| n + 1);
+    let number = |[x, y, z]: [u32; 3]| x + nx * (y + ny * z);
+    let points = (0..nx * ny * nz).map(|i| [i % nx, i / nx % ny, i / (nx * ny)].map(|x| x as f32));
+    let cells = (0..size.iter().product::<u32>())
+        .map(|i| [i % size[0], i / size[0] % size[1], i / (size[0] * size[1])]);
+    let cube = sixfold_shapes::cube();
+    let faces: Vec<Vec<u32>> = cells
+        .flat_map(|cell| {
+            let corner = |v: VertexId| {
+                let at = cube.position(v).to_array().map(|x| u32::from(x > 0.0));
+                number([0, 1, 2].map(|axis| cell[axis] + at[axis]))
+            };
+            let faces = cube.faces().iter();
+            faces
+                .map(|(_, face)| face.iter().map(|&v| corner(v)).collect())
+                .collect::<Vec<_>>()
+        })
+        .collect();
+    PolygonMesh::new(points, faces).expect("valid")
+}
+
+#[test]
+fn solids_that_share_walls_are_separated() {
+    for size in [[2, 1, 1], [3, 1, 1], [2, 2, 1], [2, 2, 2], [3, 2, 2]] {
+        let boxes = size.iter().product::<u32>() as usize;
+        let cut = cut_mesh(&blocks(size));
+        let facts = Facts::from_polygons(&cut);
+        assert_eq!(facts.components, boxes, "{size:?}");
+        assert_eq!((facts.boundary_edges, facts.non_manifold_edges), (0, 0));
+        assert_eq!(
+            [cut.vertex_count(), cut.face_count()],
+            [8 * boxes, 6 * boxes]
+        );
+    }
+}

@@ -56,8 +56,10 @@ proptest! {
     /// Computing facts and diagnosis together does not change them.
     #[test]
     fn both_together_equal_each_alone(polygons in damaged()) {
-        let alone = (Facts::from_polygons(&polygons), diagnose(&polygons, 3));
-        prop_assert_eq!(facts_and_diagnosis(&polygons, 3), alone);
+        let (facts, measured, diagnosis) = examine(&polygons, 3);
+        prop_assert_eq!(facts, Facts::from_polygons(&polygons));
+        prop_assert_eq!(diagnosis, diagnose(&polygons, 3));
+        prop_assert_eq!(measured, crate::measures(&polygons));
     }
 
     /// The steps that a diagnosis names repair the fault. A hole can remain if no triangles fit.

@@ -12,7 +12,7 @@ use sixfold::io::Format;
 #[derive(Clone, Copy, Debug, Default, Args)]
 #[command(next_help_heading = "Mesh files")]
 pub(crate) struct ReadFiles {
-    /// Do not merge vertices of STL files: each facet has three vertices of its own
+    /// Do not merge vertices at equal positions: neither those of STL files nor those at seams
     #[arg(long)]
     pub(crate) as_stored: bool,
     /// Move meshes to the origin before coordinates are rounded to 32 bits
@@ -42,6 +42,15 @@ pub(crate) struct MeshInOut {
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) write: WriteFiles,
+}
+
+// Whether a change of the shape is an error.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub(crate) struct ShapeCheck {
+    /// Exit code 1 if the area, the volume or the box changes by more than 5 %, or if faces are
+    /// turned over or flat
+    #[arg(long, verbatim_doc_comment)]
+    pub(crate) check: bool,
 }
 
 // How meshes are written. The heading is that of one option: a heading for the next options would

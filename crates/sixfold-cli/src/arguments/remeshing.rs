@@ -6,7 +6,7 @@ use clap::Args;
 use sixfold::remeshing::{DecimationBoundary, Target};
 
 use super::reshaping::iterations;
-use super::{MeshInOut, ReadPolygons, backend};
+use super::{MeshInOut, ReadPolygons, ShapeCheck, backend};
 
 const DECIMATE_EXAMPLES: &str = "Examples:
   sixfold decimate --faces 5000 scan.obj -o small.obj
@@ -20,9 +20,9 @@ may therefore have one face fewer than the target. Collapses that flip a face or
 are skipped. If only such collapses are left, decimation ends above the target, and a note says so.
 All faces must be triangles; `sixfold triangulate` cuts polygons into triangles.
 
-Exit codes: 0 success, even if the target was not reached; 2 wrong usage or unusable input; 3 the
-mesh has faces that are not triangles, or the backend cannot hold the mesh; 4 interrupted, nothing
-written.";
+Exit codes: 0 success, even if the target was not reached; 1 with --check, the shape has changed;
+2 wrong usage or unusable input; 3 the mesh has faces that are not triangles, or the backend cannot
+hold the mesh; 4 interrupted, nothing written.";
 
 /// Make a mesh coarser: collapse the edges with the least error first.
 ///
@@ -44,6 +44,8 @@ pub(crate) struct Decimate {
     /// Boundary: follow (simplify the boundary too) or fixed
     #[arg(long, value_name = "RULE", default_value = "follow")]
     pub(crate) boundary: DecimationBoundary,
+    #[command(flatten)]
+    pub(crate) check: ShapeCheck,
     /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "corner-table", value_parser = backend)]
     pub(crate) backend: String,
@@ -76,6 +78,7 @@ impl Goal {
 }
 
 const REMESH_EXAMPLES: &str = "Examples:
+  sixfold remesh scan.obj -o even.obj
   sixfold remesh --edge-length 0.05 scan.obj -o even.obj
   sixfold remesh --edge-length 0.01 --iterations 5 --max-faces 2000000 scan.obj -o fine.obj
 
@@ -95,8 +98,8 @@ the edges to split. If the estimate is above --max-faces, the edge length is ref
 of faces reaches --max-faces later, splitting stops; the mesh is written, and a note is printed. All
 faces must be triangles; `sixfold triangulate` cuts polygons into triangles.
 
-Exit codes: 0 success, even if --max-faces stopped the splitting; 2 wrong usage or unusable input;
-3 the mesh has faces that are not triangles, the backend cannot hold the mesh, or the edge length
+Exit codes: 0 success, even if --max-faces stopped the splitting; 1 with --check, the shape has
+changed; 2 wrong usage or unusable input; 3 the mesh has faces that are not triangles, the backend cannot hold the mesh, or the edge length
 needs too many faces; 4 interrupted, nothing written.";
 
 /// Replace the triangles of a mesh by nearly equilateral triangles of one size.
@@ -113,15 +116,17 @@ needs too many faces; 4 interrupted, nothing written.";
 pub(crate) struct Remesh {
     #[command(flatten)]
     pub(crate) files: MeshInOut,
-    /// Target edge length, in the units of the file
+    /// Target edge length, in the units of the file [default: the mean of the mesh]
     #[arg(long, value_name = "LENGTH", value_parser = edge_length, allow_hyphen_values = true)]
-    pub(crate) edge_length: f64,
+    pub(crate) edge_length: Option<f64>,
     /// Maximum number of iterations
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = iterations, allow_hyphen_values = true)]
     pub(crate) iterations: usize,
     /// Stop splitting at this number of faces
     #[arg(long, value_name = "N", default_value_t = 10_000_000, value_parser = faces, allow_hyphen_values = true)]
     pub(crate) max_faces: usize,
+    #[command(flatten)]
+    pub(crate) check: ShapeCheck,
     /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "corner-table", value_parser = backend)]
     pub(crate) backend: String,

@@ -4,15 +4,15 @@ use clap::Args;
 use sixfold::operators::{SmoothingBoundary, Weights};
 use sixfold::repair::Facing;
 
-use super::{MeshInOut, ReadFiles, ReadPolygons, backend};
+use super::{MeshInOut, ReadFiles, ReadPolygons, ShapeCheck, backend};
 
 const SMOOTH_EXAMPLES: &str = "Examples:
   sixfold smooth scan.obj -o smooth.obj
   sixfold smooth scan.obj --weights cotangent --iterations 50 -o smooth.obj
   sixfold smooth scan.obj --step 0.33 --step-back=-0.34 -o smooth.obj    keeps the volume
 
-Exit codes: 0 success; 2 wrong usage or unusable input; 3 the weights or the backend do not
-support the mesh; 4 interrupted, nothing written.";
+Exit codes: 0 success; 1 with --check, the shape has changed; 2 wrong usage or unusable input;
+3 the weights or the backend do not support the mesh; 4 interrupted, nothing written.";
 
 /// Move vertices towards their neighbours.
 ///
@@ -42,6 +42,8 @@ pub(crate) struct Smooth {
     /// Second step to keep the volume: negative, and larger in size than --step
     #[arg(long, value_name = "PART", allow_hyphen_values = true)]
     pub(crate) step_back: Option<f64>,
+    #[command(flatten)]
+    pub(crate) check: ShapeCheck,
     /// The structure to use
     #[arg(long, value_name = "NAME", default_value = "half-edge", value_parser = backend)]
     pub(crate) backend: String,

@@ -26,8 +26,9 @@ decreases by one per level. A sharpness of 10 or more never decreases. Creases i
   angle:DEGREES           the faces at an edge that bends by more than an angle
 Faces next to the refined faces are cut in half, so that the mesh has no gaps.
 
-Exit codes: 0 success; 2 wrong usage or unusable input; 3 the scheme or the backend does not support
-the mesh or an option, or the result is too large; 4 interrupted, nothing written.";
+Exit codes: 0 success; 1 the result has no faces; 2 wrong usage or unusable input; 3 the scheme or
+the backend does not support the mesh or an option, or the result is too large; 4 interrupted,
+nothing written.";
 
 const SCHEMES_EXAMPLES: &str = "Examples:
   sixfold schemes

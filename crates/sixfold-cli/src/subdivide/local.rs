@@ -14,7 +14,8 @@ use crate::load;
 use crate::mesh_files::{MeshOutput, shown};
 use crate::output::{check_not_overwritten, is_stdout};
 use crate::progress::Spinner;
-use crate::text::{TextOutput, sanitize};
+use crate::seams::without_seams;
+use crate::text::{TextOutput, print_stderr, sanitize};
 use sixfold_study::numbers::{counted, grouped};
 
 use super::check_tags;
@@ -26,7 +27,9 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
         let outputs = [("--output", Some(&arguments.files.output))];
         check_not_overwritten("the list of faces", path, &outputs)?;
     }
-    let (polygons, creases) = load::with_creases(&arguments.files.mesh, arguments.read)?;
+    let mesh = &arguments.files.mesh;
+    let (polygons, creases) = load::with_creases(mesh, arguments.read)?;
+    let (polygons, creases) = without_seams(mesh, polygons, creases, arguments.read.files);
     check_tags(arguments, &creases)?;
     let selection = selection(select)?;
     selection
@@ -48,6 +51,12 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
     let refined = refined
         .ok_or_else(|| Failure::usage(format!("no backend is called `{}`", arguments.backend)))??;
     let mesh = refined.polygons();
+    if arguments.levels > 0 && mesh.face_count() == polygons.face_count() {
+        print_stderr(&format!(
+            "note: {}: no face is selected, so the mesh is unchanged",
+            shown(&arguments.files.mesh)
+        ));
+    }
     output.write(mesh, &WriteOptions::default())?;
     let mut text = TextOutput::new(!is_stdout(&arguments.files.output));
     let place = sanitize(&arguments.files.output.display().to_string());

@@ -1,0 +1,54 @@
+//! Seams: boundaries that lie on each other, because the vertices there are not shared.
+
+use std::path::Path;
+
+use sixfold::repair::{Step, Weld, repair};
+use sixfold::{Creases, Facts, PolygonMesh};
+use sixfold_study::numbers::counted;
+
+use crate::arguments::ReadFiles;
+use crate::mesh_files::shown;
+use crate::text::print_stderr;
+
+/// Joins vertices at equal positions if this closes seams, so that a command that moves vertices does
+/// not open them. Prints what was joined, or why seams stay open.
+pub(crate) fn without_seams(
+    path: &Path,
+    polygons: PolygonMesh,
+    creases: Creases,
+    chosen: ReadFiles,
+) -> (PolygonMesh, Creases) {
+    if chosen.as_stored {
+        return (polygons, creases);
+    }
+    let Ok(welded) = repair(&polygons, &[Step::Weld(Weld::default())]) else {
+        return (polygons, creases); // the command names what is wrong with the mesh
+    };
+    let joined = welded.steps[0].counts.vertices_merged;
+    if joined == 0 {
+        return (polygons, creases);
+    }
+    let [before, after] = [&polygons, &welded.polygons].map(Facts::from_polygons);
+    if after.boundary_edges >= before.boundary_edges {
+        return (polygons, creases);
+    }
+    let closed = before.boundary_edges - after.boundary_edges;
+    let file = shown(path);
+    let edges = counted(closed, "boundary edge", "boundary edges");
+    if after.non_manifold_edges > before.non_manifold_edges
+        || after.non_manifold_vertices > before.non_manifold_vertices
+    {
+        print_stderr(&format!(
+            "note: {file}: {edges} are at the positions of others and may come apart: `sixfold \
+             repair --weld --cut` joins them"
+        ));
+        return (polygons, creases);
+    }
+    let vertices = counted(joined, "vertex", "vertices");
+    print_stderr(&format!(
+        "note: {file}: joined {vertices} to others at equal positions, which closes {edges}: \
+         --as-stored keeps them apart"
+    ));
+    let (creases, _) = welded.carried_creases(&creases);
+    (welded.polygons, creases)
+}

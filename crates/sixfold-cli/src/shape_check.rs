@@ -1,0 +1,203 @@
+//! What a command did to the shape of a surface.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use sixfold::repair::{Measures, measures};
+use sixfold::spatial::{Bvh, SpatialIndex, SurfaceQueries, polygon_triangles};
+use sixfold::{PolygonMesh, VertexId, area_vector};
+use sixfold_study::numbers::counted;
+
+use crate::arguments::ShapeCheck;
+use crate::text::{figure, print_stderr};
+
+/// The exit code if a result is empty, and with `--check` if the shape has changed.
+const CHANGED: u8 = 1;
+
+/// The part of the area, of the volume or of the diagonal that may change without a word.
+const ALLOWED: f64 = 0.05;
+
+/// Compares a mesh with the mesh `after` that a command made of it and wrote to `to`. Prints a warning
+/// if the shape has changed by more than the stated part, or if faces are turned over or flat.
+pub(crate) fn check_shape(
+    before: &PolygonMesh,
+    after: &PolygonMesh,
+    to: &Path,
+    check: ShapeCheck,
+) -> ExitCode {
+    let changes = changes(before, after);
+    if changes.is_empty() {
+        return ExitCode::SUCCESS;
+    }
+    let changes = changes.join("; ");
+    print_stderr(&format!(
+        "warning: {}: the shape has changed: {changes}",
+        to.display()
+    ));
+    match check.check {
+        true => ExitCode::from(CHANGED),
+        false => ExitCode::SUCCESS,
+    }
+}
+
+/// Prints a warning if the mesh `after`, which a command made of the mesh `before` and wrote to `to`,
+/// has lost all faces.
+pub(crate) fn check_faces(before: &PolygonMesh, after: &PolygonMesh, to: &Path) -> ExitCode {
+    if after.face_count() > 0 || before.face_count() == 0 {
+        return ExitCode::SUCCESS;
+    }
+    let faces = counted(before.face_count(), "face", "faces");
+    print_stderr(&format!(
+        "warning: {}: the result has no faces, but the mesh had {faces}",
+        to.display()
+    ));
+    ExitCode::from(CHANGED)
+}
+
+/// Describes each change that is larger than allowed.
+fn changes(before: &PolygonMesh, after: &PolygonMesh) -> Vec<String> {
+    let [old, new] = [before, after].map(measures);
+    let mut changes = Vec::new();
+    changes.extend(change("area", old.area, new.area));
+    match (old.volume, new.volume) {
+        (Some(old), Some(new)) => changes.extend(change("volume", old, new)),
+        (Some(_), None) => changes.push("the surface is no longer closed".to_owned()),
+        _ => {}
+    }
+    changes.extend(change_of_box(&old, &new));
+    let turned = turned_faces(before, after);
+    if turned > 0 {
+        let faces = counted(turned, "face is turned over", "faces are turned over");
+        changes.push(faces);
+    }
+    let [flat_before, flat] = [before, after].map(flat_faces);
+    if flat > flat_before {
+        changes.push(counted(flat, "face has no area", "faces have no area"));
+    }
+    changes
+}
+
+fn change(what: &str, old: f64, new: f64) -> Option<String> {
+    let part = (new - old) / old.abs();
+    // A comparison with NaN is false: without an area, there is nothing to compare.
+    (part.abs() > ALLOWED).then(|| {
+        format!(
+            "the {what} is {} instead of {} ({:+.0} %)",
+            figure(new),
+            figure(old),
+            100.0 * part
+        )
+    })
+}
+
+fn change_of_box(old: &Measures, new: &Measures) -> Option<String> {
+    let diagonal = |size: [f64; 3]| size.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let limit = ALLOWED * diagonal(old.size());
+    let ends = |measures: &Measures| measures.bounds.map(|ends| ends.concat());
+    let moved = match (ends(old), ends(new)) {
+        (Some(old), Some(new)) => old.iter().zip(new).any(|(a, b)| (a - b).abs() > limit),
+        (old, new) => old.is_some() != new.is_some(),
+    };
+    let size = |measures: &Measures| measures.size().map(figure).join(" × ");
+    moved.then(|| format!("the box is {} instead of {}", size(new), size(old)))
+}
+
+fn normal(mesh: &PolygonMesh, face: &[VertexId]) -> sixfold::glam::DVec3 {
+    area_vector(face.iter().map(|&v| mesh.position(v).as_dvec3()))
+}
+
+fn flat_faces(mesh: &PolygonMesh) -> usize {
+    let faces = mesh.faces().iter();
+    faces
+        .filter(|(_, face)| normal(mesh, face).length() == 0.0)
+        .count()
+}
+
+/// Returns the number of faces of `after` that look to the other side than the surface `before`: than
+/// the same face if the faces are the same ones, otherwise than the closest face.
+fn turned_faces(before: &PolygonMesh, after: &PolygonMesh) -> usize {
+    if before.faces() == after.faces() {
+        let faces = after.faces().iter();
+        let turned = faces.filter(|(_, face)| normal(before, face).dot(normal(after, face)) < 0.0);
+        return turned.count();
+    }
+    let Ok(surface) = polygon_triangles(before).and_then(Bvh::build) else {
+        return 0;
+    };
+    let faces = after.faces().iter();
+    let centres: Vec<_> = faces
+        .map(|(_, face)| {
+            let corners = face.iter().map(|&v| after.position(v).as_dvec3());
+            corners.sum::<sixfold::glam::DVec3>() / face.len() as f64
+        })
+        .collect();
+    let closest = surface.closest_point_of_each(&centres);
+    let faces = after.faces().iter().zip(closest);
+    let turned = faces.filter(|((_, face), closest)| {
+        closest.is_some_and(|closest| {
+            let old = normal(before, before.faces().face(closest.face));
+            old.dot(normal(after, face)) < 0.0
+        })
+    });
+    turned.count()
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold::{Point, shapes};
+
+    use super::*;
+
+    fn moved(mesh: &PolygonMesh, by: impl Fn(Point) -> Point) -> PolygonMesh {
+        let points = mesh.positions().iter().map(|&p| by(p)).collect();
+        PolygonMesh::from_faces(points, mesh.faces().clone()).expect("valid")
+    }
+
+    #[test]
+    fn small_changes_are_silent_and_large_ones_have_figures() {
+        let cube = shapes::cube();
+        assert!(changes(&cube, &cube).is_empty());
+        assert!(changes(&cube, &moved(&cube, |p| 0.99 * p)).is_empty());
+        let half = changes(&cube, &moved(&cube, |p| Point::new(p.x, p.y, 0.5 * p.z)));
+        assert_eq!(
+            half,
+            [
+                "the area is 16 instead of 24 (-33 %)",
+                "the volume is 4 instead of 8 (-50 %)",
+                "the box is 2 × 2 × 1 instead of 2 × 2 × 2"
+            ]
+        );
+        let mirrored = changes(&cube, &moved(&cube, |p| Point::new(p.x, p.y, -p.z)));
+        assert_eq!(
+            mirrored,
+            [
+                "the volume is -8 instead of 8 (-200 %)",
+                "4 faces are turned over"
+            ]
+        );
+        let flat = changes(&cube, &moved(&cube, |p| Point::new(p.x, p.y, 0.0)));
+        assert_eq!(
+            flat.last().map(String::as_str),
+            Some("4 faces have no area")
+        );
+    }
+
+    #[test]
+    fn faces_of_other_meshes_are_compared_with_the_closest() {
+        let cube = shapes::cube();
+        let triangles = cube.triangulated().expect("small").polygons;
+        assert!(changes(&cube, &triangles).is_empty());
+        let mut faces: Vec<Vec<u32>> = triangles
+            .faces()
+            .iter()
+            .map(|(_, face)| face.iter().map(|v| v.index() as u32).collect())
+            .collect();
+        faces[5].reverse();
+        let turned = PolygonMesh::new(triangles.positions().iter().copied(), faces);
+        let found = changes(&cube, &turned.expect("valid"));
+        assert_eq!(
+            found,
+            ["the surface is no longer closed", "1 face is turned over"]
+        );
+    }
+}
