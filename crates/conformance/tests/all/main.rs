@@ -6,6 +6,7 @@ mod face_and_edge_lists;
 mod face_and_edge_walk;
 mod flawed;
 mod strategies;
+mod triangulation;
 
 /// The suite for a correct and slow structure.
 mod correct {

@@ -1,4 +1,4 @@
-//! Tests with polygons of known area.
+//! Polygons of known area, cut into triangles by `sixfold-core`, which cannot use random polygons itself.
 
 use proptest::collection;
 use proptest::prelude::*;
