@@ -219,15 +219,16 @@ pub(crate) fn faces_to_reverse(
     };
     let sides = match facing {
         Facing::Outward if (0..count).any(is_chosen) => {
-            outward(polygons, incidence, &agreement, &first)
+            Some(outward(polygons, incidence, &agreement, &first))
         }
-        _ => vec![Ok(None); count],
+        _ => None,
     };
+    let side = |component: usize| sides.as_ref().map(|sides| sides[component]);
     let reverse_all: Vec<bool> = (0..count)
         .map(|component| {
             let [size, reversed] = sizes[component];
-            match sides[component] {
-                Ok(Some(reverse)) if is_chosen(component) => reverse,
+            match side(component) {
+                Some(Ok(reverse)) if is_chosen(component) => reverse,
                 _ => 2 * reversed > size,
             }
         })
@@ -244,7 +245,7 @@ pub(crate) fn faces_to_reverse(
         Some(NotOrientable { face, faces, ends })
     });
     let undecided = components().filter_map(|(component, face, faces)| {
-        let reason = sides[component].err()?;
+        let reason = side(component)?.err()?;
         let is_named = which == Components::All && agreement.conflicts[component].is_none();
         is_named.then_some(Undecided {
             face,

@@ -154,9 +154,11 @@ impl MeshOutput {
             Ok(())
         })?;
         for loss in &losses {
-            print_stderr(&format!(
-                "note: {name}: {loss}, because {format} cannot keep more"
-            ));
+            let reason = match loss {
+                Loss::CrossingPolygons { .. } => String::new(), // the mesh is the reason
+                _ => format!(", because {format} cannot keep more"),
+            };
+            print_stderr(&format!("note: {name}: {loss}{reason}"));
         }
         Ok(losses)
     }

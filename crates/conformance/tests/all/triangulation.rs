@@ -322,20 +322,18 @@ fn triangulated_crosses(points: &[[i32; 2]]) -> bool {
     cut.crossing == [FaceId::new(0)]
 }
 
-/// A strip that is bent by a right angle, so that it overlaps itself along the axis of its largest
-/// area, but not along its normal.
+/// The polygon crosses itself along the axis nearest to its normal, which is z, but not along its
+/// normal.
 #[test]
 fn bent_polygons_are_cut_along_their_normal() {
-    let corners = [
-        [0.0, 0.0, 0.0],
-        [2.0, 0.0, 1.9],
-        [2.0, 2.0, 1.9],
-        [1.9, 2.0, 4.0],
-        [0.0, 1.0, 2.0],
-    ];
-    let corners = corners.map(DVec3::from_array);
-    let mut cutter = PolygonCutter::default();
-    assert!(!cutter.cut(corners, |_, _| false).is_crossing);
+    let corners = [[-3, 0, 2], [0, 3, 0], [3, -1, 0], [3, 0, -2], [0, -2, -3]];
+    let crosses = |height: f64| {
+        let corners = corners.map(|p| DVec3::from_array(p.map(f64::from)));
+        let scaled = corners.map(|p| DVec3::new(p.x, p.y, height * p.z));
+        let mut cutter = PolygonCutter::default();
+        cutter.cut(scaled, |_, _| false).is_crossing
+    };
+    assert!(!crosses(1.0) && crosses(0.0));
 }
 
 #[test]

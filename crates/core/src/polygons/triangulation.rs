@@ -194,9 +194,13 @@ impl PolygonCutter {
     /// - The triangles of a polygon that touches itself, but does not cross itself, do not overlap
     ///   either, and none is turned over. Some can be flat: a spike that runs out and back on the
     ///   same line has no area. Corners of such a polygon may have the same position.
-    /// - A polygon that crosses itself has no such triangles. It is cut nevertheless, with as little
-    ///   area turned over as was found. If this is at most a millionth of the area, the polygon does
-    ///   not count as crossing: where it touches itself, rounded coordinates cross.
+    /// - A polygon that crosses itself, so that it winds clockwise around some points, has no such
+    ///   triangles. It is cut nevertheless, with as little area turned over as was found. If this is at
+    ///   most a millionth of the area, the polygon does not count as crossing: where it touches itself,
+    ///   rounded coordinates cross.
+    /// - A polygon that crosses itself, but winds counter-clockwise around every point inside, is not
+    ///   recognised: it is cut like a surface that overlaps itself. Its triangles overlap where the
+    ///   polygon winds twice.
     ///
     /// A polygon that is not planar is projected along the axis nearest to its Newell normal. If it
     /// crosses itself there, it is projected along the normal itself. Signs of areas are exact.

@@ -263,8 +263,8 @@ fn starts_with(word: &[u8], keyword: &str) -> bool {
     start.is_some_and(|start| start.eq_ignore_ascii_case(keyword.as_bytes()))
 }
 
-/// Returns whether `word` is a number, or what programs write for one that is none: `nan(ind)`,
-/// `-1.#IND`, `inf`.
+/// Returns whether `word` is a number, or a text that programs write for a number that is not finite:
+/// `nan(ind)`, `-1.#IND`, `inf`.
 fn is_like_number(word: &[u8]) -> bool {
     let first = |byte: &u8| byte.is_ascii_digit() || matches!(byte, b'-' | b'+' | b'.');
     word.first().is_some_and(first) || starts_with(word, "nan") || starts_with(word, "inf")

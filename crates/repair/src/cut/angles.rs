@@ -163,7 +163,7 @@ struct Side {
 }
 
 /// Returns the sides in an order in which the directions alternate around the edge, after a side with
-/// the direction `before`; `None` if there is none. The sides of a group are at one place.
+/// the direction `before`; `None` if no order does this. The sides of a group have the same angle.
 fn alternating(groups: &[Vec<Side>], before: bool) -> Option<Vec<Side>> {
     let mut last = before;
     let mut order = Vec::new();

@@ -11,7 +11,7 @@ use super::{Agreement, UndecidedReason};
 /// The least part of the volumes of its faces, without their signs, that the volume of an open
 /// component has if it clearly bulges to one side.
 const CLEAR_PART: f64 = 0.5;
-/// The least volume of such a component, in units of its area to the power of 3/2.
+/// The least volume of such a component, as a part of the area of its faces to the power of 3/2.
 const CLEAR_VOLUME: f64 = 1e-3;
 /// The least part of a closed component. A smaller volume is only a rounding error.
 const ROUNDING: f64 = 1e-9;
@@ -23,17 +23,14 @@ const DIRECTIONS: [[f64; 3]; 3] = [
     [0.274_813_1, -0.367_919_3, 0.888_316_7],
 ];
 
-/// Whether all faces of a component are to be reversed after those in [`Agreement::reverse`], so that
-/// it faces outward; `None` if this was not asked.
-pub(super) type Side = Result<Option<bool>, UndecidedReason>;
-
-/// Returns for each component on which side it is. `first` has the first face of each.
+/// Returns for each component whether all of its faces are to be reversed after those in
+/// [`Agreement::reverse`], so that it faces outward. `first` has the first face of each.
 pub(super) fn outward(
     polygons: &PolygonMesh,
     incidence: &Incidence<'_>,
     agreement: &Agreement,
     first: &[FaceId],
-) -> Vec<Side> {
+) -> Vec<Result<bool, UndecidedReason>> {
     let volumes = volumes(polygons, incidence, agreement);
     let is_solid = |component: usize| volumes[component].is_closed && volumes[component].is_clear();
     let depths = depths(polygons, agreement, first, is_solid);
@@ -41,10 +38,8 @@ pub(super) fn outward(
         match (volume.is_closed, volume.is_clear()) {
             (true, false) => Err(UndecidedReason::NoVolume),
             (false, false) => Err(UndecidedReason::Flat),
-            (true, true) => {
-                depth.map(|depth| Some((volume.signed < 0.0) == depth.is_multiple_of(2)))
-            }
-            (false, true) => Ok(Some(volume.signed < 0.0)),
+            (true, true) => depth.map(|depth| (volume.signed < 0.0) == depth.is_multiple_of(2)),
+            (false, true) => Ok(volume.signed < 0.0),
         }
     });
     sides.collect()
@@ -57,11 +52,12 @@ struct Volume {
     centre: DVec3,
     /// The number of boundary vertices so far.
     ends: usize,
-    /// Sum of the signed volumes between the centre and each triangle, times 6.
+    /// Sum of the signed volumes between the centre and each triangle.
     signed: f64,
-    /// Sum of these volumes without their signs.
+    /// Sum of these volumes without their signs. Triangles of the fan of a polygon count, so this is
+    /// larger if polygons are not convex.
     size: f64,
-    /// Sum of twice the areas.
+    /// Sum of the areas of these triangles.
     area: f64,
 }
 
@@ -119,10 +115,10 @@ fn volumes(
         // The signed sum does not depend on how the polygon is cut.
         for pair in face[1..].windows(2) {
             let [a, b, c] = [face[0], pair[0], pair[1]].map(at);
-            let part = a.dot(b.cross(c));
+            let part = a.dot(b.cross(c)) / 6.0;
             volume.signed += sign * part;
             volume.size += part.abs();
-            volume.area += (b - a).cross(c - a).length();
+            volume.area += (b - a).cross(c - a).length() / 2.0;
         }
     }
     volumes
