@@ -297,6 +297,31 @@ fn polygons_that_cross_themselves_are_named() {
         assert!(crosses(&turned), "{points:?}");
         assert!(triangulated_crosses(points));
     }
+    // No triangle has to be turned over, because the polygons wind twice around some points. The second
+    // is a strip whose end covers its beginning; the third crosses itself only in its corners.
+    let strip = [
+        [6, 0],
+        [6, 6],
+        [0, 6],
+        [0, 1],
+        [2, 1],
+        [2, 4],
+        [4, 4],
+        [4, 2],
+        [0, 2],
+        [0, 0],
+    ];
+    let mut with_corner = strip.to_vec();
+    with_corner.insert(8, [2, 2]);
+    let pentagon = [[1, -1], [-1, 3], [3, 2], [1, -3], [0, 3]];
+    let twice = [&pentagon[..], &strip, &with_corner];
+    for points in twice {
+        let mut points = points.to_vec();
+        for _ in 0..points.len() {
+            points.rotate_left(1);
+            assert!(crosses(&points), "{points:?}");
+        }
+    }
     let on_a_line = [[0, 0], [2, 2], [1, 1], [3, 3]];
     assert!(!crosses(&on_a_line));
     // A corner that rounding moved across a side by a millionth of the length.

@@ -3,6 +3,7 @@
 mod conflicts;
 mod ears;
 mod exhaustive;
+mod overlap;
 mod plane;
 
 use glam::{DVec2, DVec3};
@@ -134,7 +135,7 @@ impl PolygonMesh {
 pub struct PolygonTriangles<'a> {
     /// For each triangle three corner numbers, from 0 to `n − 1`, in the orientation of the polygon.
     pub triangles: &'a [[usize; 3]],
-    /// Whether the polygon crosses itself. Some of the triangles overlap, and some are turned over.
+    /// Whether the polygon crosses itself. Some of the triangles overlap, and some can be turned over.
     pub is_crossing: bool,
 }
 
@@ -194,13 +195,10 @@ impl PolygonCutter {
     /// - The triangles of a polygon that touches itself, but does not cross itself, do not overlap
     ///   either, and none is turned over. Some can be flat: a spike that runs out and back on the
     ///   same line has no area. Corners of such a polygon may have the same position.
-    /// - A polygon that crosses itself, so that it winds clockwise around some points, has no such
-    ///   triangles. It is cut nevertheless, with as little area turned over as was found. If this is at
-    ///   most a millionth of the area, the polygon does not count as crossing: where it touches itself,
-    ///   rounded coordinates cross.
-    /// - A polygon that crosses itself, but winds counter-clockwise around every point inside, is not
-    ///   recognised: it is cut like a surface that overlaps itself. Its triangles overlap where the
-    ///   polygon winds twice.
+    /// - A polygon that crosses itself winds clockwise around some points, or twice around some, and has
+    ///   no such triangles. It is cut nevertheless, with as little area turned over or overlapping as
+    ///   was found. If this is at most a millionth of the area, the polygon does not count as crossing:
+    ///   where it touches itself, rounded coordinates cross.
     ///
     /// A polygon that is not planar is projected along the axis nearest to its Newell normal. If it
     /// crosses itself there, it is projected along the normal itself. Signs of areas are exact.
@@ -218,8 +216,9 @@ impl PolygonCutter {
     ///
     /// # Complexity
     ///
-    /// O(n·(r + log n)) time for a simple polygon with `r` corners that are not convex. Otherwise
-    /// O(n²), and O(n³) for at most 256 corners that ear clipping does not solve.
+    /// O(n·(r + log n)) time for a simple polygon with `r` corners that are not convex, and up to O(n²)
+    /// if its triangles are long. Otherwise O(n²), and O(n³) for at most 256 corners that ear clipping
+    /// does not solve.
     pub fn cut(
         &mut self,
         corners: impl IntoIterator<Item = DVec3>,
@@ -322,18 +321,18 @@ impl PolygonCutter {
                 return false;
             }
         }
-        if least > MAX_TURNED
+        if least > MAX_WRONG
             && let Some(along_normal) = plane::along_normal(&self.corners, normal)
         {
             for method in [Method::Simple, Method::Touching] {
                 least = self.improve(least, &along_normal, method, &is_edge);
             }
         }
-        least > MAX_TURNED
+        least > MAX_WRONG
     }
 
-    /// Cuts the polygon with the corners `projected`. Keeps the triangles and returns the part of
-    /// their area that is turned over, if this is less than `least`, the part of the triangles so far.
+    /// Cuts the polygon with the corners `projected`. Keeps the triangles and returns the wrong part of
+    /// their area, if this is less than `least`, the part of the triangles so far.
     fn improve(
         &mut self,
         least: f64,
@@ -354,12 +353,12 @@ impl PolygonCutter {
             Method::Exhaustive if corners.len() > exhaustive::MAX_CORNERS => return least,
             Method::Exhaustive => exhaustive::triangulate(corners, projected, is_edge, tried),
         }
-        let turned = plane::turned_part(projected, tried);
-        if turned >= least {
+        let wrong = wrong_part(projected, tried);
+        if wrong >= least {
             return least;
         }
         std::mem::swap(triangles, tried);
-        turned
+        wrong
     }
 }
 
@@ -374,9 +373,23 @@ enum Method {
     Exhaustive,
 }
 
-/// The largest part of the area of the triangles that rounded coordinates turn over, where the polygon
-/// touches itself.
-const MAX_TURNED: f64 = 1e-6;
+/// The largest part of the area of the triangles that is turned over, or that overlaps, because of
+/// rounded coordinates, where the polygon touches itself.
+const MAX_WRONG: f64 = 1e-6;
+
+/// Returns the part of the area of the triangles of a polygon that is turned over. If there is none,
+/// returns the part that overlaps; 0 if this is at most [`MAX_WRONG`].
+fn wrong_part(projected: &[DVec2], triangles: &[[usize; 3]]) -> f64 {
+    let turned = plane::turned_part(projected, triangles);
+    if turned > 0.0 {
+        return turned;
+    }
+    let overlapping = overlap::overlapping_part(projected, triangles);
+    match overlapping > MAX_WRONG {
+        true => overlapping,
+        false => 0.0,
+    }
+}
 
 /// Part by which the second diagonal of a quad must be better than the first. Rounding errors then
 /// do not decide between the diagonals of equal quads.

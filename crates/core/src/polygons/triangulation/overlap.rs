@@ -1,0 +1,126 @@
+//! Triangles that overlap although none is turned over: the polygon winds twice around some points.
+
+use glam::{DVec2, Vec2Swizzles};
+
+use super::plane::orient2d;
+
+/// Returns the area where triangles overlap, divided by the area of all triangles. A point in `k`
+/// triangles counts `k·(k − 1)/2` times. The triangles are those of the polygon `corners`, and none is
+/// turned over.
+///
+/// O(n log n + k) time for a polygon of `n` corners whose triangles have `k` pairs with overlapping
+/// extents along an axis.
+pub(super) fn overlapping_part(corners: &[DVec2], triangles: &[[usize; 3]]) -> f64 {
+    // Two triangles without turned ones lie on either side of their diagonal.
+    if triangles.len() < 3 || is_convex(corners) {
+        return 0.0;
+    }
+    let triangles = || triangles.iter().map(|t| t.map(|i| corners[i]));
+    let all: f64 = triangles().map(|t| area(&t)).sum();
+    let (along_x, along_y) = (
+        sweep_cost(triangles(), |p| p.x),
+        sweep_cost(triangles(), |p| p.y),
+    );
+    let overlap = match along_x <= along_y {
+        true => overlap(triangles().collect()),
+        false => overlap(
+            triangles()
+                .map(|[a, b, c]| [a.yx(), c.yx(), b.yx()])
+                .collect(),
+        ),
+    };
+    match all > 0.0 {
+        true => overlap / all,
+        false => 0.0,
+    }
+}
+
+/// Returns whether all corners turn left and the polygon winds once.
+fn is_convex(corners: &[DVec2]) -> bool {
+    let n = corners.len();
+    let is_before = |a: DVec2, b: DVec2| (a.x, a.y) < (b.x, b.y);
+    let mut ends = 0;
+    for i in 0..n {
+        let [a, b, c] = [i, (i + 1) % n, (i + 2) % n].map(|i| corners[i]);
+        if orient2d(a, b, c) <= 0.0 {
+            return false;
+        }
+        ends += usize::from(is_before(a, b) && is_before(c, b));
+    }
+    ends == 1
+}
+
+/// Returns the mean extent of the triangles along an axis, as a part of the whole extent.
+fn sweep_cost(triangles: impl Iterator<Item = [DVec2; 3]>, axis: impl Fn(DVec2) -> f64) -> f64 {
+    let (mut sum, mut whole) = (0.0, (f64::INFINITY, f64::NEG_INFINITY));
+    for triangle in triangles {
+        let (low, high) = extent(&triangle, &axis);
+        sum += high - low;
+        whole = (whole.0.min(low), whole.1.max(high));
+    }
+    sum / (whole.1 - whole.0)
+}
+
+fn extent(triangle: &[DVec2; 3], axis: impl Fn(DVec2) -> f64) -> (f64, f64) {
+    let [a, b, c] = triangle.map(axis);
+    (a.min(b).min(c), a.max(b).max(c))
+}
+
+/// Returns the sum of the areas of the intersections of all pairs of triangles, by a sweep along x.
+fn overlap(mut triangles: Vec<[DVec2; 3]>) -> f64 {
+    triangles.sort_by(|a, b| extent(a, |p| p.x).0.total_cmp(&extent(b, |p| p.x).0));
+    let mut sum = 0.0;
+    let mut active: Vec<([DVec2; 3], f64, (f64, f64))> = Vec::new();
+    for triangle in triangles {
+        let ((left, right), (low, high)) = (extent(&triangle, |p| p.x), extent(&triangle, |p| p.y));
+        active.retain(|&(_, end, _)| end > left);
+        for (other, _, y) in &active {
+            if y.0 < high && low < y.1 && !is_apart(&triangle, other) && !is_apart(other, &triangle)
+            {
+                sum += area(&intersection(&triangle, other));
+            }
+        }
+        active.push((triangle, right, (low, high)));
+    }
+    sum
+}
+
+/// Returns whether a side of `triangle` separates it from `other`.
+fn is_apart(triangle: &[DVec2; 3], other: &[DVec2; 3]) -> bool {
+    let [a, b, c] = *triangle;
+    let is_outside = |[from, to]: [DVec2; 2]| other.iter().all(|&p| orient2d(from, to, p) <= 0.0);
+    [[a, b], [b, c], [c, a]].into_iter().any(is_outside)
+}
+
+/// Returns the polygon in which two triangles intersect (Sutherland & Hodgman 1974).
+fn intersection(triangle: &[DVec2; 3], other: &[DVec2; 3]) -> Vec<DVec2> {
+    let [a, b, c] = *other;
+    let mut polygon = triangle.to_vec();
+    for [from, to] in [[a, b], [b, c], [c, a]] {
+        let height = |p: DVec2| orient2d(from, to, p);
+        let mut inside = Vec::with_capacity(polygon.len() + 1);
+        let next = polygon.iter().cycle().skip(1);
+        for (&p, &q) in polygon.iter().zip(next) {
+            let (at_p, at_q) = (height(p), height(q));
+            if at_p >= 0.0 {
+                inside.push(p);
+            }
+            if (at_p > 0.0 && at_q < 0.0) || (at_p < 0.0 && at_q > 0.0) {
+                inside.push(p.lerp(q, at_p / (at_p - at_q)));
+            }
+        }
+        polygon = inside;
+    }
+    polygon
+}
+
+/// Returns the area of a convex polygon whose corners run counter-clockwise.
+fn area(polygon: &[DVec2]) -> f64 {
+    let Some((&first, rest)) = polygon.split_first() else {
+        return 0.0;
+    };
+    let fan = rest.windows(2);
+    0.5 * fan
+        .map(|pair| (pair[0] - first).perp_dot(pair[1] - first))
+        .sum::<f64>()
+}
