@@ -9,7 +9,7 @@
 //! |---|---|---|---|
 //! | [`Step::Weld`] | merges vertices within a distance | n log n | |
 //! | [`Step::RemoveDuplicateFaces`] | removes faces that occur twice | n | |
-//! | [`Step::RemoveFlatFaces`] | removes faces without area | n | |
+//! | [`Step::RemoveFlatFaces`] | removes faces without area | n log n | |
 //! | [`Step::Orient`] | reverses faces until neighbours agree | n log n | |
 //! | [`Step::Cut`] | cuts non-manifold edges and vertices | n log n | after Guéziec et al. 2001 |
 //! | [`Step::FillHoles`] | triangulates holes | edges³ per hole | Barequet & Sharir 1995, Liepa 2003 |

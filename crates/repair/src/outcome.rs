@@ -28,7 +28,7 @@ pub struct StepCounts {
     pub faces_added: usize,
     /// Faces that were removed.
     pub faces_removed: usize,
-    /// Faces that lost corners or became several faces.
+    /// Faces that lost or gained corners, or became several faces.
     pub faces_changed: usize,
     /// Faces that were reversed.
     pub faces_reversed: usize,
@@ -91,6 +91,11 @@ pub enum Left {
         vertex: VertexId,
         edges: usize,
     },
+    /// A face without area whose removal would add a boundary edge or a non-manifold edge.
+    FlatFace {
+        #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::row"))]
+        face: FaceId,
+    },
     /// A polygon that crosses itself and was cut into triangles, which overlap.
     CrossingFace {
         #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::row"))]
@@ -131,6 +136,10 @@ impl fmt::Display for Left {
             Self::CoveringHole { vertex, edges } => write!(
                 f,
                 "the hole at vertex {vertex} ({edges} edges) is not filled, because its triangles would lie on the mesh"
+            ),
+            Self::FlatFace { face } => write!(
+                f,
+                "face {face} has no area, but remains: without it, an edge would have one face, or more than two"
             ),
             Self::CrossingFace { face } => {
                 write!(f, "face {face} crosses itself, so its triangles overlap")

@@ -29,7 +29,14 @@ pub enum Step {
     Weld(Weld),
     /// Removes faces that name the same vertices in the same cyclic order as an earlier face.
     RemoveDuplicateFaces(OppositeFaces),
-    /// Removes faces whose area is exactly zero in double precision.
+    /// Removes faces whose area is exactly zero in double precision, and adds neither boundary edges
+    /// nor non-manifold edges.
+    ///
+    /// A triangle with two corners at one position is removed by merging their vertices. If one corner
+    /// of a triangle lies between the others, the other face on the longest edge gets this corner, and
+    /// becomes two triangles if it is a triangle (the edge is flipped). Polygons without area are cut
+    /// into triangles first. Faces that cannot be removed in these ways are named in the report. The
+    /// areas of other faces together do not change.
     RemoveFlatFaces,
     /// Reverses faces until adjacent faces agree. A component that is not orientable remains
     /// unchanged and is named in the report.

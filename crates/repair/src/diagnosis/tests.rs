@@ -4,6 +4,7 @@ use sixfold_conformance::strategy::{any_capabilities, any_mesh, faulty_mesh};
 use sixfold_core::Facts;
 
 use super::*;
+use crate::outcome::Left;
 use crate::step::repair;
 
 fn count(diagnosis: &Diagnosis, kind: FaultKind) -> usize {
@@ -62,15 +63,20 @@ proptest! {
         prop_assert_eq!(measured, crate::measures(&polygons));
     }
 
-    /// The steps that a diagnosis names repair the fault. A hole can remain if no triangles fit.
+    /// The steps that a diagnosis names repair the fault. A hole can remain if no triangles fit, and a
+    /// face without area if an edge would open.
     #[test]
     fn the_named_steps_repair_the_fault(polygons in damaged()) {
         let diagnosis = diagnose(&polygons, 1);
         for fault in &diagnosis.faults {
             let repaired = repair(&polygons, &diagnosis.repairs(fault.kind)).expect("small");
             let after = diagnose(&repaired.polygons, 1);
-            if fault.kind != FaultKind::BoundaryEdge {
-                prop_assert_eq!(after.fault(fault.kind), None);
+            let remain = repaired.steps.iter().flat_map(|step| &step.left);
+            let flat = remain.filter(|left| matches!(left, Left::FlatFace { .. })).count();
+            match fault.kind {
+                FaultKind::BoundaryEdge => {}
+                FaultKind::FlatFace => prop_assert_eq!(count(&after, fault.kind), flat),
+                _ => prop_assert_eq!(after.fault(fault.kind), None),
             }
         }
     }

@@ -7,7 +7,10 @@ use proptest::prelude::*;
 use sixfold_conformance::strategy::{
     any_capabilities, any_mesh, faulty_mesh, manifold_mesh, touching_polygon,
 };
-use sixfold_core::{FaceId, Facts, MeshQuery, PolygonMesh, Representation, VertexId, area_vector};
+use sixfold_core::glam::DVec3;
+use sixfold_core::{
+    FaceId, Facts, Incidence, MeshQuery, PolygonMesh, Representation, VertexId, area_vector,
+};
 use sixfold_corner_table::CornerTable;
 use sixfold_face_vertex::FaceVertexMesh;
 use sixfold_half_edge::HalfEdgeMesh;
@@ -165,7 +168,7 @@ fn assert_true_counts(old: &PolygonMesh, repaired: &Repaired) -> Result<(), Test
 }
 
 /// Checks that both directions of the maps agree, that no vertex moves by more than `tolerance`, and
-/// that the corners of each face come from its old face.
+/// that the corners of each face come from its old face, except for faces that get corners.
 fn assert_true_maps(
     old: &PolygonMesh,
     repaired: &Repaired,
@@ -186,7 +189,12 @@ fn assert_true_maps(
             prop_assert!(repaired.vertices.new_elements(v).contains(&w));
         }
     }
-    for (g, corners) in new.faces().iter() {
+    // Faces get corners from neighbours without area.
+    let has_new_corners = repaired
+        .steps
+        .iter()
+        .any(|step| step.step == Step::RemoveFlatFaces);
+    for (g, corners) in new.faces().iter().filter(|_| !has_new_corners) {
         for f in repaired.faces.old_elements(g) {
             let before: BTreeSet<VertexId> = old.faces().face(f).iter().copied().collect();
             for &w in corners {
@@ -198,12 +206,87 @@ fn assert_true_maps(
     Ok(())
 }
 
+/// Returns the number of edges with one face, and of edges with more than two.
+fn open_and_non_manifold(mesh: &PolygonMesh) -> [usize; 2] {
+    let incidence = Incidence::new(mesh.vertex_count(), mesh.faces(), |_| true);
+    let faces = incidence.edges().map(|edge| edge.sides().count());
+    let faces: Vec<usize> = faces.collect();
+    let count = |is_counted: fn(usize) -> bool| faces.iter().filter(|&&n| is_counted(n)).count();
+    [count(|n| n == 1), count(|n| n > 2)]
+}
+
+/// Returns the sum of the area vectors of the faces that are not flat, and the sum of their areas.
+fn area_of(mesh: &PolygonMesh) -> (DVec3, f64) {
+    let faces = mesh.faces().iter();
+    let areas =
+        faces.map(|(_, face)| area_vector(face.iter().map(|&v| mesh.position(v).as_dvec3())));
+    areas.fold((DVec3::ZERO, 0.0), |(sum, size), area| {
+        (sum + area, size + area.length())
+    })
+}
+
+/// Moves vertices to few places on a grid, so that many faces have no area.
+fn crumpled() -> impl Strategy<Value = PolygonMesh> {
+    let mesh = prop_oneof![3 => manifold_mesh(), 1 => any_mesh()];
+    (
+        mesh,
+        collection::vec(prop::array::uniform3(0..3_i8), 1..40),
+        any::<bool>(),
+    )
+        .prop_map(|(mesh, places, in_plane)| {
+            let place = |v: usize| {
+                let [x, y, z] = places[v % places.len()].map(f32::from);
+                [x, y, if in_plane { 0.0 } else { z }]
+            };
+            let points: Vec<[f32; 3]> = (0..mesh.vertex_count()).map(place).collect();
+            PolygonMesh::new(points, faces_of(&mesh)).expect("the same faces")
+        })
+}
+
 /// Returns the number of old faces that have no new face.
 fn lost_faces(repaired: &Repaired) -> usize {
     let faces = (0..repaired.faces.old_count() as u32).map(FaceId::new);
     faces
         .filter(|&f| repaired.faces.new_elements(f).is_empty())
         .count()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        failure_persistence: None,
+        cases: 1000,
+        ..ProptestConfig::default()
+    })]
+
+    /// Faces without area are removed, or named; no edge opens, and the other faces keep their area.
+    #[test]
+    fn faces_without_area_leave_no_holes(polygons in crumpled()) {
+        let run = |mesh: &PolygonMesh| repair(mesh, &[Step::RemoveFlatFaces]).expect("small");
+        let repaired = run(&polygons);
+        let new = &repaired.polygons;
+        assert_true_counts(&polygons, &repaired)?;
+        let [before, after] = [&polygons, new].map(open_and_non_manifold);
+        prop_assert!(after[0] <= before[0], "{before:?} {after:?}");
+        prop_assert!(after[1] <= before[1] || before[1] > 0, "{before:?} {after:?}");
+        let ((sum, size), (new_sum, new_size)) = (area_of(&polygons), area_of(new));
+        prop_assert!((sum - new_sum).length() < 1e-9 * size.max(1.0), "{sum} {new_sum}");
+        let left = &repaired.steps[0].left;
+        if !left.iter().any(|left| matches!(left, Left::CrossingFace { .. })) && polygons.first_polygon().is_none() {
+            prop_assert!((size - new_size).abs() < 1e-9 * size.max(1.0), "{size} {new_size}");
+        }
+        let is_flat = |face: &[VertexId]| {
+            area_vector(face.iter().map(|&v| new.position(v).as_dvec3())) == DVec3::ZERO
+        };
+        let flat = new.faces().iter().filter(|(_, face)| is_flat(face));
+        let origins = flat.map(|(f, _)| repaired.faces.old_elements(f)[0]);
+        let origins: BTreeSet<FaceId> = origins.collect();
+        let named = left.iter().filter_map(|left| match left {
+            Left::FlatFace { face } => Some(*face),
+            _ => None,
+        });
+        prop_assert_eq!(named.collect::<BTreeSet<FaceId>>(), origins);
+        prop_assert_eq!(&run(new).polygons, new);
+    }
 }
 
 proptest! {
