@@ -241,7 +241,7 @@ fn tables_report_all_bytes_after_edits() {
     let polygons = shapes::geodesic(12).expect("2,880 triangles");
     let decimation = Decimation {
         target: Target::Ratio(0.3),
-        boundary: DecimationBoundary::default(),
+        ..Decimation::default()
     };
     for_each_editable!(M => {
         let before = Counters.live();

@@ -91,7 +91,11 @@ fn decimation_is_the_same_on_all() {
         for boundary in [DecimationBoundary::Follow, DecimationBoundary::Fixed] {
             for ratio in [0.6, 0.3, 0.1] {
                 let target = Target::Ratio(ratio);
-                let operator = Decimation { target, boundary };
+                let operator = Decimation {
+                    target,
+                    boundary,
+                    ..Decimation::default()
+                };
                 compare_structures(&operator, polygons, &format!("{operator:?} of surface {i}"));
             }
         }

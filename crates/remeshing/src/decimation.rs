@@ -6,13 +6,15 @@ use glam::DVec3;
 use sixfold_core::{MeshEdit, Point, row};
 
 use crate::Stop;
+use crate::deviation::Deviation;
 use crate::error::RemeshError;
 use crate::numbering::{Numbering, corners};
 use crate::quadric::{Packed, Quadric};
 use crate::queue::{Entry, Queue};
 use crate::rules::{keeps_orientation, may_collapse};
 
-/// Weight of a plane through a boundary edge, relative to the plane of a face.
+/// Weight of a plane through a boundary edge or an edge with three or more faces, relative to the plane
+/// of a face.
 const BOUNDARY_WEIGHT: f64 = 100.0;
 
 /// Number of collapses between two calls of `watch`.
@@ -21,8 +23,8 @@ const WATCH_INTERVAL: usize = 1024;
 /// The target of a decimation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// This number of faces. The result can have one face fewer, because a collapse can remove two
-    /// faces.
+    /// This number of faces. The result can have fewer faces, because a collapse can remove two faces,
+    /// or more at an edge with more faces.
     Faces(usize),
     /// This fraction of the faces of the input, from 0 to 1.
     Ratio(f64),
@@ -58,14 +60,20 @@ sixfold_core::named! {
     }
 }
 
-/// The options of a decimation. By default, half of the faces remain and the boundary is
-/// simplified.
+/// The options of a decimation. By default, half of the faces remain, the boundary is simplified, and
+/// the surface may deviate by any distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decimation {
     /// The number of faces to keep.
     pub target: Target,
     /// The treatment of vertices on boundary edges.
     pub boundary: DecimationBoundary,
+    /// The largest distance between the input and the result, in units of the coordinates; `None` for
+    /// any distance. A collapse is refused if, after it, a vertex of the input is farther than this
+    /// from the result, or a vertex, the middle of an edge or the centroid of a face of the result is
+    /// farther from the input. The time per collapse then grows with the number of vertices that were
+    /// merged around the edge.
+    pub max_distance: Option<f64>,
 }
 
 impl Default for Decimation {
@@ -73,6 +81,7 @@ impl Default for Decimation {
         Self {
             target: Target::Ratio(0.5),
             boundary: DecimationBoundary::Follow,
+            max_distance: None,
         }
     }
 }
@@ -85,8 +94,8 @@ pub struct Decimated {
     pub faces: usize,
     /// The number of collapsed edges.
     pub collapses: usize,
-    /// The number of refused collapses. A collapse is refused if the collapse is illegal or would
-    /// turn a face over.
+    /// The number of refused collapses. A collapse is refused if the collapse is illegal, would turn a
+    /// face over, or would exceed the largest distance.
     pub refused: usize,
     /// A hash of the ends of the refused collapses, in order; 0 if no collapse was refused. Two
     /// decimations of one mesh that refuse different collapses have different hashes.
@@ -94,6 +103,9 @@ pub struct Decimated {
     /// The largest error of a collapse. The error is a sum of squared distances to the planes of
     /// faces. Each squared distance is multiplied by the area of its face.
     pub max_error: f64,
+    /// The largest distance of a vertex of the input from the faces around the vertex that it was
+    /// merged into; `None` if the options have no largest distance.
+    pub max_distance: Option<f64>,
     /// The reason why the decimation ended.
     pub stop: Stop,
 }
@@ -105,10 +117,11 @@ pub struct Decimated {
 /// of all vertices that were merged into the vertex. Each face contributes the squared distance to
 /// its plane, multiplied by the area of the face. The merged vertex is placed where the sum of the
 /// errors of both ends is least. If the sum is least at many points, the merged vertex is placed at
-/// the best of three points: the two ends and their midpoint. Boundary edges add planes
-/// perpendicular to the surface, which preserve the shape of the boundary. A collapse is refused if
-/// it would turn a face over or break the link condition. A refused collapse is tried again after
-/// an end of the edge has changed.
+/// the best of three points: the two ends and their midpoint. Boundary edges and edges with three or
+/// more faces add planes perpendicular to their faces, which preserve the shape of these curves. A
+/// collapse is refused if it would turn a face over or break the link condition
+/// ([`meets_link_condition`](crate::meets_link_condition)), or if the surface would deviate by more
+/// than the largest distance. A refused collapse is tried again after an end of the edge has changed.
 ///
 /// Errors are rounded into buckets, so that the errors in one bucket differ by at most an eighth. A
 /// round collapses all edges of the bucket with the lowest errors, in the order of their vertex
@@ -116,8 +129,9 @@ pub struct Decimated {
 ///
 /// # Errors
 ///
-/// Returns [`RemeshError`] if a face is not a triangle, if a position is not finite, or if the
-/// ratio is not from 0 to 1. The mesh is then unchanged.
+/// Returns [`RemeshError`] if a face is not a triangle, if a position is not finite, if the ratio is
+/// not from 0 to 1, or if the largest distance is not a number of at least 0. The mesh is then
+/// unchanged.
 ///
 /// # Complexity
 ///
@@ -144,12 +158,17 @@ pub fn decimate_watched<M: MeshEdit>(
 ) -> Result<Decimated, RemeshError> {
     let target = decimation.target.face_count(mesh.face_count())?;
     let mut work = Work::new(mesh, decimation.boundary)?;
+    if let Some(limit) = decimation.max_distance {
+        let positions = work.vertices.iter().map(|vertex| vertex.at).collect();
+        work.deviation = Some(Deviation::new(mesh, positions, limit)?);
+    }
     let mut report = Decimated {
         faces: mesh.face_count(),
         collapses: 0,
         refused: 0,
         refused_hash: 0,
         max_error: 0.0,
+        max_distance: None,
         stop: Stop::Done,
     };
     if report.faces > target {
@@ -181,6 +200,8 @@ pub fn decimate_watched<M: MeshEdit>(
     }
     // Areas and squared distances were computed in a box of unit size.
     report.max_error *= work.size.powi(4);
+    let deviation = work.deviation.as_ref();
+    report.max_distance = deviation.map(|deviation| deviation.largest(mesh, &work.numbering));
     Ok(report)
 }
 
@@ -202,6 +223,8 @@ struct Work<M: MeshEdit> {
     numbering: Numbering<M>,
     vertices: Vec<Vertex>,
     queue: Queue,
+    /// The distance to the input, if it is limited.
+    deviation: Option<Deviation>,
     /// The size of the mesh. Positions are divided by this size.
     size: f64,
 }
@@ -225,14 +248,15 @@ impl<M: MeshEdit> Work<M> {
             numbering,
             vertices,
             queue: Queue::new(),
+            deviation: None,
             size: if size > 0.0 { size } else { 1.0 },
         };
         work.add_planes(mesh, boundary);
         Ok(work)
     }
 
-    /// Adds the planes of the faces and the planes at the boundary to the quadrics of their
-    /// vertices. The origin of each quadric is its vertex.
+    /// Adds the planes of the faces, and the planes at the boundary and at edges with three or more
+    /// faces, to the quadrics of their vertices. The origin of each quadric is its vertex.
     fn add_planes(&mut self, mesh: &M, boundary: DecimationBoundary) {
         let face_counts = mesh.edge_face_counts();
         let mut quadrics = vec![Quadric::default(); self.vertices.len()];
@@ -253,13 +277,13 @@ impl<M: MeshEdit> Work<M> {
             }
             for e in mesh.face_edges(f) {
                 let (i, j) = self.ends(mesh, e);
-                if face_counts[e] == 1 {
+                if face_counts[e] != 2 {
                     let along = self.offset(i, j);
                     if let Some(normal) = along.cross(normal).try_normalize() {
                         let weight = BOUNDARY_WEIGHT * along.length_squared();
                         boundary_planes.push(([i, j], Quadric::plane(normal, weight)));
                     }
-                    if boundary == DecimationBoundary::Fixed {
+                    if face_counts[e] == 1 && boundary == DecimationBoundary::Fixed {
                         self.vertices[i as usize].fixed = true;
                         self.vertices[j as usize].fixed = true;
                     }
@@ -372,7 +396,14 @@ impl<M: MeshEdit> Work<M> {
         if !keeps_orientation(mesh, ends, to.as_dvec3()) || !may_collapse(mesh, e) {
             return None;
         }
+        let deviation = self.deviation.as_ref();
+        if deviation.is_some_and(|d| !d.allows(mesh, &self.numbering, entry.ends, to)) {
+            return None;
+        }
         let kept = mesh.collapse_edge(e, ends[0], to).ok()?;
+        if let Some(deviation) = &mut self.deviation {
+            deviation.merge(entry.ends);
+        }
         self.numbering.set_handle(a, kept);
         self.numbering.remove(b);
         // The position is stored as f32, so it is not exactly the best place.

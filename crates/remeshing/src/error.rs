@@ -21,6 +21,11 @@ pub enum RemeshError {
     /// The ratio is not a number from 0 to 1.
     #[error("the ratio {ratio} is not from 0 to 1: give the fraction of the faces to keep")]
     BadRatio { ratio: f64 },
+    /// The largest distance is not a number, or below 0.
+    #[error(
+        "the largest distance {distance} is not a number from 0: choose one in units of the coordinates"
+    )]
+    BadDistance { distance: f64 },
     /// The edge length is not a finite positive number.
     #[error("the edge length {length} is not a finite positive number: choose a length above 0")]
     BadLength { length: f64 },

@@ -72,6 +72,7 @@
 
 mod decimation;
 mod delaunay;
+mod deviation;
 mod error;
 mod isotropic;
 mod numbering;

@@ -38,26 +38,30 @@ pub(crate) fn keeps_orientation<M: MeshEdit>(mesh: &M, [a, b]: [M::Vertex; 2], t
     true
 }
 
-/// Returns whether a collapse of `e` would keep the mesh a manifold. Structures that hold only
-/// manifolds refuse other collapses themselves.
+/// Returns whether a collapse of `e` would keep the topology. Structures that hold only manifolds
+/// refuse other collapses themselves.
 pub(crate) fn may_collapse<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
     !M::CAPABILITIES.non_manifold_edges || meets_link_condition(mesh, e)
 }
 
-/// Returns whether edge `e` of a manifold meets the link condition (Dey et al. 1999): a collapse of
-/// `e` then keeps the topology of the surface. O(v²), where v is the valence of the ends of `e`.
+/// Returns whether edge `e` meets the link condition (Dey et al. 1999): a collapse of `e` then keeps
+/// the topology of the surface, and of the curves of edges that do not have two faces. O(v²), where v
+/// is the valence of the ends of `e`.
 ///
 /// Half-edge, winged-edge and corner-table meshes refuse a collapse that does not meet the
 /// condition. Polygon soups, indexed face sets and face-vertex meshes also hold meshes that are not
 /// manifolds, therefore [`MeshEdit::collapse_edge`] makes the collapse. A program that is to do the
 /// same on all structures calls this function first.
 ///
-/// The condition is met if all of the following is true:
+/// Edges with one face (the boundary) and edges with three or more faces form curves. A curve ends at
+/// its corners: vertices with other than two such edges, or with two that differ in their number of
+/// faces. The condition is met if all of the following is true:
 ///
-/// - `e` has one or two faces.
 /// - Each vertex that is adjacent to both ends of `e` is the third corner of a triangle along `e`,
 ///   and no two of these triangles have the same third corner.
-/// - If `e` has two faces, an end of `e` is not on the boundary.
+/// - If `e` has two faces, an end of `e` is not on a curve.
+/// - If `e` is part of a curve, an end of `e` is not a corner, and no triangle along `e` has a curve on
+///   both other sides.
 /// - `e` is not an edge of a tetrahedron.
 ///
 /// # Examples
@@ -88,7 +92,7 @@ pub fn meets_link_condition<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
             apexes.extend(mesh.face_vertices(f).find(|&v| v != a && v != b));
         }
     }
-    if faces > 2 || (apexes.len() == 2 && apexes[0] == apexes[1]) {
+    if (1..apexes.len()).any(|i| apexes[..i].contains(&apexes[i])) {
         return false;
     }
     let at_b: Vec<M::Vertex> = mesh.vertex_vertices(b).collect();
@@ -97,14 +101,58 @@ pub fn meets_link_condition<M: MeshEdit>(mesh: &M, e: M::Edge) -> bool {
     if common != apexes.len() {
         return false;
     }
-    if apexes.len() == 2 {
-        // A collapse of a tetrahedron would make two triangles with the same corners.
-        let closed = |v| mesh.vertex_faces(v).count() == 3;
-        if at_a.len() == 3 && at_b.len() == 3 && closed(a) && closed(b) {
-            return false;
+    // Two ends of a manifold are in a tetrahedron only if both have three neighbours.
+    let may_be_tetrahedron = faces > 2 || at_a.len() == 3 && at_b.len() == 3;
+    if may_be_tetrahedron && is_in_tetrahedron(mesh, [a, b], &apexes) {
+        return false;
+    }
+    match faces {
+        2 => !(is_on_curve(mesh, a) && is_on_curve(mesh, b)),
+        _ => {
+            let has_curves = |&apex: &M::Vertex| [a, b].iter().all(|&v| is_curve(mesh, v, apex));
+            let may_move = !is_corner(mesh, a) || !is_corner(mesh, b);
+            may_move && !apexes.iter().any(has_curves)
         }
     }
-    faces < 2 || !(is_boundary(mesh, a) && is_boundary(mesh, b))
+}
+
+/// Returns whether two triangles on both ends have the same other two corners, which are `apexes`: a
+/// collapse would make them one.
+fn is_in_tetrahedron<M: MeshEdit>(mesh: &M, ends: [M::Vertex; 2], apexes: &[M::Vertex]) -> bool {
+    let [at_a, at_b] = ends.map(|end| {
+        let faces = mesh
+            .vertex_faces(end)
+            .filter(|&f| mesh.face_vertices(f).count() == 3);
+        let opposite = faces.map(|f| {
+            let [_, p, q] = corners_from(mesh, f, end);
+            [p.min(q), p.max(q)]
+        });
+        let between = opposite.filter(|side| side.iter().all(|v| apexes.contains(v)));
+        between.collect::<Vec<_>>()
+    });
+    at_a.iter().any(|side| at_b.contains(side))
+}
+
+/// Returns the numbers of faces of the edges at `v` that do not have two faces.
+fn curves_at<M: MeshEdit>(mesh: &M, v: M::Vertex) -> impl Iterator<Item = usize> {
+    let counts = mesh.vertex_edges(v).map(|e| mesh.edge_faces(e).count());
+    counts.filter(|&faces| faces != 2)
+}
+
+fn is_on_curve<M: MeshEdit>(mesh: &M, v: M::Vertex) -> bool {
+    curves_at(mesh, v).next().is_some()
+}
+
+/// Returns whether a curve ends at `v`.
+fn is_corner<M: MeshEdit>(mesh: &M, v: M::Vertex) -> bool {
+    let curves: Vec<usize> = curves_at(mesh, v).take(3).collect();
+    !matches!(curves[..], [one, other] if one == other)
+}
+
+/// Returns whether the edge between two adjacent vertices does not have two faces.
+fn is_curve<M: MeshEdit>(mesh: &M, a: M::Vertex, b: M::Vertex) -> bool {
+    let e = mesh.edge_between(a, b);
+    e.is_some_and(|e| mesh.edge_faces(e).count() != 2)
 }
 
 /// Returns whether `v` is an end of an edge with one face.

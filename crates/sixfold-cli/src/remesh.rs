@@ -5,7 +5,8 @@ use std::process::ExitCode;
 
 use sixfold::io::WriteOptions;
 use sixfold::remeshing::{
-    Decimation, DecimationBoundary, RemeshError, Remeshing, Stop, decimate_watched, remesh_watched,
+    Decimation, DecimationBoundary, RemeshError, Remeshing, Stop, Target, decimate_watched,
+    remesh_watched,
 };
 use sixfold::repair::measures;
 use sixfold::{
@@ -30,6 +31,7 @@ pub(crate) fn decimate(arguments: &Decimate) -> Result<ExitCode, Failure> {
     let decimation = Decimation {
         target: arguments.goal.target(),
         boundary: arguments.boundary,
+        max_distance: arguments.goal.max_error,
     };
     edit_file(
         &arguments.files,
@@ -180,20 +182,30 @@ impl Work for Decimation {
         });
         bar.clear();
         let report = report?;
-        let shortfall = (report.stop != Stop::Done).then(|| {
+        // Without a target, the distance ends the decimation.
+        let has_target = self.max_distance.is_none() || self.target != Target::Faces(0);
+        let shortfall = (report.stop != Stop::Done && has_target).then(|| {
             let fixed = match self.boundary {
                 DecimationBoundary::Fixed => "move the boundary, ",
                 DecimationBoundary::Follow => "",
             };
+            let far = match self.max_distance {
+                Some(_) => "exceed the distance, ",
+                None => "",
+            };
             format!(
-                "the target of {} was not reached, because any further collapse would {fixed}flip \
-                 a face or change the topology",
+                "the target of {} was not reached, because any further collapse would \
+                 {far}{fixed}flip a face or change the topology",
                 counted(target, "face", "faces")
             )
         });
         let edits = counted(report.collapses, "edge", "edges");
+        let distance = report.max_distance.map(|distance| {
+            let distance = figure(distance);
+            format!(", the vertices of the mesh within {distance}")
+        });
         Ok(EditSummary {
-            edits: format!("{edits} collapsed"),
+            edits: format!("{edits} collapsed{}", distance.unwrap_or_default()),
             shortfall,
         })
     }

@@ -3,11 +3,16 @@ use std::collections::BTreeSet;
 use sixfold_core::{MeshQuery, Point, PolygonMesh, Representation};
 use sixfold_half_edge::EditableHalfEdgeMesh;
 use sixfold_indexed_face_set::EditableIndexedFaceSet;
+use sixfold_spatial::{Bvh, SpatialIndex, SurfaceQueries, polygon_triangles};
 
 use super::*;
 
 fn decimation(target: Target, boundary: DecimationBoundary) -> Decimation {
-    Decimation { target, boundary }
+    Decimation {
+        target,
+        boundary,
+        ..Decimation::default()
+    }
 }
 
 fn decimated(polygons: &PolygonMesh, options: &Decimation) -> (EditableHalfEdgeMesh, Decimated) {
@@ -167,4 +172,111 @@ fn watch_can_end_the_decimation() {
     let report = report.expect("triangles");
     assert_eq!((report.stop, report.collapses), (Stop::Requested, 1024));
     assert_eq!(mesh.validate(), Ok(()));
+}
+
+/// Three plates of `n × n` squares that meet in the z axis, at 120 degrees; `2·n²` triangles each.
+fn three_plates(n: u32) -> PolygonMesh {
+    let mut points: Vec<Point> = (0..=n).map(|z| Point::new(0.0, 0.0, z as f32)).collect();
+    let mut faces = Vec::new();
+    for plate in 0..3 {
+        let angle = f64::from(plate) * std::f64::consts::TAU / 3.0;
+        let outward = Point::new(angle.cos() as f32, angle.sin() as f32, 0.0);
+        let first = points.len() as u32;
+        for x in 1..=n {
+            points.extend((0..=n).map(|z| outward * x as f32 + Point::Z * z as f32));
+        }
+        let at = |x: u32, z: u32| match x {
+            0 => z,
+            _ => first + (x - 1) * (n + 1) + z,
+        };
+        for (x, z) in (0..n).flat_map(|x| (0..n).map(move |z| (x, z))) {
+            let [a, b] = [at(x, z), at(x + 1, z)];
+            let [c, d] = [at(x + 1, z + 1), at(x, z + 1)];
+            faces.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    PolygonMesh::new(points, faces).expect("valid")
+}
+
+#[test]
+fn plates_on_one_line_keep_their_corners() {
+    let plates = three_plates(6);
+    let options = decimation(Target::Faces(6), DecimationBoundary::Follow);
+    let mut mesh = EditableIndexedFaceSet::from_polygons(&plates).expect("holds all");
+    let report = decimate(&mut mesh, &options).expect("triangles");
+    assert_eq!((report.faces, report.stop), (6, Stop::Done));
+    let out = mesh.to_polygons();
+    assert!((area(&out) - 3.0 * 36.0).abs() < 1e-3, "{}", area(&out));
+    let mut at_corners = 0;
+    for p in mesh.vertices().map(|v| mesh.position(v)) {
+        let far = p.truncate().length();
+        let is_corner =
+            (far < 1e-3 || (far - 6.0).abs() < 1e-3) && [0.0, 6.0].contains(&p.z.round());
+        at_corners += usize::from(is_corner);
+    }
+    assert_eq!((mesh.vertex_count(), at_corners), (8, 8));
+    // No fewer: each plate is a rectangle, and their topology stays.
+    let options = decimation(Target::Faces(0), DecimationBoundary::Follow);
+    let report = decimate(&mut mesh, &options).expect("triangles");
+    assert_eq!(report.stop, Stop::NoLegalEdit);
+    let counts = mesh.edges().map(|e| mesh.edge_faces(e).count());
+    assert_eq!(counts.filter(|&faces| faces == 3).count(), 1);
+}
+
+fn bounded(distance: f64) -> Decimation {
+    Decimation {
+        target: Target::Faces(0),
+        max_distance: Some(distance),
+        ..Decimation::default()
+    }
+}
+
+#[test]
+fn the_largest_distance_is_kept() {
+    let sphere = sixfold_shapes::geodesic(12).expect("small");
+    let surface = Bvh::build(polygon_triangles(&sphere).expect("finite")).expect("small");
+    let mut faces_before = sphere.face_count();
+    for limit in [0.004, 0.01, 0.05, 0.2] {
+        let (mesh, report) = decimated(&sphere, &bounded(limit));
+        let largest = report.max_distance.expect("it was limited");
+        assert!(
+            largest <= limit && largest > 0.4 * limit,
+            "{largest} of {limit}"
+        );
+        assert!(report.faces < faces_before, "{} at {limit}", report.faces);
+        faces_before = report.faces;
+        let out = mesh.to_polygons();
+        for &p in out.positions() {
+            let closest = surface.closest_point(p).expect("not empty");
+            assert!(closest.distance() <= limit);
+        }
+        let new = Bvh::build(polygon_triangles(&out).expect("finite")).expect("small");
+        for &p in sphere.positions() {
+            let closest = new.closest_point(p).expect("not empty");
+            assert!(closest.distance() <= limit * (1.0 + 1e-6));
+        }
+    }
+    assert!(faces_before < 40, "{faces_before}");
+}
+
+#[test]
+fn a_flat_surface_does_not_deviate() {
+    let grid = sixfold_shapes::triangle_grid(10, 10).expect("small");
+    let (_, report) = decimated(&grid, &bounded(1e-5));
+    assert_eq!((report.faces, report.stop), (2, Stop::NoLegalEdit));
+    // The diagonal of two triangles is not changed, although no vertex would be far away.
+    let tent = [
+        [0.0, 0.0, 1.0],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 1.0],
+        [0.0, 1.0, 0.0],
+    ];
+    let tent = PolygonMesh::new(tent, [[0, 1, 2], [0, 2, 3]]).expect("valid");
+    let (_, report) = decimated(&tent, &bounded(0.1));
+    assert_eq!((report.faces, report.max_distance), (2, Some(0.0)));
+    let mut mesh = EditableHalfEdgeMesh::from_polygons(&tent).expect("a manifold");
+    for distance in [f64::NAN, -1.0] {
+        let error = decimate(&mut mesh, &bounded(distance)).expect_err("invalid");
+        assert!(matches!(error, RemeshError::BadDistance { .. }), "{error}");
+    }
 }

@@ -12,12 +12,18 @@ const DECIMATE_EXAMPLES: &str = "Examples:
   sixfold decimate --faces 5000 scan.obj -o small.obj
   sixfold decimate --ratio 0.1 scan.obj -o small.obj
   sixfold decimate --ratio 0.5 --boundary fixed terrain.obj -o half.obj
+  sixfold decimate --max-error 0.01 scan.obj -o close.obj
 
 A collapse merges the two ends of an edge into one vertex. The new vertex has the position with the
 least error. The error is the sum of the squared distances to the planes of the faces around the
 edge (Garland & Heckbert 1997). A collapse removes two faces, or one face at a boundary. The result
 may therefore have one face fewer than the target. Collapses that flip a face or change the topology
 are skipped. If only such collapses are left, decimation ends above the target, and a note says so.
+Edges with three or more faces are collapsed along their curve, on backends that hold such meshes.
+
+With --max-error, collapses are skipped if a vertex of the mesh would be farther than the distance
+from the result, or a vertex, the middle of an edge or the centroid of a face of the result farther
+from the mesh. Without --faces and --ratio, all other collapses are done.
 All faces must be triangles; `sixfold triangulate` cuts polygons into triangles.
 
 Exit codes: 0 success, even if the target was not reached; 1 with --check, the shape has changed;
@@ -33,7 +39,7 @@ hold the mesh; 4 interrupted, nothing written.";
 #[command(
     after_help = DECIMATE_EXAMPLES,
     verbatim_doc_comment,
-    override_usage = "sixfold decimate [OPTIONS] -o <OUT> <--faces <N>|--ratio <PART>> <MESH>",
+    override_usage = "sixfold decimate [OPTIONS] -o <OUT> <--faces <N>|--ratio <PART>|--max-error <DISTANCE>> <MESH>",
     mut_arg("mesh", |arg| arg.help("The mesh, with triangles only (- for standard input)"))
 )]
 pub(crate) struct Decimate {
@@ -53,26 +59,33 @@ pub(crate) struct Decimate {
     pub(crate) read: ReadPolygons,
 }
 
-/// The target size, given in one of two ways.
+/// The target size, given in one of two ways, and the largest distance.
 #[derive(Clone, Copy, Debug, Args)]
-#[group(required = true, multiple = false)]
+#[group(required = true, multiple = true)]
 pub(crate) struct Goal {
     /// Target number of faces
-    #[arg(long, value_name = "N", value_parser = faces, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", value_parser = faces, allow_hyphen_values = true, conflicts_with = "ratio")]
     faces: Option<usize>,
     /// Target as a fraction of the present faces: 0 to 1
     #[arg(long, value_name = "PART", value_parser = ratio, allow_hyphen_values = true)]
     ratio: Option<f64>,
+
+    /// Largest distance between the mesh and the result, in units of the coordinates
+    #[arg(long, value_name = "DISTANCE", value_parser = max_error, allow_hyphen_values = true)]
+    pub(crate) max_error: Option<f64>,
 }
 
 impl Goal {
-    /// Returns the number of faces as target, or the ratio if no number is given.
+    /// Returns the number of faces or the ratio as target; no faces if only a distance is given.
     pub(crate) fn target(self) -> Target {
         match self {
             Self {
                 faces: Some(faces), ..
             } => Target::Faces(faces),
-            Self { ratio, .. } => Target::Ratio(ratio.unwrap_or(1.0)),
+            Self {
+                ratio: Some(ratio), ..
+            } => Target::Ratio(ratio),
+            _ => Target::Faces(0),
         }
     }
 }
@@ -158,6 +171,13 @@ fn ratio(text: &str) -> Result<f64, String> {
     match text.trim().parse() {
         Ok(ratio) if (0.0..=1.0).contains(&ratio) => Ok(ratio),
         _ => Err("the ratio must be from 0 to 1: the fraction of faces to keep".to_owned()),
+    }
+}
+
+fn max_error(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(distance) if distance.is_finite() && distance >= 0.0 => Ok(distance),
+        _ => Err("the distance must be finite and at least 0".to_owned()),
     }
 }
 
