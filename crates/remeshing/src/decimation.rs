@@ -69,9 +69,9 @@ pub struct Decimation {
     /// The treatment of vertices on boundary edges.
     pub boundary: DecimationBoundary,
     /// The largest distance between the input and the result, in units of the coordinates; `None` for
-    /// any distance. A collapse is refused if, after it, a vertex of the input is farther than this
-    /// from the result, or a vertex, the middle of an edge or the centroid of a face of the result is
-    /// farther from the input. The time per collapse then grows with the number of vertices that were
+    /// any distance. The distance is checked at the vertices, the middles of the edges and the
+    /// centroids of the faces of both: a collapse is refused if one of them would be farther than this
+    /// from the other mesh. The time per collapse then grows with the number of vertices that were
     /// merged around the edge.
     pub max_distance: Option<f64>,
 }
@@ -103,8 +103,8 @@ pub struct Decimated {
     /// The largest error of a collapse. The error is a sum of squared distances to the planes of
     /// faces. Each squared distance is multiplied by the area of its face.
     pub max_error: f64,
-    /// The largest distance of a vertex of the input from the faces around the vertex that it was
-    /// merged into; `None` if the options have no largest distance.
+    /// The largest distance of a vertex, of the middle of an edge or of the centroid of a face of the
+    /// input from the result; `None` if the options have no largest distance.
     pub max_distance: Option<f64>,
     /// The reason why the decimation ended.
     pub stop: Stop,
@@ -160,7 +160,7 @@ pub fn decimate_watched<M: MeshEdit>(
     let mut work = Work::new(mesh, decimation.boundary)?;
     if let Some(limit) = decimation.max_distance {
         let positions = work.vertices.iter().map(|vertex| vertex.at).collect();
-        work.deviation = Some(Deviation::new(mesh, positions, limit)?);
+        work.deviation = Some(Deviation::new(mesh, &work.numbering, positions, limit)?);
     }
     let mut report = Decimated {
         faces: mesh.face_count(),
@@ -396,8 +396,9 @@ impl<M: MeshEdit> Work<M> {
         if !keeps_orientation(mesh, ends, to.as_dvec3()) || !may_collapse(mesh, e) {
             return None;
         }
-        let deviation = self.deviation.as_ref();
-        if deviation.is_some_and(|d| !d.allows(mesh, &self.numbering, entry.ends, to)) {
+        if let Some(deviation) = &mut self.deviation
+            && !deviation.allows(mesh, &self.numbering, entry.ends, to)
+        {
             return None;
         }
         let kept = mesh.collapse_edge(e, ends[0], to).ok()?;

@@ -8,24 +8,33 @@ use crate::error::RemeshError;
 use crate::numbering::{Numbering, corners, corners_from};
 use crate::rules::at;
 
-/// The vertices of the input, each assigned to the vertex that it was merged into (after Klein, Liebich
-/// & Straßer 1996), and the surface of the input.
+/// Samples of the input (its vertices, the middles of its edges and the centroids of its faces), each
+/// assigned to the vertex that its vertex was merged into (after Klein, Liebich & Straßer 1996), and the
+/// surface of the input.
 pub(crate) struct Deviation {
     limit: f64,
     surface: Bvh<FaceTriangle<u32>>,
-    /// By vertex of the input.
-    positions: Vec<Point>,
-    /// By vertex of the input: the next one that was merged into the same vertex; itself if it is the
-    /// last.
-    next: Vec<u32>,
-    /// By vertex: the last vertex of the input that was merged into it. The first one is itself.
-    last: Vec<u32>,
+    /// By sample: its position. The first samples are the vertices.
+    samples: Vec<Point>,
+    /// By vertex: the samples that are assigned to it.
+    assigned: Vec<Vec<u32>>,
+    /// What the collapse that was allowed last changes.
+    moves: Vec<Move>,
+}
+
+/// A sample that is assigned to another vertex.
+struct Move {
+    sample: u32,
+    from: u32,
+    to: u32,
 }
 
 impl Deviation {
-    /// Builds an index of the surface; O(faces log faces). `positions` are by vertex number.
+    /// Collects the samples and builds an index of the surface; O(faces log faces). `positions` are by
+    /// vertex number.
     pub(crate) fn new<M: MeshEdit>(
         mesh: &M,
+        numbering: &Numbering<M>,
         positions: Vec<Point>,
         limit: f64,
     ) -> Result<Self, RemeshError> {
@@ -36,72 +45,95 @@ impl Deviation {
             let corners = corners(mesh, f).map(|v| mesh.position(v));
             FaceTriangle { face, corners }
         });
-        let numbers: Vec<u32> = (0..row(positions.len())).collect();
-        Ok(Self {
+        let mut deviation = Self {
             limit,
             surface: Bvh::build(triangles.collect()).expect("positions are finite, and few enough"),
-            positions,
-            next: numbers.clone(),
-            last: numbers,
-        })
+            assigned: (0..row(positions.len())).map(|v| vec![v]).collect(),
+            samples: positions,
+            moves: Vec::new(),
+        };
+        for [a, b] in numbering.edges(mesh) {
+            let [p, q] = [a, b].map(|v| deviation.samples[v as usize]);
+            deviation.assign(p.midpoint(q), a);
+        }
+        for f in mesh.faces() {
+            let numbers = corners(mesh, f).map(|v| numbering.number(v));
+            let sum: Point = numbers.iter().map(|&v| deviation.samples[v as usize]).sum();
+            let [a, b, c] = numbers;
+            deviation.assign(sum / 3.0, a.min(b).min(c));
+        }
+        Ok(deviation)
     }
 
-    /// Notes that vertex `b` was merged into `a`.
+    /// Adds a sample and assigns it to a vertex.
+    fn assign(&mut self, at: Point, vertex: u32) {
+        self.assigned[vertex as usize].push(row(self.samples.len()));
+        self.samples.push(at);
+    }
+
+    /// Notes that vertex `b` was merged into `a`, after [`allows`](Self::allows) allowed it.
     pub(crate) fn merge(&mut self, [a, b]: [u32; 2]) {
-        let end = self.last[a as usize];
-        self.next[end as usize] = b;
-        self.last[a as usize] = self.last[b as usize];
+        let mut merged = std::mem::take(&mut self.assigned[b as usize]);
+        self.assigned[a as usize].append(&mut merged);
+        for &Move { sample, from, to } in &self.moves {
+            self.assigned[from as usize].retain(|&other| other != sample);
+            self.assigned[to as usize].push(sample);
+        }
     }
 
     /// Returns whether the distance stays within the limit if the edge between two vertices is
     /// collapsed into the place `to`.
     pub(crate) fn allows<M: MeshEdit>(
-        &self,
+        &mut self,
         mesh: &M,
         numbering: &Numbering<M>,
         ends: [u32; 2],
         to: Point,
     ) -> bool {
-        let star = Star::new(mesh, numbering, ends, to.as_dvec3());
-        let is_near = |p: DVec3| {
-            self.surface
-                .closest_point(p)
-                .is_some_and(|c| c.distance() <= self.limit)
-        };
-        let samples = star
-            .faces
-            .iter()
-            .flat_map(|&(_, [a, b, c])| [(a + b) / 2.0, (a + b + c) / 3.0]);
-        if !is_near(star.tip) || !samples.into_iter().all(is_near) {
-            return false;
-        }
-        let in_star = |p: DVec3| {
-            star.faces
-                .iter()
-                .any(|&(_, triangle)| self.reaches(p, triangle))
-        };
-        if !ends.iter().all(|&end| self.merged(end).all(in_star)) {
-            return false;
-        }
-        let mut ring: Vec<M::Vertex> = star.faces.iter().flat_map(|&(ring, _)| ring).collect();
-        ring.sort_unstable();
-        ring.dedup();
-        ring.into_iter().all(|v| {
-            let others = mesh.vertex_faces(v).map(|f| corners(mesh, f));
-            let others = others.filter(|corners| !corners.iter().any(|w| star.ends.contains(w)));
-            let others: Vec<[DVec3; 3]> =
-                others.map(|corners| corners.map(|w| at(mesh, w))).collect();
-            let beside = star.faces.iter().filter(|(ring, _)| ring.contains(&v));
-            let beside = || beside.clone().map(|&(_, triangle)| triangle);
-            self.merged(numbering.number(v)).all(|p| {
-                let mut triangles = others.iter().copied().chain(beside());
-                triangles.any(|triangle| self.reaches(p, triangle))
-            })
-        })
+        let region = Region::new(mesh, numbering, ends, to.as_dvec3());
+        let mut moves = std::mem::take(&mut self.moves);
+        moves.clear();
+        let is_allowed = self.is_near_input(&region) && self.covers(&region, ends, &mut moves);
+        self.moves = moves;
+        is_allowed
     }
 
-    /// Returns the largest distance of a vertex of the input from the faces around the vertex that it
-    /// was merged into.
+    /// Returns whether the new vertex and points of the new faces are near the input.
+    fn is_near_input(&self, region: &Region) -> bool {
+        let is_near = |p: DVec3| {
+            let closest = self.surface.closest_point(p);
+            closest.is_some_and(|closest| closest.distance() <= self.limit)
+        };
+        let points = region
+            .star
+            .iter()
+            .flat_map(|&[a, b, c]| [(a + b) / 2.0, (a + b + c) / 3.0]);
+        is_near(region.tip) && points.into_iter().all(is_near)
+    }
+
+    /// Returns whether all samples of the ends and of the vertices around them are near the new faces.
+    /// Adds to `moves` the samples that are no longer near a face of their vertex.
+    fn covers(&self, region: &Region, ends: [u32; 2], moves: &mut Vec<Move>) -> bool {
+        let [a, b] = ends;
+        let mut covered = |number: u32, holder: u32| {
+            self.assigned[number as usize].iter().all(|&sample| {
+                let p = self.samples[sample as usize].as_dvec3();
+                let is_near =
+                    |&&(_, triangle): &&(u32, [DVec3; 3])| distance(p, triangle) <= self.limit;
+                let own = region.faces_at(holder).any(|face| is_near(&&face));
+                own || region.faces.iter().find(is_near).is_some_and(|&(to, _)| {
+                    let from = holder;
+                    moves.push(Move { sample, from, to });
+                    true
+                })
+            })
+        };
+        let is_covered = covered(a, a) && covered(b, a);
+        is_covered && region.ring.iter().all(|&v| covered(v, v))
+    }
+
+    /// Returns the largest distance of a sample from the faces around the vertex that it is assigned
+    /// to.
     pub(crate) fn largest<M: MeshEdit>(&self, mesh: &M, numbering: &Numbering<M>) -> f64 {
         let mut largest = 0.0_f64;
         for v in mesh.vertices() {
@@ -111,26 +143,13 @@ impl Deviation {
             if triangles.is_empty() {
                 continue; // an isolated vertex has no number
             }
-            for p in self.merged(numbering.number(v)) {
+            for &sample in &self.assigned[numbering.number(v) as usize] {
+                let p = self.samples[sample as usize].as_dvec3();
                 let distances = triangles.iter().map(|&triangle| distance(p, triangle));
                 largest = largest.max(distances.fold(f64::INFINITY, f64::min));
             }
         }
         largest
-    }
-
-    /// Yields the positions of the vertices of the input that were merged into vertex `number`.
-    fn merged(&self, number: u32) -> impl Iterator<Item = DVec3> {
-        let next = |&v: &u32| {
-            let next = self.next[v as usize];
-            (next != v).then_some(next)
-        };
-        let vertices = std::iter::successors(Some(number), next);
-        vertices.map(|v| self.positions[v as usize].as_dvec3())
-    }
-
-    fn reaches(&self, p: DVec3, triangle: [DVec3; 3]) -> bool {
-        distance(p, triangle) <= self.limit
     }
 }
 
@@ -138,26 +157,61 @@ fn distance(p: DVec3, triangle: [DVec3; 3]) -> f64 {
     closest_point_on_triangle(p, triangle).distance(p)
 }
 
-/// The faces around a vertex after a collapse.
-struct Star<M: MeshEdit> {
-    ends: [M::Vertex; 2],
+/// The faces around an edge after its collapse.
+struct Region {
     tip: DVec3,
-    /// The two vertices of each face besides the tip, and its corners; the first is the tip.
-    faces: Vec<([M::Vertex; 2], [DVec3; 3])>,
+    /// The corners of the faces at the new vertex; the first is the tip.
+    star: Vec<[DVec3; 3]>,
+    /// The vertices around the new vertex, ascending.
+    ring: Vec<u32>,
+    /// The faces at the new vertex and at the vertices around it, with the number of that vertex. A
+    /// face occurs once for each of these vertices.
+    faces: Vec<(u32, [DVec3; 3])>,
 }
 
-impl<M: MeshEdit> Star<M> {
-    fn new(mesh: &M, numbering: &Numbering<M>, ends: [u32; 2], tip: DVec3) -> Self {
-        let ends = ends.map(|end| numbering.handle(end));
-        let mut faces = Vec::new();
+impl Region {
+    fn new<M: MeshEdit>(mesh: &M, numbering: &Numbering<M>, numbers: [u32; 2], tip: DVec3) -> Self {
+        let ends = numbers.map(|end| numbering.handle(end));
+        let mut region = Self {
+            tip,
+            star: Vec::new(),
+            ring: Vec::new(),
+            faces: Vec::new(),
+        };
         for end in ends {
             for f in mesh.vertex_faces(end) {
                 let [_, p, q] = corners_from(mesh, f, end);
-                if !ends.contains(&p) && !ends.contains(&q) {
-                    faces.push(([p, q], [tip, at(mesh, p), at(mesh, q)]));
+                if ends.contains(&p) || ends.contains(&q) {
+                    continue;
+                }
+                let triangle = [tip, at(mesh, p), at(mesh, q)];
+                region.star.push(triangle);
+                let ring = [p, q].map(|v| numbering.number(v));
+                region.ring.extend(ring);
+                let [p, q] = ring;
+                region
+                    .faces
+                    .extend([numbers[0], p, q].map(|v| (v, triangle)));
+            }
+        }
+        region.ring.sort_unstable();
+        region.ring.dedup();
+        for &v in &region.ring {
+            for f in mesh.vertex_faces(numbering.handle(v)) {
+                let corners = corners(mesh, f);
+                if !corners.iter().any(|w| ends.contains(w)) {
+                    region.faces.push((v, corners.map(|w| at(mesh, w))));
                 }
             }
         }
-        Self { ends, tip, faces }
+        region.faces.sort_by_key(|&(v, _)| v);
+        region
+    }
+
+    /// Yields the faces at a vertex.
+    fn faces_at(&self, vertex: u32) -> impl Iterator<Item = (u32, [DVec3; 3])> {
+        let first = self.faces.partition_point(|&(v, _)| v < vertex);
+        let faces = self.faces[first..].iter().copied();
+        faces.take_while(move |&(v, _)| v == vertex)
     }
 }

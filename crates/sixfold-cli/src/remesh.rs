@@ -202,7 +202,7 @@ impl Work for Decimation {
         let edits = counted(report.collapses, "edge", "edges");
         let distance = report.max_distance.map(|distance| {
             let distance = figure(distance);
-            format!(", the vertices of the mesh within {distance}")
+            format!(" (largest distance {distance})")
         });
         Ok(EditSummary {
             edits: format!("{edits} collapsed{}", distance.unwrap_or_default()),

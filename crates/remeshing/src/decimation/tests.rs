@@ -273,7 +273,8 @@ fn a_flat_surface_does_not_deviate() {
     ];
     let tent = PolygonMesh::new(tent, [[0, 1, 2], [0, 2, 3]]).expect("valid");
     let (_, report) = decimated(&tent, &bounded(0.1));
-    assert_eq!((report.faces, report.max_distance), (2, Some(0.0)));
+    assert_eq!(report.faces, 2);
+    assert!(report.max_distance.expect("it was limited") < 1e-6);
     let mut mesh = EditableHalfEdgeMesh::from_polygons(&tent).expect("a manifold");
     for distance in [f64::NAN, -1.0] {
         let error = decimate(&mut mesh, &bounded(distance)).expect_err("invalid");

@@ -21,9 +21,10 @@ may therefore have one face fewer than the target. Collapses that flip a face or
 are skipped. If only such collapses are left, decimation ends above the target, and a note says so.
 Edges with three or more faces are collapsed along their curve, on backends that hold such meshes.
 
-With --max-error, collapses are skipped if a vertex of the mesh would be farther than the distance
-from the result, or a vertex, the middle of an edge or the centroid of a face of the result farther
-from the mesh. Without --faces and --ratio, all other collapses are done.
+With --max-error, collapses are skipped if a vertex, the middle of an edge or the centroid of a face
+of the mesh would be farther than the distance from the result, or one of the result farther from the
+mesh. Between these points, it can be a little farther; `sixfold distance` measures it. Without
+--faces and --ratio, all other collapses are done.
 All faces must be triangles; `sixfold triangulate` cuts polygons into triangles.
 
 Exit codes: 0 success, even if the target was not reached; 1 with --check, the shape has changed;
