@@ -2,11 +2,11 @@
 
 use std::io::{self, Read};
 
-use sixfold_core::{FaceList, MAX_ROWS, Point, VertexId, row};
+use sixfold_core::{FaceId, FaceList, MAX_ROWS, Point, PolygonCutter, VertexId, row};
 
 use crate::byte_source::{ByteSource, MAX_LINE_LENGTH};
 use crate::error::ReadError;
-use crate::face_rules::without_repeats;
+use crate::face_rules::{repeated_vertex, without_repeats};
 use crate::file_mesh::{FileMesh, ShortFace};
 use crate::format::Format;
 use crate::narrowing::{Finished, Origin, Positions};
@@ -353,6 +353,7 @@ impl<'a> MeshBuilder<'a> {
         if weld_now {
             mesh.weld();
         }
+        mesh.cut_repeats();
         Ok(mesh)
     }
 
@@ -403,6 +404,44 @@ fn not_finite(at: Location, vertex: usize, coordinates: [f32; 3]) -> ReadError {
 }
 
 impl FileMesh {
+    /// Cuts polygons that name a vertex twice into triangles that do not. Polygons that cross
+    /// themselves, or have no area, stay as they are. O(corners) expected, if there are none.
+    fn cut_repeats(&mut self) {
+        let is_wanted = |face: &[VertexId]| face.len() > 3 && repeated_vertex(face).is_some();
+        if !self.faces.iter().any(|(_, face)| is_wanted(face)) {
+            return;
+        }
+        self.face_places.store(&self.faces);
+        let mut faces = FaceList::with_capacity(self.faces.corners().len());
+        let mut origins = Vec::with_capacity(self.faces.len());
+        let mut notices = Notices(std::mem::take(&mut self.notices));
+        let mut cutter = PolygonCutter::default();
+        let mut push = |face: &mut dyn Iterator<Item = VertexId>, f: FaceId| {
+            origins.push(f.index());
+            faces.push(face).is_ok()
+        };
+        for (f, face) in self.faces.iter() {
+            let is_wanted = is_wanted(face);
+            let parts = is_wanted.then(|| {
+                let position = |i: usize| self.positions[face[i].index()].as_dvec3();
+                cutter.parts(face, position)
+            });
+            let parts = parts.filter(|parts| !parts.is_crossing && parts.iter().len() > 0);
+            let Some(parts) = parts else {
+                push(&mut face.iter().copied(), f);
+                continue;
+            };
+            let place = self.face_places.place(f, &self.faces);
+            notices.add(IgnoredKind::CutFaces, place);
+            for part in parts.iter() {
+                push(&mut part.iter().map(|&i| face[i]), f);
+            }
+        }
+        self.notices = notices.0;
+        self.face_places.select(&origins);
+        self.faces = faces;
+    }
+
     /// Merges vertices with equal positions; vertices are numbered by first occurrence.
     fn weld(&mut self) {
         let mut welder = Welder::with_capacity(0);

@@ -4,8 +4,10 @@
 //!   are neighbours. So `1 2 2 3 4` and `1 2 3 4 1` are the faces `1 2 3 4`.
 //! - A face with fewer than three different corners stays as it is in the file, and is left out of
 //!   the mesh.
-//! - A face that names a vertex twice in other corners is left out of the mesh:
-//!   [`repeated_vertex`] is the only place that decides this.
+//! - A polygon that names a vertex twice in other corners is cut into triangles that do not, when all
+//!   vertices are known, with a notice (`FileMesh::cut_repeats`). If it crosses itself, or has no area,
+//!   it stays as it is in the file, and is left out of the mesh: [`repeated_vertex`] is the only place
+//!   that decides this.
 
 use sixfold_core::{IteratorExt, VertexId};
 
@@ -34,6 +36,16 @@ pub(crate) fn repeated_vertex(face: &[VertexId]) -> Option<VertexId> {
             (_, true) => Some(b),
             _ => None,
         };
+    }
+    if let &[a, b, c, d] = face
+        && a != b
+        && a != c
+        && a != d
+        && b != c
+        && b != d
+        && c != d
+    {
+        return None;
     }
     let mut distinct = face.iter().copied().distinct();
     face.iter().copied().find(|&v| distinct.next() != Some(v))

@@ -26,7 +26,9 @@ pub struct FileMesh {
     pub positions: Vec<Point>,
     /// All faces with three corners or more, including faces that use a vertex twice. A corner that
     /// repeats its neighbour was removed, if three different corners remain
-    /// ([`IgnoredKind::RepeatedCorners`](crate::IgnoredKind::RepeatedCorners)).
+    /// ([`IgnoredKind::RepeatedCorners`](crate::IgnoredKind::RepeatedCorners)). A polygon that used a
+    /// vertex twice otherwise was cut into triangles
+    /// ([`IgnoredKind::CutFaces`](crate::IgnoredKind::CutFaces)); it is unchanged if it crosses itself.
     pub faces: FaceList,
     /// Place of each face.
     pub(crate) face_places: FacePlaces,

@@ -28,6 +28,9 @@ pub enum IgnoredKind {
     StripJoints,
     /// Corners of faces that repeat the corner next to them. The face keeps its other corners.
     RepeatedCorners,
+    /// Polygons that name a vertex twice, not only in neighbouring corners: an outline with a bridge
+    /// to a hole, or parts that meet in a vertex. Each was cut into triangles, which have its area.
+    CutFaces,
     /// Bytes or lines after the end of the mesh.
     Trailing,
     /// Solids of ASCII STL that do not end in `endsolid`. The file may be cut off between two
@@ -119,6 +122,7 @@ impl IgnoredKind {
     /// Returns what the kind means for the mesh, if its name does not say it.
     const fn remark(self) -> &'static str {
         match self {
+            Self::CutFaces => ": its triangles have the same area",
             Self::MissingEnds => ": the file may be cut off",
             Self::SmallFacetCount => ": more facets follow than it says, and all are read",
             Self::Skins => ": vertices stay where they are stored, because joints are not read",
@@ -139,6 +143,10 @@ impl IgnoredKind {
             Self::Elements => ["other element", "other elements"],
             Self::StripJoints => ["joint of triangle strips", "joints of triangle strips"],
             Self::RepeatedCorners => ["repeated corner of a face", "repeated corners of faces"],
+            Self::CutFaces => [
+                "face that names a vertex twice",
+                "faces that name a vertex twice",
+            ],
             Self::Trailing => ["byte after the mesh", "bytes after the mesh"],
             Self::MissingEnds => ["missing `endsolid`", "missing `endsolid` lines"],
             Self::SmallFacetCount => ["number of facets", "numbers of facets"],
@@ -193,9 +201,13 @@ impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [one, several] = self.kind.names();
         let first = self.first;
+        let verb = match self.kind {
+            IgnoredKind::CutFaces => "cut",
+            _ => "ignored",
+        };
         match self.count {
-            1 => write!(f, "ignored 1 {one}")?,
-            n => write!(f, "ignored {n} {several}")?,
+            1 => write!(f, "{verb} 1 {one}")?,
+            n => write!(f, "{verb} {n} {several}")?,
         }
         if !self.names.is_empty() {
             write!(f, ": {}", self.names.join(", "))?;

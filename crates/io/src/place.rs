@@ -130,6 +130,16 @@ impl FacePlaces {
         }
     }
 
+    /// Keeps the place of face `origins[i]` as that of face `i`, for all faces. Computed places must have
+    /// been stored before.
+    pub(crate) fn select(&mut self, origins: &[usize]) {
+        match self {
+            Self::Lines(lines) => *lines = origins.iter().map(|&f| lines[f]).collect(),
+            Self::Bytes(bytes) => *bytes = origins.iter().map(|&f| bytes[f]).collect(),
+            Self::Records { .. } | Self::Numbers => {}
+        }
+    }
+
     fn predicted(&self, face: usize, corners: usize) -> u64 {
         match *self {
             Self::Records {

@@ -241,16 +241,13 @@ impl PolygonCutter {
     ///           a       a               part with fewer than three corners is left out.
     /// ```
     ///
+    /// A spike that runs out and back on one edge, such as b c b, is removed.
+    ///
     /// The parts have the area of the face if corners with the same vertex have the same position
     /// ([`cut`](Self::cut) says for which polygons). The time is that of `cut`, or O(n) if only
     /// neighbours repeat.
     pub fn parts(&mut self, face: &[VertexId], position: impl Fn(usize) -> DVec3) -> FaceParts {
-        let mut corners: Vec<usize> = (0..face.len())
-            .filter(|&i| i == 0 || face[i] != face[i - 1])
-            .collect();
-        while corners.len() > 1 && face[corners[corners.len() - 1]] == face[0] {
-            corners.pop();
-        }
+        let corners = without_spikes(face);
         let vertices: Vec<VertexId> = corners.iter().map(|&i| face[i]).collect();
         if corners.len() < 3 || repeated(&vertices).is_none() {
             let degree = corners.len().max(3);
@@ -360,6 +357,38 @@ impl PolygonCutter {
         std::mem::swap(triangles, tried);
         wrong
     }
+}
+
+/// Returns the corners of `face` without those that repeat the vertex of the corner before them, and
+/// without spikes: corners between two with the same vertex.
+fn without_spikes(face: &[VertexId]) -> Vec<usize> {
+    let mut corners: Vec<usize> = Vec::with_capacity(face.len());
+    for corner in 0..face.len() {
+        let is_back =
+            |at: usize| corners.len() >= at && face[corners[corners.len() - at]] == face[corner];
+        if is_back(2) {
+            corners.pop();
+        } else if !is_back(1) {
+            corners.push(corner);
+        }
+    }
+    // The same around the first corner.
+    let (mut first, mut last) = (0, corners.len());
+    while last - first > 1 {
+        let vertex = |i: usize| face[corners[i]];
+        if vertex(first) == vertex(last - 1) {
+            last -= 1;
+        } else if last - first > 2 && vertex(first + 1) == vertex(last - 1) {
+            first += 1;
+        } else if last - first > 2 && vertex(first) == vertex(last - 2) {
+            last -= 1;
+        } else {
+            break;
+        }
+    }
+    corners.truncate(last);
+    corners.drain(..first);
+    corners
 }
 
 /// A way to cut a polygon.
