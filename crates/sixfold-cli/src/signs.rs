@@ -95,7 +95,7 @@ impl Signs {
             ('*', self.best),
             ('=', "shares the first place: no clear difference"),
             ('~', "measured on a sample of the elements"),
-            ('≥', "lower bound: estimated, not run"),
+            ('≥', "lower bound: not run, so not ranked"),
             ('–', "no time: see the notes"),
             ('±', "95 % interval"),
             ('m', "the backend merges vertices at one position"),
@@ -178,7 +178,7 @@ mod tests {
         signs.explain("more");
         let legend = signs.legend().replace('\n', "; ");
         let expected = "* fastest; = shares the first place: no clear difference; ~ measured on a sample of \
-                        the elements; ≥ lower bound: estimated, not run; m the backend merges \
+                        the elements; ≥ lower bound: not run, so not ranked; m the backend merges \
                         vertices at one position; more";
         assert_eq!(legend, expected);
     }

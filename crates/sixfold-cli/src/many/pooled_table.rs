@@ -69,7 +69,7 @@ pub(super) fn groups_table(pool: &Pool, bold: bool) -> Option<String> {
                     let Some(row) = row else {
                         return right("–".into());
                     };
-                    let is_best = row.backend == best.backend;
+                    let is_best = row.backend == best.backend && !row.bound;
                     let mark = if is_best { "*" } else { "" };
                     let bound = if row.bound { "≥" } else { "" };
                     let cell = right(format!("{mark}{bound}{}", figure(row.ratio_to_best)));
@@ -87,7 +87,7 @@ pub(super) fn groups_table(pool: &Pool, bold: bool) -> Option<String> {
     Some(format!("{}\n{legend}", stacked(&columns, table)))
 }
 
-const GROUPS_LEGEND: &str = "* smallest mean of the group. In the mean over all pooled meshes, each power of ten of \
+const GROUPS_LEGEND: &str = "* smallest measured mean of the group; ≥ lower bound, not ranked. In the mean over all pooled meshes, each power of ten of \
     the number of faces has equal weight.";
 
 fn right(text: String) -> Cell {
@@ -102,7 +102,7 @@ fn header(title: &str, columns: &[&str]) -> Vec<Cell> {
 
 const LEGEND: [&str; 4] = [
     "* fastest or tied with the fastest on most meshes",
-    "≥ lower bound: estimated on some meshes, because a run would exceed the budget",
+    "≥ lower bound, not ranked: on some meshes, a run would exceed the budget",
     "(n) mean over n meshes only: on the other meshes, a backend has no time",
     "– no time on these meshes",
 ];
