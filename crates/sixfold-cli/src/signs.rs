@@ -1,7 +1,7 @@
 //! The signs of figures in tables: who is fastest, and how a figure was obtained.
 
 use comfy_table::{Attribute, Cell, CellAlignment};
-use sixfold_study::numbers::figure;
+use sixfold_study::numbers::{figure, rounded_down};
 use sixfold_study::{Agreement, MeasuredTask, ResultRow, Standing};
 
 use crate::text::{hanging_indent, width};
@@ -58,7 +58,9 @@ impl Signs {
                 text += &format!("{}{}", self.record('~'), figure(each))
             }
             (Some(each), _) => text += &figure(each),
-            (None, Some(each)) => text += &format!("{}{}", self.record('≥'), figure(each)),
+            (None, Some(each)) => {
+                text += &format!("{}{}", self.record('≥'), figure(rounded_down(each)))
+            }
             (None, None) => text.push('–'),
         }
         match row.agreement {

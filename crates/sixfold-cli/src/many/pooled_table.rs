@@ -1,7 +1,7 @@
 //! The table of the results of many meshes.
 
 use comfy_table::{Attribute, Cell, CellAlignment};
-use sixfold_study::numbers::{counted, figure};
+use sixfold_study::numbers::{counted, figure, rounded_down};
 use sixfold_study::{Overall, Pool, Pooled, Purpose};
 
 use crate::tables::{stacked, unbroken};
@@ -71,8 +71,11 @@ pub(super) fn groups_table(pool: &Pool, bold: bool) -> Option<String> {
                     };
                     let is_best = row.backend == best.backend && !row.bound;
                     let mark = if is_best { "*" } else { "" };
-                    let bound = if row.bound { "≥" } else { "" };
-                    let cell = right(format!("{mark}{bound}{}", figure(row.ratio_to_best)));
+                    let ratio = match row.bound {
+                        true => format!("≥{}", figure(rounded_down(row.ratio_to_best))),
+                        false => figure(row.ratio_to_best),
+                    };
+                    let cell = right(format!("{mark}{ratio}"));
                     match bold && is_best {
                         true => cell.add_attribute(Attribute::Bold),
                         false => cell,
@@ -109,11 +112,13 @@ const LEGEND: [&str; 4] = [
 
 /// Formats a cell such as `*1.04` or `≥18.2`.
 fn cell(row: &Pooled, bold: bool) -> Cell {
-    let ratio = figure(row.ratio_to_best);
+    let ratio = match row.estimated {
+        0 => figure(row.ratio_to_best),
+        _ => format!("≥{}", figure(rounded_down(row.ratio_to_best))),
+    };
     let ahead = 2 * (row.best + row.tied) > row.meshes;
     let mark = if ahead { "*" } else { "" };
-    let estimated = if row.estimated > 0 { "≥" } else { "" };
-    let cell = Cell::new(format!("{mark}{estimated}{ratio}")).set_alignment(CellAlignment::Right);
+    let cell = Cell::new(format!("{mark}{ratio}")).set_alignment(CellAlignment::Right);
     match bold && ahead {
         true => cell.add_attribute(Attribute::Bold),
         false => cell,
