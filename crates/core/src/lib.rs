@@ -87,7 +87,7 @@ pub use handles::handle::{Handle, HandleMap, HashHandleMap, RowMap};
 pub use handles::numbering::Numbers;
 pub use handles::pair::Pair;
 pub use handles::row_id::{EdgeId, FaceId, VertexId};
-pub use named::UnknownName;
+pub use named::{UnknownName, did_you_mean};
 pub use polygons::capability::Capabilities;
 pub use polygons::counts::Counts;
 pub use polygons::creases::{Creases, SHARPNESS_INFINITE};

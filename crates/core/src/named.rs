@@ -2,13 +2,67 @@
 
 use strsim::jaro_winkler;
 
-/// Minimum Jaro–Winkler similarity of a suggested name to the unknown name.
+/// Minimum similarity of a suggested name to the unknown name.
 const MIN_SIMILARITY: f64 = 0.8;
+/// Minimum length of a part of a name that suggests the name.
+const MIN_PART: usize = 3;
+
+/// Returns the question after an unknown name, such as ` (did you mean `smooth`?)`, or no text if none
+/// of the known names is similar.
+///
+/// Similar names differ in few letters, in case or in separators, or the given name is the beginning, a
+/// word or the initials of the known name.
+///
+/// # Examples
+///
+/// ```
+/// use sixfold_core::did_you_mean;
+///
+/// let names = ["vertex_faces", "vertex_edges", "boundary"];
+/// assert_eq!(did_you_mean("VF", names), " (did you mean `vertex_faces`?)");
+/// assert_eq!(did_you_mean("bound", names), " (did you mean `boundary`?)");
+/// assert_eq!(did_you_mean("zebra", names), "");
+/// ```
+pub fn did_you_mean<N: AsRef<str>>(given: &str, known: impl IntoIterator<Item = N>) -> String {
+    let known = known
+        .into_iter()
+        .map(|name| (similarity(given, name.as_ref()), name));
+    let nearest = known.max_by(|(a, _), (b, _)| a.total_cmp(b));
+    match nearest.filter(|(similarity, _)| *similarity > MIN_SIMILARITY) {
+        Some((_, known)) => format!(" (did you mean `{}`?)", known.as_ref()),
+        None => String::new(),
+    }
+}
+
+/// Returns the similarity of a given name to a known name, from 0 to 1.
+fn similarity(given: &str, known: &str) -> f64 {
+    let is_separator = |c: char| !c.is_alphanumeric();
+    let plain = |name: &str| name.replace(is_separator, "").to_lowercase();
+    let [name, full] = [given, known].map(plain);
+    let words: Vec<String> = known.split(is_separator).map(plain).collect();
+    let initials: String = words
+        .iter()
+        .filter_map(|word| word.chars().next())
+        .collect();
+    let is_part = name.len().min(full.len()) >= MIN_PART;
+    let is_initials = words.len() > 1 && name == initials;
+    match () {
+        () if name == full || is_initials => 1.0,
+        () if is_part && full.starts_with(&name) => 0.98,
+        () if is_part && words.contains(&name) => 0.97,
+        () if is_part && name.starts_with(&full) => 0.96,
+        () => {
+            let long = words.iter().filter(|word| word.len() > MIN_PART);
+            let of_words = long.map(|word| 0.9 * jaro_winkler(&name, word));
+            of_words.fold(jaro_winkler(given, known), f64::max)
+        }
+    }
+}
 
 /// The error for a name that is not one of the known names.
 ///
 /// The message lists the known names. If one of them is similar to the given name, the message
-/// suggests this name.
+/// suggests this name ([`did_you_mean`]).
 ///
 /// # Examples
 ///
@@ -31,6 +85,8 @@ pub struct UnknownName {
     pub given: String,
     /// The known names.
     pub known: Vec<String>,
+    /// What each known name means; empty if this is not known.
+    pub meanings: Vec<String>,
 }
 
 impl UnknownName {
@@ -44,6 +100,29 @@ impl UnknownName {
             kind,
             given: given.to_owned(),
             known: known.into_iter().map(Into::into).collect(),
+            meanings: Vec::new(),
+        }
+    }
+
+    /// Adds what each known name means. If no name is similar to the given one, the first name whose
+    /// meaning contains the given word is suggested.
+    #[must_use]
+    pub fn with_meanings<M: Into<String>>(self, meanings: impl IntoIterator<Item = M>) -> Self {
+        let meanings = meanings.into_iter().map(Into::into).collect();
+        Self { meanings, ..self }
+    }
+
+    /// Returns the question after the name, or no text.
+    fn suggestion(&self) -> String {
+        let similar = did_you_mean(&self.given, &self.known);
+        let is_word = |meaning: &str| {
+            let mut words = meaning.split(|c: char| !c.is_alphanumeric());
+            words.any(|word| word.eq_ignore_ascii_case(&self.given))
+        };
+        let mut pairs = self.known.iter().zip(&self.meanings);
+        match pairs.find(|(_, meaning)| is_word(meaning)) {
+            Some((known, _)) if similar.is_empty() => format!(" (did you mean `{known}`?)"),
+            _ => similar,
         }
     }
 
@@ -62,17 +141,6 @@ impl UnknownName {
         match given.iter().find(is_unknown) {
             Some(name) => Err(Self::new(kind, name, known)),
             None => Ok(()),
-        }
-    }
-
-    /// Returns the question after the name, such as ` (did you mean `smooth`?)`, or no text if no
-    /// known name is similar.
-    fn suggestion(&self) -> String {
-        let alike = |known: &&String| jaro_winkler(&self.given, known);
-        let nearest = (self.known.iter()).max_by(|a, b| alike(a).total_cmp(&alike(b)));
-        match nearest.filter(|known| alike(known) > MIN_SIMILARITY) {
-            Some(known) => format!(" (did you mean `{known}`?)"),
-            None => String::new(),
         }
     }
 }
@@ -213,6 +281,36 @@ mod tests {
         );
         assert!(message("vertex-faces").contains("did you mean `vertex_faces`?"));
         assert!(message("zebra").starts_with("no operation is called `zebra`: choose from"));
+    }
+
+    #[test]
+    fn beginnings_words_and_initials_suggest_the_whole_name() {
+        let known = [
+            "vertex_vertices",
+            "vv_smooth",
+            "frequency",
+            "uv-sphere",
+            "half-edge",
+            "n",
+        ];
+        for (given, expected) in [
+            ("VV", "vertex_vertices"),
+            ("freq", "frequency"),
+            ("sphere", "uv-sphere"),
+            ("HalfEdge", "half-edge"),
+            ("smoth", "vv_smooth"),
+            ("half-edges", "half-edge"),
+        ] {
+            let question = format!(" (did you mean `{expected}`?)");
+            assert_eq!(did_you_mean(given, known), question, "{given}");
+        }
+        let shapes = UnknownName::new("shape", "Sphere", ["torus", "geodesic"]);
+        let shapes = shapes.with_meanings(["a ring", "triangles on a sphere, closed"]);
+        let message = shapes.to_string();
+        assert!(message.contains("(did you mean `geodesic`?)"), "{message}");
+        for given in ["", "v", "m", "xyz", "corner", "e"] {
+            assert_eq!(did_you_mean(given, known), "", "{given}");
+        }
     }
 
     #[test]

@@ -38,8 +38,8 @@ pub enum DualError {
     #[error("vertex {vertex} has no face and therefore no dual face: remove isolated vertices")]
     IsolatedVertex { vertex: VertexId },
     /// An edge has only one face.
-    #[error("edge {0}–{1} has one face, and only a closed mesh has a dual: fill the hole at this \
-             edge", .ends[0], .ends[1])]
+    #[error("edge {0}–{1} has one face, so the mesh is open, and only a closed mesh has a dual: close \
+             the mesh first", .ends[0], .ends[1])]
     BoundaryEdge { ends: [VertexId; 2] },
     /// A vertex would become a face of the dual with only one or two corners.
     #[error(

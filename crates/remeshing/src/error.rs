@@ -12,7 +12,7 @@ use sixfold_core::{FaceId, VertexId};
 pub enum RemeshError {
     /// A face is not a triangle.
     #[error(
-        "face {face} has {degree} corners, but remeshing needs triangles: triangulate the mesh"
+        "face {face} has {degree} corners, but a mesh of triangles is needed: triangulate the mesh"
     )]
     NotATriangle { face: FaceId, degree: usize },
     /// A coordinate is not a finite number.

@@ -22,6 +22,8 @@ pub(crate) struct Row<'a> {
     /// Ratio to the fastest backend, with its interval.
     pub(crate) ratio: f64,
     pub(crate) interval: Option<[f64; 2]>,
+    /// Whether `ratio` and `ns` are lower bounds, because a run would exceed the budget.
+    pub(crate) bound: bool,
     /// Time per element in nanoseconds, if known.
     pub(crate) ns: Option<f64>,
     /// Time per element of the first run, on fresh pages, if it differs from `ns`.
@@ -200,6 +202,14 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
         });
     }
     sections
+}
+
+/// Marks a formatted figure as a lower bound if `bound` is set.
+pub(crate) fn marked(figure: String, bound: bool) -> String {
+    match bound {
+        true => format!("≥ {figure}"),
+        false => figure,
+    }
 }
 
 /// Returns `orders` for place 0, `orders-2` for place 1, and so on.

@@ -1,5 +1,7 @@
 //! Errors of the generators.
 
+use sixfold_core::did_you_mean;
+
 /// The reason why a shape cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -30,7 +32,10 @@ pub enum ShapeError {
         max: f64,
     },
     /// The shape has no parameter of this name.
-    #[error("{shape} has no parameter {given:?}: {}", format_allowed(.parameters))]
+    #[error(
+        "{shape} has no parameter {given:?}{}: {}", did_you_mean(.given, .parameters),
+        format_allowed(.parameters)
+    )]
     UnknownParameter {
         shape: &'static str,
         given: String,

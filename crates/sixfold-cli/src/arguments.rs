@@ -26,6 +26,7 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use sixfold::shapes::Order;
+use sixfold::{Relation, UnknownName};
 use sixfold_study::{CacheState, Effort, External, Operation, Policy, Settings};
 
 pub(crate) use comparing::{Compare, GROWTH_EXAMPLES, Growth, ORDERS_EXAMPLES, Orders};
@@ -400,6 +401,17 @@ pub(crate) struct Generate {
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) write: WriteFiles,
+}
+
+/// Parses the name of a relation, such as `vertex_faces` or VF.
+pub(crate) fn relation(name: &str) -> Result<Relation, UnknownName> {
+    let short = |relation: &Relation| {
+        let words = relation.name().split('_');
+        let initials: String = words.filter_map(|word| word.chars().next()).collect();
+        initials.to_uppercase() == name
+    };
+    let found = Relation::ALL.into_iter().find(short);
+    found.map_or_else(|| name.parse(), Ok)
 }
 
 fn backend(name: &str) -> Result<String, String> {

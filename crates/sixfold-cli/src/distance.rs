@@ -16,6 +16,12 @@ use crate::progress::exit_on_interrupt;
 use crate::tables::table;
 use crate::text::{TextOutput, figure, hanging_indent, sanitize};
 
+/// The document of `--json`.
+#[derive(Serialize)]
+struct Distances<'r> {
+    distances: &'r [Row; 3],
+}
+
 /// The distances in one direction, or in both.
 #[derive(Serialize)]
 struct Row {
@@ -51,7 +57,7 @@ pub(crate) fn run(arguments: &Distance) -> Result<ExitCode, Failure> {
     let rows = rows(arguments, &distance, diagonal(&first));
     let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
     text.print_line(&rows_text(&rows));
-    text.finish_with_json(json, &rows)
+    text.finish_with_document(json, &Distances { distances: &rows })
 }
 
 fn rows(arguments: &Distance, distance: &MeshDistance, diagonal: f64) -> [Row; 3] {

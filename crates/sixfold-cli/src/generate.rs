@@ -19,7 +19,8 @@ pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
     let shape = &arguments.shape;
     let generator = generator(shape).ok_or_else(|| {
         let names = GENERATORS.iter().map(|generator| generator.name);
-        Failure::usage(UnknownName::new("shape", shape, names))
+        let meanings = GENERATORS.iter().map(|generator| generator.summary);
+        Failure::usage(UnknownName::new("shape", shape, names).with_meanings(meanings))
     })?;
     let settings = arguments.settings.iter();
     let settings: Vec<(&str, f64)> = settings
@@ -33,7 +34,7 @@ pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
     let faces = counted(mesh.face_count(), "face", "faces");
     let place = sanitize(&arguments.output.display().to_string());
     let mut text = TextOutput::new(!is_stdout(&arguments.output));
-    text.print_line(&format!("{place}: {shape}, {vertices}, {faces}"));
+    text.print_list("", [format!("{place}: {shape}, {vertices}, {faces}")]);
     text.finish()?;
     Ok(ExitCode::SUCCESS)
 }

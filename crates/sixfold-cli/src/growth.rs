@@ -45,7 +45,7 @@ pub(crate) fn run(arguments: &Growth) -> Result<ExitCode, Failure> {
     print_before_measuring(&settings, &mut session.text);
     let report = measure(&settings, &session.stop, &Bar::new())?;
     print(&report, &mut session.text);
-    session.finish(&with_command(report, false).into())
+    session.finish(with_command(report, false).into())
 }
 
 /// Prints what is known before the measurement: the shape, its sizes, and the backends that cannot

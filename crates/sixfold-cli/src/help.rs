@@ -6,11 +6,12 @@ use std::process::ExitCode;
 
 use clap::builder::StyledStr;
 use clap::{Command as Definition, CommandFactory};
+use sixfold::did_you_mean;
 
 use crate::arguments::{Arguments, Completions, Manual};
 use crate::failure::Failure;
 use crate::output::cannot_write;
-use crate::text::{hanging_indent, ignore_closed_pipe, reflow, width};
+use crate::text::{hanging_indent, ignore_closed_pipe, reflow, sanitize, width};
 use crate::{generate, growth, orders, study};
 
 /// The commands of each group, in the order of the list.
@@ -63,7 +64,7 @@ pub(crate) fn definition() -> Definition {
         .mut_subcommand("growth", |growth| growth.after_help(growth::help()))
         .mut_subcommand("generate", |generate| generate.after_help(generate::help()))
         .mut_subcommands(fit_to_width);
-    let definition = fit_to_width(definition).term_width(width());
+    let definition = fit_to_width(definition);
     let template = format!(
         "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{}\n\nOptions:\n{{options}}\
          {{after-help}}",
@@ -72,12 +73,12 @@ pub(crate) fn definition() -> Definition {
     definition.help_template(template)
 }
 
-/// Breaks the long texts of a command at the width of the terminal.
-fn fit_to_width(command: Definition) -> Definition {
+/// Breaks the help of a command at the width of the terminal.
+pub(crate) fn fit_to_width(command: Definition) -> Definition {
     let fitted = |text: Option<&StyledStr>| text.map(|text| reflow(&text.to_string(), width()));
     let about = fitted(command.get_long_about());
     let after = fitted(command.get_after_help());
-    let mut command = command;
+    let mut command = command.term_width(width());
     if let Some(about) = about {
         command = command.long_about(about);
     }
@@ -85,6 +86,16 @@ fn fit_to_width(command: Definition) -> Definition {
         Some(after) => command.after_help(after),
         None => command,
     }
+}
+
+/// Returns the failure for a word that is not a command.
+pub(crate) fn unknown_command(word: &str) -> Failure {
+    let names = GROUPS.iter().flat_map(|(_, names)| names.iter());
+    Failure::usage(format!(
+        "no command is called `{}`{}: `sixfold --help` lists the commands",
+        sanitize(word),
+        did_you_mean(word, names)
+    ))
 }
 
 /// Returns the commands with their summaries, one group after the other.

@@ -15,7 +15,7 @@ use crate::load::{self, InspectedMesh};
 use crate::many::find_meshes;
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::exit_on_interrupt;
-use crate::text::{TextOutput, print_stderr};
+use crate::text::{TextOutput, WithNotices, print_notice, print_stderr};
 
 /// The inspection of a mesh as JSON.
 #[derive(Serialize)]
@@ -37,14 +37,14 @@ struct NarrowingRecord {
 /// Inspects the meshes. If there are several, continues after a mesh that cannot be read.
 pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
     exit_on_interrupt();
-    let meshes = find_meshes(&arguments.meshes, &mut |note| print_stderr(note))?;
+    let meshes = find_meshes(&arguments.meshes, &mut |note| print_notice(note))?;
     let paths: Vec<&Path> = meshes.iter().filter_map(|m| m.path.as_deref()).collect();
     for path in &paths {
         check_outputs(Some(path), &[("--json", arguments.json.as_ref())])?;
     }
     let json = Output::open_if(arguments.json.as_ref())?;
     let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
-    let mut inspected = Vec::new();
+    let mut inspected: Vec<WithNotices<Inspected>> = Vec::new();
     let mut failed = 0;
     for mesh in &meshes {
         if let Some(problem) = &mesh.problem {
@@ -57,7 +57,7 @@ pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
             text.print_line("");
         }
         match inspect(path, arguments, &mut text) {
-            Ok(done) => inspected.push(done),
+            Ok(done) => inspected.push(WithNotices::new(done)),
             Err(failure) if paths.len() == 1 => return Err(failure),
             Err(failure) => {
                 failed += 1;

@@ -194,8 +194,10 @@ fn words() -> Vec<OsString> {
 fn print_clap_message(error: &clap::Error) -> Result<ExitCode, Failure> {
     if let (ErrorKind::InvalidSubcommand, Some(ContextValue::String(word))) =
         (error.kind(), error.get(ContextKind::InvalidSubcommand))
-        && Format::from_path(word).is_some()
     {
+        if Format::from_path(word).is_none() {
+            return Err(help::unknown_command(word));
+        }
         let file = text::shell_word(Path::new(word));
         return Err(Failure::usage(format!(
             "`{word}` is a file, not a command: did you mean `sixfold study {file}`?"

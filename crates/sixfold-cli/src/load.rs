@@ -12,7 +12,7 @@ use crate::arguments::{ReadFiles, ReadPolygons};
 use crate::failure::Failure;
 use crate::faults_text::SHOWN_PLACES;
 use crate::mesh_files::{read_mesh, read_mesh_at, shown};
-use crate::text::print_stderr;
+use crate::text::print_notice;
 use crate::triangulate::{cut_polygons, triangulated};
 use sixfold_study::numbers::counted;
 
@@ -147,7 +147,7 @@ pub(crate) fn for_repair(path: &Path, files: ReadFiles) -> Result<ReadMesh, Fail
     let (joined, ignored) = (mesh.welded_vertices, std::mem::take(&mut mesh.notices));
     let (creases, unused) = mesh.creases();
     for crease in &unused {
-        print_stderr(&format!("note: {}: {crease}", shown(path)));
+        print_notice(&format!("note: {}: {crease}", shown(path)));
     }
     let (polygons, left_out, places) = mesh.into_polygons_with_places();
     print_left_out(path, &left_out);
@@ -185,7 +185,7 @@ pub(crate) fn without_creases(path: &Path, chosen: ReadPolygons) -> Result<Polyg
     let (polygons, creases) = with_creases(path, chosen)?;
     if !creases.is_empty() {
         let file = shown(path);
-        print_stderr(&format!(
+        print_notice(&format!(
             "note: {file}: the result does not keep sharp edges and vertices"
         ));
     }
@@ -245,12 +245,12 @@ fn print_left_out(path: &Path, left_out: &[LeftOut]) {
         return;
     }
     let faces = counted(left_out.len(), "degenerate face", "degenerate faces");
-    print_stderr(&format!("note: {}: left out {faces}:", shown(path)));
+    print_notice(&format!("note: {}: left out {faces}:", shown(path)));
     for left_out in left_out.iter().take(SHOWN) {
-        print_stderr(&format!("note:   {left_out}"));
+        print_notice(&format!("note:   {left_out}"));
     }
     if left_out.len() > SHOWN {
-        print_stderr(&format!("note:   and {} more", left_out.len() - SHOWN));
+        print_notice(&format!("note:   and {} more", left_out.len() - SHOWN));
     }
 }
 

@@ -24,7 +24,7 @@ use crate::measure::{Session, command_line, exit_code, warn_of_debug_build};
 use crate::mesh_files::shown;
 use crate::progress::Bar;
 use crate::study::finding;
-use crate::text::{TextOutput, hanging_indent, print_stderr, sanitize};
+use crate::text::{TextOutput, hanging_indent, print_notice, sanitize};
 use sixfold_study::numbers::counted;
 
 pub(crate) use draw::run as draw;
@@ -42,7 +42,7 @@ const NONE_HOLDS: &str = "none of the selected backends can hold the mesh: see `
 /// Studies the selected meshes without a finished study. If a mesh cannot be loaded, lists the mesh
 /// and continues.
 pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Failure> {
-    let meshes = find_meshes(&arguments.meshes, &mut |note| print_stderr(note))?;
+    let meshes = find_meshes(&arguments.meshes, &mut |note| print_notice(note))?;
     let single = meshes.len() == 1;
     let selected_labs = labs::selected_labs(arguments.labs.as_ref(), single)?;
     let parts = match single {
@@ -100,7 +100,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
     }
     let interrupted = stop.load(Ordering::Relaxed);
     print(&results, single, &mut session.text);
-    let mut written = session.write(&results).and(saved);
+    let mut written = session.write(&mut results).and(saved);
     // A report on nothing would look like a result.
     let is_empty = results.findings.is_empty() && arguments.shard.is_none();
     let none_studied = none_studied && !interrupted && arguments.shard.is_none();
@@ -290,7 +290,7 @@ fn print_all(results: &Results, text: &mut TextOutput) {
     let others = results.findings.iter().map(Finding::kind);
     let others: Vec<&str> = others.filter(|kind| *kind != "study").collect();
     if !others.is_empty() {
-        text.print_line(&format!("results of other commands: {}", others.join(", ")));
+        text.print_list("results of other commands: ", [others.join(", ")]);
     }
     for failed in &results.failures {
         let first = format!("! {}: ", sanitize(&failed.mesh));
@@ -314,7 +314,7 @@ fn print_all(results: &Results, text: &mut TextOutput) {
     }
     for failed in &results.failures {
         let mesh = &failed.mesh;
-        print_stderr(&format!("note: {mesh}: not studied: {}", failed.reason));
+        print_notice(&format!("note: {mesh}: not studied: {}", failed.reason));
     }
 }
 

@@ -13,7 +13,7 @@ use crate::arguments::ResultFiles;
 use crate::failure::Failure;
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{INTERRUPTED, interrupt_flag};
-use crate::text::{TextOutput, print_stderr};
+use crate::text::{TextOutput, print_notice, print_stderr, take_notices};
 
 /// The exit code if backends found different results for the same work.
 const MISMATCH: u8 = 1;
@@ -64,15 +64,16 @@ impl Session {
     }
 
     /// Prints the remaining text, writes the files, and returns the exit code of the results.
-    pub(crate) fn finish(self, results: &Results) -> Result<ExitCode, Failure> {
+    pub(crate) fn finish(self, mut results: Results) -> Result<ExitCode, Failure> {
         let interrupted = results.is_interrupted();
-        let written = self.write(results);
-        exit_code(written, results, interrupted)
+        let written = self.write(&mut results);
+        exit_code(written, &results, interrupted)
     }
 
-    /// Prints the remaining text and writes the files. If one file cannot be written, writes the
-    /// others anyway, and returns the first error.
-    pub(crate) fn write(self, results: &Results) -> Result<(), Failure> {
+    /// Prints the remaining text, adds the notices to the results, and writes the files. If one file
+    /// cannot be written, writes the others anyway, and returns the first error.
+    pub(crate) fn write(self, results: &mut Results) -> Result<(), Failure> {
+        results.notices.extend(take_notices());
         let OpenFiles {
             json,
             csv,
@@ -105,7 +106,7 @@ pub(crate) fn with_command(finding: impl Into<Finding>, triangulate: bool) -> Fi
 /// Prints a note if the program was built without optimisation.
 pub(crate) fn warn_of_debug_build() {
     if cfg!(debug_assertions) {
-        print_stderr("note: the times of a debug build are not meaningful: build with --release");
+        print_notice("note: the times of a debug build are not meaningful: build with --release");
     }
 }
 

@@ -55,7 +55,7 @@ pub(crate) fn run(
         print(&audit, &mut session.text);
     }
     let faults = audit.faults();
-    let written = session.write(&with_command(audit, arguments.triangulate).into());
+    let written = session.write(&mut with_command(audit, arguments.triangulate).into());
     match refusal_error {
         Some(none) => written.and(Err(Failure::unsupported(none))),
         None => {

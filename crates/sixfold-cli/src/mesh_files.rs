@@ -11,7 +11,7 @@ use sixfold::{Point, PolygonMesh};
 use crate::arguments::{ReadFiles, WriteFiles};
 use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
-use crate::text::print_stderr;
+use crate::text::print_notice;
 use sixfold_study::numbers::counted;
 
 /// Rounding is reported if it moves a vertex by more than this part of the size of the mesh. If the
@@ -49,7 +49,7 @@ pub(crate) fn read_mesh_at(
     };
     let mesh = mesh.map_err(Failure::usage)?;
     for note in notes(&mesh, chosen) {
-        print_stderr(&format!("note: {name}: {note}"));
+        print_notice(&format!("note: {name}: {note}"));
     }
     Ok(mesh)
 }
@@ -158,7 +158,7 @@ impl MeshOutput {
                 Loss::CrossingPolygons { .. } => String::new(), // the mesh is the reason
                 _ => format!(", because {format} cannot keep more"),
             };
-            print_stderr(&format!("note: {name}: {loss}{reason}"));
+            print_notice(&format!("note: {name}: {loss}{reason}"));
         }
         Ok(losses)
     }

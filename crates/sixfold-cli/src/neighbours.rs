@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &Neighbours) -> Result<ExitCode, Failure> {
     bar.clear();
     let report = report.map_err(Failure::usage)?;
     print(&report, &mut session.text);
-    session.finish(&with_command(report, false).into())
+    session.finish(with_command(report, false).into())
 }
 
 fn print(report: &NeighboursReport, text: &mut TextOutput) {

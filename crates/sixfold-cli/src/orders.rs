@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     print_before_measuring(&study_mesh, &settings, &mut session.text);
     let report = measure(&study_mesh, &settings, &session.stop, &Bar::new())?;
     print(&report, &mut session.text);
-    session.finish(&with_command(report, arguments.triangulate).into())
+    session.finish(with_command(report, arguments.triangulate).into())
 }
 
 /// Measures the mesh in all orders, if there is enough free memory.

@@ -18,9 +18,9 @@ use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::programs::{self, Limits, default_memory_limit};
 use crate::progress::Bar;
 use crate::signs::Signs;
-use crate::text::{TextOutput, hanging_indent, print_stderr, sanitize};
+use crate::text::{TextOutput, hanging_indent, print_notice, print_stderr, sanitize};
 use crate::workloads::workload;
-use sixfold_study::numbers::{counted, duration, figure, grouped};
+use sixfold_study::numbers::{counted, duration, figure, grouped, rounded_down};
 
 /// The exit code if no backend qualifies.
 const NONE_QUALIFIES: u8 = 1;
@@ -30,7 +30,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
         return run_trace(path, arguments);
     }
     let workload = workload(&arguments.workload)?;
-    let meshes = find_meshes(&arguments.meshes, &mut |note| print_stderr(note))?;
+    let meshes = find_meshes(&arguments.meshes, &mut |note| print_notice(note))?;
     let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
     let mut session = Session::open(paths, &arguments.files, arguments.heap)?;
     let study_meshes = study_meshes(&meshes, arguments.read, arguments.triangulate)?;
@@ -53,7 +53,7 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     let report = report.map_err(Failure::usage)?;
     print(&report, &mut session.text);
     let none_qualifies = report.ranking.is_empty() && !report.interrupted;
-    let code = session.finish(&with_command(report, arguments.triangulate).into())?;
+    let code = session.finish(with_command(report, arguments.triangulate).into())?;
     if none_qualifies {
         print_stderr(
             "error: no backend qualifies: relax --needs, --max-memory or --backends, or repair the \
@@ -116,7 +116,7 @@ pub(crate) fn study_meshes(
     for mesh in meshes {
         match read(mesh) {
             Ok(study_mesh) => loaded.push(study_mesh),
-            Err(failure) => print_stderr(&format!("note: not measured: {}", failure.message)),
+            Err(failure) => print_notice(&format!("note: not measured: {}", failure.message)),
         }
     }
     match loaded.is_empty() {
@@ -223,8 +223,9 @@ fn predicted_lines(prediction: &Prediction, of: &str) -> Vec<(&'static str, Stri
     let scanning = prediction.candidates.iter().filter(|p| !p.scans.is_empty());
     let scanning: Vec<&str> = scanning.map(|p| p.backend.as_str()).collect();
     if !scanning.is_empty() {
+        let verb = if scanning.len() == 1 { "scans" } else { "scan" };
         let text = format!(
-            "{} scan all faces for each element: expect much longer times",
+            "{} {verb} all faces for each element: expect much longer times",
             scanning.join(", ")
         );
         lines.push(("Scans:    ", text));
@@ -261,15 +262,26 @@ fn ranking(report: &PickReport) -> String {
     let has_winner = report
         .ranking
         .iter()
-        .all(|ranked| ranked.samples >= FEWEST_OF_A_WINNER);
+        .all(|ranked| ranked.estimated || ranked.samples >= FEWEST_OF_A_WINNER);
     let ties = report.ranking.iter().filter(|r| r.tied_with_best).count();
     let mut times = Vec::new();
     let mut ratios = Vec::new();
+    let is_measured = report.ranking.iter().any(|ranked| !ranked.estimated);
     for ranked in &report.ranking {
-        let sign = match (ranked.estimated, ranked.sampled) {
-            (true, _) => signs.record('≥').into(),
-            (_, true) => signs.record('~').into(),
-            _ => String::new(),
+        let ratio = ranked.shown_ratio(&report.ranking[0]);
+        if ranked.estimated {
+            let sign = signs.record('≥');
+            let ns = rounded_down(ranked.ns_per_operation);
+            times.push(format!("{sign}{}", duration(ns)));
+            ratios.push(match is_measured {
+                true => format!("{sign}{}", figure(rounded_down(ratio))),
+                false => "–".into(),
+            });
+            continue;
+        }
+        let sign = match ranked.sampled {
+            true => signs.record('~').into(),
+            false => String::new(),
         };
         times.push(format!("{sign}{}", duration(ranked.ns_per_operation)));
         let standing = match (ranked.tied_with_best && has_winner, ties) {
@@ -277,7 +289,6 @@ fn ranking(report: &PickReport) -> String {
             (true, 1) => signs.record('*').into(),
             (true, _) => signs.record('=').into(),
         };
-        let ratio = ranked.shown_ratio(&report.ranking[0]);
         ratios.push(format!("{standing}{}", figure(ratio)));
     }
     let of = |figure: &dyn Fn(&Ranked) -> String| -> Vec<String> {

@@ -11,6 +11,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use clap::{CommandFactory, FromArgMatches};
+use sixfold::UnknownName;
 use sixfold_study::numbers::{bytes, counted, figure};
 use sixfold_study::{
     ChildTask, Effort, Finding, Isolation, PickReport, ProgramSettings, Results, StudyMesh, Suite,
@@ -20,13 +21,14 @@ use sixfold_study::{
 use crate::arguments::{Programs, ReadFiles, ResultFiles};
 use crate::failure::Failure;
 use crate::free_memory::used_memory;
+use crate::help::fit_to_width;
 use crate::load;
 use crate::many::find_meshes;
 use crate::measure::{Session, warn_of_debug_build, with_command};
 use crate::output::exit_without_drafts;
 use crate::pick;
 use crate::progress::{Bar, INTERRUPTED};
-use crate::text::{TextOutput, hanging_indent, print_stderr, sanitize};
+use crate::text::{TextOutput, hanging_indent, print_notice, print_stderr, sanitize};
 
 /// The exit code if no structure qualifies for a program.
 const NONE_QUALIFIES: u8 = 1;
@@ -48,21 +50,15 @@ const MOST_OVERTIME: Duration = Duration::from_secs(30);
 /// Reads the arguments, measures the programs of `suite`, prints the answer and writes the files.
 pub(crate) fn run(suite: Suite) -> Result<ExitCode, Failure> {
     let names: Vec<&str> = suite.programs().iter().map(SuiteProgram::name).collect();
-    let definition = Programs::command().after_help(after_help(&names));
+    let definition = fit_to_width(Programs::command().after_help(after_help(&names)));
     let matches = definition.try_get_matches();
     let arguments = matches.and_then(|matches| Programs::from_arg_matches(&matches));
     let arguments = match arguments {
         Ok(arguments) => arguments,
         Err(error) => return crate::print_clap_message(&error),
     };
-    let unknown = |name: &&String| !names.contains(&name.as_str());
-    if let Some(name) = arguments.programs.iter().find(unknown) {
-        let known = names.join(", ");
-        let name = sanitize(name);
-        return Err(Failure::usage(format!(
-            "unknown program `{name}`; known: {known}"
-        )));
-    }
+    let known = names.iter().copied();
+    UnknownName::check("program", &arguments.programs, known).map_err(Failure::usage)?;
     let suite = match arguments.programs.is_empty() {
         true => suite,
         false => suite.only(&arguments.programs),
@@ -157,7 +153,7 @@ pub(crate) fn measure(
     files: &ResultFiles,
     limits: Limits,
 ) -> Result<ExitCode, Failure> {
-    let meshes = find_meshes(meshes, &mut |note| print_stderr(note))?;
+    let meshes = find_meshes(meshes, &mut |note| print_notice(note))?;
     let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
     let mut session = Session::open(paths, files, settings.heap)?;
     let study_meshes = pick::study_meshes(&meshes, read, triangulate)?;
@@ -311,7 +307,7 @@ impl Kept {
             }
             results
         };
-        let code = session.finish(&results)?;
+        let code = session.finish(results)?;
         if kept.none_qualifies.is_empty() {
             return Ok(code);
         }

@@ -21,7 +21,7 @@ use crate::output::is_stdout;
 use crate::progress::StepBar;
 use crate::seams::without_seams;
 use crate::shape_check::check_shape;
-use crate::text::{TextOutput, figure, print_stderr, sanitize};
+use crate::text::{TextOutput, figure, print_notice, sanitize};
 use sixfold_study::numbers::{counted, grouped};
 
 /// Minimum number of faces for a note about a structure that scans.
@@ -82,15 +82,18 @@ fn edit_file<W: Work>(
     output.write(&polygons, &WriteOptions::default())?;
     let to = &files.output;
     if let Some(shortfall) = shortfall {
-        print_stderr(&format!("note: {}: {shortfall}", to.display()));
+        print_notice(&format!("note: {}: {shortfall}", to.display()));
     }
     let mut text = TextOutput::new(!is_stdout(to));
     let place = sanitize(&to.display().to_string());
     let vertices = counted(polygons.vertex_count(), "vertex", "vertices");
     let faces = counted(polygons.face_count(), "face", "faces");
-    text.print_line(&format!(
-        "{place}: {vertices}, {faces}; {edits} on {backend}"
-    ));
+    text.print_list(
+        "",
+        [format!(
+            "{place}: {vertices}, {faces}; {edits} on {backend}"
+        )],
+    );
     text.finish()?;
     Ok(check_shape(&before, &polygons, to, check))
 }
@@ -152,7 +155,7 @@ fn warn_of_scans<M: MeshEdit + Representation>(faces: usize) {
     let infos = structure_infos().into_iter();
     let others = infos.filter(|info| info.is_editable() && !scans(&info.edits));
     let others: Vec<&str> = others.map(|info| info.name).collect();
-    print_stderr(&format!(
+    print_notice(&format!(
         "note: {} scans all {} faces for each edit, so this command is slow. Faster choices for \
          --backend: {}",
         M::NAME,

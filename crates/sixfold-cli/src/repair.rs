@@ -14,7 +14,7 @@ use crate::mesh_files::{MeshOutput, shown};
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{Spinner, exit_on_interrupt};
 use crate::shape_check::check_faces;
-use crate::text::{TextOutput, print_stderr, sanitize};
+use crate::text::{TextOutput, WithNotices, print_notice, sanitize};
 use sixfold_study::numbers::{counted, grouped};
 
 /// The exit code if the written file does not keep the repair.
@@ -60,16 +60,17 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
             "sharp edges and vertices are",
         );
         let file = shown(&arguments.files.mesh);
-        print_stderr(&format!(
+        print_notice(&format!(
             "note: {file}: {elements} not in the repaired mesh"
         ));
     }
     let options = WriteOptions::default().with_creases(&creases);
     let format = output.format;
     let losses = output.write(&repaired.polygons, &options)?;
+    let code = check_result(arguments, format, polygons, &repaired.polygons);
     if let Some(json) = json {
         let report = Report::new(&read, &repaired, lost, &losses);
-        json.write_json(&report)?;
+        json.write_json(&WithNotices::new(&report))?;
     }
     let data_on_stdout =
         is_stdout(&arguments.files.output) || arguments.json.as_deref().is_some_and(is_stdout);
@@ -79,20 +80,27 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
     let place = sanitize(&arguments.files.output.display().to_string());
     text.print_line(&format!("{place}: {}", repaired.polygons));
     text.finish()?;
-    let refusing = structure.as_deref();
-    if let Some(name) = refusing.filter(|name| undoes_repair(format, &repaired.polygons, name)) {
-        print_stderr(&format!(
+    Ok(code)
+}
+
+/// Prints a warning if the written file does not keep the repair, or if the result is empty, and
+/// returns the exit code.
+fn check_result(
+    arguments: &Repair,
+    format: Format,
+    before: &PolygonMesh,
+    after: &PolygonMesh,
+) -> ExitCode {
+    let refusing = arguments.steps.structure.as_deref();
+    if let Some(name) = refusing.filter(|name| undoes_repair(format, after, name)) {
+        print_notice(&format!(
             "warning: {}: readers of STL join vertices at equal positions, and {name} refuses the \
              mesh that results: write PLY or OBJ, which keep the cut",
             arguments.files.output.display()
         ));
-        return Ok(ExitCode::from(NOT_KEPT));
+        return ExitCode::from(NOT_KEPT);
     }
-    Ok(check_faces(
-        polygons,
-        &repaired.polygons,
-        &arguments.files.output,
-    ))
+    check_faces(before, after, &arguments.files.output)
 }
 
 /// Returns whether the written file is STL, and the structure called `name` refuses the mesh that
@@ -163,9 +171,9 @@ fn print_steps(steps: &[StepReport], text: &mut TextOutput) {
         text.print_line("the mesh needs no repair");
     }
     for report in steps {
-        text.print_line(&format!("{}: {}", report.step, summary(report)));
+        text.print_list("", [format!("{}: {}", report.step, summary(report))]);
         for left in report.left.iter().take(SHOWN) {
-            text.print_line(&format!("  left: {left}"));
+            text.print_list("  left: ", [left.to_string()]);
         }
         if report.left.len() > SHOWN {
             text.print_line(&format!("  and {} more", report.left.len() - SHOWN));

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use sixfold::io::WriteOptions;
-use sixfold::operators::{Smoothing, SmoothingError, dual, smoothed};
+use sixfold::operators::{DualError, Smoothing, SmoothingError, dual, smoothed};
 use sixfold::repair::{Components, Step, repair};
 use sixfold::{Creases, PolygonMesh, Representation, Visitor, visit};
 
@@ -14,7 +14,7 @@ use crate::output::is_stdout;
 use crate::progress::Spinner;
 use crate::seams::without_seams;
 use crate::shape_check::check_shape;
-use crate::text::{TextOutput, print_stderr, sanitize};
+use crate::text::{TextOutput, print_notice, sanitize};
 use sixfold_study::numbers::counted;
 
 pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
@@ -61,7 +61,7 @@ pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> 
         };
         let repaired = repair(&triangles, &[orient]).map_err(Failure::unsupported)?;
         for left in repaired.steps.iter().flat_map(|step| &step.left) {
-            print_stderr(&format!("note: {}: {left}", shown(&arguments.files.mesh)));
+            print_notice(&format!("note: {}: {left}", shown(&arguments.files.mesh)));
         }
         Ok(repaired.polygons)
     })?;
@@ -87,7 +87,7 @@ fn reshape_file(
     let place = sanitize(&to.display().to_string());
     let vertices = counted(changed.vertex_count(), "vertex", "vertices");
     let faces = counted(changed.face_count(), "face", "faces");
-    text.print_line(&format!("{place}: {what}, {vertices}, {faces}"));
+    text.print_list("", [format!("{place}: {what}, {vertices}, {faces}")]);
     text.finish()?;
     Ok(changed)
 }
@@ -114,7 +114,13 @@ struct DualWork;
 
 impl Work for DualWork {
     fn run<M: Representation>(&self, mesh: M) -> Result<PolygonMesh, Failure> {
-        dual(&mesh).map_err(Failure::unsupported)
+        dual(&mesh).map_err(|error| match error {
+            DualError::BoundaryEdge { .. } => Failure::unsupported(format!(
+                "{error}. `sixfold repair --fill-holes` closes the holes of a solid; a surface with a \
+                 rim, such as a plane, stays open"
+            )),
+            _ => Failure::unsupported(error),
+        })
     }
 }
 

@@ -8,7 +8,7 @@ use sixfold_study::numbers::counted;
 
 use crate::arguments::ReadFiles;
 use crate::mesh_files::shown;
-use crate::text::print_stderr;
+use crate::text::print_notice;
 
 /// Joins vertices at equal positions if this closes seams, so that a command that moves vertices does
 /// not open them. Prints what was joined, or why seams stay open.
@@ -38,14 +38,14 @@ pub(crate) fn without_seams(
     if after.non_manifold_edges > before.non_manifold_edges
         || after.non_manifold_vertices > before.non_manifold_vertices
     {
-        print_stderr(&format!(
+        print_notice(&format!(
             "note: {file}: {edges} are at the positions of others and may come apart: `sixfold \
              repair --weld --cut` joins them"
         ));
         return (polygons, creases);
     }
     let vertices = counted(joined, "vertex", "vertices");
-    print_stderr(&format!(
+    print_notice(&format!(
         "note: {file}: joined {vertices} to others at equal positions, which closes {edges}: \
          --as-stored keeps them apart"
     ));

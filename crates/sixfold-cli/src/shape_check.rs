@@ -9,7 +9,7 @@ use sixfold::{PolygonMesh, VertexId, area_vector};
 use sixfold_study::numbers::counted;
 
 use crate::arguments::ShapeCheck;
-use crate::text::{figure, print_stderr};
+use crate::text::{figure, print_notice};
 
 /// The exit code if a result is empty, and with `--check` if the shape has changed.
 const CHANGED: u8 = 1;
@@ -30,7 +30,7 @@ pub(crate) fn check_shape(
         return ExitCode::SUCCESS;
     }
     let changes = changes.join("; ");
-    print_stderr(&format!(
+    print_notice(&format!(
         "warning: {}: the shape has changed: {changes}",
         to.display()
     ));
@@ -47,7 +47,7 @@ pub(crate) fn check_faces(before: &PolygonMesh, after: &PolygonMesh, to: &Path) 
         return ExitCode::SUCCESS;
     }
     let faces = counted(before.face_count(), "face", "faces");
-    print_stderr(&format!(
+    print_notice(&format!(
         "warning: {}: the result has no faces, but the mesh had {faces}",
         to.display()
     ));

@@ -1,7 +1,7 @@
 //! The signs of figures in tables: who is fastest, and how a figure was obtained.
 
 use comfy_table::{Attribute, Cell, CellAlignment};
-use sixfold_study::numbers::figure;
+use sixfold_study::numbers::{figure, rounded_down};
 use sixfold_study::{Agreement, MeasuredTask, ResultRow, Standing};
 
 use crate::text::{hanging_indent, width};
@@ -58,7 +58,9 @@ impl Signs {
                 text += &format!("{}{}", self.record('~'), figure(each))
             }
             (Some(each), _) => text += &figure(each),
-            (None, Some(each)) => text += &format!("{}{}", self.record('≥'), figure(each)),
+            (None, Some(each)) => {
+                text += &format!("{}{}", self.record('≥'), figure(rounded_down(each)))
+            }
             (None, None) => text.push('–'),
         }
         match row.agreement {
@@ -95,7 +97,7 @@ impl Signs {
             ('*', self.best),
             ('=', "shares the first place: no clear difference"),
             ('~', "measured on a sample of the elements"),
-            ('≥', "lower bound: estimated, not run"),
+            ('≥', "lower bound: not run, so not ranked"),
             ('–', "no time: see the notes"),
             ('±', "95 % interval"),
             ('m', "the backend merges vertices at one position"),
@@ -178,7 +180,7 @@ mod tests {
         signs.explain("more");
         let legend = signs.legend().replace('\n', "; ");
         let expected = "* fastest; = shares the first place: no clear difference; ~ measured on a sample of \
-                        the elements; ≥ lower bound: estimated, not run; m the backend merges \
+                        the elements; ≥ lower bound: not run, so not ranked; m the backend merges \
                         vertices at one position; more";
         assert_eq!(legend, expected);
     }

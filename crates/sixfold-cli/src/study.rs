@@ -54,12 +54,12 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     match report {
         Ok(report) => {
             print(&report, &mut session.text);
-            session.finish(&finding(report, arguments).into())
+            session.finish(finding(report, arguments).into())
         }
         // If every backend refuses the mesh, the list of reasons is the result.
         Err(error @ StudyError::NoneHolds { .. }) => {
             let refusals = refusals(&study_mesh, &settings)?;
-            session.write(&finding(refusals, arguments).into())?;
+            session.write(&mut finding(refusals, arguments).into())?;
             Err(Failure::unsupported(error))
         }
         Err(error) => Err(Failure::usage(error)),

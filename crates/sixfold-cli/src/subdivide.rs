@@ -106,9 +106,12 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     let vertices = counted(step.polygons.vertex_count(), "vertex", "vertices");
     let faces = counted(step.polygons.face_count(), "face", "faces");
     let (scheme, backend) = (subdivision.scheme, &arguments.backend);
-    text.print_line(&format!(
-        "{place}: {vertices}, {faces}; {scheme} by {method} on {backend}"
-    ));
+    text.print_list(
+        "",
+        [format!(
+            "{place}: {vertices}, {faces}; {scheme} by {method} on {backend}"
+        )],
+    );
     text.finish()?;
     Ok(check_faces(
         &polygons,

@@ -3,6 +3,7 @@
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
 
 use serde::Serialize;
 
@@ -27,6 +28,24 @@ pub(crate) fn width() -> usize {
     let given = || std::env::var("COLUMNS").ok()?.parse().ok();
     let width = terminal.or_else(given).unwrap_or(WIDTH);
     width.clamp(MIN_WIDTH, MAX_WIDTH)
+}
+
+/// An object as JSON, with the notices of the command.
+#[derive(Serialize)]
+pub(crate) struct WithNotices<D> {
+    #[serde(flatten)]
+    document: D,
+    notices: Vec<String>,
+}
+
+impl<D: Serialize> WithNotices<D> {
+    /// Adds the notices that no document has yet.
+    pub(crate) fn new(document: D) -> Self {
+        Self {
+            document,
+            notices: take_notices(),
+        }
+    }
 }
 
 pub(crate) struct TextOutput {
@@ -83,6 +102,15 @@ impl TextOutput {
         }
     }
 
+    /// Prints the remaining text, and writes an object as JSON, with the notices of the command.
+    pub(crate) fn finish_with_document(
+        self,
+        json: Option<Output>,
+        document: &impl Serialize,
+    ) -> Result<ExitCode, Failure> {
+        self.finish_with_json(json, &WithNotices::new(document))
+    }
+
     /// Prints the remaining text, so that it is not lost if a file cannot be written. Then writes
     /// `value` as JSON, if there is an output for it.
     pub(crate) fn finish_with_json(
@@ -116,6 +144,22 @@ pub(crate) fn ignore_closed_pipe(done: io::Result<()>) -> Result<(), Failure> {
 /// escaped.
 pub(crate) fn print_stderr(line: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", sanitize(line));
+}
+
+/// The notices that no document has yet.
+static NOTICES: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// Prints a note or a warning on standard error, and keeps it for the document of `--json`.
+pub(crate) fn print_notice(line: &str) {
+    print_stderr(line);
+    let mut notices = NOTICES.lock().unwrap_or_else(PoisonError::into_inner);
+    notices.push(sanitize(line));
+}
+
+/// Returns the notices since the last call, for a document.
+pub(crate) fn take_notices() -> Vec<String> {
+    let mut notices = NOTICES.lock().unwrap_or_else(PoisonError::into_inner);
+    std::mem::take(&mut notices)
 }
 
 /// Returns a path as a word of a command that users can copy into a shell: with quotes if it needs

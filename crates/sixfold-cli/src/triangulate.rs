@@ -5,7 +5,7 @@ use sixfold::{FaceId, Facts, PolygonMesh, Triangulated, VertexId};
 use sixfold_study::StudyMesh;
 
 use crate::failure::Failure;
-use crate::text::print_stderr;
+use crate::text::print_notice;
 use sixfold_study::numbers::{counted, grouped};
 
 /// Maximum number of listed faces.
@@ -22,12 +22,12 @@ pub(crate) fn cut_polygons(
         .triangulated()
         .map_err(|error| Failure::usage(format!("{name}: {error}")))?;
     if !cut.crossing.is_empty() {
-        print_stderr(&format!("note: {name}: {}:", crossing(cut.crossing.len())));
+        print_notice(&format!("note: {name}: {}:", crossing(cut.crossing.len())));
         for &face in cut.crossing.iter().take(SHOWN) {
-            print_stderr(&format!("note:   {}", place_of(face, polygons, places)));
+            print_notice(&format!("note:   {}", place_of(face, polygons, places)));
         }
         if cut.crossing.len() > SHOWN {
-            print_stderr(&format!("note:   and {} more", cut.crossing.len() - SHOWN));
+            print_notice(&format!("note:   and {} more", cut.crossing.len() - SHOWN));
         }
     }
     Ok(cut)
@@ -67,7 +67,7 @@ pub(crate) fn triangulated(
     let facts = Facts::from_polygons(&polygons);
     let side_effects = differences(&Facts::from_polygons(old), &facts);
     for effect in &side_effects {
-        print_stderr(&format!(
+        print_notice(&format!(
             "note: {}: --triangulate has a side effect: {effect}",
             study_mesh.name
         ));

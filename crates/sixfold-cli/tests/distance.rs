@@ -27,8 +27,8 @@ fn parallel_squares_have_one_distance() {
     );
     assert_eq!(run.stdout.matches("35.355").count(), 3, "{}", run.stdout);
     let arguments = ["distance", "low.obj", "high.obj", "--json", "-"];
-    let rows: Value = serde_json::from_str(&run_ok(&sixfold, &arguments).stdout).expect("JSON");
-    let rows = rows.as_array().expect("rows");
+    let document: Value = serde_json::from_str(&run_ok(&sixfold, &arguments).stdout).expect("JSON");
+    let rows = document["distances"].as_array().expect("rows");
     assert_eq!(rows.len(), 3);
     for row in rows {
         assert_eq!(
@@ -75,7 +75,8 @@ fn both_meshes_are_moved_in_the_same_way() {
         "-",
     ];
     let run = run_ok(&sixfold, &arguments);
-    let rows: Value = serde_json::from_str(&run.stdout).expect("JSON");
+    let document: Value = serde_json::from_str(&run.stdout).expect("JSON");
+    let rows = &document["distances"];
     let (mean, largest) = (rows[1]["mean"].as_f64(), rows[0]["largest"].as_f64());
     assert!(mean.is_some_and(|mean| (mean - 0.5).abs() < 1e-6), "{rows}");
     // The low square is 1 cm wider.

@@ -13,11 +13,17 @@ fn the_help_of_help_is_the_help() {
     }
 }
 
-/// Text fits into a narrow terminal.
+/// Text without a terminal is not wider than 80 columns.
 #[test]
-fn text_is_not_wider_than_the_terminal() {
+fn text_is_not_wider_than_80_columns() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 12);
+    run_ok(&sixfold, &["generate", "geodesic", "-o", "ball.obj"]);
+    let study_of = |document: &str| {
+        let study = ["study", "ball.obj", "--rounds", "2", "--json", document];
+        run_ok(&sixfold, &study);
+    };
+    ["a.json", "b.json"].into_iter().for_each(study_of);
     let book = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n";
     sixfold.file("a book with a long name.obj", book);
     let budget = ["--rounds", "2"];
@@ -42,6 +48,41 @@ fn text_is_not_wider_than_the_terminal() {
         vec!["workloads"],
         vec!["operations"],
         vec!["--help"],
+        vec!["help"],
+        vec!["remesh", "ball.obj", "-o", "out.obj"],
+        vec!["decimate", "ball.obj", "--ratio", "0.5", "-o", "out.obj"],
+        vec!["smooth", "ball.obj", "-o", "out.obj"],
+        vec!["dual", "ball.obj", "-o", "out.obj"],
+        vec!["triangulate", "ball.obj", "-o", "out.obj"],
+        vec!["subdivide", "ball.obj", "--levels", "2", "-o", "out.obj"],
+        vec![
+            "repair",
+            "grid.obj",
+            "--weld",
+            "--fill-holes",
+            "--orient=outward",
+            "-o",
+            "out.obj",
+        ],
+        vec!["convert", "ball.obj", "-o", "out.stl"],
+        vec!["render", "ball.obj", "-o", "out.svg"],
+        vec!["distance", "ball.obj", "grid.obj"],
+        vec!["neighbours", "ball.obj", "--rounds", "2"],
+        vec!["compare", "a.json", "b.json", "--all"],
+        vec!["merge", "a.json", "--report", "merged"],
+        vec!["report", "a.json", "--to", "drawn"],
+        vec!["tables"],
+        vec![
+            "trace",
+            "vertex_faces",
+            "v3",
+            "--backend",
+            "half-edge,face-vertex",
+        ],
+        vec!["trace", "--edit", "poke_face f0"],
+        vec!["lessons"],
+        vec!["lessons", "flip"],
+        vec!["new", "package"],
     ];
     let all = [
         "study",
@@ -81,18 +122,21 @@ fn text_is_not_wider_than_the_terminal() {
     commands.extend(all.iter().map(|&command| vec![command, "--help"]));
     let mut wide = Vec::new();
     for arguments in commands {
-        let mut command = sixfold.command(&arguments);
-        let output = command.env("COLUMNS", "80").output().expect("it runs");
-        assert!(output.status.success(), "{arguments:?}: {output:?}");
-        let text = String::from_utf8(output.stdout).expect("UTF-8");
-        let lines = text.lines().filter(|line| line.chars().count() > 80);
-        wide.extend(lines.map(|line| format!("{arguments:?}: {line}")));
+        let run = run_ok(&sixfold, &arguments);
+        wide.extend(wide_lines(&run.stdout).map(|line| format!("{arguments:?}: {line}")));
     }
+    let programs = sixfold.run_programs(&["--help"]);
+    assert_eq!(programs.code, Some(0), "{programs:?}");
+    wide.extend(wide_lines(&programs.stdout).map(|line| format!("programs --help: {line}")));
     assert!(
         wide.is_empty(),
         "wider than 80 columns:\n{}",
         wide.join("\n")
     );
+}
+
+fn wide_lines(text: &str) -> impl Iterator<Item = &str> {
+    text.lines().filter(|line| line.chars().count() > 80)
 }
 
 #[test]

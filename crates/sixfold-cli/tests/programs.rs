@@ -80,7 +80,7 @@ fn bad_arguments_and_meshes_are_refused() {
     let cases: [(&[&str], &str); 4] = [
         (
             &["--programs", "dijkstra"],
-            "unknown program `dijkstra`; known: geodesics, feature-lines",
+            "no program is called `dijkstra`: choose from geodesics, feature-lines",
         ),
         (&["missing.obj"], "missing.obj"),
         (&["no-mesh.obj"], "no face"),

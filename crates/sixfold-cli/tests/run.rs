@@ -72,7 +72,7 @@ impl Sixfold {
     pub(crate) fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_sixfold"));
         command.args(arguments).current_dir(self.folder.path());
-        // Without a terminal, text is 100 columns wide.
+        // Without a terminal, text is 80 columns wide.
         command.env_remove("COLUMNS");
         command
     }

@@ -70,6 +70,8 @@ fn written_fields() -> BTreeSet<String> {
         &["compare", "0.json", "other.json", "--json", "c.json"],
     );
     run_ok(&sixfold, &["inspect", "t.obj", "--json", "i.json"]);
+    let distance = ["distance", "t.obj", "grid.obj", "--json", "distance.json"];
+    run_ok(&sixfold, &distance);
     run_ok(
         &sixfold,
         &["tables", "--json", "tables.json", "--csv", "tables.csv"],
@@ -95,6 +97,7 @@ fn written_fields() -> BTreeSet<String> {
         "trace.json",
         "edit.json",
         "walk.json",
+        "distance.json",
     ];
     for file in documents {
         add_fields(&parsed(&text(&sixfold, file)), &mut fields);

@@ -416,7 +416,7 @@ fn smooth_dual_and_triangulate_write_meshes_or_refuse() {
         (&["smooth", "t.obj", "--step", "2"], 2, "between 0 and 1"),
         (&["smooth", "t.obj", "--step-back", "nan"], 2, "NaN"),
         (&["smooth", "t.obj", "--iterations", "-1"], 2, "from 0 to"),
-        (&["dual", "square.obj"], 3, "fill the hole"),
+        (&["dual", "square.obj"], 3, "only a closed mesh has a dual"),
         (&["dual", "missing.obj"], 2, "missing.obj"),
         (&["triangulate", "t.obj", "--orient", "in"], 2, "outward"),
     ] {

@@ -270,7 +270,7 @@ pub use sixfold_core::{
 #[doc(inline)]
 pub use sixfold_core::{
     BuildError, CreaseError, EditError, InvariantError, MoveError, PolygonError, RefineError,
-    Refusal, UnknownName,
+    Refusal, UnknownName, did_you_mean,
 };
 
 // The six structures.

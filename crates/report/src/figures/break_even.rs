@@ -88,7 +88,8 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
             Some(Some(operations)) => break_even_text(operations, "operation", "operations"),
         }
     };
-    let lines = report.ranking.iter().map(|ranked| Line {
+    let measured = report.ranking.iter().filter(|ranked| !ranked.estimated);
+    let lines = measured.map(|ranked| Line {
         name: &ranked.backend,
         build: match ranked.backend.as_str() {
             INPUT_BACKEND => 0.0,

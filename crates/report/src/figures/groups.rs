@@ -3,6 +3,7 @@
 use sixfold_study::numbers::times;
 use sixfold_study::{Pool, Purpose};
 
+use super::marked;
 use crate::figure::{Table, TitledTable};
 
 /// Returns one table, or none if there are no groups besides the pooled meshes together.
@@ -27,15 +28,19 @@ pub(super) fn tables(pool: &Pool) -> Vec<TitledTable> {
             ];
             line.extend(pool.compared.iter().map(|backend| {
                 let row = rows.iter().find(|row| row.backend == *backend);
-                row.map_or_else(|| "–".into(), |row| times(row.ratio_to_best))
+                row.map_or_else(
+                    || "–".into(),
+                    |row| marked(times(row.ratio_to_best), row.bound),
+                )
             }));
             table.row(line);
         }
     }
     vec![TitledTable {
         title: "Groups of meshes".into(),
-        caption: "The mean time divided by the time of the fastest backend of each mesh and \
-                  operation, for meshes of one size or one kind. The first group has all pooled \
+        caption: "The mean time divided by the time of the fastest measured backend of each mesh and \
+                  operation, for meshes of one size or one kind. ≥ marks lower bounds, which are not \
+                  ranked. The first group has all pooled \
                   meshes, and each power of ten of the number of faces has equal weight."
             .into(),
         table,

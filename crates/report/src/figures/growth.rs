@@ -6,7 +6,7 @@ use kuva::render::plots::Plot;
 use sixfold_study::numbers::{duration, grouped};
 use sixfold_study::{Fit, GrowthReport, Operation, ResultRow, SizeReport, Slope};
 
-use super::per_unit;
+use super::{marked, per_unit};
 use crate::colours::column_colour;
 use crate::figure::{Figure, Table, base_layout, render_svg};
 
@@ -26,7 +26,8 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
     let fits: Vec<&Fit> = fits.collect();
     let plots: Vec<Plot> = fits
         .iter()
-        .flat_map(|fit| curve(&report.sizes, fit))
+        .filter_map(|fit| curve(&report.sizes, fit))
+        .flatten()
         .collect();
     let (name, per) = (operation.name(), per_unit(operation.unit()));
     let title = format!("{name}: total time as the mesh grows");
@@ -41,7 +42,8 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
         caption: format!(
             "Both axes are logarithmic, so a straight line is a power of the number of faces. The \
              number after each name is the exponent. At 1, the time per element is constant; at \
-             2, each element takes a scan of all faces. The table shows the time {per}, and the \
+             2, each element takes a scan of all faces. Lower bounds (≥ in the table) are not drawn. \
+             The table shows the time {per}, and the \
              slopes: for all sizes, for the sizes that fit into the last cache, and for the \
              larger sizes."
         ),
@@ -50,25 +52,24 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
     }
 }
 
-/// Draws the times of one backend over the sizes, with a mark for each size.
-fn curve(sizes: &[SizeReport], fit: &Fit) -> [Plot; 2] {
+/// Draws the measured times of one backend over the sizes, with a mark for each size. Returns `None`
+/// if there are no measured times.
+fn curve(sizes: &[SizeReport], fit: &Fit) -> Option<[Plot; 2]> {
     let (mut points, mut titles) = (Vec::new(), Vec::new());
     for size in sizes {
-        let Some((row, ns)) = find_row(size, fit).and_then(|row| Some((row, run_ns(row)?))) else {
+        let Some(ns) = find_row(size, fit).and_then(|row| row.median_ns) else {
             continue;
         };
         points.push((size.faces as f64, ns / 1e6));
-        let note = if row.median_ns.is_none() {
-            ", estimated"
-        } else {
-            ""
-        };
         titles.push(format!(
-            "{}, {} faces: {}{note}",
+            "{}, {} faces: {}",
             fit.backend,
             grouped(size.faces),
             duration(ns)
         ));
+    }
+    if points.is_empty() {
+        return None;
     }
     let colour = column_colour(&fit.backend);
     let legend = match fit.all {
@@ -85,7 +86,7 @@ fn curve(sizes: &[SizeReport], fit: &Fit) -> [Plot; 2] {
         .with_color(colour)
         .with_size(4.0)
         .with_tooltip_labels(titles);
-    [Plot::Line(line), Plot::Scatter(marks)]
+    Some([Plot::Line(line), Plot::Scatter(marks)])
 }
 
 /// Returns a table with a column for each backend: its times per element, then its slopes.
@@ -94,9 +95,8 @@ fn times_and_slopes(sizes: &[SizeReport], fits: &[&Fit]) -> Table {
     let mut table = Table::new(["faces"].into_iter().chain(names));
     for size in sizes {
         let cell = |fit: &&Fit| {
-            let each = find_row(size, fit)
-                .and_then(|row| Some(run_ns(row)? / row.elements?.max(1) as f64));
-            each.map_or_else(|| "–".into(), duration)
+            let each = find_row(size, fit).and_then(each_ns);
+            each.map_or_else(|| "–".into(), |(ns, bound)| marked(duration(ns), bound))
         };
         let mut line = vec![grouped(size.faces)];
         line.extend(fits.iter().map(cell));
@@ -135,6 +135,8 @@ fn find_row<'s>(size: &'s SizeReport, fit: &Fit) -> Option<&'s ResultRow> {
     rows.find(|row| row.operation == fit.operation && row.backend == fit.backend)
 }
 
-fn run_ns(row: &ResultRow) -> Option<f64> {
-    row.median_ns.or(row.estimated_ns)
+/// Returns the time per element, and whether it is a lower bound.
+fn each_ns(row: &ResultRow) -> Option<(f64, bool)> {
+    let ns = row.median_ns.or(row.estimated_ns)?;
+    Some((ns / row.elements?.max(1) as f64, row.median_ns.is_none()))
 }

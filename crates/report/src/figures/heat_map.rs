@@ -7,6 +7,7 @@ use kuva::render::plots::Plot;
 use sixfold_study::numbers::{counted, times};
 use sixfold_study::{Operation, Pool, Report};
 
+use super::marked;
 use crate::colours::GRID_COLOUR;
 use crate::figure::{Figure, Table, base_layout, ratio_ticks, render_svg};
 
@@ -18,7 +19,8 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
     let columns: Vec<&str> = columns.map(|column| column.name.as_str()).collect();
     let ratio = |operation: Operation, column: &str| {
         let mut rows = study.rows(operation);
-        study.shown_ratio(rows.find(|row| row.backend == column)?)
+        let ratio = study.shown_ratio(rows.find(|row| row.backend == column)?)?;
+        Some((ratio, false))
     };
     let title = format!("Every operation on every structure: {}", study.mesh.name);
     figure(&title, &columns, &ratio, id_prefix, command)
@@ -34,7 +36,7 @@ pub(super) fn pooled(pool: &Pool, command: &str) -> Option<Figure> {
     let ratio = |operation: Operation, column: &str| {
         let mut rows = pool.all().iter();
         let row = rows.find(|row| row.operation == operation && row.backend == column);
-        row.map(|row| row.ratio_to_best)
+        row.map(|row| (row.ratio_to_best, row.estimated > 0))
     };
     let title = format!(
         "Every operation on every structure: geometric mean over {}",
@@ -47,10 +49,13 @@ pub(super) fn pooled(pool: &Pool, command: &str) -> Option<Figure> {
     figure(&title, &columns, &ratio, "", command)
 }
 
+/// A ratio to the fastest, and whether it is a lower bound.
+type Ratio = (f64, bool);
+
 fn figure(
     title: &str,
     columns: &[&str],
-    ratio: &dyn Fn(Operation, &str) -> Option<f64>,
+    ratio: &dyn Fn(Operation, &str) -> Option<Ratio>,
     id_prefix: &str,
     command: &str,
 ) -> Option<Figure> {
@@ -62,10 +67,12 @@ fn figure(
     let mut table = Table::new([""].into_iter().chain(columns.iter().copied()));
     let (mut cells, mut titles) = (Vec::new(), Vec::new());
     for &operation in &operations {
-        let shown = |ratio: Option<f64>| ratio.map_or_else(|| "–".into(), times);
-        let ratios: Vec<Option<f64>> = columns.iter().map(|c| ratio(operation, c)).collect();
         let mut line = vec![operation.name().to_owned()];
-        line.extend(ratios.iter().map(|&ratio| shown(ratio)));
+        line.extend(
+            columns
+                .iter()
+                .map(|column| ratio(operation, column).map_or_else(|| "–".into(), shown)),
+        );
         table.row(line);
     }
     // The plot draws rows upwards, but the first operation belongs at the top.
@@ -73,9 +80,12 @@ fn figure(
         let mut line = Vec::new();
         for column in columns {
             let value = ratio(operation, column);
-            // NaN means "not measured" and has its own colour.
-            line.push(value.map_or(f64::NAN, |ratio| ratio.clamp(1.0, MAX_RATIO).log10()));
-            let shown = value.map_or_else(|| "not measured".into(), times);
+            // NaN means "not measured" and has its own colour. The colour of a lower bound would
+            // rank it.
+            let measured = value.filter(|(_, bound)| !bound);
+            let colour = measured.map(|(ratio, _)| ratio.clamp(1.0, MAX_RATIO).log10());
+            line.push(colour.unwrap_or(f64::NAN));
+            let shown = value.map_or_else(|| "not measured".into(), shown);
             titles.push(format!("{operation} on {column}: {shown}"));
         }
         cells.push(line);
@@ -102,12 +112,17 @@ fn figure(
         caption: format!(
             "Each cell shows the time relative to the fastest structure of the row. Dark cells \
              are fast. All ratios of {} or more have the same colour. Grey cells were not \
-             measured, because the operation is not possible or would take too long.",
+             measured, because the operation is not possible or would take too long; ≥ marks lower \
+             bounds.",
             times(MAX_RATIO)
         ),
         table,
         command: command.into(),
     })
+}
+
+fn shown((ratio, bound): Ratio) -> String {
+    marked(times(ratio), bound)
 }
 
 /// Returns a colour from dark to light. NaN is grey.

@@ -9,7 +9,7 @@ use sixfold_study::{
     SpatialTask, Standing,
 };
 
-use super::{Row, per_unit};
+use super::{Row, marked, per_unit};
 use crate::colours::{INTERVAL_COLOUR, column_colour};
 use crate::figure::{Figure, MIN_BAR_LENGTH, Table, base_layout, ratio_ticks, render_svg};
 
@@ -20,6 +20,7 @@ pub(super) fn from_study(study: &Report, command: &str) -> Vec<Figure> {
                 backend: &row.backend,
                 ratio: study.shown_ratio(row)?,
                 interval: row.ratio_ci_low.zip(row.ratio_ci_high).map(|(a, b)| [a, b]),
+                bound: false,
                 ns: row.ns_per_element,
                 first_ns: first_time(row),
                 note: match row.standing {
@@ -53,10 +54,11 @@ pub(super) fn pooled(pool: &Pool, command: &str) -> Vec<Figure> {
             backend: &row.backend,
             ratio: row.ratio_to_best,
             interval: row.ci_low.zip(row.ci_high).map(|(a, b)| [a, b]),
+            bound: row.estimated > 0,
             ns: row.ns_per_element,
             first_ns: None,
             note: format!(
-                "mean over {}: single fastest on {}, tied for the fastest on {}, estimated on {}",
+                "mean over {}: single fastest on {}, tied for the fastest on {}, not run on {}",
                 counted(row.meshes, "mesh", "meshes"),
                 row.best,
                 row.tied,
@@ -67,7 +69,8 @@ pub(super) fn pooled(pool: &Pool, command: &str) -> Vec<Figure> {
         Some(Figure {
             caption: "The scale is logarithmic and begins at 1, the time of the fastest. Each \
                       ratio is the geometric mean over the meshes of the time divided by the time \
-                      of the fastest backend of the mesh. The thin lines are the 95 % intervals of \
+                      of the fastest measured backend of the mesh. ≥ marks lower bounds, which are \
+                      not ranked: a run would exceed the budget. The thin lines are the 95 % intervals of \
                       the means."
                 .into(),
             ..figure
@@ -76,17 +79,21 @@ pub(super) fn pooled(pool: &Pool, command: &str) -> Vec<Figure> {
     figures.collect()
 }
 
+/// The remark on a lower bound.
+const NOT_RUN: &str = "lower bound, not ranked: a full run would exceed the budget";
+
 pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Option<Figure> {
     let rows = report.ranking.iter().map(|ranked| Row {
         backend: &ranked.backend,
         ratio: ranked.ratio_to_best,
         interval: ranked.ci_low.zip(ranked.ci_high).map(|(a, b)| [a, b]),
+        bound: ranked.estimated,
         ns: Some(ranked.ns_per_operation),
         first_ns: None,
         note: match (ranked.tied_with_best, ranked.ratio_to_best) {
+            _ if ranked.estimated => NOT_RUN.into(),
             (_, 1.0) => "best".into(),
             (true, _) => "tied for best".into(),
-            _ if ranked.estimated => "estimated: a full run would exceed the budget".into(),
             _ if ranked.sampled => "from a sample of the elements".into(),
             _ => String::new(),
         },
@@ -107,6 +114,7 @@ pub(super) fn from_neighbours(
                 backend: &row.backend,
                 ratio: row.ratio_to_best?,
                 interval: row.ratio_ci_low.zip(row.ratio_ci_high).map(|(a, b)| [a, b]),
+                bound: false,
                 ns: row.ns_per_element,
                 first_ns: None,
                 note: match row.standing {
@@ -144,7 +152,7 @@ fn operation_figure(
 /// Replaces the ratios by the quotients of the shown times, so that a reader who divides two times
 /// gets the ratio.
 fn with_shown_ratios(mut rows: Vec<Row<'_>>) -> Vec<Row<'_>> {
-    let best = rows.iter().find(|row| row.ratio == 1.0);
+    let best = rows.iter().find(|row| row.ratio == 1.0 && !row.bound);
     if let Some(best) = best.and_then(|best| best.ns) {
         for row in &mut rows {
             row.ratio = row.ns.map_or(row.ratio, |ns| shown_ratio(ns, best));
@@ -159,9 +167,10 @@ fn cells(row: &Row<'_>, firsts: bool) -> Vec<String> {
     let missing = || "–".into();
     let mut cells = vec![
         row.backend.to_owned(),
-        shown(row.ratio),
+        marked(shown(row.ratio), row.bound),
         row.interval.map_or_else(missing, interval_text),
-        row.ns.map_or_else(missing, duration),
+        row.ns
+            .map_or_else(missing, |ns| marked(duration(ns), row.bound)),
     ];
     cells.extend(firsts.then(|| row.first_ns.map_or_else(missing, duration)));
     cells.push(row.note.clone());
@@ -174,8 +183,9 @@ fn bar_title(row: &Row<'_>, per: &str) -> String {
         .interval
         .map(|ends| format!(" ({})", interval_text(ends)));
     let interval = interval.unwrap_or_default();
-    let time = row.ns.map_or_else(|| "–".into(), duration);
-    let (backend, ratio, unit) = (row.backend, shown(row.ratio), per_unit(per));
+    let mark = |text| marked(text, row.bound);
+    let time = row.ns.map_or_else(|| "–".into(), |ns| mark(duration(ns)));
+    let (backend, ratio, unit) = (row.backend, mark(shown(row.ratio)), per_unit(per));
     format!("{backend}: {ratio}{interval} × the time of the fastest, {time} {unit}")
 }
 
@@ -193,7 +203,7 @@ fn figure(
     if rows.len() < 2 {
         return None;
     }
-    rows.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
+    rows.sort_by(|a, b| a.bound.cmp(&b.bound).then(a.ratio.total_cmp(&b.ratio)));
     let firsts = rows.iter().any(|row| row.first_ns.is_some());
     let mut header = vec![
         "".into(),
@@ -210,7 +220,7 @@ fn figure(
     }
     // The plot draws categories upwards, but the fastest backend belongs at the top.
     for row in rows.iter().rev() {
-        let length = row.ratio.log10();
+        let length = row.ratio.log10().max(0.0);
         let ends = row
             .interval
             .map_or([length; 2], |ends| ends.map(f64::log10));

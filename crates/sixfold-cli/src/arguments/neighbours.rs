@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use sixfold::UnknownName;
 use sixfold_study::{QueryPoints, neighbour_indices};
 
 use super::{EffortArgs, ReadFiles, ResultFiles, seed};
@@ -62,10 +63,8 @@ pub(crate) struct Neighbours {
     pub(crate) read: ReadFiles,
 }
 
-fn index(name: &str) -> Result<String, String> {
-    let known = neighbour_indices();
-    match known.contains(&name) {
-        true => Ok(name.to_owned()),
-        false => Err(format!("the indices are {}", known.join(", "))),
-    }
+fn index(name: &str) -> Result<String, UnknownName> {
+    let given = name.to_owned();
+    UnknownName::check("index", std::slice::from_ref(&given), neighbour_indices())?;
+    Ok(given)
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use sixfold::Relation;
 
-use super::{EffortArgs, ReadFiles, ResultFiles, backend};
+use super::{EffortArgs, ReadFiles, ResultFiles, backend, relation};
 
 const WHY_EXAMPLES: &str = "Examples:
   sixfold why --counts-only                                counts on the built-in mesh, no times
@@ -43,8 +43,8 @@ pub(crate) struct Why {
     /// Use only these data structures (backends), by name
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = backend)]
     pub(crate) backends: Vec<String>,
-    /// Query only these relations, by name
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    /// Query only these relations, by name (also VV, VE and so on)
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = relation)]
     pub(crate) relations: Vec<Relation>,
     /// First cut every polygon into triangles
     #[arg(long)]

@@ -22,7 +22,7 @@ use crate::arguments::Study;
 use crate::failure::Failure;
 use crate::load::file_hash;
 use crate::output::{Output, cannot_write};
-use crate::text::print_stderr;
+use crate::text::print_notice;
 use sixfold_study::numbers::counted;
 
 pub(super) struct Folder {
@@ -68,7 +68,7 @@ impl Folder {
         for (file, text) in files {
             let Ok(saved) = Results::read_json(&text) else {
                 let file = file.display();
-                print_stderr(&format!(
+                print_notice(&format!(
                     "note: {file}: not a study of this program, so the mesh is studied again"
                 ));
                 continue;
@@ -206,7 +206,7 @@ fn add_saved(
     };
     match mesh.path.as_deref().and_then(file_hash) == study.mesh.file_sha256 {
         true => results.add(Finding::Study(study)),
-        false => print_stderr(&format!(
+        false => print_notice(&format!(
             "note: {}: the file has changed since it was studied, so it is studied again",
             mesh.name
         )),

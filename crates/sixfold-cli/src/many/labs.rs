@@ -12,7 +12,7 @@ use super::folder::Folder;
 use crate::failure::Failure;
 use crate::measure::with_command;
 use crate::progress::Bar;
-use crate::text::{TextOutput, print_stderr, sanitize};
+use crate::text::{TextOutput, print_notice, sanitize};
 use crate::{growth, orders, why};
 
 sixfold_core::named! {
@@ -103,11 +103,11 @@ impl LabRunner<'_> {
                         .into_iter()
                         .for_each(|new| results.add(new));
                 }
-                Ok(None) => print_stderr(&format!(
+                Ok(None) => print_notice(&format!(
                     "note: the report is without {}: none of the selected operations is a relation",
                     lab.name()
                 )),
-                Err(failure) => print_stderr(&format!(
+                Err(failure) => print_notice(&format!(
                     "note: the report is without {}: {}",
                     lab.name(),
                     failure.message

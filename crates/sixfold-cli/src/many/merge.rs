@@ -24,10 +24,10 @@ pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
         let file = load::results_path(place);
         check_not_overwritten("the results", &file, &options)?;
     }
-    let merged = merged(&arguments.results)?;
+    let mut merged = merged(&arguments.results)?;
     let mut session = Session::open(None::<&Path>, &arguments.files, Policy::System)?;
     super::print_all(&merged, &mut session.text);
-    let mut written = session.write(&merged);
+    let mut written = session.write(&mut merged);
     if let Some(path) = &arguments.report {
         written = written.and(Folder::create(path)?.write_report(&merged, &command_line()));
     }

@@ -1,7 +1,7 @@
 //! The table of the results of many meshes.
 
 use comfy_table::{Attribute, Cell, CellAlignment};
-use sixfold_study::numbers::{counted, figure};
+use sixfold_study::numbers::{counted, figure, rounded_down};
 use sixfold_study::{Overall, Pool, Pooled, Purpose};
 
 use crate::tables::{stacked, unbroken};
@@ -69,10 +69,13 @@ pub(super) fn groups_table(pool: &Pool, bold: bool) -> Option<String> {
                     let Some(row) = row else {
                         return right("–".into());
                     };
-                    let is_best = row.backend == best.backend;
+                    let is_best = row.backend == best.backend && !row.bound;
                     let mark = if is_best { "*" } else { "" };
-                    let bound = if row.bound { "≥" } else { "" };
-                    let cell = right(format!("{mark}{bound}{}", figure(row.ratio_to_best)));
+                    let ratio = match row.bound {
+                        true => format!("≥{}", figure(rounded_down(row.ratio_to_best))),
+                        false => figure(row.ratio_to_best),
+                    };
+                    let cell = right(format!("{mark}{ratio}"));
                     match bold && is_best {
                         true => cell.add_attribute(Attribute::Bold),
                         false => cell,
@@ -87,7 +90,7 @@ pub(super) fn groups_table(pool: &Pool, bold: bool) -> Option<String> {
     Some(format!("{}\n{legend}", stacked(&columns, table)))
 }
 
-const GROUPS_LEGEND: &str = "* smallest mean of the group. In the mean over all pooled meshes, each power of ten of \
+const GROUPS_LEGEND: &str = "* smallest measured mean of the group; ≥ lower bound, not ranked. In the mean over all pooled meshes, each power of ten of \
     the number of faces has equal weight.";
 
 fn right(text: String) -> Cell {
@@ -102,18 +105,20 @@ fn header(title: &str, columns: &[&str]) -> Vec<Cell> {
 
 const LEGEND: [&str; 4] = [
     "* fastest or tied with the fastest on most meshes",
-    "≥ lower bound: estimated on some meshes, because a run would exceed the budget",
+    "≥ lower bound, not ranked: on some meshes, a run would exceed the budget",
     "(n) mean over n meshes only: on the other meshes, a backend has no time",
     "– no time on these meshes",
 ];
 
 /// Formats a cell such as `*1.04` or `≥18.2`.
 fn cell(row: &Pooled, bold: bool) -> Cell {
-    let ratio = figure(row.ratio_to_best);
+    let ratio = match row.estimated {
+        0 => figure(row.ratio_to_best),
+        _ => format!("≥{}", figure(rounded_down(row.ratio_to_best))),
+    };
     let ahead = 2 * (row.best + row.tied) > row.meshes;
     let mark = if ahead { "*" } else { "" };
-    let estimated = if row.estimated > 0 { "≥" } else { "" };
-    let cell = Cell::new(format!("{mark}{estimated}{ratio}")).set_alignment(CellAlignment::Right);
+    let cell = Cell::new(format!("{mark}{ratio}")).set_alignment(CellAlignment::Right);
     match bold && ahead {
         true => cell.add_attribute(Attribute::Bold),
         false => cell,

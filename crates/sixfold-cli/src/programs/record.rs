@@ -15,7 +15,7 @@ use crate::measure::warn_of_debug_build;
 use crate::output::Output;
 use crate::pick;
 use crate::progress::{Bar, INTERRUPTED, interrupt_flag};
-use crate::text::{TextOutput, hanging_indent, print_stderr, sanitize};
+use crate::text::{TextOutput, hanging_indent, print_notice, print_stderr, sanitize};
 
 /// Records each program of `suite` on one mesh, and writes the files to `folder`.
 pub(super) fn run(
@@ -24,7 +24,7 @@ pub(super) fn run(
     folder: &Path,
     arguments: &Programs,
 ) -> Result<ExitCode, Failure> {
-    let meshes = find_meshes(&arguments.meshes, &mut |note| print_stderr(note))?;
+    let meshes = find_meshes(&arguments.meshes, &mut |note| print_notice(note))?;
     // A mesh that cannot be read must not make one of two meshes the single one.
     let study_meshes = match meshes.len() {
         1 => pick::study_meshes(&meshes, arguments.read, arguments.triangulate)?,

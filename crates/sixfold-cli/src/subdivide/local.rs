@@ -15,7 +15,7 @@ use crate::mesh_files::{MeshOutput, shown};
 use crate::output::{check_not_overwritten, is_stdout};
 use crate::progress::Spinner;
 use crate::seams::without_seams;
-use crate::text::{TextOutput, print_stderr, sanitize};
+use crate::text::{TextOutput, print_notice, sanitize};
 use sixfold_study::numbers::{counted, grouped};
 
 use super::check_tags;
@@ -52,7 +52,7 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
         .ok_or_else(|| Failure::usage(format!("no backend is called `{}`", arguments.backend)))??;
     let mesh = refined.polygons();
     if arguments.levels > 0 && mesh.face_count() == polygons.face_count() {
-        print_stderr(&format!(
+        print_notice(&format!(
             "note: {}: no face is selected, so the mesh is unchanged",
             shown(&arguments.files.mesh)
         ));
@@ -64,11 +64,12 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
     let faces = counted(mesh.face_count(), "face", "faces");
     let all = mesh.faces().iter();
     let green = all.filter(|&(f, _)| refined.is_green(f)).count();
-    text.print_line(&format!(
+    let made = format!(
         "{place}: {vertices}, {faces} ({} made by halving); refined on {}",
         grouped(green),
         arguments.backend
-    ));
+    );
+    text.print_list("", [made]);
     text.finish()?;
     Ok(ExitCode::SUCCESS)
 }

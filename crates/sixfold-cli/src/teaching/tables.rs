@@ -12,7 +12,7 @@ use crate::column_table::{Column, column_table};
 use crate::failure::Failure;
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::teaching::{explain, mesh, print_refused, side_by_side};
-use crate::text::{TextOutput, hanging_indent};
+use crate::text::{TextOutput, WithNotices, hanging_indent};
 
 /// Maximum number of rows of a table, if the rows are not named.
 const MOST_ROWS: usize = 200;
@@ -62,7 +62,7 @@ pub(crate) fn run(arguments: &Tables) -> Result<ExitCode, Failure> {
             structures: &shown,
             refused: &refused,
         };
-        done = done.and(output.write_json(&document));
+        done = done.and(output.write_json(&WithNotices::new(&document)));
     }
     if let Some(output) = csv {
         done = done.and(output.finish(|writer| write_csv(&shown, writer)));

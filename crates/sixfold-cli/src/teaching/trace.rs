@@ -9,7 +9,7 @@ use std::process::ExitCode;
 
 use console::{Key, Term};
 use serde::Serialize;
-use sixfold::{PolygonMesh, Relation};
+use sixfold::PolygonMesh;
 use sixfold_explain::{
     BuiltMesh, Cost, EditCommand, ElementName, ExplainError, Read, Refused, Step, Trace,
 };
@@ -103,39 +103,13 @@ fn begin(path: Option<&Path>, arguments: &arguments::Trace) -> Result<Begun, Fai
     })
 }
 
-/// Parses the name of a relation, such as `vertex_faces` or VF.
-pub(super) fn relation(text: &str) -> Result<Relation, Failure> {
-    let kind = |letter| match letter {
-        'V' => Some("vertex"),
-        'E' => Some("edge"),
-        'F' => Some("face"),
-        _ => None,
-    };
-    let many = |letter| match letter {
-        'V' => Some("vertices"),
-        'E' => Some("edges"),
-        'F' => Some("faces"),
-        _ => None,
-    };
-    let mut letters = text.chars();
-    let long = match (
-        letters.next().and_then(kind),
-        letters.next().and_then(many),
-        letters.next(),
-    ) {
-        (Some(from), Some(to), None) => format!("{from}_{to}"),
-        _ => text.to_owned(),
-    };
-    long.parse().map_err(Failure::usage)
-}
-
 /// Traces a query.
 fn queries(
     path: Option<&Path>,
     [relation, element]: [&String; 2],
     arguments: &arguments::Trace,
 ) -> Result<ExitCode, Failure> {
-    let relation = self::relation(relation)?;
+    let relation = arguments::relation(relation).map_err(Failure::usage)?;
     let element: ElementName = element.parse().map_err(Failure::usage)?;
     let mut begun = begin(path, arguments)?;
     let name = begun.name_after_edits();
@@ -155,7 +129,7 @@ fn queries(
         traces: &traces,
         refused: &refused,
     };
-    begun.text.finish_with_json(begun.json, &document)
+    begun.text.finish_with_document(begun.json, &document)
 }
 
 /// Returns the trace of one structure.

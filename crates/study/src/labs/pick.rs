@@ -308,7 +308,7 @@ fn measure_mesh(
     backend::keep_common_places(&mut backends, &schedule).map_err(impossible)?;
     let control = backends.pop_if(|_| has_control);
     if settings.needs.contains(&Need::Edit) {
-        let reason = "they cannot be edited".into();
+        let reason = "its flat tables cannot be edited".into();
         excluded.push(Excluded::new("relation-tables", reason));
     } else {
         progress(0.1, "tabulating");

@@ -32,6 +32,8 @@ pub struct Results {
     pub findings: Vec<Finding>,
     /// The meshes that could not be studied.
     pub failures: Vec<Failed>,
+    /// The notes and warnings that the commands printed, for example about a file that was read.
+    pub notices: Vec<String>,
 }
 
 /// A mesh that could not be studied.
@@ -64,6 +66,7 @@ struct Written<'r> {
     planned: &'r [String],
     missing: usize,
     failures: &'r [Failed],
+    notices: &'r [String],
     findings: Vec<WrittenFinding<'r>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pool: Option<Pool>,
@@ -87,6 +90,8 @@ struct ReadDocument {
     meshes: Vec<MeshReport>,
     planned: Vec<String>,
     failures: Vec<Failed>,
+    #[serde(default)]
+    notices: Vec<String>,
     findings: Vec<ReadFinding>,
 }
 
@@ -234,6 +239,7 @@ impl Results {
             planned: &self.planned,
             missing: self.missing().count(),
             failures: &self.failures,
+            notices: &self.notices,
             findings,
             pool: (self.planned.len() > 1).then(|| self.pool()),
         };
@@ -275,6 +281,7 @@ impl Results {
         }
         results.extend(findings);
         results.add_failures(document.failures);
+        results.notices = document.notices;
         Ok(results)
     }
 }

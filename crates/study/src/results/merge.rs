@@ -36,8 +36,8 @@ pub enum MergeError {
 }
 
 impl Results {
-    /// Adds the findings and failures of `other`. A study replaces a failure of the same mesh. A
-    /// copy of a finding of `self` is not added.
+    /// Adds the findings, failures and notices of `other`. A study replaces a failure of the same mesh.
+    /// A copy of a finding or notice of `self` is not added.
     ///
     /// # Errors
     ///
@@ -73,6 +73,9 @@ impl Results {
         self.plan(other.planned);
         self.extend(new);
         self.add_failures(other.failures);
+        let is_new = |notice: &String| !self.notices.contains(notice);
+        let new: Vec<String> = other.notices.into_iter().filter(is_new).collect();
+        self.notices.extend(new);
         Ok(())
     }
 

@@ -1,8 +1,11 @@
 //! Results over all meshes of a collection.
 //!
 //! The means of two backends can be compared only if both means are over the same meshes. Every
-//! mean is therefore over the meshes that all compared backends can hold. The means include
-//! estimated times. Without estimated times, backends that are too slow to measure would look fast.
+//! mean is therefore over the meshes that all compared backends can hold.
+//!
+//! An estimated time is a lower bound. The means include lower bounds: without them, backends that are
+//! too slow to measure would look fast. A mean with a lower bound is one itself, and is never ranked
+//! before a measured mean. The ratios are to the fastest measured time.
 
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, HashMap};
@@ -54,7 +57,7 @@ pub struct Group {
     /// The names of the meshes.
     pub meshes: Vec<String>,
     /// The results for each purpose (such as queries) and each backend. The backends of a purpose
-    /// are sorted from the fastest to the slowest.
+    /// are sorted from the fastest to the slowest; those with a lower bound come last.
     pub overall: Vec<Overall>,
     /// The results for each operation and each backend.
     pub pooled: Vec<Pooled>,
@@ -87,8 +90,8 @@ pub struct Overall {
     /// are one case. 0 in documents of schema 2.
     #[serde(default)]
     pub cases: usize,
-    /// The time of this backend divided by the time of the fastest backend, as the geometric mean
-    /// over meshes and operations. Each range of mesh sizes (such as 100 to 999 faces or 1,000 to
+    /// The time of this backend divided by the time of the fastest measured backend, as the geometric
+    /// mean over meshes and operations. Each range of mesh sizes (such as 100 to 999 faces or 1,000 to
     /// 9,999 faces) has the same weight in the mean.
     pub ratio_to_best: f64,
     /// Lower end of the 95 % confidence interval of `ratio_to_best`; `None` with fewer than three
@@ -96,7 +99,8 @@ pub struct Overall {
     pub ci_low: Option<f64>,
     /// Upper end of the 95 % confidence interval of `ratio_to_best`.
     pub ci_high: Option<f64>,
-    /// True if the mean includes estimated times. Estimates are lower bounds, so the mean is one too.
+    /// True if the mean includes estimated times. Estimates are lower bounds, so the mean is one too,
+    /// and has no interval.
     #[serde(default)]
     pub bound: bool,
     /// The half-width of the 95 % interval of the logarithm of `ratio_to_best`, from the intervals of
@@ -119,13 +123,13 @@ pub struct Pooled {
     /// Number of meshes on which this backend is tied with the fastest.
     pub tied: usize,
     /// Number of meshes on which the time is an estimate, because a real run would exceed the time
-    /// budget.
+    /// budget. If there are any, `ratio_to_best` and `ns_per_element` are lower bounds.
     pub estimated: usize,
-    /// The time of this backend divided by the time of the fastest backend, as the geometric mean
-    /// over the meshes.
+    /// The time of this backend divided by the time of the fastest measured backend, as the geometric
+    /// mean over the meshes.
     pub ratio_to_best: f64,
     /// Lower end of the 95 % confidence interval of `ratio_to_best`, at least 1; `None` with fewer
-    /// than three meshes.
+    /// than three meshes, or if the mean is a lower bound.
     pub ci_low: Option<f64>,
     /// Upper end of the 95 % confidence interval of `ratio_to_best`.
     pub ci_high: Option<f64>,
@@ -389,15 +393,18 @@ fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
         let has = |mesh: usize, backend: &str| value(mesh, backend).is_some();
         let some = |backend: &&&str| (0..studies.len()).any(|mesh| has(mesh, backend));
         let backends: Vec<&str> = backends.iter().filter(some).copied().collect();
-        let (compared, meshes) = common(&backends, studies.len(), has);
+        let (compared, mut meshes) = common(&backends, studies.len(), has);
+        let least = |mesh: usize| {
+            let rows = compared.iter().filter_map(|b| Some(value(mesh, b)?.0));
+            least_measured(rows.filter_map(Known::of))
+        };
+        meshes.retain(|&mesh| least(mesh).is_some());
         for backend in &compared {
             let ratios: Vec<f64> = meshes
                 .iter()
                 .filter_map(|&mesh| {
-                    let all = compared.iter().filter_map(|other| value(mesh, other));
-                    let least = all.map(|(_, time)| time).min_by(f64::total_cmp)?;
                     let (row, time) = value(mesh, backend)?;
-                    Some(row.ratio_to_best.unwrap_or(time / least))
+                    Some(row.ratio_to_best.unwrap_or(time / least(mesh)?))
                 })
                 .collect();
             let rows = || meshes.iter().filter_map(|&mesh| value(mesh, backend));
@@ -412,6 +419,8 @@ fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
             let Some((ratio_to_best, interval)) = geometric_mean(&ratios) else {
                 continue;
             };
+            let estimated = rows().filter(|(row, _)| row.median_ns.is_none()).count();
+            let interval = interval.filter(|_| estimated == 0);
             let interval = interval.map(|ends| above_best(ends, ratio_to_best));
             pooled.push(Pooled {
                 backend: (*backend).to_owned(),
@@ -419,7 +428,7 @@ fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
                 meshes: meshes.len(),
                 best: standing(&[Standing::Best, Standing::Alone]),
                 tied: standing(&[Standing::Tied]),
-                estimated: rows().filter(|(row, _)| row.median_ns.is_none()).count(),
+                estimated,
                 ratio_to_best,
                 ci_low: interval.map(|[low, _]| low),
                 ci_high: interval.map(|[_, high]| high),
@@ -428,6 +437,12 @@ fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
         }
     }
     pooled
+}
+
+/// Returns the smallest measured time, in nanoseconds. A lower bound cannot be the smallest time.
+fn least_measured(times: impl Iterator<Item = Known>) -> Option<f64> {
+    let measured = times.filter(|time| !time.bound).map(|time| time.ns);
+    measured.min_by(f64::total_cmp)
 }
 
 /// The operations that do the same work: all methods of a subdivision scheme, or one operation.
@@ -491,7 +506,7 @@ impl Overall {
 }
 
 /// Pools all tasks of each purpose. The backends of a purpose are sorted from the fastest to the
-/// slowest.
+/// slowest; those with a lower bound come last.
 pub(crate) fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
     let mut overall = Vec::new();
     let all_rows = Rows::new(studies);
@@ -509,13 +524,10 @@ pub(crate) fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
         let has = |case: usize, backend: &str| value(case, backend).is_some();
         let some = |backend: &&&str| (0..cases.len()).any(|case| has(case, backend));
         let backends: Vec<&str> = backends.iter().filter(some).copied().collect();
-        let (compared, shared) = common(&backends, cases.len(), has);
-        let ratio = |case: usize, backend: &str| {
-            let all = compared
-                .iter()
-                .filter_map(|other| Some(value(case, other)?.ns));
-            Some(value(case, backend)?.ns / all.min_by(f64::total_cmp)?)
-        };
+        let (compared, mut shared) = common(&backends, cases.len(), has);
+        let least = |case: usize| least_measured(compared.iter().filter_map(|b| value(case, b)));
+        shared.retain(|&case| least(case).is_some());
+        let ratio = |case: usize, backend: &str| Some(value(case, backend)?.ns / least(case)?);
         let is_bound = |backend: &str| {
             let mut times = shared.iter().filter_map(|&case| value(case, backend));
             times.any(|time| time.bound)
@@ -541,20 +553,27 @@ pub(crate) fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
                         Some((decade(studies[mesh]), geometric_mean(&ratios)?.0))
                     })
                     .collect();
-                mean_over_sizes(&by_mesh).map(|(mean, interval)| Overall {
-                    purpose,
-                    backend: (*backend).to_owned(),
-                    meshes: by_mesh.len(),
-                    cases: shared.len(),
-                    ratio_to_best: mean,
-                    ci_low: interval.map(|[low, _]| low),
-                    ci_high: interval.map(|[_, high]| high),
-                    bound: is_bound(backend),
-                    log_error: log_error(backend),
+                let bound = is_bound(backend);
+                mean_over_sizes(&by_mesh).map(|(mean, interval)| {
+                    let interval = interval.filter(|_| !bound);
+                    Overall {
+                        purpose,
+                        backend: (*backend).to_owned(),
+                        meshes: by_mesh.len(),
+                        cases: shared.len(),
+                        ratio_to_best: mean,
+                        ci_low: interval.map(|[low, _]| low),
+                        ci_high: interval.map(|[_, high]| high),
+                        bound,
+                        log_error: log_error(backend),
+                    }
                 })
             })
             .collect();
-        rows.sort_by(|a, b| a.ratio_to_best.total_cmp(&b.ratio_to_best));
+        rows.sort_by(|a, b| {
+            let by_ratio = a.ratio_to_best.total_cmp(&b.ratio_to_best);
+            a.bound.cmp(&b.bound).then(by_ratio)
+        });
         overall.extend(rows);
     }
     overall
@@ -585,20 +604,58 @@ fn above_best([low, high]: [f64; 2], mean: f64) -> [f64; 2] {
 }
 
 /// Returns the fastest backends of one purpose: the first of `rows`, and those that are at most 5 %
-/// slower, or by less than the error of the means of one mesh. Empty if `rows` is empty.
+/// slower, or by less than the error of the means of one mesh. A lower bound is never one of them.
+/// Empty if `rows` has only lower bounds.
 pub(crate) fn leaders(rows: &[Overall]) -> &[Overall] {
     let equal = |row: &&Overall| {
         let error = row.log_error.hypot(rows[0].log_error);
-        row.ratio_to_best <= rows[0].ratio_to_best * error.exp().max(EQUAL_UP_TO)
+        let most = rows[0].ratio_to_best * error.exp().max(EQUAL_UP_TO);
+        !row.bound && row.ratio_to_best <= most
     };
     &rows[..rows.iter().take_while(equal).count()]
+}
+
+/// Returns the next backends after the [`leaders`], with their time relative to the first: the
+/// fastest measured one, or else those that have only lower bounds. `None` if there are no others.
+pub(crate) fn next_best(rows: &[Overall]) -> Option<(String, String)> {
+    let others = &rows[leaders(rows).len()..];
+    let next = others.first()?;
+    // Lower bounds do not show which of the backends is the next.
+    let name = match next.bound && others.len() > 1 {
+        true => "the others".to_owned(),
+        false => next.backend.clone(),
+    };
+    let verb = if name == "the others" {
+        "take"
+    } else {
+        "takes"
+    };
+    Some((format!("{name} {verb}"), next.times(&rows[0])))
+}
+
+/// Names the backends whose lower bound does not show that they are slower than the [`leaders`], as
+/// an addition to a sentence.
+pub(crate) fn not_ranked(rows: &[Overall]) -> Option<String> {
+    let last = leaders(rows).last()?;
+    let open = rows
+        .iter()
+        .filter(|row| row.bound && row.ratio_to_best <= last.ratio_to_best);
+    let open: Vec<String> = open
+        .map(|row| format!("{} ({})", row.backend, row.times(&rows[0])))
+        .collect();
+    (!open.is_empty()).then(|| {
+        format!(
+            "not ranked, because a run would exceed the budget: {}",
+            list(open)
+        )
+    })
 }
 
 /// Describes the fastest backends of one purpose. `compared` is the number of all compared backends.
 fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
     let best = leaders(rows);
     let first = best.first()?;
-    let next = rows.get(best.len())?;
+    let (next, ratio) = next_best(rows)?;
     let lead = match best.len() {
         1 => "is fastest on average",
         _ => "are fastest on average, within 5 % of each other",
@@ -608,13 +665,12 @@ fn leader(rows: &[Overall], group: &str, compared: usize) -> Option<String> {
         true => format!(" Only {} have times.", list(rows.iter().map(name))),
         false => String::new(),
     };
+    let open = not_ranked(rows).map_or(String::new(), |open| format!("; {open}"));
     Some(format!(
-        "{}, {group}: {} {lead} (geometric mean over {}). Next is {}, with {} the time.{only}",
+        "{}, {group}: {} {lead} (geometric mean over {}); {next} {ratio} the time{open}.{only}",
         first.purpose.name(),
         list(best.iter().map(name)),
         counted(first.meshes, "mesh", "meshes"),
-        next.backend,
-        next.times(first)
     ))
 }
 

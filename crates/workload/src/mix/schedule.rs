@@ -24,7 +24,8 @@ pub struct Schedule {
     pub on_elements: f64,
     /// The number of operations on single elements in one turn.
     pub turn_operations: f64,
-    /// True if the mix edits the mesh or sets positions. The mix then needs an editable mesh.
+    /// True if the mix edits the mesh, in single edits or passes, or sets positions. The mix then needs
+    /// an editable mesh.
     pub editable: bool,
     /// The program's own data that the visits read and write.
     pub own_data: OwnData,
@@ -44,7 +45,10 @@ impl Schedule {
                 true => EDIT_TURN_OPERATIONS,
                 false => TURN_OPERATIONS,
             },
-            editable: workload.mix.iter().any(|part| writes(part.action)),
+            editable: workload
+                .mix
+                .iter()
+                .any(|part| part.action.needs_editable_mesh()),
             parts: workload.mix.clone(),
             shares,
             own_data: workload.own_data,
@@ -92,10 +96,6 @@ impl Schedule {
 
 fn is_edit(action: Action) -> bool {
     matches!(action, Action::Edit(_))
-}
-
-fn writes(action: Action) -> bool {
-    is_edit(action) || action == Action::SetPosition
 }
 
 #[cfg(test)]

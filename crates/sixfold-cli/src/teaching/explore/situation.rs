@@ -10,9 +10,9 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 use sixfold_explain::respond;
 
+use crate::arguments::relation;
 use crate::arguments::{Arguments, Command, Explained, Trace};
 use crate::failure::Failure;
-use crate::teaching::trace::relation;
 use crate::text::sanitize;
 
 /// The version of the format.

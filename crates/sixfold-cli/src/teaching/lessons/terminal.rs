@@ -10,6 +10,22 @@ use crate::failure::Failure;
 use crate::output::cannot_write;
 use crate::text::{TextOutput, hanging_indent, width};
 
+/// Returns a command behind a prompt. A wide command continues before its options on more lines, as a
+/// shell reads it.
+fn prompt(command: &str, width: usize) -> String {
+    let mut words = command.split(" --");
+    let mut lines = vec![format!("$ {}", words.next().unwrap_or_default())];
+    for option in words {
+        let last = lines.len() - 1;
+        // Room for the sign of a continued line.
+        match lines[last].chars().count() + option.chars().count() + 5 <= width {
+            true => lines[last] += &format!(" --{option}"),
+            false => lines.push(format!("    --{option}")),
+        }
+    }
+    lines.join(" \\\n")
+}
+
 /// Runs a lesson in the terminal.
 pub(super) fn teach(lesson: &Lesson<'_>, waits: bool) -> Result<ExitCode, Failure> {
     let folder = Folder::new()?;
@@ -27,7 +43,7 @@ pub(super) fn teach(lesson: &Lesson<'_>, waits: bool) -> Result<ExitCode, Failur
                 text.print_line(&format!("The file {name}:\n\n{}", indented(content)));
             }
             Part::Command(command) => {
-                text.print_line(&format!("$ {}", command.line));
+                text.print_line(&prompt(command.line, width()));
                 if command.kind == Kind::Timed && !waits {
                     text.print_line("(measures time)");
                 } else if command.kind == Kind::Hidden {
@@ -43,7 +59,7 @@ pub(super) fn teach(lesson: &Lesson<'_>, waits: bool) -> Result<ExitCode, Failur
             }
             Part::Picture { command, caption } => {
                 text.print_line(&hanging_indent("Picture: ", caption));
-                text.print_line(&format!("$ {command}"));
+                text.print_line(&prompt(command, width()));
             }
             Part::Question { question, answer } => {
                 text.print_line(&hanging_indent("? ", question));

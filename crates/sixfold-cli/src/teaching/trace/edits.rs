@@ -50,7 +50,7 @@ pub(super) fn run(path: Option<&Path>, arguments: &arguments::Trace) -> Result<E
         edits: &traces,
         refused: &refused,
     };
-    text.finish_with_json(json, &document)
+    text.finish_with_document(json, &document)
 }
 
 /// Returns one edit on one structure.

@@ -37,7 +37,7 @@ pub(super) fn run(
         walks: &walks,
         refused: &refused,
     };
-    begun.text.finish_with_json(begun.json, &document)?;
+    begun.text.finish_with_document(begun.json, &document)?;
     let is_right =
         |walk: &Walk| walk.stopped.is_none() && walk.expected.as_ref().is_none_or(is_equal);
     Ok(match walks.iter().all(is_right) {
@@ -54,7 +54,7 @@ fn expected(text: &str) -> Result<Query, Failure> {
             "--expect: name a relation and an element, such as \"vertex_vertices v3\"",
         ));
     };
-    let relation = super::relation(relation)?;
+    let relation = arguments::relation(relation).map_err(Failure::usage)?;
     let element = element.parse().map_err(Failure::usage)?;
     Ok((relation, element))
 }

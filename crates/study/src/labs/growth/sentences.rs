@@ -150,20 +150,27 @@ impl Leader<'_> {
 }
 
 /// Lists the clearly fastest backend of each operation, and the range of sizes. At a size at which
-/// some backends have no time, no backend is called the fastest.
+/// some backends have no time, no backend is called the fastest. A lower bound counts as a time only
+/// if it is longer than the fastest measured time.
 fn fastest(sizes: &[SizeReport]) -> Vec<String> {
-    let has_time = |row: &&ResultRow| row.median_ns.or(row.estimated_ns).is_some();
     let mut sentences = Vec::new();
     for operation in Operation::ALL {
-        let rows = |size| rows_of(size, operation).filter(has_time);
+        let rows = |size| {
+            let measured = rows_of(size, operation).filter_map(|row| row.median_ns);
+            let least = measured.min_by(f64::total_cmp).unwrap_or(f64::INFINITY);
+            let is_slower = move |bound| bound > least;
+            rows_of(size, operation).filter(move |row| {
+                row.median_ns.is_some() || row.estimated_ns.is_some_and(is_slower)
+            })
+        };
+        if sizes.iter().flat_map(rows).next().is_none() {
+            continue;
+        }
         let mut all: Vec<&str> = Vec::new();
-        for row in sizes.iter().flat_map(rows) {
+        for row in sizes.iter().flat_map(|size| rows_of(size, operation)) {
             if !all.contains(&row.backend.as_str()) {
                 all.push(&row.backend);
             }
-        }
-        if all.is_empty() {
-            continue;
         }
         let leader = |size| {
             let names: Vec<&str> = rows(size).map(|row| row.backend.as_str()).collect();
@@ -298,6 +305,23 @@ mod tests {
             ["boundary: only half-edge has times at every size."]
         );
         assert!(fastest(&sizes[4..]).is_empty());
+    }
+
+    #[test]
+    fn a_lower_bound_counts_only_if_it_is_longer_than_the_fastest_time() {
+        let with_bound = |ns| {
+            let mut size = size(100, &["half-edge", "face-vertex", "polygon-soup"], true);
+            let soup = size.results.last_mut().expect("three rows");
+            (soup.median_ns, soup.estimated_ns, soup.standing) = (None, Some(ns), None);
+            size
+        };
+        let slower = "boundary: half-edge is fastest at every size.";
+        assert_eq!(fastest(&[with_bound(1.5)]), [slower]);
+        let open = "boundary: only half-edge and face-vertex have times at 100 faces; half-edge is \
+                    fastest at 100 faces.";
+        assert_eq!(fastest(&[with_bound(0.5), with_bound(1.5)]), [open]);
+        let never = "boundary: only half-edge and face-vertex have times at every size.";
+        assert_eq!(fastest(&[with_bound(0.5)]), [never]);
     }
 
     #[test]

@@ -124,7 +124,10 @@ impl GrowthSettings {
         } = self;
         let (from, to, steps) = (*from, *to, *steps);
         let known = || SCALABLE_SHAPES.iter().map(|shape| shape.name);
-        let unknown = || UnknownName::new("scalable shape", &self.shape, known());
+        let unknown = || {
+            let meanings = SCALABLE_SHAPES.iter().map(|shape| shape.summary);
+            UnknownName::new("scalable shape", &self.shape, known()).with_meanings(meanings)
+        };
         let shape = ScalableShape::from_name(&self.shape).ok_or_else(unknown)?;
         for faces in [from, to] {
             if !(MIN_FACES..=MAX_FACES).contains(&faces) {

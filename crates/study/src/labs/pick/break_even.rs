@@ -22,6 +22,11 @@ impl MeasuredMix<'_> {
         entries.find(|entry| entry.job.task == task)
     }
 
+    /// Returns whether `samples` contain an estimate, and so are a lower bound.
+    pub(crate) fn is_bound(&self) -> bool {
+        self.entries.iter().any(|entry| entry.estimate.is_some())
+    }
+
     /// Returns the largest number of page faults in a sample; `None` if they were not counted.
     pub(crate) fn most_faults(&self) -> Option<u64> {
         let samples = self.entries.iter().flat_map(|entry| &entry.samples);
@@ -35,13 +40,17 @@ const BASE: &str = "indexed-face-set";
 /// Returns the break-even of each backend, compared with an existing indexed face set. The
 /// break-even is at n = build / (t_base − t) operations, when the saved time equals the building
 /// time. Time differences are formed within rounds. The interval of n follows from the interval of
-/// the median difference. `operations` is the number of operations in one use.
+/// the median difference. `operations` is the number of operations in one use. A lower bound of a time
+/// has no break-even.
 pub(crate) fn break_even(
     measured: &[MeasuredMix<'_>],
     ranking: &[Ranked],
     operations: f64,
 ) -> Vec<BreakEven> {
-    let find = |name: &str| measured.iter().find(|m| m.candidate.name == name);
+    let find = |name: &str| {
+        let mut measured = measured.iter().filter(|m| !m.is_bound());
+        measured.find(|m| m.candidate.name == name)
+    };
     let Some(base) = find(BASE) else {
         return Vec::new();
     };

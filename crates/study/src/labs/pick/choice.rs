@@ -24,8 +24,8 @@ const ORDER: [&str; 6] = [
 
 /// The backend that is recommended for the workload.
 ///
-/// Backends are equally fast if the interval of the ratio of their times contains 1, or if the times
-/// differ by at most 5 %. Among the backends that are as fast as the fastest backend, the choice is the
+/// A backend of which only a lower bound of the time is known is never chosen. Backends are equally
+/// fast if the interval of the ratio of their times contains 1, or if the times differ by at most 5 %. Among the backends that are as fast as the fastest backend, the choice is the
 /// backend with the fewest bytes. If the bytes are equal, the choice is the first backend in this
 /// order: polygon-soup, indexed-face-set, face-vertex, corner-table, half-edge, winged-edge,
 /// others.
@@ -52,15 +52,17 @@ pub struct TurningPoint {
     pub backend: String,
 }
 
-/// Chooses a backend from a ranking, the fastest first; `None` if the ranking is empty.
+/// Chooses a backend from a ranking, the fastest first; `None` if no backend was measured.
 pub(crate) fn choose(ranking: &[Ranked]) -> Option<Choice> {
     // Without an interval, only the ratio counts: too few samples cannot show a difference.
-    let equal =
-        |r: &&Ranked| r.ratio_to_best <= EQUAL_UP_TO || (r.tied_with_best && r.ci_low.is_some());
+    let equal = |r: &&Ranked| {
+        let tied = r.tied_with_best && r.ci_low.is_some();
+        !r.estimated && (r.ratio_to_best <= EQUAL_UP_TO || tied)
+    };
     let chosen = ranking.iter().filter(equal).min_by_key(|r| size_order(r))?;
     let others = ranking.iter().filter(equal);
     let others = others.filter(|r| r.backend != chosen.backend);
-    let slower = ranking.iter().filter(|r| !equal(r));
+    let slower = ranking.iter().filter(|r| !equal(r) && !r.estimated);
     let turning_points = slower.filter_map(|r| turning_point(chosen, r));
     Some(Choice {
         backend: chosen.backend.clone(),
@@ -159,6 +161,7 @@ mod tests {
             operation: sixfold_workload::Action::Pass(operation),
             share: 0.5,
             ns: Some(ns),
+            estimated: false,
         };
         Ranked {
             backend: backend.into(),
@@ -208,6 +211,19 @@ mod tests {
         assert_eq!(choice.backend, "winged-edge");
         let alone = choose(&ranking[..1]).expect("one");
         assert_eq!(alone.rule(&ranking[..1]), None);
+    }
+
+    #[test]
+    fn a_lower_bound_is_never_chosen() {
+        let bound = Ranked {
+            estimated: true,
+            ..ranked("polygon-soup", 0.2, false, 8, [1.0, 1.0])
+        };
+        let measured = ranked("half-edge", 1.0, true, 96, [10.0, 10.0]);
+        let choice = choose(&[measured, bound.clone()]).expect("one is measured");
+        assert_eq!(choice.backend, "half-edge");
+        assert_eq!((choice.equally_fast.len(), choice.turning_point), (0, None));
+        assert_eq!(choose(&[bound]), None);
     }
 
     #[test]

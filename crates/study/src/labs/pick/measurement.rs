@@ -173,49 +173,78 @@ impl Evaluation<'_> {
         Some(ratio.max(ratio.recip()))
     }
 
-    /// Ranks the backends that have samples; the fastest first. Differences up to `noise` are ties.
+    /// Ranks the backends that have samples; the fastest first. Differences up to `noise` are ties. A
+    /// backend of which only a lower bound is known is not compared, and comes last.
     fn ranking(&self, noise: f64) -> Vec<Ranked> {
-        let times: Vec<Vec<(u32, Time)>> =
-            self.measured.iter().map(|m| m.samples.clone()).collect();
+        let measured = |m: &MeasuredMix<'_>| match m.is_bound() {
+            true => Vec::new(),
+            false => m.samples.clone(),
+        };
+        let times: Vec<Vec<(u32, Time)>> = self.measured.iter().map(measured).collect();
         let ranks = rank(&times, &corrected_times(&times), noise);
-        let rows = self.measured.iter().zip(ranks).filter_map(|(m, rank)| {
-            let rank = rank?;
-            let build = m.entry(Task::Operation(Operation::Build))?;
-            let builds = build.times();
-            let build_ns = Median::from_samples(builds.iter().map(|(_, time)| time.ns()))?.value;
-            let Candidate {
-                name,
-                made_from,
-                type_paths,
-                bytes,
-                ..
-            } = m.candidate;
-            Some(Ranked {
-                backend: name.clone(),
-                made_from: made_from.map(str::to_owned),
-                ns_per_operation: rank.time.value,
-                ns_ci_low: rank.time.interval.map(|[low, _]| low),
-                ns_ci_high: rank.time.interval.map(|[_, high]| high),
-                ratio_to_best: rank.ratio.value,
-                ci_low: rank.ratio.interval.map(|[low, _]| low),
-                ci_high: rank.ratio.interval.map(|[_, high]| high),
-                tied_with_best: rank.standing != Some(Standing::Slower),
-                build_ns,
-                first_build_ns: build.first_ns(),
-                bytes: *bytes,
-                bytes_per_vertex: *bytes as f64 / self.counts.vertices.max(1) as f64,
-                sampled: m.candidate.scans() || m.entries.iter().any(|e| e.job.sample.is_some()),
-                estimated: m.entries.iter().any(|entry| entry.estimate.is_some()),
-                parts: self.plan.parts(m),
-                samples: m.samples.len(),
-                faults: m.most_faults(),
-                crates: type_paths.iter().map(|path| package_of(path)).collect(),
-                types: type_paths.iter().map(|&path| path.to_owned()).collect(),
+        let best = ranks.iter().flatten().map(|rank| rank.time.value);
+        let best = best.min_by(f64::total_cmp);
+        let rows = self.measured.iter().zip(ranks);
+        let rows = rows.filter_map(|(m, rank)| {
+            let row = self.unranked(m)?;
+            Some(match rank {
+                Some(rank) => Ranked {
+                    ns_per_operation: rank.time.value,
+                    ns_ci_low: rank.time.interval.map(|[low, _]| low),
+                    ns_ci_high: rank.time.interval.map(|[_, high]| high),
+                    ratio_to_best: rank.ratio.value,
+                    ci_low: rank.ratio.interval.map(|[low, _]| low),
+                    ci_high: rank.ratio.interval.map(|[_, high]| high),
+                    tied_with_best: rank.standing != Some(Standing::Slower),
+                    ..row
+                },
+                None => Ranked {
+                    ratio_to_best: row.ns_per_operation / best.unwrap_or(row.ns_per_operation),
+                    ..row
+                },
             })
         });
         let mut ranking: Vec<Ranked> = rows.collect();
-        ranking.sort_by(|a, b| a.ratio_to_best.total_cmp(&b.ratio_to_best));
+        ranking.sort_by(Ranked::measured_first);
         ranking
+    }
+
+    /// Returns the row of a backend that is not compared with the others; `None` without a time.
+    fn unranked(&self, m: &MeasuredMix<'_>) -> Option<Ranked> {
+        let median = |times: &[(u32, Time)]| {
+            let times = times.iter().map(|(_, time)| time.ns());
+            Some(Median::from_samples(times)?.value)
+        };
+        let build = m.entry(Task::Operation(Operation::Build))?;
+        let Candidate {
+            name,
+            made_from,
+            type_paths,
+            bytes,
+            ..
+        } = m.candidate;
+        Some(Ranked {
+            backend: name.clone(),
+            made_from: made_from.map(str::to_owned),
+            ns_per_operation: median(&m.samples)?,
+            ns_ci_low: None,
+            ns_ci_high: None,
+            ratio_to_best: 1.0,
+            ci_low: None,
+            ci_high: None,
+            tied_with_best: false,
+            build_ns: median(&build.times())?,
+            first_build_ns: build.first_ns(),
+            bytes: *bytes,
+            bytes_per_vertex: *bytes as f64 / self.counts.vertices.max(1) as f64,
+            sampled: m.candidate.scans() || m.entries.iter().any(|e| e.job.sample.is_some()),
+            estimated: m.is_bound(),
+            parts: self.plan.parts(m),
+            samples: m.samples.len(),
+            faults: m.most_faults(),
+            crates: type_paths.iter().map(|path| package_of(path)).collect(),
+            types: type_paths.iter().map(|&path| path.to_owned()).collect(),
+        })
     }
 }
 
@@ -223,4 +252,79 @@ impl Evaluation<'_> {
 fn package_of(type_path: &str) -> String {
     let (package, _) = type_path.split_once("::").unwrap_or((type_path, ""));
     package.replace('_', "-")
+}
+
+#[cfg(test)]
+mod tests {
+    use sixfold::shapes;
+    use sixfold_workload::{Schedule, built_in};
+
+    use super::*;
+    use crate::labs::pick::tasks::Tasks;
+
+    /// A mix of 9 ns of which the time is only estimated, and mixes of 10 and 20 ns.
+    #[test]
+    fn estimates_are_compared_with_the_fastest_measured_time_and_come_last() {
+        let polygons = shapes::octahedron();
+        let counts = polygons.counts(12);
+        let workload = built_in("geodesic-dijkstra").expect("a built-in workload");
+        let schedule = Schedule::new(&workload, &counts);
+        let plan = Tasks::new(&workload, &schedule, &polygons, &counts);
+        let times = |ns: f64| {
+            (0..5)
+                .map(|round| (round, Time::from_wall_ns(ns)))
+                .collect()
+        };
+        let candidate = |name: &str| Candidate {
+            name: name.into(),
+            structure: None,
+            made_from: None,
+            type_paths: Vec::new(),
+            scans: vec![false; schedule.parts.len()],
+            bytes: 1,
+        };
+        let [soup, fast, slow] = ["polygon-soup", "half-edge", "face-vertex"].map(candidate);
+        let build = Entry {
+            samples: times(1000.0),
+            ..Entry::new(0, Operation::Build)
+        };
+        let estimate = Entry {
+            estimate: Some(Time::from_wall_ns(9.0)),
+            ..Entry::of_task(0, Task::Mix, "mix")
+        };
+        let mix = |candidate, ns, estimated: bool| MeasuredMix {
+            candidate,
+            entries: [&build, &estimate][..1 + usize::from(estimated)].to_vec(),
+            samples: times(ns),
+        };
+        let ranking = |measured: &[MeasuredMix<'_>]| {
+            let evaluation = Evaluation {
+                plan: &plan,
+                counts: &counts,
+                measured,
+            };
+            evaluation.ranking(NO_DIFFERENCE)
+        };
+        let rows = ranking(&[
+            mix(&soup, 9.0, true),
+            mix(&slow, 20.0, false),
+            mix(&fast, 10.0, false),
+        ]);
+        let row = |r: &Ranked| {
+            (
+                r.backend.clone(),
+                (1e6 * r.ratio_to_best).round() / 1e6,
+                r.tied_with_best,
+                r.estimated,
+            )
+        };
+        let expected = [
+            ("half-edge".to_owned(), 1.0, true, false),
+            ("face-vertex".to_owned(), 2.0, false, false),
+            ("polygon-soup".to_owned(), 0.9, false, true),
+        ];
+        assert_eq!(rows.iter().map(row).collect::<Vec<_>>(), expected);
+        let only = ranking(&[mix(&soup, 9.0, true)]);
+        assert!(only[0].estimated && only[0].ratio_to_best == 1.0);
+    }
 }

@@ -80,7 +80,9 @@ pub(crate) fn pooled(
         needs: question.needs,
         max_memory: question.max_memory,
         choice: choose(&ranking),
-        preliminary: ranking.iter().any(|ranked| ranked.samples < MIN_SAMPLES),
+        preliminary: ranking
+            .iter()
+            .any(|ranked| !ranked.estimated && ranked.samples < MIN_SAMPLES),
         ranking,
         excluded,
         break_even,
@@ -110,7 +112,8 @@ pub(crate) fn pooled(
     report
 }
 
-/// Ranks the backends with results on all meshes by the geometric mean of their times.
+/// Ranks the backends with results on all meshes by the geometric mean of their times. A mean with a
+/// lower bound is one itself, and comes last.
 fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
     let mut by_name: BTreeMap<&str, Vec<&Ranked>> = BTreeMap::new();
     for ranked in outcomes.iter().flat_map(|o| &o.ranking) {
@@ -121,7 +124,11 @@ fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
         .filter(|rows| rows.len() == outcomes.len());
     let mut everywhere: Vec<Vec<&Ranked>> = everywhere.collect();
     let time = |rows: &Vec<&Ranked>| geometric(rows.iter().map(|r| r.ns_per_operation));
-    everywhere.sort_by(|a, b| time(a).total_cmp(&time(b)));
+    let is_bound = |rows: &[&Ranked]| rows.iter().any(|r| r.estimated);
+    everywhere.sort_by(|a, b| {
+        let by_time = time(a).total_cmp(&time(b));
+        is_bound(a).cmp(&is_bound(b)).then(by_time)
+    });
     let Some(best) = everywhere.first().cloned() else {
         return Vec::new();
     };
@@ -145,7 +152,9 @@ fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
         } else {
             (squared_widths(rows) + squared_widths(&best)).sqrt() / rows.len() as f64
         };
-        let known = half_width.is_finite();
+        let estimated = is_bound(rows);
+        let known = half_width.is_finite() && !estimated;
+        let tied = ratio <= noise || (known && ratio * (-half_width).exp() <= 1.0);
         let bytes = rows.iter().map(|r| r.bytes).max().unwrap_or(0);
         Ranked {
             ns_per_operation: time(rows),
@@ -154,7 +163,7 @@ fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
             ratio_to_best: ratio,
             ci_low: known.then(|| ratio * (-half_width).exp()),
             ci_high: known.then(|| ratio * half_width.exp()),
-            tied_with_best: ratio <= noise || (known && ratio * (-half_width).exp() <= 1.0),
+            tied_with_best: tied && !estimated,
             build_ns: geometric(rows.iter().map(|r| r.build_ns)),
             first_build_ns: rows
                 .iter()
@@ -164,7 +173,7 @@ fn ranked_on_all(outcomes: &[Outcome], noise: f64) -> Vec<Ranked> {
             bytes,
             bytes_per_vertex: geometric(rows.iter().map(|r| r.bytes_per_vertex)),
             sampled: rows.iter().any(|r| r.sampled),
-            estimated: rows.iter().any(|r| r.estimated),
+            estimated,
             samples: rows.iter().map(|r| r.samples).min().unwrap_or(0),
             parts: parts_on_all(rows),
             ..rows[0].clone()
@@ -181,6 +190,7 @@ fn parts_on_all(rows: &[&Ranked]) -> Vec<PartCost> {
         PartCost {
             share: mean(on_each().map(|part| part.share)).unwrap_or(part.share),
             ns: times.map(|times| geometric(times.into_iter())),
+            estimated: on_each().any(|part| part.estimated),
             ..*part
         }
     });

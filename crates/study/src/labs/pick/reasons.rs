@@ -2,21 +2,24 @@
 
 use crate::engine::statistics::MIN_SAMPLES;
 use crate::engine::warnings::machine_warnings;
-use crate::labs::pick::choice::Choice;
+use crate::labs::pick::choice::{Choice, EQUAL_UP_TO};
 use crate::labs::pick::report::{PartCost, PickReport, ProgramReport, Ranked};
-use crate::numbers::{counted, duration, figure, grouped, list, rounded, times};
+use crate::numbers::{counted, duration, figure, grouped, list, rounded};
 use crate::packages;
 use crate::results::rows::Samples;
 
 /// Returns sentences about the fastest backend, the reasons, the break-even and the packages.
 pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
-    let Some(best) = report.ranking.first() else {
-        return vec!["No backend qualifies.".into()];
+    let best = match report.ranking.first() {
+        None => return vec!["No backend qualifies.".into()],
+        Some(best) if best.estimated => return vec![NOT_MEASURED.into()],
+        Some(best) => best,
     };
     let chosen = report.choice.as_ref();
     let used = chosen.and_then(|c| report.ranking.iter().find(|r| r.backend == c.backend));
     let used = used.unwrap_or(best);
     let mut sentences = vec![fastest(report, best)];
+    sentences.extend(not_ranked(report, best));
     sentences.extend(chosen.and_then(|choice| choice.rule(&report.ranking)));
     sentences.extend(
         chosen
@@ -32,6 +35,9 @@ pub(crate) fn sentences(report: &PickReport) -> Vec<String> {
     sentences
 }
 
+const NOT_MEASURED: &str = "No backend was measured, because a run would exceed the budget: use a \
+                            longer --budget.";
+
 /// Returns warnings about noise, few rounds, a busy machine and wrong results.
 pub(crate) fn warnings(report: &PickReport) -> Vec<String> {
     let by_mesh = report.by_mesh.iter().flat_map(|of_mesh| &of_mesh.samples);
@@ -44,7 +50,8 @@ pub(crate) fn warnings(report: &PickReport) -> Vec<String> {
             100.0 * (noise - 1.0)
         ));
     }
-    let fewest = report.ranking.iter().map(|ranked| ranked.samples).min();
+    let measured = report.ranking.iter().filter(|ranked| !ranked.estimated);
+    let fewest = measured.map(|ranked| ranked.samples).min();
     if let Some(fewest) = fewest.filter(|_| report.preliminary) {
         warnings.push(format!(
             "Some times are from only {}, but a narrow interval needs {MIN_SAMPLES} samples: use \
@@ -75,6 +82,21 @@ fn name(ranked: &Ranked) -> String {
     }
 }
 
+/// Names the backends whose lower bound does not show that they are slower than the fastest.
+fn not_ranked(report: &PickReport, best: &Ranked) -> Option<String> {
+    let open = |ranked: &&Ranked| ranked.estimated && ranked.ratio_to_best <= EQUAL_UP_TO;
+    let open = report.ranking.iter().filter(open);
+    let open: Vec<String> = open
+        .map(|ranked| format!("{} ({})", name(ranked), ranked.times(best)))
+        .collect();
+    (!open.is_empty()).then(|| {
+        format!(
+            "Not ranked, because a run would exceed the budget: {}. Use a longer --budget.",
+            list(open)
+        )
+    })
+}
+
 fn fastest(report: &PickReport, best: &Ranked) -> String {
     let tied: Vec<String> = report.ranking[1..]
         .iter()
@@ -84,9 +106,11 @@ fn fastest(report: &PickReport, best: &Ranked) -> String {
     let each = duration(best.ns_per_operation);
     let workload = &report.workload.name;
     let unit = report.unit();
-    let next = report.ranking[1..]
-        .iter()
-        .find(|ranked| !ranked.tied_with_best);
+    let is_slower = |ranked: &&Ranked| match ranked.estimated {
+        true => ranked.ratio_to_best > EQUAL_UP_TO,
+        false => !ranked.tied_with_best,
+    };
+    let next = report.ranking[1..].iter().find(is_slower);
     let clear = !report.preliminary && next.is_some_and(|next| next.ci_low.is_some());
     let next = next.map_or(String::new(), |next| {
         let sure = next
@@ -98,7 +122,7 @@ fn fastest(report: &PickReport, best: &Ranked) -> String {
         format!(
             "; {} takes {} that time{sure}",
             name(next),
-            times(next.shown_ratio(best))
+            next.times(best)
         )
     });
     let answer = match report.preliminary {
@@ -151,7 +175,7 @@ fn largest_loss(report: &PickReport, best: &Ranked) -> Option<String> {
     let next = report
         .ranking
         .iter()
-        .find(|ranked| !ranked.tied_with_best)?;
+        .find(|ranked| !ranked.tied_with_best && !ranked.estimated)?;
     let lost = |(a, b): (&PartCost, &PartCost)| a.weighted_ns() - b.weighted_ns();
     let pairs = || next.parts.iter().zip(&best.parts);
     let (theirs, ours) = pairs().max_by(|&a, &b| lost(a).total_cmp(&lost(b)))?;
@@ -174,7 +198,7 @@ fn tables(report: &PickReport, best: &Ranked) -> Option<String> {
     let structure = report
         .ranking
         .iter()
-        .find(|ranked| ranked.made_from.is_none())?;
+        .find(|ranked| ranked.made_from.is_none() && !ranked.estimated)?;
     if best.made_from.is_some() {
         return Some(format!(
             "Without relation tables, {} is fastest: {} per {}.",
@@ -191,7 +215,7 @@ fn tables(report: &PickReport, best: &Ranked) -> Option<String> {
         "Relation tables take {1} the time of the fastest backend. The tables contain only the \
          queried relations, and are made once from {0}.",
         tables.made_from.as_deref().unwrap_or_default(),
-        times(tables.shown_ratio(best))
+        tables.times(best)
     ))
 }
 
@@ -211,6 +235,7 @@ fn one_use_with_building(report: &PickReport, used: &Ranked) -> Option<String> {
     let least = report
         .ranking
         .iter()
+        .filter(|ranked| !ranked.estimated)
         .min_by(|a, b| total(a).total_cmp(&total(b)))?;
     let unit = report.unit();
     let amount = counted(operations.round() as usize, unit, &format!("{unit}s"));

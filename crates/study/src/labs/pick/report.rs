@@ -1,12 +1,14 @@
 //! The report of a pick, in the format that `reports/SCHEMA.md` documents.
 
+use std::cmp::Ordering;
+
 use serde::{Deserialize, Serialize};
 use sixfold_workload::{Action, Asked, Workload};
 
 use crate::engine::timer::Timer;
 use crate::labs::pick::choice::Choice;
 use crate::labs::pick::needs::Need;
-use crate::numbers::{grouped, shown_ratio};
+use crate::numbers::{grouped, rounded_down, shown_ratio, times};
 use crate::results::figure::{Figure, Status, samples_of};
 use crate::results::finding::LabFinding;
 use crate::results::read::ReadError;
@@ -39,9 +41,10 @@ pub struct PickReport {
     pub needs: Vec<Need>,
     /// The maximum size of a backend, in bytes; `None` for no limit.
     pub max_memory: Option<u64>,
-    /// The backends that meet all requirements, the fastest backend first.
+    /// The backends that meet all requirements, the fastest backend first; those with a lower bound
+    /// come last.
     pub ranking: Vec<Ranked>,
-    /// The backend to use; `None` if no backend meets all requirements.
+    /// The backend to use; `None` if no backend meets all requirements and was measured.
     pub choice: Option<Choice>,
     /// True if some times have too few samples for a 95 % confidence interval, because the time
     /// budget was too small.
@@ -157,7 +160,8 @@ pub struct Ranked {
     /// True if only some of the elements were queried, because a query scans all faces.
     pub sampled: bool,
     /// True if the time of some operation of the workload is an estimate, because a full run would
-    /// exceed the time budget.
+    /// exceed the time budget. `ns_per_operation` and `ratio_to_best` are then lower bounds, and the
+    /// backend is not ranked before others or chosen.
     pub estimated: bool,
     /// The cost of each operation of the workload, timed alone.
     pub parts: Vec<PartCost>,
@@ -181,6 +185,9 @@ pub struct PartCost {
     /// The time of this operation, timed alone in the access order of the workload, in nanoseconds.
     /// `None` if the operation was not timed alone.
     pub ns: Option<f64>,
+    /// True if `ns` is an estimate, and so a lower bound.
+    #[serde(default)]
+    pub estimated: bool,
 }
 
 impl Ranked {
@@ -188,6 +195,21 @@ impl Ranked {
     /// sentences that show the times.
     pub fn shown_ratio(&self, other: &Self) -> f64 {
         shown_ratio(self.ns_per_operation, other.ns_per_operation)
+    }
+
+    /// Formats the quotient of [`Self::shown_ratio`]: `1.31 ×`, or `≥ 900 ×` for a lower bound.
+    pub(crate) fn times(&self, other: &Self) -> String {
+        let ratio = self.shown_ratio(other);
+        match self.estimated {
+            true => format!("≥ {}", times(rounded_down(ratio))),
+            false => times(ratio),
+        }
+    }
+
+    /// Orders by the ratio to the fastest, lower bounds last: the true time may be longer.
+    pub(crate) fn measured_first(&self, other: &Self) -> Ordering {
+        let by_ratio = self.ratio_to_best.total_cmp(&other.ratio_to_best);
+        self.estimated.cmp(&other.estimated).then(by_ratio)
     }
 
     /// Returns the time to build in fresh memory pages. If this time was not measured, returns
@@ -304,17 +326,13 @@ impl PickReport {
         samples: &'r [Samples],
         noise: f64,
     ) -> Vec<Figure<'r>> {
-        let status = match (ranked.estimated, ranked.sampled) {
-            (true, _) => Status::Estimated,
-            (false, true) => Status::Sampled,
-            (false, false) => Status::Measured,
-        };
-        let row = |operation: &str, unit: &str, ns: f64| ResultRow {
+        let row = |operation: &str, unit: &str, ns: f64, estimated: bool| ResultRow {
             case: self.workload.name.clone(),
             backend: ranked.backend.clone(),
             operation: operation.to_owned(),
-            median_ns: Some(ns),
-            ns_per_element: Some(ns),
+            median_ns: (!estimated).then_some(ns),
+            ns_per_element: (!estimated).then_some(ns),
+            estimated_ns: estimated.then_some(ns),
             elements: Some(1),
             per: unit.to_owned(),
             sampled: ranked.sampled,
@@ -323,6 +341,11 @@ impl PickReport {
         let figure = |row: ResultRow<String>| {
             let samples = samples_of(samples, "", &row.operation, &row.backend);
             let count = samples.map_or(0, |samples| samples.rounds.len());
+            let status = match (row.estimated_ns, row.sampled) {
+                (Some(_), _) => Status::Estimated,
+                (None, true) => Status::Sampled,
+                (None, false) => Status::Measured,
+            };
             let row = ResultRow {
                 samples: row.samples.max(count),
                 ..row
@@ -340,18 +363,19 @@ impl PickReport {
         let mut figures = vec![figure(ResultRow {
             ci_low_ns: ranked.ns_ci_low,
             ci_high_ns: ranked.ns_ci_high,
-            ratio_to_best: Some(ranked.ratio_to_best),
+            ratio_to_best: (!ranked.estimated).then_some(ranked.ratio_to_best),
             ratio_ci_low: ranked.ci_low,
             ratio_ci_high: ranked.ci_high,
             faults: ranked.faults,
             samples: ranked.samples,
-            ..row(whole, unit, ranked.ns_per_operation)
+            ..row(whole, unit, ranked.ns_per_operation, ranked.estimated)
         })];
         for part in &ranked.parts {
             let name = part.operation.to_string();
-            figures.extend(part.ns.map(|ns| figure(row(&name, "operation", ns))));
+            let row = |ns| row(&name, "operation", ns, part.estimated);
+            figures.extend(part.ns.map(|ns| figure(row(ns))));
         }
-        figures.push(figure(row("build", "mesh", ranked.build_ns)));
+        figures.push(figure(row("build", "mesh", ranked.build_ns, false)));
         figures
     }
 }

@@ -166,6 +166,7 @@ impl TaskPlan for Tasks<'_> {
         let cost = |part: usize| {
             let entry = measured.entry(self.task(measured.candidate, part));
             PartCost {
+                estimated: entry.is_some_and(|entry| entry.estimate.is_some()),
                 operation: schedule.parts[part].action,
                 share: schedule.shares[part],
                 ns: entry.and_then(|entry| {

@@ -526,3 +526,84 @@ fn a_run_has_the_settings_of_its_pick() {
     };
     assert_eq!(settings.run_settings(), expected);
 }
+
+/// Returns the result of a measurement in which only a lower bound of half the fastest time is known
+/// of the winged-edge mesh.
+fn with_a_bound() -> Outcome {
+    let mut outcome = measure_known(&[10.0, 20.0, 30.0, 40.0], 3);
+    let best_ns = outcome.ranking[0].ns_per_operation;
+    let bound = outcome
+        .ranking
+        .iter_mut()
+        .find(|r| r.backend == "winged-edge");
+    let bound = bound.expect("it is ranked");
+    *bound = Ranked {
+        ns_per_operation: 0.5 * best_ns,
+        ratio_to_best: 0.5,
+        ci_low: None,
+        ci_high: None,
+        tied_with_best: false,
+        estimated: true,
+        ..bound.clone()
+    };
+    outcome.ranking.sort_by(Ranked::measured_first);
+    outcome
+}
+
+#[test]
+fn a_lower_bound_below_a_measured_time_is_not_ranked_before_it() {
+    let report_on = |outcomes| {
+        let settings = settings(Effort::of_ms(1000));
+        let measured = quick(&settings, &[shapes::octahedron()]).expect("a report");
+        let question = pooled::Question {
+            workload: settings.workload,
+            program: None,
+            needs: Vec::new(),
+            max_memory: None,
+        };
+        pooled::pooled(outcomes, question, measured.timer, measured.run, false)
+    };
+    let report = report_on(vec![with_a_bound()]);
+    let bound = report.ranking.last().expect("five backends").clone();
+    assert_eq!(
+        (bound.backend.as_str(), bound.ratio_to_best),
+        ("winged-edge", 0.5)
+    );
+    let choice = report.choice.as_ref().expect("the others are measured");
+    assert_eq!(choice.backend, "half-edge");
+    assert!(choice.equally_fast.is_empty(), "{choice:?}");
+    let said = report.sentences.join("\n");
+    assert!(
+        said.contains("Not ranked, because a run would exceed the budget: winged-edge (≥ 0.49"),
+        "{said}"
+    );
+    assert!(!said.contains("winged-edge takes"), "{said}");
+    // In tables, the bound is not a measured time, and has no ratio.
+    let figures = report.figures();
+    let mix = figures.iter().find(|f| f.row.backend == "winged-edge");
+    let mix = mix.expect("a figure of the bound");
+    assert_eq!(mix.status, crate::Status::Estimated);
+    assert_eq!((mix.row.median_ns, mix.row.ratio_to_best), (None, None));
+    assert_eq!(mix.row.estimated_ns, Some(bound.ns_per_operation));
+    // A mean over several meshes with the bound is not ranked either.
+    let several = report_on(vec![
+        with_a_bound(),
+        measure_known(&[10.0, 20.0, 30.0, 40.0], 4),
+    ]);
+    let last = several.ranking.last().expect("five backends");
+    assert_eq!(last.backend, "winged-edge");
+    assert!(last.estimated && !last.tied_with_best && last.ci_low.is_none());
+    // The root of 0.5 and 2.
+    assert!((last.ratio_to_best - 1.0).abs() < 0.01, "{last:?}");
+    assert_eq!(several.choice.expect("measured").backend, "half-edge");
+    // If only bounds are known, nothing is chosen.
+    let mut none = with_a_bound();
+    none.ranking.drain(..4);
+    let none = report_on(vec![none]);
+    assert_eq!((none.choice, none.ranking.len()), (None, 1));
+    assert!(
+        none.sentences[0].starts_with("No backend was measured"),
+        "{:?}",
+        none.sentences
+    );
+}

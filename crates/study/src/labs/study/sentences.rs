@@ -6,7 +6,7 @@ use sixfold::subdivision::Scheme;
 use crate::labs::study::Report;
 use crate::labs::study::methods::methods;
 use crate::numbers::{counted, grouped, list};
-use crate::results::pool::{Overall, Purpose, leaders, overall};
+use crate::results::pool::{self, Overall, Purpose, leaders, not_ranked, overall};
 use crate::results::rows::{Agreement, BackendReport, Control, ControlRow, ResultRow, Standing};
 use sixfold_workload::Operation;
 
@@ -18,7 +18,7 @@ pub(crate) fn answer(report: &Report, scanning: &dyn Fn(&str, Relation) -> bool)
     let overall = overall(&[report], &names);
     let purposes: Vec<&[Overall]> = overall
         .chunk_by(|a, b| a.purpose == b.purpose)
-        .filter(|rows| rows.len() > 1)
+        .filter(|rows| rows.len() > 1 && !leaders(rows).is_empty())
         .collect();
     let scanning = scanning_backends(report, scanning);
     let parts = [
@@ -58,6 +58,10 @@ fn choice(report: &Report, purposes: &[&[Overall]]) -> Option<String> {
             [name] => name.to_owned(),
             _ if best.len() == rows.len() => "all backends, with no clear difference,".to_owned(),
             _ => format!("{} (no clear difference)", names.join(" or ")),
+        };
+        let names = match not_ranked(rows) {
+            Some(open) => format!("{names} ({open})"),
+            None => names,
         };
         let purpose = format!("{}{}", rows[0].purpose.of_choice(), mean_over(report, rows));
         match choices.iter_mut().find(|(known, _)| *known == names) {
@@ -105,11 +109,11 @@ fn schemes(report: &Report, rows: &[Overall]) -> Vec<&'static str> {
 /// that scan.
 fn next_best(purposes: &[&[Overall]], scanning: &[&str]) -> Option<String> {
     let next = purposes.iter().filter_map(|rows| {
-        let next = rows.get(leaders(rows).len())?;
-        let is_local = !scanning.contains(&next.backend.as_str());
+        let first = rows.get(leaders(rows).len())?;
+        let is_local = !scanning.contains(&first.backend.as_str());
         let purpose = rows[0].purpose.name().to_lowercase();
-        let ratio = next.times(&rows[0]);
-        is_local.then(|| format!("{} takes {ratio} the time in {purpose}", next.backend))
+        let (next, ratio) = pool::next_best(rows)?;
+        is_local.then(|| format!("{next} {ratio} the time in {purpose}"))
     });
     let next: Vec<String> = next.collect();
     (!next.is_empty()).then(|| format!("Next best: {}", next.join(", ")))

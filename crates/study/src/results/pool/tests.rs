@@ -94,7 +94,7 @@ fn ratios_are_geometric_means_over_meshes() {
 }
 
 #[test]
-fn estimates_take_part_in_the_means() {
+fn a_mean_with_an_estimate_is_a_lower_bound() {
     let studies = [
         ball("a", &[("polygon-soup", 10_000.0), ("half-edge", 1000.0)]),
         ball(
@@ -110,6 +110,69 @@ fn estimates_take_part_in_the_means() {
         [("polygon-soup", 2, 1, 100.0), ("half-edge", 2, 0, 1.0)]
     );
     assert_eq!(pool.all()[0].ci_low, None);
+    let said = pool.sentences.join("\n");
+    assert!(
+        said.contains("polygon-soup takes ≥ 100 × the time"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_lower_bound_below_a_measured_time_is_not_ranked_before_it() {
+    let times = [
+        ("polygon-soup", -100.0),
+        ("face-vertex", 2000.0),
+        ("half-edge", 1000.0),
+    ];
+    let pool = pool_of(&["a", "b", "c"].map(|name| ball(name, &times)));
+    let found = ratios(pool.all());
+    let expected = [
+        ("polygon-soup", 3, 3, 0.1),
+        ("face-vertex", 3, 0, 2.0),
+        ("half-edge", 3, 0, 1.0),
+    ];
+    assert_eq!(found, expected, "relative to the fastest measured time");
+    let row = |o: &Overall| {
+        (
+            o.backend.clone(),
+            o.bound,
+            (100.0 * o.ratio_to_best).round(),
+        )
+    };
+    let rows: Vec<_> = pool.groups[0].overall.iter().map(row).collect();
+    let expected = [
+        ("half-edge".to_owned(), false, 100.0),
+        ("face-vertex".to_owned(), false, 200.0),
+        ("polygon-soup".to_owned(), true, 10.0),
+    ];
+    assert_eq!(rows, expected);
+    let bound = &pool.groups[0].overall[2];
+    assert_eq!((bound.ci_low, bound.ci_high), (None, None));
+    let said = &pool.sentences[1];
+    let expected = "Queries, all meshes: half-edge is fastest on average (geometric mean over 3 meshes); \
+                    face-vertex takes 2.00 × the time; not ranked, because a run would exceed the \
+                    budget: polygon-soup (≥ 0.100 ×).";
+    assert_eq!(said, expected);
+}
+
+#[test]
+fn several_lower_bounds_have_no_order() {
+    let times = [
+        ("polygon-soup", -5000.0),
+        ("indexed-face-set", -4000.0),
+        ("half-edge", 1000.0),
+    ];
+    let pool = pool_of(&[ball("a", &times)]);
+    let said = &pool.sentences[1];
+    assert!(
+        said.ends_with("; the others take ≥ 4.00 × the time."),
+        "{said}"
+    );
+    // Without a measured time there is nothing to compare.
+    let mut study = ball("a", &times[1..]);
+    study.results.pop();
+    let pool = pool_of(&[study]);
+    assert!(pool.all().is_empty() && pool.groups[0].overall.is_empty());
 }
 
 #[test]
@@ -206,7 +269,7 @@ fn meshes_are_grouped_by_size_and_kind_with_equal_weight() {
     assert!(
         sentences.contains(
             "Queries, meshes with polygons: face-vertex is fastest on average (geometric mean over 1 \
-             mesh). Next is half-edge, with 3.00 × the time."
+             mesh); half-edge takes 3.00 × the time."
         ),
         "{sentences}"
     );
