@@ -17,6 +17,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use loss::losses;
+use sixfold_core::glam::DVec3;
 use sixfold_core::{Creases, Point, PolygonError, PolygonMesh, VertexId};
 
 use crate::format::Format;
@@ -168,20 +169,20 @@ pub fn write_to(
     let mut out = BufWriter::with_capacity(1 << 16, out);
     match format {
         Format::Obj => {
-            obj::write_text(polygons, options.normals, &mut out)?;
+            obj::write_text(polygons, options, &mut out)?;
             if let Some(creases) = options.creases {
                 obj::write_tags(creases, &mut out)?;
             }
         }
-        Format::Stl => stl::write_binary(triangles, &mut out)?,
-        Format::StlAscii => stl::write_ascii(triangles, &mut out)?,
+        Format::Stl => stl::write_binary(triangles, options, &mut out)?,
+        Format::StlAscii => stl::write_ascii(triangles, options, &mut out)?,
         Format::Ply | Format::PlyBigEndian | Format::PlyAscii => {
-            ply::write(polygons, options.complete_normals(), format, &mut out)?;
+            ply::write(polygons, options, format, &mut out)?;
         }
-        Format::Off => off::write(polygons, &mut out)?,
+        Format::Off => off::write(polygons, options, &mut out)?,
         #[cfg(feature = "gltf")]
         Format::Gltf | Format::Glb => {
-            gltf::write(triangles, options.complete_normals(), format, &mut out)?;
+            gltf::write(triangles, options, format, &mut out)?;
         }
         #[cfg(not(feature = "gltf"))]
         Format::Gltf | Format::Glb => return Err(WriteError::NoGltf),
@@ -213,6 +214,7 @@ pub struct WriteOptions<'a> {
     /// One entry for each vertex, or none at all.
     normals: &'a [Option<Point>],
     creases: Option<&'a Creases>,
+    origin: [f64; 3],
 }
 
 impl<'a> WriteOptions<'a> {
@@ -239,6 +241,38 @@ impl<'a> WriteOptions<'a> {
         Self { creases, ..self }
     }
 
+    /// Moves the mesh: the origin is written at `origin`. So a mesh that was read with
+    /// [`ReadOptions::recentred`](crate::ReadOptions::recentred) gets its place back, with
+    /// [`FileMesh::origin`](crate::FileMesh::origin). Coordinates are written in 64 bits if `origin`
+    /// is not zero; in glTF, the origin is the translation of the node. Binary STL stores 32 bits:
+    /// [`Loss::Precision`].
+    ///
+    /// ```
+    /// use sixfold_io::{Format, ReadOptions, WriteOptions, read_from, write_to};
+    ///
+    /// let text = "OFF\n3 1 0\n500000.001 0 0\n500001 0 0\n500000 1 0\n3 0 1 2\n";
+    /// let mesh = read_from("a.off", text.as_bytes(), &ReadOptions::default().recentred())?;
+    /// let options = WriteOptions::default().with_origin(mesh.origin);
+    /// let mut bytes = Vec::new();
+    /// write_to(&mesh.into_polygons().0, Format::Off, &options, &mut bytes)?;
+    /// let first = std::str::from_utf8(&bytes)?.lines().nth(2).ok_or("no vertex")?;
+    /// let x: f64 = first.split(' ').next().ok_or("no number")?.parse()?;
+    /// assert!((x - 500000.001).abs() < 1e-7);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn with_origin(self, origin: [f64; 3]) -> Self {
+        Self { origin, ..self }
+    }
+
+    /// Returns a position as it is written: in 64 bits if the mesh is moved.
+    fn placed(&self, point: Point) -> Placed {
+        match self.origin == [0.0; 3] {
+            true => Placed::Narrow(point),
+            false => Placed::Wide(DVec3::from(self.origin) + point.as_dvec3()),
+        }
+    }
+
     /// Checks that `format` can represent the mesh.
     fn check(&self, polygons: &PolygonMesh, format: Format) -> Result<(), WriteError> {
         let (normals, vertices) = (self.normals.len(), polygons.vertex_count());
@@ -246,13 +280,18 @@ impl<'a> WriteOptions<'a> {
             return Err(WriteError::NormalCount { normals, vertices });
         }
         let positions = polygons.positions();
-        if let Some(v) = positions.iter().position(|p| !p.is_finite()) {
+        let is_finite = |&p: &Point| match self.placed(p) {
+            Placed::Wide(p) if format == Format::Stl => p.as_vec3().is_finite(),
+            Placed::Wide(p) => p.is_finite(),
+            Placed::Narrow(p) => p.is_finite(),
+        };
+        if let Some(v) = positions.iter().position(|p| !is_finite(p)) {
             let vertex = VertexId::new(sixfold_core::row(v));
             return Err(WriteError::NotFinite { vertex, format });
         }
         match format {
             #[cfg(feature = "gltf")]
-            Format::Glb => gltf::check_size(polygons, self.complete_normals()),
+            Format::Glb => gltf::check_size(polygons, self),
             #[cfg(not(feature = "gltf"))]
             Format::Gltf | Format::Glb => Err(WriteError::NoGltf),
             _ => Ok(()),
@@ -275,6 +314,22 @@ impl fmt::Display for Numbers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y, z] = self.0.to_array().map(ShortestDecimal);
         write!(f, "{x} {y} {z}")
+    }
+}
+
+/// A position as it is written; printed as three numbers separated by blanks.
+enum Placed {
+    Narrow(Point),
+    /// The position of a mesh that is moved.
+    Wide(DVec3),
+}
+
+impl fmt::Display for Placed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Narrow(point) => Numbers(*point).fmt(f),
+            Self::Wide(point) => write!(f, "{} {} {}", point.x, point.y, point.z),
+        }
     }
 }
 

@@ -16,8 +16,9 @@ use minimum_area::minimum_area_triangulation;
 
 /// Options of filling holes.
 ///
-/// A hole is a closed chain of boundary edges. The outer boundary of an open surface is such a chain
-/// too: limit the number of edges to keep it open.
+/// A hole is a closed chain of boundary edges that visits no vertex twice. Where several holes meet in
+/// a vertex, chains continue with the smallest angle. The outer boundary of an open surface is such a
+/// chain too: limit the number of edges to keep it open.
 ///
 /// A hole with n edges is filled with n − 2 triangles, without new vertices. No diagonal is used
 /// that is already an edge, because that edge would get more than two faces. If this is impossible,
@@ -56,19 +57,23 @@ const ON_SURFACE: f64 = 0.01;
 
 /// Fills holes.
 pub(crate) fn fill(polygons: &PolygonMesh, options: &FillHoles) -> Result<Outcome, RepairError> {
-    let check = Capabilities::ORIENTED_MANIFOLDS.check(polygons);
+    let needed = Capabilities {
+        non_manifold_vertices: true,
+        ..Capabilities::ORIENTED_MANIFOLDS
+    };
+    let check = needed.check(polygons);
     check.map_err(RepairError::NotOrientedManifold)?;
     let mut holes = Holes::new(polygons);
+    let loops = holes.loops(polygons);
+    if loops.is_empty() {
+        return Ok(Outcome::unchanged());
+    }
     let mut rebuild = Rebuild::new(polygons);
     for (f, _) in polygons.faces().iter() {
         rebuild.keep(f, |v, _| v)?;
     }
     let mut counts = StepCounts::default();
     let mut left = Vec::new();
-    let loops = holes.loops();
-    if loops.is_empty() {
-        return Ok(Outcome::unchanged());
-    }
     let surface = Surface::new(polygons);
     for hole in loops {
         let (vertex, edges) = (hole[0], hole.len());
@@ -131,10 +136,10 @@ impl Surface {
     }
 }
 
-/// The boundary of an oriented manifold.
+/// The boundary of an oriented surface whose edges have at most two faces.
 struct Holes {
-    /// By vertex: the vertex after it along its hole, with the hole on the left.
-    next: Vec<Slot<VertexId>>,
+    /// The boundary edges, each with the hole on its left, sorted.
+    sides: Vec<[VertexId; 2]>,
     /// The edges between boundary vertices.
     edges: FxHashSet<Pair<VertexId>>,
 }
@@ -143,46 +148,75 @@ impl Holes {
     fn new(polygons: &PolygonMesh) -> Self {
         let faces = polygons.faces();
         let incidence = Incidence::new(polygons.vertex_count(), faces, |_| true);
-        let mut next = vec![Slot::NONE; polygons.vertex_count()];
+        let mut is_on_boundary = vec![false; polygons.vertex_count()];
+        let mut sides = Vec::new();
         for edge in incidence.edges() {
             if let Some(side) = edge.single() {
                 let [low, high] = edge.ends;
                 // Against the direction of the face.
-                let (from, to) = if side.downward {
-                    (low, high)
-                } else {
-                    (high, low)
-                };
-                next[from.index()] = Slot::some(to);
+                sides.push(match side.downward {
+                    true => [low, high],
+                    false => [high, low],
+                });
+                edge.ends
+                    .iter()
+                    .for_each(|v| is_on_boundary[v.index()] = true);
             }
         }
-        let on_boundary = |v: VertexId| next[v.index()].get().is_some();
+        sides.sort_unstable();
         let ends = incidence.edges().map(|edge| edge.ends);
-        let inner = ends.filter(|ends| ends.iter().all(|&v| on_boundary(v)));
+        let inner = ends.filter(|ends| ends.iter().all(|v| is_on_boundary[v.index()]));
         let edges = inner.map(|[a, b]| Pair::new(a, b)).collect();
-        Self { next, edges }
+        Self { sides, edges }
     }
 
-    /// Returns the vertices of every hole, in the order of its boundary, from the lowest vertex on.
-    fn loops(&self) -> Vec<Vec<VertexId>> {
-        let mut visited = vec![false; self.next.len()];
+    /// Returns the vertices of every hole, in the order of its boundary, from its lowest vertex on. No
+    /// hole has a vertex twice.
+    fn loops(&self, polygons: &PolygonMesh) -> Vec<Vec<VertexId>> {
+        let mut is_used = vec![false; self.sides.len()];
         let mut loops = Vec::new();
-        for start in 0..self.next.len() {
-            let mut hole = Vec::new();
-            let mut at = VertexId::from_row(start as u32);
-            // In an oriented manifold, one boundary edge starts at a boundary vertex, and one ends.
-            while let Some(next) = self.next[at.index()].get() {
-                if std::mem::replace(&mut visited[at.index()], true) {
-                    break;
+        // By vertex of the path: its number in the path.
+        let mut on_path = vec![None; polygons.vertex_count()];
+        for first in 0..self.sides.len() {
+            let mut path = vec![self.sides[first][0]];
+            let mut side = Some(first).filter(|&side| !is_used[side]);
+            while let Some(at) = side {
+                is_used[at] = true;
+                let [from, to] = self.sides[at];
+                on_path[from.index()] = Some(path.len() - 1);
+                if let Some(start) = on_path[to.index()] {
+                    let mut hole = path.split_off(start);
+                    hole.iter().for_each(|v| on_path[v.index()] = None);
+                    let lowest = (0..hole.len()).min_by_key(|&i| hole[i]);
+                    hole.rotate_left(lowest.unwrap_or(0));
+                    loops.push(hole);
                 }
-                hole.push(at);
-                at = next;
+                path.push(to);
+                side = self.continuation(polygons, at, &is_used);
             }
-            if !hole.is_empty() {
-                loops.push(hole);
-            }
+            path.iter().for_each(|v| on_path[v.index()] = None);
         }
+        loops.sort();
         loops
+    }
+
+    /// Returns the side after `side` along a hole: of those that are not used, the one with the
+    /// smallest angle to it. A boundary ends nowhere, so without such a side, the path is closed.
+    fn continuation(&self, polygons: &PolygonMesh, side: usize, is_used: &[bool]) -> Option<usize> {
+        let [from, at] = self.sides[side];
+        let first = self.sides.partition_point(|&[start, _]| start < at);
+        let sides = self.sides[first..]
+            .iter()
+            .take_while(|&&[start, _]| start == at);
+        let position = |v: VertexId| polygons.position(v).as_dvec3();
+        let back = (position(from) - position(at)).normalize_or_zero();
+        let cosine = |side: usize| {
+            let [_, to] = self.sides[side];
+            back.dot((position(to) - position(at)).normalize_or_zero())
+        };
+        let free = (first..first + sides.count()).filter(|&side| !is_used[side]);
+        // The first of several with the same angle.
+        free.rev().max_by(|&a, &b| cosine(a).total_cmp(&cosine(b)))
     }
 
     fn add_edges(&mut self, [a, b, c]: [VertexId; 3]) {

@@ -52,7 +52,8 @@ pub enum Step {
     ///
     /// [`repair`]: crate::repair#cutting
     Cut,
-    /// Fills holes of an oriented manifold with triangles.
+    /// Fills holes with triangles. The faces must agree, and no edge may have more than two; several
+    /// fans at a vertex are allowed.
     FillHoles(FillHoles),
     /// Removes vertices without a face.
     RemoveIsolatedVertices,

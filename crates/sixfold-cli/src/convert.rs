@@ -20,10 +20,11 @@ pub(crate) fn run(arguments: &Convert) -> Result<ExitCode, Failure> {
     let ReadMesh {
         polygons,
         creases,
+        origin,
         places,
         ..
     } = load::for_repair(from, arguments.read)?;
-    let output = MeshOutput::open(to, arguments.files.write)?;
+    let output = MeshOutput::open(to, arguments.files.write, origin)?;
     let format = output.format;
     let options = WriteOptions::default().with_creases(&creases);
     let losses = output.write(&polygons, &options)?;

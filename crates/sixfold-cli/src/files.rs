@@ -19,8 +19,9 @@ impl MeshInOut {
     ) -> Result<(PolygonMesh, MeshOutput), Failure> {
         check_outputs(Some(&self.mesh), &[("--output", Some(&self.output))])?;
         exit_on_interrupt();
-        let polygons = load::without_creases(&self.mesh, read)?;
+        let (polygons, origin) = load::without_creases(&self.mesh, read)?;
         check(&polygons)?;
-        Ok((polygons, MeshOutput::open(&self.output, self.write)?))
+        let output = MeshOutput::open(&self.output, self.write, origin)?;
+        Ok((polygons, output))
     }
 }

@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
         .collect();
     let made = generator.build(&settings).map_err(Failure::usage)?;
     let mesh = arguments.order.apply(&made, arguments.seed);
-    let output = MeshOutput::open(&arguments.output, arguments.write)?;
+    let output = MeshOutput::open(&arguments.output, arguments.write, [0.0; 3])?;
     output.write(&mesh, &WriteOptions::default())?;
     let vertices = counted(mesh.vertex_count(), "vertex", "vertices");
     let faces = counted(mesh.face_count(), "face", "faces");

@@ -108,29 +108,34 @@ pub(crate) fn for_study(
     Ok(study_mesh)
 }
 
-/// Reads a mesh without its degenerate faces. Also returns the creases in the file.
+/// Reads a mesh without its degenerate faces. Also returns the creases in the file, and the place of
+/// the origin in the file, which is zero without --recentre.
 pub(crate) fn with_creases(
     path: &Path,
     chosen: ReadPolygons,
-) -> Result<(PolygonMesh, Creases), Failure> {
+) -> Result<(PolygonMesh, Creases, [f64; 3]), Failure> {
     let ReadMesh {
         polygons,
         creases,
+        origin,
         places,
         ..
     } = for_repair(path, chosen.files)?;
     let is_cut = chosen.triangulate && polygons.first_polygon().is_some();
     if !is_cut {
-        return Ok((polygons, creases));
+        return Ok((polygons, creases, origin));
     }
     let study_mesh = StudyMesh::new(shown(path), polygons);
-    Ok((triangulated(study_mesh, Some(&places))?.polygons, creases))
+    let polygons = triangulated(study_mesh, Some(&places))?.polygons;
+    Ok((polygons, creases, origin))
 }
 
 /// A mesh without its degenerate faces, and what reading changed.
 pub(crate) struct ReadMesh {
     pub(crate) polygons: PolygonMesh,
     pub(crate) creases: Creases,
+    /// The place of the origin in the file; zero without --recentre.
+    pub(crate) origin: [f64; 3],
     /// The places of the vertices and faces in the file.
     pub(crate) places: PolygonPlaces,
     /// Number of degenerate faces that were left out.
@@ -145,6 +150,7 @@ pub(crate) struct ReadMesh {
 pub(crate) fn for_repair(path: &Path, files: ReadFiles) -> Result<ReadMesh, Failure> {
     let mut mesh = read_mesh(path, files)?;
     let (joined, ignored) = (mesh.welded_vertices, std::mem::take(&mut mesh.notices));
+    let origin = mesh.origin;
     let (creases, unused) = mesh.creases();
     for crease in &unused {
         print_notice(&format!("note: {}: {crease}", shown(path)));
@@ -154,6 +160,7 @@ pub(crate) fn for_repair(path: &Path, files: ReadFiles) -> Result<ReadMesh, Fail
     Ok(ReadMesh {
         polygons,
         creases,
+        origin,
         places,
         left_out: left_out.len(),
         joined,
@@ -161,8 +168,8 @@ pub(crate) fn for_repair(path: &Path, files: ReadFiles) -> Result<ReadMesh, Fail
     })
 }
 
-/// Reads two meshes without their degenerate faces, and cuts polygons into triangles. If the option --recentre is set, both are moved
-/// by the centre of the first one, so that their distance stays.
+/// Reads two meshes without their degenerate faces, and cuts polygons into triangles. If the option
+/// --recentre is set, both are moved by the centre of the first one, so that their distance stays.
 pub(crate) fn pair(
     first: &Path,
     second: &Path,
@@ -181,15 +188,18 @@ pub(crate) fn pair(
 }
 
 /// Reads a mesh for a command that drops creases. Prints a note if there are creases.
-pub(crate) fn without_creases(path: &Path, chosen: ReadPolygons) -> Result<PolygonMesh, Failure> {
-    let (polygons, creases) = with_creases(path, chosen)?;
+pub(crate) fn without_creases(
+    path: &Path,
+    chosen: ReadPolygons,
+) -> Result<(PolygonMesh, [f64; 3]), Failure> {
+    let (polygons, creases, origin) = with_creases(path, chosen)?;
     if !creases.is_empty() {
         let file = shown(path);
         print_notice(&format!(
             "note: {file}: the result does not keep sharp edges and vertices"
         ));
     }
-    Ok(polygons)
+    Ok((polygons, origin))
 }
 
 /// Returns the file of results. If `place` is a folder, this is the file `results.json` in the

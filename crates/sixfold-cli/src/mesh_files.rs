@@ -76,7 +76,9 @@ fn notes(mesh: &FileMesh, chosen: ReadFiles) -> Vec<String> {
     notes.extend(rounding_note(mesh, chosen));
     if mesh.origin != [0.0; 3] {
         let [x, y, z] = mesh.origin.map(|coordinate| 0.0 - coordinate);
-        notes.push(format!("moved by {x}, {y}, {z} to the origin"));
+        notes.push(format!(
+            "moved by {x}, {y}, {z} to the origin; a written mesh is moved back"
+        ));
     }
     notes
 }
@@ -112,12 +114,14 @@ pub(crate) struct MeshOutput {
     name: String,
     /// The format of --format, or of the ending of the name; otherwise OBJ.
     pub(crate) format: Format,
+    /// The place of the origin in the file.
+    origin: [f64; 3],
 }
 
 impl MeshOutput {
-    /// Opens a mesh file. An ending that is not that of a format is an error, unless --format
+    /// Opens a mesh file. The mesh is written with its origin at `origin`. An ending that is not that of a format is an error, unless --format
     /// chooses the format.
-    pub(crate) fn open(path: &Path, chosen: WriteFiles) -> Result<Self, Failure> {
+    pub(crate) fn open(path: &Path, chosen: WriteFiles, origin: [f64; 3]) -> Result<Self, Failure> {
         let format = chosen.format.or_else(|| Format::from_path(path));
         if let (None, Some(ending)) = (format, path.extension()) {
             let endings = Format::EXTENSIONS.map(|ending| format!(".{ending}"));
@@ -133,6 +137,7 @@ impl MeshOutput {
             output: Output::open(path)?,
             name: path.display().to_string(),
             format: format.unwrap_or(Format::Obj),
+            origin,
         })
     }
 
@@ -147,7 +152,9 @@ impl MeshOutput {
             output,
             name,
             format,
+            origin,
         } = self;
+        let options = &options.with_origin(origin);
         let mut losses = Vec::new();
         output.finish(|to| {
             losses = write_to(polygons, format, options, to)?;

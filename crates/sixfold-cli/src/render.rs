@@ -145,7 +145,7 @@ fn load_meshes(arguments: &Render) -> Result<Vec<(PolygonMesh, Creases)>, Failur
     }
     let mut loaded = Vec::with_capacity(meshes.len());
     for (i, path) in meshes.iter().enumerate() {
-        let (polygons, mut creases) = load::with_creases(path, arguments.read)?;
+        let (polygons, mut creases, _) = load::with_creases(path, arguments.read)?;
         if let Some(file) = files.get(i) {
             let listed = read_creases(file, &polygons).map_err(Failure::usage)?;
             creases = creases.updated_with(&listed);

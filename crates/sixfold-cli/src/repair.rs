@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
     let read = load::for_repair(&arguments.files.mesh, arguments.read)?;
     let polygons = &read.polygons;
     // The outputs are opened before the work, so that an unusable place gives an error at once.
-    let output = MeshOutput::open(&arguments.files.output, arguments.files.write)?;
+    let output = MeshOutput::open(&arguments.files.output, arguments.files.write, read.origin)?;
     let json = Output::open_if(arguments.json.as_ref())?;
     let faces = counted(polygons.face_count(), "face", "faces");
     let spinner = Spinner::start(format!("repairing {faces}"));

@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     }
     let method = method(arguments)?;
     let mesh = &arguments.files.mesh;
-    let (polygons, creases) = load::with_creases(mesh, arguments.read)?;
+    let (polygons, creases, origin) = load::with_creases(mesh, arguments.read)?;
     let (polygons, mut creases) = without_seams(mesh, polygons, creases, arguments.read.files);
     check_tags(arguments, &creases)?;
     if let Some(path) = &arguments.creases {
@@ -68,7 +68,7 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     )?;
     forecast.check(arguments.force)?;
     // Open the output before the work, so that an unusable path gives an error at once.
-    let open = |path: &PathBuf| MeshOutput::open(path, arguments.files.write);
+    let open = |path: &PathBuf| MeshOutput::open(path, arguments.files.write, origin);
     let output = open(&arguments.files.output)?;
     let limit = arguments.limit.as_ref().map(open).transpose()?;
     let left = Output::open_if(arguments.creases_left.as_ref())?;

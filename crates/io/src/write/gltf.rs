@@ -7,7 +7,7 @@ use base64::write::EncoderWriter;
 use serde_json::{Value, json};
 use sixfold_core::{Point, PolygonMesh, RowId};
 
-use super::{WriteError, triangle_count};
+use super::{WriteError, WriteOptions, triangle_count};
 use crate::format::Format;
 
 /// Codes of glTF.
@@ -24,11 +24,12 @@ const DATA_MARK: &str = "data:application/octet-stream;base64,";
 /// Writes a mesh of triangles.
 pub(super) fn write(
     triangles: &PolygonMesh,
-    normals: &[Option<Point>],
+    options: &WriteOptions<'_>,
     format: Format,
     out: &mut impl Write,
 ) -> Result<(), WriteError> {
-    let layout = Layout::new(triangles, normals);
+    let normals = options.complete_normals();
+    let layout = Layout::new(triangles, options);
     let json = layout.document(triangles, format).to_string();
     if format == Format::Gltf {
         let (before, after) = json.split_once(DATA_MARK).unwrap_or((&json, ""));
@@ -66,9 +67,9 @@ pub(super) fn write(
 /// Checks that the lengths of a binary file fit into 32 bits.
 pub(super) fn check_size(
     polygons: &PolygonMesh,
-    normals: &[Option<Point>],
+    options: &WriteOptions<'_>,
 ) -> Result<(), WriteError> {
-    let layout = Layout::new(polygons, normals);
+    let layout = Layout::new(polygons, options);
     let json = layout.document(polygons, Format::Glb).to_string();
     Glb::new(&json, &layout).map(|_| ())
 }
@@ -121,19 +122,22 @@ fn write_data(
     Ok(())
 }
 
-/// Numbers of elements.
+/// Numbers of elements, and the place of the mesh.
 struct Layout {
     vertices: usize,
     has_normals: bool,
     indices: usize,
+    /// The place of the node.
+    origin: [f64; 3],
 }
 
 impl Layout {
-    fn new(polygons: &PolygonMesh, normals: &[Option<Point>]) -> Self {
+    fn new(polygons: &PolygonMesh, options: &WriteOptions<'_>) -> Self {
         Self {
             vertices: polygons.vertex_count(),
-            has_normals: !normals.is_empty(),
+            has_normals: !options.complete_normals().is_empty(),
             indices: 3 * triangle_count(polygons),
+            origin: options.origin,
         }
     }
 
@@ -186,11 +190,15 @@ impl Layout {
         if format == Format::Gltf {
             buffer["uri"] = json!(DATA_MARK);
         }
+        let mut node = json!({"mesh": 0});
+        if self.origin != [0.0; 3] {
+            node["translation"] = json!(self.origin);
+        }
         json!({
             "asset": asset,
             "scene": 0,
             "scenes": [{"nodes": [0]}],
-            "nodes": [{"mesh": 0}],
+            "nodes": [node],
             "meshes": [{"primitives": [primitive]}],
             "accessors": accessors,
             "bufferViews": views,

@@ -4,7 +4,7 @@ use std::fmt;
 
 use sixfold_core::{FaceId, Point, PolygonMesh};
 
-use super::WriteOptions;
+use super::{Placed, WriteOptions};
 use crate::format::Format;
 use crate::welder::for_each_equal;
 
@@ -26,6 +26,9 @@ pub enum Loss {
     },
     /// This many vertices without a face.
     IsolatedVertices(usize),
+    /// The positions of this many vertices, which are rounded to 32 bits, because the mesh is moved
+    /// ([`WriteOptions::with_origin`]).
+    Precision(usize),
     /// The normals of this many vertices.
     Normals(usize),
     /// The sharpness of this many edges and vertices.
@@ -59,6 +62,13 @@ impl fmt::Display for Loss {
             Self::IsolatedVertices(count) => {
                 write!(f, "{count} vertices without a face are left out")
             }
+            Self::Precision(1) => f.write_str("the position of 1 vertex is rounded to 32 bits"),
+            Self::Precision(count) => {
+                write!(
+                    f,
+                    "the positions of {count} vertices are rounded to 32 bits"
+                )
+            }
             Self::Normals(1) => f.write_str("1 normal is left out"),
             Self::Normals(count) => write!(f, "{count} normals are left out"),
             Self::Creases(1) => f.write_str("the sharpness of 1 edge or vertex is left out"),
@@ -77,6 +87,7 @@ impl Loss {
             Self::Polygons(_) => "polygons",
             Self::CrossingPolygons { .. } => "polygons that cross themselves",
             Self::IsolatedVertices(_) => "vertices without a face",
+            Self::Precision(_) => "positions in 64 bits",
             Self::Normals(_) => "normals",
             Self::Creases(_) => "sharp edges and vertices",
         }
@@ -89,6 +100,7 @@ impl Loss {
             | Self::Polygons(count)
             | Self::CrossingPolygons { count, .. }
             | Self::IsolatedVertices(count)
+            | Self::Precision(count)
             | Self::Normals(count)
             | Self::Creases(count) => count,
         }
@@ -128,6 +140,14 @@ pub(super) fn losses(
         losses.push(Loss::IsolatedVertices(
             used.iter().filter(|used| !**used).count(),
         ));
+    }
+    if format == Format::Stl {
+        let is_rounded = |&&p: &&Point| match options.placed(p) {
+            Placed::Wide(p) => p.as_vec3().as_dvec3() != p,
+            Placed::Narrow(_) => false,
+        };
+        let rounded = polygons.positions().iter().filter(is_rounded).count();
+        losses.push(Loss::Precision(rounded));
     }
     let normals = options.normals.iter().flatten().count();
     let keeps_normals = match format {

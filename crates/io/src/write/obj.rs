@@ -3,21 +3,21 @@
 use std::fmt;
 use std::io::{self, Write};
 
-use sixfold_core::{Creases, Point, PolygonMesh, VertexId};
+use sixfold_core::{Creases, PolygonMesh, VertexId};
 
-use super::Numbers;
+use super::{Numbers, WriteOptions};
 
 /// Writes the text; a face is written without normals if one of its corners has no normal.
 pub(super) fn write_text(
     polygons: &PolygonMesh,
-    normals: &[Option<Point>],
+    options: &WriteOptions<'_>,
     out: &mut impl Write,
 ) -> io::Result<()> {
-    let positions = polygons.positions();
+    let (positions, normals) = (polygons.positions(), options.normals);
     let (vertices, faces) = (polygons.vertex_count(), polygons.face_count());
     writeln!(out, "# vertices: {vertices}, faces: {faces}")?;
     for &p in positions {
-        writeln!(out, "v {}", Numbers(p))?;
+        writeln!(out, "v {}", options.placed(p))?;
     }
     // For each vertex, the number of its normal in the file.
     let mut numbers = Vec::with_capacity(normals.len());
@@ -74,9 +74,11 @@ impl fmt::Display for ShortestDecimal {
 
 #[cfg(test)]
 mod tests {
+    use sixfold_core::Point;
+
     use super::*;
     use crate::format::Format;
-    use crate::write::{WriteError, WriteOptions, write_to};
+    use crate::write::{WriteError, write_to};
 
     fn written(mesh: &PolygonMesh, out: impl Write) -> Result<(), WriteError> {
         write_to(mesh, Format::Obj, &WriteOptions::default(), out).map(drop)

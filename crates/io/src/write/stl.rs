@@ -5,21 +5,29 @@ use std::io::{self, Write};
 use sixfold_core::glam::DVec3;
 use sixfold_core::{Point, PolygonMesh, row};
 
-use super::Numbers;
+use super::{Numbers, Placed, WriteOptions};
 use crate::format::STL_HEADER;
 
 /// The text at the start of a binary file. It must not begin with `solid`.
 const TITLE: &[u8] = b"binary STL";
 
 /// Writes a mesh of triangles.
-pub(super) fn write_binary(triangles: &PolygonMesh, out: &mut impl Write) -> io::Result<()> {
+pub(super) fn write_binary(
+    triangles: &PolygonMesh,
+    options: &WriteOptions<'_>,
+    out: &mut impl Write,
+) -> io::Result<()> {
     let mut header = [b' '; STL_HEADER];
     header[..TITLE.len()].copy_from_slice(TITLE);
     let count = row(triangles.face_count());
     header[STL_HEADER - 4..].copy_from_slice(&count.to_le_bytes());
     out.write_all(&header)?;
     for corners in corners(triangles) {
-        for point in [normal(corners)].into_iter().chain(corners) {
+        let placed = corners.map(|point| match options.placed(point) {
+            Placed::Narrow(point) => point,
+            Placed::Wide(point) => point.as_vec3(),
+        });
+        for point in [normal(corners)].into_iter().chain(placed) {
             for x in point.to_array() {
                 out.write_all(&x.to_le_bytes())?;
             }
@@ -30,12 +38,16 @@ pub(super) fn write_binary(triangles: &PolygonMesh, out: &mut impl Write) -> io:
 }
 
 /// Writes a mesh of triangles.
-pub(super) fn write_ascii(triangles: &PolygonMesh, out: &mut impl Write) -> io::Result<()> {
+pub(super) fn write_ascii(
+    triangles: &PolygonMesh,
+    options: &WriteOptions<'_>,
+    out: &mut impl Write,
+) -> io::Result<()> {
     writeln!(out, "solid mesh")?;
     for corners in corners(triangles) {
         writeln!(out, "facet normal {}\nouter loop", Numbers(normal(corners)))?;
         for point in corners {
-            writeln!(out, "vertex {}", Numbers(point))?;
+            writeln!(out, "vertex {}", options.placed(point))?;
         }
         writeln!(out, "endloop\nendfacet")?;
     }

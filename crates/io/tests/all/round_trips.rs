@@ -142,6 +142,54 @@ proptest! {
     }
 }
 
+/// A mesh that was read with its origin moved is written at its place: in 64 bits where the format
+/// can, and otherwise the loss is named.
+#[test]
+fn a_mesh_that_was_moved_gets_its_place_back() {
+    let places = [
+        [500_000.001_f64, 4_649_776.225, 100.0625],
+        [500_012.5, 4_649_776.3, 99.9],
+        [500_001.0, 4_649_790.007, 101.25],
+    ];
+    let mut text = "OFF\n3 1 0\n".to_owned();
+    for [x, y, z] in places {
+        text += &format!("{x} {y} {z}\n");
+    }
+    text += "3 0 1 2\n";
+    let recentred = ReadOptions::default().recentred();
+    let file = read_again(text.as_bytes(), &recentred);
+    let origin = file.origin;
+    let (mesh, _) = file.into_polygons();
+    for format in Format::ALL {
+        let normals = [Some(Point::Z); 3];
+        let options = WriteOptions::default()
+            .with_origin(origin)
+            .with_normals(&normals);
+        let mut bytes = Vec::new();
+        let losses = write_to(&mesh, format, &options, &mut bytes).expect("memory");
+        let is_rounded = losses.contains(&Loss::Precision(3));
+        assert_eq!(is_rounded, format == Format::Stl, "{format}: {losses:?}");
+        let again = read_again(&bytes, &ReadOptions::default().with_origin(origin));
+        assert_eq!(again.origin, origin, "{format}");
+        let precision = if is_rounded { 0.5 } else { 1e-6 };
+        for (&found, &expected) in again.positions.iter().zip(mesh.positions()) {
+            assert!(
+                found.distance(expected) < precision,
+                "{format}: {found} {expected}"
+            );
+        }
+        let is_exact = again
+            .positions
+            .iter()
+            .zip(mesh.positions())
+            .all(|(a, b)| a.distance(*b) < 1e-6);
+        assert_eq!(is_exact, !is_rounded, "{format}");
+    }
+    let far = WriteOptions::default().with_origin([f64::MAX, 0.0, 0.0]);
+    let error = write_to(&mesh, Format::Stl, &far, Vec::new()).expect_err("beyond 32 bits");
+    assert!(matches!(error, WriteError::NotFinite { .. }), "{error}");
+}
+
 #[test]
 fn every_shape_survives_every_format() -> Result<(), TestCaseError> {
     for generator in sixfold_shapes::GENERATORS {

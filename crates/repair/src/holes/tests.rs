@@ -37,6 +37,66 @@ proptest! {
     }
 }
 
+/// Returns a sphere without the faces that `is_removed` names.
+fn sphere_without(is_removed: impl Fn(usize) -> bool) -> PolygonMesh {
+    let sphere = sixfold_shapes::geodesic(3).expect("small");
+    let faces = sphere
+        .faces()
+        .iter()
+        .filter(|(f, _)| !is_removed(f.index()));
+    let faces: Vec<Vec<u32>> = faces
+        .map(|(_, face)| face.iter().map(|v| v.row()).collect())
+        .collect();
+    PolygonMesh::new(sphere.positions().iter().copied(), faces).expect("valid")
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Holes that meet in vertices are filled, too: each boundary edge is closed, or in a hole that the
+    /// report names.
+    #[test]
+    fn holes_that_meet_are_filled(removed in proptest::collection::vec(any::<bool>(), 180)) {
+        let open = sphere_without(|f| removed[f]);
+        let boundary = Facts::from_polygons(&open).boundary_edges;
+        for method in METHODS {
+            let repaired = filled(&open, method, None);
+            let facts = Facts::from_polygons(&repaired.polygons);
+            let left = repaired.steps[0].left.iter().map(|left| match left {
+                Left::BlockedHole { edges, .. } | Left::CoveringHole { edges, .. } => *edges,
+                other => panic!("{other}"),
+            });
+            prop_assert_eq!(facts.boundary_edges, left.sum::<usize>());
+            prop_assert_eq!((facts.non_manifold_edges, facts.inconsistent_edges), (0, 0));
+            let counts = &repaired.steps[0].counts;
+            prop_assert_eq!(counts.faces_added + 2 * counts.holes_filled, boundary - facts.boundary_edges);
+        }
+    }
+}
+
+#[test]
+fn two_holes_at_one_vertex_are_filled() {
+    let sphere = sixfold_shapes::geodesic(3).expect("small");
+    let v = sphere.faces().face(FaceId::new(0))[0];
+    let at_v = sphere.faces().iter().filter(|(_, face)| face.contains(&v));
+    let at_v: Vec<Vec<VertexId>> = at_v.map(|(_, face)| face.to_vec()).collect();
+    // Two faces that share only this vertex.
+    let is_apart = |face: &&Vec<VertexId>| face.iter().filter(|w| at_v[0].contains(w)).count() == 1;
+    let other = at_v.iter().find(is_apart).expect("five faces or more");
+    let is_removed = |f: usize| {
+        let face = sphere.faces().face(FaceId::new(f as u32));
+        face == at_v[0] || face == *other
+    };
+    let open = sphere_without(is_removed);
+    assert!(Capabilities::ORIENTED_MANIFOLDS.check(&open).is_err());
+    for method in METHODS {
+        let repaired = filled(&open, method, None);
+        let counts = &repaired.steps[0].counts;
+        assert_eq!((counts.holes_filled, counts.faces_added), (2, 2));
+        assert!(Facts::from_polygons(&repaired.polygons).closed);
+    }
+}
+
 #[test]
 fn a_cube_without_a_face_is_closed() {
     let cube = sixfold_shapes::cube();
@@ -82,14 +142,14 @@ fn a_hole_whose_diagonals_are_edges_remains() {
     let holes = Holes::new(&cone);
     let mut blocked = Holes {
         edges: holes.edges.clone(),
-        next: holes.next.clone(),
+        sides: holes.sides.clone(),
     };
     let v = VertexId::new;
     blocked
         .edges
         .extend([Pair::new(v(0), v(2)), Pair::new(v(1), v(3))]);
     for method in METHODS {
-        let hole = &blocked.loops()[0];
+        let hole = &blocked.loops(&cone)[0];
         assert_eq!(blocked.triangulate(&cone, hole, method), None);
     }
 }

@@ -15,7 +15,7 @@ pub(crate) struct ReadFiles {
     /// Do not merge vertices at equal positions: neither those of STL files nor those at seams
     #[arg(long)]
     pub(crate) as_stored: bool,
-    /// Move meshes to the origin before coordinates are rounded to 32 bits
+    /// Move meshes to the origin before coordinates are rounded to 32 bits, and written meshes back
     #[arg(long)]
     pub(crate) recentre: bool,
 }

@@ -211,8 +211,17 @@ mod tests {
 
     #[test]
     fn a_goal_is_a_number_or_a_ratio() {
-        let [count, part] = [(Some(9), None), (None, Some(0.5))]
-            .map(|(faces, ratio)| Goal { faces, ratio }.target());
-        assert_eq!([count, part], [Target::Faces(9), Target::Ratio(0.5)]);
+        let goals = [(Some(9), None), (None, Some(0.5)), (None, None)];
+        let targets = goals.map(|(faces, ratio)| {
+            let max_error = Some(0.1);
+            Goal {
+                faces,
+                ratio,
+                max_error,
+            }
+            .target()
+        });
+        let expected = [Target::Faces(9), Target::Ratio(0.5), Target::Faces(0)];
+        assert_eq!(targets, expected);
     }
 }

@@ -28,7 +28,7 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
         check_not_overwritten("the list of faces", path, &outputs)?;
     }
     let mesh = &arguments.files.mesh;
-    let (polygons, creases) = load::with_creases(mesh, arguments.read)?;
+    let (polygons, creases, origin) = load::with_creases(mesh, arguments.read)?;
     let (polygons, creases) = without_seams(mesh, polygons, creases, arguments.read.files);
     check_tags(arguments, &creases)?;
     let selection = selection(select)?;
@@ -38,7 +38,7 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
             Select::Faces(path) => Failure::usage(format!("{}: {error}", path.display())),
             _ => Failure::usage(error),
         })?;
-    let output = MeshOutput::open(&arguments.files.output, arguments.files.write)?;
+    let output = MeshOutput::open(&arguments.files.output, arguments.files.write, origin)?;
     let spinner = Spinner::start(format!("refining {}", shown(&arguments.files.mesh)));
     let mut work = LocalRefinement {
         polygons: &polygons,
