@@ -4,9 +4,7 @@ mod minimum_area;
 
 use glam::DVec3;
 use rustc_hash::FxHashSet;
-use sixfold_core::{
-    Capabilities, FaceId, Incidence, Pair, PolygonCutter, PolygonMesh, RowId, Slot, VertexId,
-};
+use sixfold_core::{Capabilities, FaceId, Incidence, Pair, PolygonCutter, PolygonMesh, VertexId};
 use sixfold_spatial::{Bvh, FaceTriangle, SpatialIndex, SurfaceQueries, polygon_triangles};
 
 use crate::error::RepairError;

@@ -7,6 +7,7 @@ mod distance;
 mod explore;
 mod external;
 mod formats;
+mod geometry;
 mod golden;
 mod help_texts;
 mod interrupt;

@@ -1,6 +1,6 @@
 use proptest::prelude::*;
 use sixfold_conformance::strategy::manifold_mesh;
-use sixfold_core::{FaceId, Facts, Point};
+use sixfold_core::{FaceId, Facts, Point, RowId};
 
 use super::*;
 use crate::report::Repaired;

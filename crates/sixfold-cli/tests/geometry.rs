@@ -1,0 +1,396 @@
+//! What commands do to the geometry of meshes: areas and volumes that are known, in every format.
+
+use serde_json::Value;
+
+use crate::json_csv::parsed;
+use crate::run::{Run, Sixfold};
+
+/// An L of area 5.
+const L: &str = "v 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 3 0\nv 0 3 0\nv 0 0 0\nf 1 2 3 4 5 6\n";
+
+/// Two squares that meet in a point, a square with a spike, and a square with a hole of side 1.
+const TOUCHING: [(&str, f64); 3] = [
+    ("0 0,1 0,1 1,2 1,2 2,1 2,1 1,0 1", 2.0),
+    ("0 0,4 0,4 2,2 2,2 5,2 2,0 2", 8.0),
+    ("0 0,3 0,3 3,0 3,0 0,1 1,1 2,2 2,2 1,1 1", 8.0),
+];
+
+impl Sixfold {
+    fn passes(&self, arguments: &[&str]) -> Run {
+        let run = self.run(arguments);
+        assert_eq!(run.code, Some(0), "{arguments:?} {run:?}");
+        run
+    }
+
+    fn measures(&self, mesh: &str) -> Value {
+        let run = self.passes(&["inspect", mesh, "--json", "-"]);
+        parsed(&run.stdout)["measures"].clone()
+    }
+
+    fn area(&self, mesh: &str) -> f64 {
+        self.measures(mesh)["area"].as_f64().expect("an area")
+    }
+
+    fn volume(&self, mesh: &str) -> f64 {
+        self.measures(mesh)["volume"].as_f64().expect("a volume")
+    }
+}
+
+/// Returns a mesh of one polygon.
+fn polygon(corners: &str) -> String {
+    let corners: Vec<&str> = corners.split(',').collect();
+    let vertices: String = corners.iter().map(|at| format!("v {at} 0\n")).collect();
+    let numbers: String = (1..=corners.len()).map(|v| format!(" {v}")).collect();
+    format!("{vertices}f{numbers}\n")
+}
+
+/// Returns the lines of a box from `-half` to `half` as OBJ. `first` is the number of the first vertex.
+fn cuboid(half: f64, first: usize, is_inward: bool) -> String {
+    let mut text = String::new();
+    for i in 0..8 {
+        let at = |bit: usize| if i >> bit & 1 == 1 { half } else { -half };
+        text += &format!("v {} {} {}\n", at(0), at(1), at(2));
+    }
+    for mut face in [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ] {
+        if is_inward {
+            face.reverse();
+        }
+        let corners: String = face.iter().map(|v| format!(" {}", v + first)).collect();
+        text += &format!("f{corners}\n");
+    }
+    text
+}
+
+#[test]
+fn polygons_keep_their_area_in_every_format() {
+    let sixfold = Sixfold::new();
+    let mut meshes = vec![("l.obj".to_owned(), 5.0)];
+    sixfold.file("l.obj", L);
+    for (i, (corners, area)) in TOUCHING.into_iter().enumerate() {
+        let name = format!("touching{i}.obj");
+        sixfold.file(&name, &polygon(corners));
+        meshes.push((name, area));
+    }
+    for (mesh, area) in &meshes {
+        for format in [
+            "stl",
+            "stl-ascii",
+            "ply",
+            "ply-ascii",
+            "off",
+            "gltf",
+            "glb",
+            "obj",
+        ] {
+            sixfold.passes(&["convert", mesh, "--format", format, "-o", "out"]);
+            sixfold.passes(&[
+                "convert",
+                mesh,
+                "--format",
+                format,
+                "--triangulate",
+                "-o",
+                "cut",
+            ]);
+            for out in ["out", "cut"] {
+                let found = sixfold.area(out);
+                // The area of a polygon that touches itself is that of its outline.
+                assert!((found - area).abs() < 1e-6, "{mesh} as {format}: {found}");
+            }
+        }
+        sixfold.passes(&["triangulate", mesh, "-o", "cut.obj"]);
+        sixfold.passes(&["repair", mesh, "--weld", "-o", "welded.obj"]);
+        for out in ["cut.obj", "welded.obj"] {
+            let found = sixfold.area(out);
+            assert!((found - area).abs() < 1e-6, "{mesh} {out}: {found}");
+        }
+        let run = sixfold.passes(&["distance", mesh, "cut.obj", "--json", "-"]);
+        for side in parsed(&run.stdout)["distances"].as_array().expect("a list") {
+            assert!(
+                side["largest"].as_f64().expect("a distance") < 1e-12,
+                "{side}"
+            );
+        }
+    }
+}
+
+#[test]
+fn polygons_that_cross_themselves_are_named_with_their_line() {
+    let sixfold = Sixfold::new();
+    // A bow-tie, and a pentagon that winds twice around some points.
+    for corners in ["0 0,1 1,1 0,0 1", "1 -1,-1 3,3 2,1 -3,0 3"] {
+        sixfold.file("cross.obj", &polygon(corners));
+        let line = corners.split(',').count() + 1;
+        for arguments in [
+            &["convert", "cross.obj", "-o", "out.stl"][..],
+            &["triangulate", "cross.obj", "-o", "out.obj"],
+            &["distance", "cross.obj", "cross.obj"],
+            &["inspect", "cross.obj", "--triangulate"],
+        ] {
+            let run = sixfold.passes(arguments);
+            let named = format!("line {line}");
+            let is_named = |text: &str| text.contains("crosses itself") && text.contains(&named);
+            assert!(run.stderr.lines().any(is_named), "{arguments:?} {run:?}");
+        }
+    }
+}
+
+#[test]
+fn cavities_keep_their_volume() {
+    let sixfold = Sixfold::new();
+    for is_inward in [true, false] {
+        let boxes = cuboid(5.0, 1, false) + &cuboid(2.0, 9, is_inward);
+        sixfold.file("boxes.obj", &boxes);
+        let run = sixfold.passes(&["inspect", "boxes.obj"]);
+        assert_eq!(run.stdout.contains("faces turned"), !is_inward, "{run:?}");
+        sixfold.passes(&[
+            "repair",
+            "boxes.obj",
+            "--orient",
+            "outward",
+            "-o",
+            "out.obj",
+        ]);
+        assert!((sixfold.volume("out.obj") - 936.0).abs() < 1e-9);
+    }
+}
+
+/// The facets of a sphere disagree by a little: the command that is advised closes the mesh.
+#[test]
+fn cracks_are_welded_as_advised() {
+    let sixfold = Sixfold::new();
+    sixfold.passes(&["generate", "geodesic", "frequency=4", "-o", "ball.obj"]);
+    let text = std::fs::read_to_string(sixfold.folder().join("ball.obj")).expect("a file");
+    let rows = |kind: &'static str| {
+        let lines = text.lines().filter(move |line| line.starts_with(kind));
+        lines.map(|line| line[2..].split(' ').map(str::to_owned).collect::<Vec<_>>())
+    };
+    let positions: Vec<Vec<f64>> = rows("v ")
+        .map(|row| row.iter().map(|x| x.parse().expect("a number")).collect())
+        .collect();
+    let (mut cracked, mut corners) = (String::new(), 0_usize);
+    let mut faces = String::new();
+    for row in rows("f ") {
+        faces += "f";
+        for vertex in row {
+            let at = &positions[vertex.parse::<usize>().expect("a number") - 1];
+            corners += 1;
+            // At most 1e-5 away, in directions that differ.
+            let shift = |i: usize| ((corners * (7 + i) % 11) as f64 / 11.0 - 0.5) * 1e-5;
+            let [x, y, z] = [0, 1, 2].map(|i| at[i] + shift(i));
+            cracked += &format!("v {x} {y} {z}\n");
+            faces += &format!(" {corners}");
+        }
+        faces += "\n";
+    }
+    sixfold.file("cracked.obj", &(cracked + &faces));
+    let run = sixfold.passes(&["inspect", "cracked.obj"]);
+    let advice = run
+        .stdout
+        .split_whitespace()
+        .find(|word| word.starts_with("--weld="));
+    let advice = advice.unwrap_or_else(|| panic!("no advice: {run:?}"));
+    sixfold.passes(&["repair", "cracked.obj", advice, "-o", "out.obj"]);
+    let facts = parsed(
+        &sixfold
+            .passes(&["inspect", "out.obj", "--json", "-"])
+            .stdout,
+    );
+    assert_eq!(facts["mesh"]["closed"], true);
+    assert_eq!(facts["mesh"]["faces"], 20 * 16);
+    let (before, after) = (sixfold.volume("ball.obj"), sixfold.volume("out.obj"));
+    assert!((before - after).abs() < 1e-4 * before, "{before} {after}");
+}
+
+/// A box with a face without area, which is needed to keep it closed.
+#[test]
+fn removing_faces_without_area_opens_nothing() {
+    let sixfold = Sixfold::new();
+    let boxed = cuboid(1.0, 1, false).replace("f 1 2 6 5", "f 1 2 6\nf 1 6 5\nf 1 9 2");
+    let boxed = "v 9 9 9\n".replace("9 9 9", "-1 -1 -1") + &boxed;
+    // The vertices are one later now, and the last one is the middle of the edge from 2 to 3.
+    let renumbered: String = boxed
+        .lines()
+        .map(|line| match line.strip_prefix("f ") {
+            Some(face) => {
+                let corners = face
+                    .split(' ')
+                    .map(|v| v.parse::<usize>().expect("a number") + 1);
+                format!(
+                    "f{}\n",
+                    corners.map(|v| format!(" {v}")).collect::<String>()
+                )
+            }
+            None => format!("{line}\n"),
+        })
+        .collect();
+    let mesh = renumbered.replace("f 2 4 5 3", "f 2 4 5 3 10");
+    let mesh = mesh.replacen("f 2", "v 0 -1 -1\nf 2", 1);
+    sixfold.file("box.obj", &mesh);
+    assert!((sixfold.volume("box.obj") - 8.0).abs() < 1e-12);
+    let run = sixfold.passes(&["repair", "box.obj", "--flat", "--isolated", "-o", "out.obj"]);
+    let facts = parsed(
+        &sixfold
+            .passes(&["inspect", "out.obj", "--json", "-"])
+            .stdout,
+    );
+    assert_eq!(facts["mesh"]["closed"], true, "{run:?}");
+    assert_eq!(facts["mesh"]["faces"], 8);
+    assert!((sixfold.volume("out.obj") - 8.0).abs() < 1e-12);
+}
+
+#[test]
+fn seams_stay_closed() {
+    let sixfold = Sixfold::new();
+    sixfold.passes(&["generate", "geodesic", "frequency=6", "-o", "ball.obj"]);
+    // Facets of STL have no common vertices; --as-stored keeps them apart in the glTF file.
+    sixfold.passes(&["convert", "ball.obj", "-o", "ball.stl"]);
+    sixfold.passes(&["convert", "ball.stl", "--as-stored", "-o", "seams.glb"]);
+    let closed = |mesh: &str| {
+        let facts = parsed(&sixfold.passes(&["inspect", mesh, "--json", "-"]).stdout);
+        facts["mesh"]["closed"] == true
+    };
+    assert!(!closed("seams.glb"));
+    for command in [
+        &["decimate", "--ratio", "0.3"][..],
+        &["smooth"],
+        &["subdivide", "--scheme", "loop"],
+        &["remesh"],
+    ] {
+        let run = sixfold.passes(&[command, &["seams.glb", "-o", "out.obj"]].concat());
+        assert!(
+            run.stderr.contains("seam") || run.stderr.contains("joined"),
+            "{run:?}"
+        );
+        assert!(closed("out.obj"), "{command:?}");
+    }
+}
+
+#[test]
+fn a_shape_that_is_destroyed_is_reported() {
+    let sixfold = Sixfold::new();
+    sixfold.passes(&["generate", "geodesic", "frequency=6", "-o", "ball.obj"]);
+    let remesh = ["remesh", "--edge-length", "5", "ball.obj", "-o", "out.obj"];
+    let run = sixfold.passes(&remesh);
+    assert!(run.stderr.contains("the shape has changed"), "{run:?}");
+    let run = sixfold.run(&[&remesh[..], &["--check"]].concat());
+    assert_eq!(run.code, Some(1), "{run:?}");
+    let gentle = [
+        "smooth",
+        "--iterations",
+        "1",
+        "ball.obj",
+        "-o",
+        "out.obj",
+        "--check",
+    ];
+    assert!(
+        !sixfold
+            .passes(&gentle)
+            .stderr
+            .contains("the shape has changed")
+    );
+}
+
+#[test]
+fn results_without_a_face_have_exit_code_1() {
+    let sixfold = Sixfold::new();
+    sixfold.file("l.obj", L);
+    for arguments in [
+        &["repair", "l.obj", "--components", "5", "-o", "out.obj"][..],
+        &["repair", "l.obj", "--weld=9", "-o", "out.obj"],
+        &["subdivide", "l.obj", "--boundary", "none", "-o", "out.obj"],
+    ] {
+        let run = sixfold.run(arguments);
+        assert_eq!(run.code, Some(1), "{arguments:?} {run:?}");
+        assert!(run.stderr.contains("no face"), "{arguments:?} {run:?}");
+    }
+}
+
+/// Coordinates of a projected map: two triangles, one metre apart.
+#[test]
+fn far_meshes_keep_their_place_and_distance() {
+    let sixfold = Sixfold::new();
+    let far = |dx: f64| {
+        let vertices = [(0.0, 0.0), (7.25, 0.5), (3.0, 9.125)];
+        let vertices =
+            vertices.map(|(x, y)| format!("v {} {} 31.5\n", 500_000.1 + x + dx, 4_649_776.3 + y));
+        vertices.concat() + "f 1 2 3\n"
+    };
+    sixfold.file("a.obj", &far(0.0));
+    sixfold.file("b.obj", &far(1.0));
+    let run = sixfold.passes(&["distance", "a.obj", "b.obj", "--recentre", "--json", "-"]);
+    let largest = parsed(&run.stdout)["distances"][0]["largest"].as_f64();
+    assert!((largest.expect("a distance") - 1.0).abs() < 1e-6, "{run:?}");
+    for format in ["obj", "ply", "ply-ascii", "off", "glb", "gltf", "stl-ascii"] {
+        sixfold.passes(&[
+            "convert",
+            "a.obj",
+            "--recentre",
+            "--format",
+            format,
+            "-o",
+            "out",
+        ]);
+        let run = sixfold.passes(&["distance", "a.obj", "out", "--recentre", "--json", "-"]);
+        let largest = parsed(&run.stdout)["distances"][0]["largest"].as_f64();
+        assert!(largest.expect("a distance") < 1e-6, "{format} {run:?}");
+    }
+    let run = sixfold.passes(&["convert", "a.obj", "--recentre", "-o", "out.stl"]);
+    assert!(
+        run.stderr
+            .contains("the positions of 3 vertices are rounded"),
+        "{run:?}"
+    );
+}
+
+#[test]
+fn decimation_stops_before_a_distance() {
+    let sixfold = Sixfold::new();
+    sixfold.passes(&["generate", "geodesic", "frequency=16", "-o", "ball.obj"]);
+    let mut faces = 20 * 16 * 16;
+    for limit in ["0.005", "0.02", "0.1"] {
+        sixfold.passes(&[
+            "decimate",
+            "--max-error",
+            limit,
+            "ball.obj",
+            "-o",
+            "out.obj",
+        ]);
+        let run = sixfold.passes(&["distance", "ball.obj", "out.obj", "--json", "-"]);
+        let limit: f64 = limit.parse().expect("a number");
+        for side in parsed(&run.stdout)["distances"].as_array().expect("a list") {
+            let largest = side["largest"].as_f64().expect("a distance");
+            assert!(largest < 1.1 * limit, "{largest} of {limit}");
+        }
+        let facts = parsed(
+            &sixfold
+                .passes(&["inspect", "out.obj", "--json", "-"])
+                .stdout,
+        );
+        let left = facts["mesh"]["faces"].as_u64().expect("a number");
+        assert!(left < faces / 2, "{left} at {limit}");
+        faces = left;
+    }
+    let both = [
+        "decimate",
+        "--max-error",
+        "0.01",
+        "--faces",
+        "4",
+        "ball.obj",
+        "-o",
+        "out.obj",
+    ];
+    assert!(sixfold.passes(&both).stderr.contains("exceed the distance"));
+    let wrong = ["decimate", "--max-error", "-1", "ball.obj", "-o", "out.obj"];
+    assert_eq!(sixfold.run(&wrong).code, Some(2));
+}
