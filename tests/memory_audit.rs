@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::{env, fs};
 
 use peakmem_alloc::{PeakMemAlloc, PeakMemAllocTrait};
-use sixfold::remeshing::{Decimation, DecimationBoundary, Target, decimate};
+use sixfold::remeshing::{Decimation, Target, decimate};
 use sixfold::{
     MeshEdit, MeshQuery, Point, PolygonMesh, Representation, for_each_editable, io, shapes,
     structure_infos,

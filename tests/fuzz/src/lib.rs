@@ -9,7 +9,10 @@ use sixfold::io::{
     write_to,
 };
 use sixfold::repair::{Step, diagnose, repair, repair_for};
-use sixfold::{PolygonMesh, shapes, structure_infos};
+use sixfold::remeshing::{Decimation, Target, decimate};
+use sixfold::{
+    EditableIndexedFaceSet, MeshQuery, PolygonMesh, Representation, shapes, structure_infos,
+};
 
 /// Reads `bytes` with all combinations of options. `name` decides on the format if the content does
 /// not.
@@ -103,6 +106,24 @@ pub fn repair_mesh(bytes: &[u8]) {
         assert!(again.steps.is_empty(), "{}", info.name);
         assert_eq!(again.polygons, repaired, "{}", info.name);
     }
+    decimate_triangles(&polygons);
+}
+
+/// Decimates the triangles of a mesh of any kind, within a distance.
+fn decimate_triangles(polygons: &PolygonMesh) {
+    let triangles = polygons.triangulated().expect("small").polygons;
+    let Ok(mut mesh) = EditableIndexedFaceSet::from_polygons(&triangles) else {
+        return;
+    };
+    let decimation = Decimation {
+        target: Target::Faces(0),
+        max_distance: Some(0.5),
+        ..Decimation::default()
+    };
+    let report = decimate(&mut mesh, &decimation).unwrap_or_else(|error| panic!("{error}"));
+    assert!(report.max_distance.is_some_and(|distance| distance <= 0.500_001));
+    assert_eq!(mesh.validate(), Ok(()));
+    assert_eq!(mesh.face_count(), report.faces);
 }
 
 /// Checks that exact steps move no vertex: each new position is an old one.

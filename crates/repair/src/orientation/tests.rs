@@ -1,6 +1,7 @@
 use proptest::collection;
 use proptest::prelude::*;
 use sixfold_conformance::strategy::manifold_mesh;
+use sixfold_core::glam::{EulerRot, Quat};
 use sixfold_core::{Facts, Point, RowId};
 
 use super::*;
@@ -174,6 +175,56 @@ fn walls_of_cavities_face_the_cavity() {
     let oriented = outward_all(&together(&parts));
     assert!((volume(&oriented.polygons) - 8.0 * (1000.0 - 512.0 + 2.0)).abs() < 1e-6);
     assert_eq!(oriented.reversed.len(), 24);
+}
+
+/// Adds a cube and cubes in some of its eight parts, and so on in these, as `choices` says: in which
+/// parts, and whether the cube is turned inside out. Returns the volume of the solid between them.
+fn nested(
+    half: f32,
+    centre: [f32; 3],
+    depth: usize,
+    choices: &mut impl Iterator<Item = (u8, bool)>,
+    shells: &mut Vec<PolygonMesh>,
+) -> f64 {
+    let Some((parts, is_inward)) = choices.next() else {
+        return 0.0;
+    };
+    shells.push(cube(half, centre, is_inward));
+    let mut volume = 8.0 * f64::from(half).powi(3);
+    for part in (0..8).filter(|part| depth > 0 && parts >> part & 1 == 1) {
+        let at = [0, 1, 2].map(|i| centre[i] + half * if part >> i & 1 == 1 { 0.5 } else { -0.5 });
+        volume -= nested(0.375 * half, at, depth - 1, choices, shells);
+    }
+    volume
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Solids with cavities, in which there are solids again: the volume is exact, whatever the shells
+    /// faced before and however the whole is turned.
+    #[test]
+    fn nested_shells_have_the_volume_between_them(
+        choices in collection::vec((any::<u8>(), any::<bool>()), 1..40),
+        turn in prop::array::uniform3(0.0_f32..6.0),
+    ) {
+        let mut shells = Vec::new();
+        let mut choices = choices.into_iter();
+        let mut expected = 0.0;
+        for i in 0..3 {
+            expected += nested(8.0, [20.0 * i as f32, 0.0, 0.0], 3, &mut choices, &mut shells);
+        }
+        let [x, y, z] = turn;
+        let turn = Quat::from_euler(EulerRot::XYZ, x, y, z);
+        let all = together(&shells);
+        let points = all.positions().iter().map(|&p| turn * p);
+        let turned = PolygonMesh::from_faces(points.collect(), all.faces().clone()).expect("valid");
+        let oriented = outward_all(&turned);
+        prop_assert_eq!(&oriented.undecided, &[]);
+        let found = volume(&oriented.polygons);
+        prop_assert!((found - expected).abs() < 1e-5 * expected, "{} {}", found, expected);
+        prop_assert_eq!(&outward_all(&oriented.polygons).reversed, &[]);
+    }
 }
 
 #[test]

@@ -18,7 +18,7 @@ use sixfold_indexed_face_set::IndexedFaceSet;
 use sixfold_polygon_soup::PolygonSoup;
 use sixfold_repair::{
     Components, Facing, FillHoles, HoleFilling, Left, OppositeFaces, Repaired, Step, StepCounts,
-    Tolerance, Weld, WeldMethod, repair, repair_for,
+    Tolerance, Weld, WeldMethod, diagnose, repair, repair_for,
 };
 use sixfold_winged_edge::WingedEdgeMesh;
 
@@ -445,6 +445,31 @@ fn area(polygons: &PolygonMesh) -> f64 {
 
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Facets whose corners disagree by a little: the distance that a diagnosis names closes them, and
+    /// changes the area by no more than the corners move.
+    #[test]
+    fn cracks_close_at_the_distance_that_is_named(
+        frequency in 1..5_usize,
+        width in -5.0_f64..-2.3,
+        shifts in collection::vec(prop::array::uniform3(-0.5_f64..0.5), 60),
+    ) {
+        let sphere = sixfold_shapes::geodesic(frequency).expect("small");
+        let separate = damage(&sphere, 1, 0);
+        // The width of the cracks, as a part of the size of an edge.
+        let width = 10.0_f64.powf(width) / (frequency as f64);
+        let points = separate.positions().iter().zip(shifts.iter().cycle());
+        let points = points.map(|(p, shift)| (p.as_dvec3() + width * DVec3::from(*shift)).as_vec3());
+        let cracked = PolygonMesh::from_faces(points.collect(), separate.faces().clone()).expect("valid");
+        let crack = diagnose(&cracked, 0).crack.expect("all edges are cracks");
+        prop_assert!(crack.distance < 10.0 * width, "{} {}", crack.distance, width);
+        let welded = repair(&cracked, &[crack.weld()]).expect("valid").polygons;
+        let [before, after] = [&cracked, &welded].map(open_and_non_manifold);
+        prop_assert_eq!(before[0] - after[0], crack.edges);
+        prop_assert_eq!((after, welded.face_count()), ([0, 0], sphere.face_count()));
+        let ((_, size), (_, new_size)) = (area_of(&cracked), area_of(&welded));
+        prop_assert!((size - new_size).abs() < 40.0 * (frequency as f64) * crack.distance);
+    }
 
     /// Corners of a polygon that touches itself become one vertex, and the area stays.
     #[test]
