@@ -40,7 +40,7 @@ hold the mesh; 4 interrupted, nothing written.";
 #[command(
     after_help = DECIMATE_EXAMPLES,
     verbatim_doc_comment,
-    override_usage = "sixfold decimate [OPTIONS] -o <OUT> <--faces <N>|--ratio <PART>|--max-error <DISTANCE>> <MESH>",
+    override_usage = "sixfold decimate [OPTIONS] -o <OUT> <GOAL> <MESH>",
     mut_arg("mesh", |arg| arg.help("The mesh, with triangles only (- for standard input)"))
 )]
 pub(crate) struct Decimate {
@@ -60,19 +60,40 @@ pub(crate) struct Decimate {
     pub(crate) read: ReadPolygons,
 }
 
+/// The heading of the options of a [`Goal`] in the help.
+const GOAL: &str = "Goal (one or more)";
+
 /// The target size, given in one of two ways, and the largest distance.
 #[derive(Clone, Copy, Debug, Args)]
 #[group(required = true, multiple = true)]
 pub(crate) struct Goal {
     /// Target number of faces
-    #[arg(long, value_name = "N", value_parser = faces, allow_hyphen_values = true, conflicts_with = "ratio")]
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = faces,
+        allow_hyphen_values = true,
+        conflicts_with = "ratio",
+        help_heading = GOAL
+    )]
     faces: Option<usize>,
     /// Target as a fraction of the present faces: 0 to 1
-    #[arg(long, value_name = "PART", value_parser = ratio, allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "PART",
+        value_parser = ratio,
+        allow_hyphen_values = true,
+        help_heading = GOAL
+    )]
     ratio: Option<f64>,
-
     /// Largest distance between the mesh and the result, in units of the coordinates
-    #[arg(long, value_name = "DISTANCE", value_parser = max_error, allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "DISTANCE",
+        value_parser = max_error,
+        allow_hyphen_values = true,
+        help_heading = GOAL
+    )]
     pub(crate) max_error: Option<f64>,
 }
 
