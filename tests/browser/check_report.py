@@ -111,7 +111,7 @@ def operation_of(figure, kind):
 def check_ranking(figure, rows, ratios, operation):
     assert len(figure["marks"]) == len(rows) == figure["rows"], figure["id"]
     by_name = {row["backend"]: (row, ratio) for row, ratio in zip(rows, ratios)}
-    longest = max(map(math.log10, ratios))
+    longest = max(0, *map(math.log10, ratios))
     # The axis has a least length, and a bar is at least 2 % of the axis long.
     shortest = 0.02 * max(longest, 0.1)
     widest = max(mark["width"] for mark in figure["marks"])
@@ -120,13 +120,14 @@ def check_ranking(figure, rows, ratios, operation):
         row, ratio = by_name.pop(name)
         low, high = [row.get(f"ratio_ci_{end}", row.get(f"ci_{end}")) for end in ("low", "high")]
         interval = "" if low is None else f" ({shown(low)} to {shown(high)})"
-        expected = f"{shown(ratio)}{interval}"
+        bound = "≥ " if row.get("estimated") else ""
+        expected = f"{bound}{shown(ratio)}{interval}"
         assert figures.split(" ×")[0] == expected, f"{operation} on {name}: {figures}, but {expected} in the data"
         share = max(math.log10(ratio), shortest) / max(longest, shortest)
         close_to(mark["width"], share * widest, f"the bar of {operation} on {name}", 0.6)
 
 
-def check_heat_map(figure, ratios, columns):
+def check_heat_map(figure, ratios, columns, bounds):
     rows = ratios
     measured = {operation for (operation, _), ratio in rows.items() if ratio}
     assert len(figure["marks"]) == len(measured) * len(columns), figure["id"]
@@ -135,7 +136,8 @@ def check_heat_map(figure, ratios, columns):
         operation, rest = mark["title"].split(" on ", 1)
         column, found = rest.split(": ", 1)
         ratio = rows.get((operation, column))
-        expected = times(ratio) if ratio else "not measured"
+        bound = "≥ " if (operation, column) in bounds else ""
+        expected = bound + times(ratio) if ratio else "not measured"
         assert found == expected, f"{mark['title']}: {ratio} in the data"
 
 
@@ -144,7 +146,7 @@ def check_growth(figure, growth):
     points = {}
     for size in growth["sizes"]:
         for row in size["results"]:
-            ns = row["median_ns"] or row["estimated_ns"]
+            ns = row["median_ns"]  # lower bounds are not drawn
             if row["operation"] == operation and ns:
                 points[row["backend"], f"{size['faces']:,}"] = (size["faces"], ns)
     assert len(figure["marks"]) == len(points), figure["id"]
@@ -272,7 +274,8 @@ def check(figure, results):
         rows = [row for row in rows if row["operation"] == operation]
         return check_ranking(figure, rows, [ratios[operation, row["backend"]] for row in rows], operation)
     if kind.endswith("heat-map"):
-        return check_heat_map(figure, ratios, columns)
+        bounds = {(row["operation"], row["backend"]) for row in rows if row.get("estimated")}
+        return check_heat_map(figure, ratios, columns, bounds)
     if kind.endswith("memory"):
         return check_memory(figure, study)
     if kind.endswith("break-even"):
