@@ -405,7 +405,7 @@ fn not_finite(at: Location, vertex: usize, coordinates: [f32; 3]) -> ReadError {
 
 impl FileMesh {
     /// Cuts polygons that name a vertex twice into triangles that do not. Polygons that cross
-    /// themselves, or have no area, stay as they are. O(corners) expected, if there are none.
+    /// themselves, or have no area, stay as they are. O(corners) expected for faces without repeats.
     fn cut_repeats(&mut self) {
         let is_wanted = |face: &[VertexId]| face.len() > 3 && repeated_vertex(face).is_some();
         if !self.faces.iter().any(|(_, face)| is_wanted(face)) {

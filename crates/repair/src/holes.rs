@@ -258,7 +258,7 @@ impl Holes {
 }
 
 /// Returns whether corners `i` and `j` of a polygon with `n` corners are not adjacent.
-fn is_diagonal(i: usize, j: usize, n: usize) -> bool {
+pub(crate) fn is_diagonal(i: usize, j: usize, n: usize) -> bool {
     let apart = i.abs_diff(j);
     apart > 1 && apart < n - 1
 }

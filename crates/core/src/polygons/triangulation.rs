@@ -406,8 +406,8 @@ enum Method {
 /// rounded coordinates, where the polygon touches itself.
 const MAX_WRONG: f64 = 1e-6;
 
-/// Returns the part of the area of the triangles of a polygon that is turned over. If there is none,
-/// returns the part that overlaps; 0 if this is at most [`MAX_WRONG`].
+/// Returns the part of the area of the triangles of a polygon that is turned over. If no triangle is
+/// turned over, returns the part that overlaps; 0 if this is at most [`MAX_WRONG`].
 fn wrong_part(projected: &[DVec2], triangles: &[[usize; 3]]) -> f64 {
     let turned = plane::turned_part(projected, triangles);
     if turned > 0.0 {

@@ -4,10 +4,11 @@ use std::collections::{BTreeMap, BinaryHeap};
 
 use glam::DVec3;
 use rustc_hash::FxHashMap;
-use sixfold_core::{FaceId, Pair, PolygonCutter, PolygonMesh, Slot, VertexId, row};
+use sixfold_core::{FaceId, Pair, Point, PolygonCutter, PolygonMesh, Slot, VertexId, row};
 
 use super::is_without_area;
 use crate::error::RepairError;
+use crate::holes::is_diagonal;
 use crate::outcome::{Left, Outcome, StepCounts};
 use crate::trace::{CornerId, Rebuild, VertexTrace, corners_of};
 
@@ -140,14 +141,13 @@ impl<'a> Patch<'a> {
                 attempts -= 1;
                 let first_new = self.pieces.len();
                 if self.is_flat(piece) && self.try_remove(piece) {
-                    is_any_removed = true;
+                    (is_any_removed, self.is_changed) = (true, true);
                     heap.extend((first_new..self.pieces.len()).filter_map(|p| self.candidate(p)));
                 }
             }
             if !is_any_removed {
                 return;
             }
-            self.is_changed = true;
         }
     }
 
@@ -209,7 +209,7 @@ impl<'a> Patch<'a> {
     }
 
     /// Returns the vertices without those that were merged, and their positions.
-    fn vertices(&self) -> (VertexTrace, Vec<sixfold_core::Point>) {
+    fn vertices(&self) -> (VertexTrace, Vec<Point>) {
         let mut replacements = vec![Slot::NONE; self.polygons.vertex_count()];
         let (mut origins, mut positions) = (Vec::new(), Vec::new());
         for v in self.polygons.vertices() {
@@ -293,14 +293,9 @@ impl<'a> Patch<'a> {
         let mut cutter = PolygonCutter::default();
         let cut = cutter.cut(corners.iter().map(|&(v, _)| self.at(v)), is_edge);
         // In a triangle, the side from the last corner to the first is a diagonal, except in one.
-        let is_diagonal =
-            |&&[a, _, c]: &&[usize; 3]| a.abs_diff(c) > 1 && a.abs_diff(c) + 1 < corners.len();
-        if cut
-            .triangles
-            .iter()
-            .filter(is_diagonal)
-            .any(|&[a, _, c]| is_edge(a, c))
-        {
+        let is_blocked =
+            |&[a, _, c]: &[usize; 3]| is_diagonal(a, c, corners.len()) && is_edge(a, c);
+        if cut.triangles.iter().any(is_blocked) {
             return false;
         }
         if cut.is_crossing {
