@@ -214,17 +214,33 @@ impl Positions {
             Origin::Centre => centre(&wide),
             Origin::At(origin) => origin,
         };
-        let (mut points, mut hashes, mut shift) = (Vec::new(), Vec::new(), 0.0);
-        points.reserve_exact(wide.len());
-        for position in &wide {
-            let moved = [0, 1, 2].map(|i| Coordinate::from(position[i] - origin[i]));
-            note_shift(moved, &points, &mut hashes, &mut shift);
-            points.push(point(moved));
+        let moved = |position: [f64; 3]| [0, 1, 2].map(|i| position[i] - origin[i]);
+        let (points, narrowing) = rounded(wide.into_iter().map(moved));
+        Finished {
+            points,
+            origin,
+            narrowing,
         }
-        drop(wide); // before more memory is needed
-        let merged = merged(&points, &hashes);
-        Finished::new(points, origin, merged, shift)
     }
+}
+
+/// Rounds positions to 32 bits, and returns what this did.
+pub(crate) fn rounded(
+    positions: impl ExactSizeIterator<Item = [f64; 3]>,
+) -> (Vec<Point>, Narrowing) {
+    let (mut points, mut hashes, mut largest_shift) = (Vec::new(), Vec::new(), 0.0);
+    points.reserve_exact(positions.len());
+    // The iterator is dropped before more memory is needed.
+    positions.for_each(|position| {
+        let position = position.map(Coordinate::from);
+        note_shift(position, &points, &mut hashes, &mut largest_shift);
+        points.push(point(position));
+    });
+    let narrowing = Narrowing {
+        merged_vertices: merged(&points, &hashes),
+        largest_shift,
+    };
+    (points, narrowing)
 }
 
 impl Finished {

@@ -13,7 +13,7 @@ use crate::duplicates::Copies;
 use crate::flat::is_flat;
 use crate::measures::{Measures, measures_with};
 use crate::step::Step;
-use crate::weld::{PlaceNumbers, Places};
+use crate::weld::{PlaceNumbers, Places, Weld};
 pub use cracks::Crack;
 pub use fault::{Fault, FaultKind, Place};
 
@@ -69,9 +69,12 @@ impl Diagnosis {
 
     /// Returns the steps that repair the faults of one kind in this mesh, in order: those of
     /// [`FaultKind::repairs`], after the steps that make a mesh an oriented manifold if they need one.
-    /// If most boundary edges are cracks, the step for boundary edges welds them.
+    /// If most boundary edges are seams or cracks, the step for boundary edges welds them.
     pub fn repairs(&self, kind: FaultKind) -> Vec<Step> {
         let mut steps = Vec::new();
+        if kind == FaultKind::BoundaryEdge && self.looks_unwelded() {
+            return vec![Step::Weld(Weld::default())];
+        }
         if let (FaultKind::BoundaryEdge, Some(crack)) = (kind, self.wide_crack()) {
             return vec![crack.weld()];
         }
@@ -107,7 +110,8 @@ impl Diagnosis {
 
 /// Finds all faults of a mesh. For each kind of fault, the first `places` places are listed.
 ///
-/// O(n log n) for n corners. With the feature `rayon`, runs on two threads.
+/// O(n log n) for n corners, plus the time to cut the polygons. With the feature `rayon`, runs on two
+/// threads.
 pub fn diagnose(polygons: &PolygonMesh, places: usize) -> Diagnosis {
     let (positions, incidence) = prepare(polygons);
     let fans = Fans::new(&incidence);
@@ -118,7 +122,8 @@ pub fn diagnose(polygons: &PolygonMesh, places: usize) -> Diagnosis {
 /// [`measures`](crate::measures) and [`diagnose`] return them, in less time and memory than these
 /// calls.
 ///
-/// O(n log n) for n corners. With the feature `rayon`, runs on two threads.
+/// O(n log n) for n corners, plus the time to cut the polygons. With the feature `rayon`, runs on two
+/// threads.
 pub fn examine(polygons: &PolygonMesh, places: usize) -> (Facts, Measures, Diagnosis) {
     let (positions, incidence) = prepare(polygons);
     let fans = Fans::new(&incidence);
@@ -272,6 +277,9 @@ fn find_faces(polygons: &PolygonMesh, positions: &PlaceNumbers, found: &mut Foun
         if opposite.is_some() {
             found.add(FaultKind::OppositeFace, place);
         }
+    }
+    for f in polygons.crossing_faces() {
+        found.add(FaultKind::CrossingFace, Place::Face(f));
     }
 }
 

@@ -13,7 +13,7 @@
 mod patch;
 
 use glam::DVec3;
-use sixfold_core::{FaceId, PolygonMesh, area_vector};
+use sixfold_core::{FaceId, PolygonCutter, PolygonMesh, area_vector};
 
 use self::patch::Patch;
 use crate::error::RepairError;
@@ -43,8 +43,20 @@ pub(crate) fn is_flat(polygons: &PolygonMesh, f: FaceId) -> bool {
     is_without_area(corners.map(|&v| polygons.position(v).as_dvec3()))
 }
 
-fn is_without_area(corners: impl Iterator<Item = DVec3>) -> bool {
-    area_vector(corners) == DVec3::ZERO
+/// Returns whether a face has no area: its area vector is zero, and so is each triangle of it. The
+/// vector alone is also zero if parts of a polygon that crosses itself cancel out.
+fn is_without_area(corners: impl ExactSizeIterator<Item = DVec3> + Clone) -> bool {
+    if area_vector(corners.clone()) != DVec3::ZERO {
+        return false;
+    }
+    if corners.len() == 3 {
+        return true;
+    }
+    let corners: Vec<DVec3> = corners.collect();
+    let mut cutter = PolygonCutter::default();
+    let cut = cutter.cut(corners.iter().copied(), |_, _| false);
+    let mut triangles = cut.triangles.iter().map(|t| t.map(|i| corners[i]));
+    triangles.all(|triangle| area_vector(triangle) == DVec3::ZERO)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The size of a mesh: its box, the lengths of its edges, its area and its volume.
 
 use glam::DVec3;
-use sixfold_core::{Incidence, PolygonMesh, VertexId, area_vector};
+use sixfold_core::{Incidence, PolygonCutter, PolygonMesh, VertexId};
 
 /// The size of a mesh, in units of its coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,8 +40,10 @@ impl Measures {
     }
 }
 
-/// Measures a mesh; O(n log n) for n corners. A polygon that is not planar has the area of its Newell
-/// vector.
+/// Measures a mesh; O(n log n) for n corners, plus the time to cut the polygons. The area and the volume
+/// are those of the triangles that [`PolygonCutter::cut`] makes, so that a mesh keeps them when it is
+/// triangulated. A polygon that is not planar has more area than its projection, and the triangles of
+/// one that crosses itself overlap.
 ///
 /// ```
 /// use sixfold_repair::measures;
@@ -70,7 +72,8 @@ pub(crate) fn measures_with(polygons: &PolygonMesh, incidence: &Incidence<'_>) -
         edges += 1;
     }
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (mut area, mut volume) = (0.0, 0.0);
+    let (mut area, mut six_volumes) = (0.0, 0.0);
+    let mut cutter = PolygonCutter::default();
     let origin = polygons.faces().corners().first().map(|&v| at(v));
     for (_, face) in polygons.faces().iter() {
         let corners = face.iter().map(|&v| at(v));
@@ -78,11 +81,13 @@ pub(crate) fn measures_with(polygons: &PolygonMesh, incidence: &Incidence<'_>) -
             low = low.min(p);
             high = high.max(p);
         }
-        let vector = area_vector(corners);
-        area += vector.length();
-        // The cone from the origin to the face; relative, to stay accurate far from zero.
-        let to_face = at(face[0]) - origin.unwrap_or_default();
-        volume += cone(polygons, face, to_face);
+        for [a, b, c] in cutter.cut(corners, |_, _| false).triangles {
+            let [a, b, c] = [a, b, c].map(|&i| at(face[i]));
+            let vector = (b - a).cross(c - a);
+            area += vector.length() / 2.0;
+            // The cone from the origin to the triangle; relative, to stay accurate far from zero.
+            six_volumes += (a - origin.unwrap_or_default()).dot(vector);
+        }
     }
     Measures {
         bounds: origin.map(|_| [low.to_array(), high.to_array()]),
@@ -92,19 +97,8 @@ pub(crate) fn measures_with(polygons: &PolygonMesh, incidence: &Incidence<'_>) -
             largest,
         }),
         area,
-        volume: is_closed.then_some(volume),
+        volume: is_closed.then_some(six_volumes / 6.0),
     }
-}
-
-/// Returns the signed volume between a face and a point. `to_face` leads from the point to the first
-/// corner.
-fn cone(polygons: &PolygonMesh, face: &[VertexId], to_face: DVec3) -> f64 {
-    let at = |v: VertexId| polygons.position(v).as_dvec3() - polygons.position(face[0]).as_dvec3();
-    let parts = face[1..].windows(2).map(|pair| {
-        let [b, c] = [pair[0], pair[1]].map(at);
-        to_face.dot(b.cross(c))
-    });
-    parts.sum::<f64>() / 6.0
 }
 
 #[cfg(test)]

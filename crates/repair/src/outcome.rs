@@ -103,6 +103,20 @@ pub enum Left {
     },
 }
 
+impl Left {
+    /// Returns the face, or the first face of the component; `None` for a hole. It is a face of the mesh
+    /// before the step.
+    pub fn face(&self) -> Option<FaceId> {
+        match *self {
+            Self::NotOrientable { face, .. }
+            | Self::Undecided { face, .. }
+            | Self::FlatFace { face }
+            | Self::CrossingFace { face } => Some(face),
+            Self::LargeHole { .. } | Self::BlockedHole { .. } | Self::CoveringHole { .. } => None,
+        }
+    }
+}
+
 impl fmt::Display for Left {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -10,8 +10,8 @@ use crate::load::{self, ReadMesh};
 use crate::mesh_files::{MeshOutput, shown};
 use crate::output::{check_outputs, is_stdout};
 use crate::progress::exit_on_interrupt;
+use crate::shape_check::check_faces;
 use crate::text::{TextOutput, sanitize};
-use crate::triangulate::cut_polygons;
 
 pub(crate) fn run(arguments: &Convert) -> Result<ExitCode, Failure> {
     let (from, to) = (&arguments.files.mesh, &arguments.files.output);
@@ -22,22 +22,26 @@ pub(crate) fn run(arguments: &Convert) -> Result<ExitCode, Failure> {
         creases,
         origin,
         places,
+        left_out,
         ..
     } = load::for_repair(from, arguments.read)?;
     let output = MeshOutput::open(to, arguments.files.write, origin)?;
     let format = output.format;
     let options = WriteOptions::default().with_creases(&creases);
-    let losses = output.write(&polygons, &options)?;
-    if losses
-        .iter()
-        .any(|loss| matches!(loss, Loss::CrossingPolygons { .. }))
-    {
-        // Prints where the polygons are in the file.
-        cut_polygons(&shown(from), &polygons, Some(&places))?;
-    }
+    let place = |face| {
+        let place = places.place(face, &polygons);
+        format!("face {face}, from {place} of {}", shown(from))
+    };
+    let losses = output.write_placed(&polygons, &options, place)?;
     let mut text = TextOutput::new(!is_stdout(to));
     let place = sanitize(&to.display().to_string());
     text.print_line(&format!("{place}: {polygons}, as {format}"));
     text.finish()?;
-    Ok(ExitCode::SUCCESS)
+    // A file of points is converted to points, if the format can hold them.
+    let loses = |loss: &Loss| matches!(loss, Loss::IsolatedVertices(_));
+    let is_of_points = left_out == 0 && polygons.vertex_count() > 0 && !losses.iter().any(loses);
+    match is_of_points {
+        true => Ok(ExitCode::SUCCESS),
+        false => Ok(check_faces(left_out, &polygons, to)),
+    }
 }

@@ -6,12 +6,13 @@ use std::path::Path;
 use sixfold::io::{
     FileMesh, Format, Loss, ReadOptions, Welding, WriteOptions, read_from, read_with, write_to,
 };
-use sixfold::{Point, PolygonMesh};
+use sixfold::{FaceId, Point, PolygonMesh};
 
 use crate::arguments::{ReadFiles, WriteFiles};
 use crate::failure::Failure;
 use crate::output::{Output, is_stdout};
 use crate::text::print_notice;
+use crate::triangulate::print_crossing;
 use sixfold_study::numbers::counted;
 
 /// Rounding is reported if it moves a vertex by more than this part of the size of the mesh. If the
@@ -119,8 +120,8 @@ pub(crate) struct MeshOutput {
 }
 
 impl MeshOutput {
-    /// Opens a mesh file. The mesh is written with its origin at `origin`. An ending that is not that of a format is an error, unless --format
-    /// chooses the format.
+    /// Opens a mesh file. The mesh is written with its origin at `origin`. An ending that is not that of
+    /// a format is an error, unless --format chooses the format.
     pub(crate) fn open(path: &Path, chosen: WriteFiles, origin: [f64; 3]) -> Result<Self, Failure> {
         let format = chosen.format.or_else(|| Format::from_path(path));
         if let (None, Some(ending)) = (format, path.extension()) {
@@ -142,11 +143,21 @@ impl MeshOutput {
     }
 
     /// Writes a mesh with the data in `options`. Prints a note for everything that the format cannot
-    /// keep, and returns it.
+    /// keep, and returns it. Also prints which faces cross themselves.
     pub(crate) fn write(
         self,
         polygons: &PolygonMesh,
         options: &WriteOptions<'_>,
+    ) -> Result<Vec<Loss>, Failure> {
+        self.write_placed(polygons, options, |face| format!("face {face}"))
+    }
+
+    /// Writes a mesh like [`write`](Self::write). `place` describes where a face is, for messages.
+    pub(crate) fn write_placed(
+        self,
+        polygons: &PolygonMesh,
+        options: &WriteOptions<'_>,
+        place: impl Fn(FaceId) -> String,
     ) -> Result<Vec<Loss>, Failure> {
         let Self {
             output,
@@ -160,12 +171,17 @@ impl MeshOutput {
             losses = write_to(polygons, format, options, to)?;
             Ok(())
         })?;
+        print_crossing(&name, &polygons.crossing_faces(), place);
         for loss in &losses {
-            let reason = match loss {
-                Loss::CrossingPolygons { .. } => String::new(), // the mesh is the reason
-                _ => format!(", because {format} cannot keep more"),
+            let notice = match loss {
+                Loss::CrossingPolygons { .. } => continue, // these have just been printed
+                Loss::Precision { .. } => format!(
+                    "warning: {name}: {loss}, because {format} has 32 bits: PLY, OBJ, OFF, glTF and \
+                     ASCII STL keep the positions at their place"
+                ),
+                _ => format!("note: {name}: {loss}, because {format} cannot keep more"),
             };
-            print_notice(&format!("note: {name}: {loss}{reason}"));
+            print_notice(&notice);
         }
         Ok(losses)
     }

@@ -17,6 +17,7 @@ use crate::mesh_files::shown;
 use crate::output::{Output, check_not_overwritten, is_stdout};
 use crate::progress::{Spinner, exit_on_interrupt};
 use crate::text::{TextOutput, sanitize};
+use crate::triangulate::print_crossing;
 use sixfold_study::numbers::counted;
 
 pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
@@ -150,6 +151,9 @@ fn load_meshes(arguments: &Render) -> Result<Vec<(PolygonMesh, Creases)>, Failur
             let listed = read_creases(file, &polygons).map_err(Failure::usage)?;
             creases = creases.updated_with(&listed);
         }
+        print_crossing(&shown(path), &polygons.crossing_faces(), |face| {
+            format!("face {face}")
+        });
         loaded.push((polygons, creases));
     }
     Ok(loaded)

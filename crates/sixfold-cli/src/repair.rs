@@ -1,11 +1,14 @@
 //! `sixfold repair`: runs the chosen repairs, and reports what each step did.
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use serde::Serialize;
 use sixfold::io::{Format, Loss, WriteOptions};
-use sixfold::repair::{RepairError, Repaired, Step, StepReport, Weld, repair, repair_for};
-use sixfold::{Creases, PolygonMesh, StructureInfo, structure_infos};
+use sixfold::repair::{
+    ElementMap, RepairError, Repaired, Step, StepReport, Weld, repair, repair_for,
+};
+use sixfold::{FaceId, Facts, PolygonMesh, StructureInfo, structure_infos};
 
 use crate::arguments::{ChosenSteps, Repair};
 use crate::failure::Failure;
@@ -42,17 +45,25 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
     // The outputs are opened before the work, so that an unusable place gives an error at once.
     let output = MeshOutput::open(&arguments.files.output, arguments.files.write, read.origin)?;
     let json = Output::open_if(arguments.json.as_ref())?;
-    let faces = counted(polygons.face_count(), "face", "faces");
-    let spinner = Spinner::start(format!("repairing {faces}"));
-    let done = repair(polygons, steps).and_then(|chosen| {
+    let count = counted(polygons.face_count(), "face", "faces");
+    let spinner = Spinner::start(format!("repairing {count}"));
+    let done = repair(polygons, steps).and_then(|mut chosen| {
         let sharp = chosen.carried_creases(&read.creases);
-        match structure {
-            Some(name) => for_structure(chosen, name, sharp),
-            None => Ok((chosen, sharp)),
-        }
+        let Some(name) = structure else {
+            let faces = vec![chosen.faces.clone()];
+            return Ok((chosen, sharp, faces));
+        };
+        let capabilities = structure_info(name).capabilities;
+        let repaired = repair_for(&chosen.polygons, &capabilities)?;
+        let (creases, lost) = repaired.carried_creases(&sharp.0);
+        let faces = vec![chosen.faces, repaired.faces.clone()];
+        chosen.steps.extend(repaired.steps);
+        let steps = chosen.steps;
+        let repaired = Repaired { steps, ..repaired };
+        Ok((repaired, (creases, sharp.1 + lost), faces))
     });
     spinner.clear();
-    let (repaired, (creases, lost)) = done.map_err(|error| failure(&error))?;
+    let (repaired, (creases, lost), faces) = done.map_err(|error| failure(&error))?;
     if lost > 0 {
         let elements = counted(
             lost,
@@ -66,8 +77,12 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
     }
     let options = WriteOptions::default().with_creases(&creases);
     let format = output.format;
-    let losses = output.write(&repaired.polygons, &options)?;
-    let code = check_result(arguments, format, polygons, &repaired.polygons);
+    for notice in left_notices(arguments, &read, &repaired.steps) {
+        print_notice(&notice);
+    }
+    let place = |face| place_of(face, &read, &faces, &arguments.files.mesh);
+    let losses = output.write_placed(&repaired.polygons, &options, place)?;
+    let code = check_result(arguments, format, polygons, &repaired);
     if let Some(json) = json {
         let report = Report::new(&read, &repaired, lost, &losses);
         json.write_json(&WithNotices::new(&report))?;
@@ -83,24 +98,68 @@ pub(crate) fn run(arguments: &Repair) -> Result<ExitCode, Failure> {
     Ok(code)
 }
 
-/// Prints a warning if the written file does not keep the repair, or if the result is empty, and
-/// returns the exit code.
+/// Prints a warning if the written file does not keep the repair, if merged vertices made edges or
+/// vertices non-manifold, or if the result is empty, and returns the exit code.
 fn check_result(
     arguments: &Repair,
     format: Format,
     before: &PolygonMesh,
-    after: &PolygonMesh,
+    repaired: &Repaired,
 ) -> ExitCode {
+    let after = &repaired.polygons;
+    let file = arguments.files.output.display();
     let refusing = arguments.steps.structure.as_deref();
     if let Some(name) = refusing.filter(|name| undoes_repair(format, after, name)) {
         print_notice(&format!(
-            "warning: {}: readers of STL join vertices at equal positions, and {name} refuses the \
-             mesh that results: write PLY or OBJ, which keep the cut",
-            arguments.files.output.display()
+            "warning: {file}: readers of STL join vertices at equal positions, and {name} refuses the \
+             mesh that results: write PLY or OBJ, which keep the cut"
         ));
         return ExitCode::from(NOT_KEPT);
     }
-    check_faces(before, after, &arguments.files.output)
+    let mut counts = repaired.steps.iter().map(|step| step.counts);
+    let is_welded = counts.any(|counts| counts.vertices_merged > 0);
+    if is_welded {
+        for worse in new_faults(before, after) {
+            print_notice(&format!("warning: {file}: {worse}"));
+        }
+    }
+    check_faces(before.face_count(), after, &arguments.files.output)
+}
+
+/// Describes what a repair made non-manifold.
+fn new_faults(before: &PolygonMesh, after: &PolygonMesh) -> Vec<String> {
+    let after = Facts::from_polygons(after);
+    if after.non_manifold_edges + after.non_manifold_vertices == 0 {
+        return Vec::new();
+    }
+    let before = Facts::from_polygons(before);
+    let counts = [
+        (
+            [
+                "edge has three or more faces",
+                "edges have three or more faces",
+            ],
+            [before.non_manifold_edges, after.non_manifold_edges],
+        ),
+        (
+            [
+                "vertex has several fans of faces",
+                "vertices have several fans of faces",
+            ],
+            [before.non_manifold_vertices, after.non_manifold_vertices],
+        ),
+    ];
+    let worse = counts
+        .into_iter()
+        .filter(|(_, [before, after])| after > before);
+    let text = |([one, many], [before, after]): ([&str; 2], [usize; 2])| {
+        let now = counted(after, one, many);
+        format!(
+            "{now}, {} before the repair: --cut separates them",
+            grouped(before)
+        )
+    };
+    worse.map(text).collect()
 }
 
 /// Returns whether the written file is STL, and the structure called `name` refuses the mesh that
@@ -122,23 +181,41 @@ fn structure_info(name: &str) -> StructureInfo {
     info.expect("the arguments accept only names of structures")
 }
 
-/// Repairs the mesh further for the structure called `name`. `sharp` has the creases of the mesh and
-/// the number of lost ones; these of the result are returned.
-fn for_structure(
-    chosen: Repaired,
-    name: &str,
-    sharp: (Creases, usize),
-) -> Result<(Repaired, (Creases, usize)), RepairError> {
-    let info = structure_info(name);
-    let Repaired {
-        polygons,
-        mut steps,
-        ..
-    } = chosen;
-    let mut repaired = repair_for(&polygons, &info.capabilities)?;
-    let (creases, lost) = repaired.carried_creases(&sharp.0);
-    steps.extend(std::mem::take(&mut repaired.steps));
-    Ok((Repaired { steps, ..repaired }, (creases, sharp.1 + lost)))
+/// Describes where face `face` of the repaired mesh is in the file, if it comes from one there. `maps` are
+/// those of the repairs, in order.
+fn place_of(face: FaceId, read: &ReadMesh, maps: &[ElementMap<FaceId>], file: &Path) -> String {
+    let before = |new: FaceId, map: &ElementMap<FaceId>| map.old_elements(new).first().copied();
+    let old = maps.iter().rev().try_fold(face, before);
+    match old {
+        Some(old) => {
+            let place = read.places.place(old, &read.polygons);
+            format!("face {face}, from {place} of {}", shown(file))
+        }
+        None => format!("face {face}"),
+    }
+}
+
+/// Describes the first places that each step left, and where they are in the file, if no earlier step has
+/// changed the mesh.
+fn left_notices(arguments: &Repair, read: &ReadMesh, steps: &[StepReport]) -> Vec<String> {
+    let file = shown(&arguments.files.mesh);
+    let mut notices = Vec::new();
+    let mut is_as_read = true;
+    for report in steps {
+        let step = report.step;
+        for left in report.left.iter().take(SHOWN) {
+            let face = left.face().filter(|_| is_as_read);
+            let place = face.map(|face| format!(" ({})", read.places.place(face, &read.polygons)));
+            let place = place.unwrap_or_default();
+            notices.push(format!("note: {file}: {step}: {left}{place}"));
+        }
+        if report.left.len() > SHOWN {
+            let more = report.left.len() - SHOWN;
+            notices.push(format!("note: {file}: {step}: and {more} more"));
+        }
+        is_as_read &= !report.counts.is_change();
+    }
+    notices
 }
 
 fn failure(error: &RepairError) -> Failure {
@@ -165,19 +242,13 @@ fn print_reading(read: &ReadMesh, text: &mut TextOutput) {
     }
 }
 
-/// Prints a line for each step, and the places that it left.
+/// Prints a line for each step.
 fn print_steps(steps: &[StepReport], text: &mut TextOutput) {
     if steps.is_empty() {
         text.print_line("the mesh needs no repair");
     }
     for report in steps {
         text.print_list("", [format!("{}: {}", report.step, summary(report))]);
-        for left in report.left.iter().take(SHOWN) {
-            text.print_list("  left: ", [left.to_string()]);
-        }
-        if report.left.len() > SHOWN {
-            text.print_line(&format!("  and {} more", report.left.len() - SHOWN));
-        }
     }
 }
 

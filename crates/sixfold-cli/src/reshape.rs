@@ -4,16 +4,16 @@ use std::process::ExitCode;
 
 use sixfold::io::WriteOptions;
 use sixfold::operators::{DualError, Smoothing, SmoothingError, dual, smoothed};
-use sixfold::repair::{Components, Step, repair};
+use sixfold::repair::{Components, FaultKind, Step, diagnose, repair};
 use sixfold::{Creases, PolygonMesh, Representation, Visitor, visit};
 
-use crate::arguments::{Dual, MeshInOut, ReadPolygons, Smooth, Triangulate};
+use crate::arguments::{Dual, MeshInOut, ReadPolygons, Smooth, Triangulate, repair_options};
 use crate::failure::Failure;
 use crate::mesh_files::shown;
 use crate::output::is_stdout;
 use crate::progress::Spinner;
 use crate::seams::without_seams;
-use crate::shape_check::check_shape;
+use crate::shape_check::{check_faces, check_shape};
 use crate::text::{TextOutput, print_notice, sanitize};
 use sixfold_study::numbers::counted;
 
@@ -40,10 +40,14 @@ pub(crate) fn smooth(arguments: &Smooth) -> Result<ExitCode, Failure> {
 }
 
 pub(crate) fn make_dual(arguments: &Dual) -> Result<ExitCode, Failure> {
-    reshape_file(&arguments.files, arguments.read, "the dual", |polygons| {
-        on_backend(&arguments.backend, &polygons, &DualWork)
+    let mut before = 0;
+    let after = reshape_file(&arguments.files, arguments.read, "the dual", |polygons| {
+        before = polygons.face_count();
+        let (mesh, files) = (&arguments.files.mesh, arguments.read.files);
+        let (polygons, _) = without_seams(mesh, polygons, Creases::default(), files);
+        on_backend(&arguments.backend, &polygons, &DualWork(&polygons))
     })?;
-    Ok(ExitCode::SUCCESS)
+    Ok(check_faces(before, &after, &arguments.files.output))
 }
 
 pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> {
@@ -51,7 +55,9 @@ pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> 
         triangulate: true,
         files: arguments.read,
     };
-    reshape_file(&arguments.files, read, "triangles", |triangles| {
+    let mut before = 0;
+    let after = reshape_file(&arguments.files, read, "triangles", |triangles| {
+        before = triangles.face_count();
         let Some(facing) = arguments.orient else {
             return Ok(triangles);
         };
@@ -65,7 +71,7 @@ pub(crate) fn triangulate(arguments: &Triangulate) -> Result<ExitCode, Failure> 
         }
         Ok(repaired.polygons)
     })?;
-    Ok(ExitCode::SUCCESS)
+    Ok(check_faces(before, &after, &arguments.files.output))
 }
 
 /// Reads a mesh, changes it and writes it. Returns the changed mesh.
@@ -110,15 +116,19 @@ impl Work for SmoothWork {
     }
 }
 
-struct DualWork;
+struct DualWork<'a>(&'a PolygonMesh);
 
-impl Work for DualWork {
+impl Work for DualWork<'_> {
     fn run<M: Representation>(&self, mesh: M) -> Result<PolygonMesh, Failure> {
         dual(&mesh).map_err(|error| match error {
-            DualError::BoundaryEdge { .. } => Failure::unsupported(format!(
-                "{error}. `sixfold repair --fill-holes` closes the holes of a solid; a surface with a \
-                 rim, such as a plane, stays open"
-            )),
+            DualError::BoundaryEdge { .. } => {
+                let steps = diagnose(self.0, 0).repairs(FaultKind::BoundaryEdge);
+                Failure::unsupported(format!(
+                    "{error}. `sixfold repair {}` closes a solid; a surface with a rim, such as a \
+                     plane, stays open",
+                    repair_options(&steps)
+                ))
+            }
             _ => Failure::unsupported(error),
         })
     }

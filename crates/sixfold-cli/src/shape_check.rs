@@ -18,13 +18,17 @@ const CHANGED: u8 = 1;
 const ALLOWED: f64 = 0.05;
 
 /// Compares a mesh with the mesh `after` that a command made of it and wrote to `to`. Prints a warning
-/// if the shape has changed by more than the stated part, or if faces are turned over or flat.
+/// if the shape has changed by more than the stated part, or if faces are turned over or flat, or if
+/// there are none.
 pub(crate) fn check_shape(
     before: &PolygonMesh,
     after: &PolygonMesh,
     to: &Path,
     check: ShapeCheck,
 ) -> ExitCode {
+    if after.face_count() == 0 {
+        return check_faces(before.face_count(), after, to);
+    }
     let changes = changes(before, after);
     if changes.is_empty() {
         return ExitCode::SUCCESS;
@@ -40,15 +44,18 @@ pub(crate) fn check_shape(
     }
 }
 
-/// Prints a warning if the mesh `after`, which a command made of the mesh `before` and wrote to `to`,
-/// has lost all faces.
-pub(crate) fn check_faces(before: &PolygonMesh, after: &PolygonMesh, to: &Path) -> ExitCode {
-    if after.face_count() > 0 || before.face_count() == 0 {
+/// Prints a warning if the mesh `after`, which a command wrote to `to`, has no faces. `before` is the
+/// number of faces of the mesh that the command read.
+pub(crate) fn check_faces(before: usize, after: &PolygonMesh, to: &Path) -> ExitCode {
+    if after.face_count() > 0 {
         return ExitCode::SUCCESS;
     }
-    let faces = counted(before.face_count(), "face", "faces");
+    let but = match before {
+        0 => ", as the mesh had none".to_owned(),
+        _ => format!(", but the mesh had {}", counted(before, "face", "faces")),
+    };
     print_notice(&format!(
-        "warning: {}: the result has no faces, but the mesh had {faces}",
+        "warning: {}: the result has no faces{but}",
         to.display()
     ));
     ExitCode::from(CHANGED)

@@ -114,7 +114,7 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
     );
     text.finish()?;
     Ok(check_faces(
-        &polygons,
+        polygons.face_count(),
         &step.polygons,
         &arguments.files.output,
     ))

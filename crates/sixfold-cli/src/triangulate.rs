@@ -21,29 +21,32 @@ pub(crate) fn cut_polygons(
     let cut = polygons
         .triangulated()
         .map_err(|error| Failure::usage(format!("{name}: {error}")))?;
-    if !cut.crossing.is_empty() {
-        print_notice(&format!("note: {name}: {}:", crossing(cut.crossing.len())));
-        for &face in cut.crossing.iter().take(SHOWN) {
-            print_notice(&format!("note:   {}", place_of(face, polygons, places)));
-        }
-        if cut.crossing.len() > SHOWN {
-            print_notice(&format!("note:   and {} more", cut.crossing.len() - SHOWN));
-        }
-    }
+    print_crossing(name, &cut.crossing, |face| match places {
+        Some(places) => format!("{}: face {face}", places.place(face, polygons)),
+        None => format!("face {face}"),
+    });
     Ok(cut)
+}
+
+/// Prints which faces of the file with the name `name` cross themselves. `place` describes where a
+/// face is.
+pub(crate) fn print_crossing(name: &str, faces: &[FaceId], place: impl Fn(FaceId) -> String) {
+    if faces.is_empty() {
+        return;
+    }
+    print_notice(&format!("note: {name}: {}:", crossing(faces.len())));
+    for &face in faces.iter().take(SHOWN) {
+        print_notice(&format!("note:   {}", place(face)));
+    }
+    if faces.len() > SHOWN {
+        print_notice(&format!("note:   and {} more", faces.len() - SHOWN));
+    }
 }
 
 /// Describes faces that cross themselves.
 fn crossing(faces: usize) -> String {
     let faces = counted(faces, "face crosses itself", "faces cross themselves");
     format!("{faces}, so the triangles overlap")
-}
-
-fn place_of(face: FaceId, polygons: &PolygonMesh, places: Option<&PolygonPlaces>) -> String {
-    match places {
-        Some(places) => format!("{}: face {face}", places.place(face, polygons)),
-        None => format!("face {face}"),
-    }
 }
 
 /// Cuts every polygon into triangles. Records and prints all other changes of the mesh.

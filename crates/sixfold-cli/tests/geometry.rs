@@ -122,13 +122,59 @@ fn polygons_that_cross_themselves_are_named_with_their_line() {
             &["triangulate", "cross.obj", "-o", "out.obj"],
             &["distance", "cross.obj", "cross.obj"],
             &["inspect", "cross.obj", "--triangulate"],
+            &["convert", "cross.obj", "-o", "out.ply"],
+            &["repair", "cross.obj", "--triangulate", "-o", "out.off"],
+            &["repair", "cross.obj", "--flat", "-o", "out.off"],
+            &[
+                "repair",
+                "cross.obj",
+                "--for",
+                "corner-table",
+                "-o",
+                "out.off",
+            ],
         ] {
             let run = sixfold.passes(arguments);
             let named = ["crosses itself", &format!("line {line}")];
-            let is_named = named.iter().all(|text| run.stderr.contains(text));
-            assert!(is_named, "{arguments:?} {run:?}");
+            let is_named = |text: &String| named.iter().all(|name| text.contains(name));
+            assert!(is_named(&run.stderr), "{arguments:?} {run:?}");
+            let meshes = arguments.iter().filter(|word| **word == "cross.obj");
+            assert_eq!(
+                run.stderr.matches("crosses itself").count(),
+                meshes.count(),
+                "{run:?}"
+            );
         }
+        let run = sixfold.passes(&["render", "cross.obj", "-o", "out.svg"]);
+        assert!(run.stderr.contains("crosses itself"), "{run:?}");
+        let run = sixfold.passes(&["inspect", "cross.obj"]);
+        assert!(run.stdout.contains("1 face that crosses itself"), "{run:?}");
+        assert!(!run.stdout.contains("without area"), "{run:?}");
     }
+}
+
+#[test]
+fn triangles_keep_the_area_of_polygons_that_are_not_planar() {
+    let sixfold = Sixfold::new();
+    let saddle = "v 0 0 0\nv 1 0 1\nv 1 1 0\nv 0 1 1\nf 1 2 3 4\n";
+    sixfold.file("saddle.obj", saddle);
+    sixfold.passes(&["triangulate", "saddle.obj", "-o", "out.obj"]);
+    for mesh in ["saddle.obj", "out.obj"] {
+        assert!((sixfold.area(mesh) - 3_f64.sqrt()).abs() < 1e-12, "{mesh}");
+    }
+    // The saddle has no outside.
+    let run = sixfold.passes(&["inspect", "saddle.obj"]);
+    assert!(!run.stdout.contains("turned"), "{run:?}");
+    let repair = [
+        "repair",
+        "saddle.obj",
+        "--orient",
+        "outward",
+        "-o",
+        "out.obj",
+    ];
+    let run = sixfold.passes(&repair);
+    assert!(run.stderr.contains("outside is not known"), "{run:?}");
 }
 
 #[test]
@@ -252,6 +298,7 @@ fn seams_stay_closed() {
         &["smooth"],
         &["subdivide", "--scheme", "loop"],
         &["remesh"],
+        &["dual"],
     ] {
         let run = sixfold.passes(&[command, &["seams.glb", "-o", "out.obj"]].concat());
         assert!(
@@ -260,6 +307,32 @@ fn seams_stay_closed() {
         );
         assert!(closed("out.obj"), "{command:?}");
     }
+    let run = sixfold.run(&["dual", "seams.glb", "--as-stored", "-o", "out.obj"]);
+    assert_eq!(run.code, Some(3), "{run:?}");
+    assert!(run.stderr.contains("sixfold repair --weld"), "{run:?}");
+}
+
+/// Two closed boxes side by side whose edges along z have vertices at the same positions.
+#[test]
+fn edges_that_welding_makes_non_manifold_are_named() {
+    let sixfold = Sixfold::new();
+    let shifted = |text: String| {
+        let lines = text.lines().map(|line| match line.strip_prefix("v ") {
+            Some(at) => {
+                let at: Vec<f64> = at.split(' ').map(|x| x.parse().expect("x")).collect();
+                format!("v {} {} {}\n", at[0] + 2.0, at[1] + 2.0, at[2])
+            }
+            None => format!("{line}\n"),
+        });
+        lines.collect::<String>()
+    };
+    let boxes = cuboid(1.0, 1, false) + &shifted(cuboid(1.0, 9, false));
+    sixfold.file("boxes.obj", &boxes);
+    let run = sixfold.passes(&["repair", "boxes.obj", "--weld", "-o", "out.obj"]);
+    let warning = "out.obj: 1 edge has three or more faces, 0 before the repair";
+    assert!(run.stderr.contains(warning), "{run:?}");
+    let run = sixfold.passes(&["repair", "boxes.obj", "--weld", "--cut", "-o", "out.obj"]);
+    assert!(!run.stderr.contains("three or more faces"), "{run:?}");
 }
 
 #[test]
@@ -292,10 +365,19 @@ fn a_shape_that_is_destroyed_is_reported() {
 fn results_without_a_face_have_exit_code_1() {
     let sixfold = Sixfold::new();
     sixfold.file("l.obj", L);
+    sixfold.file("line.obj", "v 0 0 0\nv 1 0 0\nf 1 2 1\n");
+    sixfold.file("points.obj", "v 0 0 0\nv 1 0 0\n");
+    sixfold.passes(&["convert", "points.obj", "-o", "out.ply"]);
     for arguments in [
         &["repair", "l.obj", "--components", "5", "-o", "out.obj"][..],
         &["repair", "l.obj", "--weld=9", "-o", "out.obj"],
         &["subdivide", "l.obj", "--boundary", "none", "-o", "out.obj"],
+        &["convert", "line.obj", "-o", "out.ply"],
+        &["convert", "points.obj", "-o", "out.stl"],
+        &["triangulate", "line.obj", "-o", "out.obj"],
+        &["smooth", "line.obj", "-o", "out.obj"],
+        &["subdivide", "line.obj", "-o", "out.obj"],
+        &["decimate", "line.obj", "--ratio", "0.5", "-o", "out.obj"],
     ] {
         let run = sixfold.run(arguments);
         assert_eq!(run.code, Some(1), "{arguments:?} {run:?}");
@@ -333,9 +415,14 @@ fn far_meshes_keep_their_place_and_distance() {
         assert!(largest.expect("a distance") < 1e-6, "{format} {run:?}");
     }
     let run = sixfold.passes(&["convert", "a.obj", "--recentre", "-o", "out.stl"]);
+    let moved = "rounding to 32 bits merged no positions and moved coordinates by up to";
+    assert!(run.stderr.contains(moved), "{run:?}");
+    let very_far = far(0.0).replace("v 50000", "v 50000000000");
+    sixfold.file("far.obj", &very_far.replace(" 46497", " 46497000000"));
+    let run = sixfold.passes(&["convert", "far.obj", "--recentre", "-o", "out.stl"]);
     assert!(
         run.stderr
-            .contains("the positions of 3 vertices are rounded"),
+            .contains("rounding to 32 bits merged 2 positions"),
         "{run:?}"
     );
 }

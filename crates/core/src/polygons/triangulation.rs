@@ -93,6 +93,18 @@ impl PolygonMesh {
         Ok(Triangulated { polygons, crossing })
     }
 
+    /// Returns the polygons that cross themselves, ascending: those for which
+    /// [`PolygonCutter::cut`] says so, without the triangles. A fan or a Newell vector of such a
+    /// polygon has another area than its outline shows.
+    ///
+    /// O(1) for a triangle or a convex quad; [`PolygonCutter::cut`] states the time for others.
+    pub fn crossing_faces(&self) -> Vec<FaceId> {
+        let mut cutter = PolygonCutter::default();
+        let polygons = self.faces().iter().filter(|(_, face)| face.len() > 3);
+        let crossing = polygons.filter(|(_, face)| cutter.face_crosses(self, face, |_, _| false));
+        crossing.map(|(f, _)| f).collect()
+    }
+
     /// Returns `triangles` with another cut of the faces `again`, which avoids all sides of faces and
     /// all diagonals.
     fn cut_again(

@@ -6,10 +6,11 @@ use sixfold_core::{FaceId, Point, PolygonMesh};
 
 use super::{Placed, WriteOptions};
 use crate::format::Format;
+use crate::narrowing::{Narrowing, rounded};
 use crate::welder::for_each_equal;
 
 /// Something of a mesh that a format cannot keep; printed as `1 polygon is cut into triangles`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Loss {
     /// This many vertices that have the position of another vertex, in STL. A reader joins equal
@@ -26,9 +27,14 @@ pub enum Loss {
     },
     /// This many vertices without a face.
     IsolatedVertices(usize),
-    /// The positions of this many vertices, which are rounded to 32 bits, because the mesh is moved
+    /// Positions that are rounded to 32 bits, because the mesh is moved
     /// ([`WriteOptions::with_origin`]).
-    Precision(usize),
+    Precision {
+        /// How many vertices have such a position.
+        count: usize,
+        /// What rounding does to them.
+        narrowing: Narrowing,
+    },
     /// The normals of this many vertices.
     Normals(usize),
     /// The sharpness of this many edges and vertices.
@@ -62,13 +68,7 @@ impl fmt::Display for Loss {
             Self::IsolatedVertices(count) => {
                 write!(f, "{count} vertices without a face are left out")
             }
-            Self::Precision(1) => f.write_str("the position of 1 vertex is rounded to 32 bits"),
-            Self::Precision(count) => {
-                write!(
-                    f,
-                    "the positions of {count} vertices are rounded to 32 bits"
-                )
-            }
+            Self::Precision { narrowing, .. } => narrowing.fmt(f),
             Self::Normals(1) => f.write_str("1 normal is left out"),
             Self::Normals(count) => write!(f, "{count} normals are left out"),
             Self::Creases(1) => f.write_str("the sharpness of 1 edge or vertex is left out"),
@@ -87,7 +87,7 @@ impl Loss {
             Self::Polygons(_) => "polygons",
             Self::CrossingPolygons { .. } => "polygons that cross themselves",
             Self::IsolatedVertices(_) => "vertices without a face",
-            Self::Precision(_) => "positions in 64 bits",
+            Self::Precision { .. } => "positions in 64 bits",
             Self::Normals(_) => "normals",
             Self::Creases(_) => "sharp edges and vertices",
         }
@@ -100,7 +100,7 @@ impl Loss {
             | Self::Polygons(count)
             | Self::CrossingPolygons { count, .. }
             | Self::IsolatedVertices(count)
-            | Self::Precision(count)
+            | Self::Precision { count, .. }
             | Self::Normals(count)
             | Self::Creases(count) => count,
         }
@@ -146,8 +146,16 @@ pub(super) fn losses(
             Placed::Wide(p) => p.as_vec3().as_dvec3() != p,
             Placed::Narrow(_) => false,
         };
-        let rounded = polygons.positions().iter().filter(is_rounded).count();
-        losses.push(Loss::Precision(rounded));
+        let count = polygons.positions().iter().filter(is_rounded).count();
+        let placed = |&p: &Point| match options.placed(p) {
+            Placed::Wide(p) => p.to_array(),
+            Placed::Narrow(p) => p.as_dvec3().to_array(),
+        };
+        let narrowing = match count {
+            0 => Narrowing::default(),
+            _ => rounded(polygons.positions().iter().map(placed)).1,
+        };
+        losses.push(Loss::Precision { count, narrowing });
     }
     let normals = options.normals.iter().flatten().count();
     let keeps_normals = match format {

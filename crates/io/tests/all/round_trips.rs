@@ -167,7 +167,17 @@ fn a_mesh_that_was_moved_gets_its_place_back() {
             .with_normals(&normals);
         let mut bytes = Vec::new();
         let losses = write_to(&mesh, format, &options, &mut bytes).expect("memory");
-        let is_rounded = losses.contains(&Loss::Precision(3));
+        let is_rounded = losses.iter().any(|loss| match loss {
+            Loss::Precision {
+                count: 3,
+                narrowing,
+            } => {
+                // At 4,649,776, 32 bits have steps of 1/2.
+                let shift = narrowing.largest_shift;
+                narrowing.merged_vertices == 0 && (0.2..=0.25).contains(&shift)
+            }
+            _ => false,
+        });
         assert_eq!(is_rounded, format == Format::Stl, "{format}: {losses:?}");
         let again = read_again(&bytes, &ReadOptions::default().with_origin(origin));
         assert_eq!(again.origin, origin, "{format}");

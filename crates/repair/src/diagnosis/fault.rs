@@ -117,6 +117,9 @@ pub enum FaultKind {
     OppositeFace,
     /// A face whose area is exactly zero in double precision.
     FlatFace,
+    /// A polygon that crosses itself, so that triangles of it overlap; as
+    /// [`PolygonCutter::cut`](sixfold_core::PolygonCutter::cut) decides.
+    CrossingFace,
     /// A face that runs against its neighbours, or into the solid that it bounds: the faces that
     /// [`Step::Orient`] reverses with [`Facing::Outward`].
     TurnedFace,
@@ -128,7 +131,7 @@ pub enum FaultKind {
 
 impl FaultKind {
     /// All kinds, in the order of reports.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Polygon,
         Self::NonManifoldEdge,
         Self::RepeatedSide,
@@ -140,6 +143,7 @@ impl FaultKind {
         Self::DuplicateFace,
         Self::OppositeFace,
         Self::FlatFace,
+        Self::CrossingFace,
         Self::TurnedFace,
         Self::NotOrientable,
         Self::BoundaryEdge,
@@ -172,7 +176,7 @@ impl FaultKind {
             }
             Self::IsolatedVertex => vec![Step::RemoveIsolatedVertices],
             Self::CoincidentCorners | Self::CoincidentVertex => vec![Step::Weld(Weld::default())],
-            Self::NotFiniteVertex => Vec::new(),
+            Self::NotFiniteVertex | Self::CrossingFace => Vec::new(),
             Self::DuplicateFace => vec![Step::RemoveDuplicateFaces(OppositeFaces::Keep)],
             Self::OppositeFace => vec![Step::RemoveDuplicateFaces(OppositeFaces::Remove)],
             Self::FlatFace => vec![Step::RemoveFlatFaces],
@@ -219,6 +223,10 @@ impl FaultKind {
                 "faces with an opposite face on the same vertices",
             ],
             Self::FlatFace => ["face without area", "faces without area"],
+            Self::CrossingFace => [
+                "face that crosses itself, so that its triangles overlap",
+                "faces that cross themselves, so that their triangles overlap",
+            ],
             Self::TurnedFace => [
                 "face turned against its neighbours or into its solid",
                 "faces turned against their neighbours or into their solid",

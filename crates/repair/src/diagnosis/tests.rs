@@ -54,6 +54,14 @@ proptest! {
         prop_assert!(count(FaultKind::RepeatedSide) >= facts.inconsistent_edges);
     }
 
+    /// Polygons cross themselves exactly if their triangulation says so.
+    #[test]
+    fn crossing_faces_are_those_of_the_triangulation(polygons in damaged()) {
+        let crossing = polygons.triangulated().expect("small").crossing;
+        prop_assert_eq!(count(&diagnose(&polygons, 0), FaultKind::CrossingFace), crossing.len());
+        prop_assert_eq!(polygons.crossing_faces(), crossing);
+    }
+
     /// Computing facts and diagnosis together does not change them.
     #[test]
     fn both_together_equal_each_alone(polygons in damaged()) {
@@ -75,6 +83,8 @@ proptest! {
             let flat = remain.filter(|left| matches!(left, Left::FlatFace { .. })).count();
             match fault.kind {
                 FaultKind::BoundaryEdge => {}
+                // Only other corners repair these.
+                FaultKind::CrossingFace => prop_assert_eq!(&repaired.polygons, &polygons),
                 FaultKind::FlatFace => prop_assert_eq!(count(&after, fault.kind), flat),
                 _ => prop_assert_eq!(after.fault(fault.kind), None),
             }

@@ -95,8 +95,6 @@ pub(super) struct Patch<'a> {
     at_vertex: FxHashMap<VertexId, Vec<usize>>,
     /// By vertex that was merged: the vertex that it was merged with.
     merged: FxHashMap<VertexId, VertexId>,
-    /// Flat polygons that cross themselves.
-    crossing: Vec<FaceId>,
     is_changed: bool,
 }
 
@@ -114,7 +112,6 @@ impl<'a> Patch<'a> {
             on_edge: FxHashMap::default(),
             at_vertex: FxHashMap::default(),
             merged: FxHashMap::default(),
-            crossing: Vec::new(),
             is_changed: false,
         };
         for (f, face) in polygons.faces().iter() {
@@ -158,16 +155,13 @@ impl<'a> Patch<'a> {
         flat.sort_unstable();
         flat.dedup();
         let left = flat.into_iter().map(|face| Left::FlatFace { face });
-        let left: Vec<Left> = left.collect();
+        let left = left.collect();
         if !self.is_changed {
             return Ok(Outcome {
                 left,
                 ..Outcome::unchanged()
             });
         }
-        let crossing = self.crossing.iter();
-        let crossing = crossing.map(|&face| Left::CrossingFace { face });
-        let left = crossing.chain(left).collect();
         self.pieces.sort_by_key(|piece| piece.face); // stable: the pieces of a face stay in order
         let (vertices, positions) = self.vertices();
         let number = |v: VertexId| vertices.replacements[v.index()].get().expect("it is kept");
@@ -284,8 +278,7 @@ impl<'a> Patch<'a> {
         std::mem::take(&mut self.pieces[piece].corners)
     }
 
-    /// Cuts a polygon without area into triangles, unless a diagonal would be an edge already. The areas
-    /// of the triangles cancel out if the polygon is not on a line.
+    /// Cuts a polygon without area into triangles, unless a diagonal would be an edge already.
     fn try_cut(&mut self, piece: usize) -> bool {
         let Piece { face, corners } = &self.pieces[piece];
         let (face, corners) = (*face, corners.clone());
@@ -297,9 +290,6 @@ impl<'a> Patch<'a> {
             |&[a, _, c]: &[usize; 3]| is_diagonal(a, c, corners.len()) && is_edge(a, c);
         if cut.triangles.iter().any(is_blocked) {
             return false;
-        }
-        if cut.is_crossing {
-            self.crossing.push(face);
         }
         let triangles = cut.triangles.iter();
         let triangles: Vec<Vec<Corner>> =

@@ -45,7 +45,8 @@ pub(super) fn outward(
     sides.collect()
 }
 
-/// The volume of a component with a cone from its boundary to the centre of its boundary.
+/// The volume of a component with a cone from its boundary to the centre of its boundary. A polygon is
+/// the cone from its sides to its own centre, so that the volume does not depend on its first corner.
 #[derive(Clone, Copy)]
 struct Volume {
     is_closed: bool,
@@ -54,9 +55,11 @@ struct Volume {
     ends: usize,
     /// Sum of the signed volumes between the centre and each triangle.
     signed: f64,
-    /// Sum of these volumes without their signs. Triangles of the fan of a polygon count, so this is
-    /// larger if polygons are not convex.
+    /// Sum of these volumes without their signs.
     size: f64,
+    /// How far another cut of the polygons can change the volume: the volumes between the triangles at
+    /// the centres of polygons and those at their first corners. Zero if all polygons are planar.
+    doubt: f64,
     /// Sum of the areas of these triangles.
     area: f64,
 }
@@ -64,7 +67,7 @@ struct Volume {
 impl Volume {
     /// Returns whether the volume decides about the side.
     fn is_clear(&self) -> bool {
-        let volume = self.signed.abs();
+        let volume = self.signed.abs() - self.doubt;
         match self.is_closed {
             true => volume > ROUNDING * self.size,
             false => volume > CLEAR_PART * self.size && volume > CLEAR_VOLUME * self.area.powf(1.5),
@@ -84,6 +87,7 @@ fn volumes(
         ends: 0,
         signed: 0.0,
         size: 0.0,
+        doubt: 0.0,
         area: 0.0,
     };
     let mut volumes = vec![none; agreement.conflicts.len()];
@@ -112,13 +116,18 @@ fn volumes(
             1.0
         };
         let at = |v| at(v) - volume.centre;
-        // The signed sum does not depend on how the polygon is cut.
-        for pair in face[1..].windows(2) {
-            let [a, b, c] = [face[0], pair[0], pair[1]].map(at);
-            let part = a.dot(b.cross(c)) / 6.0;
+        let first = at(face[0]);
+        let centre = match face.len() {
+            3 => first,
+            n => face.iter().map(|&v| at(v)).sum::<DVec3>() / n as f64,
+        };
+        for (i, &v) in face.iter().enumerate() {
+            let [a, b] = [v, face[(i + 1) % face.len()]].map(at);
+            let part = centre.dot(a.cross(b)) / 6.0;
             volume.signed += sign * part;
             volume.size += part.abs();
-            volume.area += (b - a).cross(c - a).length() / 2.0;
+            volume.doubt += (centre - first).dot((a - first).cross(b - first)).abs() / 6.0;
+            volume.area += (a - centre).cross(b - centre).length() / 2.0;
         }
     }
     volumes

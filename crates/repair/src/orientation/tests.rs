@@ -272,6 +272,22 @@ fn open_parts_face_the_side_to_which_they_bulge() {
         let oriented = outward_all(&inside_out);
         assert_eq!((oriented.polygons, oriented.undecided), (bowl, vec![]));
     }
+    // Single faces that are not planar: they bulge to one side or the other, as they are cut.
+    let wave: Vec<Point> = (0..6_u8)
+        .map(|i| {
+            let (sin, cos) = (f32::from(i) * std::f32::consts::FRAC_PI_3).sin_cos();
+            Point::new(cos, sin, if i % 2 == 0 { 0.0 } else { 3.0 })
+        })
+        .collect();
+    let saddle = [[0.0; 3], [1.0, 0.0, 1.0], [1.0, 1.0, 0.0], [0.0, 1.0, 1.0]];
+    for points in [wave, saddle.map(Point::from).to_vec()] {
+        let n = points.len() as u32;
+        for face in [(0..n).collect::<Vec<u32>>(), (0..n).rev().collect()] {
+            let mesh = PolygonMesh::new(points.clone(), [face]).expect("valid");
+            let oriented = outward_all(&mesh);
+            assert_eq!((oriented.reversed.len(), oriented.undecided.len()), (0, 1));
+        }
+    }
     let grid = sixfold_shapes::grid(4, 4).expect("small");
     let flat = outward_all(&grid);
     assert_eq!(flat.reversed, []);

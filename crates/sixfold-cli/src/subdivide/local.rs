@@ -15,6 +15,7 @@ use crate::mesh_files::{MeshOutput, shown};
 use crate::output::{check_not_overwritten, is_stdout};
 use crate::progress::Spinner;
 use crate::seams::without_seams;
+use crate::shape_check::check_faces;
 use crate::text::{TextOutput, print_notice, sanitize};
 use sixfold_study::numbers::{counted, grouped};
 
@@ -71,7 +72,8 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
     );
     text.print_list("", [made]);
     text.finish()?;
-    Ok(ExitCode::SUCCESS)
+    let to = &arguments.files.output;
+    Ok(check_faces(polygons.face_count(), mesh, to))
 }
 
 /// Refuses schemes other than midpoint, and options that midpoint does not use.
