@@ -90,12 +90,13 @@ pub enum ReadError {
     /// A glTF file is invalid.
     #[error("{at}: {fault}")]
     Gltf { at: Location, fault: GltfFault },
-    /// A vertex has fewer than three coordinates.
-    #[error("{at}: vertex {vertex} has {found} of three coordinates: add the missing ones")]
+    /// A vertex has fewer coordinates than it needs: three, or four in an OFF file with the prefix `4`.
+    #[error("{at}: vertex {vertex} has {found} of {needed} coordinates: add the missing ones")]
     TooFewCoordinates {
         at: Location,
         vertex: usize,
         found: usize,
+        needed: usize,
     },
     /// A coordinate is not a number.
     #[error(

@@ -238,6 +238,7 @@ impl<R: Read> Reader<'_, '_, R> {
                 at: at(),
                 vertex,
                 found: i,
+                needed: wanted,
             })?;
             *value = parse_coordinate(word).ok_or_else(|| ReadError::BadNumber {
                 at: at(),

@@ -25,7 +25,7 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
-use sixfold::shapes::Order;
+use sixfold::shapes::{GENERATORS, Generator, Order, generator};
 use sixfold::{Relation, UnknownName};
 use sixfold_study::{CacheState, Effort, External, Operation, Policy, Settings};
 
@@ -385,8 +385,8 @@ impl Default for Study {
 #[derive(Debug, Args)]
 pub(crate) struct Generate {
     /// The shape, from the list below
-    #[arg(value_name = "SHAPE")]
-    pub(crate) shape: String,
+    #[arg(value_name = "SHAPE", value_parser = shape)]
+    pub(crate) shape: &'static Generator,
     /// Parameters of the shape
     #[arg(value_name = "name=value", value_parser = setting)]
     pub(crate) settings: Vec<(String, f64)>,
@@ -401,6 +401,15 @@ pub(crate) struct Generate {
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) write: WriteFiles,
+}
+
+/// Parses the name of a shape.
+fn shape(name: &str) -> Result<&'static Generator, UnknownName> {
+    generator(name).ok_or_else(|| {
+        let names = GENERATORS.iter().map(|generator| generator.name);
+        let meanings = GENERATORS.iter().map(|generator| generator.summary);
+        UnknownName::new("shape", name, names).with_meanings(meanings)
+    })
 }
 
 /// Parses the name of a relation, such as `vertex_faces` or VF.

@@ -2,9 +2,8 @@
 
 use std::process::ExitCode;
 
-use sixfold::UnknownName;
 use sixfold::io::WriteOptions;
-use sixfold::shapes::{GENERATORS, Generator, Parameter, generator};
+use sixfold::shapes::{GENERATORS, Generator, Parameter};
 
 use crate::arguments::Generate;
 use crate::failure::Failure;
@@ -16,17 +15,11 @@ use sixfold_study::numbers::counted;
 
 pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
     exit_on_interrupt();
-    let shape = &arguments.shape;
-    let generator = generator(shape).ok_or_else(|| {
-        let names = GENERATORS.iter().map(|generator| generator.name);
-        let meanings = GENERATORS.iter().map(|generator| generator.summary);
-        Failure::usage(UnknownName::new("shape", shape, names).with_meanings(meanings))
-    })?;
     let settings = arguments.settings.iter();
     let settings: Vec<(&str, f64)> = settings
         .map(|(name, value)| (name.as_str(), *value))
         .collect();
-    let made = generator.build(&settings).map_err(Failure::usage)?;
+    let made = arguments.shape.build(&settings).map_err(Failure::usage)?;
     let mesh = arguments.order.apply(&made, arguments.seed);
     let output = MeshOutput::open(&arguments.output, arguments.write, [0.0; 3])?;
     output.write(&mesh, &WriteOptions::default())?;
@@ -34,7 +27,13 @@ pub(crate) fn run(arguments: &Generate) -> Result<ExitCode, Failure> {
     let faces = counted(mesh.face_count(), "face", "faces");
     let place = sanitize(&arguments.output.display().to_string());
     let mut text = TextOutput::new(!is_stdout(&arguments.output));
-    text.print_list("", [format!("{place}: {shape}, {vertices}, {faces}")]);
+    text.print_list(
+        "",
+        [format!(
+            "{place}: {}, {vertices}, {faces}",
+            arguments.shape.name
+        )],
+    );
     text.finish()?;
     Ok(ExitCode::SUCCESS)
 }

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::builder::StyledStr;
-use clap::{Command as Definition, CommandFactory};
+use clap::{Arg, Command as Definition, CommandFactory};
 use sixfold::did_you_mean;
 
 use crate::arguments::{Arguments, Completions, Manual};
@@ -96,6 +96,36 @@ pub(crate) fn unknown_command(word: &str) -> Failure {
         sanitize(word),
         did_you_mean(word, names)
     ))
+}
+
+/// Returns the failure for an option that the command of `words` does not have, but others have; `None` if
+/// no command has it.
+pub(crate) fn option_of_others(option: &str, words: &[String]) -> Option<Failure> {
+    let definition = definition();
+    let command = words
+        .iter()
+        .find(|word| definition.find_subcommand(word).is_some())?;
+    let long = option.strip_prefix("--")?;
+    let has = |command: &&Definition| {
+        let mut options = command.get_arguments().filter_map(Arg::get_long);
+        options.any(|name| name == long)
+    };
+    let others: Vec<String> = definition
+        .get_subcommands()
+        .filter(has)
+        .map(|other| format!("`sixfold {}`", other.get_name()))
+        .collect();
+    (!others.is_empty()).then(|| {
+        Failure::usage(format!(
+            "`sixfold {}` has no option {option}, but {}: `sixfold {} --help` lists its options",
+            sanitize(command),
+            match &others[..] {
+                [one] => format!("{one} has it"),
+                several => format!("{} have it", several.join(", ")),
+            },
+            sanitize(command),
+        ))
+    })
 }
 
 /// Returns the commands with their summaries, one group after the other.

@@ -203,11 +203,21 @@ fn print_clap_message(error: &clap::Error) -> Result<ExitCode, Failure> {
             "`{word}` is a file, not a command: did you mean `sixfold study {file}`?"
         )));
     }
-    let mut words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
-    if error.use_stderr() && words.any(|word| text::sanitize(&word) != word) {
+    let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
+    let words: Vec<String> = words.collect();
+    if let (ErrorKind::UnknownArgument, Some(ContextValue::String(option))) =
+        (error.kind(), error.get(ContextKind::InvalidArg))
+        && let Some(failure) = help::option_of_others(option, &words)
+    {
+        return Err(failure);
+    }
+    if error.use_stderr() && words.iter().any(|word| text::sanitize(word) != *word) {
         // The message repeats the arguments. Escape control characters, so that arguments cannot
         // control the terminal.
-        let plain = error.render().to_string();
+        let mut plain = error.render().to_string();
+        for word in words.iter().filter(|word| !word.is_empty()) {
+            plain = plain.replace(word, &text::sanitize(word));
+        }
         plain.lines().for_each(text::print_stderr);
         return Ok(ExitCode::from(2));
     }

@@ -141,9 +141,17 @@ pub(crate) fn ignore_closed_pipe(done: io::Result<()>) -> Result<(), Failure> {
 }
 
 /// Prints a line on standard error and ignores errors. Control characters and line breaks are
-/// escaped.
+/// escaped. If this is a terminal, the line is broken where it is too wide.
 pub(crate) fn print_stderr(line: &str) {
-    let _ = writeln!(io::stderr().lock(), "{}", sanitize(line));
+    let line = sanitize(line);
+    let shown = match terminal_size::terminal_size_of(io::stderr()) {
+        Some((width, _)) => {
+            let width = usize::from(width.0).clamp(MIN_WIDTH, MAX_WIDTH);
+            wrap(&line, width - 2).join("\n  ")
+        }
+        None => line,
+    };
+    let _ = writeln!(io::stderr().lock(), "{shown}");
 }
 
 /// The notices that no document has yet.

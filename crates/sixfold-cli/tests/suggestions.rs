@@ -7,7 +7,7 @@ use crate::run::{Sixfold, run_ok};
 fn unknown_names_suggest_the_nearest_one() {
     let sixfold = Sixfold::new();
     sixfold.grid("grid.obj", 4);
-    let commands: [(&[&str], &str); 9] = [
+    let commands: [(&[&str], &str); 12] = [
         (
             &["studdy"],
             "no command is called `studdy` (did you mean `study`?)",
@@ -27,6 +27,15 @@ fn unknown_names_suggest_the_nearest_one() {
         (
             &["generate", "sphere", "-o", "out.obj"],
             "did you mean `uv-sphere`?",
+        ),
+        (&["generate", "spere"], "did you mean `uv-sphere`?"),
+        (
+            &["tables", "--relations", "VV"],
+            "`sixfold tables` has no option --relations, but `sixfold why` has it",
+        ),
+        (
+            &["dual", "grid.obj", "--seed", "3", "-o", "out.obj"],
+            "have it: `sixfold dual --help` lists its options",
         ),
         (&["growth", "--shape", "sphere"], "did you mean `geodesic`?"),
         (

@@ -124,7 +124,12 @@ impl<'a, R: BufRead> Normaliser<'a, R> {
                 return ReadError::BadNumber { at, vertex, text };
             }
             if found < 3 {
-                return ReadError::TooFewCoordinates { at, vertex, found };
+                return ReadError::TooFewCoordinates {
+                    at,
+                    vertex,
+                    found,
+                    needed: 3,
+                };
             }
         }
         let (text, reason) = (shortened(text.trim_end()), refusal.to_string());

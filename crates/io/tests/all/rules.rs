@@ -248,7 +248,7 @@ fn invalid_coordinates_are_refused() {
     for (text, found) in [("v", 0), ("v 1", 1), ("v 1 2 # 3", 2)] {
         assert_refused(
             format!("\r\n\r\n{text}\r\nv x"),
-            &format!("bad.obj:3: vertex 1 has {found} of three coordinates: add the missing ones"),
+            &format!("bad.obj:3: vertex 1 has {found} of 3 coordinates: add the missing ones"),
         );
     }
     let large = "is not finite: keep coordinates below 3.4e38";

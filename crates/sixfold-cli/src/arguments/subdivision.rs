@@ -22,7 +22,7 @@ decreases by one per level. A sharpness of 10 or more never decreases. Creases i
 
 --select refines only some faces, and requires --scheme midpoint:
   faces:FILE              the faces that a file lists (numbers from 0)
-  box:X0,Y0,Z0,X1,Y1,Z1   the faces that touch a box
+  box:X0,Y0,Z0,X1,Y1,Z1   the faces that touch a box, in coordinates of the file
   angle:DEGREES           the faces at an edge that bends by more than an angle
 Faces next to the refined faces are cut in half, so that the mesh has no gaps.
 
@@ -102,17 +102,17 @@ pub(crate) struct Subdivide {
 pub(crate) enum Select {
     /// The faces that a file lists.
     Faces(PathBuf),
-    /// The faces that touch a box, given by its lower and its upper corner.
-    Box([f32; 3], [f32; 3]),
+    /// The faces that touch a box, given by its lower and its upper corner in the file.
+    Box([f64; 3], [f64; 3]),
     /// The faces at an edge that bends by more than this number of degrees.
-    Angle(f32),
+    Angle(f64),
 }
 
 fn select(text: &str) -> Result<Select, String> {
     let wrong = || "write faces:FILE, box:X0,Y0,Z0,X1,Y1,Z1 or angle:DEGREES".to_owned();
     let (kind, rest) = text.split_once(':').ok_or_else(wrong)?;
     let numbers = || {
-        let parsed: Result<Vec<f32>, _> = rest.split(',').map(|x| x.trim().parse()).collect();
+        let parsed: Result<Vec<f64>, _> = rest.split(',').map(|x| x.trim().parse()).collect();
         let numbers = parsed.map_err(|_| wrong())?;
         match numbers.iter().all(|x| x.is_finite()) {
             true => Ok(numbers),

@@ -4,9 +4,10 @@ use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
+use sixfold::glam::DVec3;
 use sixfold::io::WriteOptions;
 use sixfold::subdivision::{LocalError, LocalMesh, Scheme, Selection};
-use sixfold::{FaceId, Point, PolygonMesh, Representation, Visitor, visit};
+use sixfold::{FaceId, PolygonMesh, Representation, Visitor, visit};
 
 use crate::arguments::{Select, Subdivide};
 use crate::failure::Failure;
@@ -32,7 +33,7 @@ pub(super) fn run(arguments: &Subdivide, select: &Select) -> Result<ExitCode, Fa
     let (polygons, creases, origin) = load::with_creases(mesh, arguments.read)?;
     let (polygons, creases) = without_seams(mesh, polygons, creases, arguments.read.files);
     check_tags(arguments, &creases)?;
-    let selection = selection(select)?;
+    let selection = selection(select, origin)?;
     selection
         .check(polygons.face_count())
         .map_err(|error| match select {
@@ -104,14 +105,16 @@ fn check_options(arguments: &Subdivide) -> Result<(), Failure> {
     }
 }
 
-fn selection(select: &Select) -> Result<Selection, Failure> {
+/// Returns the selection in a mesh whose origin is at `origin` in the file. Boxes are those of the file.
+fn selection(select: &Select, origin: [f64; 3]) -> Result<Selection, Failure> {
+    let moved = |corner: &[f64; 3]| (DVec3::from(*corner) - DVec3::from(origin)).as_vec3();
     Ok(match select {
         Select::Faces(path) => Selection::Faces(read_face_list(path)?),
         Select::Box(min, max) => Selection::Box {
-            min: Point::from_array(*min),
-            max: Point::from_array(*max),
+            min: moved(min),
+            max: moved(max),
         },
-        Select::Angle(degrees) => Selection::Angle(*degrees),
+        Select::Angle(degrees) => Selection::Angle(*degrees as f32),
     })
 }
 

@@ -63,7 +63,7 @@ fn faults_of_off_are_named_with_their_lines() {
     refused("", &format!("1: the file ends before vertex 1 of 2: {end}"));
     refused(
         "0 0 0\n0 1",
-        "3: vertex 1 has 2 of three coordinates: add the missing ones",
+        "3: vertex 1 has 2 of 3 coordinates: add the missing ones",
     );
     refused(
         "0 0 x",
