@@ -92,6 +92,11 @@ pub enum UndecidedReason {
     NoVolume,
     /// The component is open, and does not clearly bulge to one side.
     Flat,
+    /// The component lies in an open component, whose first face is this one and which hides the outside
+    /// from it in some directions only.
+    PartlyInside(
+        #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::row"))] FaceId,
+    ),
 }
 
 impl fmt::Display for UndecidedReason {
@@ -102,6 +107,9 @@ impl fmt::Display for UndecidedReason {
             }
             Self::NoVolume => f.write_str("encloses no volume"),
             Self::Flat => f.write_str("is open and nearly flat"),
+            Self::PartlyInside(face) => {
+                write!(f, "is partly inside the open one of face {face}")
+            }
         }
     }
 }

@@ -49,6 +49,7 @@ pub(crate) use teaching::{Explained, Explore, Lessons, Tables, Trace};
 pub(crate) use why::Why;
 
 use crate::many::{LabSelection, Shard};
+use crate::text::sanitize;
 
 const EXAMPLES: &str = "Examples:
   sixfold                                    study the built-in mesh
@@ -408,7 +409,7 @@ fn shape(name: &str) -> Result<&'static Generator, UnknownName> {
     generator(name).ok_or_else(|| {
         let names = GENERATORS.iter().map(|generator| generator.name);
         let meanings = GENERATORS.iter().map(|generator| generator.summary);
-        UnknownName::new("shape", name, names).with_meanings(meanings)
+        UnknownName::new("shape", &sanitize(name), names).with_meanings(meanings)
     })
 }
 

@@ -131,7 +131,7 @@ pub fn sixfold(counters: &dyn AllocatorCounters) -> ExitCode {
     let matches = help::definition().try_get_matches_from(words());
     let arguments = matches.and_then(|matches| Arguments::from_arg_matches(&matches));
     let done = match arguments.map(|arguments| arguments.command) {
-        Err(error) => print_clap_message(&error),
+        Err(error) => print_clap_message(error),
         Ok(None) => study::run(&arguments::Study::default()),
         Ok(Some(Command::Study(arguments))) => study::run(&arguments),
         Ok(Some(Command::Pick(arguments))) => pick::run(&arguments),
@@ -191,7 +191,7 @@ fn words() -> Vec<OsString> {
 }
 
 /// Prints the message of clap: the help, the version, or an error in the arguments.
-fn print_clap_message(error: &clap::Error) -> Result<ExitCode, Failure> {
+fn print_clap_message(mut error: clap::Error) -> Result<ExitCode, Failure> {
     if let (ErrorKind::InvalidSubcommand, Some(ContextValue::String(word))) =
         (error.kind(), error.get(ContextKind::InvalidSubcommand))
     {
@@ -214,10 +214,11 @@ fn print_clap_message(error: &clap::Error) -> Result<ExitCode, Failure> {
     if error.use_stderr() && words.iter().any(|word| text::sanitize(word) != *word) {
         // The message repeats the arguments. Escape control characters, so that arguments cannot
         // control the terminal.
-        let mut plain = error.render().to_string();
-        for word in words.iter().filter(|word| !word.is_empty()) {
-            plain = plain.replace(word, &text::sanitize(word));
+        if let Some(ContextValue::String(value)) = error.get(ContextKind::InvalidValue) {
+            let value = ContextValue::String(text::sanitize(value));
+            error.insert(ContextKind::InvalidValue, value);
         }
+        let plain = error.render().to_string();
         plain.lines().for_each(text::print_stderr);
         return Ok(ExitCode::from(2));
     }

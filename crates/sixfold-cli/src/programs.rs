@@ -55,7 +55,7 @@ pub(crate) fn run(suite: Suite) -> Result<ExitCode, Failure> {
     let arguments = matches.and_then(|matches| Programs::from_arg_matches(&matches));
     let arguments = match arguments {
         Ok(arguments) => arguments,
-        Err(error) => return crate::print_clap_message(&error),
+        Err(error) => return crate::print_clap_message(error),
     };
     let known = names.iter().copied();
     UnknownName::check("program", &arguments.programs, known).map_err(Failure::usage)?;

@@ -1,6 +1,6 @@
 //! The outside of each component.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use sixfold_core::{FaceId, Incidence, PolygonCutter, PolygonMesh, VertexId};
 use sixfold_spatial::{
     Bounds, Bvh, FaceTriangle, Ray, SpatialIndex, SurfaceQueries, triangles_touch,
@@ -16,12 +16,14 @@ const CLEAR_VOLUME: f64 = 1e-3;
 /// The least part of a closed component. A smaller volume is only a rounding error.
 const ROUNDING: f64 = 1e-9;
 
-/// The directions of rays. No face of a usual mesh is parallel to them, and no edge meets them.
-const DIRECTIONS: [[f64; 3]; 3] = [
-    [0.834_627_1, 0.412_913_7, 0.364_558_9],
-    [-0.391_742_3, 0.862_151_9, -0.321_377_1],
-    [0.274_813_1, -0.367_919_3, 0.888_316_7],
-];
+/// The part of all directions in which an open component must hide the outside, so that what it hides
+/// counts as inside of it. A solid hides it in all directions.
+const ENCLOSED: f64 = 0.9;
+/// The number of directions in which the outside is looked for, if all components are solid: the answer
+/// of most of them avoids errors at edges.
+const FEW_DIRECTIONS: u32 = 3;
+/// The number of directions if components are open.
+const DIRECTIONS: u32 = 64;
 
 /// Returns for each component whether all of its faces are to be reversed after those in
 /// [`Agreement::reverse`], so that it faces outward. `first` has the first face of each.
@@ -32,17 +34,31 @@ pub(super) fn outward(
     first: &[FaceId],
 ) -> Vec<Result<bool, UndecidedReason>> {
     let volumes = volumes(polygons, incidence, agreement);
-    let is_solid = |component: usize| volumes[component].is_closed && volumes[component].is_clear();
-    let depths = depths(polygons, agreement, first, is_solid);
+    let kinds = volumes.iter().map(|volume| match volume.is_clear() {
+        true if volume.is_closed => Kind::Solid,
+        true => Kind::Open,
+        false => Kind::Unclear,
+    });
+    let depths = depths(polygons, agreement, first, &kinds.collect::<Vec<Kind>>());
     let sides = volumes.iter().zip(depths).map(|(volume, depth)| {
         match (volume.is_closed, volume.is_clear()) {
             (true, false) => Err(UndecidedReason::NoVolume),
             (false, false) => Err(UndecidedReason::Flat),
-            (true, true) => depth.map(|depth| (volume.signed < 0.0) == depth.is_multiple_of(2)),
-            (false, true) => Ok(volume.signed < 0.0),
+            (_, true) => depth.map(|depth| (volume.signed < 0.0) == depth.is_multiple_of(2)),
         }
     });
     sides.collect()
+}
+
+/// What the volume of a component says.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    /// It is closed and encloses a volume.
+    Solid,
+    /// It is open and clearly bulges to one side.
+    Open,
+    /// It has no side.
+    Unclear,
 }
 
 /// The volume of a component with a cone from its boundary to the centre of its boundary. A polygon is
@@ -133,23 +149,25 @@ fn volumes(
     volumes
 }
 
-/// Returns the number of solid components around each component, or why it is not known. For
-/// components that are not solid, the number is 0.
+/// Returns the number of components around each component, or why it is not known. For components that
+/// are unclear, the number is 0.
 fn depths(
     polygons: &PolygonMesh,
     agreement: &Agreement,
     first: &[FaceId],
-    is_solid: impl Fn(usize) -> bool,
+    kinds: &[Kind],
 ) -> Vec<Result<usize, UndecidedReason>> {
     let mut depths = vec![Ok(0); first.len()];
-    let is_near = overlapping(&bounds(polygons, agreement, is_solid));
+    let bounds = bounds(polygons, agreement, kinds);
+    let is_near = overlapping(&bounds);
     if !is_near.contains(&true) {
         return depths;
     }
     let Some(index) = index(polygons, agreement, &is_near) else {
         return depths;
     };
-    for (one, other) in contacts(&index, agreement) {
+    let is_solid = |component: usize| kinds[component] == Kind::Solid;
+    for (one, other) in contacts(&index, agreement, is_solid) {
         for (one, other) in [(one, other), (other, one)] {
             if depths[one].is_ok() {
                 depths[one] = Err(UndecidedReason::Touches(first[other]));
@@ -163,26 +181,66 @@ fn depths(
             sample[agreement.component(triangle.face)].get_or_insert(triangle);
         }
     }
+    let any_open = (0..kinds.len()).any(|c| is_near[c] && kinds[c] == Kind::Open);
+    let directions = if any_open { DIRECTIONS } else { FEW_DIRECTIONS };
     let touching: Vec<bool> = depths.iter().map(Result::is_err).collect();
     for (inner, sample) in sample.iter().enumerate() {
         let (Some(sample), Ok(_)) = (sample, &depths[inner]) else {
             continue;
         };
-        let around = around(&index, sample, agreement);
-        depths[inner] = match around.iter().find(|&&outer| touching[outer]) {
-            Some(&outer) => Err(UndecidedReason::Touches(first[outer])),
-            None => Ok(around.len()),
+        let hiding = hiding(&index, sample, agreement, directions);
+        let is_around = |outer: usize| match (bounds[inner], bounds[outer]) {
+            (Some(inner), Some(outer)) => outer.union(inner) == outer,
+            _ => false,
         };
+        depths[inner] = depth(&hiding, kinds, is_around)
+            .and_then(|depth| {
+                let mut outer = hiding
+                    .iter()
+                    .filter(|(c, part)| is_solid(*c) && *part > 0.5);
+                match outer.find(|(c, _)| touching[*c]) {
+                    Some(&(c, _)) => Err(c),
+                    None => Ok(depth),
+                }
+            })
+            .map_err(|outer| match kinds[outer] {
+                Kind::Open => UndecidedReason::PartlyInside(first[outer]),
+                _ => UndecidedReason::Touches(first[outer]),
+            });
     }
     depths
 }
 
-/// Returns the box of each solid component; `None` for the others and if a coordinate is not finite.
-fn bounds(
-    polygons: &PolygonMesh,
-    agreement: &Agreement,
-    is_solid: impl Fn(usize) -> bool,
-) -> Vec<Option<Bounds>> {
+/// Returns the number of components around a component, or an open one that is only partly around it.
+/// `hiding` are the components that hide the outside, and in which part of all directions. `is_around`
+/// returns whether the box of a component contains that of the inner one.
+fn depth(
+    hiding: &[(usize, f64)],
+    kinds: &[Kind],
+    is_around: impl Fn(usize) -> bool,
+) -> Result<usize, usize> {
+    let (open, solid): (Vec<_>, Vec<_>) = hiding
+        .iter()
+        .copied()
+        .partition(|&(component, _)| kinds[component] == Kind::Open);
+    let solid = solid.iter().filter(|(_, part)| *part > 0.5).count();
+    // Several open components, such as two halves, can be around it together.
+    let sum: f64 = open.iter().map(|(_, part)| part).sum();
+    let whole = sum.round();
+    if whole > 0.0 && (sum - whole).abs() <= 1.0 - ENCLOSED {
+        return Ok(solid + whole as usize);
+    }
+    let partly =
+        |&&(component, part): &&(usize, f64)| part > 1.0 - ENCLOSED && is_around(component);
+    match open.iter().find(partly) {
+        Some(&(component, _)) => Err(component),
+        None => Ok(solid),
+    }
+}
+
+/// Returns the box of each solid or open component; `None` for the others and if a coordinate is not
+/// finite.
+fn bounds(polygons: &PolygonMesh, agreement: &Agreement, kinds: &[Kind]) -> Vec<Option<Bounds>> {
     let components = agreement.conflicts.len();
     let mut bounds: Vec<Option<Bounds>> = vec![None; components];
     let mut is_finite = vec![true; components];
@@ -195,7 +253,7 @@ fn bounds(
         bounds[component] = Some(all);
     }
     for (component, one) in bounds.iter_mut().enumerate() {
-        *one = one.filter(|_| is_finite[component] && is_solid(component));
+        *one = one.filter(|_| is_finite[component] && kinds[component] != Kind::Unclear);
     }
     bounds
 }
@@ -247,12 +305,20 @@ fn index(
     Bvh::build(triangles).ok()
 }
 
-/// Returns pairs of components that touch or cross each other. Each component that does is in a pair.
-fn contacts(index: &Bvh<FaceTriangle<FaceId>>, agreement: &Agreement) -> Vec<(usize, usize)> {
+/// Returns pairs of solid components that touch or cross each other. Each component that does is in a
+/// pair.
+fn contacts(
+    index: &Bvh<FaceTriangle<FaceId>>,
+    agreement: &Agreement,
+    is_solid: impl Fn(usize) -> bool,
+) -> Vec<(usize, usize)> {
     let mut touching = vec![false; agreement.conflicts.len()];
     let mut pairs = Vec::new();
     for triangle in index.items() {
         let own = agreement.component(triangle.face);
+        if !is_solid(own) {
+            continue;
+        }
         let corners = triangle.corners_f64();
         let centre = corners.iter().sum::<DVec3>() / 3.0;
         let reach = corners.map(|corner| corner.distance_squared(centre));
@@ -261,7 +327,7 @@ fn contacts(index: &Bvh<FaceTriangle<FaceId>>, agreement: &Agreement) -> Vec<(us
         index.visit_near(centre, limit, |slot| {
             let near = &index.items()[slot];
             let other = agreement.component(near.face);
-            let is_new = own != other && !(touching[own] && touching[other]);
+            let is_new = own != other && is_solid(other) && !(touching[own] && touching[other]);
             if is_new && triangles_touch(corners, near.corners_f64()) {
                 touching[own] = true;
                 touching[other] = true;
@@ -273,18 +339,19 @@ fn contacts(index: &Bvh<FaceTriangle<FaceId>>, agreement: &Agreement) -> Vec<(us
     pairs
 }
 
-/// Returns the components around the component of a triangle: those that most rays from its centre
-/// leave.
-fn around(
+/// Returns the other components that hide the outside from a triangle, and the part of the directions
+/// in which each does: a ray from the centre of the triangle leaves it.
+fn hiding(
     index: &Bvh<FaceTriangle<FaceId>>,
     sample: &FaceTriangle<FaceId>,
     agreement: &Agreement,
-) -> Vec<usize> {
+    directions: u32,
+) -> Vec<(usize, f64)> {
     let inner = agreement.component(sample.face);
     let centre = sample.corners_f64().iter().sum::<DVec3>() / 3.0;
     let mut votes: Vec<usize> = Vec::new();
-    for direction in DIRECTIONS {
-        let Ok(ray) = Ray::new(centre, direction) else {
+    for i in 0..directions {
+        let Ok(ray) = Ray::new(centre, direction(i, directions)) else {
             continue;
         };
         let mut hits: Vec<usize> = Vec::new();
@@ -298,6 +365,20 @@ fn around(
         votes.extend(odd.map(|same| same[0]).filter(|&outer| outer != inner));
     }
     votes.sort_unstable();
-    let most = votes.chunk_by(|a, b| a == b).filter(|same| same.len() >= 2);
-    most.map(|same| same[0]).collect()
+    let parts = votes.chunk_by(|a, b| a == b);
+    let part = |same: &[usize]| same.len() as f64 / f64::from(directions);
+    parts.map(|same| (same[0], part(same))).collect()
+}
+
+/// Returns direction `i` of `n` that are spread evenly: a spiral of golden angles (Vogel 1979), turned
+/// so that no face of a usual mesh is parallel to one.
+fn direction(i: u32, n: u32) -> [f64; 3] {
+    const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
+    let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(n);
+    let (sin, cos) = (GOLDEN_ANGLE * f64::from(i) + 0.412_913_7).sin_cos();
+    let radius = (1.0 - z * z).sqrt();
+    let [x, y] = [radius * cos, radius * sin];
+    // A turn around an axis in general position.
+    let turn = DMat3::from_axis_angle(DVec3::new(0.48, 0.6, 0.64), 0.9);
+    (turn * DVec3::new(x, y, z)).to_array()
 }

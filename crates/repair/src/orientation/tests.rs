@@ -294,3 +294,76 @@ fn open_parts_face_the_side_to_which_they_bulge() {
     let reasons: Vec<UndecidedReason> = flat.undecided.iter().map(|u| u.reason).collect();
     assert_eq!(reasons, [UndecidedReason::Flat]);
 }
+
+/// Returns the mesh without the faces for which `is_left_out` returns true.
+fn without(mesh: &PolygonMesh, is_left_out: impl Fn(usize) -> bool) -> PolygonMesh {
+    let faces = mesh.faces().iter().filter(|(f, _)| !is_left_out(f.index()));
+    let faces = faces.map(|(_, face)| face.iter().map(|v| v.row()).collect::<Vec<u32>>());
+    PolygonMesh::new(mesh.positions().iter().copied(), faces).expect("valid")
+}
+
+fn scaled(mesh: &PolygonMesh, by: f32, inward: bool) -> PolygonMesh {
+    let points: Vec<Point> = mesh.positions().iter().map(|&p| by * p).collect();
+    let mesh = PolygonMesh::from_faces(points, mesh.faces().clone()).expect("valid");
+    with_reversed(&mesh, |_| inward)
+}
+
+/// Open parts have their place in the nesting, too: a wall of a cavity with a small hole faces the
+/// cavity. If the outside can be seen from it, it is undecided.
+#[test]
+fn nested_open_parts_face_away_from_the_solid_or_are_undecided() {
+    let ball = sixfold_shapes::geodesic(8).expect("small");
+    let is_right = |mesh: &PolygonMesh| {
+        let oriented = outward_all(mesh);
+        oriented.reversed.is_empty() && oriented.undecided.is_empty()
+    };
+    let inner = scaled(&ball, 0.7, true);
+    let high = |f: usize| {
+        let face = ball.faces().face(face(f as u32));
+        face.iter().map(|&v| ball.position(v).z).sum::<f32>() > 0.0
+    };
+    let half = |upper: bool| without(&ball, |f| high(f) != upper);
+    for (outer, inner) in [
+        (ball.clone(), without(&inner, |f| f == 5)),
+        (without(&ball, |f| f == 7), inner.clone()),
+        (without(&ball, |f| f == 7), without(&inner, |f| f == 5)),
+        (together(&[half(true), half(false)]), inner.clone()),
+    ] {
+        let mesh = together(&[outer.clone(), inner.clone()]);
+        assert!(is_right(&mesh));
+        let turned = together(&[outer.clone(), with_reversed(&inner, |_| true)]);
+        assert_eq!(outward_all(&turned).polygons, mesh);
+        // Beside each other, both face outward.
+        let points: Vec<Point> = inner
+            .positions()
+            .iter()
+            .map(|&p| p + 4.0 * Point::X)
+            .collect();
+        let beside = PolygonMesh::from_faces(points, inner.faces().clone()).expect("valid");
+        let oriented = outward_all(&together(&[outer, beside]));
+        assert_eq!(oriented.reversed.len(), inner.face_count());
+    }
+    // A pipe: two tubes of different widths.
+    let tube = |radius: f32, length: f32, inward: bool| {
+        let prism = sixfold_shapes::prism(24).expect("small");
+        let sides = without(&prism, |f| prism.faces().face(face(f as u32)).len() > 4);
+        let points = sides.positions().iter();
+        let points: Vec<Point> = points
+            .map(|p| Point::new(radius * p.x, radius * p.y, length * p.z))
+            .collect();
+        let mesh = PolygonMesh::from_faces(points, sides.faces().clone()).expect("valid");
+        with_reversed(&mesh, |_| inward)
+    };
+    for inward in [false, true] {
+        let pipe = |length: f32| {
+            let inner = tube(0.8, length, inward);
+            outward_all(&together(&[tube(1.0, length, false), inner]))
+        };
+        let short = pipe(1.0);
+        assert_eq!(short.reversed, []);
+        let reasons: Vec<UndecidedReason> = short.undecided.iter().map(|u| u.reason).collect();
+        assert_eq!(reasons, [UndecidedReason::PartlyInside(face(0))]);
+        let long = pipe(9.0);
+        assert_eq!((long.reversed.is_empty(), long.undecided), (inward, vec![]));
+    }
+}
