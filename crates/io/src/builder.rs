@@ -282,9 +282,9 @@ impl<'a> MeshBuilder<'a> {
         &mut self,
         source: &mut ByteSource<impl Read>,
     ) -> Result<(), ReadError> {
+        let mut line = source.line_count() + 1;
         loop {
             let offset = source.offset();
-            let lines = source.line_count();
             let bytes = source
                 .fill(1)
                 .map_err(|e| self.read_error(Place::Byte(offset), e))?;
@@ -296,12 +296,13 @@ impl<'a> MeshBuilder<'a> {
             if let Some(first) = bytes.iter().position(is_content) {
                 let count = bytes.iter().filter(|byte| is_content(byte)).count();
                 let place = match is_text {
-                    true => Place::Line(lines.max(1)),
+                    true => Place::Line(line + newlines(&bytes[..first])),
                     false => Place::Byte(offset + first as u64),
                 };
                 self.notices
                     .add_many(IgnoredKind::Trailing, count as u64, place);
             }
+            line += newlines(bytes);
             source.advance(length);
         }
     }
@@ -383,6 +384,12 @@ impl<'a> MeshBuilder<'a> {
             None => Ok(()),
         }
     }
+}
+
+/// Returns the number of line breaks.
+fn newlines(bytes: &[u8]) -> u32 {
+    let breaks = bytes.iter().filter(|byte| **byte == b'\n');
+    breaks.count() as u32 // at most as many as in a buffer
 }
 
 /// Returns the error of the first of three coordinates that is not finite.

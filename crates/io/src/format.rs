@@ -133,6 +133,12 @@ pub(crate) fn detect(start: &[u8], size: Option<u64>) -> Option<Format> {
     if text.starts_with(b"ply") && text.get(3).is_some_and(u8::is_ascii_whitespace) {
         return Some(Format::Ply);
     }
+    if is_binary_off(text) {
+        return Some(Format::Off);
+    }
+    if is_utf16(start) {
+        return None;
+    }
     if is_binary_stl(start, size) {
         return Some(Format::Stl);
     }
@@ -143,6 +149,29 @@ pub(crate) fn detect(start: &[u8], size: Option<u64>) -> Option<Format> {
         return Some(Format::Gltf);
     }
     text_format(text)
+}
+
+/// Returns whether the first line is that of a binary OFF file, such as `OFF BINARY`.
+fn is_binary_off(start: &[u8]) -> bool {
+    let line = start.split(|byte| matches!(byte, b'\n' | b'\r')).next();
+    let mut words = words(line.unwrap_or_default());
+    let is_keyword = words
+        .next()
+        .is_some_and(|word| OffKeyword::parse(word).is_some());
+    is_keyword
+        && words
+            .next()
+            .is_some_and(|word| word.eq_ignore_ascii_case(b"binary"))
+}
+
+/// Returns whether the bytes are a text in UTF-16: a byte order mark, and ASCII characters.
+fn is_utf16(start: &[u8]) -> bool {
+    let is_ascii = |at: usize| start.get(at).is_some_and(u8::is_ascii_graphic);
+    match start {
+        [0xFF, 0xFE, _, 0, ..] => is_ascii(2),
+        [0xFE, 0xFF, 0, ..] => is_ascii(3),
+        _ => false,
+    }
 }
 
 /// Returns whether the bytes can be a binary STL. If the size is not known, or the file is cut off,
@@ -278,6 +307,28 @@ mod tests {
         );
         assert_eq!(Format::from_path("stl"), None);
         assert_eq!(Format::from_path("a.stl-ascii"), None);
+    }
+
+    #[test]
+    fn binary_off_and_utf_16_are_not_taken_for_binary_stl() {
+        // A count and coordinates of zeros, as of a binary STL.
+        let mut bytes = b"OFF BINARY\n".to_vec();
+        bytes.extend(3_u32.to_be_bytes());
+        bytes.resize(200, 0);
+        bytes[90] = 1;
+        assert_eq!(detect(&bytes, Some(200)), Some(Format::Off));
+        bytes[4] = b'T';
+        assert_eq!(detect(&bytes, Some(200)), Some(Format::Stl));
+        for is_little in [true, false] {
+            let text = "\u{feff}# a\nv 0 0 0\n".repeat(20);
+            let units = text.encode_utf16();
+            let bytes = units.map(|unit| match is_little {
+                true => unit.to_le_bytes(),
+                false => unit.to_be_bytes(),
+            });
+            let bytes: Vec<u8> = bytes.flatten().collect();
+            assert_eq!(detect(&bytes, Some(bytes.len() as u64)), None);
+        }
     }
 
     #[test]

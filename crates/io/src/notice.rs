@@ -26,6 +26,8 @@ pub enum IgnoredKind {
     Elements,
     /// Triangles of a strip that have no area because they only continue it.
     StripJoints,
+    /// Corners at the end of a list of triangles of glTF that are too few for a triangle.
+    IncompleteTriangles,
     /// Corners of faces that repeat the corner next to them. The face keeps its other corners.
     RepeatedCorners,
     /// Polygons that name a vertex twice, not only in neighbouring corners: an outline with a bridge
@@ -142,6 +144,10 @@ impl IgnoredKind {
             Self::Properties => ["other property", "other properties"],
             Self::Elements => ["other element", "other elements"],
             Self::StripJoints => ["joint of triangle strips", "joints of triangle strips"],
+            Self::IncompleteTriangles => [
+                "corner of an incomplete triangle",
+                "corners of incomplete triangles",
+            ],
             Self::RepeatedCorners => ["repeated corner of a face", "repeated corners of faces"],
             Self::CutFaces => [
                 "face that names a vertex twice",

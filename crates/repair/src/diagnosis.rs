@@ -5,7 +5,7 @@ mod fault;
 
 use std::collections::BTreeMap;
 
-use crate::orientation::{Components, Facing, faces_to_reverse};
+use crate::orientation::{Components, Facing, UndecidedReason, faces_to_reverse};
 use rustc_hash::FxHashMap;
 use sixfold_core::{Capabilities, Facts, Fans, Incidence, Pair, PolygonMesh, VertexId, join};
 
@@ -287,6 +287,11 @@ fn find_turned(polygons: &PolygonMesh, incidence: &Incidence<'_>, found: &mut Fo
     let turned = faces_to_reverse(polygons, incidence, Facing::Outward, Components::All);
     for f in turned.reversed {
         found.add(FaultKind::TurnedFace, Place::Face(f));
+    }
+    for component in turned.undecided {
+        if let UndecidedReason::Touches(_) = component.reason {
+            found.add(FaultKind::TouchingComponent, Place::Face(component.face));
+        }
     }
     for component in turned.not_orientable {
         found.add(FaultKind::NotOrientable, Place::Edge(component.ends));

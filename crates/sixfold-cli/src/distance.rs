@@ -5,7 +5,8 @@ use std::process::ExitCode;
 use comfy_table::{Cell, CellAlignment};
 use serde::Serialize;
 use sixfold::PolygonMesh;
-use sixfold::spatial::{MeshDistance, OneSidedDistance, Sampling, mesh_distance};
+use sixfold::glam::DVec3;
+use sixfold::spatial::{Bounds, MeshDistance, OneSidedDistance, Sampling, mesh_distance};
 
 use crate::arguments::Distance;
 use crate::failure::Failure;
@@ -14,7 +15,7 @@ use crate::mesh_files::shown;
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::exit_on_interrupt;
 use crate::tables::table;
-use crate::text::{TextOutput, figure, hanging_indent, sanitize};
+use crate::text::{TextOutput, coordinate, figure, hanging_indent, sanitize};
 
 /// The document of `--json`.
 #[derive(Serialize)]
@@ -48,19 +49,27 @@ pub(crate) fn run(arguments: &Distance) -> Result<ExitCode, Failure> {
         ));
     }
     let json = Output::open_if(arguments.json.as_ref())?;
-    let [first, second] = load::pair(&arguments.first, &arguments.second, arguments.read)?;
+    let ([first, second], origin) =
+        load::pair(&arguments.first, &arguments.second, arguments.read)?;
     let sampling = Sampling {
         samples: arguments.samples,
         seed: arguments.seed,
     };
     let distance = mesh_distance(&first, &second, sampling).map_err(Failure::usage)?;
-    let rows = rows(arguments, &distance, diagonal(&first));
+    let diagonal = diagonal(&first);
+    let rows = rows(arguments, &distance, diagonal, origin);
     let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
-    text.print_line(&rows_text(&rows));
+    text.print_line(&rows_text(&rows, diagonal));
     text.finish_with_document(json, &Distances { distances: &rows })
 }
 
-fn rows(arguments: &Distance, distance: &MeshDistance, diagonal: f64) -> [Row; 3] {
+/// Returns the distances. `origin` is the place of the origin in the files.
+fn rows(
+    arguments: &Distance,
+    distance: &MeshDistance,
+    diagonal: f64,
+    origin: [f64; 3],
+) -> [Row; 3] {
     let (first, second) = (shown(&arguments.first), shown(&arguments.second));
     let percent = |largest: f64| 100.0 * largest / diagonal;
     let one_sided = |from: &str, to: &str, side: &OneSidedDistance| Row {
@@ -70,7 +79,7 @@ fn rows(arguments: &Distance, distance: &MeshDistance, diagonal: f64) -> [Row; 3
         root_mean_square: side.root_mean_square,
         largest: side.largest,
         largest_percent: percent(side.largest),
-        farthest: Some(side.farthest.to_array()),
+        farthest: Some((side.farthest + DVec3::from(origin)).to_array()),
     };
     let forward = one_sided(&first, &second, &distance.forward);
     let backward = one_sided(&second, &first, &distance.backward);
@@ -86,13 +95,13 @@ fn rows(arguments: &Distance, distance: &MeshDistance, diagonal: f64) -> [Row; 3
     [forward, backward, both]
 }
 
-/// Returns the length of the diagonal of the box around all vertices.
+/// Returns the length of the diagonal of the box around all faces.
 fn diagonal(mesh: &PolygonMesh) -> f64 {
-    let bounds = sixfold::spatial::Bounds::from_points(mesh.positions().iter().copied());
-    bounds.extent().length()
+    let corners = mesh.faces().corners().iter().map(|&v| mesh.position(v));
+    Bounds::from_points(corners).extent().length()
 }
 
-fn rows_text(rows: &[Row]) -> String {
+fn rows_text(rows: &[Row], size: f64) -> String {
     let header = [
         "from",
         "mean",
@@ -122,7 +131,7 @@ fn rows_text(rows: &[Row]) -> String {
     ];
     for (name, row) in names.into_iter().zip(rows) {
         if let Some(at) = row.farthest {
-            let at = at.map(figure).join(" ");
+            let at = at.map(|x| coordinate(x, size)).join(" ");
             lines.push(format!("farthest point of {name}: {at}"));
         }
     }

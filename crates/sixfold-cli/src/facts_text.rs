@@ -4,7 +4,7 @@ use sixfold::repair::Measures;
 use sixfold::{Distribution, Facts, structure_infos};
 use sixfold_study::{BackendReport, MeshReport, Settings, StudyMesh};
 
-use crate::text::{TextOutput, figure, hanging_indent, sanitize};
+use crate::text::{TextOutput, coordinate, figure, hanging_indent, sanitize};
 use sixfold_study::numbers::{counted, grouped};
 
 /// Width of the labels.
@@ -74,7 +74,8 @@ pub(crate) fn topology_text(mesh: &MeshReport) -> String {
 pub(crate) fn measures_text(measures: &Measures) -> Option<String> {
     let [low, high] = measures.bounds?;
     let lengths = measures.edge_lengths?;
-    let coordinates = |point: [f64; 3]| point.map(figure).join(" ");
+    let longest = measures.size().into_iter().fold(0.0, f64::max);
+    let coordinates = |point: [f64; 3]| point.map(|x| coordinate(x, longest)).join(" ");
     let size = format!(
         "{}, from {} to {}",
         measures.size().map(figure).join(" × "),

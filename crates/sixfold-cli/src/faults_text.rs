@@ -231,6 +231,7 @@ impl Diagnosed<'_> {
                 notes.push(format!("refused by {}", refusing.join(", ")));
             }
             match self.options(fault) {
+                _ if fault.kind == FaultKind::TouchingComponent => {}
                 none if none.is_empty() => notes.push("correct the coordinates".to_owned()),
                 _ if is_unwelded => {}
                 options => {
@@ -451,6 +452,7 @@ fn may_be_intended(kind: FaultKind) -> bool {
         FaultKind::Polygon
             | FaultKind::CoincidentVertex
             | FaultKind::OppositeFace
+            | FaultKind::TouchingComponent
             | FaultKind::BoundaryEdge
     )
 }

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use sixfold::glam::DVec3;
 use sixfold::io::{FileMesh, LeftOut, Narrowing, Notice, PolygonPlaces};
 use sixfold::repair::{Diagnosis, Measures, diagnose, examine, measures};
 use sixfold::{Creases, PolygonMesh, shapes};
@@ -40,6 +41,13 @@ pub(crate) fn for_inspection(
 ) -> Result<InspectedMesh, Failure> {
     let mesh = read_mesh(path, files)?;
     let narrowing = mesh.narrowing;
+    let origin = mesh.origin;
+    // The box is that in the file, also if the mesh is moved.
+    let placed = |mut measures: Measures| {
+        let moved = |at: [f64; 3]| (DVec3::from(at) + DVec3::from(origin)).to_array();
+        measures.bounds = measures.bounds.map(|ends| ends.map(moved));
+        measures
+    };
     if triangulate || mesh.has_degenerate_faces() {
         let (mut study_mesh, left_out, places) = into_study_mesh(path, mesh);
         print_left_out(path, &left_out);
@@ -47,7 +55,7 @@ pub(crate) fn for_inspection(
             study_mesh = triangulated(study_mesh, Some(&places))?;
         }
         let diagnosis = diagnose(&study_mesh.polygons, SHOWN_PLACES);
-        let measures = measures(&study_mesh.polygons);
+        let measures = placed(measures(&study_mesh.polygons));
         return Ok(InspectedMesh {
             study_mesh,
             measures,
@@ -63,7 +71,7 @@ pub(crate) fn for_inspection(
     let study_mesh = StudyMesh::with_facts(shown(path), polygons, facts);
     Ok(InspectedMesh {
         study_mesh,
-        measures,
+        measures: placed(measures),
         diagnosis,
         places: Some(places),
         left_out: Vec::new(),
@@ -169,12 +177,13 @@ pub(crate) fn for_repair(path: &Path, files: ReadFiles) -> Result<ReadMesh, Fail
 }
 
 /// Reads two meshes without their degenerate faces, and cuts polygons into triangles. If the option
-/// --recentre is set, both are moved by the centre of the first one, so that their distance stays.
+/// --recentre is set, both are moved by the centre of the first one, so that their distance stays. Also
+/// returns the place of the origin.
 pub(crate) fn pair(
     first: &Path,
     second: &Path,
     chosen: ReadPolygons,
-) -> Result<[PolygonMesh; 2], Failure> {
+) -> Result<([PolygonMesh; 2], [f64; 3]), Failure> {
     let triangles_of = |path: &Path, mesh: FileMesh| {
         let (polygons, left_out, places) = mesh.into_polygons_with_places();
         print_left_out(path, &left_out);
@@ -184,7 +193,7 @@ pub(crate) fn pair(
     let origin = mesh.origin;
     let first = triangles_of(first, mesh)?;
     let mesh = read_mesh_at(second, chosen.files, Some(origin))?;
-    Ok([first, triangles_of(second, mesh)?])
+    Ok(([first, triangles_of(second, mesh)?], origin))
 }
 
 /// Reads a mesh for a command that drops creases. Prints a note if there are creases.

@@ -9,6 +9,7 @@ use sixfold::remeshing::{
     remesh_watched,
 };
 use sixfold::repair::measures;
+use sixfold::spatial::{DistanceError, Sampling, mesh_distance};
 use sixfold::{
     Creases, Edit, MeshEdit, PolygonMesh, QueryCost, Representation, for_each_editable,
     structure_infos,
@@ -33,13 +34,43 @@ pub(crate) fn decimate(arguments: &Decimate) -> Result<ExitCode, Failure> {
         boundary: arguments.boundary,
         max_distance: arguments.goal.max_error,
     };
-    edit_file(
-        &arguments.files,
-        arguments.read,
-        &arguments.backend,
-        arguments.check,
-        |_| Ok(decimation),
-    )
+    let edit = |before: &PolygonMesh| match arguments.goal.max_error {
+        Some(limit) => within(limit, before, &arguments.backend, decimation),
+        None => edited_by(&arguments.backend, before, &decimation),
+    };
+    edit_file(&arguments.files, arguments.read, arguments.check, edit)
+}
+
+/// The number of decimations until the measured distance is small enough.
+const ATTEMPTS: usize = 4;
+
+/// Decimates the mesh until the measured distance of the result is at most `limit`. The decimation itself
+/// checks the distance only at some points; if more points show a larger distance, it is repeated with a
+/// smaller limit.
+fn within(limit: f64, before: &PolygonMesh, backend: &str, mut decimation: Decimation) -> Edited {
+    let mut best = None;
+    for _ in 0..ATTEMPTS {
+        let (polygons, mut summary) = edited_by(backend, before, &decimation)?;
+        let measured = mesh_distance(before, &polygons, Sampling::default());
+        let largest = match measured {
+            Ok(distance) => distance.largest(),
+            Err(DistanceError::NoFaces { .. }) => return Ok((polygons, summary)),
+            Err(error) => return Err(Failure::unsupported(error)),
+        };
+        summary.edits += &format!(" (largest distance {})", figure(largest));
+        if largest <= limit {
+            return Ok((polygons, summary));
+        }
+        let smaller = decimation.max_distance.unwrap_or(limit) * 0.9 * limit / largest;
+        decimation.max_distance = Some(smaller);
+        summary.shortfall = Some(format!(
+            "the distance is {} instead of at most {}",
+            figure(largest),
+            figure(limit)
+        ));
+        best = Some((polygons, summary));
+    }
+    Ok(best.expect("there is an attempt"))
 }
 
 pub(crate) fn remesh(arguments: &Remesh) -> Result<ExitCode, Failure> {
@@ -56,29 +87,21 @@ pub(crate) fn remesh(arguments: &Remesh) -> Result<ExitCode, Failure> {
             max_faces: arguments.max_faces,
         })
     };
-    edit_file(
-        &arguments.files,
-        arguments.read,
-        &arguments.backend,
-        arguments.check,
-        remeshing,
-    )
+    let edit = |before: &PolygonMesh| edited_by(&arguments.backend, before, &remeshing(before)?);
+    edit_file(&arguments.files, arguments.read, arguments.check, edit)
 }
 
-/// Edits a mesh by the work that `work` returns for it.
-fn edit_file<W: Work>(
+/// Edits a mesh with `edit`.
+fn edit_file(
     files: &MeshInOut,
     read: ReadPolygons,
-    backend: &str,
     check: ShapeCheck,
-    work: impl FnOnce(&PolygonMesh) -> Result<W, Failure>,
+    edit: impl FnOnce(&PolygonMesh) -> Edited,
 ) -> Result<ExitCode, Failure> {
     // Check here, because the error of a structure would not name the command that helps.
     let (before, output) = files.open(read, check_triangles)?;
     let (before, _) = without_seams(&files.mesh, before, Creases::default(), read.files);
-    let done = edited_by(backend, &before, &work(&before)?);
-    let (polygons, EditSummary { edits, shortfall }) =
-        done.ok_or_else(|| Failure::unsupported(not_editable(backend)))??;
+    let (polygons, EditSummary { edits, shortfall }) = edit(&before)?;
     output.write(&polygons, &WriteOptions::default())?;
     let to = &files.output;
     if let Some(shortfall) = shortfall {
@@ -88,12 +111,7 @@ fn edit_file<W: Work>(
     let place = sanitize(&to.display().to_string());
     let vertices = counted(polygons.vertex_count(), "vertex", "vertices");
     let faces = counted(polygons.face_count(), "face", "faces");
-    text.print_list(
-        "",
-        [format!(
-            "{place}: {vertices}, {faces}; {edits} on {backend}"
-        )],
-    );
+    text.print_list("", [format!("{place}: {vertices}, {faces}; {edits}")]);
     text.finish()?;
     Ok(check_shape(&before, &polygons, to, check))
 }
@@ -203,12 +221,8 @@ impl Work for Decimation {
             )
         });
         let edits = counted(report.collapses, "edge", "edges");
-        let distance = report.max_distance.map(|distance| {
-            let distance = figure(distance);
-            format!(" (largest distance {distance})")
-        });
         Ok(EditSummary {
-            edits: format!("{edits} collapsed{}", distance.unwrap_or_default()),
+            edits: format!("{edits} collapsed on {}", M::NAME),
             shortfall,
         })
     }
@@ -236,22 +250,23 @@ impl Work for Remeshing {
         let flips = counted(report.flips, "flip", "flips");
         Ok(EditSummary {
             edits: format!(
-                "edge length {}: {splits}, {collapses} and {flips} in {iterations}",
-                figure(self.edge_length)
+                "edge length {}: {splits}, {collapses} and {flips} in {iterations} on {}",
+                figure(self.edge_length),
+                M::NAME
             ),
             shortfall,
         })
     }
 }
 
-/// Does the work on the structure called `backend`; `None` if it has no edits, or does not exist.
-fn edited_by(backend: &str, polygons: &PolygonMesh, work: &impl Work) -> Option<Edited> {
+/// Does the work on the structure called `backend`.
+fn edited_by(backend: &str, polygons: &PolygonMesh, work: &impl Work) -> Edited {
     for_each_editable!(M => {
         if backend == M::NAME {
-            return Some(edited::<M>(polygons, work));
+            return edited::<M>(polygons, work);
         }
     });
-    None
+    Err(Failure::unsupported(not_editable(backend)))
 }
 
 type Edited = Result<(PolygonMesh, EditSummary), Failure>;

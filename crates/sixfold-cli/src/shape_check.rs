@@ -4,8 +4,11 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use sixfold::repair::{Measures, measures};
-use sixfold::spatial::{Bvh, SpatialIndex, SurfaceQueries, polygon_triangles};
-use sixfold::{PolygonMesh, VertexId, area_vector};
+use sixfold::spatial::{
+    Bvh, FaceTriangle, SpatialIndex, SurfacePoint, SurfaceQueries, closest_point_on_triangle,
+    polygon_triangles,
+};
+use sixfold::{FaceId, PolygonMesh, VertexId, area_vector};
 use sixfold_study::numbers::counted;
 
 use crate::arguments::ShapeCheck;
@@ -14,8 +17,12 @@ use crate::text::{figure, print_notice};
 /// The exit code if a result is empty, and with `--check` if the shape has changed.
 const CHANGED: u8 = 1;
 
-/// The part of the area, of the volume or of the diagonal that may change without a word.
+/// The part of the area, of the volume, of the diagonal or of a side of the box that may change without a
+/// word.
 const ALLOWED: f64 = 0.05;
+
+/// The part of what the diagonal may change that a side of the box may change in any case.
+const NOTICEABLE: f64 = 0.02;
 
 /// Compares a mesh with the mesh `after` that a command made of it and wrote to `to`. Prints a warning
 /// if the shape has changed by more than the stated part, or if faces are turned over or flat, or if
@@ -105,6 +112,15 @@ fn change_of_box(old: &Measures, new: &Measures) -> Option<String> {
         (Some(old), Some(new)) => old.iter().zip(new).any(|(a, b)| (a - b).abs() > limit),
         (old, new) => old.is_some() != new.is_some(),
     };
+    // A thin plate that becomes thicker is as large a change as one in its length.
+    let is_longer = |(old, new): ([f64; 3], [f64; 3])| {
+        let mut sides = old.into_iter().zip(new);
+        sides.any(|(old, new)| {
+            let by = (new - old).abs();
+            by > ALLOWED * old && by > NOTICEABLE * limit
+        })
+    };
+    let moved = moved || is_longer((old.size(), new.size()));
     let size = |measures: &Measures| measures.size().map(figure).join(" × ");
     moved.then(|| format!("the box is {} instead of {}", size(new), size(old)))
 }
@@ -121,7 +137,7 @@ fn flat_faces(mesh: &PolygonMesh) -> usize {
 }
 
 /// Returns the number of faces of `after` that look to the other side than the surface `before`: than
-/// the same face if the faces are the same ones, otherwise than the closest face.
+/// the same face if the faces are the same ones, otherwise than all closest faces.
 fn turned_faces(before: &PolygonMesh, after: &PolygonMesh) -> usize {
     if before.faces() == after.faces() {
         let faces = after.faces().iter();
@@ -142,11 +158,28 @@ fn turned_faces(before: &PolygonMesh, after: &PolygonMesh) -> usize {
     let faces = after.faces().iter().zip(closest);
     let turned = faces.filter(|((_, face), closest)| {
         closest.is_some_and(|closest| {
-            let old = normal(before, before.faces().face(closest.face));
-            old.dot(normal(after, face)) < 0.0
+            let own = normal(after, face);
+            let agrees = |f| normal(before, before.faces().face(f)).dot(own) >= 0.0;
+            !agrees(closest.face) && !faces_near(&surface, &closest).into_iter().any(agrees)
         })
     });
     turned.count()
+}
+
+/// Returns the faces that are, up to rounding, as close as `closest` to where it was looked for: several
+/// at an edge, and both sides of a wall between two solids.
+fn faces_near(surface: &Bvh<FaceTriangle<FaceId>>, closest: &SurfacePoint<FaceId>) -> Vec<FaceId> {
+    let mut faces = Vec::new();
+    let limit = 1e-12 * (1.0 + closest.point.length_squared());
+    surface.visit_near(closest.point, limit, |slot| {
+        let triangle = &surface.items()[slot];
+        let near = closest_point_on_triangle(closest.point, triangle.corners_f64());
+        if near.distance_squared(closest.point) <= limit {
+            faces.push(triangle.face);
+        }
+        limit
+    });
+    faces
 }
 
 #[cfg(test)]
@@ -187,6 +220,31 @@ mod tests {
             flat.last().map(String::as_str),
             Some("4 faces have no area")
         );
+    }
+
+    #[test]
+    fn sides_of_thin_plates_and_walls_between_solids_are_compared() {
+        let cube = shapes::cube();
+        let plate = moved(&cube, |p| Point::new(p.x, p.y, 0.001 * p.z));
+        let thicker = moved(&cube, |p| Point::new(p.x, p.y, 0.006 * p.z));
+        let found = changes(&plate, &thicker);
+        assert!(
+            found.iter().any(|change| change.starts_with("the box")),
+            "{found:?}"
+        );
+        // Two cubes whose walls touch, against the same in triangles: no face is turned over.
+        let two = |mesh: &PolygonMesh| {
+            let beside = mesh.positions().iter().map(|&p| p + 2.0 * Point::X);
+            let points = mesh.positions().iter().copied().chain(beside);
+            let count = mesh.vertex_count() as u32;
+            let faces = [0, count].into_iter().flat_map(|first| {
+                let faces = mesh.faces().iter();
+                faces.map(move |(_, f)| f.iter().map(|v| first + v.index() as u32).collect())
+            });
+            PolygonMesh::new(points, faces.collect::<Vec<Vec<u32>>>()).expect("valid")
+        };
+        let triangles = cube.triangulated().expect("small").polygons;
+        assert!(changes(&two(&cube), &two(&triangles)).is_empty());
     }
 
     #[test]

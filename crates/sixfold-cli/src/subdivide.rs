@@ -91,7 +91,9 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         Some(output) => Some((output, Limits::new(&subdivision, &step, arguments.levels)?)),
         None => None,
     };
-    output.write(&step.polygons, &WriteOptions::default())?;
+    // Sharpness that remains belongs to the result, so that a further level continues.
+    let options = WriteOptions::default().with_creases(&step.creases);
+    output.write(&step.polygons, &options)?;
     if let Some(left) = left {
         left.finish(|writer| write_creases(&step.creases, writer))?;
     }

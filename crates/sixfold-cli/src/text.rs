@@ -284,9 +284,42 @@ pub(crate) fn figure(value: f64) -> String {
     }
 }
 
+/// Returns a coordinate of a mesh of this size: with five significant digits, or with more if it is far
+/// from the origin, so that places in the mesh can be told apart.
+pub(crate) fn coordinate(value: f64, size: f64) -> String {
+    let is_far = size > 0.0 && size.is_finite() && value.abs() > 10.0 * size;
+    if !is_far {
+        return figure(value);
+    }
+    let decimals = (4.0 - size.log10().floor()).clamp(0.0, 9.0) as usize;
+    let digits = format!("{value:.decimals$}");
+    match digits.contains('.') {
+        true => digits
+            .trim_end_matches('0')
+            .trim_end_matches('.')
+            .to_owned(),
+        false => digits,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn coordinates_far_from_the_origin_have_more_digits() {
+        let coordinates = [
+            (0.123_456_7, 2.0, "0.12346"),
+            (5_400_000.125, 2.0, "5400000.125"),
+            (-500_000.123_456, 2000.0, "-500000.1"),
+            (5_400_000.0, 1e9, "5400000"),
+            (5_400_000.0, 30.0, "5400000"),
+            (7e7, 0.0, "70000000"),
+        ];
+        for (value, size, expected) in coordinates {
+            assert_eq!(coordinate(value, size), expected);
+        }
+    }
 
     #[test]
     fn figures_have_five_digits_and_no_zeros_at_the_end() {

@@ -427,6 +427,103 @@ fn far_meshes_keep_their_place_and_distance() {
     );
 }
 
+/// Options and figures are in the coordinates of the file, also if the mesh is moved.
+#[test]
+fn places_are_those_of_the_file() {
+    let sixfold = Sixfold::new();
+    let mut grid = String::new();
+    for y in 0..3 {
+        for x in 0..3 {
+            grid += &format!("v {} {} 7\n", 500_000 + x, 5_400_000 + y);
+        }
+    }
+    for corner in [1, 2, 4, 5] {
+        grid += &format!("f {corner} {} {}\n", corner + 1, corner + 4);
+        grid += &format!("f {corner} {} {}\n", corner + 4, corner + 3);
+    }
+    sixfold.file("grid.obj", &grid);
+    let run = sixfold.passes(&["inspect", "grid.obj", "--recentre"]);
+    assert!(
+        run.stdout
+            .contains("from 500000 5400000 7 to 500002 5400002 7"),
+        "{run:?}"
+    );
+    let run = sixfold.passes(&["inspect", "grid.obj", "--recentre", "--json", "-"]);
+    let low = parsed(&run.stdout)["measures"]["bounds"][0].clone();
+    assert_eq!(low, serde_json::json!([500_000.0, 5_400_000.0, 7.0]));
+    let run = sixfold.passes(&[
+        "distance",
+        "grid.obj",
+        "grid.obj",
+        "--recentre",
+        "--json",
+        "-",
+    ]);
+    let at = &parsed(&run.stdout)["distances"][0]["farthest"];
+    assert!(at[1].as_f64().expect("a number") >= 5_400_000.0, "{at}");
+    let select = "box:499999.5,5399999.5,0,500000.2,5400000.2,9";
+    for recentre in [&[][..], &["--recentre"]] {
+        let refine = [
+            "subdivide",
+            "grid.obj",
+            "--scheme",
+            "midpoint",
+            "-o",
+            "out.obj",
+        ];
+        let run = sixfold.passes(&[&refine, &["--select", select][..], recentre].concat());
+        assert!(run.stdout.contains("16 faces"), "{run:?}");
+    }
+}
+
+/// A cube with sharp edges stays a cube, level after level.
+#[test]
+fn sharpness_that_remains_is_written() {
+    let sixfold = Sixfold::new();
+    let mut cube = cuboid(1.0, 1, false);
+    for [a, b] in [
+        [1, 2],
+        [3, 4],
+        [5, 6],
+        [7, 8],
+        [1, 3],
+        [2, 4],
+        [5, 7],
+        [6, 8],
+        [1, 5],
+        [2, 6],
+        [3, 7],
+        [4, 8],
+    ] {
+        cube += &format!("t crease 2/1/0 {} {} inf\n", a - 1, b - 1);
+    }
+    for v in 0..8 {
+        cube += &format!("t corner 1/1/0 {v} inf\n");
+    }
+    sixfold.file("cube.obj", &cube);
+    sixfold.passes(&["subdivide", "cube.obj", "-o", "one.obj"]);
+    sixfold.passes(&["subdivide", "one.obj", "-o", "two.obj"]);
+    assert!((sixfold.volume("two.obj") - 8.0).abs() < 1e-9);
+    let run = sixfold.passes(&["subdivide", "cube.obj", "-o", "one.ply"]);
+    assert!(run.stderr.contains("sharpness of"), "{run:?}");
+}
+
+#[test]
+fn parts_that_touch_are_named() {
+    let sixfold = Sixfold::new();
+    let crossing = cuboid(1.0, 1, false) + &cuboid(1.0, 9, false).replace("v 1 ", "v 3 ");
+    sixfold.file("crossing.obj", &crossing);
+    let run = sixfold.passes(&["inspect", "crossing.obj"]);
+    assert!(
+        run.stdout
+            .contains("2 closed parts that touch or cross others"),
+        "{run:?}"
+    );
+    sixfold.file("one.obj", &cuboid(1.0, 1, false));
+    let run = sixfold.passes(&["inspect", "one.obj"]);
+    assert!(!run.stdout.contains("touch"), "{run:?}");
+}
+
 #[test]
 fn decimation_stops_before_a_distance() {
     let sixfold = Sixfold::new();
@@ -445,7 +542,7 @@ fn decimation_stops_before_a_distance() {
         let limit: f64 = limit.parse().expect("a number");
         for side in parsed(&run.stdout)["distances"].as_array().expect("a list") {
             let largest = side["largest"].as_f64().expect("a distance");
-            assert!(largest < 1.1 * limit, "{largest} of {limit}");
+            assert!(largest <= limit, "{largest} of {limit}");
         }
         let facts = parsed(
             &sixfold

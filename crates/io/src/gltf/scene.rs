@@ -4,7 +4,7 @@ mod triangles;
 
 use std::collections::HashMap;
 
-use sixfold_core::glam::{DMat4, DQuat, DVec3};
+use sixfold_core::glam::{DMat4, DQuat, DVec3, DVec4};
 
 use super::accessor::elements;
 use super::buffers::Buffers;
@@ -289,6 +289,8 @@ fn local_transform(node: &Node) -> DMat4 {
     let [x, y, z, w] = node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]);
     let scale = DVec3::from_array(node.scale.unwrap_or([1.0; 3]));
     let translation = DVec3::from_array(node.translation.unwrap_or([0.0; 3]));
-    let rotation = DQuat::from_xyzw(x, y, z, w);
+    // The specification wants unit length. Rounded files have nearly that, and others would scale.
+    let rotation = DVec4::new(x, y, z, w).try_normalize();
+    let rotation = rotation.map_or(DQuat::IDENTITY, DQuat::from_vec4);
     DMat4::from_scale_rotation_translation(scale, rotation, translation)
 }

@@ -166,6 +166,34 @@ fn nodes_move_and_mirror_their_meshes() {
 }
 
 #[test]
+fn rotations_of_any_length_do_not_scale() {
+    for (rotation, expected) in [
+        ([0.0, 0.0, 1.0, 1.0], [0.0, 1.0]),
+        ([0.0, 0.0, 0.71, 0.71], [0.0, 1.0]),
+        ([0.0; 4], [1.0, 0.0]),
+    ] {
+        let mut parts = Parts::square();
+        parts.document["nodes"] = json!([{"mesh": 0, "rotation": rotation}]);
+        parts.document["scenes"] = json!([{"nodes": [0]}]);
+        let [x, y] = expected;
+        let found = parts.read().positions[1];
+        assert!((found - Point::new(x, y, 0.0)).length() < 1e-6, "{found}");
+    }
+}
+
+#[test]
+fn corners_that_complete_no_triangle_are_counted() {
+    let mut parts = Parts::square();
+    parts.document["accessors"][1]["count"] = json!(5);
+    let mesh = parts.read();
+    assert_eq!(faces(&mesh), [[0, 1, 2]]);
+    assert_eq!(
+        notices(&mesh),
+        ["ignored 2 corners of incomplete triangles (first at mesh 0)"]
+    );
+}
+
+#[test]
 fn primitives_with_the_same_positions_share_vertices() {
     let mut parts = Parts::square();
     let primitives = &mut parts.document["meshes"][0]["primitives"];

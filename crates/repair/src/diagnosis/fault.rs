@@ -125,13 +125,16 @@ pub enum FaultKind {
     TurnedFace,
     /// A component that is not orientable, by an edge at which its faces cannot agree.
     NotOrientable,
+    /// A closed component that touches or crosses another one, by its first face. The volume of the mesh
+    /// counts what they share twice, or not at all.
+    TouchingComponent,
     /// An edge with one face.
     BoundaryEdge,
 }
 
 impl FaultKind {
     /// All kinds, in the order of reports.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Polygon,
         Self::NonManifoldEdge,
         Self::RepeatedSide,
@@ -146,6 +149,7 @@ impl FaultKind {
         Self::CrossingFace,
         Self::TurnedFace,
         Self::NotOrientable,
+        Self::TouchingComponent,
         Self::BoundaryEdge,
     ];
 
@@ -176,7 +180,7 @@ impl FaultKind {
             }
             Self::IsolatedVertex => vec![Step::RemoveIsolatedVertices],
             Self::CoincidentCorners | Self::CoincidentVertex => vec![Step::Weld(Weld::default())],
-            Self::NotFiniteVertex | Self::CrossingFace => Vec::new(),
+            Self::NotFiniteVertex | Self::CrossingFace | Self::TouchingComponent => Vec::new(),
             Self::DuplicateFace => vec![Step::RemoveDuplicateFaces(OppositeFaces::Keep)],
             Self::OppositeFace => vec![Step::RemoveDuplicateFaces(OppositeFaces::Remove)],
             Self::FlatFace => vec![Step::RemoveFlatFaces],
@@ -234,6 +238,10 @@ impl FaultKind {
             Self::NotOrientable => [
                 "component that is not orientable",
                 "components that are not orientable",
+            ],
+            Self::TouchingComponent => [
+                "closed part that touches or crosses another, so that its outside is not known",
+                "closed parts that touch or cross others, so that their outsides are not known",
             ],
             Self::BoundaryEdge => ["boundary edge", "boundary edges"],
         }

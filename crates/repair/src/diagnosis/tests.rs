@@ -84,7 +84,7 @@ proptest! {
             match fault.kind {
                 FaultKind::BoundaryEdge => {}
                 // Only other corners repair these.
-                FaultKind::CrossingFace => prop_assert_eq!(&repaired.polygons, &polygons),
+                FaultKind::CrossingFace | FaultKind::TouchingComponent => prop_assert_eq!(&repaired.polygons, &polygons),
                 FaultKind::FlatFace => prop_assert_eq!(count(&after, fault.kind), flat),
                 _ => prop_assert_eq!(after.fault(fault.kind), None),
             }

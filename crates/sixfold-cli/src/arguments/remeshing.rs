@@ -23,8 +23,9 @@ Edges with three or more faces are collapsed along their curve, on backends that
 
 With --max-error, collapses are skipped if a vertex, the middle of an edge or the centroid of a face
 of the mesh would be farther than the distance from the result, or one of the result farther from the
-mesh. Between these points, it can be a little farther; `sixfold distance` measures it. Without
---faces and --ratio, all other collapses are done.
+mesh. Then 100,000 other points of each are measured, as by `sixfold distance`; if one is farther,
+the decimation is repeated with a smaller distance. Without --faces and --ratio, all collapses that
+the distance allows are done.
 All faces must be triangles; `sixfold triangulate` cuts polygons into triangles.
 
 Exit codes: 0 success, even if the target was not reached; 1 with --check, the shape has changed;

@@ -31,6 +31,10 @@ impl SceneReader<'_, '_> {
             None => Indices::InOrder(vertices),
         };
         self.spend(indices.count().saturating_mul(3))?;
+        let place = Place::Item {
+            kind: "mesh",
+            number: mesh,
+        };
         let mut last = [0; 3];
         for i in 0..indices.count() {
             let row = self.vertex(&mut indices, i, first, vertices)?;
@@ -50,20 +54,18 @@ impl SceneReader<'_, '_> {
             }
             let is_strip = primitive.mode == 5;
             if is_strip && (a == b || b == c || a == c) {
-                let number = mesh;
-                let kind = "mesh";
-                let place = Place::Item { kind, number };
                 self.builder.notices.add(IgnoredKind::StripJoints, place);
                 continue;
             }
             // Every other triangle of a strip is turned.
             let is_turned = (is_strip && i % 2 == 1) != is_mirrored;
             let triangle = if is_turned { [b, a, c] } else { [a, b, c] };
-            let place = Place::Item {
-                kind: "mesh",
-                number: mesh,
-            };
             self.builder.push_face(&triangle, place)?;
+        }
+        if primitive.mode == 4 {
+            let rest = indices.count() % 3;
+            let notices = &mut self.builder.notices;
+            notices.add_many(IgnoredKind::IncompleteTriangles, rest, place);
         }
         Ok(())
     }

@@ -90,7 +90,7 @@ fn faults_of_off_are_named_with_their_lines() {
     let mesh = read(format!("OFF 2 0 0\n{two}\n 3 0 1 2\n"));
     assert_eq!(
         notices(&mesh),
-        ["ignored 4 bytes after the mesh (first at line 3)"]
+        ["ignored 4 bytes after the mesh (first at line 5)"]
     );
 }
 
