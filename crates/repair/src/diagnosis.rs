@@ -47,7 +47,8 @@ pub struct Diagnosis {
     /// The number of boundary edges whose two ends have the same positions as the ends of another
     /// boundary edge, which runs in the opposite direction.
     pub seam_edges: usize,
-    /// Boundaries that nearly meet, if there are any. [`Step::Weld`] closes them.
+    /// Boundaries that nearly meet, if there are any. [`Step::Weld`] closes them, but this can harm
+    /// other parts: see [`Crack::is_safe`].
     pub crack: Option<Crack>,
 }
 
@@ -69,14 +70,16 @@ impl Diagnosis {
 
     /// Returns the steps that repair the faults of one kind in this mesh, in order: those of
     /// [`FaultKind::repairs`], after the steps that make a mesh an oriented manifold if they need one.
-    /// If most boundary edges are seams or cracks, the step for boundary edges welds them.
+    /// If most boundary edges are seams or cracks, the step for boundary edges welds them. Without steps
+    /// if most boundary edges are cracks that cannot be welded without harm.
     pub fn repairs(&self, kind: FaultKind) -> Vec<Step> {
         let mut steps = Vec::new();
         if kind == FaultKind::BoundaryEdge && self.looks_unwelded() {
             return vec![Step::Weld(Weld::default())];
         }
-        if let (FaultKind::BoundaryEdge, Some(crack)) = (kind, self.wide_crack()) {
-            return vec![crack.weld()];
+        if let (FaultKind::BoundaryEdge, Some(crack)) = (kind, self.most_edges_crack()) {
+            let safe = Some(crack).filter(Crack::is_safe);
+            return safe.iter().map(Crack::weld).collect();
         }
         if kind == FaultKind::BoundaryEdge {
             // The first kind needs the most steps.
@@ -94,8 +97,13 @@ impl Diagnosis {
         steps
     }
 
-    /// Returns the crack if at least half of the boundary edges belong to it.
+    /// Returns the crack if at least half of the boundary edges belong to it, and welding it does no
+    /// harm ([`Crack::is_safe`]).
     pub fn wide_crack(&self) -> Option<Crack> {
+        self.most_edges_crack().filter(Crack::is_safe)
+    }
+
+    fn most_edges_crack(&self) -> Option<Crack> {
         self.crack
             .filter(|crack| 2 * crack.edges >= self.boundary_edges)
     }

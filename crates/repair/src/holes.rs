@@ -1,15 +1,16 @@
 //! Filling of boundary holes.
 
+mod cover;
 mod minimum_area;
 
 use glam::DVec3;
 use rustc_hash::FxHashSet;
-use sixfold_core::{Capabilities, FaceId, Incidence, Pair, PolygonCutter, PolygonMesh, VertexId};
-use sixfold_spatial::{Bvh, FaceTriangle, SpatialIndex, SurfaceQueries, polygon_triangles};
+use sixfold_core::{Capabilities, Incidence, Pair, PolygonCutter, PolygonMesh, VertexId, row};
 
 use crate::error::RepairError;
 use crate::outcome::{Left, Outcome, StepCounts};
 use crate::trace::Rebuild;
+use cover::{Covered, Patch, Patches, Surface, coincide};
 use minimum_area::minimum_area_triangulation;
 
 /// Options of filling holes.
@@ -22,7 +23,13 @@ use minimum_area::minimum_area_triangulation;
 /// that is already an edge, because that edge would get more than two faces. If this is impossible,
 /// the hole remains and is named in the report. So does a hole whose triangles would lie on faces of
 /// the mesh: the outer boundary of a flat part is one, and so are the three sides of a face that
-/// shares no edge.
+/// shares no edge, and a hole with another part of the mesh in it. Faces lie on triangles if they are
+/// nearly parallel to them, within 0.005 of the mean length of the hole's edges.
+///
+/// Holes are filled in the order of their area. A hole whose triangles would lie on those of a
+/// smaller hole remains; if the triangles of two holes coincide, both remain.
+///
+/// O((n + f) log f) for n edges of holes and f faces, plus the time of the method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FillHoles {
     /// Holes with more edges than this remain; `None` for no limit.
@@ -50,9 +57,6 @@ sixfold_core::named! {
 /// compared.
 const MINIMUM_AREA_EDGES: usize = 400;
 
-/// A triangle lies on a surface if its centre is nearer to the surface than this part of its height.
-const ON_SURFACE: f64 = 0.01;
-
 /// Fills holes.
 pub(crate) fn fill(polygons: &PolygonMesh, options: &FillHoles) -> Result<Outcome, RepairError> {
     let needed = Capabilities {
@@ -61,37 +65,35 @@ pub(crate) fn fill(polygons: &PolygonMesh, options: &FillHoles) -> Result<Outcom
     };
     let check = needed.check(polygons);
     check.map_err(RepairError::NotOrientedManifold)?;
-    let mut holes = Holes::new(polygons);
+    let holes = Holes::new(polygons);
     let loops = holes.loops(polygons);
     if loops.is_empty() {
         return Ok(Outcome::unchanged());
     }
+    let mut filling = Filling::new(polygons, options.method, holes, &loops);
+    for (number, hole) in loops.iter().enumerate() {
+        if options.max_edges.is_some_and(|most| hole.len() > most) {
+            filling.leave(number, |vertex, edges| Left::LargeHole { vertex, edges });
+        } else {
+            filling.propose(number);
+        }
+    }
+    filling.accept();
     let mut rebuild = Rebuild::new(polygons);
     for (f, _) in polygons.faces().iter() {
         rebuild.keep(f, |v, _| v)?;
     }
+    let Filling {
+        mut accepted,
+        mut left,
+        ..
+    } = filling;
+    accepted.sort_unstable_by_key(|proposal| proposal.hole);
     let mut counts = StepCounts::default();
-    let mut left = Vec::new();
-    let surface = Surface::new(polygons);
-    for hole in loops {
-        let (vertex, edges) = (hole[0], hole.len());
-        if options.max_edges.is_some_and(|most| edges > most) {
-            left.push(Left::LargeHole { vertex, edges });
-            continue;
-        }
-        let Some(triangles) = holes.triangulate(polygons, &hole, options.method) else {
-            left.push(Left::BlockedHole { vertex, edges });
-            continue;
-        };
-        if surface.is_covered_by(polygons, triangles.iter().map(|t| t.map(|i| hole[i]))) {
-            left.push(Left::CoveringHole { vertex, edges });
-            continue;
-        }
+    for triangles in accepted.into_iter().map(|proposal| proposal.triangles) {
         counts.holes_filled += 1;
         counts.faces_added += triangles.len();
-        for triangle in triangles {
-            let corners = triangle.map(|i| hole[i]);
-            holes.add_edges(corners);
+        for corners in triangles {
             rebuild.push(None, corners.into_iter().map(|v| (v, None)))?;
         }
     }
@@ -99,38 +101,162 @@ pub(crate) fn fill(polygons: &PolygonMesh, options: &FillHoles) -> Result<Outcom
         true => Outcome::changed(rebuild.finish_with_old_vertices()?, counts),
         false => Outcome::unchanged(),
     };
+    left.sort_unstable_by_key(|(hole, _)| *hole);
+    let left = left.into_iter().map(|(_, left)| left).collect();
     Ok(Outcome { left, ..outcome })
 }
 
-/// The surface before holes are filled.
-struct Surface(Option<Bvh<FaceTriangle<FaceId>>>);
+/// The triangles for a hole, before it is certain that the hole is filled.
+struct Proposal {
+    /// The number of the hole.
+    hole: usize,
+    triangles: Vec<[VertexId; 3]>,
+    patch: Patch,
+    /// The part of the patch on which faces of the mesh lie.
+    covered: Covered,
+}
 
-impl Surface {
-    fn new(polygons: &PolygonMesh) -> Self {
-        // Without an index, because a coordinate is not finite, every hole is filled.
-        Self(polygon_triangles(polygons).and_then(Bvh::build).ok())
+/// The filling of holes: first, every hole gets a patch of triangles by itself; then the smallest
+/// patches are accepted first.
+struct Filling<'a> {
+    polygons: &'a PolygonMesh,
+    method: HoleFilling,
+    loops: &'a [Vec<VertexId>],
+    /// The edges of the mesh and of accepted patches.
+    holes: Holes,
+    surface: Surface<'a>,
+    /// By vertex: a hole in which it is, plus 1, if this was the last one that was marked.
+    mark: Vec<u32>,
+    proposals: Vec<Proposal>,
+    accepted: Vec<Proposal>,
+    /// The holes that remain, by number.
+    left: Vec<(usize, Left)>,
+}
+
+impl<'a> Filling<'a> {
+    fn new(
+        polygons: &'a PolygonMesh,
+        method: HoleFilling,
+        holes: Holes,
+        loops: &'a [Vec<VertexId>],
+    ) -> Self {
+        Self {
+            polygons,
+            method,
+            loops,
+            holes,
+            surface: Surface::new(polygons),
+            mark: vec![0; polygons.vertex_count()],
+            proposals: Vec::new(),
+            accepted: Vec::new(),
+            left: Vec::new(),
+        }
     }
 
-    /// Returns whether more than half of the area of a patch lies on the surface.
-    fn is_covered_by(
-        &self,
-        polygons: &PolygonMesh,
-        patch: impl Iterator<Item = [VertexId; 3]>,
-    ) -> bool {
-        let Some(index) = &self.0 else { return false };
-        let (mut covered, mut all) = (0.0, 0.0);
-        for triangle in patch {
-            let [a, b, c] = triangle.map(|v| polygons.position(v).as_dvec3());
-            let area = (b - a).cross(c - a).length();
-            let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-            let closest = index.closest_point((a + b + c) / 3.0);
-            // The area is twice that of the triangle, so this is its height.
-            let near = ON_SURFACE * area / longest;
-            let is_near = closest.is_some_and(|point| point.distance() < near);
-            covered += if is_near { area } else { 0.0 };
-            all += area;
+    fn leave(&mut self, hole: usize, reason: impl FnOnce(VertexId, usize) -> Left) {
+        let corners = &self.loops[hole];
+        self.left.push((hole, reason(corners[0], corners.len())));
+    }
+
+    fn leave_covering(&mut self, hole: usize) {
+        self.leave(hole, |vertex, edges| Left::CoveringHole { vertex, edges });
+    }
+
+    /// Proposes a patch that is possible beside the accepted ones and does not lie on the mesh;
+    /// leaves the hole if there is none.
+    fn propose(&mut self, hole: usize) {
+        let corners = &self.loops[hole];
+        let triangles = self.holes.triangulate(self.polygons, corners, self.method);
+        let Some(triangles) = triangles else {
+            self.leave(hole, |vertex, edges| Left::BlockedHole { vertex, edges });
+            return;
+        };
+        let triangles: Vec<[VertexId; 3]> = triangles
+            .into_iter()
+            .map(|triangle| triangle.map(|i| corners[i]))
+            .collect();
+        let patch = Patch::new(self.polygons, corners, &triangles);
+        self.mark_hole(hole);
+        let covered = self.surface.on(&patch, |v| self.is_in_hole(hole, v));
+        if patch.is_covered(covered) {
+            self.leave_covering(hole);
+            return;
         }
-        covered > 0.5 * all
+        self.proposals.push(Proposal {
+            hole,
+            triangles,
+            patch,
+            covered,
+        });
+    }
+
+    fn mark_hole(&mut self, hole: usize) {
+        for v in &self.loops[hole] {
+            self.mark[v.index()] = row(hole) + 1;
+        }
+    }
+
+    /// Returns whether a vertex is in the hole that was marked last.
+    fn is_in_hole(&self, hole: usize, v: VertexId) -> bool {
+        self.mark[v.index()] == row(hole) + 1
+    }
+
+    /// Accepts the proposals that do not lie on smaller ones that are accepted, and leaves the
+    /// others. Of two proposals that coincide, both are left.
+    fn accept(&mut self) {
+        let proposals = std::mem::take(&mut self.proposals);
+        let patches = Patches::new(proposals.iter().map(|proposal| &proposal.patch));
+        let mut covers = Vec::with_capacity(proposals.len());
+        for (p, proposal) in proposals.iter().enumerate() {
+            self.mark_hole(proposal.hole);
+            let is_in_hole = |v| self.is_in_hole(proposal.hole, v);
+            covers.push(patches.on(&proposal.patch, p, is_in_hole));
+        }
+        let mut is_twice = vec![false; proposals.len()];
+        for (p, covers) in covers.iter().enumerate() {
+            for &(q, covered) in covers {
+                if coincide(&proposals[p].patch, &proposals[q].patch, covered) {
+                    (is_twice[p], is_twice[q]) = (true, true);
+                }
+            }
+        }
+        let mut order: Vec<usize> = (0..proposals.len()).collect();
+        let area = |p: usize| proposals[p].patch.area();
+        order.sort_by(|&p, &q| area(p).total_cmp(&area(q)));
+        let mut proposals: Vec<Option<Proposal>> = proposals.into_iter().map(Some).collect();
+        let mut is_accepted = vec![false; proposals.len()];
+        for p in order {
+            let Some(proposal) = proposals[p].take() else {
+                continue;
+            };
+            let below = covers[p].iter().filter(|(q, _)| is_accepted[*q]);
+            let covered = below.fold(proposal.covered, |sum, &(_, covered)| sum.with(covered));
+            if is_twice[p] || proposal.patch.is_covered(covered) {
+                self.leave_covering(proposal.hole);
+                continue;
+            }
+            is_accepted[p] = self.accept_one(proposal);
+        }
+    }
+
+    /// Accepts a proposal, with other triangles if it has a diagonal of an accepted one. Returns
+    /// whether there are such triangles.
+    fn accept_one(&mut self, proposal: Proposal) -> bool {
+        let proposal = match self.holes.has_diagonal(&proposal.triangles) {
+            false => Some(proposal),
+            true => {
+                self.propose(proposal.hole);
+                self.proposals.pop()
+            }
+        };
+        let Some(proposal) = proposal else {
+            return false;
+        };
+        for &triangle in &proposal.triangles {
+            self.holes.add_triangle(triangle);
+        }
+        self.accepted.push(proposal);
+        true
     }
 }
 
@@ -140,6 +266,8 @@ struct Holes {
     sides: Vec<[VertexId; 2]>,
     /// The edges between boundary vertices.
     edges: FxHashSet<Pair<VertexId>>,
+    /// Those of them that filling added.
+    diagonals: FxHashSet<Pair<VertexId>>,
 }
 
 impl Holes {
@@ -165,7 +293,11 @@ impl Holes {
         let ends = incidence.edges().map(|edge| edge.ends);
         let inner = ends.filter(|ends| ends.iter().all(|v| is_on_boundary[v.index()]));
         let edges = inner.map(|[a, b]| Pair::new(a, b)).collect();
-        Self { sides, edges }
+        Self {
+            sides,
+            edges,
+            diagonals: FxHashSet::default(),
+        }
     }
 
     /// Returns the vertices of every hole, in the order of its boundary, from its lowest vertex on. No
@@ -217,9 +349,18 @@ impl Holes {
         free.rev().max_by(|&a, &b| cosine(a).total_cmp(&cosine(b)))
     }
 
-    fn add_edges(&mut self, [a, b, c]: [VertexId; 3]) {
-        self.edges
-            .extend([Pair::new(a, b), Pair::new(b, c), Pair::new(c, a)]);
+    fn add_triangle(&mut self, triangle: [VertexId; 3]) {
+        for side in sides_of(triangle) {
+            if self.edges.insert(side) {
+                self.diagonals.insert(side);
+            }
+        }
+    }
+
+    /// Returns whether a triangle has a side that filling added.
+    fn has_diagonal(&self, triangles: &[[VertexId; 3]]) -> bool {
+        let mut sides = triangles.iter().copied().flat_map(sides_of);
+        sides.any(|side| self.diagonals.contains(&side))
     }
 
     /// Returns the triangles of a hole as numbers of its vertices; `None` if no triangulation
@@ -255,6 +396,10 @@ impl Holes {
         }
         Some(ears.to_vec())
     }
+}
+
+fn sides_of([a, b, c]: [VertexId; 3]) -> [Pair<VertexId>; 3] {
+    [Pair::new(a, b), Pair::new(b, c), Pair::new(c, a)]
 }
 
 /// Returns whether corners `i` and `j` of a polygon with `n` corners are not adjacent.

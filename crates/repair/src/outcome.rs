@@ -85,7 +85,8 @@ pub enum Left {
         vertex: VertexId,
         edges: usize,
     },
-    /// A hole whose triangles would lie on faces of the mesh; `vertex` is its lowest vertex.
+    /// A hole whose triangles would lie on faces of the mesh or on those of another hole; `vertex` is
+    /// its lowest vertex.
     CoveringHole {
         #[cfg_attr(feature = "serde", serde(serialize_with = "crate::serialize::row"))]
         vertex: VertexId,
@@ -149,7 +150,7 @@ impl fmt::Display for Left {
             ),
             Self::CoveringHole { vertex, edges } => write!(
                 f,
-                "the hole at vertex {vertex} ({edges} edges) is not filled, because its triangles would lie on the mesh"
+                "the hole at vertex {vertex} ({edges} edges) is not filled, because its triangles would lie on the mesh or on those of another hole"
             ),
             Self::FlatFace { face } => write!(
                 f,

@@ -13,21 +13,34 @@ const NARROW: f64 = 0.1;
 /// The largest distance of a crack, as a multiple of the median gap: wider gaps are something else.
 const MOST_MEDIANS: f64 = 10.0;
 
-/// Boundaries that nearly meet: the distance at which welding joins them.
+/// Boundaries that nearly meet: the distance at which welding joins them, and what it does to the
+/// rest of the mesh. The numbers are those of a weld of the whole mesh at this distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Crack {
     /// A tolerance of [`Step::Weld`](crate::Step::Weld) that closes the crack, in units of the
-    /// coordinates. It is below half of the shortest edge of the mesh, so that no edge collapses.
+    /// coordinates.
     pub distance: f64,
     /// The number of boundary edges that are no longer boundary edges after welding.
     pub edges: usize,
+    /// The number of faces with corners at different positions that would become one vertex, and of
+    /// faces that would have the same vertices as another face.
+    pub collapsed_faces: usize,
+    /// The number of edges that would have three or more faces, and do not have them before.
+    pub non_manifold_edges: usize,
 }
 
 impl Crack {
-    /// Returns the step that closes the crack.
+    /// Returns the step that closes the crack. It does no harm if the crack [is safe](Self::is_safe)
+    /// to weld.
     pub fn weld(&self) -> Step {
         Step::Weld(weld_within(self.distance))
+    }
+
+    /// Returns whether welding at this distance collapses no face and makes no non-manifold edge. Where
+    /// parts of the mesh are thinner or finer than the crack is wide, no distance may be safe.
+    pub fn is_safe(&self) -> bool {
+        self.collapsed_faces == 0 && self.non_manifold_edges == 0
     }
 }
 
@@ -39,31 +52,140 @@ fn weld_within(distance: f64) -> Weld {
 }
 
 /// Finds the boundary vertices that have a near neighbour on another boundary edge, and the distance at
-/// which most of their edges close. Returns `None` if no edge closes; O(n log n).
+/// which most of their edges close: a safe one, unless it closes less than half of the edges that
+/// another distance closes. Returns `None` if no edge closes; O(n log n).
 pub(super) fn crack(polygons: &PolygonMesh, incidence: &Incidence<'_>) -> Option<Crack> {
     let boundary = Boundary::new(polygons, incidence);
     let mut gaps = boundary.gaps();
     gaps.sort_unstable_by(f64::total_cmp);
     let median = *gaps.get(gaps.len() / 2)?;
-    // Welding must not collapse edges.
-    let limit = f64::min(
-        0.5 * shortest_edge(polygons, incidence),
-        MOST_MEDIANS * median,
-    );
-    let widest = gaps.into_iter().rfind(|&gap| gap < limit)?;
-    let mut best: Option<Crack> = None;
+    let cracks: Vec<Crack> = distances(&gaps, median, shortest_edge(polygons, incidence))
+        .into_iter()
+        .filter_map(|distance| try_weld(polygons, incidence, distance))
+        .collect();
+    // The smallest distance of several that close the same number.
+    let most = |cracks: &mut dyn Iterator<Item = &Crack>| {
+        cracks.fold(None, |best: Option<Crack>, &crack| match best {
+            Some(best) if best.edges >= crack.edges => Some(best),
+            _ => Some(crack),
+        })
+    };
+    let best = most(&mut cracks.iter()).filter(|crack| crack.edges > 0)?;
+    let safe = most(&mut cracks.iter().filter(|crack| crack.is_safe()));
+    Some(
+        safe.filter(|safe| 2 * safe.edges >= best.edges)
+            .unwrap_or(best),
+    )
+}
+
+/// Returns the distances at which welding is tried, from sorted gaps with this median.
+fn distances(gaps: &[f64], median: f64, shortest_edge: f64) -> Vec<f64> {
+    let widest_below = |limit: f64| gaps.iter().copied().rfind(|&gap| gap < limit);
+    let limit = MOST_MEDIANS * median;
+    // Below half of the shortest edge, welding is most likely safe.
+    let short = limit.min(0.5 * shortest_edge);
     // More than two corners that belong together can be farther apart than nearest neighbours are.
-    for factor in [1.0, 1.5, 2.0, 3.0] {
-        let distance = rounded_up(factor * widest);
-        let edges = match distance < limit {
-            true => boundary.closed_edges(distance),
-            false => 0,
-        };
-        if edges > best.map_or(0, |crack| crack.edges) {
-            best = Some(Crack { distance, edges });
+    let multiples = |widest: f64| [1.0, 1.5, 2.0, 3.0].map(|factor| rounded_up(factor * widest));
+    let near = widest_below(short).into_iter().flat_map(multiples);
+    let near = near.filter(|&distance| distance < short);
+    let all = widest_below(limit).into_iter().flat_map(multiples);
+    let mut distances: Vec<f64> = near.chain(all).collect();
+    distances.sort_unstable_by(f64::total_cmp);
+    distances.dedup();
+    distances
+}
+
+/// Welds vertices within `distance` on trial, and compares the edges and faces. Returns `None` if the
+/// distance is not valid. O(n log n), of which all but the weld is for the elements that it changes.
+fn try_weld(polygons: &PolygonMesh, incidence: &Incidence<'_>, distance: f64) -> Option<Crack> {
+    let representatives = representatives(polygons, &weld_within(distance)).ok()?;
+    let of = |v: VertexId| representatives[v.index()];
+    let mut is_merged = vec![false; representatives.len()];
+    for v in polygons.vertices().filter(|&v| of(v) != v) {
+        is_merged[v.index()] = true;
+        is_merged[of(v).index()] = true;
+    }
+    // Only edges and faces with an end that is merged change.
+    let [open, non_manifold] = edge_changes(incidence, of, &is_merged);
+    Some(Crack {
+        distance,
+        edges: usize::try_from(-open).unwrap_or(0),
+        collapsed_faces: collapsed_faces(polygons, of, &is_merged),
+        non_manifold_edges: usize::try_from(non_manifold).unwrap_or(0),
+    })
+}
+
+/// Returns how many more boundary edges, and edges with three or more faces, a mesh has if every
+/// vertex becomes the one that `of` returns. Two boundary edges that run in the same direction remain
+/// two.
+fn edge_changes(
+    incidence: &Incidence<'_>,
+    of: impl Fn(VertexId) -> VertexId,
+    is_merged: &[bool],
+) -> [isize; 2] {
+    let mut change = [0; 2];
+    let mut count = |faces: usize, by: isize| {
+        change[0] += if faces == 1 { by } else { 0 };
+        change[1] += if faces > 2 { by } else { 0 };
+    };
+    // By pair of vertices: the number of edges, of faces that run from the lower vertex to the higher,
+    // and of others.
+    let mut joined: FxHashMap<Pair<VertexId>, [usize; 3]> = FxHashMap::default();
+    for edge in incidence.edges() {
+        if edge.ends.iter().any(|v| is_merged[v.index()]) {
+            count(edge.len(), -1);
+            let [low, high] = edge.ends.map(&of);
+            let (down, up) = (edge.downward(), edge.len() - edge.downward());
+            let [up, down] = if low < high { [up, down] } else { [down, up] };
+            if low != high {
+                let joined = joined.entry(Pair::new(low, high)).or_default();
+                *joined = [joined[0] + 1, joined[1] + up, joined[2] + down];
+            }
         }
     }
-    best
+    // The order of the pairs does not change a sum.
+    for [edges, up, down] in joined.into_values() {
+        match edges == 2 && (up == 2 && down == 0 || up == 0 && down == 2) {
+            true => count(1, 2),
+            false => count(up + down, 1),
+        }
+    }
+    change
+}
+
+/// Returns the number of faces that get a repeated corner or the vertices of another face, if every
+/// vertex becomes the one that `of` returns. Faces with two corners at one position, and faces that
+/// share their vertices before, do not count.
+fn collapsed_faces(
+    polygons: &PolygonMesh,
+    of: impl Fn(VertexId) -> VertexId,
+    is_merged: &[bool],
+) -> usize {
+    let mut collapsed = 0;
+    // By the vertices of faces after welding: those of the first such face before.
+    let mut first: FxHashMap<Vec<VertexId>, Vec<VertexId>> = FxHashMap::default();
+    let sorted = |mut corners: Vec<VertexId>| {
+        corners.sort_unstable();
+        corners
+    };
+    for (_, face) in polygons.faces().iter() {
+        if !face.iter().any(|v| is_merged[v.index()]) {
+            continue;
+        }
+        let after = sorted(face.iter().map(|&v| of(v)).collect());
+        if after.windows(2).any(|pair| pair[0] == pair[1]) {
+            let has_coincident = (1..face.len()).any(|i| {
+                let at = polygons.position(face[i]);
+                face[..i].iter().any(|&v| polygons.position(v) == at)
+            });
+            collapsed += usize::from(!has_coincident);
+        } else if face.iter().all(|v| is_merged[v.index()]) {
+            let before = sorted(face.to_vec());
+            let first = first.entry(after).or_insert_with(|| before.clone());
+            collapsed += usize::from(*first != before);
+        }
+    }
+    collapsed
 }
 
 /// Returns `x` rounded up to two significant digits.
@@ -85,11 +207,9 @@ fn shortest_edge(polygons: &PolygonMesh, incidence: &Incidence<'_>) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// The boundary edges and their vertices.
+/// The vertices of boundary edges.
 struct Boundary<'a> {
     polygons: &'a PolygonMesh,
-    /// The ends of each edge, in the direction of its face.
-    edges: Vec<[VertexId; 2]>,
     /// The vertices that have finite positions, with the length of their shortest boundary edge.
     vertices: Vec<(VertexId, f64)>,
     tree: KdTree<VertexPoint<VertexId>>,
@@ -97,16 +217,8 @@ struct Boundary<'a> {
 
 impl<'a> Boundary<'a> {
     fn new(polygons: &'a PolygonMesh, incidence: &Incidence<'_>) -> Self {
-        let mut edges = Vec::new();
         let mut shortest = vec![f64::INFINITY; polygons.vertex_count()];
-        for edge in incidence.edges() {
-            let Some(side) = edge.single() else { continue };
-            let [low, high] = edge.ends;
-            edges.push(if side.downward {
-                [high, low]
-            } else {
-                [low, high]
-            });
+        for edge in incidence.edges().filter(|edge| edge.len() == 1) {
             let [a, b] = edge.ends.map(|v| polygons.position(v).as_dvec3());
             for v in edge.ends {
                 let length = &mut shortest[v.index()];
@@ -124,7 +236,6 @@ impl<'a> Boundary<'a> {
         let tree = KdTree::build(points.collect()).expect("finite points, not more than vertices");
         Self {
             polygons,
-            edges,
             vertices,
             tree,
         }
@@ -144,20 +255,6 @@ impl<'a> Boundary<'a> {
             nearest.is_finite().then_some(nearest)
         };
         self.vertices.iter().filter_map(gap).collect()
-    }
-
-    /// Returns the number of edges that have a partner if vertices within `distance` are welded.
-    fn closed_edges(&self, distance: f64) -> usize {
-        let Ok(representatives) = representatives(self.polygons, &weld_within(distance)) else {
-            return 0;
-        };
-        let mut sides: FxHashMap<Pair<VertexId>, [usize; 2]> = FxHashMap::default();
-        for edge in &self.edges {
-            let [from, to] = edge.map(|v| representatives[v.index()]);
-            sides.entry(Pair::new(from, to)).or_default()[usize::from(from > to)] += 1;
-        }
-        // The order of the pairs does not change a sum.
-        sides.into_values().map(|[up, down]| 2 * up.min(down)).sum()
     }
 }
 
@@ -232,5 +329,126 @@ mod tests {
         let crack = diagnose(&two, 0).crack.expect("the rims nearly meet");
         assert_eq!(crack.edges, 24);
         assert!((0.003..0.0032).contains(&crack.distance), "{crack:?}");
+    }
+
+    /// Returns a grid of `n` × `n` unit squares from a corner on.
+    fn sheet(n: u32, from: [f32; 3]) -> PolygonMesh {
+        let points = (0..(n + 1) * (n + 1)).map(|i| {
+            let [x, y] = [i % (n + 1), i / (n + 1)].map(|x| x as f32);
+            [from[0] + x, from[1] + y, from[2]]
+        });
+        let quads = (0..n * n).map(|i| {
+            let corner = i / n * (n + 1) + i % n;
+            [corner, corner + 1, corner + n + 2, corner + n + 1]
+        });
+        PolygonMesh::new(points, quads).expect("valid")
+    }
+
+    /// Returns a closed box with six quads.
+    fn solid(size: [f32; 3], from: [f32; 3]) -> PolygonMesh {
+        let cube = sixfold_shapes::cube();
+        let points = cube.positions().iter().map(|p| {
+            let p = 0.5 * (*p + Point::ONE);
+            p * Point::from_array(size) + Point::from_array(from)
+        });
+        PolygonMesh::from_faces(points.collect(), cube.faces().clone()).expect("valid")
+    }
+
+    fn assert_no_advice(mesh: &PolygonMesh) -> Crack {
+        let diagnosis = diagnose(mesh, 0);
+        let crack = diagnosis.crack.expect("edges nearly meet");
+        assert!(!crack.is_safe(), "{crack:?}");
+        assert_eq!(diagnosis.wide_crack(), None);
+        assert_eq!(diagnosis.repairs(crate::FaultKind::BoundaryEdge), []);
+        crack
+    }
+
+    /// The numbers of a crack are the differences that the weld makes.
+    fn assert_true(mesh: &PolygonMesh, crack: Crack) {
+        let welded = repair(mesh, &[crack.weld()])
+            .expect("a good tolerance")
+            .polygons;
+        let [before, after] = [mesh, &welded].map(Facts::from_polygons);
+        let closed = before.boundary_edges - after.boundary_edges;
+        assert_eq!(crack.edges, closed, "{crack:?}");
+        let more = after.non_manifold_edges - before.non_manifold_edges;
+        assert_eq!(crack.non_manifold_edges, more, "{crack:?}");
+    }
+
+    #[test]
+    fn parallel_sheets_are_not_welded() {
+        let faces = sheet(20, [0.0; 3]);
+        let faces = faces.faces().iter().map(|(_, face)| face.iter().rev());
+        let faces: Vec<Vec<u32>> = faces
+            .map(|face| face.map(|&v| v.into()).collect())
+            .collect();
+        let below = sheet(20, [0.0, 0.0, -0.01]);
+        let below = PolygonMesh::new(below.positions().iter().copied(), faces).expect("valid");
+        let sheets = [sheet(20, [0.0; 3]), below];
+        let sheets = crate::orientation::tests::together(&sheets);
+        let crack = assert_no_advice(&sheets);
+        assert_eq!(crack.collapsed_faces, 400);
+        // Beside each other, they are welded.
+        let sheets = [sheet(20, [0.0; 3]), sheet(20, [20.01, 0.0, 0.0])];
+        let sheets = crate::orientation::tests::together(&sheets);
+        let crack = diagnose(&sheets, 0).crack.expect("edges nearly meet");
+        assert!(crack.is_safe() && crack.edges == 40, "{crack:?}");
+        assert_true(&sheets, crack);
+    }
+
+    #[test]
+    fn a_weld_that_harms_closed_parts_is_not_advised() {
+        let sheets = [sheet(1, [0.0; 3]), sheet(1, [1.02, 0.0, 0.0])];
+        let far = |distance: f32| [10.0 + distance, 10.0, 0.0];
+        let together = |closed: &[PolygonMesh]| {
+            crate::orientation::tests::together(&[&sheets[..], closed].concat())
+        };
+        let is_found = |crack: Crack| (0.02..0.021).contains(&crack.distance) && crack.edges == 2;
+        // Two cubes with a narrow gap become one, a thin plate and a tiny cube collapse.
+        let cubes = [solid([1.0; 3], far(0.0)), solid([1.0; 3], far(1.01))];
+        let open = |mesh: &PolygonMesh| diagnose(mesh, 0);
+        for (closed, [collapsed, non_manifold]) in [
+            (&cubes[..], [1, 4]),
+            (&[solid([1.0, 1.0, 0.01], far(0.0))][..], [5, 1]),
+            (&[solid([0.01; 3], far(0.0))][..], [6, 0]),
+        ] {
+            let mesh = together(closed);
+            let crack = open(&mesh).crack.expect("edges nearly meet");
+            assert!(is_found(crack) && !crack.is_safe(), "{crack:?}");
+            assert_eq!(open(&mesh).wide_crack(), None);
+            assert_eq!(
+                (crack.collapsed_faces > 0, crack.non_manifold_edges > 0),
+                (collapsed > 0, non_manifold > 0),
+                "{crack:?}"
+            );
+        }
+        let mesh = together(&[solid([1.0; 3], far(0.0))]);
+        let crack = open(&mesh).crack.expect("edges nearly meet");
+        assert!(is_found(crack) && crack.is_safe(), "{crack:?}");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// Sheets and boxes at random places near each other: if a weld is advised, it makes no
+        /// non-manifold edge and removes no face.
+        #[test]
+        fn advised_welds_do_no_harm(
+            places in proptest::collection::vec((any::<bool>(), prop::array::uniform3(0..2_u8), prop::array::uniform3(-3..4_i8)), 2..6),
+        ) {
+            let parts = places.iter().map(|(is_solid, place, shift)| {
+                let from = [0, 1, 2].map(|i| f32::from(place[i]) + 0.01 * f32::from(shift[i]));
+                if *is_solid { solid([1.0; 3], from) } else { sheet(1, from) }
+            });
+            let mesh = crate::orientation::tests::together(&parts.collect::<Vec<_>>());
+            if let Some(crack) = diagnose(&mesh, 0).crack.filter(Crack::is_safe) {
+                let welded = repair(&mesh, &[crack.weld()]).expect("a good tolerance").polygons;
+                let facts = Facts::from_polygons(&welded);
+                prop_assert_eq!(facts.non_manifold_edges, 0);
+                prop_assert_eq!(welded.face_count(), mesh.face_count());
+                prop_assert_eq!(facts.duplicate_faces, 0);
+                prop_assert!(boundary_edges(&mesh) - facts.boundary_edges >= crack.edges);
+            }
+        }
     }
 }

@@ -143,6 +143,7 @@ fn a_hole_whose_diagonals_are_edges_remains() {
     let mut blocked = Holes {
         edges: holes.edges.clone(),
         sides: holes.sides.clone(),
+        diagonals: FxHashSet::default(),
     };
     let v = VertexId::new;
     blocked
