@@ -6,7 +6,7 @@ use std::path::Path;
 use sixfold::io::{self, LeftOut, PolygonPlaces};
 use sixfold::repair::{Crack, Diagnosis, Fault, FaultKind, Place, Step};
 use sixfold::{Capabilities, FaceId, PolygonMesh, structure_infos};
-use sixfold_study::numbers::grouped;
+use sixfold_study::numbers::{counted, grouped};
 
 use serde::Serialize;
 
@@ -53,7 +53,8 @@ pub(crate) struct DiagnosisRecord {
 struct CrackRecord {
     #[serde(flatten)]
     crack: Crack,
-    repair: String,
+    /// The command; `None` if welding would harm other parts.
+    repair: Option<String>,
 }
 
 /// The degenerate faces of the file, which the mesh does not have.
@@ -143,7 +144,9 @@ impl Diagnosed<'_> {
             seam_edges,
             crack: self.diagnosis.crack.map(|crack| CrackRecord {
                 crack,
-                repair: self.command(&repair_options(&[crack.weld()])),
+                repair: crack
+                    .is_safe()
+                    .then(|| self.command(&repair_options(&[crack.weld()]))),
             }),
             left_out: self.left_out_record(),
         }
@@ -220,19 +223,18 @@ impl Diagnosed<'_> {
             lines.push(hanging_indent(&label(&lines), &title));
             let mut notes = Vec::new();
             if let (FaultKind::BoundaryEdge, Some(crack)) = (fault.kind, self.diagnosis.crack) {
-                notes.push(format!(
-                    "{} of them nearly meet and close at distance {}",
-                    grouped(crack.edges),
-                    crack.distance
-                ));
+                notes.push(crack_text(&crack));
             }
             let refusing = refusing(|own| fault.kind.is_refused_by(own));
             if !refusing.is_empty() {
                 notes.push(format!("refused by {}", refusing.join(", ")));
             }
             match self.options(fault) {
-                _ if fault.kind == FaultKind::TouchingComponent => {}
-                none if none.is_empty() => notes.push("correct the coordinates".to_owned()),
+                none if none.is_empty() => match fault.kind {
+                    // Nothing is known that helps.
+                    FaultKind::TouchingComponent | FaultKind::BoundaryEdge => {}
+                    _ => notes.push("correct the coordinates".to_owned()),
+                },
                 _ if is_unwelded => {}
                 options => {
                     let options = options.replace(' ', NO_BREAK).replace("\u{a0}--", " --");
@@ -443,6 +445,30 @@ fn refusing(refuses: impl Fn(&Capabilities) -> bool) -> Vec<&'static str> {
     let infos = structure_infos().into_iter();
     let refusing = infos.filter(|info| refuses(&info.capabilities));
     refusing.map(|info| info.name).collect()
+}
+
+/// Describes boundaries that nearly meet, and what welding them would harm.
+fn crack_text(crack: &Crack) -> String {
+    let edges = grouped(crack.edges);
+    let distance = crack.distance;
+    if crack.is_safe() {
+        return format!("{edges} of them nearly meet and close at distance {distance}");
+    }
+    let faces = counted(crack.collapsed_faces, "face", "faces");
+    let bad = counted(
+        crack.non_manifold_edges,
+        "edge with three or more faces",
+        "edges with three or more faces",
+    );
+    let harm = match [crack.collapsed_faces, crack.non_manifold_edges] {
+        [0, _] => format!("make {bad}"),
+        [_, 0] => format!("collapse {faces}"),
+        [_, _] => format!("collapse {faces} and make {bad}"),
+    };
+    format!(
+        "{edges} of them nearly meet, but --weld={distance}, which closes them, would {harm}: weld \
+         these parts alone"
+    )
 }
 
 /// Returns whether good meshes can have the fault.

@@ -123,11 +123,14 @@ impl Work for DualWork<'_> {
         dual(&mesh).map_err(|error| match error {
             DualError::BoundaryEdge { .. } => {
                 let steps = diagnose(self.0, 0).repairs(FaultKind::BoundaryEdge);
-                Failure::unsupported(format!(
-                    "{error}. `sixfold repair {}` closes a solid; a surface with a rim, such as a \
-                     plane, stays open",
-                    repair_options(&steps)
-                ))
+                let closes = match repair_options(&steps) {
+                    none if none.is_empty() => String::new(),
+                    options => format!(
+                        ". `sixfold repair {options}` closes a solid; a surface with a rim, such \
+                         as a plane, stays open"
+                    ),
+                };
+                Failure::unsupported(format!("{error}{closes}"))
             }
             _ => Failure::unsupported(error),
         })

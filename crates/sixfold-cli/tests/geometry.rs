@@ -245,6 +245,33 @@ fn cracks_are_welded_as_advised() {
 }
 
 /// A box with a face without area, which is needed to keep it closed.
+/// Two parallel sheets and a crack beside a thin plate: welding would destroy them.
+#[test]
+fn a_weld_that_would_harm_other_parts_is_not_advised() {
+    let sixfold = Sixfold::new();
+    let mut sheets = String::new();
+    for z in [0.0, 0.01] {
+        for (x, y) in [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1)] {
+            sheets += &format!("v {x} {y} {z}\n");
+        }
+    }
+    sheets += "f 1 2 5 4\nf 2 3 6 5\nf 10 11 8 7\nf 11 12 9 8\n";
+    sixfold.file("sheets.obj", &sheets);
+    let run = sixfold.passes(&["inspect", "sheets.obj"]);
+    let text = run.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        text.contains("nearly meet, but --weld=0.01, which closes them, would"),
+        "{run:?}"
+    );
+    assert!(!text.contains("repair:"), "{run:?}");
+    let run = sixfold.passes(&["inspect", "sheets.obj", "--json", "-"]);
+    let crack = &parsed(&run.stdout)["diagnosis"]["crack"];
+    assert!(
+        crack["repair"].is_null() && crack["collapsed_faces"] == 2,
+        "{crack}"
+    );
+}
+
 #[test]
 fn removing_faces_without_area_opens_nothing() {
     let sixfold = Sixfold::new();
