@@ -29,7 +29,8 @@ use minimum_area::minimum_area_triangulation;
 /// Holes are filled in the order of their area. A hole whose triangles would lie on those of a
 /// smaller hole remains; if the triangles of two holes coincide, both remain.
 ///
-/// O((n + f) log f) for n edges of holes and f faces, plus the time of the method.
+/// Besides the time of the method, this takes O((n + f) log f) for n edges of holes and f faces if few
+/// faces are near the triangles of holes, and O(n²) more for each hole along which a surface runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FillHoles {
     /// Holes with more edges than this remain; `None` for no limit.
@@ -205,12 +206,12 @@ impl<'a> Filling<'a> {
     /// others. Of two proposals that coincide, both are left.
     fn accept(&mut self) {
         let proposals = std::mem::take(&mut self.proposals);
-        let patches = Patches::new(proposals.iter().map(|proposal| &proposal.patch));
+        let patches = Patches::new(proposals.iter().map(|proposal| &proposal.patch).collect());
         let mut covers = Vec::with_capacity(proposals.len());
         for (p, proposal) in proposals.iter().enumerate() {
             self.mark_hole(proposal.hole);
             let is_in_hole = |v| self.is_in_hole(proposal.hole, v);
-            covers.push(patches.on(&proposal.patch, p, is_in_hole));
+            covers.push(patches.on(p, is_in_hole));
         }
         let mut is_twice = vec![false; proposals.len()];
         for (p, covers) in covers.iter().enumerate() {

@@ -1,7 +1,9 @@
 //! Whether patches of holes would lie on the mesh, or on each other.
 
+use std::cell::OnceCell;
+
 use glam::DVec3;
-use sixfold_core::{PolygonMesh, VertexId};
+use sixfold_core::{PolygonMesh, VertexId, row};
 use sixfold_spatial::{Bvh, FaceTriangle, SpatialIndex, polygon_triangles};
 
 /// A face lies on a patch within this part of the mean length of the hole's edges.
@@ -17,23 +19,27 @@ const MOST_BESIDE: f64 = 0.25;
 const MOST_ELSEWHERE: f64 = 1e-3;
 /// Patches coincide if this part of the larger one lies on the other one.
 const COINCIDENT: f64 = 0.9;
-/// The number of edges up to which a patch is cut into pieces that are as long as 1.5 edges.
+/// The number of edges up to which the parts of a patch are as fine as the edges.
 const FINE_EDGES: f64 = 64.0;
+/// The most that parts are coarser than edges where they are compared with the mesh.
+const MOST_COARSE: f64 = 6.0;
+/// A part of a patch is cut if more items than this are near it.
+const MOST_NEAR: usize = 48;
 
-/// The triangles that fill a hole, cut into pieces.
-///
-/// The pieces have about the same size, so that few triangles are near each of them. A hole with n
-/// edges has O(n) pieces.
+/// The triangles that fill a hole.
 pub(super) struct Patch {
-    pieces: Vec<Piece>,
+    triangles: Vec<Piece>,
     area: f64,
     edges: usize,
     mean_edge: f64,
     /// The distance within which faces lie on the patch.
     reach: f64,
+    low: DVec3,
+    high: DVec3,
 }
 
-/// A part of a triangle of a patch.
+/// A triangle of a patch, or a part of it.
+#[derive(Clone, Copy)]
 struct Piece {
     corners: [DVec3; 3],
     triangle: [VertexId; 3],
@@ -53,24 +59,31 @@ impl Patch {
             .sum();
         let edges = hole.len();
         let mean_edge = length / edges as f64;
-        let longest = 1.5 * mean_edge * f64::max(1.0, edges as f64 / FINE_EDGES);
-        let (mut pieces, mut area) = (Vec::new(), 0.0);
-        for &triangle in triangles {
-            let corners = triangle.map(position);
-            area += 0.5 * normal(corners).length();
-            cut(corners, longest, &mut |corners| {
-                pieces.push(Piece { corners, triangle });
-            });
-        }
+        let pieces = triangles.iter().map(|&triangle| Piece {
+            corners: triangle.map(position),
+            triangle,
+        });
+        let triangles: Vec<Piece> = pieces.collect();
+        let doubled = triangles.iter().map(|piece| normal(piece.corners).length());
+        let area = 0.5 * doubled.sum::<f64>();
         // A patch is not wider than this if it is as long as half of its boundary.
         let width = 2.0 * area / length;
+        let corners = || hole.iter().map(|&v| position(v));
         Self {
-            pieces,
+            triangles,
             area,
             edges,
             mean_edge,
             reach: REACH * mean_edge.min(width),
+            low: corners().fold(DVec3::INFINITY, DVec3::min),
+            high: corners().fold(DVec3::NEG_INFINITY, DVec3::max),
         }
+    }
+
+    /// Returns the length of parts that are at most `most` times as long as edges. With n edges and no
+    /// limit, there are O(n) such parts.
+    fn part_length(&self, most: f64) -> f64 {
+        1.5 * self.mean_edge * (self.edges as f64 / FINE_EDGES).clamp(1.0, most)
     }
 
     pub(super) fn area(&self) -> f64 {
@@ -84,40 +97,77 @@ impl Patch {
             || covered.elsewhere > MOST_ELSEWHERE * self.area.min(square)
     }
 
-    /// Calls `visit` with the number of each item that lies on the patch, and the area of the part of
-    /// the patch on which it lies; several times if it lies on several pieces. `corners` returns the
-    /// corners of an item.
-    fn for_each_cover<F: Copy + Send + Sync>(
+    /// Calls `visit` with each item that lies on the patch, and the area of the part of the patch on
+    /// which it lies; several times if it lies on several parts. Ends if `visit` returns true.
+    ///
+    /// Parts of the patch near many items are cut down to `part_length`.
+    fn find_covers<F: Copy + Send + Sync>(
         &self,
         index: &Bvh<FaceTriangle<F>>,
-        corners: impl Fn(&FaceTriangle<F>) -> [DVec3; 3],
-        mut visit: impl FnMut(F, f64),
+        part_length: f64,
+        mut visit: impl FnMut(F, f64) -> bool,
     ) {
         let mut clipper = Clipper::default();
-        for piece in &self.pieces {
-            let [a, b, c] = piece.corners;
-            let centre = (a + b + c) / 3.0;
-            let far = piece.corners.map(|corner| corner.distance(centre));
-            let radius = far.into_iter().fold(0.0, f64::max) + self.reach;
-            let limit = radius * radius;
-            let low = a.min(b).min(c) - self.reach;
-            let high = a.max(b).max(c) + self.reach;
-            index.visit_near(centre, limit, |slot| {
-                let item = &index.items()[slot];
-                let other = corners(item);
-                let [p, q, r] = other;
-                let is_apart =
-                    p.max(q).max(r).cmplt(low).any() || p.min(q).min(r).cmpgt(high).any();
-                if !is_apart {
-                    let area = clipper.covered_area(piece.corners, other, self.reach);
-                    if area > 0.0 {
-                        visit(item.face, area);
+        let mut near = Vec::new();
+        let mut parts: Vec<[DVec3; 3]> = Vec::new();
+        for piece in &self.triangles {
+            parts.push(piece.corners);
+            while let Some(part) = parts.pop() {
+                let halves = halves(part, part_length);
+                let most = if halves.is_some() {
+                    MOST_NEAR
+                } else {
+                    usize::MAX
+                };
+                find_near(index, part, self.reach, most, &mut near);
+                if let Some(halves) = halves.filter(|_| near.len() > most) {
+                    parts.extend(halves);
+                    continue;
+                }
+                for &slot in &near {
+                    let item = &index.items()[slot];
+                    let other = item.corners.map(|corner| corner.as_dvec3());
+                    let area = clipper.covered_area(part, other, self.reach);
+                    if area > 0.0 && visit(item.face, area) {
+                        return;
                     }
                 }
-                limit
-            });
+            }
         }
     }
+}
+
+/// Finds the items whose boxes may be within `reach` of the box of a triangle; more than `most`
+/// entries if this is not known, because there are more items around it.
+fn find_near<F: Copy + Send + Sync>(
+    index: &Bvh<FaceTriangle<F>>,
+    triangle: [DVec3; 3],
+    reach: f64,
+    most: usize,
+    near: &mut Vec<usize>,
+) {
+    let [a, b, c] = triangle;
+    let centre = (a + b + c) / 3.0;
+    let far = triangle.map(|corner| corner.distance(centre));
+    let radius = far.into_iter().fold(0.0, f64::max) + reach;
+    let limit = radius * radius;
+    let low = a.min(b).min(c) - reach;
+    let high = a.max(b).max(c) + reach;
+    let mut visited = 0;
+    near.clear();
+    index.visit_near(centre, limit, |slot| {
+        visited += 1;
+        if visited > most {
+            near.resize(visited, slot);
+            return -1.0;
+        }
+        let [p, q, r] = index.items()[slot].corners.map(|corner| corner.as_dvec3());
+        let is_apart = p.max(q).max(r).cmplt(low).any() || p.min(q).min(r).cmpgt(high).any();
+        if !is_apart {
+            near.push(slot);
+        }
+        limit
+    });
 }
 
 /// The area of the part of a patch on which faces lie.
@@ -162,65 +212,108 @@ impl<'a> Surface<'a> {
         Self { polygons, index }
     }
 
-    /// Returns the part of a patch on which faces lie. `is_in_hole` is true for the vertices of the
-    /// hole.
+    /// Returns the part of a patch on which faces lie, or less of it if this is too much already.
+    /// `is_in_hole` is true for the vertices of the hole.
     pub(super) fn on(&self, patch: &Patch, is_in_hole: impl Fn(VertexId) -> bool) -> Covered {
         let mut covered = Covered::default();
         if let Some(index) = &self.index {
-            let corners = |item: &FaceTriangle<_>| item.corners.map(|corner| corner.as_dvec3());
-            patch.for_each_cover(index, corners, |f, area| {
+            patch.find_covers(index, patch.part_length(MOST_COARSE), |f, area| {
                 let mut face = self.polygons.faces().face(f).iter();
                 covered.add(face.any(|&v| is_in_hole(v)), area);
+                patch.is_covered(covered)
             });
         }
         covered
     }
 }
 
-/// The pieces of several patches.
+/// Several patches, by place.
 pub(super) struct Patches<'a> {
-    /// The pieces, each with the number of its patch.
-    pieces: Vec<(usize, &'a Piece)>,
+    patches: Vec<&'a Patch>,
+    /// The boxes of the patches, as triangles between opposite corners.
+    boxes: Option<Bvh<FaceTriangle<u32>>>,
+    /// By patch: its pieces in an index, if they were needed.
+    pieces: Vec<OnceCell<Pieces>>,
+}
+
+struct Pieces {
+    /// By number: the triangle.
+    triangles: Vec<[VertexId; 3]>,
     index: Option<Bvh<FaceTriangle<u32>>>,
 }
 
 impl<'a> Patches<'a> {
-    /// Sorts the pieces of patches; O(n log n).
-    pub(super) fn new(patches: impl ExactSizeIterator<Item = &'a Patch>) -> Self {
-        // One patch lies on no other.
-        let patches = Some(patches).filter(|patches| patches.len() > 1);
-        let numbered = patches.into_iter().flatten().enumerate();
-        let pieces = numbered.flat_map(|(p, patch)| patch.pieces.iter().map(move |at| (p, at)));
-        let pieces: Vec<(usize, &Piece)> = pieces.collect();
-        let items = (0..).zip(&pieces).map(|(face, (_, piece))| FaceTriangle {
+    /// Sorts patches; O(n log n).
+    pub(super) fn new(patches: Vec<&'a Patch>) -> Self {
+        let corner = |p: DVec3| p.as_vec3();
+        let boxes = (0..).zip(&patches).map(|(face, patch)| FaceTriangle {
             face,
-            corners: piece.corners.map(|corner| corner.as_vec3()),
+            corners: [corner(patch.low), corner(patch.high), corner(patch.low)],
         });
-        let index = Bvh::build(items.collect()).ok();
-        Self { pieces, index }
+        Self {
+            boxes: Bvh::build(boxes.collect()).ok(),
+            pieces: patches.iter().map(|_| OnceCell::new()).collect(),
+            patches,
+        }
     }
 
-    /// Returns the patches that lie on a patch, in order, each with its part. `is_in_hole` is true for
-    /// the vertices of the hole.
+    /// Returns the patches that lie on a patch, each with its part. `is_in_hole` is true for the
+    /// vertices of the hole. Only patches whose boxes touch are compared.
     pub(super) fn on(
         &self,
-        patch: &Patch,
         number: usize,
         is_in_hole: impl Fn(VertexId) -> bool,
     ) -> Vec<(usize, Covered)> {
-        let mut covers = std::collections::BTreeMap::<usize, Covered>::new();
-        if let Some(index) = &self.index {
-            // The corners in double precision.
-            let corners = |item: &FaceTriangle<u32>| self.pieces[item.face as usize].1.corners;
-            patch.for_each_cover(index, corners, |piece, area| {
-                let (other, piece) = self.pieces[piece as usize];
-                if other != number {
-                    let is_beside = piece.triangle.into_iter().any(&is_in_hole);
-                    covers.entry(other).or_default().add(is_beside, area);
-                }
-            });
+        let patch = self.patches[number];
+        let mut near = Vec::new();
+        if let Some(boxes) = &self.boxes {
+            let around = [patch.low, patch.high, patch.low];
+            find_near(boxes, around, patch.reach, usize::MAX, &mut near);
+            near.iter_mut()
+                .for_each(|slot| *slot = boxes.items()[*slot].face as usize);
         }
-        covers.into_iter().collect()
+        near.sort_unstable();
+        near.retain(|&other| other != number);
+        let covers = near.into_iter().map(|other| {
+            let mut covered = Covered::default();
+            let pieces = self.pieces[other].get_or_init(|| self.patches[other].pieces());
+            if let Some(index) = &pieces.index {
+                patch.find_covers(index, patch.part_length(f64::INFINITY), |piece, area| {
+                    let mut triangle = pieces.triangles[piece as usize].into_iter();
+                    covered.add(triangle.any(&is_in_hole), area);
+                    false
+                });
+            }
+            (other, covered)
+        });
+        covers.collect()
+    }
+}
+
+impl Patch {
+    /// Returns the triangles as items of an index; many of them in pieces, whose boxes overlap less.
+    fn pieces(&self) -> Pieces {
+        let length = match self.edges as f64 <= FINE_EDGES {
+            true => f64::INFINITY,
+            false => self.part_length(f64::INFINITY),
+        };
+        let (mut triangles, mut items) = (Vec::new(), Vec::new());
+        for piece in &self.triangles {
+            let mut parts = vec![piece.corners];
+            while let Some(part) = parts.pop() {
+                if let Some(halves) = halves(part, length) {
+                    parts.extend(halves);
+                    continue;
+                }
+                items.push(FaceTriangle {
+                    face: row(triangles.len()),
+                    corners: part.map(|corner| corner.as_vec3()),
+                });
+                triangles.push(piece.triangle);
+            }
+        }
+        let index = Bvh::build(items).ok();
+        Pieces { triangles, index }
     }
 }
 
@@ -229,23 +322,15 @@ pub(super) fn coincide(one: &Patch, other: &Patch, covered: Covered) -> bool {
     covered.area() > COINCIDENT * one.area.max(other.area)
 }
 
-/// Calls `visit` with the parts of a triangle whose sides are not longer than `longest`. Triangles
-/// without area are left out.
-fn cut(triangle: [DVec3; 3], longest: f64, visit: &mut impl FnMut([DVec3; 3])) {
-    let mut parts = vec![triangle];
-    while let Some(part) = parts.pop() {
-        // The first side is the longest one.
-        let length = |i: usize| part[i].distance_squared(part[(i + 1) % 3]);
-        let first = (0..3).max_by(|&i, &j| length(i).total_cmp(&length(j)));
-        let first = first.unwrap_or(0);
-        let [a, b, c] = [0, 1, 2].map(|i| part[(first + i) % 3]);
-        if length(first) > longest * longest {
-            let middle = 0.5 * (a + b);
-            parts.extend([[a, middle, c], [middle, b, c]]);
-        } else if normal(part) != DVec3::ZERO {
-            visit(part);
-        }
-    }
+/// Returns the halves of a triangle, cut across its longest side; `None` if no side is longer than
+/// `longest`.
+fn halves(triangle: [DVec3; 3], longest: f64) -> Option<[[DVec3; 3]; 2]> {
+    let length = |i: usize| triangle[i].distance_squared(triangle[(i + 1) % 3]);
+    let first = (0..3).max_by(|&i, &j| length(i).total_cmp(&length(j)))?;
+    let [a, b, c] = [0, 1, 2].map(|i| triangle[(first + i) % 3]);
+    let middle = 0.5 * (a + b);
+    let is_long = length(first) > longest * longest;
+    is_long.then_some([[a, middle, c], [middle, b, c]])
 }
 
 /// Returns the normal whose length is twice the area.

@@ -185,3 +185,188 @@ fn holes_whose_triangles_would_lie_on_the_mesh_remain() {
     assert_eq!(filled.steps[0].counts.holes_filled, 1);
     assert_eq!(filled.steps[0].left.len(), 1);
 }
+
+/// Returns the squares of a lattice that `is_solid` names, in space: turned, and two units apart from
+/// the lattice.
+fn squares(size: [i32; 2], is_solid: impl Fn(i32, i32) -> bool) -> PolygonMesh {
+    let [columns, rows] = size;
+    let at = |x: i32, y: i32| (y * (columns + 1) + x) as u32;
+    let mut faces = Vec::new();
+    for (x, y) in cells(size).filter(|&(x, y)| is_solid(x, y)) {
+        faces.push([at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)]);
+    }
+    let points = cells([columns + 1, rows + 1]).map(|(x, y)| {
+        let turn = glam::DQuat::from_rotation_x(0.4) * glam::DQuat::from_rotation_z(0.3);
+        (turn * DVec3::new(f64::from(x), f64::from(y), 2.0)).as_vec3()
+    });
+    PolygonMesh::new(points, faces).expect("valid")
+}
+
+fn cells([columns, rows]: [i32; 2]) -> impl Iterator<Item = (i32, i32)> {
+    (0..rows).flat_map(move |y| (0..columns).map(move |x| (x, y)))
+}
+
+/// Returns the number of faces of a mesh of [`squares`] over a point of the lattice.
+fn faces_over(mesh: &PolygonMesh, columns: i32, point: [f64; 2]) -> usize {
+    let lattice = |v: VertexId| {
+        let [x, y] = [
+            v.index() as i32 % (columns + 1),
+            v.index() as i32 / (columns + 1),
+        ];
+        [f64::from(x) - point[0], f64::from(y) - point[1]]
+    };
+    let is_over = |face: &[VertexId]| {
+        let corners: Vec<[f64; 2]> = face.iter().map(|&v| lattice(v)).collect();
+        let next = corners.iter().cycle().skip(1);
+        let turns: Vec<f64> = corners
+            .iter()
+            .zip(next)
+            .map(|(p, q)| p[0] * q[1] - p[1] * q[0])
+            .collect();
+        turns.iter().all(|&turn| turn > 0.0) || turns.iter().all(|&turn| turn < 0.0)
+    };
+    mesh.faces()
+        .iter()
+        .filter(|(_, face)| is_over(face))
+        .count()
+}
+
+/// Returns the sum of the areas.
+fn area(mesh: &PolygonMesh) -> f64 {
+    crate::measures(mesh).area
+}
+
+fn covering(repaired: &Repaired) -> usize {
+    let is_covering = |left: &&Left| matches!(left, Left::CoveringHole { .. });
+    repaired.steps[0].left.iter().filter(is_covering).count()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Whatever the holes of a flat mesh are, no two faces of the result lie on each other.
+    #[test]
+    fn flat_meshes_stay_flat(solid in proptest::collection::vec(prop::bool::weighted(0.7), 48)) {
+        let size = [8, 6];
+        let flat = squares(size, |x, y| solid[(y * 8 + x) as usize]);
+        for method in METHODS {
+            let result = filled(&flat, method, None);
+            for (x, y) in cells(size) {
+                // Points on no line between corners.
+                for [dx, dy] in [[0.31, 0.17], [0.713, 0.37], [0.237, 0.791], [0.871, 0.619]] {
+                    let point = [f64::from(x) + dx, f64::from(y) + dy];
+                    let faces = faces_over(&result.polygons, size[0], point);
+                    prop_assert!(faces <= 1, "{faces} faces at {point:?}");
+                }
+            }
+        }
+    }
+
+    /// The windows of a plate are filled, except for those with an island, which remain together with
+    /// the rim of the island and the rim of the plate. A window of an island is filled.
+    #[test]
+    fn windows_are_filled_around_nothing(
+        blocks in proptest::collection::vec((1..3_i32, 1..3_i32, 5..8_i32, 5..8_i32, 0..3_u8), 1..5),
+    ) {
+        let size = [9 * blocks.len() as i32, 9];
+        let kind = |x: i32, y: i32| {
+            let (left, bottom, right, top, island) = blocks[(x / 9) as usize];
+            let [x, y] = [x % 9, y];
+            let is_in_window = (left..=right).contains(&x) && (bottom..=top).contains(&y);
+            let is_in_island = (left + 1..right).contains(&x) && (bottom + 1..top).contains(&y);
+            let is_in_middle = (left + 2..right - 1).contains(&x) && (bottom + 2..top - 1).contains(&y);
+            (is_in_window, is_in_island && island > 0, is_in_middle && island > 1)
+        };
+        let plate = squares(size, |x, y| {
+            let (is_in_window, is_in_island, is_in_middle) = kind(x, y);
+            !is_in_window || (is_in_island && !is_in_middle)
+        });
+        let islands = blocks.iter().filter(|(.., island)| *island > 0).count();
+        let gap = |(x, y): &(i32, i32)| {
+            let (is_in_window, is_in_island, _) = kind(*x, *y);
+            is_in_window && !is_in_island && blocks[(*x / 9) as usize].4 > 0
+        };
+        let expected = 9 * size[0] - cells(size).filter(gap).count() as i32;
+        for method in METHODS {
+            let result = filled(&plate, method, None);
+            prop_assert!((area(&result.polygons) - f64::from(expected)).abs() < 1e-3);
+            prop_assert_eq!(covering(&result), 1 + 2 * islands);
+            prop_assert_eq!(result.steps[0].left.len(), 1 + 2 * islands);
+        }
+    }
+
+    /// Two cones whose rims coincide nearly remain open; at a visible distance, both are closed.
+    #[test]
+    fn patches_do_not_coincide(n in 3..40_u32, twice in any::<bool>(), gap in -6.0..-3.7_f32) {
+        let other = if twice { 2 * n.max(24) } else { n };
+        let n = if twice { n.max(24) } else { n };
+        let edge = std::f32::consts::TAU / other as f32;
+        let cones = |gap: f32| {
+            crate::orientation::tests::together(&[cone(n, 0.0, 1.0), cone(other, -gap, -1.0)])
+        };
+        for method in METHODS {
+            let close = filled(&cones(edge * 10.0_f32.powf(gap)), method, None);
+            prop_assert_eq!((close.is_changed(), covering(&close)), (false, 2));
+            let apart = filled(&cones(0.1 * edge), method, None);
+            prop_assert_eq!(apart.steps[0].counts.holes_filled, 2);
+        }
+    }
+}
+
+/// Returns a cone without its base: the rim with `n` edges and radius 1 at `height`, the tip at `tip`.
+fn cone(n: u32, height: f32, tip: f32) -> PolygonMesh {
+    let rim = (0..n).map(|i| {
+        let (sin, cos) = (i as f32 * std::f32::consts::TAU / n as f32).sin_cos();
+        [cos, sin, height]
+    });
+    let points = rim.chain([[0.0, 0.0, tip]]);
+    let faces = (0..n).map(|i| [i, (i + 1) % n, n]);
+    PolygonMesh::new(points, faces).expect("valid")
+}
+
+/// Returns a tube without its bases, from height 0 to 3.
+fn tube(n: u32, radius: f32) -> PolygonMesh {
+    let points = (0..2 * n).map(|i| {
+        let (sin, cos) = (i as f32 * std::f32::consts::TAU / n as f32).sin_cos();
+        [radius * cos, radius * sin, if i < n { 0.0 } else { 3.0 }]
+    });
+    let faces = (0..n).map(|i| [i, (i + 1) % n, n + (i + 1) % n, n + i]);
+    PolygonMesh::new(points, faces).expect("valid")
+}
+
+#[test]
+fn one_of_two_nested_tubes_is_closed() {
+    for (other, filled_discs) in [(0.8, 2), (0.99, 0)] {
+        let tubes = crate::orientation::tests::together(&[tube(32, 1.0), tube(32, other)]);
+        for method in METHODS {
+            let result = filled(&tubes, method, None);
+            assert_eq!(result.steps[0].counts.holes_filled, filled_discs);
+            assert_eq!(covering(&result), 4 - filled_discs);
+            let disc = 16.0 * (std::f64::consts::TAU / 32.0).sin() * f64::from(other).powi(2);
+            let more = area(&result.polygons) - area(&tubes);
+            assert!((more - filled_discs as f64 * disc).abs() < 1e-5, "{more}");
+        }
+    }
+}
+
+#[test]
+fn a_hole_in_a_thin_solid_is_filled() {
+    // The walls are 1/100 of an edge apart. The other wall does not lie on the patch.
+    let top = squares([6, 6], |x, y| ![(2, 2), (3, 2), (4, 4)].contains(&(x, y)));
+    let normal = glam::DQuat::from_rotation_x(0.4) * DVec3::Z;
+    let wall = squares([6, 6], |_, _| true);
+    let lower = wall
+        .positions()
+        .iter()
+        .map(|p| (p.as_dvec3() - 0.01 * normal).as_vec3());
+    let faces = wall.faces().iter().map(|(_, face)| face.iter().rev());
+    let faces: Vec<Vec<u32>> = faces.map(|face| face.map(|v| v.row()).collect()).collect();
+    let lower = PolygonMesh::new(lower, faces).expect("valid");
+    let solid = crate::orientation::tests::together(&[top, lower]);
+    for method in METHODS {
+        let result = filled(&solid, method, None);
+        assert_eq!(result.steps[0].counts.holes_filled, 2);
+        assert!((area(&result.polygons) - 72.0).abs() < 1e-4);
+        assert_eq!(covering(&result), 2);
+    }
+}
