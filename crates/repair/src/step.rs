@@ -131,6 +131,11 @@ impl<'a> Run<'a> {
         }
     }
 
+    /// Returns the reports of the steps so far.
+    pub(crate) fn steps(&self) -> &[StepReport] {
+        &self.steps
+    }
+
     /// Returns the mesh after the steps so far.
     pub(crate) fn polygons(&self) -> &PolygonMesh {
         self.changed.as_ref().map_or(self.old, |(mesh, _)| mesh)
