@@ -91,8 +91,12 @@ pub(crate) fn run(arguments: &Subdivide) -> Result<ExitCode, Failure> {
         Some(output) => Some((output, Limits::new(&subdivision, &step, arguments.levels)?)),
         None => None,
     };
-    // Sharpness that remains belongs to the result, so that a further level continues.
-    let options = WriteOptions::default().with_creases(&step.creases);
+    // Sharpness that remains belongs to the result, so that a further level continues. Without any in
+    // the mesh, only the rule for the boundary makes some, and makes it again.
+    let options = match creases.is_empty() {
+        true => WriteOptions::default(),
+        false => WriteOptions::default().with_creases(&step.creases),
+    };
     output.write(&step.polygons, &options)?;
     if let Some(left) = left {
         left.finish(|writer| write_creases(&step.creases, writer))?;

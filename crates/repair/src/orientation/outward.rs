@@ -190,7 +190,7 @@ fn depths(
         };
         let hiding = hiding(&index, sample, agreement, directions);
         let is_around = |outer: usize| match (bounds[inner], bounds[outer]) {
-            (Some(inner), Some(outer)) => outer.union(inner) == outer,
+            (Some(inner), Some(outer)) => outer.union(inner) == outer && inner != outer,
             _ => false,
         };
         depths[inner] = depth(&hiding, kinds, is_around)
@@ -213,7 +213,7 @@ fn depths(
 
 /// Returns the number of components around a component, or an open one that is only partly around it.
 /// `hiding` are the components that hide the outside, and in which part of all directions. `is_around`
-/// returns whether the box of a component contains that of the inner one.
+/// returns whether the box of a component contains that of the inner one, and is larger.
 fn depth(
     hiding: &[(usize, f64)],
     kinds: &[Kind],

@@ -343,6 +343,16 @@ fn nested_open_parts_face_away_from_the_solid_or_are_undecided() {
         let oriented = outward_all(&together(&[outer, beside]));
         assert_eq!(oriented.reversed.len(), inner.face_count());
     }
+    // A tube, and a cone with the same box on its rim, which hides the outside in some directions.
+    let prism = sixfold_shapes::prism(6).expect("small");
+    let mut points = prism.positions().to_vec();
+    points.extend_from_within(6..12);
+    points.push(Point::new(0.0, 0.0, points[0].z));
+    let walls = (0..6).map(|i| vec![i, (i + 1) % 6, 6 + (i + 1) % 6, 6 + i]);
+    let cone = (0..6).map(|i| vec![12 + i, 12 + (i + 1) % 6, 18]);
+    let faces: Vec<Vec<u32>> = walls.chain(cone).collect();
+    let mesh = PolygonMesh::new(points, faces).expect("valid");
+    assert!(outward_all(&mesh).undecided.is_empty());
     // A pipe: two tubes of different widths.
     let tube = |radius: f32, length: f32, inward: bool| {
         let prism = sixfold_shapes::prism(24).expect("small");
