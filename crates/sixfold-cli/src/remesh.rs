@@ -41,15 +41,15 @@ pub(crate) fn decimate(arguments: &Decimate) -> Result<ExitCode, Failure> {
     edit_file(&arguments.files, arguments.read, arguments.check, edit)
 }
 
-/// The number of decimations until the measured distance is small enough.
+/// The largest number of decimations until the measured distance is small enough.
 const ATTEMPTS: usize = 4;
 
-/// Decimates the mesh until the measured distance of the result is at most `limit`. The decimation itself
-/// checks the distance only at some points; if more points show a larger distance, it is repeated with a
-/// smaller limit.
+/// Decimates the mesh until the measured distance of the result is at most `limit`, or says that the last
+/// of [`ATTEMPTS`] results is farther away. The decimation itself checks the distance only at some points;
+/// if more points show a larger distance, it is repeated with a smaller limit.
 fn within(limit: f64, before: &PolygonMesh, backend: &str, mut decimation: Decimation) -> Edited {
-    let mut best = None;
-    for _ in 0..ATTEMPTS {
+    let mut attempt = 1;
+    loop {
         let (polygons, mut summary) = edited_by(backend, before, &decimation)?;
         let measured = mesh_distance(before, &polygons, Sampling::default());
         let largest = match measured {
@@ -61,16 +61,18 @@ fn within(limit: f64, before: &PolygonMesh, backend: &str, mut decimation: Decim
         if largest <= limit {
             return Ok((polygons, summary));
         }
+        if attempt == ATTEMPTS {
+            summary.shortfall = Some(format!(
+                "the distance is {} instead of at most {}",
+                figure(largest),
+                figure(limit)
+            ));
+            return Ok((polygons, summary));
+        }
+        attempt += 1;
         let smaller = decimation.max_distance.unwrap_or(limit) * 0.9 * limit / largest;
         decimation.max_distance = Some(smaller);
-        summary.shortfall = Some(format!(
-            "the distance is {} instead of at most {}",
-            figure(largest),
-            figure(limit)
-        ));
-        best = Some((polygons, summary));
     }
-    Ok(best.expect("there is an attempt"))
 }
 
 pub(crate) fn remesh(arguments: &Remesh) -> Result<ExitCode, Failure> {

@@ -25,8 +25,8 @@ const ALLOWED: f64 = 0.05;
 const NOTICEABLE: f64 = 0.02;
 
 /// Compares a mesh with the mesh `after` that a command made of it and wrote to `to`. Prints a warning
-/// if the shape has changed by more than the stated part, or if faces are turned over or flat, or if
-/// there are none.
+/// if the shape has changed by more than the stated part, if faces are turned over or flat, or if the
+/// result has no faces.
 pub(crate) fn check_shape(
     before: &PolygonMesh,
     after: &PolygonMesh,
