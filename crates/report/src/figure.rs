@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
-use kuva::backend::svg::SvgBackend;
 use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
-use kuva::render::render::{Scene, render_multiple};
+use kuva::render::render::render_multiple;
 use kuva::{Theme, TickFormat};
 use sixfold_study::numbers::times;
 
-use crate::colours::{BACKGROUND, GRID_COLOUR, TEXT_COLOUR, dark_rules};
+use crate::Picture;
+use crate::colours::{BACKGROUND, GRID_COLOUR, TEXT_COLOUR};
 
 /// A figure, and a table of the numbers that the figure shows.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Figure {
     /// Name of the figure in links and file names, such as `heat-map`.
     pub id: String,
@@ -20,8 +20,8 @@ pub struct Figure {
     pub title: String,
     /// Text that explains how to read the figure.
     pub caption: String,
-    /// The picture as an SVG element.
-    pub svg: String,
+    /// The picture.
+    pub picture: Picture,
     /// The numbers of the figure.
     pub table: Table,
     /// The command that reproduces the figure.
@@ -96,26 +96,6 @@ pub(crate) fn base_layout(plots: &[Plot], width: f64, height: f64) -> Layout {
         .with_body_size(12)
 }
 
-pub(crate) fn render_svg(title: &str, plots: Vec<Plot>, layout: Layout) -> String {
-    scene_svg(title, &render_multiple(plots, layout))
-}
-
-/// Renders `scene` as an SVG that scales to the page and follows its dark mode. `title` is the
-/// label for screen readers.
-pub(crate) fn scene_svg(title: &str, scene: &Scene) -> String {
-    let svg = SvgBackend::new().render_scene(scene);
-    let Some((head, body)) = svg.split_once('>') else {
-        return svg;
-    };
-    let size = |name: &str| -> Option<&str> {
-        let after = head.split_once(&format!(" {name}=\""))?.1;
-        Some(after.split_once('"')?.0)
-    };
-    let (width, height) = (size("width").unwrap_or("0"), size("height").unwrap_or("0"));
-    let title = maud::html! { (title) }.into_string();
-    let dark = dark_rules();
-    format!(
-        "{head} viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{title}\"><style>\
-         svg{{max-width:100%;height:auto}}@media (prefers-color-scheme:dark){{{dark}}}</style>{body}"
-    )
+pub(crate) fn picture(label: &str, plots: Vec<Plot>, layout: Layout) -> Picture {
+    Picture::single(label, render_multiple(plots, layout))
 }

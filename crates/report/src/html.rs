@@ -102,7 +102,7 @@ fn figure_section(figure: &Figure, heading: &str, mesh: Option<&str>) -> Markup 
             @if heading == "h2" { h2 { (figure.title) } } @else { h3 { (figure.title) } }
             figure data-figure=(figure.id) data-mesh=[mesh] {
                 // Wide figures scroll on small screens.
-                div.scroll { (PreEscaped(without_style(&figure.svg))) }
+                div.scroll { (figure.picture.markup()) }
                 figcaption { (figure.caption) }
             }
             details {
@@ -118,14 +118,6 @@ fn table_section(table: &TitledTable) -> Markup {
     html! {
         p { (table.caption) }
         (table_markup(&table.table))
-    }
-}
-
-/// Returns the SVG without its style rules, which the page already has.
-fn without_style(svg: &str) -> String {
-    match (svg.split_once("<style>"), svg.split_once("</style>")) {
-        (Some((head, _)), Some((_, body))) => format!("{head}{body}"),
-        _ => svg.to_owned(),
     }
 }
 

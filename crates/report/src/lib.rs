@@ -16,12 +16,14 @@ mod figures;
 mod html;
 mod markdown;
 mod panels;
+mod picture;
 
 use sixfold_study::Results;
 
 pub use colours::structure_colours;
 pub use figure::{Figure, Table, TitledTable};
 pub use panels::{Panel, panels};
+pub use picture::Picture;
 
 /// A report on studies and additional measurements.
 #[derive(Clone, Debug)]

@@ -4,8 +4,9 @@ use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::figure::Figure as Grid;
 use kuva::render::plots::Plot;
 
+use crate::Picture;
 use crate::colours::column_colour;
-use crate::figure::{base_layout, scene_svg};
+use crate::figure::base_layout;
 
 /// Width and height of one panel.
 const SIZE: [f64; 2] = [400.0, 320.0];
@@ -47,7 +48,7 @@ pub fn panels(title: &str, columns: usize, panels: &[Panel]) -> String {
         .with_layouts(layouts)
         .with_cell_size(SIZE[0], SIZE[1])
         .with_shared_legend_bottom();
-    scene_svg(title, &grid.render())
+    Picture::single(title, grid.render()).svg()
 }
 
 fn line(name: &str, points: &[(f64, f64)]) -> [Plot; 2] {

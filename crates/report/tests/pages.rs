@@ -43,7 +43,7 @@ fn results(meshes: &[&str]) -> Results {
 }
 
 fn mark_count(figure: &Figure) -> usize {
-    figure.svg.matches("<title>").count()
+    figure.picture.svg().matches("<title>").count()
 }
 
 fn figure_by_id<'p>(page: &'p ReportPage, id: &str) -> &'p Figure {
@@ -79,8 +79,12 @@ fn every_figure_has_as_many_marks_as_numbers() {
     for figure in page.all_figures() {
         let columns = figure.table.header.len();
         assert!(figure.table.rows.iter().all(|row| row.len() == columns));
-        assert!(figure.svg.contains("role=\"img\""), "{}", figure.id);
-        assert!(figure.svg.contains("prefers-color-scheme:dark"));
+        assert!(
+            figure.picture.svg().contains("role=\"img\""),
+            "{}",
+            figure.id
+        );
+        assert!(figure.picture.svg().contains("prefers-color-scheme:dark"));
         assert_eq!(figure.command, "sixfold study ball.obj");
     }
     let mut ids: Vec<&str> = page
@@ -150,7 +154,7 @@ fn pages_load_nothing_and_names_are_escaped() {
         assert!(!outside.contains(word), "{word}");
     }
     for figure in page.all_figures() {
-        assert!(!figure.svg.contains("<script"), "{}", figure.id);
+        assert!(!figure.picture.svg().contains("<script"), "{}", figure.id);
     }
     assert!(!page.markdown().replace("\\<", "").contains("<script"));
 }

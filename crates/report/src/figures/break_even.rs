@@ -7,7 +7,7 @@ use sixfold_study::numbers::{counted, duration};
 use sixfold_study::{Operation, PickReport, Report, ResultRow};
 
 use crate::colours::column_colour;
-use crate::figure::{Figure, Table, base_layout, render_svg};
+use crate::figure::{Figure, Table, base_layout, picture};
 
 /// The structure of the input mesh. It need not be built.
 const INPUT_BACKEND: &str = "indexed-face-set";
@@ -186,7 +186,7 @@ impl Curves<'_> {
             .with_y_label("total time, ms");
         Some(Figure {
             id: self.id,
-            svg: render_svg(&self.title, plots, layout),
+            picture: picture(&self.title, plots, layout),
             title: self.title,
             caption: self.caption,
             table,

@@ -8,7 +8,7 @@ use sixfold_study::{Fit, GrowthReport, Operation, ResultRow, SizeReport, Slope};
 
 use super::{marked, per_unit};
 use crate::colours::column_colour;
-use crate::figure::{Figure, Table, base_layout, render_svg};
+use crate::figure::{Figure, Table, base_layout, picture};
 
 pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Vec<Figure> {
     let operations: Vec<Operation> = Operation::ALL
@@ -37,7 +37,7 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
         .with_y_label("total time, ms");
     Figure {
         id: format!("{id}-{}", name.replace('_', "-")),
-        svg: render_svg(&title, plots, layout),
+        picture: picture(&title, plots, layout),
         title,
         caption: format!(
             "Both axes are logarithmic, so a straight line is a power of the number of faces. The \

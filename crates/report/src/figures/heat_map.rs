@@ -9,7 +9,7 @@ use sixfold_study::{Operation, Pool, Report};
 
 use super::marked;
 use crate::colours::GRID_COLOUR;
-use crate::figure::{Figure, Table, base_layout, ratio_ticks, render_svg};
+use crate::figure::{Figure, Table, base_layout, picture, ratio_ticks};
 
 /// Maximum ratio with its own colour. Larger ratios have the colour of this ratio.
 const MAX_RATIO: f64 = 1000.0;
@@ -108,7 +108,7 @@ fn figure(
     Some(Figure {
         id: format!("{id_prefix}heat-map"),
         title: title.to_owned(),
-        svg: render_svg(title, plots, layout),
+        picture: picture(title, plots, layout),
         caption: format!(
             "Each cell shows the time relative to the fastest structure of the row. Dark cells \
              are fast. All ratios of {} or more have the same colour. Grey cells were not \

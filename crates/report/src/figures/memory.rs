@@ -7,7 +7,7 @@ use sixfold_study::Report;
 use sixfold_study::numbers::grouped;
 
 use crate::colours::table_colour;
-use crate::figure::{Figure, Table, base_layout, render_svg};
+use crate::figure::{Figure, Table, base_layout, picture};
 
 /// Name of the table of positions. A structure with points instead of vertices has no such table.
 const POSITIONS: &str = "positions";
@@ -60,7 +60,7 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         .with_clamp_y_axis();
     Some(Figure {
         id: format!("{id_prefix}memory"),
-        svg: render_svg(&title, plots, layout),
+        picture: picture(&title, plots, layout),
         title,
         caption: "Bytes held, including spare capacity. Positions are at the bottom, in one colour for all structures; \
              the other tables of each structure are above. Point at a part to see its name."

@@ -8,7 +8,7 @@ use sixfold_study::{Comparison, OrdersReport, ResultRow};
 
 use super::per_unit;
 use crate::colours::table_colour;
-use crate::figure::{Figure, MIN_BAR_LENGTH, Table, base_layout, ratio_ticks, render_svg};
+use crate::figure::{Figure, MIN_BAR_LENGTH, Table, base_layout, picture, ratio_ticks};
 
 pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Vec<Figure> {
     let figures = report
@@ -88,7 +88,7 @@ fn figure(
         .with_y_tick_format(ratio_ticks(max_log));
     Some(Figure {
         id: format!("{id}-{}", name.replace('_', "-")),
-        svg: render_svg(&title, plots, layout),
+        picture: picture(&title, plots, layout),
         title,
         caption: format!(
             "The bars show the time of each structure in four orders of the same mesh, relative \

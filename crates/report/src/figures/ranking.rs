@@ -11,7 +11,7 @@ use sixfold_study::{
 
 use super::{Row, marked, per_unit};
 use crate::colours::{INTERVAL_COLOUR, column_colour};
-use crate::figure::{Figure, MIN_BAR_LENGTH, Table, base_layout, ratio_ticks, render_svg};
+use crate::figure::{Figure, MIN_BAR_LENGTH, Table, base_layout, picture, ratio_ticks};
 
 pub(super) fn from_study(study: &Report, command: &str) -> Vec<Figure> {
     let figures = Operation::ALL.into_iter().filter_map(|operation| {
@@ -250,7 +250,7 @@ fn figure(
         .with_x_tick_format(ratio_ticks(max_log));
     Some(Figure {
         id,
-        svg: render_svg(&title, plots, layout),
+        picture: picture(&title, plots, layout),
         title,
         caption: "The scale is logarithmic and begins at 1, the time of the fastest. The thin lines are the 95 % intervals of the \
                   ratios."

@@ -9,7 +9,7 @@ use sixfold_study::{BufferSpeed, Timed, Why, WhyRow};
 
 use super::per_unit;
 use crate::colours::{TEXT_COLOUR, column_colour};
-use crate::figure::{Figure, Table, base_layout, render_svg};
+use crate::figure::{Figure, Table, base_layout, picture};
 
 type TimedRow<'a> = (&'a WhyRow, Timed);
 
@@ -45,7 +45,7 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
         .with_y_label("time per element, ns");
     Some(Figure {
         id: id.into(),
-        svg: render_svg(&title, plots, layout),
+        picture: picture(&title, plots, layout),
         title,
         caption: "Each mark is one relation on one structure. The two lines show the time in \
                   which this machine reads these bytes in order: one line for the smallest \

@@ -178,7 +178,7 @@ impl Folder {
             .map_err(|cause| cannot_write(&figures.display().to_string(), &cause))?;
         for figure in page.all_figures() {
             let output = Output::open(&figures.join(format!("{}.svg", figure.id)))?;
-            output.finish(|writer| writer.write_all(figure.svg.as_bytes()))?;
+            output.finish(|writer| writer.write_all(figure.picture.svg().as_bytes()))?;
         }
         Ok(())
     }
