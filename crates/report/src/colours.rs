@@ -7,6 +7,7 @@ use sixfold::structure_infos;
 
 pub(crate) const TEXT_COLOUR: &str = "#17181a";
 pub(crate) const BACKGROUND: &str = "#fdfdfc";
+pub(crate) const FAINT_COLOUR: &str = "#66686c";
 pub(crate) const GRID_COLOUR: &str = "#dcdcda";
 pub(crate) const INTERVAL_COLOUR: &str = "#33353a";
 
@@ -68,6 +69,7 @@ pub(crate) fn dark_rules() -> String {
     let page = [
         (TEXT_COLOUR, "#e4e4e2"),
         (BACKGROUND, "#17181a"),
+        (FAINT_COLOUR, "#a0a2a6"),
         (GRID_COLOUR, "#3a3b3e"),
         (INTERVAL_COLOUR, "#d0d0ce"),
     ];
@@ -88,7 +90,13 @@ mod tests {
         let mut all: Vec<&str> = STRUCTURES.iter().map(|(light, _)| *light).collect();
         all.push(RELATION_TABLES.1.0);
         all.extend(OTHERS.iter().map(|(light, _)| *light));
-        all.extend([TEXT_COLOUR, BACKGROUND, GRID_COLOUR, INTERVAL_COLOUR]);
+        all.extend([
+            TEXT_COLOUR,
+            BACKGROUND,
+            FAINT_COLOUR,
+            GRID_COLOUR,
+            INTERVAL_COLOUR,
+        ]);
         all.extend(TABLES.iter().map(|(light, _)| *light));
         let count = all.len();
         all.sort_unstable();

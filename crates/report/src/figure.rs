@@ -1,15 +1,8 @@
 //! One figure with its table of numbers.
 
-use std::sync::Arc;
-
-use kuva::render::layout::Layout;
-use kuva::render::plots::Plot;
-use kuva::render::render::render_multiple;
-use kuva::{Theme, TickFormat};
-use sixfold_study::numbers::times;
+use sixfold_study::numbers::grouped;
 
 use crate::Picture;
-use crate::colours::{BACKGROUND, GRID_COLOUR, TEXT_COLOUR};
 
 /// A figure, and a table of the numbers that the figure shows.
 #[derive(Clone, Debug)]
@@ -24,6 +17,8 @@ pub struct Figure {
     pub picture: Picture,
     /// The numbers of the figure.
     pub table: Table,
+    /// How many samples, when, with which seed, on which machine; empty until the page is complete.
+    pub source: String,
     /// The command that reproduces the figure.
     pub command: String,
 }
@@ -61,41 +56,22 @@ impl Table {
     }
 }
 
-/// Minimum length of a bar, as a part of the axis. The bar of ratio 1 would have length 0.
-pub(crate) const MIN_BAR_LENGTH: f64 = 0.02;
-
-/// Returns a format that shows logarithms as ratios, for an axis up to `max_log`.
-pub(crate) fn ratio_ticks(max_log: f64) -> TickFormat {
-    let close = max_log < 0.5;
-    TickFormat::Custom(Arc::new(move |log: f64| match 10_f64.powf(log) {
-        ratio if close => format!("{ratio:.2} ×"),
-        ratio => times(ratio),
-    }))
+/// Formats a power of ten of nanoseconds for an axis: `1 ns`, `100 µs`.
+pub(crate) fn duration_tick(ns: f64) -> String {
+    let units = [(1e9, "s"), (1e6, "ms"), (1e3, "µs")];
+    let unit = units.into_iter().find(|(size, _)| ns >= 0.999 * size);
+    let (size, unit) = unit.unwrap_or((1.0, "ns"));
+    match ns / size {
+        each if each >= 0.999 => format!("{} {unit}", grouped(each.round() as usize)),
+        each => format!("{each} {unit}"),
+    }
 }
 
-/// Returns a layout of the given size with the colours and fonts of the report.
-pub(crate) fn base_layout(plots: &[Plot], width: f64, height: f64) -> Layout {
-    let theme = Theme {
-        background: BACKGROUND.into(),
-        axis_color: TEXT_COLOUR.into(),
-        grid_color: GRID_COLOUR.into(),
-        tick_color: TEXT_COLOUR.into(),
-        text_color: TEXT_COLOUR.into(),
-        legend_bg: BACKGROUND.into(),
-        legend_border: GRID_COLOUR.into(),
-        colorbar_border: TEXT_COLOUR.into(),
-        font_family: Some("system-ui, sans-serif".into()),
-        ..Theme::light()
-    };
-    Layout::auto_from_plots(plots)
-        .with_theme(theme)
-        .with_width(width)
-        .with_height(height)
-        .with_label_size(13)
-        .with_tick_size(12)
-        .with_body_size(12)
-}
-
-pub(crate) fn picture(label: &str, plots: Vec<Plot>, layout: Layout) -> Picture {
-    Picture::single(label, render_multiple(plots, layout))
+/// Formats a power of ten for an axis: `1`, `10,000`, `1 M`.
+pub(crate) fn count_tick(count: f64) -> String {
+    match count.round() {
+        count if count < 1e6 => grouped(count as usize),
+        count if count < 1e9 => format!("{} M", grouped((count / 1e6).round() as usize)),
+        count => format!("{} G", grouped((count / 1e9).round() as usize)),
+    }
 }

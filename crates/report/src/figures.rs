@@ -12,42 +12,21 @@ mod reads;
 mod roofline;
 
 use sixfold_study::numbers::{counted, grouped};
-use sixfold_study::{Environment, Finding, MeshReport, Pool, Report, Results, Run};
+use sixfold_study::{Environment, Finding, MeshReport, Report, Results, Run};
 
+use crate::matrix::Matrix;
+use crate::source;
+use crate::summary::{self, Summary};
 use crate::{Figure, ReportPage, Section};
 
-/// One row of a ranking.
-pub(crate) struct Row<'a> {
-    pub(crate) backend: &'a str,
-    /// Ratio to the fastest backend, with its interval.
-    pub(crate) ratio: f64,
-    pub(crate) interval: Option<[f64; 2]>,
-    /// Whether `ratio` and `ns` are lower bounds, because a run would exceed the budget.
-    pub(crate) bound: bool,
-    /// Time per element in nanoseconds, if known.
-    pub(crate) ns: Option<f64>,
-    /// Time per element of the first run, on fresh pages, if it differs from `ns`.
-    pub(crate) first_ns: Option<f64>,
-    /// A remark, such as `best` or `tied for best`.
-    pub(crate) note: String,
-}
+/// The structure of the input mesh. It need not be built.
+pub(crate) const INPUT_BACKEND: &str = "indexed-face-set";
 
 pub(crate) fn page(results: &Results, command: &str) -> ReportPage {
     let studies: Vec<&Report> = results.studies().collect();
     let single = match (&studies[..], results.planned.len()) {
         ([study], 1) => Some(*study),
         _ => None,
-    };
-    let labs = labs(results, command);
-    let pool = results.pool();
-    let title = match (single, &labs[..]) {
-        (Some(study), _) => format!("Mesh data structures on {}", study.mesh.name),
-        (None, [lab]) if results.planned.is_empty() => lab.title.clone(),
-        (None, _) if results.planned.is_empty() => "Mesh data structures".into(),
-        (None, _) => {
-            let meshes = counted(studies.len(), "mesh", "meshes");
-            format!("Mesh data structures on {meshes}")
-        }
     };
     // Show the recorded command if all results have the same command.
     let mut commands = runs(results).map(|run| recorded_command(run, command));
@@ -56,6 +35,83 @@ pub(crate) fn page(results: &Results, command: &str) -> ReportPage {
         true => first,
         false => command,
     };
+    let mut page = match single {
+        Some(study) => study_page(study, results, command),
+        None if results.planned.is_empty() => labs_page(labs(results, command)),
+        None => pool_page(&studies, results, command),
+    };
+    set_sources(&mut page, results);
+    page.command = command.into();
+    page.machines = machines(results);
+    if results.is_interrupted() {
+        page.warnings.push(INTERRUPTED.to_owned());
+    }
+    page.failures = results
+        .failures
+        .iter()
+        .map(|failed| (failed.mesh.clone(), failed.reason.clone()))
+        .collect();
+    page.missing = results.missing().map(str::to_owned).collect();
+    page
+}
+
+/// Says under each figure how it was measured.
+fn set_sources(page: &mut ReportPage, results: &Results) {
+    let of_kind = |kind: &str| -> Vec<&Finding> {
+        let findings = results.findings.iter();
+        findings.filter(|finding| finding.kind() == kind).collect()
+    };
+    let set = |figures: &mut Vec<Figure>, findings: &[&Finding]| {
+        let line = source::line(findings);
+        for figure in figures {
+            figure.source.clone_from(&line);
+        }
+    };
+    let studies = of_kind("study");
+    set(&mut page.figures, &studies);
+    for (section, study) in page.meshes.iter_mut().zip(&studies) {
+        set(&mut section.figures, &[study]);
+    }
+    let labs = LABS.iter().flat_map(|kind| of_kind(kind));
+    for (section, lab) in page.labs.iter_mut().zip(labs) {
+        set(&mut section.figures, &[lab]);
+    }
+}
+
+/// Returns the page of one mesh.
+fn study_page(study: &Report, results: &Results, command: &str) -> ReportPage {
+    let matrix = Matrix::of_study(study);
+    let answer = [
+        summary::fastest(&study.overall()),
+        study.how_sure(),
+        summary::turning_points(study, results),
+    ];
+    ReportPage {
+        title: format!("Mesh data structures on {}", file_name(&study.mesh.name)),
+        facts: facts(&study.mesh),
+        answer: answer.into_iter().flatten().collect(),
+        summary: Some(Summary::of_study(study, results)),
+        sentences: study.notes.clone(),
+        warnings: study.warnings.clone(),
+        figures: study_figures(study, &matrix, command),
+        operations: matrix,
+        labs: labs(results, command),
+        ..ReportPage::default()
+    }
+}
+
+/// Returns the page of several meshes.
+fn pool_page(studies: &[&Report], results: &Results, command: &str) -> ReportPage {
+    let pool = results.pool();
+    let matrix = Matrix::of_pool(&pool);
+    let count = counted(studies.len(), "mesh", "meshes");
+    let all = pool.groups.first();
+    let mut sentences = pool.sentences.iter().cloned();
+    let answer = [
+        all.and_then(|all| summary::fastest(&all.overall)),
+        // Over which meshes the means are.
+        sentences.next(),
+    ];
     let section = |(place, study): (usize, &&Report)| Section {
         title: study.mesh.name.clone(),
         facts: facts(&study.mesh),
@@ -63,40 +119,53 @@ pub(crate) fn page(results: &Results, command: &str) -> ReportPage {
         figures: section_figures(study, place + 1, command),
         tables: Vec::new(),
     };
+    let title = format!(
+        "Every operation on every structure: geometric mean over {}",
+        counted(all.map_or(0, |all| all.meshes.len()), "mesh", "meshes")
+    );
+    let note = "A ratio is the geometric mean over the meshes, relative to the fastest measured backend of \
+                each mesh. Bars in a frame are lower bounds (≥), which are not ranked.";
+    let heat_map = heat_map::figure(title, &matrix, "", command);
+    let rankings = ranking::from_matrix(&matrix, note, command);
     ReportPage {
-        title,
-        command: command.into(),
-        machines: machines(results),
-        sentences: match single {
-            Some(study) => [vec![facts(&study.mesh)], study.sentences.clone()].concat(),
-            None => pool.sentences.clone(),
-        },
-        warnings: {
-            let warnings = single.map_or(&pool.warnings, |study| &study.warnings);
-            let warnings = warnings.clone();
-            let interrupted = results.is_interrupted().then(|| INTERRUPTED.to_owned());
-            warnings.into_iter().chain(interrupted).collect()
-        },
-        figures: match single {
-            Some(study) => study_figures(study, command),
-            None => pooled_figures(&pool, command),
-        },
-        tables: match single {
-            Some(_) => Vec::new(),
-            None => groups::tables(&pool),
-        },
-        meshes: match single {
-            Some(_) => Vec::new(),
-            None => studies.iter().enumerate().map(section).collect(),
-        },
-        labs,
-        failures: results
-            .failures
-            .iter()
-            .map(|failed| (failed.mesh.clone(), failed.reason.clone()))
-            .collect(),
-        missing: results.missing().map(str::to_owned).collect(),
+        title: format!("Mesh data structures on {count}"),
+        answer: answer.into_iter().flatten().collect(),
+        summary: Summary::of_pool(&pool, studies),
+        sentences: sentences.collect(),
+        figures: heat_map.into_iter().chain(rankings).collect(),
+        tables: groups::tables(&pool),
+        operations: matrix,
+        meshes: studies.iter().enumerate().map(section).collect(),
+        labs: labs(results, command),
+        warnings: pool.warnings,
+        ..ReportPage::default()
     }
+}
+
+/// Returns the page of labs without a study. If there is only one, its first sentences are the answer.
+fn labs_page(mut labs: Vec<Section>) -> ReportPage {
+    let [lab] = &mut labs[..] else {
+        return ReportPage {
+            title: "Mesh data structures".into(),
+            labs,
+            ..ReportPage::default()
+        };
+    };
+    let rest = lab.sentences.split_off(lab.sentences.len().min(3));
+    ReportPage {
+        title: lab.title.clone(),
+        facts: lab.facts.clone(),
+        answer: std::mem::replace(&mut lab.sentences, rest),
+        labs,
+        ..ReportPage::default()
+    }
+}
+
+/// Returns the name of a file without its folders.
+fn file_name(path: &str) -> &str {
+    path.rsplit(['/', '\\'])
+        .find(|part| !part.is_empty())
+        .unwrap_or(path)
 }
 
 const INTERRUPTED: &str = "Interrupted: some results are incomplete. To complete the report, use \
@@ -111,18 +180,26 @@ fn recorded_command<'a>(run: &'a Run, command: &'a str) -> &'a str {
     run.command.as_deref().unwrap_or(command)
 }
 
+/// The kinds of labs, in the order of their sections.
+const LABS: [&str; 6] = ["orders", "growth", "why", "memory", "neighbours", "pick"];
+
 fn labs(results: &Results, command: &str) -> Vec<Section> {
     let mut sections = Vec::new();
     for (i, orders) in results.orders().enumerate() {
         sections.push(Section {
-            title: format!("Effect of the order in memory: {}", orders.mesh.name),
+            title: format!(
+                "Effect of the order in memory: {}",
+                file_name(&orders.mesh.name)
+            ),
             facts: facts(&orders.mesh),
             sentences: [&orders.sentences[..], &orders.warnings].concat(),
             figures: orders::from_orders(
                 orders,
                 &numbered_id("orders", i),
                 recorded_command(&orders.run, command),
-            ),
+            )
+            .into_iter()
+            .collect(),
             tables: Vec::new(),
         });
     }
@@ -141,7 +218,9 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
                 growth,
                 &numbered_id("growth", i),
                 recorded_command(&growth.run, command),
-            ),
+            )
+            .into_iter()
+            .collect(),
             tables: Vec::new(),
         });
     }
@@ -153,7 +232,7 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
             None => "Reads of the queries",
         };
         sections.push(Section {
-            title: format!("{title} on {}", why.mesh.name),
+            title: format!("{title} on {}", file_name(&why.mesh.name)),
             facts: facts(&why.mesh),
             sentences: [&why.sentences[..], &why.warnings].concat(),
             tables: match figure {
@@ -165,7 +244,7 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
     }
     for audit in results.memory() {
         sections.push(Section {
-            title: format!("Memory: {}", audit.mesh.name),
+            title: format!("Memory: {}", file_name(&audit.mesh.name)),
             facts: facts(&audit.mesh),
             // The sentences name the faults. Older documents have no sentences.
             sentences: match audit.sentences.is_empty() {
@@ -180,10 +259,12 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
         let command = recorded_command(&neighbours.run, command);
         let id = numbered_id("neighbours", i);
         sections.push(Section {
-            title: format!("Neighbours in space: {}", neighbours.mesh.name),
+            title: format!("Neighbours in space: {}", file_name(&neighbours.mesh.name)),
             facts: facts(&neighbours.mesh),
             sentences: [&neighbours.sentences[..], &neighbours.warnings].concat(),
-            figures: ranking::from_neighbours(neighbours, &id, command).collect(),
+            figures: ranking::from_neighbours(neighbours, &id, command)
+                .into_iter()
+                .collect(),
             tables: Vec::new(),
         });
     }
@@ -192,7 +273,11 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
         let id = numbered_id("pick", i);
         let ranked = ranking::from_workload(pick, &id, command);
         let curves = break_even::from_workload(pick, &format!("{id}-break-even"), command);
-        let names: Vec<&str> = pick.meshes.iter().map(|mesh| mesh.name.as_str()).collect();
+        let names: Vec<&str> = pick
+            .meshes
+            .iter()
+            .map(|mesh| file_name(&mesh.name))
+            .collect();
         sections.push(Section {
             title: format!("{} on {}", pick.workload.name, names.join(", ")),
             facts: pick.workload.summary.trim().to_owned(),
@@ -220,14 +305,16 @@ fn numbered_id(name: &str, place: usize) -> String {
     }
 }
 
-fn study_figures(study: &Report, command: &str) -> Vec<Figure> {
+fn study_figures(study: &Report, matrix: &Matrix, command: &str) -> Vec<Figure> {
     let command = recorded_command(&study.run, command);
-    let mut figures = Vec::new();
-    figures.extend(heat_map::from_study(study, "", command));
-    figures.extend(memory::from_study(study, "", command));
-    figures.extend(break_even::from_study(study, "", command));
-    figures.extend(ranking::from_study(study, command));
-    figures
+    let note = "Bars in a frame are lower bounds (≥), which are not ranked: a run would exceed the budget.";
+    let figures = [
+        ranking::from_matrix(matrix, note, command),
+        heat_map_of(study, matrix, "", command),
+        memory::from_study(study, "", command),
+        break_even::from_study(study, "", command),
+    ];
+    figures.into_iter().flatten().collect()
 }
 
 /// Draws the figures of one of several studies. There are fewer figures than for a single study.
@@ -235,17 +322,19 @@ fn section_figures(study: &Report, place: usize, command: &str) -> Vec<Figure> {
     // Different names can have the same slug, so the place is added.
     let id_prefix = format!("mesh-{place}-{}-", slug(&study.mesh.name));
     let command = recorded_command(&study.run, command);
-    let mut figures = Vec::new();
-    figures.extend(heat_map::from_study(study, &id_prefix, command));
-    figures.extend(memory::from_study(study, &id_prefix, command));
-    figures
+    let figures = [
+        heat_map_of(study, &Matrix::of_study(study), &id_prefix, command),
+        memory::from_study(study, &id_prefix, command),
+    ];
+    figures.into_iter().flatten().collect()
 }
 
-fn pooled_figures(pool: &Pool, command: &str) -> Vec<Figure> {
-    let mut figures = Vec::new();
-    figures.extend(heat_map::pooled(pool, command));
-    figures.extend(ranking::pooled(pool, command));
-    figures
+fn heat_map_of(study: &Report, matrix: &Matrix, id_prefix: &str, command: &str) -> Option<Figure> {
+    let title = format!(
+        "Every operation on every structure: {}",
+        file_name(&study.mesh.name)
+    );
+    heat_map::figure(title, matrix, id_prefix, command)
 }
 
 pub(crate) fn per_unit(unit: &str) -> String {

@@ -1,27 +1,22 @@
 //! The page as one HTML file.
 
+mod tables;
+
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::colours::dark_rules;
-use crate::figure::{Figure, Table, TitledTable};
+use crate::figure::{Figure, TitledTable};
 use crate::{ReportPage, Section};
+use tables::{operations_table, plain_table, summary_table};
 
-/// Style sheet: fonts, light and dark mode, printing, small screens.
-const STYLE: &str = "\
-:root{color-scheme:light dark;--text:#17181a;--background:#fdfdfc;--faint:#66686c;--line:#dcdcda;--link:#1f6fb0}\
-@media (prefers-color-scheme:dark){:root{--text:#e4e4e2;--background:#17181a;--faint:#a0a2a6;--line:#3a3b3e;--link:#5ba4e6}}\
-body{margin:0 auto;max-width:60rem;padding:1rem;background:var(--background);color:var(--text);\
-font:16px/1.5 system-ui,sans-serif}\
-h1{font-size:1.6rem;line-height:1.2}h2{font-size:1.25rem;margin-top:2.5rem;overflow-wrap:anywhere}\
-h3{font-size:1.05rem}a{color:var(--link)}code,pre{font:.9em/1.4 ui-monospace,monospace}\
-pre{overflow-x:auto;padding:.5rem .75rem;border:1px solid var(--line);border-radius:4px}\
-figure{margin:1.5rem 0;break-inside:avoid}figcaption{color:var(--faint);font-size:.9rem}\
-figure svg{display:block;max-width:100%;min-width:34rem;height:auto}figure svg g:hover>*{opacity:.75}\
-.scroll{overflow-x:auto}table{border-collapse:collapse;font-size:.85rem;font-variant-numeric:tabular-nums}\
-td,th{padding:.15rem .6rem;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}\
-td:first-child,th:first-child{text-align:left}summary{cursor:pointer;color:var(--faint);font-size:.9rem}\
-.warning::before{content:'! ';font-weight:bold}\
-@media print{body{max-width:none}details::details-content{content-visibility:visible}.scroll{overflow:visible}}";
+const STYLE: &str = include_str!("html/style.css");
+const SCRIPT: &str = include_str!("html/script.js");
+
+/// Width of a picture that scrolls on small screens, in pixels. Smaller pictures shrink.
+const WIDE: f64 = 400.0;
+
+/// Number of sentences of a lab that are not folded.
+const SHOWN: usize = 3;
 
 impl ReportPage {
     /// Returns the page as HTML without external resources.
@@ -39,40 +34,136 @@ impl ReportPage {
                     style { (PreEscaped(STYLE)) (PreEscaped(dark)) }
                 }
                 body {
-                    h1 { (self.title) }
-                    pre { code { (self.command) } }
-                    @for machine in &self.machines { p { (machine) } }
-                    (list(&self.sentences))
-                    @for warning in &self.warnings { p.warning { (warning) } }
-                    @if !self.failures.is_empty() {
-                        h2 { "Not studied" }
-                        ul {
-                            @for (mesh, reason) in &self.failures {
-                                li { code { (mesh) } ": " (reason) }
+                    a.skip href="#answer" { "Skip to the answer" }
+                    (self.contents())
+                    main {
+                        (self.first_screen())
+                        @if !self.operations.lines.is_empty() {
+                            section id="operations" {
+                                (heading("h2", "All operations", "operations"))
+                                (operations_table(&self.operations))
                             }
                         }
+                        @for figure in &self.figures { (figure_section(figure, "h2", None)) }
+                        @for table in &self.tables { h2 { (table.title) } (table_section(table)) }
+                        @for (place, lab) in self.labs.iter().enumerate() { (lab_section(place, lab)) }
+                        @if !self.meshes.is_empty() {
+                            section id="meshes" {
+                                (heading("h2", "Mesh by mesh", "meshes"))
+                                @for section in &self.meshes { (mesh_section(section)) }
+                            }
+                        }
+                        (self.method())
                     }
-                    @if !self.missing.is_empty() {
-                        h2 { "Meshes not studied yet" }
-                        ul { @for mesh in &self.missing { li { code { (mesh) } } } }
-                    }
-                    @for figure in &self.figures { (figure_section(figure, "h2", None)) }
-                    @for table in &self.tables { h2 { (table.title) } (table_section(table)) }
-                    @for lab in &self.labs {
-                        h2 { (lab.title) }
-                        p { (lab.facts) }
-                        (list(&lab.sentences))
-                        @for figure in &lab.figures { (figure_section(figure, "h3", None)) }
-                        @for table in &lab.tables { h3 { (table.title) } (table_section(table)) }
-                    }
-                    @if !self.meshes.is_empty() {
-                        h2 { "Mesh by mesh" }
-                        @for section in &self.meshes { (mesh_section(section)) }
-                    }
+                    script { (PreEscaped(SCRIPT)) }
                 }
             }
         };
         page.into_string()
+    }
+
+    /// Returns the links to all parts, which stay in view.
+    fn contents(&self) -> Markup {
+        let figures = self
+            .figures
+            .iter()
+            .map(|figure| (figure.id.clone(), short(&figure.title)));
+        let labs = self.labs.iter().enumerate();
+        let labs = labs.map(|(place, lab)| (lab_id(place), short(&lab.title)));
+        html! {
+            nav aria-label="Contents" {
+                ul {
+                    li { a href="#answer" { "Answer" } }
+                    @if !self.operations.lines.is_empty() { li { a href="#operations" { "All operations" } } }
+                    @for (id, title) in figures.chain(labs) { li { a href={ "#" (id) } { (title) } } }
+                    @if !self.meshes.is_empty() { li { a href="#meshes" { "Mesh by mesh" } } }
+                    li { a href="#method" { "How it was measured" } }
+                }
+            }
+        }
+    }
+
+    fn first_screen(&self) -> Markup {
+        html! {
+            header id="answer" {
+                h1 { (self.title) }
+                @if !self.facts.is_empty() { p.faint { (self.facts) } }
+                div.first {
+                    div.answer { @for sentence in &self.answer { p { (lead(sentence)) } } }
+                }
+                @if let Some(summary) = &self.summary { (summary_table(summary)) }
+                (self.warnings())
+                @if !self.failures.is_empty() {
+                    h2 { "Not studied" }
+                    ul {
+                        @for (mesh, reason) in &self.failures { li { code { (mesh) } ": " (reason) } }
+                    }
+                }
+                @if !self.missing.is_empty() {
+                    h2 { "Meshes not studied yet" }
+                    ul { @for mesh in &self.missing { li { code { (mesh) } } } }
+                }
+                @if !self.sentences.is_empty() {
+                    details { summary { "More on the results" } (list(&self.sentences)) }
+                }
+            }
+        }
+    }
+
+    /// Returns the warnings, folded into one line.
+    fn warnings(&self) -> Markup {
+        html! {
+            @match &self.warnings[..] {
+                [] => {}
+                [warning] => p.warning { b { "⚠ " } (warning) },
+                warnings => {
+                    details.warning {
+                        summary { b { "⚠ " (warnings.len()) " warnings" } ": " (warnings[0]) }
+                        (list(warnings))
+                    }
+                }
+            }
+        }
+    }
+
+    fn method(&self) -> Markup {
+        html! {
+            section id="method" {
+                (heading("h2", "How it was measured", "method"))
+                pre { code { (self.command) } }
+                @for machine in &self.machines { p { (machine) } }
+            }
+        }
+    }
+}
+
+/// Returns a sentence with the words before its first colon in bold.
+fn lead(sentence: &str) -> Markup {
+    match sentence.split_once(": ") {
+        Some((lead, rest)) if lead.len() < 30 => html! { strong { (lead) ":" } " " (rest) },
+        _ => html! { (sentence) },
+    }
+}
+
+/// Returns a title for the contents: without the name of the mesh.
+fn short(title: &str) -> String {
+    let title = title.split(": ").next().unwrap_or(title);
+    title.to_owned()
+}
+
+fn lab_id(place: usize) -> String {
+    format!("lab-{}", place + 1)
+}
+
+/// Returns a heading with its permanent link.
+fn heading(level: &str, title: &str, id: &str) -> Markup {
+    let link = html! {
+        (title)
+        a.permalink href={ "#" (id) } aria-label={ "Link to “" (title) "”" } { "#" }
+    };
+    match level {
+        "h2" => html! { h2 { (link) } },
+        _ => html! { h3 { (link) } },
     }
 }
 
@@ -80,6 +171,21 @@ fn list(sentences: &[String]) -> Markup {
     html! {
         @if !sentences.is_empty() {
             ul { @for sentence in sentences { li { (sentence) } } }
+        }
+    }
+}
+
+fn lab_section(place: usize, lab: &Section) -> Markup {
+    let id = lab_id(place);
+    html! {
+        section id=(id) {
+            (heading("h2", &lab.title, &id))
+            p.faint { (lab.facts) }
+            @let (first, more) = lab.sentences.split_at(lab.sentences.len().min(SHOWN));
+            (list(first))
+            @if !more.is_empty() { details { summary { "More on the results" } (list(more)) } }
+            @for figure in &lab.figures { (figure_section(figure, "h3", None)) }
+            @for table in &lab.tables { h3 { (table.title) } (table_section(table)) }
         }
     }
 }
@@ -96,18 +202,27 @@ fn mesh_section(section: &Section) -> Markup {
 }
 
 /// Returns a figure under a heading. `mesh` is the name of the mesh if the page has several meshes.
-fn figure_section(figure: &Figure, heading: &str, mesh: Option<&str>) -> Markup {
+fn figure_section(figure: &Figure, level: &str, mesh: Option<&str>) -> Markup {
+    let class = match figure.picture.panel_count() {
+        1 if figure.picture.width() > WIDE => "wide",
+        1 => "narrow",
+        _ => "panels",
+    };
     html! {
         section id=(figure.id) {
-            @if heading == "h2" { h2 { (figure.title) } } @else { h3 { (figure.title) } }
+            (heading(level, &figure.title, &figure.id))
             figure data-figure=(figure.id) data-mesh=[mesh] {
-                // Wide figures scroll on small screens.
-                div.scroll { (figure.picture.markup()) }
-                figcaption { (figure.caption) }
+                div class=(class) style={ "--panel:" (figure.picture.width()) "px" } {
+                    (figure.picture.markup())
+                }
+                figcaption {
+                    (figure.caption)
+                    div.source { (figure.source) }
+                }
             }
             details {
                 summary { "Numbers and command" }
-                (table_markup(&figure.table))
+                (plain_table(&figure.table))
                 pre { code { (figure.command) } }
             }
         }
@@ -117,21 +232,6 @@ fn figure_section(figure: &Figure, heading: &str, mesh: Option<&str>) -> Markup 
 fn table_section(table: &TitledTable) -> Markup {
     html! {
         p { (table.caption) }
-        (table_markup(&table.table))
-    }
-}
-
-fn table_markup(table: &Table) -> Markup {
-    html! {
-        div.scroll {
-            table {
-                thead { tr { @for name in &table.header { th { (name) } } } }
-                tbody {
-                    @for row in &table.rows {
-                        tr { @for cell in row { td { (cell) } } }
-                    }
-                }
-            }
-        }
+        (plain_table(&table.table))
     }
 }

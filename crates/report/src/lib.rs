@@ -10,31 +10,43 @@
 //! mode, printing and small screens. [`ReportPage::markdown`] returns Markdown for a repository,
 //! which links to separate SVG files.
 
+mod canvas;
 mod colours;
 mod figure;
 mod figures;
 mod html;
 mod markdown;
+mod matrix;
 mod panels;
 mod picture;
+mod source;
+mod summary;
 
+use matrix::Matrix;
 use sixfold_study::Results;
 
 pub use colours::structure_colours;
 pub use figure::{Figure, Table, TitledTable};
 pub use panels::{Panel, panels};
 pub use picture::Picture;
+pub use summary::{Rank, Summary, SummaryColumn, SummaryFigure, SummaryRow};
 
 /// A report on studies and additional measurements.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct ReportPage {
     /// Title.
     pub title: String,
+    /// The mesh, or the meshes, in one line; empty if there are none.
+    pub facts: String,
+    /// The answer in at most three sentences.
+    pub answer: Vec<String>,
+    /// The structures by kind of work; `None` without a study.
+    pub summary: Option<Summary>,
     /// The command that reproduces the report.
     pub command: String,
     /// Descriptions of the machines, one line each.
     pub machines: Vec<String>,
-    /// Sentences that state the main results.
+    /// Further sentences on the results.
     pub sentences: Vec<String>,
     /// Possible faults of the measurement, with remedies.
     pub warnings: Vec<String>,
@@ -43,6 +55,8 @@ pub struct ReportPage {
     pub figures: Vec<Figure>,
     /// Tables about groups of meshes; empty if there is only one mesh.
     pub tables: Vec<TitledTable>,
+    /// All operations on all backends.
+    pub(crate) operations: Matrix,
     /// Sections for additional measurements: orders of elements, growth, reads of queries, memory,
     /// workloads.
     pub labs: Vec<Section>,

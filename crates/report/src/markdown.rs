@@ -17,6 +17,15 @@ impl ReportPage {
         for machine in &self.machines {
             let _ = writeln!(text, "{}\n", escape(machine));
         }
+        if !self.facts.is_empty() {
+            let _ = writeln!(text, "{}\n", escape(&self.facts));
+        }
+        for sentence in &self.answer {
+            let _ = writeln!(text, "{}\n", escape(sentence));
+        }
+        if let Some(summary) = &self.summary {
+            write_table(&mut text, &summary.table());
+        }
         write_list(&mut text, &self.sentences);
         for warning in &self.warnings {
             let _ = writeln!(text, "> {}\n", escape(warning));
@@ -70,6 +79,9 @@ fn write_figure(text: &mut String, figure: &Figure, heading: &str) {
     let (title, id) = (escape(&figure.title), &figure.id);
     let _ = writeln!(text, "{heading} {title}\n\n![{title}](figures/{id}.svg)\n");
     let _ = writeln!(text, "{}\n", escape(&figure.caption));
+    if !figure.source.is_empty() {
+        let _ = writeln!(text, "{}\n", escape(&figure.source));
+    }
     write_table(text, &figure.table);
     let _ = writeln!(text, "```sh\n{}\n```\n", figure.command);
 }

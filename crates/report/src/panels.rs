@@ -1,12 +1,13 @@
 //! Several small line charts in one SVG figure.
 
+use kuva::Theme;
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::figure::Figure as Grid;
+use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
 
 use crate::Picture;
-use crate::colours::column_colour;
-use crate::figure::base_layout;
+use crate::colours::{BACKGROUND, GRID_COLOUR, TEXT_COLOUR, column_colour};
 
 /// Width and height of one panel.
 const SIZE: [f64; 2] = [400.0, 320.0];
@@ -67,4 +68,27 @@ fn line(name: &str, points: &[(f64, f64)]) -> [Plot; 2] {
         .with_size(3.0)
         .with_tooltip_labels(titles);
     [Plot::Line(line), Plot::Scatter(dots)]
+}
+
+/// Returns a layout of the given size with the colours and fonts of the report.
+fn base_layout(plots: &[Plot], width: f64, height: f64) -> Layout {
+    let theme = Theme {
+        background: BACKGROUND.into(),
+        axis_color: TEXT_COLOUR.into(),
+        grid_color: GRID_COLOUR.into(),
+        tick_color: TEXT_COLOUR.into(),
+        text_color: TEXT_COLOUR.into(),
+        legend_bg: BACKGROUND.into(),
+        legend_border: GRID_COLOUR.into(),
+        colorbar_border: TEXT_COLOUR.into(),
+        font_family: Some("system-ui, sans-serif".into()),
+        ..Theme::light()
+    };
+    Layout::auto_from_plots(plots)
+        .with_theme(theme)
+        .with_width(width)
+        .with_height(height)
+        .with_label_size(13)
+        .with_tick_size(12)
+        .with_body_size(12)
 }

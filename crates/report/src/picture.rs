@@ -49,6 +49,18 @@ impl Picture {
         }
     }
 
+    pub(crate) fn panel_count(&self) -> usize {
+        self.panels.len()
+    }
+
+    /// Returns the width of the widest panel in pixels.
+    pub(crate) fn width(&self) -> f64 {
+        self.panels
+            .iter()
+            .map(|panel| panel.width)
+            .fold(0.0, f64::max)
+    }
+
     /// Returns the panels as SVG elements without style rules, for a page that has these rules.
     pub(crate) fn markup(&self) -> Markup {
         html! {

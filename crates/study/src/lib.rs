@@ -81,7 +81,7 @@ pub use results::environment::Environment;
 pub use results::figure::{Counted, Figure, Status};
 pub use results::finding::Finding;
 pub use results::merge::MergeError;
-pub use results::pool::{Group, Holding, Overall, Pool, Pooled, Purpose};
+pub use results::pool::{Group, Holding, Overall, Pool, Pooled, Purpose, leaders};
 pub use results::read::ReadError;
 pub use results::rows::{
     Agreement, BackendRefusal, BackendReport, Control, ControlRow, FIRST_TIME_SHOWN, MeasuredTask,
@@ -90,6 +90,7 @@ pub use results::rows::{
 pub use results::run::{Run, RunSettings, Start as RunStart};
 pub use runner::{BackendRun, BackendRunner};
 pub use sanitize::sanitize;
+pub use sixfold::TableBytes;
 pub use sixfold_workload::pages::{self, HeapGuard, HeapPolicyConflict, HeapReport, Policy};
 pub use sixfold_workload::{
     Access, Action, Amount, EditPlaceError, OwnBytes, OwnData, Part, Workload, WorkloadError,

@@ -67,7 +67,7 @@ pub fn counted(number: usize, singular: &str, plural: &str) -> String {
 }
 
 /// Joins names: `a`, `a and b`, `a, b and c`.
-pub(crate) fn list<N: AsRef<str>>(names: impl IntoIterator<Item = N>) -> String {
+pub fn list<N: AsRef<str>>(names: impl IntoIterator<Item = N>) -> String {
     let names: Vec<N> = names.into_iter().collect();
     let Some((last, first)) = names.split_last() else {
         return String::new();

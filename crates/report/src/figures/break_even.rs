@@ -1,16 +1,14 @@
 //! A figure that shows after how many operations a structure has saved more time than building it
 //! took.
 
-use kuva::plot::LinePlot;
-use kuva::render::plots::Plot;
-use sixfold_study::numbers::{counted, duration};
+use sixfold_study::numbers::{counted, duration, grouped};
 use sixfold_study::{Operation, PickReport, Report, ResultRow};
 
+use super::INPUT_BACKEND;
+use crate::Picture;
+use crate::canvas::{Axes, Canvas, LogScale, Style, spread};
 use crate::colours::column_colour;
-use crate::figure::{Figure, Table, base_layout, picture};
-
-/// The structure of the input mesh. It need not be built.
-const INPUT_BACKEND: &str = "indexed-face-set";
+use crate::figure::{Figure, Table, duration_tick};
 
 /// Draws the time to build once and repeat one operation, over the number of repetitions.
 pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Option<Figure> {
@@ -59,12 +57,12 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         .collect();
     let title = format!(
         "Time to build once and repeat {operation}: {}",
-        study.mesh.name
+        super::file_name(&study.mesh.name)
     );
     let caption = format!(
         "The mesh is given as an {INPUT_BACKEND}. Every other structure is built first, on fresh \
-         pages. Building pays off as soon as the line of the structure is below the line of the \
-         {INPUT_BACKEND}. `sixfold pick` measures this for a workload."
+         pages. Points and numbers show after how many runs building pays off: the line of the \
+         structure is then below that of the {INPUT_BACKEND}. `sixfold pick` measures this for a workload."
     );
     let curves = Curves {
         title,
@@ -72,7 +70,12 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         caption,
         axis: &format!("runs of {operation}"),
         unit: "one run",
-        max_count: 1e4,
+        max_count: {
+            let input = lines.iter().find(|line| line.name == INPUT_BACKEND);
+            let counts = lines.iter().filter_map(|line| line.crossing(input?));
+            let last = counts.filter(|count| *count < 1e6).fold(10.0, f64::max);
+            10_f64.powf((10.0 * last).log10().ceil())
+        },
     };
     curves.draw(&lines, command)
 }
@@ -103,8 +106,8 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
     let title = format!("Time to build once and run {name}");
     let caption = format!(
         "The mesh is given as an {INPUT_BACKEND}. Every other structure is built first, on fresh \
-         pages. Building pays off as soon as the line of the structure is below the line of the \
-         {INPUT_BACKEND}. One use of the mesh consists of {}.",
+         pages. Points and numbers show after how many operations building pays off: the line of the \
+         structure is then below that of the {INPUT_BACKEND}. One use of the mesh consists of {}.",
         counted(
             report.operations.round() as usize,
             "operation",
@@ -128,6 +131,19 @@ struct Line<'a> {
     build: f64,
     run: f64,
     pays_after: String,
+}
+
+impl Line<'_> {
+    /// Returns the total time for `count` repetitions.
+    fn at(&self, count: f64) -> f64 {
+        self.build + count * self.run
+    }
+
+    /// Returns the number of repetitions from which the line is below that of the input mesh.
+    fn crossing(&self, input: &Self) -> Option<f64> {
+        let saved = input.run - self.run;
+        (saved > 0.0).then(|| (self.build - input.build) / saved)
+    }
 }
 
 fn break_even_text(count: f64, singular: &str, plural: &str) -> String {
@@ -154,43 +170,89 @@ impl Curves<'_> {
             return None;
         }
         let mut table = Table::new(["", "to build", self.unit, "pays after"]);
-        let mut plots = Vec::new();
-        let quarters = (4.0 * self.max_count.log10()).ceil() as i32;
-        for Line {
-            name,
-            build,
-            run,
-            pays_after,
-        } in lines
-        {
-            let counts = (0..=quarters).map(|quarter| 10_f64.powf(f64::from(quarter) / 4.0));
-            let points = counts.map(|count| (count, (build + count * run) / 1e6));
-            plots.push(Plot::Line(
-                LinePlot::new()
-                    .with_data(points.collect::<Vec<(f64, f64)>>())
-                    .with_color(column_colour(name))
-                    .with_stroke_width(2.0)
-                    .with_legend(*name),
-            ));
-            let cells = [
-                (*name).into(),
-                duration(*build),
-                duration(*run),
-                pays_after.clone(),
-            ];
-            table.row(cells.into());
+        for line in lines {
+            table.row(vec![
+                line.name.into(),
+                duration(line.build),
+                duration(line.run),
+                line.pays_after.clone(),
+            ]);
         }
-        let layout = base_layout(&plots, 820.0, 440.0)
-            .with_log_scale()
-            .with_x_label(self.axis)
-            .with_y_label("total time, ms");
+        let ends = lines
+            .iter()
+            .flat_map(|line| [line.at(1.0), line.at(self.max_count)]);
+        let [least, most] = ends.fold([f64::INFINITY, 0.0], |[least, most], ns| {
+            [f64::min(least, ns), f64::max(most, ns)]
+        });
+        let axes = Axes {
+            x: LogScale {
+                values: [1.0, self.max_count],
+                pixels: [70.0, 590.0],
+            },
+            y: LogScale {
+                values: [least.max(1.0), most.max(10.0)],
+                pixels: [380.0, 30.0],
+            },
+            x_label: self.axis,
+            y_label: "total time, with the time to build",
+            x_format: &|count| grouped(count.round() as usize),
+            y_format: &duration_tick,
+        };
+        let mut canvas = Canvas::new(860.0, 424.0);
+        axes.draw(&mut canvas);
+        draw_lines(&mut canvas, &axes, lines, self.max_count);
         Some(Figure {
             id: self.id,
-            picture: picture(&self.title, plots, layout),
+            picture: Picture::single(&self.title, canvas.finish()),
             title: self.title,
             caption: self.caption,
             table,
+            source: String::new(),
             command: command.into(),
         })
+    }
+}
+
+/// Draws the lines with their names at the right, and the points from which building pays off.
+fn draw_lines(canvas: &mut Canvas, axes: &Axes<'_>, lines: &[Line<'_>], max_count: f64) {
+    let quarters = (8.0 * max_count.log10()).ceil() as i32;
+    for line in lines {
+        let counts = (0..=quarters).map(|step| 10_f64.powf(f64::from(step) / 8.0).min(max_count));
+        let points = counts.map(|count| axes.place([count, line.at(count)]));
+        let points: Vec<[f64; 2]> = points.collect();
+        canvas.polyline(&points, column_colour(line.name), 2.0);
+    }
+    let input = lines.iter().find(|line| line.name == INPUT_BACKEND);
+    for line in lines {
+        let Some(count) = input.and_then(|input| line.crossing(input)) else {
+            continue;
+        };
+        let count = count.ceil().max(1.0);
+        // At 1, the label at the right says it.
+        if count > 1.0 && count <= max_count {
+            let [x, y] = axes.place([count, line.at(count)]);
+            let text = grouped(count as usize);
+            let title = format!("{} pays after {}", line.name, line.pays_after);
+            let colour = column_colour(line.name);
+            canvas.mark(title, |canvas| canvas.circle([x, y], 4.5, colour));
+            canvas.text([x - 6.0, y - 7.0], &text, Style::new(11).end().bold(true));
+        }
+    }
+    let places: Vec<f64> = lines
+        .iter()
+        .map(|line| axes.y.place(line.at(max_count)))
+        .collect();
+    let labels = spread(&places, 15.0, [30.0, 380.0]);
+    for ((line, place), label) in lines.iter().zip(places).zip(labels) {
+        let right = axes.x.pixels[1];
+        let colour = column_colour(line.name);
+        canvas.line([right + 2.0, place], [right + 14.0, label], colour, 1.0);
+        let text = match line.pays_after.as_str() {
+            "given" => format!("{}: given", line.name),
+            "never" => format!("{}: never pays", line.name),
+            "–" => line.name.to_owned(),
+            count => format!("{}: pays after {count}", line.name),
+        };
+        canvas.text([right + 18.0, label + 4.0], &text, Style::new(11));
     }
 }

@@ -1,104 +1,180 @@
 //! Figures of the growth of times with the size of the mesh. On logarithmic axes, the slope of a
 //! line is the exponent of growth.
 
-use kuva::plot::{LinePlot, ScatterPlot};
-use kuva::render::plots::Plot;
-use sixfold_study::numbers::{duration, grouped};
-use sixfold_study::{Fit, GrowthReport, Operation, ResultRow, SizeReport, Slope};
+use kuva::render::render::Scene;
+use sixfold_study::numbers::{bytes, duration, grouped};
+use sixfold_study::{CacheLimit, Fit, GrowthReport, Operation, ResultRow, SizeReport, Slope};
 
 use super::{marked, per_unit};
-use crate::colours::column_colour;
-use crate::figure::{Figure, Table, base_layout, picture};
+use crate::Picture;
+use crate::canvas::{Axes, Canvas, LogScale, Style, spread};
+use crate::colours::{BACKGROUND, FAINT_COLOUR, column_colour};
+use crate::figure::{Figure, Table, count_tick, duration_tick};
 
-pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Vec<Figure> {
-    let operations: Vec<Operation> = Operation::ALL
-        .into_iter()
-        .filter(|&operation| report.fits.iter().any(|fit| fit.operation == operation))
-        .collect();
-    let figures = operations
-        .into_iter()
-        .map(|operation| figure(report, operation, id, command));
-    figures.collect()
-}
+/// Size of a panel, and the places of its axes.
+const SIZE: [f64; 2] = [440.0, 300.0];
+const ACROSS: [f64; 2] = [58.0, 290.0];
+const UPWARDS: [f64; 2] = [256.0, 44.0];
 
-fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) -> Figure {
-    let fits = report.fits.iter().filter(|fit| fit.operation == operation);
-    let fits: Vec<&Fit> = fits.collect();
-    let plots: Vec<Plot> = fits
+/// Draws a panel for each operation. All panels have the same axes.
+pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Option<Figure> {
+    let of = |operation: &Operation| -> Vec<&Fit> {
+        let fits = report.fits.iter();
+        fits.filter(|fit| fit.operation == *operation).collect()
+    };
+    let operations = Operation::ALL.into_iter().filter(|o| !of(o).is_empty());
+    let operations: Vec<Operation> = operations.collect();
+    let curves = report
+        .fits
         .iter()
-        .filter_map(|fit| curve(&report.sizes, fit))
-        .flatten()
-        .collect();
-    let (name, per) = (operation.name(), per_unit(operation.unit()));
-    let title = format!("{name}: total time as the mesh grows");
-    let layout = base_layout(&plots, 860.0, 440.0)
-        .with_log_scale()
-        .with_x_label("faces")
-        .with_y_label("total time, ms");
-    Figure {
-        id: format!("{id}-{}", name.replace('_', "-")),
-        picture: picture(&title, plots, layout),
-        title,
-        caption: format!(
-            "Both axes are logarithmic, so a straight line is a power of the number of faces. The \
-             number after each name is the exponent. At 1, the time per element is constant; at \
-             2, each element takes a scan of all faces. Lower bounds (≥ in the table) are not drawn. \
-             The table shows the time {per}, and the \
-             slopes: for all sizes, for the sizes that fit into the last cache, and for the \
-             larger sizes."
-        ),
-        table: times_and_slopes(&report.sizes, &fits),
-        command: command.into(),
-    }
-}
-
-/// Draws the measured times of one backend over the sizes, with a mark for each size. Returns `None`
-/// if there are no measured times.
-fn curve(sizes: &[SizeReport], fit: &Fit) -> Option<[Plot; 2]> {
-    let (mut points, mut titles) = (Vec::new(), Vec::new());
-    for size in sizes {
-        let Some(ns) = find_row(size, fit).and_then(|row| row.median_ns) else {
-            continue;
-        };
-        points.push((size.faces as f64, ns / 1e6));
-        titles.push(format!(
-            "{}, {} faces: {}",
-            fit.backend,
-            grouped(size.faces),
-            duration(ns)
-        ));
-    }
-    if points.is_empty() {
+        .flat_map(|fit| points(&report.sizes, fit));
+    let curves: Vec<[f64; 2]> = curves.collect();
+    let ends = |axis: usize| {
+        let values = curves.iter().map(|point| point[axis]);
+        values.fold([f64::INFINITY, 0.0], |[least, most], value| {
+            [f64::min(least, value), f64::max(most, value)]
+        })
+    };
+    let (x, y) = (ends(0), ends(1));
+    if curves.is_empty() || x[0] >= x[1] || y[0] >= y[1] {
         return None;
     }
-    let colour = column_colour(&fit.backend);
-    let legend = match fit.all {
-        Some(slope) => format!("{}: {:.2}", fit.backend, slope.exponent),
-        None => fit.backend.clone(),
+    let axes = Axes {
+        x: LogScale {
+            values: x,
+            pixels: ACROSS,
+        },
+        y: LogScale {
+            values: y,
+            pixels: UPWARDS,
+        },
+        x_label: "faces",
+        y_label: "total time",
+        x_format: &count_tick,
+        y_format: &duration_tick,
     };
-    let line = LinePlot::new()
-        .with_data(points.clone())
-        .with_color(colour)
-        .with_stroke_width(2.0)
-        .with_legend(legend);
-    let marks = ScatterPlot::new()
-        .with_data(points)
-        .with_color(colour)
-        .with_size(4.0)
-        .with_tooltip_labels(titles);
-    Some([Plot::Line(line), Plot::Scatter(marks)])
+    let mut table = None;
+    let mut panels = Vec::new();
+    for operation in &operations {
+        let fits = of(operation);
+        panels.push(panel(report, *operation, &fits, &axes));
+        add_times_and_slopes(&mut table, &report.sizes, *operation, &fits);
+    }
+    let title = format!("Total time as the mesh grows: {}", report.shape);
+    let limit = last_cache(report).map_or(String::new(), |limit| {
+        format!(
+            " A ring marks the size from which a structure is larger than the last cache (L{}, {}).",
+            limit.level,
+            bytes(limit.cache_bytes as usize)
+        )
+    });
+    Some(Figure {
+        id: id.into(),
+        picture: Picture::grid(&title, 2, panels),
+        title,
+        caption: format!(
+            "Both axes are logarithmic and the same in all panels, so a straight line is a power of the \
+             number of faces. The number at each name is the exponent: at 1, the time per element \
+             is constant; at 2, each element takes a scan of all faces.{limit} Lower bounds (≥ in the table) are \
+             not drawn. The table has the times per element, and the slopes for all sizes, for the sizes that fit \
+             into the last cache, and for the larger sizes."
+        ),
+        table: table.unwrap_or_default(),
+        source: String::new(),
+        command: command.into(),
+    })
 }
 
-/// Returns a table with a column for each backend: its times per element, then its slopes.
-fn times_and_slopes(sizes: &[SizeReport], fits: &[&Fit]) -> Table {
+/// Returns the measured times of one backend, in nanoseconds, over the numbers of faces.
+fn points(sizes: &[SizeReport], fit: &Fit) -> Vec<[f64; 2]> {
+    let point = |size: &SizeReport| Some([size.faces as f64, find_row(size, fit)?.median_ns?]);
+    sizes.iter().filter_map(point).collect()
+}
+
+/// Returns the limit of a structure in the last cache.
+fn last_cache(report: &GrowthReport) -> Option<&CacheLimit> {
+    report.cache_limits.iter().max_by_key(|limit| limit.level)
+}
+
+fn panel(report: &GrowthReport, operation: Operation, fits: &[&Fit], axes: &Axes<'_>) -> Scene {
+    let mut canvas = Canvas::new(SIZE[0], SIZE[1]);
+    canvas.text([0.0, 14.0], operation.name(), Style::new(13).bold(true));
+    axes.draw(&mut canvas);
+    let level = last_cache(report).map(|limit| limit.level);
+    let mut names = Vec::new();
+    for fit in fits {
+        let points = points(&report.sizes, fit);
+        let Some(&last) = points.last() else {
+            continue;
+        };
+        let colour = column_colour(&fit.backend);
+        let places: Vec<[f64; 2]> = points.iter().map(|&point| axes.place(point)).collect();
+        canvas.polyline(&places, colour, 1.5);
+        for ([faces, ns], place) in points.iter().zip(&places) {
+            let faces = grouped(*faces as usize);
+            let title = format!("{}, {faces} faces: {}", fit.backend, duration(*ns));
+            canvas.mark(title, |canvas| canvas.circle(*place, 2.5, colour));
+        }
+        let mut limits = report.cache_limits.iter();
+        let limit = limits.find(|l| Some(l.level) == level && l.backend == fit.backend);
+        if let Some(place) = limit.and_then(|limit| between(&points, limit.faces as f64)) {
+            let place = axes.place(place);
+            canvas.circle(place, 6.0, colour);
+            canvas.circle(place, 4.0, BACKGROUND);
+        }
+        names.push((fit, axes.place(last), colour));
+    }
+    let heights: Vec<f64> = names.iter().map(|(_, [_, y], _)| *y).collect();
+    let labels = spread(&heights, 13.0, [UPWARDS[1], UPWARDS[0]]);
+    for ((fit, [x, y], colour), label) in names.into_iter().zip(labels) {
+        canvas.line([x + 3.0, y], [ACROSS[1] + 12.0, label], colour, 0.7);
+        let text = match fit.all {
+            Some(slope) => format!("{}: {:.2}", fit.backend, slope.exponent),
+            None => fit.backend.clone(),
+        };
+        canvas.text([ACROSS[1] + 15.0, label + 4.0], &text, Style::new(11));
+    }
+    if names_nothing(fits, &report.sizes) {
+        canvas.text(
+            [ACROSS[0] + 10.0, 80.0],
+            "no measured times",
+            Style::new(11).colour(FAINT_COLOUR),
+        );
+    }
+    canvas.finish()
+}
+
+fn names_nothing(fits: &[&Fit], sizes: &[SizeReport]) -> bool {
+    fits.iter().all(|fit| points(sizes, fit).is_empty())
+}
+
+/// Returns the point of a curve at `x`, between its measured points; `None` beyond its ends.
+fn between(points: &[[f64; 2]], x: f64) -> Option<[f64; 2]> {
+    let pair = points
+        .windows(2)
+        .find(|pair| pair[0][0] <= x && x <= pair[1][0])?;
+    let share = (x / pair[0][0]).ln() / (pair[1][0] / pair[0][0]).ln();
+    Some([x, pair[0][1] * (pair[1][1] / pair[0][1]).powf(share)])
+}
+
+/// Adds the rows of an operation to a table with a column for each backend: its times per element, then
+/// its slopes.
+fn add_times_and_slopes(
+    table: &mut Option<Table>,
+    sizes: &[SizeReport],
+    operation: Operation,
+    fits: &[&Fit],
+) {
     let names = fits.iter().map(|fit| fit.backend.as_str());
-    let mut table = Table::new(["faces"].into_iter().chain(names));
+    let header = ["", "faces"].into_iter().chain(names);
+    let table = table.get_or_insert_with(|| Table::new(header));
+    let what = format!("{}, {}", operation.name(), per_unit(operation.unit()));
     for size in sizes {
         let cell = |fit: &&Fit| {
             let each = find_row(size, fit).and_then(each_ns);
             each.map_or_else(|| "–".into(), |(ns, bound)| marked(duration(ns), bound))
         };
-        let mut line = vec![grouped(size.faces)];
+        let mut line = vec![what.clone(), grouped(size.faces)];
         line.extend(fits.iter().map(cell));
         table.row(line);
     }
@@ -111,10 +187,9 @@ fn times_and_slopes(sizes: &[SizeReport], fits: &[&Fit]) -> Table {
     for (name, select) in slopes {
         let cells: Vec<String> = fits.iter().map(|fit| slope_cell(select(fit))).collect();
         if cells.iter().any(|cell| cell != "–") {
-            table.row([vec![name.into()], cells].concat());
+            table.row([vec![operation.name().into(), name.into()], cells].concat());
         }
     }
-    table
 }
 
 /// Formats an exponent with its standard error, if it has one.

@@ -1,134 +1,108 @@
-//! The heat map: all structures and operations in one figure.
+//! The heat map: all structures and operations in one figure, with their ratios.
 
-use std::sync::Arc;
+use kuva::plot::ColorMap;
+use sixfold_study::numbers::times;
 
-use kuva::plot::{ColorMap, Heatmap};
-use kuva::render::plots::Plot;
-use sixfold_study::numbers::{counted, times};
-use sixfold_study::{Operation, Pool, Report};
-
-use super::marked;
-use crate::colours::GRID_COLOUR;
-use crate::figure::{Figure, Table, base_layout, picture, ratio_ticks};
+use crate::Picture;
+use crate::canvas::{Canvas, Style};
+use crate::colours::{FAINT_COLOUR, GRID_COLOUR};
+use crate::figure::{Figure, Table};
+use crate::matrix::{Cell, Matrix, Source};
 
 /// Maximum ratio with its own colour. Larger ratios have the colour of this ratio.
 const MAX_RATIO: f64 = 1000.0;
+/// Width of the names, width of a column, height of the head and of a row.
+const NAMES: f64 = 170.0;
+const COLUMN: f64 = 104.0;
+const HEAD: f64 = 26.0;
+const ROW: f64 = 21.0;
+/// The text on dark cells and on light cells, in both modes of the page.
+const ON_DARK: &str = "#ffffff";
+const ON_LIGHT: &str = "#000000";
 
-pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Option<Figure> {
-    let columns = study.backends.iter().filter(|column| column.holds);
-    let columns: Vec<&str> = columns.map(|column| column.name.as_str()).collect();
-    let ratio = |operation: Operation, column: &str| {
-        let mut rows = study.rows(operation);
-        let ratio = study.shown_ratio(rows.find(|row| row.backend == column)?)?;
-        Some((ratio, false))
-    };
-    let title = format!("Every operation on every structure: {}", study.mesh.name);
-    figure(&title, &columns, &ratio, id_prefix, command)
-}
-
-pub(super) fn pooled(pool: &Pool, command: &str) -> Option<Figure> {
-    let mut columns: Vec<&str> = Vec::new();
-    for row in pool.all() {
-        if !columns.contains(&row.backend.as_str()) {
-            columns.push(&row.backend);
-        }
-    }
-    let ratio = |operation: Operation, column: &str| {
-        let mut rows = pool.all().iter();
-        let row = rows.find(|row| row.operation == operation && row.backend == column);
-        row.map(|row| (row.ratio_to_best, row.estimated > 0))
-    };
-    let title = format!(
-        "Every operation on every structure: geometric mean over {}",
-        counted(
-            pool.groups.first().map_or(0, |all| all.meshes.len()),
-            "mesh",
-            "meshes"
-        )
-    );
-    figure(&title, &columns, &ratio, "", command)
-}
-
-/// A ratio to the fastest, and whether it is a lower bound.
-type Ratio = (f64, bool);
-
-fn figure(
-    title: &str,
-    columns: &[&str],
-    ratio: &dyn Fn(Operation, &str) -> Option<Ratio>,
+/// Draws `matrix`. The figure has no picture without operations.
+pub(super) fn figure(
+    title: String,
+    matrix: &Matrix,
     id_prefix: &str,
     command: &str,
 ) -> Option<Figure> {
-    let measured = |operation: &Operation| columns.iter().any(|c| ratio(*operation, c).is_some());
-    let operations: Vec<Operation> = Operation::ALL.into_iter().filter(measured).collect();
-    if operations.is_empty() {
+    if matrix.lines.is_empty() {
         return None;
     }
-    let mut table = Table::new([""].into_iter().chain(columns.iter().copied()));
-    let (mut cells, mut titles) = (Vec::new(), Vec::new());
-    for &operation in &operations {
-        let mut line = vec![operation.name().to_owned()];
-        line.extend(
-            columns
-                .iter()
-                .map(|column| ratio(operation, column).map_or_else(|| "–".into(), shown)),
-        );
-        table.row(line);
+    let mut table = Table::new(
+        [""].into_iter()
+            .chain(matrix.backends.iter().map(String::as_str)),
+    );
+    let width = NAMES + COLUMN * matrix.backends.len() as f64;
+    let mut canvas = Canvas::new(width, HEAD + ROW * matrix.lines.len() as f64 + 4.0);
+    for (column, name) in matrix.backends.iter().enumerate() {
+        let x = NAMES + COLUMN * (column as f64 + 0.5);
+        canvas.text([x, HEAD - 8.0], name, Style::new(11).middle());
     }
-    // The plot draws rows upwards, but the first operation belongs at the top.
-    for &operation in operations.iter().rev() {
-        let mut line = Vec::new();
-        for column in columns {
-            let value = ratio(operation, column);
-            // NaN means "not measured" and has its own colour. The colour of a lower bound would
-            // rank it.
-            let measured = value.filter(|(_, bound)| !bound);
-            let colour = measured.map(|(ratio, _)| ratio.clamp(1.0, MAX_RATIO).log10());
-            line.push(colour.unwrap_or(f64::NAN));
-            let shown = value.map_or_else(|| "not measured".into(), shown);
-            titles.push(format!("{operation} on {column}: {shown}"));
+    for (number, line) in matrix.lines.iter().enumerate() {
+        let y = HEAD + ROW * number as f64;
+        canvas.text([NAMES - 8.0, y + 15.0], &line.name, Style::new(12).end());
+        let mut texts = vec![line.name.clone()];
+        for (column, cell) in line.cells.iter().enumerate() {
+            let x = NAMES + COLUMN * column as f64;
+            texts.push(shown(cell));
+            draw_cell(&mut canvas, [x, y], cell, &line.name);
         }
-        cells.push(line);
+        table.row(texts);
     }
-    let height = 90.0 + 20.0 * operations.len() as f64;
-    let width = 240.0 + 118.0 * columns.len() as f64;
-    let plot = Heatmap::new()
-        .with_data(cells)
-        .with_color_map(ColorMap::Custom(Arc::new(colour)))
-        .with_tooltip_labels(titles);
-    let plots = vec![Plot::Heatmap(plot)];
-    let names = operations
-        .iter()
-        .rev()
-        .map(|operation| operation.name().to_owned());
-    let layout = base_layout(&plots, width, height)
-        .with_x_categories(columns.iter().map(|&name| name.to_owned()).collect())
-        .with_y_categories(names.collect())
-        .with_colorbar_tick_format(ratio_ticks(MAX_RATIO.log10()));
     Some(Figure {
         id: format!("{id_prefix}heat-map"),
-        title: title.to_owned(),
-        picture: picture(title, plots, layout),
+        picture: Picture::single(&title, canvas.finish()),
+        title,
         caption: format!(
-            "Each cell shows the time relative to the fastest structure of the row. Dark cells \
-             are fast. All ratios of {} or more have the same colour. Grey cells were not \
-             measured, because the operation is not possible or would take too long; ≥ marks lower \
-             bounds.",
+            "Time divided by that of the fastest structure of the row. Dark cells are fast; the fastest \
+             are bold. All ratios of {} or more have one colour. Cells in a frame have no measured time: ≥ is a \
+             lower bound, because a run would exceed the budget, and – is an operation that was not \
+             run or is not possible.",
             times(MAX_RATIO)
         ),
         table,
+        source: String::new(),
         command: command.into(),
     })
 }
 
-fn shown((ratio, bound): Ratio) -> String {
-    marked(times(ratio), bound)
+fn shown(cell: &Cell) -> String {
+    match cell.ratio {
+        Some(_) => format!("{} ×", cell.ratio_text()),
+        None => "–".into(),
+    }
 }
 
-/// Returns a colour from dark to light. NaN is grey.
-fn colour(value: f64) -> String {
-    match value.is_nan() {
-        true => GRID_COLOUR.into(),
-        false => ColorMap::Viridis.map(value),
-    }
+fn draw_cell(canvas: &mut Canvas, [x, y]: [f64; 2], cell: &Cell, operation: &str) {
+    let (corner, size) = ([x + 1.0, y + 1.0], [COLUMN - 2.0, ROW - 2.0]);
+    let text = shown(cell);
+    let measured = cell.ratio.filter(|_| !cell.is_bound());
+    let what = match (cell.ratio, cell.source) {
+        (Some(_), _) => text.clone(),
+        (None, Source::Impossible) => "not possible".into(),
+        (None, _) => "not measured".into(),
+    };
+    let lead = cell.is_best() || cell.is_tied();
+    let label = Style::new(11).middle().bold(lead);
+    let centre = [x + COLUMN / 2.0, y + 15.0];
+    canvas.mark(
+        format!("{operation} on {}: {what}", cell.backend),
+        |canvas| {
+            match measured {
+                Some(ratio) => {
+                    // The colour of a lower bound would rank it.
+                    let share = ratio.clamp(1.0, MAX_RATIO).log10() / MAX_RATIO.log10();
+                    canvas.rect(corner, size, &ColorMap::Viridis.map(share));
+                    let ink = if share < 0.55 { ON_DARK } else { ON_LIGHT };
+                    canvas.text(centre, &text, label.colour(ink));
+                }
+                None => {
+                    canvas.frame(corner, size, GRID_COLOUR);
+                    canvas.text(centre, &text, label.colour(FAINT_COLOUR));
+                }
+            }
+        },
+    );
 }

@@ -1,71 +1,143 @@
 //! A figure with one stacked bar for each structure. The parts of a bar are the bytes of the tables
 //! of the structure.
 
-use kuva::plot::BarPlot;
-use kuva::render::plots::Plot;
-use sixfold_study::Report;
-use sixfold_study::numbers::grouped;
+use sixfold_study::numbers::{bytes, figure as shown, grouped};
+use sixfold_study::{BackendReport, Report};
 
-use crate::colours::table_colour;
-use crate::figure::{Figure, Table, base_layout, picture};
+use crate::Picture;
+use crate::canvas::{Canvas, Style, text_width};
+use crate::colours::{BACKGROUND, FAINT_COLOUR, table_colour};
+use crate::figure::{Figure, Table};
 
 /// Name of the table of positions. A structure with points instead of vertices has no such table.
 const POSITIONS: &str = "positions";
+/// Width of the figure, of the names, and of the longest bar.
+const WIDTH: f64 = 860.0;
+const NAMES: f64 = 130.0;
+const LONGEST: f64 = 560.0;
+/// Height of a bar, and of a bar with its formula.
+const BAR: f64 = 20.0;
+const ROW: f64 = 46.0;
+
+/// One table of a structure.
+struct Part {
+    name: String,
+    rows: usize,
+    bytes: usize,
+    colour: &'static str,
+}
 
 pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Option<Figure> {
-    let columns = study
-        .backends
-        .iter()
-        .filter(|column| !column.tables.is_empty());
-    let columns: Vec<_> = columns.collect();
+    let columns = study.backends.iter();
+    let columns: Vec<&BackendReport> = columns.filter(|c| !c.tables.is_empty()).collect();
     let vertices = study.mesh.facts.vertices;
-    if columns.is_empty() || vertices == 0 {
+    let most = columns.iter().map(|column| total(column)).max()?;
+    if vertices == 0 || most == 0 {
         return None;
     }
     let mut table = Table::new(["", "table", "rows", "bytes", "bytes per vertex"]);
-    let mut plot = BarPlot::new();
-    let mut titles = Vec::new();
-    for column in &columns {
-        let mut parts = Vec::new();
-        // Positions come first, in the same colour for all structures.
-        let mut tables: Vec<_> = column.tables.iter().collect();
-        tables.sort_by_key(|part| part.table != POSITIONS);
-        let first = usize::from(tables.first().is_none_or(|part| part.table != POSITIONS));
-        for (number, part) in tables.iter().enumerate() {
-            let each = part.bytes as f64 / vertices as f64;
-            parts.push((each, table_colour(first + number)));
-            titles.push(format!(
-                "{}, {}: {each:.1} bytes per vertex",
-                column.name, part.table
-            ));
+    let mut canvas = Canvas::new(WIDTH, ROW * columns.len() as f64);
+    for (number, column) in columns.iter().enumerate() {
+        let (y, parts) = (ROW * number as f64, parts(column));
+        for part in &parts {
             let [rows, bytes] = [part.rows, part.bytes].map(grouped);
-            let name = part.table.to_string();
+            let each = shown(part.bytes as f64 / vertices as f64);
             table.row(vec![
                 column.name.clone(),
-                name,
+                part.name.clone(),
                 rows,
                 bytes,
-                format!("{each:.1}"),
+                each,
             ]);
         }
-        plot = plot.with_group(column.name.clone(), parts);
+        let scale = LONGEST / most as f64;
+        let name = Style::new(12).bold(true).end();
+        canvas.text([NAMES - 10.0, y + 15.0], &column.name, name);
+        let end = draw_parts(&mut canvas, &column.name, &parts, [y, scale], vertices);
+        let all = total(column);
+        let each = shown(all as f64 / vertices as f64);
+        let text = format!("{each} ({})", bytes(all));
+        canvas.text([end + 8.0, y + 15.0], &text, Style::new(12).bold(true));
+        let small = Style::new(10).colour(FAINT_COLOUR);
+        canvas.text([NAMES, y + BAR + 12.0], &formula(&parts), small);
     }
-    // Without `with_tooltips`, the SVG groups of the marks are not closed.
-    let plot = plot.with_tooltips().with_tooltip_labels(titles);
-    let plot = plot.with_stacked();
-    let plots = vec![Plot::Bar(plot)];
-    let title = format!("Bytes per vertex of each table: {}", study.mesh.name);
-    let layout = base_layout(&plots, 820.0, 420.0)
-        .with_y_label("bytes per vertex")
-        .with_clamp_y_axis();
+    let title = format!("Bytes per vertex: {}", super::file_name(&study.mesh.name));
     Some(Figure {
         id: format!("{id_prefix}memory"),
-        picture: picture(&title, plots, layout),
+        picture: Picture::single(&title, canvas.finish()),
         title,
-        caption: "Bytes held, including spare capacity. Positions are at the bottom, in one colour for all structures; \
-             the other tables of each structure are above. Point at a part to see its name."
-            .into(),
+        caption: format!(
+            "Bytes held, including spare capacity; the number at the end of a bar is for each of the {} \
+             vertices. Positions come first, in one colour for all structures. Under each bar is its formula: \
+             rows × bytes of a row.",
+            grouped(vertices)
+        ),
         table,
+        source: String::new(),
         command: command.into(),
     })
+}
+
+fn total(column: &BackendReport) -> usize {
+    column.tables.iter().map(|table| table.bytes).sum()
+}
+
+/// Returns the tables of a structure. Positions come first, in the same colour for all structures.
+fn parts(column: &BackendReport) -> Vec<Part> {
+    let mut tables: Vec<_> = column.tables.iter().collect();
+    tables.sort_by_key(|part| part.table != POSITIONS);
+    let first = usize::from(tables.first().is_none_or(|part| part.table != POSITIONS));
+    let part = |(number, table): (usize, &&_)| -> Part {
+        let table: &sixfold_study::TableBytes = table;
+        Part {
+            name: table.table.to_string(),
+            rows: table.rows,
+            bytes: table.bytes,
+            colour: table_colour(first + number),
+        }
+    };
+    tables.iter().enumerate().map(part).collect()
+}
+
+/// Draws the parts of a bar. `y` is the upper end of the bar, and `scale` the pixels of a byte.
+/// Returns the end of the bar.
+fn draw_parts(
+    canvas: &mut Canvas,
+    structure: &str,
+    parts: &[Part],
+    [y, scale]: [f64; 2],
+    vertices: usize,
+) -> f64 {
+    let mut x = NAMES;
+    for part in parts.iter().filter(|part| part.bytes > 0) {
+        let width = part.bytes as f64 * scale;
+        let each = part.bytes as f64 / vertices as f64;
+        let title = format!("{structure}, {}: {each:.1} bytes per vertex", part.name);
+        canvas.mark(title, |canvas| {
+            canvas.rect([x, y], [width, BAR], part.colour)
+        });
+        if text_width(&part.name, 11) + 8.0 < width {
+            let inside = Style::new(11).colour(BACKGROUND);
+            canvas.text([x + 5.0, y + 14.0], &part.name, inside);
+        }
+        x += width;
+        canvas.line([x, y], [x, y + BAR], BACKGROUND, 1.0);
+    }
+    x
+}
+
+/// Returns the bytes as a sum of rows × bytes of a row.
+fn formula(parts: &[Part]) -> String {
+    let parts = parts.iter().filter(|part| part.bytes > 0);
+    let terms = parts.map(|part| match part.bytes.checked_rem(part.rows) {
+        Some(0) => format!(
+            "{} {} × {}",
+            part.name,
+            grouped(part.rows),
+            part.bytes / part.rows
+        ),
+        // With spare capacity.
+        _ => format!("{} {}", part.name, grouped(part.bytes)),
+    });
+    terms.collect::<Vec<_>>().join(" + ")
 }

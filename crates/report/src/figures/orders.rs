@@ -1,101 +1,174 @@
 //! A figure of the effect that the order of the elements in memory has on the times of each
 //! structure.
 
-use kuva::plot::BarPlot;
-use kuva::render::plots::Plot;
-use sixfold_study::numbers::{duration, figure as shown, shown_ratio};
+use kuva::render::render::Scene;
+use sixfold_study::numbers::{duration, figure as shown, shown_ratio, times};
 use sixfold_study::{Comparison, OrdersReport, ResultRow};
 
 use super::per_unit;
-use crate::colours::table_colour;
-use crate::figure::{Figure, MIN_BAR_LENGTH, Table, base_layout, picture, ratio_ticks};
+use crate::Picture;
+use crate::canvas::{Canvas, LogScale, Style};
+use crate::colours::{FAINT_COLOUR, GRID_COLOUR, table_colour};
+use crate::figure::{Figure, Table};
 
-pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Vec<Figure> {
-    let figures = report
-        .comparisons
-        .iter()
-        .filter_map(|comparison| figure(report, comparison, id, command));
-    figures.collect()
+/// Size of a panel, and the places of its parts.
+const WIDTH: f64 = 420.0;
+const HEAD: f64 = 46.0;
+const ROW: f64 = 20.0;
+const POINTS: [f64; 2] = [118.0, 290.0];
+
+/// The times of one backend in all orders, relative to its best order.
+struct Line<'r> {
+    backend: &'r str,
+    /// The place of the order in the list, its ratio and its time per element.
+    points: Vec<(usize, Option<(f64, f64)>)>,
 }
 
-fn figure(
-    report: &OrdersReport,
-    comparison: &Comparison,
-    id: &str,
-    command: &str,
-) -> Option<Figure> {
-    let operation = comparison.operation;
-    let rows: Vec<&ResultRow> = report.rows(operation).collect();
-    if rows.is_empty() {
-        return None;
-    }
+/// Draws a panel for each operation. All panels have one scale.
+pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Option<Figure> {
     let names: Vec<&str> = report.orders.iter().map(|order| order.name()).collect();
-    let header = [""].into_iter().chain(names.iter().copied());
+    let header = ["", "structure"].into_iter().chain(names.iter().copied());
     let mut table = Table::new(header.chain(["worst / best", "95 %"]));
-    let (mut plot, mut titles) = (BarPlot::new().with_legend(names), Vec::new());
-    let logs = rows.iter().filter_map(|row| row.ratio_to_best);
-    // The axis reaches at least ratio 1.5, so that noise does not fill the figure.
-    let max_log = logs.fold(1.5, f64::max).log10();
-    let per = per_unit(operation.unit());
-    for backend_rows in rows.chunk_by(|a, b| a.backend == b.backend) {
-        let backend = &backend_rows[0].backend;
-        let times = backend_rows.iter().filter_map(|row| row.ns_per_element);
-        let best = times.clone().fold(f64::INFINITY, f64::min);
-        let worst = times.fold(0.0, f64::max);
-        let (mut bars, mut line) = (Vec::new(), vec![backend.clone()]);
-        for (i, &order) in report.orders.iter().enumerate() {
-            let row = backend_rows.iter().find(|row| row.case == order.name());
-            let ratio = row.and_then(|row| row.ratio_to_best);
-            let time = row.and_then(|row| row.ns_per_element);
-            let ratio = ratio.and(time.map(|time| shown_ratio(time, best)));
-            let time = time.map_or_else(|| "–".into(), duration);
-            titles.push(match ratio {
-                Some(ratio) => {
-                    let ratio = shown(ratio);
-                    format!(
-                        "{backend}, {order}: {ratio} × the time of its best order, {time} {per}"
-                    )
-                }
-                None => format!("{backend}, {order}: not measured"),
-            });
-            let length = ratio.map_or(0.0, |ratio| ratio.log10().max(MIN_BAR_LENGTH * max_log));
-            bars.push((length, table_colour(i)));
-            line.push(time);
+    let comparisons = report.comparisons.iter();
+    let all: Vec<(&Comparison, Vec<Line<'_>>)> = comparisons
+        .map(|comparison| (comparison, lines(report, comparison)))
+        .filter(|(_, lines)| !lines.is_empty())
+        .collect();
+    let points = all
+        .iter()
+        .flat_map(|(_, lines)| lines)
+        .flat_map(|line| &line.points);
+    let ratios = points.filter_map(|(_, point)| Some((*point)?.0));
+    // The scale reaches at least ratio 1.5, so that noise does not fill the figure.
+    let scale = LogScale {
+        values: [1.0, ratios.fold(1.5, f64::max)],
+        pixels: POINTS,
+    };
+    let rows = all.iter().map(|(_, lines)| lines.len()).max()?;
+    let mut panels = Vec::new();
+    for (comparison, lines) in &all {
+        panels.push(panel(comparison, lines, &names, scale, rows));
+        for line in lines {
+            table.row(row(comparison, line));
         }
-        let effect = comparison.orders.iter().find(|e| e.backend == *backend);
-        let factor = effect.map(|effect| effect.worst_to_best);
-        line.push(factor.map_or_else(|| "–".into(), |_| shown(shown_ratio(worst, best))));
-        let interval = factor.and_then(|factor| factor.ci_low.zip(factor.ci_high));
-        line.push(interval.map_or_else(
-            || "–".into(),
-            |(a, b)| format!("{} to {}", shown(a), shown(b)),
-        ));
-        table.row(line);
-        plot = plot.with_group(backend.clone(), bars);
     }
-    // Without `with_tooltips`, the SVG groups of the marks are not closed.
-    let plot = plot.with_tooltips().with_tooltip_labels(titles);
-    let plots = vec![Plot::Bar(plot)];
-    let name = operation.name();
     let title = format!(
-        "{name}: effect of the order in memory, {}",
-        report.mesh.name
+        "Effect of the order in memory: {}",
+        super::file_name(&report.mesh.name)
     );
-    let layout = base_layout(&plots, 860.0, 360.0)
-        .with_y_label("× the time of the best order")
-        .with_y_axis_min(0.0)
-        .with_y_axis_max(1.05 * max_log)
-        .with_y_tick_format(ratio_ticks(max_log));
     Some(Figure {
-        id: format!("{id}-{}", name.replace('_', "-")),
-        picture: picture(&title, plots, layout),
+        id: id.into(),
+        picture: Picture::grid(&title, 2, panels),
         title,
-        caption: format!(
-            "The bars show the time of each structure in four orders of the same mesh, relative \
-             to the best order of that structure. The axis is logarithmic and begins at 1. The \
-             table shows the time {per}."
-        ),
+        caption: "A point is the time of a structure in one order of the elements, divided by that of the best order of this \
+                  structure, on a logarithmic scale that is the same in all panels. The text names the slowest order. The table \
+                  has the times per element."
+            .into(),
         table,
+        source: String::new(),
         command: command.into(),
     })
+}
+
+fn lines<'r>(report: &'r OrdersReport, comparison: &Comparison) -> Vec<Line<'r>> {
+    let rows: Vec<&ResultRow> = report.rows(comparison.operation).collect();
+    let lines = rows.chunk_by(|a, b| a.backend == b.backend).map(|rows| {
+        let times = rows.iter().filter_map(|row| row.ns_per_element);
+        let best = times.fold(f64::INFINITY, f64::min);
+        let orders = report.orders.iter().enumerate();
+        let points = orders.map(|(place, order)| {
+            let row = rows.iter().find(|row| row.case == order.name());
+            let row = row.filter(|row| row.ratio_to_best.is_some());
+            let ns = row.and_then(|row| row.ns_per_element);
+            (place, ns.map(|ns| (shown_ratio(ns, best), ns)))
+        });
+        Line {
+            backend: &rows[0].backend,
+            points: points.collect(),
+        }
+    });
+    lines.collect()
+}
+
+fn row(comparison: &Comparison, line: &Line<'_>) -> Vec<String> {
+    let effect = comparison.orders.iter().find(|e| e.backend == line.backend);
+    let factor = effect.map(|effect| effect.worst_to_best);
+    let worst = line
+        .points
+        .iter()
+        .filter_map(|(_, point)| Some((*point)?.0))
+        .fold(1.0, f64::max);
+    let interval = factor.and_then(|factor| factor.ci_low.zip(factor.ci_high));
+    let operation = comparison.operation;
+    let mut cells = vec![
+        format!("{}, {}", operation.name(), per_unit(operation.unit())),
+        line.backend.to_owned(),
+    ];
+    let times = line.points.iter();
+    cells.extend(times.map(|(_, point)| point.map_or_else(|| "–".into(), |(_, ns)| duration(ns))));
+    cells.push(factor.map_or_else(|| "–".into(), |_| shown(worst)));
+    cells.push(interval.map_or_else(
+        || "–".into(),
+        |(low, high)| format!("{} to {}", shown(low), shown(high)),
+    ));
+    cells
+}
+
+fn panel(
+    comparison: &Comparison,
+    lines: &[Line<'_>],
+    names: &[&str],
+    scale: LogScale,
+    rows: usize,
+) -> Scene {
+    let mut canvas = Canvas::new(WIDTH, HEAD + ROW * rows as f64);
+    canvas.text(
+        [0.0, 14.0],
+        comparison.operation.name(),
+        Style::new(13).bold(true),
+    );
+    let mut x = 0.0;
+    for (place, name) in names.iter().enumerate() {
+        canvas.circle([x + 4.0, 27.0], 4.0, table_colour(place));
+        canvas.text([x + 11.0, 31.0], name, Style::new(11).colour(FAINT_COLOUR));
+        x += 26.0 + crate::canvas::text_width(name, 11);
+    }
+    let bottom = HEAD + ROW * lines.len() as f64 - 6.0;
+    for tick in scale.ticks() {
+        let x = scale.place(tick);
+        canvas.line([x, HEAD - 4.0], [x, bottom], GRID_COLOUR, 1.0);
+    }
+    let per = per_unit(comparison.operation.unit());
+    for (number, line) in lines.iter().enumerate() {
+        let y = HEAD + ROW * number as f64 + 6.0;
+        canvas.text(
+            [POINTS[0] - 10.0, y + 4.0],
+            line.backend,
+            Style::new(11).end(),
+        );
+        let mut worst = (0, 1.0);
+        for &(place, point) in &line.points {
+            let Some((ratio, ns)) = point else {
+                continue;
+            };
+            if ratio > worst.1 {
+                worst = (place, ratio);
+            }
+            let title = format!(
+                "{}, {}: {} × the time of its best order, {} {per}",
+                line.backend,
+                names[place],
+                shown(ratio),
+                duration(ns)
+            );
+            let at = [scale.place(ratio), y];
+            canvas.mark(title, |canvas| canvas.circle(at, 4.5, table_colour(place)));
+        }
+        let text = match worst {
+            (_, 1.0) => times(1.0),
+            (place, ratio) => format!("{} {}", names[place], times(ratio)),
+        };
+        canvas.text([POINTS[1] + 12.0, y + 4.0], &text, Style::new(11));
+    }
+    canvas.finish()
 }

@@ -1,261 +1,301 @@
-//! Ranked bars: for each operation, the time of each structure or external program relative to the
-//! fastest.
+//! Rankings: a panel for each operation, with the time of each structure or external program relative
+//! to the fastest. All panels have one scale.
 
-use kuva::plot::BarPlot;
-use kuva::render::plots::Plot;
-use sixfold_study::numbers::{counted, duration, figure as shown, shown_ratio};
-use sixfold_study::{
-    FIRST_TIME_SHOWN, NeighboursReport, Operation, PickReport, Pool, Report, ResultRow,
-    SpatialTask, Standing,
-};
+use kuva::render::render::Scene;
+use sixfold_study::numbers::{duration, shown_ratio, times};
+use sixfold_study::{NeighboursReport, PickReport, SpatialTask, Standing};
 
-use super::{Row, marked, per_unit};
-use crate::colours::{INTERVAL_COLOUR, column_colour};
-use crate::figure::{Figure, MIN_BAR_LENGTH, Table, base_layout, picture, ratio_ticks};
+use super::per_unit;
+use crate::Picture;
+use crate::canvas::{Canvas, LogScale, Style, text_width};
+use crate::colours::{BACKGROUND, FAINT_COLOUR, GRID_COLOUR, INTERVAL_COLOUR, column_colour};
+use crate::figure::{Figure, Table};
+use crate::matrix::{Cell, Matrix, Source};
 
-pub(super) fn from_study(study: &Report, command: &str) -> Vec<Figure> {
-    let figures = Operation::ALL.into_iter().filter_map(|operation| {
-        let rows = study.rows(operation).filter_map(|row| {
-            Some(Row {
-                backend: &row.backend,
-                ratio: study.shown_ratio(row)?,
-                interval: row.ratio_ci_low.zip(row.ratio_ci_high).map(|(a, b)| [a, b]),
-                bound: false,
-                ns: row.ns_per_element,
-                first_ns: first_time(row),
-                note: match row.standing {
-                    Some(Standing::Best) => "best".into(),
-                    Some(Standing::Tied) => "tied for best".into(),
-                    _ if row.sampled => "from a sample of the elements".into(),
-                    _ => String::new(),
-                },
-            })
-        });
-        let per = study
-            .rows(operation)
-            .next()
-            .map_or("element", |row| &row.per);
-        operation_figure(operation, rows.collect(), per, command)
+/// Longest ratio that is drawn to scale. Longer bars are cut.
+const LONGEST: f64 = 10.0;
+/// Width and height of a panel without its bars, and height of a bar with its gap.
+const WIDTH: f64 = 330.0;
+const HEAD: f64 = 40.0;
+const ROW: f64 = 20.0;
+/// Places of the bars.
+const BARS: [f64; 2] = [116.0, 250.0];
+
+/// Draws all operations of a study or of a pool. `note` says what the ratios are.
+pub(super) fn from_matrix(matrix: &Matrix, note: &str, command: &str) -> Option<Figure> {
+    let panels = matrix.lines.iter().map(|line| Panel {
+        title: &line.name,
+        unit: &line.unit,
+        cells: line.cells.clone(),
     });
-    figures.collect()
+    figure(
+        "Rankings of all operations".into(),
+        "rankings".into(),
+        &panels.collect::<Vec<_>>(),
+        note,
+        command,
+    )
 }
-
-/// Returns the time per element of a first run, if it differs from the time of later runs.
-fn first_time(row: &ResultRow) -> Option<f64> {
-    let ratio = row.first_ratio()?;
-    let each = row.first_ns? / row.elements.filter(|&n| n > 0)? as f64;
-    (ratio.max(ratio.recip()) > FIRST_TIME_SHOWN).then_some(each)
-}
-
-pub(super) fn pooled(pool: &Pool, command: &str) -> Vec<Figure> {
-    let figures = Operation::ALL.into_iter().filter_map(|operation| {
-        let rows = pool.all().iter().filter(|row| row.operation == operation);
-        let rows = rows.map(|row| Row {
-            backend: &row.backend,
-            ratio: row.ratio_to_best,
-            interval: row.ci_low.zip(row.ci_high).map(|(a, b)| [a, b]),
-            bound: row.estimated > 0,
-            ns: row.ns_per_element,
-            first_ns: None,
-            note: format!(
-                "mean over {}: single fastest on {}, tied for the fastest on {}, not run on {}",
-                counted(row.meshes, "mesh", "meshes"),
-                row.best,
-                row.tied,
-                row.estimated
-            ),
-        });
-        let figure = operation_figure(operation, rows.collect(), operation.unit(), command)?;
-        Some(Figure {
-            caption: "The scale is logarithmic and begins at 1, the time of the fastest. Each \
-                      ratio is the geometric mean over the meshes of the time divided by the time \
-                      of the fastest measured backend of the mesh. ≥ marks lower bounds, which are \
-                      not ranked: a run would exceed the budget. The thin lines are the 95 % intervals of \
-                      the means."
-                .into(),
-            ..figure
-        })
-    });
-    figures.collect()
-}
-
-/// The remark on a lower bound.
-const NOT_RUN: &str = "lower bound, not ranked: a full run would exceed the budget";
 
 pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Option<Figure> {
-    let rows = report.ranking.iter().map(|ranked| Row {
-        backend: &ranked.backend,
-        ratio: ranked.ratio_to_best,
-        interval: ranked.ci_low.zip(ranked.ci_high).map(|(a, b)| [a, b]),
-        bound: ranked.estimated,
+    let cells = report.ranking.iter().map(|ranked| Cell {
+        ratio: Some(ranked.ratio_to_best),
+        interval: ranked
+            .ci_low
+            .zip(ranked.ci_high)
+            .map(|(low, high)| [low, high]),
         ns: Some(ranked.ns_per_operation),
-        first_ns: None,
-        note: match (ranked.tied_with_best, ranked.ratio_to_best) {
-            _ if ranked.estimated => NOT_RUN.into(),
-            (_, 1.0) => "best".into(),
-            (true, _) => "tied for best".into(),
-            _ if ranked.sampled => "from a sample of the elements".into(),
-            _ => String::new(),
+        standing: match (ranked.ratio_to_best, ranked.tied_with_best) {
+            _ if ranked.estimated => None,
+            (1.0, _) => Some(Standing::Best),
+            (_, true) => Some(Standing::Tied),
+            _ => Some(Standing::Slower),
         },
+        ..Cell::new(
+            &ranked.backend,
+            match (ranked.estimated, ranked.sampled) {
+                (true, _) => Source::Bound,
+                (false, true) => Source::Sampled,
+                (false, false) => Source::Measured,
+            },
+        )
     });
-    let title = format!("{}: time relative to the fastest", report.workload.name);
-    let rows = with_shown_ratios(rows.collect());
-    figure(title, id.into(), rows, "operation", command)
+    let name = &report.workload.name;
+    let panel = Panel {
+        title: name,
+        unit: "operation",
+        cells: with_shown_ratios(cells.collect()),
+    };
+    figure(
+        format!("Ranking for {name}"),
+        id.into(),
+        &[panel],
+        "",
+        command,
+    )
 }
 
 pub(super) fn from_neighbours(
     report: &NeighboursReport,
     id: &str,
     command: &str,
-) -> impl Iterator<Item = Figure> {
-    SpatialTask::ALL.into_iter().filter_map(move |task| {
-        let rows = report.rows(task).filter_map(|row| {
-            Some(Row {
-                backend: &row.backend,
-                ratio: row.ratio_to_best?,
-                interval: row.ratio_ci_low.zip(row.ratio_ci_high).map(|(a, b)| [a, b]),
-                bound: false,
-                ns: row.ns_per_element,
-                first_ns: None,
-                note: match row.standing {
-                    Some(Standing::Best) => "best".into(),
-                    Some(Standing::Tied) => "tied for best".into(),
-                    _ if row.sample_size.is_some() => "from a sample of the queries".into(),
-                    _ => String::new(),
-                },
-            })
-        });
-        let title = format!("{task}: time relative to the fastest");
-        let id = format!("{id}-{}", task.name().replace('_', "-"));
-        figure(
-            title,
-            id,
-            with_shown_ratios(rows.collect()),
-            task.unit(),
-            command,
-        )
-    })
-}
-
-fn operation_figure(
-    operation: Operation,
-    rows: Vec<Row<'_>>,
-    per: &str,
-    command: &str,
 ) -> Option<Figure> {
-    let name = operation.name();
-    let title = format!("{name}: time relative to the fastest");
-    let id = format!("ranking-{}", name.replace('_', "-"));
-    figure(title, id, rows, per, command)
+    let panels = SpatialTask::ALL.into_iter().filter_map(|task| {
+        let cells = report.rows(task).map(|row| Cell {
+            ratio: row.ratio_to_best,
+            interval: row
+                .ratio_ci_low
+                .zip(row.ratio_ci_high)
+                .map(|(low, high)| [low, high]),
+            ns: row.ns_per_element,
+            standing: row.standing,
+            ..Cell::new(
+                &row.backend,
+                match row.sample_size {
+                    Some(_) => Source::Sampled,
+                    None => Source::Measured,
+                },
+            )
+        });
+        let cells: Vec<Cell> = cells.filter(|cell| cell.ratio.is_some()).collect();
+        (!cells.is_empty()).then(|| Panel {
+            title: task.name(),
+            unit: task.unit(),
+            cells: with_shown_ratios(cells),
+        })
+    });
+    figure(
+        "Rankings of all tasks".into(),
+        id.into(),
+        &panels.collect::<Vec<_>>(),
+        "",
+        command,
+    )
 }
 
 /// Replaces the ratios by the quotients of the shown times, so that a reader who divides two times
 /// gets the ratio.
-fn with_shown_ratios(mut rows: Vec<Row<'_>>) -> Vec<Row<'_>> {
-    let best = rows.iter().find(|row| row.ratio == 1.0 && !row.bound);
+fn with_shown_ratios(mut cells: Vec<Cell>) -> Vec<Cell> {
+    let best = cells
+        .iter()
+        .find(|cell| cell.ratio == Some(1.0) && !cell.is_bound());
     if let Some(best) = best.and_then(|best| best.ns) {
-        for row in &mut rows {
-            row.ratio = row.ns.map_or(row.ratio, |ns| shown_ratio(ns, best));
+        for cell in &mut cells {
+            cell.ratio = cell.ns.map(|ns| shown_ratio(ns, best)).or(cell.ratio);
         }
     }
-    rows
-}
-
-/// Returns the cells of a row of the table. If `firsts` is true, the table has a column for the first
-/// run.
-fn cells(row: &Row<'_>, firsts: bool) -> Vec<String> {
-    let missing = || "–".into();
-    let mut cells = vec![
-        row.backend.to_owned(),
-        marked(shown(row.ratio), row.bound),
-        row.interval.map_or_else(missing, interval_text),
-        row.ns
-            .map_or_else(missing, |ns| marked(duration(ns), row.bound)),
-    ];
-    cells.extend(firsts.then(|| row.first_ns.map_or_else(missing, duration)));
-    cells.push(row.note.clone());
     cells
 }
 
-/// Returns the text that a browser shows for a bar.
-fn bar_title(row: &Row<'_>, per: &str) -> String {
-    let interval = row
-        .interval
-        .map(|ends| format!(" ({})", interval_text(ends)));
-    let interval = interval.unwrap_or_default();
-    let mark = |text| marked(text, row.bound);
-    let time = row.ns.map_or_else(|| "–".into(), |ns| mark(duration(ns)));
-    let (backend, ratio, unit) = (row.backend, mark(shown(row.ratio)), per_unit(per));
-    format!("{backend}: {ratio}{interval} × the time of the fastest, {time} {unit}")
-}
-
-fn interval_text([low, high]: [f64; 2]) -> String {
-    format!("{} to {}", shown(low), shown(high))
+struct Panel<'a> {
+    title: &'a str,
+    unit: &'a str,
+    cells: Vec<Cell>,
 }
 
 fn figure(
     title: String,
     id: String,
-    mut rows: Vec<Row<'_>>,
-    per: &str,
+    panels: &[Panel<'_>],
+    note: &str,
     command: &str,
 ) -> Option<Figure> {
-    if rows.len() < 2 {
+    let mut table = Table::new([
+        "",
+        "structure",
+        "× the fastest",
+        "95 %",
+        "time",
+        "per",
+        "remark",
+    ]);
+    let mut scenes = Vec::new();
+    let rows = panels.iter().map(|panel| panel.cells.len()).max()?;
+    // One scale for all panels. It reaches at least ratio 2, so that noise does not fill a panel.
+    let ratios = panels.iter().flat_map(|panel| &panel.cells);
+    let longest = ratios.filter_map(|cell| cell.ratio).fold(2.0, f64::max);
+    let scale = LogScale {
+        values: [1.0, longest.min(LONGEST)],
+        pixels: BARS,
+    };
+    for panel in panels {
+        let mut cells: Vec<&Cell> = panel.cells.iter().collect();
+        let rank = |cell: &Cell| (cell.ratio.is_none(), cell.is_bound());
+        let ratio = |cell: &Cell| cell.ratio.unwrap_or(f64::INFINITY);
+        cells.sort_by(|a, b| rank(a).cmp(&rank(b)).then(ratio(a).total_cmp(&ratio(b))));
+        for cell in cells.iter().filter(|cell| cell.ratio.is_some()) {
+            table.row(row(panel, cell));
+        }
+        scenes.push(scene(panel, &cells, scale, rows));
+    }
+    if table.rows.len() < 2 {
         return None;
     }
-    rows.sort_by(|a, b| a.bound.cmp(&b.bound).then(a.ratio.total_cmp(&b.ratio)));
-    let firsts = rows.iter().any(|row| row.first_ns.is_some());
-    let mut header = vec![
-        "".into(),
-        "× the fastest".into(),
-        "95 %".into(),
-        per_unit(per),
-    ];
-    header.extend(firsts.then(|| "first run".into()));
-    header.push(String::new());
-    let mut table = Table::new(header);
-    let (mut bars, mut whiskers, mut titles) = (Vec::new(), Vec::new(), Vec::new());
-    for row in &rows {
-        table.row(cells(row, firsts));
-    }
-    // The plot draws categories upwards, but the fastest backend belongs at the top.
-    for row in rows.iter().rev() {
-        let length = row.ratio.log10().max(0.0);
-        let ends = row
-            .interval
-            .map_or([length; 2], |ends| ends.map(f64::log10));
-        bars.push((row.backend.to_owned(), length, column_colour(row.backend)));
-        whiskers.push(((length - ends[0]).max(0.0), (ends[1] - length).max(0.0)));
-        titles.push(bar_title(row, per));
-    }
-    let max_log = bars
-        .iter()
-        .map(|(_, length, _)| *length)
-        .fold(0.1, f64::max);
-    for (_, length, _) in &mut bars {
-        *length = length.max(MIN_BAR_LENGTH * max_log);
-    }
-    let height = 70.0 + 26.0 * bars.len() as f64;
-    let plot = BarPlot::new()
-        .with_colored_bars(bars)
-        .with_horizontal(true)
-        .with_width(0.7)
-        .with_asymmetric_error(whiskers)
-        .with_error_color(INTERVAL_COLOUR)
-        .with_tooltip_labels(titles);
-    let plots = vec![Plot::Bar(plot)];
-    let layout = base_layout(&plots, 680.0, height)
-        .with_x_axis_min(0.0)
-        .with_x_axis_max(max_log * 1.08)
-        .with_x_tick_format(ratio_ticks(max_log));
+    let columns = scenes.len().min(3);
+    let reach = match longest > LONGEST {
+        true => format!("A bar with a gap is longer than {}. ", times(LONGEST)),
+        false => String::new(),
+    };
+    let caption = format!(
+        "A bar is the time divided by that of the fastest, on a logarithmic scale from 1, which is the \
+         same in all panels. {reach}Lines are 95 % intervals. The fastest are bold. {note}"
+    );
     Some(Figure {
         id,
-        picture: picture(&title, plots, layout),
+        picture: Picture::grid(&title, columns, scenes),
         title,
-        caption: "The scale is logarithmic and begins at 1, the time of the fastest. The thin lines are the 95 % intervals of the \
-                  ratios."
-            .into(),
+        caption: caption.trim_end().to_owned(),
         table,
+        source: String::new(),
         command: command.into(),
     })
+}
+
+fn row(panel: &Panel<'_>, cell: &Cell) -> Vec<String> {
+    let first = cell
+        .first_ns
+        .map(|ns| format!("first run {}", duration(ns)));
+    let notes = [Some(cell.note()).filter(|note| !note.is_empty()), first];
+    let notes: Vec<String> = notes.into_iter().flatten().collect();
+    vec![
+        panel.title.to_owned(),
+        cell.backend.clone(),
+        cell.ratio_text(),
+        cell.interval_text().unwrap_or_else(|| "–".into()),
+        cell.time_text(),
+        panel.unit.to_owned(),
+        notes.join("; "),
+    ]
+}
+
+/// Draws the bars of one operation. All panels of a figure are as tall as if they had `rows` bars.
+fn scene(panel: &Panel<'_>, cells: &[&Cell], scale: LogScale, rows: usize) -> Scene {
+    let mut canvas = Canvas::new(WIDTH, HEAD + ROW * rows as f64);
+    canvas.text([0.0, 14.0], panel.title, Style::new(13).bold(true));
+    let best = cells.first().filter(|cell| cell.ratio.is_some());
+    let best = best.map_or(String::new(), |best| {
+        format!("fastest: {} {}", best.time_text(), per_unit(panel.unit))
+    });
+    canvas.text([0.0, 29.0], &best, Style::new(11).colour(FAINT_COLOUR));
+    let bottom = HEAD + ROW * cells.len() as f64 - 4.0;
+    for tick in scale.ticks() {
+        let x = scale.place(tick);
+        canvas.line([x, HEAD - 4.0], [x, bottom], GRID_COLOUR, 1.0);
+    }
+    for (number, cell) in cells.iter().enumerate() {
+        bar(
+            &mut canvas,
+            cell,
+            scale,
+            HEAD + ROW * number as f64,
+            panel.unit,
+        );
+    }
+    canvas.finish()
+}
+
+/// Draws a bar with its name and its ratio. `y` is the upper end of the bar.
+fn bar(canvas: &mut Canvas, cell: &Cell, scale: LogScale, y: f64, unit: &str) {
+    const HEIGHT: f64 = 13.0;
+    let (left, baseline) = (BARS[0], y + 11.0);
+    let lead = cell.is_best() || cell.is_tied();
+    let label = Style::new(11).bold(lead);
+    canvas.text([left - 6.0, baseline], &cell.backend, label.end());
+    let Some(ratio) = cell.ratio else {
+        let why = match cell.source {
+            Source::Impossible => "not possible",
+            Source::NotRun => "not run",
+            _ => "not compared",
+        };
+        canvas.text(
+            [left + 4.0, baseline],
+            why,
+            Style::new(11).colour(FAINT_COLOUR),
+        );
+        return;
+    };
+    let end = scale.place(ratio).max(left + 2.0);
+    let cut = ratio > scale.values[1];
+    let colour = column_colour(&cell.backend);
+    canvas.mark(mark_title(cell, unit), |canvas| match cell.is_bound() {
+        true => canvas.frame([left, y], [end - left, HEIGHT], colour),
+        false => canvas.rect([left, y], [end - left, HEIGHT], colour),
+    });
+    if cut {
+        // A slanted gap near the end of the bar.
+        let x = end - 14.0;
+        let gap = [
+            [x, y + HEIGHT + 1.0],
+            [x + 5.0, y - 1.0],
+            [x + 9.0, y - 1.0],
+            [x + 4.0, y + HEIGHT + 1.0],
+        ];
+        canvas.filled(&gap, BACKGROUND);
+    }
+    let mut text_from = end;
+    if let (Some([low, high]), false) = (cell.interval, cut) {
+        let [low, high] = [low, high].map(|ratio| scale.place(ratio));
+        let middle = y + HEIGHT / 2.0;
+        canvas.line([low, middle], [high, middle], INTERVAL_COLOUR, 1.0);
+        text_from = text_from.max(high);
+    }
+    let text = match cell.ratio_text() {
+        text if cell.is_tied() => format!("{text} × tied"),
+        text => format!("{text} ×"),
+    };
+    debug_assert!(text_from + text_width(&text, 11) < WIDTH + 20.0, "{text}");
+    canvas.text([text_from + 5.0, baseline], &text, label);
+}
+
+/// Returns the text that a browser shows for a bar.
+fn mark_title(cell: &Cell, unit: &str) -> String {
+    let interval = cell.interval_text().map(|text| format!(" ({text})"));
+    format!(
+        "{}: {}{} × the time of the fastest, {} {}",
+        cell.backend,
+        cell.ratio_text(),
+        interval.unwrap_or_default(),
+        cell.time_text(),
+        per_unit(unit)
+    )
 }

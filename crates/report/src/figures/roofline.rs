@@ -2,68 +2,111 @@
 //! Lines show the speed of memory. If the mark of a query is on a line, the query can become faster
 //! only by moving fewer bytes.
 
-use kuva::plot::{LinePlot, ScatterPlot};
-use kuva::render::plots::Plot;
+use kuva::render::render::Scene;
 use sixfold_study::numbers::{bytes, duration};
 use sixfold_study::{BufferSpeed, Timed, Why, WhyRow};
 
-use super::per_unit;
-use crate::colours::{TEXT_COLOUR, column_colour};
-use crate::figure::{Figure, Table, base_layout, picture};
+use super::{file_name, per_unit};
+use crate::Picture;
+use crate::canvas::{Axes, Canvas, LogScale, Style, spread};
+use crate::colours::{FAINT_COLOUR, TEXT_COLOUR, column_colour};
+use crate::figure::{Figure, Table, count_tick, duration_tick};
 
 type TimedRow<'a> = (&'a WhyRow, Timed);
 
-/// Draws all relations on all structures. Returns `None` if nothing was measured.
+/// Size of a panel, and the places of its axes.
+const SIZE: [f64; 2] = [420.0, 310.0];
+const ACROSS: [f64; 2] = [58.0, 290.0];
+const UPWARDS: [f64; 2] = [266.0, 44.0];
+
+/// Draws a panel for each structure with all relations. All panels have the same axes. Returns `None` if
+/// nothing was measured.
 pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
     let buffers = why.memory.as_ref()?;
     let rows = why.rows.iter().filter_map(|row| Some((row, row.timed?)));
-    let rows: Vec<TimedRow> = rows
+    let rows: Vec<TimedRow<'_>> = rows
         .filter(|(row, _)| row.reads.moved_bytes > 0.0)
         .collect();
+    // The other buffers lie between these two.
+    let buffers: Vec<&BufferSpeed> = [buffers.first(), buffers.last()]
+        .into_iter()
+        .flatten()
+        .collect();
+    let ends = |value: &dyn Fn(&TimedRow<'_>) -> f64| {
+        let values = rows.iter().map(value);
+        let [least, most] = values.fold([f64::INFINITY, 0.0], |[least, most], value| {
+            [f64::min(least, value), f64::max(most, value)]
+        });
+        // At least a decade, so that a scale exists.
+        [least, most.max(10.0 * least)]
+    };
     if rows.is_empty() {
         return None;
     }
-    let ends = rows.iter().map(|(row, _)| row.reads.moved_bytes);
-    let [min_bytes, max_bytes] = ends
-        .fold([f64::INFINITY, 0.0], |[min_bytes, max_bytes], bytes| {
-            [f64::min(min_bytes, bytes), f64::max(max_bytes, bytes)]
-        });
-    // The other buffers lie between these two.
-    let buffers = [buffers.first(), buffers.last()].into_iter().flatten();
-    let mut plots: Vec<Plot> = buffers
-        .map(|buffer| line(buffer, min_bytes, max_bytes))
-        .collect();
-    plots.extend(
-        why.backends
-            .iter()
-            .filter_map(|backend| marks(&rows, &backend.name)),
+    let axes = Axes {
+        x: LogScale {
+            values: ends(&|(row, _)| row.reads.moved_bytes),
+            pixels: ACROSS,
+        },
+        y: LogScale {
+            values: ends(&|(_, timed)| timed.ns_per_element),
+            pixels: UPWARDS,
+        },
+        x_label: "bytes that must move per element",
+        y_label: "time per element",
+        x_format: &count_tick,
+        y_format: &duration_tick,
+    };
+    let names = why.backends.iter().map(|backend| backend.name.as_str());
+    let panels = names.filter_map(|name| {
+        let own = rows.iter().filter(|(row, _)| row.backend == name);
+        let own: Vec<&TimedRow<'_>> = own.collect();
+        (!own.is_empty()).then(|| panel(name, &own, &buffers, &axes))
+    });
+    let panels: Vec<Scene> = panels.collect();
+    let title = format!(
+        "Time and bytes that must move: {}",
+        file_name(&why.mesh.name)
     );
-    let title = format!("Time and bytes that must move: {}", why.mesh.name);
-    let layout = base_layout(&plots, 860.0, 520.0)
-        .with_log_scale()
-        .with_x_label("bytes that must move per element")
-        .with_y_label("time per element, ns");
+    let speeds = buffers.iter().map(|buffer| {
+        format!(
+            "{:.1} GB/s in a buffer of {}",
+            buffer.gb_per_s,
+            bytes(buffer.bytes)
+        )
+    });
     Some(Figure {
         id: id.into(),
-        picture: picture(&title, plots, layout),
+        picture: Picture::grid(&title, 2, panels),
         title,
-        caption: "Each mark is one relation on one structure. The two lines show the time in \
-                  which this machine reads these bytes in order: one line for the smallest \
-                  buffer, the other for the largest. Bandwidth limits a query near a line. A \
-                  query above the lines waits for reads that cannot be predicted, or computes. \
-                  The column `bound by` of the table shows the limit."
-            .into(),
+        caption: format!(
+            "Each point is one relation on one structure; all panels have the same axes. The dashed lines show the time in which \
+             this machine reads these bytes in order: {}. Bandwidth limits a query near a line. A query above the \
+             lines waits for reads that cannot be predicted, or computes. The column `bound by` of the table shows the limit.",
+            speeds.collect::<Vec<_>>().join(", and ")
+        ),
         table: table(&rows),
+        source: String::new(),
         command: command.into(),
     })
 }
 
-/// Draws a mark for each relation on the structure `backend`. Returns `None` without rows.
-fn marks(rows: &[TimedRow], backend: &str) -> Option<Plot> {
-    let (mut points, mut titles) = (Vec::new(), Vec::new());
-    for (row, timed) in rows.iter().filter(|(row, _)| row.backend == backend) {
-        points.push((row.reads.moved_bytes, timed.ns_per_element));
-        titles.push(format!(
+fn panel(name: &str, rows: &[&TimedRow<'_>], buffers: &[&BufferSpeed], axes: &Axes<'_>) -> Scene {
+    let mut canvas = Canvas::new(SIZE[0], SIZE[1]);
+    canvas.text([0.0, 14.0], name, Style::new(13).bold(true));
+    axes.draw(&mut canvas);
+    for buffer in buffers {
+        roof(&mut canvas, buffer, axes);
+    }
+    let colour = column_colour(name);
+    let places = rows
+        .iter()
+        .map(|(row, timed)| axes.place([row.reads.moved_bytes, timed.ns_per_element]));
+    let places: Vec<[f64; 2]> = places.collect();
+    let heights: Vec<f64> = places.iter().map(|[_, y]| *y).collect();
+    let labels = spread(&heights, 12.0, [UPWARDS[1], UPWARDS[0]]);
+    for (((row, timed), [x, y]), label) in rows.iter().zip(places).zip(labels) {
+        let title = format!(
             "{}, {}: {:.1} bytes, {} {}: {}",
             row.backend,
             row.reads.relation,
@@ -71,19 +114,31 @@ fn marks(rows: &[TimedRow], backend: &str) -> Option<Plot> {
             duration(timed.ns_per_element),
             per_unit(&row.per),
             timed.bound.name()
-        ));
+        );
+        canvas.line([x + 3.0, y], [ACROSS[1] + 12.0, label], colour, 0.6);
+        canvas.mark(title, |canvas| canvas.circle([x, y], 4.0, colour));
+        let relation = row.reads.relation.to_string();
+        canvas.text([ACROSS[1] + 15.0, label + 4.0], &relation, Style::new(11));
     }
-    if points.is_empty() {
-        return None;
+    canvas.finish()
+}
+
+/// Draws the time to read bytes at the speed of `buffer`, as far as it is on the axes.
+fn roof(canvas: &mut Canvas, buffer: &BufferSpeed, axes: &Axes<'_>) {
+    let (x, y) = (axes.x.values, axes.y.values);
+    let from = x[0].max(y[0] * buffer.gb_per_s);
+    let to = x[1].min(y[1] * buffer.gb_per_s);
+    if from >= to {
+        return;
     }
-    Some(Plot::Scatter(
-        ScatterPlot::new()
-            .with_data(points)
-            .with_color(column_colour(backend))
-            .with_size(5.0)
-            .with_legend(backend.to_owned())
-            .with_tooltip_labels(titles),
-    ))
+    let [start, end] = [from, to].map(|bytes| axes.place([bytes, bytes / buffer.gb_per_s]));
+    canvas.dashed(start, end, TEXT_COLOUR, 1.0);
+    let label = Style::new(10).end().colour(FAINT_COLOUR);
+    canvas.text(
+        [end[0] - 4.0, end[1] - 4.0],
+        &format!("{:.0} GB/s", buffer.gb_per_s),
+        label,
+    );
 }
 
 fn table(rows: &[TimedRow]) -> Table {
@@ -110,21 +165,4 @@ fn table(rows: &[TimedRow]) -> Table {
         ]);
     }
     table
-}
-
-/// Draws the time to read from `min_bytes` to `max_bytes` at the speed of `buffer`.
-fn line(buffer: &BufferSpeed, min_bytes: f64, max_bytes: f64) -> Plot {
-    let ends = [min_bytes, max_bytes].map(|bytes| (bytes, bytes / buffer.gb_per_s));
-    Plot::Line(
-        LinePlot::new()
-            .with_data(ends.to_vec())
-            .with_color(TEXT_COLOUR)
-            .with_stroke_width(1.0)
-            .with_dashed()
-            .with_legend(format!(
-                "{:.1} GB/s, {}",
-                buffer.gb_per_s,
-                bytes(buffer.bytes)
-            )),
-    )
 }

@@ -473,7 +473,7 @@ impl Purpose {
     }
 
     /// Returns the purpose of a choice, such as `for queries`.
-    pub(crate) const fn of_choice(self) -> &'static str {
+    pub const fn of_choice(self) -> &'static str {
         match self {
             Self::Build => "to build",
             Self::Query => "for queries",
@@ -496,7 +496,7 @@ impl Purpose {
 impl Overall {
     /// Formats the mean time relative to the mean time of `other`: `1.31 ×`, or `≥ 900 ×` for a
     /// lower bound.
-    pub(crate) fn times(&self, other: &Self) -> String {
+    pub fn times(&self, other: &Self) -> String {
         let ratio = self.ratio_to_best / other.ratio_to_best;
         match self.bound {
             true => format!("≥ {}", times(rounded_down(ratio))),
@@ -606,7 +606,7 @@ fn above_best([low, high]: [f64; 2], mean: f64) -> [f64; 2] {
 /// Returns the fastest backends of one purpose: the first of `rows`, and those that are at most 5 %
 /// slower, or by less than the error of the means of one mesh. A lower bound is never one of them.
 /// Empty if `rows` has only lower bounds.
-pub(crate) fn leaders(rows: &[Overall]) -> &[Overall] {
+pub fn leaders(rows: &[Overall]) -> &[Overall] {
     let equal = |row: &&Overall| {
         let error = row.log_error.hypot(rows[0].log_error);
         let most = rows[0].ratio_to_best * error.exp().max(EQUAL_UP_TO);

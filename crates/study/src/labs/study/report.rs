@@ -5,9 +5,11 @@ use sixfold_workload::Operation;
 
 use crate::engine::control::noise;
 use crate::engine::timer::Timer;
+use crate::labs::study::sentences::how_sure;
 use crate::numbers::shown_ratio;
 use crate::results::figure::{Figure, Rows};
 use crate::results::finding::LabFinding;
+use crate::results::pool::{Overall, overall};
 use crate::results::read::ReadError;
 use crate::results::rows::{
     Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, Samples,
@@ -65,6 +67,20 @@ impl Report {
         let mut rows = self.rows(row.operation);
         let best = rows.find(|row| row.ratio_to_best == Some(1.0))?;
         Some(shown_ratio(row.ns_per_element?, best.ns_per_element?))
+    }
+
+    /// Returns the mean time of each backend over the operations of each purpose. The backends of a
+    /// purpose are sorted from the fastest to the slowest; those with a lower bound come last.
+    pub fn overall(&self) -> Vec<Overall> {
+        let holding = self.backends.iter().filter(|backend| backend.holds);
+        let names: Vec<&str> = holding.map(|backend| backend.name.as_str()).collect();
+        overall(&[self], &names)
+    }
+
+    /// Returns a sentence on the noise and on how many operations have a clear answer; `None` if
+    /// nothing was measured.
+    pub fn how_sure(&self) -> Option<String> {
+        how_sure(self)
     }
 
     /// Iterates over the wrong results of Sixfold's structures: the checksum differs, for no known

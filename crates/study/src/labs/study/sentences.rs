@@ -6,16 +6,14 @@ use sixfold::subdivision::Scheme;
 use crate::labs::study::Report;
 use crate::labs::study::methods::methods;
 use crate::numbers::{counted, grouped, list};
-use crate::results::pool::{self, Overall, Purpose, leaders, not_ranked, overall};
+use crate::results::pool::{self, Overall, Purpose, leaders, not_ranked};
 use crate::results::rows::{Agreement, BackendReport, Control, ControlRow, ResultRow, Standing};
 use sixfold_workload::Operation;
 
 /// Returns the answer in at most three sentences: which backend for what, by how much, and how sure.
 /// `scanning` tells whether a backend scans all faces for a relation.
 pub(crate) fn answer(report: &Report, scanning: &dyn Fn(&str, Relation) -> bool) -> Vec<String> {
-    let holding = report.backends.iter().filter(|backend| backend.holds);
-    let names: Vec<&str> = holding.map(|backend| backend.name.as_str()).collect();
-    let overall = overall(&[report], &names);
+    let overall = report.overall();
     let purposes: Vec<&[Overall]> = overall
         .chunk_by(|a, b| a.purpose == b.purpose)
         .filter(|rows| rows.len() > 1 && !leaders(rows).is_empty())
@@ -145,7 +143,7 @@ fn scans(report: &Report, purposes: &[&[Overall]], scanning: &[&str]) -> Option<
 }
 
 /// Describes the noise, and counts the operations with a clear answer.
-fn how_sure(report: &Report) -> Option<String> {
+pub(super) fn how_sure(report: &Report) -> Option<String> {
     let rows = report.results.chunk_by(|a, b| a.operation == b.operation);
     let compared: Vec<&[ResultRow]> = rows
         .filter(|rows| rows.iter().filter(|row| row.median_ns.is_some()).count() > 1)

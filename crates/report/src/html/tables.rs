@@ -1,0 +1,186 @@
+//! The tables of the page: the structures by kind of work, all operations, and plain tables.
+
+use maud::{Markup, html};
+use sixfold_study::numbers::counted;
+
+use crate::figure::Table;
+use crate::matrix::{Cell, Line, Matrix, Source};
+use crate::summary::{Rank, Summary, SummaryFigure};
+
+/// Returns the table of the first screen.
+pub(super) fn summary_table(summary: &Summary) -> Markup {
+    html! {
+        div.scroll {
+            table.summary {
+                caption {
+                    "A longer bar is better. " b { "● best" } " · " b { "◐ tied" } ": no clear difference from the best · ≥: \
+                     lower bound, not ranked."
+                }
+                thead {
+                    tr {
+                        th scope="col" { "structure" }
+                        @for column in &summary.columns {
+                            th scope="col" title=(column.about) { (column.name) }
+                        }
+                    }
+                }
+                tbody {
+                    @for row in &summary.rows {
+                        tr {
+                            th scope="row" { (row.backend) }
+                            @if let Some(reason) = &row.refusal {
+                                td.none colspan=(summary.columns.len()) title=(reason) { "cannot hold this mesh" }
+                            } @else {
+                                @for figure in &row.figures { (summary_cell(figure.as_ref())) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn summary_cell(figure: Option<&SummaryFigure>) -> Markup {
+    let Some(figure) = figure else {
+        return html! { td.none { "–" } };
+    };
+    let class = match figure.rank {
+        Rank::Bound => "figure bound",
+        _ => "figure",
+    };
+    let style = format!("--share:{:.3}", figure.share);
+    html! {
+        td class=(class) style=(style) {
+            @match figure.rank {
+                Rank::Best => { span.mark { "● " } b { (figure.text) } }
+                Rank::Tied => { span.mark { "◐ " } b { (figure.text) } }
+                _ => { (figure.text) }
+            }
+        }
+    }
+}
+
+/// Returns the table of all operations, with the controls that the script shows.
+pub(super) fn operations_table(matrix: &Matrix) -> Markup {
+    let mut groups: Vec<&str> = matrix.lines.iter().map(|line| line.group).collect();
+    groups.dedup();
+    html! {
+        div.controls hidden {
+            label { "compared with"
+                select name="baseline" {
+                    option value="" { "the fastest" }
+                    @for name in &matrix.backends { option value=(name) { (name) } }
+                }
+            }
+            label { "figures"
+                select name="figures" {
+                    option value="ratios" { "ratios" }
+                    option value="times" { "time per element" }
+                }
+            }
+            label { "kind of work"
+                select name="group" {
+                    option value="" { "all" }
+                    @for group in &groups { option value=(group) { (group) } }
+                }
+            }
+            label { "find" input type="search" name="search" size="12"; }
+            output.faint aria-live="polite" {}
+        }
+        div.scroll {
+            table.operations {
+                caption {
+                    "Time divided by that of the fastest, with its 95 % interval where there are enough samples. A longer bar is \
+                     faster. ≥ with an empty bar: a lower bound, because a run would exceed the budget. ~ with a dashed bar: \
+                     measured on some of the elements. Compared with one structure, the intervals are those of two independent times."
+                }
+                thead {
+                    tr {
+                        th scope="col" { "operation" }
+                        @for name in &matrix.backends { th scope="col" { (name) } }
+                    }
+                }
+                tbody {
+                    @for (place, line) in matrix.lines.iter().enumerate() {
+                        @let starts = place > 0 && matrix.lines[place - 1].group != line.group;
+                        tr.first-of-group[starts] data-operation=(line.name) data-group=(line.group) {
+                            th scope="row" title={ (line.about) ", per " (line.unit) } { (line.name) }
+                            @for cell in &line.cells { (operation_cell(line, cell)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn operation_cell(line: &Line, cell: &Cell) -> Markup {
+    let (class, word) = match cell.source {
+        Source::Measured => ("figure", "measured"),
+        Source::Sampled => ("figure sampled", "sampled"),
+        Source::Bound => ("figure bound", "bound"),
+        Source::Impossible => ("none", "impossible"),
+        Source::NotRun => ("none", "not run"),
+    };
+    let samples = match cell.samples {
+        0 => String::new(),
+        count => counted(count, "sample", "samples"),
+    };
+    let title = [
+        cell.time_text() + " per " + &line.unit,
+        samples,
+        cell.note(),
+    ];
+    let title: Vec<String> = title.into_iter().filter(|part| !part.is_empty()).collect();
+    // The length of the bar is the part of the time that the fastest takes.
+    let share = cell
+        .ratio
+        .map(|ratio| format!("--share:{:.4}", ratio.recip().min(1.0)));
+    let [low, high] = match cell.ns_interval {
+        Some([low, high]) => [Some(low), Some(high)],
+        None => [None, None],
+    };
+    html! {
+        td class=(class) style=[share] title=(title.join("; "))
+            data-backend=(cell.backend) data-source=(word)
+            data-ns=[cell.ns] data-low=[low] data-high=[high] data-ratio=[cell.ratio]
+        {
+            @match cell.ratio {
+                Some(_) => {
+                    @let text = format!("{}{} ×", if cell.source == Source::Sampled { "~ " } else { "" }, cell.ratio_text());
+                    @if cell.is_best() { b { (text) } } @else { (text) }
+                    @if cell.is_tied() { " " span.mark { "tied" } }
+                    @if let Some(interval) = cell.interval_text() { small { (interval) } }
+                }
+                None => {
+                    @match cell.source {
+                        Source::Impossible => "not possible",
+                        Source::NotRun => "not run",
+                        _ => "not compared",
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Returns a table without bars.
+pub(super) fn plain_table(table: &Table) -> Markup {
+    html! {
+        div.scroll {
+            table {
+                thead { tr { @for name in &table.header { th scope="col" { (name) } } } }
+                tbody {
+                    @for row in &table.rows {
+                        tr {
+                            @for (column, cell) in row.iter().enumerate() {
+                                @if column == 0 { th scope="row" { (cell) } } @else { td { (cell) } }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,296 @@
+//! All operations on all backends: what tables, rankings and heat maps show.
+
+use sixfold_study::numbers::{duration, figure, rounded_down};
+use sixfold_study::{
+    FIRST_TIME_SHOWN, Operation, Pool, Pooled, RefusalKind, Report, ResultRow, Standing,
+};
+
+/// How a figure was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Source {
+    /// All elements were measured.
+    Measured,
+    /// Some elements were measured, and the time was scaled up.
+    Sampled,
+    /// A lower bound, because a run would exceed the budget.
+    Bound,
+    /// The backend cannot do the operation, or did other work than the others.
+    Impossible,
+    /// The operation was not run.
+    NotRun,
+}
+
+/// One operation on one backend.
+#[derive(Clone, Debug)]
+pub(crate) struct Cell {
+    pub(crate) backend: String,
+    pub(crate) source: Source,
+    /// The time divided by that of the fastest backend; a lower bound if `source` is a bound.
+    pub(crate) ratio: Option<f64>,
+    /// The 95 % interval of `ratio`.
+    pub(crate) interval: Option<[f64; 2]>,
+    /// Time per element in nanoseconds.
+    pub(crate) ns: Option<f64>,
+    /// The 95 % interval of `ns`.
+    pub(crate) ns_interval: Option<[f64; 2]>,
+    /// Time per element of the first run, on fresh pages, if it differs clearly from `ns`.
+    pub(crate) first_ns: Option<f64>,
+    pub(crate) standing: Option<Standing>,
+    /// Number of samples; 0 for a mean over meshes.
+    pub(crate) samples: usize,
+    /// Why there is no figure, or a remark on the figure.
+    pub(crate) remark: Option<String>,
+}
+
+/// One operation on all backends.
+#[derive(Clone, Debug)]
+pub(crate) struct Line {
+    /// The name of the operation.
+    pub(crate) name: String,
+    /// What the operation does.
+    pub(crate) about: String,
+    /// The kind of work.
+    pub(crate) group: &'static str,
+    /// The element that times are divided by.
+    pub(crate) unit: String,
+    /// One cell for each backend of the matrix, in its order.
+    pub(crate) cells: Vec<Cell>,
+}
+
+/// All operations on all backends.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Matrix {
+    pub(crate) backends: Vec<String>,
+    pub(crate) lines: Vec<Line>,
+}
+
+impl Cell {
+    pub(crate) fn new(backend: &str, source: Source) -> Self {
+        Self {
+            backend: backend.to_owned(),
+            source,
+            ratio: None,
+            interval: None,
+            ns: None,
+            ns_interval: None,
+            first_ns: None,
+            standing: None,
+            samples: 0,
+            remark: None,
+        }
+    }
+
+    pub(crate) fn is_bound(&self) -> bool {
+        self.source == Source::Bound
+    }
+
+    /// Returns the ratio as text: `1.31`, `≥ 341` or `–`.
+    pub(crate) fn ratio_text(&self) -> String {
+        match self.ratio {
+            Some(ratio) if self.is_bound() => format!("≥ {}", figure(rounded_down(ratio))),
+            Some(ratio) => figure(ratio),
+            None => "–".into(),
+        }
+    }
+
+    /// Returns the interval as text: `1.28 to 1.34`.
+    pub(crate) fn interval_text(&self) -> Option<String> {
+        let [low, high] = self.interval?;
+        Some(format!("{} to {}", figure(low), figure(high)))
+    }
+
+    /// Returns the time as text: `5.56 ns`, `≥ 12.3 µs` or `–`.
+    pub(crate) fn time_text(&self) -> String {
+        match self.ns {
+            Some(ns) if self.is_bound() => format!("≥ {}", duration(rounded_down(ns))),
+            Some(ns) => duration(ns),
+            None => "–".into(),
+        }
+    }
+
+    pub(crate) fn is_best(&self) -> bool {
+        matches!(self.standing, Some(Standing::Best | Standing::Alone))
+    }
+
+    pub(crate) fn is_tied(&self) -> bool {
+        self.standing == Some(Standing::Tied)
+    }
+
+    /// Returns the remark for tables, such as `best`.
+    pub(crate) fn note(&self) -> String {
+        let mut notes = Vec::new();
+        match self.standing {
+            Some(Standing::Best) => notes.push("best"),
+            Some(Standing::Tied) => notes.push("tied for best"),
+            _ => {}
+        }
+        match self.source {
+            Source::Sampled => notes.push("from a sample of the elements"),
+            Source::Bound => {
+                notes.push("lower bound, not ranked: a full run would exceed the budget")
+            }
+            _ => {}
+        }
+        notes.extend(self.remark.as_deref());
+        notes.join("; ")
+    }
+
+    fn of_study(study: &Report, operation: Operation, backend: &str) -> Self {
+        let mut rows = study.rows(operation);
+        let Some(row) = rows.find(|row| row.backend == backend) else {
+            let mut refusals = study.refusals.iter();
+            let refusal = refusals.find(|r| r.operation == operation && r.backend == backend);
+            let source = match refusal.map(|refusal| refusal.kind) {
+                Some(RefusalKind::Impossible) => Source::Impossible,
+                _ => Source::NotRun,
+            };
+            return Self {
+                remark: refusal.map(|refusal| refusal.reason.clone()),
+                ..Self::new(backend, source)
+            };
+        };
+        match row.median_ns {
+            Some(_) => Self::measured(study, row),
+            None => Self::bound(study, row),
+        }
+    }
+
+    fn measured(study: &Report, row: &ResultRow) -> Self {
+        let each = |ns: f64| Some(ns / row.elements.filter(|&n| n > 0)? as f64);
+        let ends = row.ci_low_ns.zip(row.ci_high_ns);
+        let ratio = study.shown_ratio(row);
+        Self {
+            ratio,
+            interval: (row.ratio_ci_low.zip(row.ratio_ci_high))
+                .filter(|_| ratio.is_some() && row.samples >= FEWEST_FOR_INTERVAL)
+                .map(|(low, high)| [low, high]),
+            ns: row.ns_per_element,
+            ns_interval: ends.and_then(|(low, high)| Some([each(low)?, each(high)?])),
+            first_ns: first_time(row),
+            standing: row.standing,
+            samples: row.samples,
+            remark: ratio
+                .is_none()
+                .then(|| "other work than the others, not compared".into()),
+            ..Self::new(
+                &row.backend,
+                match row.sampled {
+                    true => Source::Sampled,
+                    false => Source::Measured,
+                },
+            )
+        }
+    }
+
+    fn bound(study: &Report, row: &ResultRow) -> Self {
+        let each = |row: &ResultRow, ns: f64| Some(ns / row.elements.filter(|&n| n > 0)? as f64);
+        let ns = row.estimated_ns.and_then(|ns| each(row, ns));
+        let mut rows = study.rows(row.operation);
+        let best = rows.find(|row| row.ratio_to_best == Some(1.0));
+        let best = best.and_then(|best| best.ns_per_element);
+        Self {
+            ratio: ns.zip(best).map(|(ns, best)| ns / best),
+            ns,
+            ..Self::new(&row.backend, Source::Bound)
+        }
+    }
+
+    fn of_pool(row: &Pooled) -> Self {
+        let source = match row.estimated {
+            0 => Source::Measured,
+            _ => Source::Bound,
+        };
+        let standing = match row.ratio_to_best {
+            _ if row.estimated > 0 => None,
+            _ if row.best == row.meshes => Some(Standing::Best),
+            _ => None,
+        };
+        Self {
+            ratio: Some(row.ratio_to_best),
+            interval: row.ci_low.zip(row.ci_high).map(|(low, high)| [low, high]),
+            ns: row.ns_per_element,
+            standing,
+            remark: Some(format!(
+                "mean over {} meshes: single fastest on {}, tied for the fastest on {}, not run on {}",
+                row.meshes, row.best, row.tied, row.estimated
+            )),
+            ..Self::new(&row.backend, source)
+        }
+    }
+}
+
+/// Fewer samples give no interval.
+const FEWEST_FOR_INTERVAL: usize = 3;
+
+/// Returns the time per element of a first run, if it differs from the time of later runs.
+fn first_time(row: &ResultRow) -> Option<f64> {
+    let ratio = row.first_ratio()?;
+    let each = row.first_ns? / row.elements.filter(|&n| n > 0)? as f64;
+    (ratio.max(ratio.recip()) > FIRST_TIME_SHOWN).then_some(each)
+}
+
+impl Matrix {
+    /// Returns the operations of `study` for which at least one backend has a figure, on the backends
+    /// that can hold the mesh.
+    pub(crate) fn of_study(study: &Report) -> Self {
+        let holding = study.backends.iter().filter(|backend| backend.holds);
+        let backends: Vec<String> = holding.map(|backend| backend.name.clone()).collect();
+        let lines = operations().filter_map(|operation| {
+            let unit = study.rows(operation).next()?.per.clone();
+            let cells = backends
+                .iter()
+                .map(|name| Cell::of_study(study, operation, name));
+            Some(Line::new(operation, unit, cells.collect()))
+        });
+        Self {
+            lines: lines.collect(),
+            backends,
+        }
+    }
+
+    /// Returns the means over the meshes of `pool`.
+    pub(crate) fn of_pool(pool: &Pool) -> Self {
+        let mut backends: Vec<String> = Vec::new();
+        for row in pool.all() {
+            if !backends.contains(&row.backend) {
+                backends.push(row.backend.clone());
+            }
+        }
+        let lines = operations().filter_map(|operation| {
+            let rows = pool.all().iter().filter(|row| row.operation == operation);
+            let rows: Vec<&Pooled> = rows.collect();
+            rows.first()?;
+            let cell = |name: &String| match rows.iter().find(|row| row.backend == *name) {
+                Some(row) => Cell::of_pool(row),
+                None => Cell::new(name, Source::NotRun),
+            };
+            let cells = backends.iter().map(cell).collect();
+            Some(Line::new(operation, operation.unit().to_owned(), cells))
+        });
+        Self {
+            lines: lines.collect(),
+            backends,
+        }
+    }
+}
+
+/// Returns the operations, those of a group one after the other.
+fn operations() -> impl Iterator<Item = Operation> {
+    const GROUPS: [&str; 5] = ["build", "queries", "traversals", "edits", "subdivision"];
+    let place = |operation: &Operation| GROUPS.iter().position(|g| *g == operation.group());
+    let mut operations = Operation::ALL;
+    operations.sort_by_key(place);
+    operations.into_iter()
+}
+
+impl Line {
+    fn new(operation: Operation, unit: String, cells: Vec<Cell>) -> Self {
+        Self {
+            name: operation.name().to_owned(),
+            about: operation.about().to_owned(),
+            group: operation.group(),
+            unit,
+            cells,
+        }
+    }
+}
