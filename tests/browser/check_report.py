@@ -24,31 +24,32 @@ from browser import Browser
 MAX_ELEMENTS = 100_000
 
 
-# Every mark of a figure: its title and the bounding box of its shape.
-MARKS = """
-const marks = [];
-for (const group of arguments[0].querySelectorAll('svg g')) {
-    const title = group.querySelector(':scope > title');
-    const shape = group.querySelector(':scope > rect, :scope > path, :scope > circle');
-    if (!title || !shape) continue;
-    const box = shape.getBBox();
-    marks.push({title: title.textContent, x: box.x, y: box.y, width: box.width, height: box.height});
-}
-return marks;
-"""
-
+# Every mark of a figure: its title, the title of its panel, and the bounding box of its shape.
 FIGURES = """
 for (const details of document.querySelectorAll('details')) details.open = true;
-return [...document.querySelectorAll('figure[data-figure]')].map(figure => ({
+const marks = (svg) => [...svg.querySelectorAll('g')].flatMap((group) => {
+    const title = group.querySelector(':scope > title');
+    const shape = group.querySelector(':scope > rect, :scope > path, :scope > circle');
+    if (!title || !shape) return [];
+    const {x, y, width, height} = shape.getBBox();
+    return [{title: title.textContent, panel: svg.querySelector('text').textContent, x, y, width, height}];
+});
+return [...document.querySelectorAll('figure[data-figure]')].map((figure) => ({
     id: figure.dataset.figure,
     mesh: figure.dataset.mesh || null,
-    marks: (figure => { MARKS })(figure),
+    marks: [...figure.querySelectorAll('svg')].flatMap(marks),
     lines: figure.querySelectorAll('svg path[fill="none"], svg polyline').length,
-    text: [...figure.querySelectorAll('svg text')].map(text => text.textContent),
+    text: [...figure.querySelectorAll('svg text')].map((text) => text.textContent),
+    label: figure.querySelector('svg').getAttribute('aria-label'),
+    source: figure.querySelector('.source').textContent,
     rows: figure.parentElement.querySelectorAll('tbody tr').length,
-    width: figure.querySelector('svg').getBoundingClientRect().width,
+    link: figure.parentElement.querySelector('a.permalink').getAttribute('href'),
+    clipped: [...figure.querySelectorAll('svg')].flatMap((svg) => [...svg.querySelectorAll('text')].filter((text) => {
+        const box = text.getBBox(), view = svg.viewBox.baseVal;
+        return box.x < -1 || box.x + box.width > view.width + 1;
+    }).map((text) => text.textContent)),
 }));
-""".replace("MARKS", MARKS.replace("arguments[0]", "figure"))
+"""
 
 
 def close_to(a, b, what, tolerance):
@@ -62,6 +63,11 @@ def rounded(number):
     places = 2 - math.floor(math.log10(abs(number)))
     # The small term is that of the page: 15.9 / 12.0 is 1.325 on paper, but a little less in binary.
     return math.floor(number * 10.0**places + 0.5 + 1e-9) / 10.0**places
+
+
+def rounded_down(number):
+    places = 2 - math.floor(math.log10(abs(number)))
+    return math.floor(number * 10.0**places + 1e-9) / 10.0**places
 
 
 def shown(number):
@@ -104,89 +110,93 @@ def check_places(marks, values, what, axis):
         close_to(place, places[low] + (log - logs[low]) * scale, what, 0.6)
 
 
-def operation_of(figure, kind):
-    return re.match(rf"{kind}-(?:\d+-)?(.+)$", figure["id"]).group(1).replace("-", "_")
-
-
-def check_ranking(figure, rows, ratios, operation):
-    assert len(figure["marks"]) == len(rows) == figure["rows"], figure["id"]
-    by_name = {row["backend"]: (row, ratio) for row, ratio in zip(rows, ratios)}
-    longest = max(0, *map(math.log10, ratios))
-    # The axis has a least length, and a bar is at least 2 % of the axis long.
-    shortest = 0.02 * max(longest, 0.1)
-    widest = max(mark["width"] for mark in figure["marks"])
+def check_ranking(figure, rows, ratios):
+    """Compares bars with rows. `rows` are (panel, row); `ratios` are their ratios, None if there is no bar."""
+    shown_rows = [(panel, row, ratio) for (panel, row), ratio in zip(rows, ratios) if ratio]
+    assert len(figure["marks"]) == len(shown_rows) == figure["rows"], figure["id"]
+    by_name = {(panel, row["backend"]): (row, ratio) for panel, row, ratio in shown_rows}
+    # One scale for all panels: at least to 2; bars beyond 10 are cut.
+    longest = min(10, max([2.0] + [ratio for _, _, ratio in shown_rows]))
+    whole = max(mark["width"] / max(math.log(min(by_name[mark["panel"], mark["title"].split(": ")[0]][1], longest), longest), 1e-9)
+                for mark in figure["marks"] if by_name[mark["panel"], mark["title"].split(": ")[0]][1] > 1.5)
     for mark in figure["marks"]:
         name, figures = mark["title"].split(": ", 1)
-        row, ratio = by_name.pop(name)
-        low, high = [row.get(f"ratio_ci_{end}", row.get(f"ci_{end}")) for end in ("low", "high")]
-        interval = "" if low is None else f" ({shown(low)} to {shown(high)})"
-        bound = "≥ " if row.get("estimated") else ""
-        expected = f"{bound}{shown(ratio)}{interval}"
-        assert figures.split(" ×")[0] == expected, f"{operation} on {name}: {figures}, but {expected} in the data"
-        share = max(math.log10(ratio), shortest) / max(longest, shortest)
-        close_to(mark["width"], share * widest, f"the bar of {operation} on {name}", 0.6)
+        row, ratio = by_name[mark["panel"], name]
+        bound = is_bound(row)
+        ends = [row.get(f"ratio_ci_{end}", row.get(f"ci_{end}")) for end in ("low", "high")]
+        has_interval = ends[0] is not None and not bound and row.get("samples", 99) >= 3
+        if "ratio_ci_low" in row and rounded(ratio) == 1:
+            has_interval = False
+        interval = f" ({shown(ends[0])} to {shown(ends[1])})" if has_interval else ""
+        expected = f"≥ {shown(rounded_down(ratio))}" if bound else f"{shown(ratio)}{interval}"
+        found = figures.split(" × the")[0]
+        assert found == expected, f"{mark['panel']} on {name}: {found}, but {expected} in the data"
+        width = max(2.0, math.log(max(1.0, min(ratio, longest)), longest) * whole)
+        close_to(mark["width"], width, f"the bar of {mark['panel']} on {name}", 0.6)
+
+
+def is_bound(row):
+    return bool(row.get("estimated")) or (row.get("estimated_ns") is not None and row.get("median_ns") is None)
 
 
 def check_heat_map(figure, ratios, columns, bounds):
-    rows = ratios
-    measured = {operation for (operation, _), ratio in rows.items() if ratio}
+    measured = {operation for (operation, _), ratio in ratios.items() if ratio}
     assert len(figure["marks"]) == len(measured) * len(columns), figure["id"]
     assert figure["rows"] == len(measured), figure["id"]
     for mark in figure["marks"]:
         operation, rest = mark["title"].split(" on ", 1)
         column, found = rest.split(": ", 1)
-        ratio = rows.get((operation, column))
-        bound = "≥ " if (operation, column) in bounds else ""
-        expected = bound + times(ratio) if ratio else "not measured"
-        assert found == expected, f"{mark['title']}: {ratio} in the data"
+        ratio = ratios.get((operation, column))
+        if (operation, column) in bounds:
+            assert found == f"≥ {times(rounded_down(ratio))}", f"{mark['title']}: {ratio} in the data"
+        elif ratio:
+            assert found == times(ratio), f"{mark['title']}: {ratio} in the data"
+            assert times(ratio) in figure["text"], f"the cell of {mark['title']} has no number"
+        else:
+            assert found in ("not measured", "not possible"), mark["title"]
 
 
 def check_growth(figure, growth):
-    operation = operation_of(figure, "growth")
+    operations = {fit["operation"] for fit in growth["fits"]}
     points = {}
     for size in growth["sizes"]:
         for row in size["results"]:
             ns = row["median_ns"]  # lower bounds are not drawn
-            if row["operation"] == operation and ns:
-                points[row["backend"], f"{size['faces']:,}"] = (size["faces"], ns)
+            if row["operation"] in operations and ns:
+                points[row["operation"], row["backend"], f"{size['faces']:,}"] = (size["faces"], ns)
     assert len(figure["marks"]) == len(points), figure["id"]
     here = []
     for mark in figure["marks"]:
         name, faces, found = re.match(r"(.+), ([\d,]+) faces: ([^,]+(?:,\d+[^,]*)?)", mark["title"]).groups()
-        here.append(points[name, faces])
+        here.append(points[mark["panel"], name, faces])
         assert found == duration(here[-1][1]), f"{mark['title']}: {here[-1][1]} ns in the data"
     check_places(figure["marks"], [faces for faces, _ in here], figure["id"], "x")
     check_places(figure["marks"], [ns for _, ns in here], figure["id"], "y")
     for fit in growth["fits"]:
-        if fit["operation"] == operation and fit["all"]:
+        if fit["all"]:
             assert f"{fit['backend']}: {fit['all']['exponent']:.2f}" in figure["text"], fit
     assert figure["rows"] >= len(growth["sizes"]), figure["id"]
 
 
 def check_orders(figure, orders):
-    operation = operation_of(figure, "orders")
-    rows = {
-        (row["backend"], row["case"]): row for row in orders["results"] if row["operation"] == operation
-    }
-    backends = {backend for backend, _ in rows}
-    assert len(figure["marks"]) == len(backends) * len(orders["orders"]), figure["id"]
-    assert figure["rows"] == len(backends), figure["id"]
-    lengths = []
-    most = math.log10(max([1.5] + [row["ratio_to_best"] or 1 for row in rows.values()]))
+    rows = {(row["operation"], row["backend"], row["case"]): row for row in orders["results"]}
+    timed = {key: row for key, row in rows.items() if row["ratio_to_best"] is not None}
+    assert len(figure["marks"]) == len(timed), figure["id"]
+    assert figure["rows"] == len({(operation, backend) for operation, backend, _ in rows}), figure["id"]
+    ratios = []
     for mark in figure["marks"]:
         name, rest = mark["title"].split(", ", 1)
         order, found = rest.split(": ", 1)
-        row = rows.get((name, order), {})
-        if row.get("ratio_to_best") is None:
-            assert found == "not measured", mark["title"]
-        else:
-            best = min(other["ns_per_element"] for (backend, _), other in rows.items() if backend == name)
-            ratio = rounded(row["ns_per_element"]) / rounded(best)
-            assert found.split(" ×")[0] == shown(ratio), f"{mark['title']}: {ratio} in the data"
-            lengths.append((mark["height"], max(math.log10(ratio), 0.02 * most)))
-    tallest, longest = max(lengths)
-    for height, length in lengths:
-        close_to(height, tallest * length / longest, figure["id"], 0.6)
+        row = timed.pop((mark["panel"], name, order))
+        best = min(
+            other["ns_per_element"]
+            for (operation, backend, _), other in rows.items()
+            if (operation, backend) == (mark["panel"], name) and other["ns_per_element"]
+        )
+        ratio = rounded(row["ns_per_element"]) / rounded(best)
+        assert found.split(" ×")[0] == shown(ratio), f"{mark['title']}: {ratio} in the data"
+        ratios.append(max(1.0, ratio))
+    check_places(figure["marks"], ratios, figure["id"], "x")
 
 
 def check_roofline(figure, why):
@@ -215,7 +225,7 @@ def check_memory(figure, study):
         place, value = mark["title"].rsplit(": ", 1)
         name, table = place.split(", ", 1)
         shown[name, table] = float(value.split()[0])
-        heights[name, table] = mark["height"]
+        heights[name, table] = mark["width"]
     scale = None
     for name, column in columns.items():
         for table in column["tables"]:
@@ -229,12 +239,171 @@ def check_memory(figure, study):
 def check_break_even(figure, columns):
     assert figure["rows"] >= 2 and figure["lines"] >= figure["rows"], figure
     assert figure["rows"] <= len(columns), figure
+    for mark in figure["marks"]:
+        name, count = re.match(r"(.+) pays after ([\d,]+) ", mark["title"]).groups()
+        assert name in columns and count in figure["text"], mark
 
 
 def of_kind(results, kind):
     """Returns the findings of one command. A study has its mesh as `mesh`."""
     found = [finding for finding in results["findings"] if finding["kind"] == kind]
     return [{**one, "mesh": results["meshes"][one["meshes"][0]] if one["meshes"] else None} for one in found]
+
+
+def ratios_of(rows, pooled):
+    """Returns the ratio of each pair of an operation and a backend, as the page shows it; None if there is none."""
+    ratios = {}
+    for operation in {row["operation"] for row in rows}:
+        of_it = [row for row in rows if row["operation"] == operation]
+        if pooled:
+            ratios |= {(operation, row["backend"]): row["ratio_to_best"] for row in of_it}
+            continue
+        best = next((row["ns_per_element"] for row in of_it if row["ratio_to_best"] == 1), None)
+        for row in of_it:
+            key = (operation, row["backend"])
+            if is_bound(row) and best and row["elements"]:
+                ratios[key] = row["estimated_ns"] / row["elements"] / best
+            else:
+                known = row["ratio_to_best"] and best
+                ratios[key] = rounded(row["ns_per_element"]) / rounded(best) if known else None
+    return ratios
+
+
+TABLE = """
+const table = document.querySelector('#operations table');
+return {
+    columns: [...table.tHead.rows[0].cells].map((cell) => cell.textContent),
+    sorts: [...table.tHead.rows[0].cells].map((cell) => cell.getAttribute('aria-sort')),
+    rows: [...table.tBodies[0].rows].filter((row) => !row.hidden).map((row) => ({
+        name: row.cells[0].textContent,
+        cells: [...row.cells].slice(1).map((cell) => ({
+            backend: cell.dataset.backend, source: cell.dataset.source, ns: cell.dataset.ns && Number(cell.dataset.ns),
+            text: [...cell.childNodes].filter((node) => node.nodeName !== 'SMALL').map((node) => node.textContent).join(''),
+            small: cell.querySelector('small')?.textContent ?? '',
+            bar: Number(cell.style.getPropertyValue('--share') || 0),
+        })),
+    })),
+};
+"""
+
+CHOOSE = """
+const control = document.querySelector(`#operations [name=${arguments[0]}]`);
+control.value = arguments[1];
+control.dispatchEvent(new Event('input', {bubbles: true}));
+control.dispatchEvent(new Event('change', {bubbles: true}));
+"""
+
+CLICK = "document.querySelectorAll('#operations thead button')[arguments[0]].click()"
+
+
+def check_operations(browser, rows, ratios):
+    """Checks the table of operations: its figures, and what its controls do."""
+    names = list(dict.fromkeys(row["operation"] for row in rows))
+    before = browser.run(TABLE)
+    assert sorted(row["name"] for row in before["rows"]) == sorted(names), before["rows"]
+    for row in before["rows"]:
+        for cell in row["cells"]:
+            ratio = ratios.get((row["name"], cell["backend"]))
+            if not ratio:
+                assert cell["source"] in ("impossible", "not run", "measured", "sampled"), cell
+                assert cell["text"] in ("not possible", "not run", "not compared"), cell
+                continue
+            sign = {"bound": "≥ ", "sampled": "~ "}.get(cell["source"], "")
+            number = shown(rounded_down(ratio) if cell["source"] == "bound" else ratio)
+            assert cell["text"].removesuffix(" tied") == f"{sign}{number} ×", (row["name"], cell, ratio)
+            close_to(cell["bar"], min(1, 1 / ratio), f"the bar of {row['name']} on {cell['backend']}", 1e-3)
+    # Times.
+    browser.run(CHOOSE, "figures", "times")
+    for row in browser.run(TABLE)["rows"]:
+        for cell in row["cells"]:
+            if cell["ns"]:
+                text = cell["text"].removeprefix("≥ ")
+                if cell["source"] != "bound":
+                    assert text == duration(cell["ns"]), (row["name"], cell)
+    browser.run(CHOOSE, "figures", "ratios")
+    # Another baseline.
+    column = before["columns"][-1]
+    browser.run(CHOOSE, "baseline", column)
+    compared = 0
+    for row in browser.run(TABLE)["rows"]:
+        base = next(cell for cell in row["cells"] if cell["backend"] == column)
+        for cell in row["cells"]:
+            if not cell["ns"]:
+                continue
+            if not base["ns"] or base["source"] == "bound":
+                assert cell["text"] == "–", (row["name"], cell)
+            elif cell["source"] != "bound":
+                assert cell["text"] == times(cell["ns"] / base["ns"]), (row["name"], cell)
+                compared += 1
+    assert compared, "no ratio to another baseline"
+    browser.run(CHOOSE, "baseline", "")
+    assert browser.run(TABLE) == before, "the table is not as before"
+    # Order: ascending, descending, and as before. Operations without a figure come last.
+    for down in (False, True):
+        browser.run(CLICK, 1)
+        table = browser.run(TABLE)
+        assert table["sorts"][1] == ("descending" if down else "ascending"), table["sorts"]
+        first = [ratios.get((row["name"], row["cells"][0]["backend"])) for row in table["rows"]]
+        known = [ratio for ratio in first if ratio]
+        assert known == sorted(known, reverse=down), known
+        assert all(ratio is None for ratio in first[len(known):]), first
+    browser.run(CLICK, 1)
+    assert [row["name"] for row in browser.run(TABLE)["rows"]] == [row["name"] for row in before["rows"]]
+    # Filters.
+    browser.run(CHOOSE, "search", names[-1])
+    found = [row["name"] for row in browser.run(TABLE)["rows"]]
+    assert names[-1] in found and all(names[-1] in name for name in found), found
+    browser.run(CHOOSE, "search", "no such operation")
+    assert not browser.run(TABLE)["rows"]
+    status = browser.run("return document.querySelector('#operations output').textContent")
+    assert status == f"0 of {len(names)} operations", status
+    browser.run(CHOOSE, "search", "")
+    group = browser.run("return document.querySelector('#operations [name=group]').options[1].value")
+    browser.run(CHOOSE, "group", group)
+    groups = browser.run(
+        "return [...document.querySelectorAll('#operations tbody tr')].filter(r => !r.hidden).map(r => r.dataset.group)"
+    )
+    assert groups and set(groups) == {group}, groups
+    browser.run(CHOOSE, "group", "")
+
+
+PAGE = """
+const links = [...document.querySelectorAll('a[href^="#"]')].map((link) => link.getAttribute('href').slice(1));
+return {
+    missing: links.filter((id) => !document.getElementById(id)),
+    contents: document.querySelectorAll('nav a').length,
+    headings: [...document.querySelectorAll('h1, h2, h3')].map((heading) => Number(heading.tagName[1])),
+    bare: [...document.querySelectorAll('th:not([scope])')].length,
+    images: [...document.images].map((image) => [image.alt, image.naturalWidth]),
+    unlabelled: [...document.querySelectorAll('figure[data-figure] svg')].filter(
+        (svg) => !svg.getAttribute('aria-label') && svg.getAttribute('aria-hidden') !== 'true').length,
+    answer: [...document.querySelectorAll('.answer p')].map((p) => p.textContent),
+    summary: [...document.querySelectorAll('table.summary tbody tr')].map((row) =>
+        [...row.cells].map((cell) => cell.textContent)),
+};
+"""
+
+
+def check_page(page, results, studies):
+    """Checks the first screen, the links, and what screen readers read."""
+    assert not page["missing"], f"links to nothing: {page['missing']}"
+    assert page["contents"] >= 3, page["contents"]
+    levels = page["headings"]
+    assert levels[0] == 1 and levels.count(1) == 1, levels
+    assert all(b <= a + 1 for a, b in zip(levels, levels[1:])), f"a level of headings is left out: {levels}"
+    assert not page["bare"] and not page["unlabelled"], page
+    assert all(alt and width for alt, width in page["images"]), page["images"]
+    assert 1 <= len(page["answer"]) <= 3, page["answer"]
+    if len(results["planned"]) == 1 and len(studies) == 1:
+        [study] = studies
+        assert len(page["images"]) == bool(study["mesh"].get("picture")), page["images"]
+        names = [column["name"] for column in study["backends"]]
+        assert [row[0] for row in page["summary"]] == names, page["summary"]
+        memory = [row for row in study["backends"] if row["bytes_per_vertex"]]
+        for row in memory:
+            text = next(cells for cells in page["summary"] if cells[0] == row["name"])
+            expected = f"{shown(row['bytes_per_vertex'])} B"
+            assert any(cell.split(" ", 1)[-1] == expected or cell == expected for cell in text), (text, expected)
 
 
 def check(figure, results):
@@ -253,8 +422,8 @@ def check(figure, results):
     if kind.startswith("pick") and kind.endswith("break-even"):
         return check_break_even(figure, [row["backend"] for row in lab["ranking"]])
     if kind.startswith("pick"):
-        rows = lab["ranking"]
-        return check_ranking(figure, rows, shown_ratios(rows, "ns_per_operation"), lab["workload"]["name"])
+        rows, name = lab["ranking"], lab["workload"]["name"]
+        return check_ranking(figure, [(name, row) for row in rows], shown_ratios(rows, "ns_per_operation"))
     pooled = len(results["planned"]) > 1 and not figure["mesh"]
     if pooled:
         rows = results["pool"]["groups"][0]["pooled"]
@@ -263,18 +432,12 @@ def check(figure, results):
         [study] = [s for s in studies if s["mesh"]["name"] == figure["mesh"]] if figure["mesh"] else studies
         rows = study["results"]
         columns = [column["name"] for column in study["backends"] if column["holds"]]
-    rows = [row for row in rows if row["ratio_to_best"]]
-    ratios = {}
-    for operation in {row["operation"] for row in rows}:
-        of_it = [row for row in rows if row["operation"] == operation]
-        found = [row["ratio_to_best"] for row in of_it] if pooled else shown_ratios(of_it, "ns_per_element")
-        ratios |= {(operation, row["backend"]): ratio for row, ratio in zip(of_it, found)}
-    if kind.startswith("ranking-"):
-        operation = operation_of(figure, "ranking")
-        rows = [row for row in rows if row["operation"] == operation]
-        return check_ranking(figure, rows, [ratios[operation, row["backend"]] for row in rows], operation)
+    ratios = ratios_of(rows, pooled)
+    if kind.startswith("rankings"):
+        of = [ratios[row["operation"], row["backend"]] for row in rows]
+        return check_ranking(figure, [(row["operation"], row) for row in rows], of)
     if kind.endswith("heat-map"):
-        bounds = {(row["operation"], row["backend"]) for row in rows if row.get("estimated")}
+        bounds = {(row["operation"], row["backend"]) for row in rows if is_bound(row)}
         return check_heat_map(figure, ratios, columns, bounds)
     if kind.endswith("memory"):
         return check_memory(figure, study)
@@ -302,13 +465,22 @@ def main():
         assert len(set(ids)) == len(ids), "two figures have the same name"
         for figure in figures:
             check(figure, results)
+            assert figure["link"] == f"#{figure['id']}" and figure["label"], figure["id"]
+            assert re.search(r"\d{4}-\d\d-\d\d.*seed \d+", figure["source"]), figure["source"]
+            assert not figure["clipped"], f"{figure['id']}: texts beyond the picture: {figure['clipped']}"
             # The file of the figure must be valid XML, which is stricter than HTML.
             xml.etree.ElementTree.parse(folder / "figures" / f"{figure['id']}.svg")
         kinds = {re.sub(r"-.*", "", figure["id"]) for figure in figures}
         expected = {name for name in ("orders", "growth") if of_kind(results, name)}
         expected |= {"roofline"} if of_kind(results, "why") else set()
-        expected |= {"ranking", "heat"} if of_kind(results, "study") else set()
+        studies = of_kind(results, "study")
+        expected |= {"rankings", "heat"} if studies else set()
         assert expected <= kinds, f"{expected - kinds} is missing"
+        check_page(browser.run(PAGE), results, studies)
+        if studies:
+            pooled = len(results["planned"]) > 1
+            rows = results["pool"]["groups"][0]["pooled"] if pooled else studies[0]["results"]
+            check_operations(browser, rows, ratios_of(rows, pooled))
 
         # On a phone, the page must not be wider than the screen; wide figures scroll in their boxes.
         for width, theme in [(1200, "light"), (1200, "dark"), (390, "light"), (390, "dark")]:

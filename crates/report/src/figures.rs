@@ -17,7 +17,7 @@ use sixfold_study::{Environment, Finding, MeshReport, Report, Results, Run};
 use crate::matrix::Matrix;
 use crate::source;
 use crate::summary::{self, Summary};
-use crate::{Figure, ReportPage, Section};
+use crate::{Figure, MeshPicture, ReportPage, Section};
 
 /// The structure of the input mesh. It need not be built.
 pub(crate) const INPUT_BACKEND: &str = "indexed-face-set";
@@ -89,6 +89,7 @@ fn study_page(study: &Report, results: &Results, command: &str) -> ReportPage {
     ReportPage {
         title: format!("Mesh data structures on {}", file_name(&study.mesh.name)),
         facts: facts(&study.mesh),
+        picture: mesh_picture(&study.mesh),
         answer: answer.into_iter().flatten().collect(),
         summary: Some(Summary::of_study(study, results)),
         sentences: study.notes.clone(),
@@ -98,6 +99,32 @@ fn study_page(study: &Report, results: &Results, command: &str) -> ReportPage {
         labs: labs(results, command),
         ..ReportPage::default()
     }
+}
+
+/// Returns the picture of a mesh, with the colours of its faults in the label.
+fn mesh_picture(mesh: &MeshReport) -> Option<MeshPicture> {
+    let png = mesh.picture.clone()?;
+    // Only Base64 goes into the page.
+    let is_base64 = |c: u8| c.is_ascii_alphanumeric() || b"+/=".contains(&c);
+    let facts = &mesh.facts;
+    let faults = [
+        (facts.boundary_edges > 0, "boundary edges in orange"),
+        (
+            facts.non_manifold_edges + facts.non_manifold_vertices > 0,
+            "non-manifold edges and vertices in magenta",
+        ),
+        (facts.inconsistent_edges > 0, "turned faces in yellow"),
+    ];
+    let faults = faults.into_iter().filter(|(has, _)| *has);
+    let faults: Vec<&str> = faults.map(|(_, text)| text).collect();
+    let name = file_name(&mesh.name);
+    let label = match faults.is_empty() {
+        true => name.to_owned(),
+        false => format!("{name}: {}", faults.join(", ")),
+    };
+    png.bytes()
+        .all(is_base64)
+        .then_some(MeshPicture { png, label })
 }
 
 /// Returns the page of several meshes.

@@ -89,6 +89,13 @@ impl ReportPage {
                 h1 { (self.title) }
                 @if !self.facts.is_empty() { p.faint { (self.facts) } }
                 div.first {
+                    @if let Some(picture) = &self.picture {
+                        @let link = format!("data:image/png;base64,{}", picture.png);
+                        figure.mesh {
+                            img src=(link) alt={ "The mesh " (picture.label) } width="288" height="288";
+                            figcaption { (picture.label) }
+                        }
+                    }
                     div.answer { @for sentence in &self.answer { p { (lead(sentence)) } } }
                 }
                 @if let Some(summary) = &self.summary { (summary_table(summary)) }

@@ -38,6 +38,8 @@ pub struct ReportPage {
     pub title: String,
     /// The mesh, or the meshes, in one line; empty if there are none.
     pub facts: String,
+    /// A picture of the mesh, and the text that describes the picture; `None` if there is none.
+    pub picture: Option<MeshPicture>,
     /// The answer in at most three sentences.
     pub answer: Vec<String>,
     /// The structures by kind of work; `None` without a study.
@@ -66,6 +68,15 @@ pub struct ReportPage {
     pub failures: Vec<(String, String)>,
     /// Names of the meshes that are not studied yet.
     pub missing: Vec<String>,
+}
+
+/// A picture of a mesh.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MeshPicture {
+    /// A PNG file in Base64.
+    pub png: String,
+    /// What the picture shows.
+    pub label: String,
 }
 
 /// The part of a report about one mesh or one additional measurement.

@@ -27,7 +27,7 @@ pub(crate) struct Cell {
     pub(crate) source: Source,
     /// The time divided by that of the fastest backend; a lower bound if `source` is a bound.
     pub(crate) ratio: Option<f64>,
-    /// The 95 % interval of `ratio`.
+    /// The 95 % interval of `ratio`; `None` for the fastest, whose ratio is 1 by definition.
     pub(crate) interval: Option<[f64; 2]>,
     /// Time per element in nanoseconds.
     pub(crate) ns: Option<f64>,
@@ -162,7 +162,8 @@ impl Cell {
         Self {
             ratio,
             interval: (row.ratio_ci_low.zip(row.ratio_ci_high))
-                .filter(|_| ratio.is_some() && row.samples >= FEWEST_FOR_INTERVAL)
+                .filter(|_| row.samples >= FEWEST_FOR_INTERVAL)
+                .filter(|_| ratio.is_some_and(|ratio| ratio != 1.0))
                 .map(|(low, high)| [low, high]),
             ns: row.ns_per_element,
             ns_interval: ends.and_then(|(low, high)| Some([each(low)?, each(high)?])),

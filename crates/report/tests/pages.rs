@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use std::sync::atomic::AtomicBool;
 
 use sixfold::shapes;
-use sixfold_report::{Figure, ReportPage};
+use sixfold_report::{Figure, Rank, ReportPage, SummaryFigure};
 use sixfold_study::{
     Effort, Failed, FailureKind, Finding, Operation, Report, Results, Settings, StudyMesh, study,
 };
@@ -59,18 +59,18 @@ fn every_figure_has_as_many_marks_as_numbers() {
     let heat_map = figure_by_id(&page, "heat-map");
     assert_eq!(mark_count(heat_map), 3 * 6);
     assert_eq!(heat_map.table.rows.len(), 3);
+    let rankings = figure_by_id(&page, "rankings");
+    assert_eq!(mark_count(rankings), 3 * 6);
     for operation in operations() {
-        let id = format!("ranking-{}", operation.name().replace('_', "-"));
-        let ranking = figure_by_id(&page, &id);
-        assert_eq!(mark_count(ranking), 6, "{id}");
-        let ratios = ranking.table.rows.iter().map(|row| row[1].parse::<f64>());
-        let ratios: Vec<f64> = ratios.map(|ratio| ratio.expect("a number")).collect();
+        let rows = rankings.table.rows.iter();
+        let rows = rows.filter(|row| row[0] == operation.name());
+        let ratios: Vec<f64> = rows.map(|row| row[2].parse().expect("a number")).collect();
         // The ratio of a tied backend can be below 1, because ratios are computed within rounds.
         assert!(
             ratios[0] <= 1.0 && ratios.contains(&1.0),
-            "{id}: {ratios:?}"
+            "{operation}: {ratios:?}"
         );
-        assert!(ratios.is_sorted(), "{id}: {ratios:?}");
+        assert!(ratios.is_sorted(), "{operation}: {ratios:?}");
     }
     let memory = figure_by_id(&page, "memory");
     assert!(memory.table.rows.len() >= 12, "{:?}", memory.table);
@@ -86,6 +86,12 @@ fn every_figure_has_as_many_marks_as_numbers() {
         );
         assert!(figure.picture.svg().contains("prefers-color-scheme:dark"));
         assert_eq!(figure.command, "sixfold study ball.obj");
+        assert!(
+            figure.source.contains("8 samples for each time"),
+            "{}",
+            figure.source
+        );
+        assert!(figure.source.contains("seed 1"), "{}", figure.source);
     }
     let mut ids: Vec<&str> = page
         .all_figures()
@@ -122,11 +128,7 @@ fn a_page_of_several_meshes_has_pooled_figures_and_one_section_each() {
     let page = ReportPage::new(&both, "sixfold study a.obj");
     assert_eq!(page.meshes.len(), 2);
     assert!(page.figures.iter().any(|figure| figure.id == "heat-map"));
-    assert!(
-        page.figures
-            .iter()
-            .any(|figure| figure.id == "ranking-boundary")
-    );
+    assert!(page.figures.iter().any(|figure| figure.id == "rankings"));
     let html = page.html();
     assert_eq!(
         html.matches("data-figure=").count(),
@@ -144,9 +146,11 @@ fn a_page_of_several_meshes_has_pooled_figures_and_one_section_each() {
 fn pages_load_nothing_and_names_are_escaped() {
     let page = ReportPage::new(&results(&[NAME_WITH_MARKUP]), "sixfold study '<b>'");
     let html = page.html();
-    assert!(!html.contains("<script"), "a name became code");
-    assert!(!html.contains("<b>"), "a command became code");
-    assert!(html.contains("&lt;script&gt;"));
+    // The page has one script of its own.
+    assert_eq!(html.matches("<script").count(), 1, "a name became code");
+    assert!(!html.contains("<script>alert"), "a name became code");
+    assert!(!html.contains("study '<b>'"), "a command became code");
+    assert!(html.contains("script&gt;&amp;.obj"));
     let outside = html.replace("http://www.w3.org/2000/svg", "");
     // A clip path of the same figure is not an external resource.
     let outside = outside.replace("url(#", "");
@@ -157,6 +161,80 @@ fn pages_load_nothing_and_names_are_escaped() {
         assert!(!figure.picture.svg().contains("<script"), "{}", figure.id);
     }
     assert!(!page.markdown().replace("\\<", "").contains("<script"));
+}
+
+/// The first screen has the answer, and a figure for each backend and kind of work.
+#[test]
+fn the_first_screen_answers() {
+    let mut all = results(&["/home/me/ball.obj"]);
+    if let Finding::Study(study) = &mut all.findings[0] {
+        study.mesh.picture = Some("aGVsbG8=".into());
+        study.warnings = vec!["one".into(), "two".into()];
+    }
+    let page = ReportPage::new(&all, "sixfold study ball.obj");
+    assert_eq!(page.title, "Mesh data structures on ball.obj");
+    assert!((2..=3).contains(&page.answer.len()), "{:?}", page.answer);
+    for (sentence, start) in page
+        .answer
+        .iter()
+        .zip(["Fastest: ", "How sure: ", "What would"])
+    {
+        assert!(sentence.starts_with(start), "{sentence}");
+    }
+    let summary = page.summary.as_ref().expect("a study");
+    let columns: Vec<&str> = summary
+        .columns
+        .iter()
+        .map(|column| column.name.as_str())
+        .collect();
+    assert_eq!(columns, ["build", "memory", "navigate"]);
+    assert_eq!(summary.rows.len(), 6);
+    for column in 0..columns.len() {
+        let figures = summary
+            .rows
+            .iter()
+            .map(|row| row.figures[column].as_ref().expect("measured"));
+        let figures: Vec<&SummaryFigure> = figures.collect();
+        let best = |figure: &&&SummaryFigure| matches!(figure.rank, Rank::Best | Rank::Tied);
+        assert!(
+            figures
+                .iter()
+                .any(|figure| best(&figure) && figure.share == 1.0),
+            "{figures:?}"
+        );
+        assert!(
+            figures
+                .iter()
+                .all(|figure| (0.0..=1.0).contains(&figure.share)),
+            "{figures:?}"
+        );
+    }
+    // The indexed face set of an icosahedron: 12 positions of 12 bytes, 60 corners of 4 bytes.
+    let memory = summary.rows[1].figures[1].as_ref().expect("counted");
+    assert_eq!((memory.text.as_str(), memory.rank), ("32.0 B", Rank::Best));
+    let html = page.html();
+    assert!(html.contains("src=\"data:image/png;base64,aGVsbG8=\" alt=\"The mesh ball.obj\""));
+    assert!(html.contains("2 warnings"), "warnings are not folded");
+    for section in [
+        "answer",
+        "operations",
+        "rankings",
+        "heat-map",
+        "memory",
+        "method",
+    ] {
+        assert!(
+            html.contains(&format!("href=\"#{section}\"")),
+            "no link to {section}"
+        );
+        assert!(html.contains(&format!("id=\"{section}\"")), "no {section}");
+    }
+    // A picture that is not Base64 does not go into the page.
+    if let Finding::Study(study) = &mut all.findings[0] {
+        study.mesh.picture = Some("\" onload=alert(1)".into());
+    }
+    let html = ReportPage::new(&all, "sixfold study ball.obj").html();
+    assert!(!html.contains("onload"), "a picture became code");
 }
 
 /// If the findings come from two machines, each line about a machine names its findings.
@@ -256,6 +334,6 @@ fn groups_of_meshes_have_a_table() {
     let single = ReportPage::new(&results(&["a.obj"]), "sixfold study");
     assert!(single.tables.is_empty());
     // A mean over meshes is not a ratio of times of the same rounds.
-    let ranking = figure_by_id(&page, "ranking-boundary");
+    let ranking = figure_by_id(&page, "rankings");
     assert!(ranking.caption.contains("geometric mean over the meshes"));
 }

@@ -69,6 +69,7 @@ mod many;
 mod measure;
 mod memory;
 mod mesh_files;
+mod mesh_picture;
 mod neighbours;
 mod new;
 mod operations;

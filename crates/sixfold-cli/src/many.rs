@@ -22,6 +22,7 @@ use crate::failure::Failure;
 use crate::load;
 use crate::measure::{Session, command_line, exit_code, warn_of_debug_build};
 use crate::mesh_files::shown;
+use crate::mesh_picture::with_picture;
 use crate::progress::Bar;
 use crate::study::finding;
 use crate::text::{TextOutput, hanging_indent, print_notice, sanitize};
@@ -232,12 +233,18 @@ impl Run<'_> {
 }
 
 fn load_mesh(mesh: &Mesh, arguments: &Study) -> Result<StudyMesh, Failure> {
-    load::mesh_or_built_in(
+    let study_mesh = load::mesh_or_built_in(
         mesh.path.as_deref(),
         arguments.read,
         arguments.strict,
         arguments.triangulate,
-    )
+    )?;
+    // Reports and documents have pictures of the meshes.
+    let wanted = arguments.report.is_some() || arguments.files.json.is_some();
+    Ok(match wanted {
+        true => with_picture(study_mesh),
+        false => study_mesh,
+    })
 }
 
 /// Removes the path from a message, because the list already shows the path.

@@ -7,10 +7,11 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use sixfold_study::numbers::counted;
-use sixfold_study::{Agreement, Finding, Policy, Report, ResultRow, Results};
+use sixfold_study::{Agreement, Finding, Policy, Report, ResultRow, Results, StudyMesh};
 
 use crate::arguments::ResultFiles;
 use crate::failure::Failure;
+use crate::mesh_picture::with_picture;
 use crate::output::{Output, check_outputs, is_stdout};
 use crate::progress::{INTERRUPTED, interrupt_flag};
 use crate::text::{TextOutput, print_notice, print_stderr, take_notices};
@@ -61,6 +62,14 @@ impl Session {
                 samples_csv: Output::open_if(files.samples_csv.as_ref())?,
             },
         })
+    }
+
+    /// Adds a picture to a mesh if the results are written as a document, which reports are drawn from.
+    pub(crate) fn drawn(&self, study_mesh: StudyMesh) -> StudyMesh {
+        match self.files.json {
+            Some(_) => with_picture(study_mesh),
+            None => study_mesh,
+        }
     }
 
     /// Prints the remaining text, writes the files, and returns the exit code of the results.

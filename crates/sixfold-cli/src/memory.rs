@@ -30,6 +30,7 @@ pub(crate) fn run(
     // Counting cannot be resumed, so Ctrl-C ends it at once.
     exit_on_interrupt();
     let study_mesh = load::mesh_or_built_in(mesh, arguments.read, false, arguments.triangulate)?;
+    let study_mesh = session.drawn(study_mesh);
     let settings = Settings {
         backends: arguments.backends.clone(),
         ..Settings::default()

@@ -28,6 +28,7 @@ pub(crate) fn run(arguments: &Neighbours) -> Result<ExitCode, Failure> {
     };
     let mut session = Session::open(mesh, &arguments.files, settings.heap)?;
     let study_mesh = load::mesh_or_built_in(mesh, arguments.read, false, false)?;
+    let study_mesh = session.drawn(study_mesh);
     warn_of_debug_build();
     session.text.print_line(&facts_text(&study_mesh.report()));
     let bar = Bar::new();

@@ -27,6 +27,7 @@ pub(crate) fn run(arguments: &Orders) -> Result<ExitCode, Failure> {
     let mesh = arguments.mesh.as_deref();
     let mut session = Session::open(mesh, &arguments.files, arguments.memory.heap)?;
     let study_mesh = load::mesh_or_built_in(mesh, arguments.read, false, arguments.triangulate)?;
+    let study_mesh = session.drawn(study_mesh);
     let settings = Settings {
         backends: arguments.backends.clone(),
         operations: arguments.operations.clone(),

@@ -34,6 +34,8 @@ pub(crate) fn run(arguments: &Pick) -> Result<ExitCode, Failure> {
     let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
     let mut session = Session::open(paths, &arguments.files, arguments.heap)?;
     let study_meshes = study_meshes(&meshes, arguments.read, arguments.triangulate)?;
+    let drawn = study_meshes.into_iter().map(|mesh| session.drawn(mesh));
+    let study_meshes: Vec<StudyMesh> = drawn.collect();
     let settings = PickSettings {
         workload,
         backends: arguments.backends.clone(),

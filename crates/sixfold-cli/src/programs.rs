@@ -157,6 +157,8 @@ pub(crate) fn measure(
     let paths = meshes.iter().filter_map(|mesh| mesh.path.as_deref());
     let mut session = Session::open(paths, files, settings.heap)?;
     let study_meshes = pick::study_meshes(&meshes, read, triangulate)?;
+    let drawn = study_meshes.into_iter().map(|mesh| session.drawn(mesh));
+    let study_meshes: Vec<StudyMesh> = drawn.collect();
     warn_of_debug_build();
     print_meshes(&study_meshes, &mut session.text);
     for program in suite.programs().iter().filter(|p| p.own_ns() != 0.0) {

@@ -109,7 +109,7 @@ fn settings(arguments: &Render) -> Result<Settings, Failure> {
 }
 
 /// Returns the faults to paint.
-fn faults(mesh: &PolygonMesh) -> Faults {
+pub(crate) fn faults(mesh: &PolygonMesh) -> Faults {
     let mut faults = Faults::default();
     for fault in diagnose(mesh, usize::MAX).faults {
         for place in fault.places {

@@ -44,6 +44,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         arguments.strict,
         arguments.triangulate,
     )?;
+    let study_mesh = session.drawn(study_mesh);
     warn_of_debug_build();
     print_before_measuring(&study_mesh, &settings, &mut session.text);
     let bar = Bar::new();

@@ -93,6 +93,7 @@ pub(crate) fn triangulated(
         left_out_faces: study_mesh.left_out_faces,
         cut_faces: cut,
         file_sha256: study_mesh.file_sha256,
+        picture: study_mesh.picture,
     })
 }
 

@@ -18,6 +18,7 @@ pub(crate) fn run(arguments: &Why) -> Result<ExitCode, Failure> {
     let mesh = arguments.mesh.as_deref();
     let mut session = Session::open(mesh, &arguments.files, Policy::Kept)?;
     let study_mesh = load::mesh_or_built_in(mesh, arguments.read, false, arguments.triangulate)?;
+    let study_mesh = session.drawn(study_mesh);
     let effort = (!arguments.counts_only).then(|| arguments.effort.effort());
     if effort.is_some() {
         warn_of_debug_build();

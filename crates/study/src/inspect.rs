@@ -58,6 +58,8 @@ pub struct StudyMesh {
     /// The SHA-256 of the file, as 64 hexadecimal digits; `None` if the mesh was not read from a
     /// regular file.
     pub file_sha256: Option<String>,
+    /// A picture of the mesh for reports: a PNG file in Base64; `None` if there is none.
+    pub picture: Option<String>,
 }
 
 impl StudyMesh {
@@ -77,6 +79,7 @@ impl StudyMesh {
             left_out_faces: 0,
             cut_faces: 0,
             file_sha256: None,
+            picture: None,
         }
     }
 
@@ -91,6 +94,7 @@ impl StudyMesh {
             cut_faces: self.cut_faces,
             sha256: content_hash(&self.polygons),
             file_sha256: self.file_sha256.clone(),
+            picture: self.picture.clone(),
         }
     }
 }

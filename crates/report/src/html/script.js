@@ -128,5 +128,6 @@
   for (const control of [group, search]) control.addEventListener('input', filter);
   controls.hidden = false;
   draw();
+  sort();
   filter();
 })();

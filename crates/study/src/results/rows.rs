@@ -105,6 +105,9 @@ pub struct MeshReport {
     pub left_out_faces: usize,
     /// The number of faces of the file that were cut into triangles.
     pub cut_faces: usize,
+    /// A picture of the mesh: a PNG file in Base64. `None` if no picture was drawn.
+    #[serde(default)]
+    pub picture: Option<String>,
 }
 
 /// The memory of a backend on one mesh, or the reason why the backend cannot hold the mesh.
