@@ -10,6 +10,7 @@ use sixfold_study::numbers::times;
 
 use crate::Picture;
 use crate::colours::{BACKGROUND, GRID_COLOUR, TEXT_COLOUR};
+use crate::data::FigureData;
 
 /// A figure, and a table of the numbers that the figure shows.
 #[derive(Clone, Debug)]
@@ -22,10 +23,19 @@ pub struct Figure {
     pub caption: String,
     /// The picture.
     pub picture: Picture,
-    /// The numbers of the figure.
+    /// The numbers of the figure, formatted.
     pub table: Table,
+    /// The data of the figure for other programs.
+    pub data: FigureData,
     /// The command that reproduces the figure.
     pub command: String,
+}
+
+impl Figure {
+    /// Adds the data for other programs.
+    pub(crate) fn with_data(self, data: FigureData) -> Self {
+        Self { data, ..self }
+    }
 }
 
 /// A table of numbers.

@@ -79,7 +79,7 @@ pub(crate) fn page(results: &Results, command: &str) -> ReportPage {
         },
         figures: match single {
             Some(study) => study_figures(study, command),
-            None => pooled_figures(&pool, command),
+            None => pooled_figures(&pool, &studies, command),
         },
         tables: match single {
             Some(_) => Vec::new(),
@@ -241,10 +241,11 @@ fn section_figures(study: &Report, place: usize, command: &str) -> Vec<Figure> {
     figures
 }
 
-fn pooled_figures(pool: &Pool, command: &str) -> Vec<Figure> {
+fn pooled_figures(pool: &Pool, studies: &[&Report], command: &str) -> Vec<Figure> {
+    let runs: Vec<&Run> = studies.iter().map(|study| &study.run).collect();
     let mut figures = Vec::new();
-    figures.extend(heat_map::pooled(pool, command));
-    figures.extend(ranking::pooled(pool, command));
+    figures.extend(heat_map::pooled(pool, &runs, command));
+    figures.extend(ranking::pooled(pool, &runs, command));
     figures
 }
 
@@ -264,7 +265,7 @@ fn slug(mesh: &str) -> String {
     mesh.chars().map(safe).collect()
 }
 
-fn facts(mesh: &MeshReport) -> String {
+pub(crate) fn facts(mesh: &MeshReport) -> String {
     let facts = &mesh.facts;
     let vertices = counted(facts.vertices, "vertex", "vertices");
     let faces = counted(facts.faces, "face", "faces");
@@ -315,7 +316,7 @@ fn machines(results: &Results) -> Vec<String> {
     described.collect()
 }
 
-fn machine(environment: &Environment) -> String {
+pub(crate) fn machine(environment: &Environment) -> String {
     let Environment {
         cpu_model,
         cores,

@@ -8,22 +8,28 @@
 //!
 //! [`ReportPage::html`] returns one file that needs no network. The page supports light and dark
 //! mode, printing and small screens. [`ReportPage::markdown`] returns Markdown for a repository,
-//! which links to separate SVG files.
+//! which links to separate SVG files. [`ReportPage::paper`] returns the files for a paper: each figure
+//! as SVG and PDF with its data and its caption, tables for LaTeX and Markdown, and a description of the
+//! methods.
 
 mod colours;
+mod data;
 mod figure;
 mod figures;
 mod html;
 mod markdown;
 mod panels;
+mod papers;
 mod picture;
 
 use sixfold_study::Results;
 
 pub use colours::structure_colours;
+pub use data::FigureData;
 pub use figure::{Figure, Table, TitledTable};
 pub use panels::{Panel, panels};
-pub use picture::Picture;
+pub use papers::PaperFile;
+pub use picture::{PdfError, Picture};
 
 /// A report on studies and additional measurements.
 #[derive(Clone, Debug)]

@@ -22,6 +22,7 @@ use crate::failure::Failure;
 use crate::load;
 use crate::measure::{Session, command_line, exit_code, warn_of_debug_build};
 use crate::mesh_files::shown;
+use crate::paper::PaperFolder;
 use crate::progress::Bar;
 use crate::study::finding;
 use crate::text::{TextOutput, hanging_indent, print_notice, sanitize};
@@ -66,6 +67,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         )?),
         None => None,
     };
+    let paper = PaperFolder::open_if(arguments.figures.as_ref())?;
     let selected = unfinished(&meshes, arguments.shard, &results);
     warn_of_debug_build();
     let loaded = match &meshes[..] {
@@ -109,6 +111,12 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         match is_empty && results.failures.iter().all(not_measured) {
             true => folder.remove_if_empty(),
             false => written = written.and(folder.write_report(&results, &command_line())),
+        }
+    }
+    if let Some(paper) = &paper {
+        match is_empty {
+            true => paper.remove_if_empty(),
+            false => written = written.and(paper.write(&results, &command_line())),
         }
     }
     if none_studied {

@@ -4,9 +4,11 @@
 use kuva::plot::LinePlot;
 use kuva::render::plots::Plot;
 use sixfold_study::numbers::{counted, duration};
-use sixfold_study::{Operation, PickReport, Report, ResultRow};
+use sixfold_study::{Operation, PickReport, Report, ResultRow, Run};
 
 use crate::colours::column_colour;
+use crate::data::FigureData;
+use crate::data::rows::BreakEvenRow;
 use crate::figure::{Figure, Table, base_layout, picture};
 
 /// The structure of the input mesh. It need not be built.
@@ -42,6 +44,11 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         .filter_map(|row| Some((row.backend.as_str(), build(row)?, row.median_ns?)))
         .collect();
     let input = lines.iter().find(|(name, ..)| *name == INPUT_BACKEND);
+    let pays_after_runs = |(name, build, run): (&str, f64, f64)| match input {
+        _ if name == INPUT_BACKEND => Some(0.0),
+        Some((_, _, slow)) if *slow > run => Some(build / (slow - run)),
+        _ => None,
+    };
     let pays_after = |(name, build, run): (&str, f64, f64)| match input {
         _ if name == INPUT_BACKEND => "given".into(),
         Some((_, _, slow)) if *slow > run => break_even_text(build / (slow - run), "run", "runs"),
@@ -55,6 +62,7 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
             build,
             run,
             pays_after: pays_after((name, build, run)),
+            pays_after_runs: pays_after_runs((name, build, run)),
         })
         .collect();
     let title = format!(
@@ -72,6 +80,9 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         caption,
         axis: &format!("runs of {operation}"),
         unit: "one run",
+        subject: &study.mesh.name,
+        repeated: operation.name(),
+        measured: &study.run,
         max_count: 1e4,
     };
     curves.draw(&lines, command)
@@ -88,6 +99,13 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
             Some(Some(operations)) => break_even_text(operations, "operation", "operations"),
         }
     };
+    let pays_after_runs = |name: &str| {
+        let row = report.break_even.iter().find(|row| row.backend == name);
+        match name {
+            INPUT_BACKEND => Some(0.0),
+            _ => row?.operations,
+        }
+    };
     let measured = report.ranking.iter().filter(|ranked| !ranked.estimated);
     let lines = measured.map(|ranked| Line {
         name: &ranked.backend,
@@ -97,6 +115,7 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
         },
         run: ranked.ns_per_operation,
         pays_after: pays_after(&ranked.backend),
+        pays_after_runs: pays_after_runs(&ranked.backend),
     });
     let lines: Vec<Line<'_>> = lines.collect();
     let name = &report.workload.name;
@@ -117,6 +136,9 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
         caption,
         axis: "operations",
         unit: "one operation",
+        subject: name,
+        repeated: "one operation of the workload",
+        measured: &report.run,
         max_count: (100.0 * report.operations).max(1e4),
     };
     curves.draw(&lines, command)
@@ -128,6 +150,8 @@ struct Line<'a> {
     build: f64,
     run: f64,
     pays_after: String,
+    /// 0 for the input. `None` if building never pays off, or if this is unknown.
+    pays_after_runs: Option<f64>,
 }
 
 fn break_even_text(count: f64, singular: &str, plural: &str) -> String {
@@ -144,6 +168,12 @@ struct Curves<'a> {
     axis: &'a str,
     /// Column title of the repeated work.
     unit: &'a str,
+    /// The mesh or the workload.
+    subject: &'a str,
+    /// What one run is.
+    repeated: &'a str,
+    /// How the times were measured.
+    measured: &'a Run,
     /// Maximum number of repetitions.
     max_count: f64,
 }
@@ -161,6 +191,7 @@ impl Curves<'_> {
             build,
             run,
             pays_after,
+            ..
         } in lines
         {
             let counts = (0..=quarters).map(|quarter| 10_f64.powf(f64::from(quarter) / 4.0));
@@ -180,6 +211,15 @@ impl Curves<'_> {
             ];
             table.row(cells.into());
         }
+        let rows = lines.iter().map(|line| BreakEvenRow {
+            subject: self.subject,
+            run: self.repeated,
+            backend: line.name,
+            build_ns: line.build,
+            run_ns: line.run,
+            pays_after_runs: line.pays_after_runs,
+        });
+        let data = FigureData::from_rows([self.measured], [], rows);
         let layout = base_layout(&plots, 820.0, 440.0)
             .with_log_scale()
             .with_x_label(self.axis)
@@ -190,6 +230,7 @@ impl Curves<'_> {
             title: self.title,
             caption: self.caption,
             table,
+            data,
             command: command.into(),
         })
     }

@@ -8,6 +8,7 @@ use sixfold_study::{Fit, GrowthReport, Operation, ResultRow, SizeReport, Slope};
 
 use super::{marked, per_unit};
 use crate::colours::column_colour;
+use crate::data::rows as data;
 use crate::figure::{Figure, Table, base_layout, picture};
 
 pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Vec<Figure> {
@@ -48,6 +49,7 @@ fn figure(report: &GrowthReport, operation: Operation, id: &str, command: &str) 
              larger sizes."
         ),
         table: times_and_slopes(&report.sizes, &fits),
+        data: data::growth(report, operation),
         command: command.into(),
     }
 }

@@ -5,10 +5,11 @@ use std::sync::Arc;
 use kuva::plot::{ColorMap, Heatmap};
 use kuva::render::plots::Plot;
 use sixfold_study::numbers::{counted, times};
-use sixfold_study::{Operation, Pool, Report};
+use sixfold_study::{Operation, Pool, Report, Run};
 
 use super::marked;
 use crate::colours::GRID_COLOUR;
+use crate::data::{FigureData, rows as data};
 use crate::figure::{Figure, Table, base_layout, picture, ratio_ticks};
 
 /// Maximum ratio with its own colour. Larger ratios have the colour of this ratio.
@@ -23,10 +24,11 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         Some((ratio, false))
     };
     let title = format!("Every operation on every structure: {}", study.mesh.name);
-    figure(&title, &columns, &ratio, id_prefix, command)
+    let figure = figure(&title, &columns, &ratio, id_prefix, command)?;
+    Some(figure.with_data(data::heat_map(study)))
 }
 
-pub(super) fn pooled(pool: &Pool, command: &str) -> Option<Figure> {
+pub(super) fn pooled(pool: &Pool, runs: &[&Run], command: &str) -> Option<Figure> {
     let mut columns: Vec<&str> = Vec::new();
     for row in pool.all() {
         if !columns.contains(&row.backend.as_str()) {
@@ -46,7 +48,8 @@ pub(super) fn pooled(pool: &Pool, command: &str) -> Option<Figure> {
             "meshes"
         )
     );
-    figure(&title, &columns, &ratio, "", command)
+    let figure = figure(&title, &columns, &ratio, "", command)?;
+    Some(figure.with_data(data::pooled(pool, runs.iter().copied(), |_| true)))
 }
 
 /// A ratio to the fastest, and whether it is a lower bound.
@@ -117,6 +120,7 @@ fn figure(
             times(MAX_RATIO)
         ),
         table,
+        data: FigureData::default(),
         command: command.into(),
     })
 }

@@ -7,6 +7,7 @@ use sixfold_study::Report;
 use sixfold_study::numbers::grouped;
 
 use crate::colours::table_colour;
+use crate::data::rows as data;
 use crate::figure::{Figure, Table, base_layout, picture};
 
 /// Name of the table of positions. A structure with points instead of vertices has no such table.
@@ -66,6 +67,7 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
              the other tables of each structure are above. Point at a part to see its name."
             .into(),
         table,
+        data: data::memory(study),
         command: command.into(),
     })
 }

@@ -8,6 +8,7 @@ use sixfold_study::{Comparison, OrdersReport, ResultRow};
 
 use super::per_unit;
 use crate::colours::table_colour;
+use crate::data::rows as data;
 use crate::figure::{Figure, MIN_BAR_LENGTH, Table, base_layout, picture, ratio_ticks};
 
 pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Vec<Figure> {
@@ -96,6 +97,7 @@ fn figure(
              table shows the time {per}."
         ),
         table,
+        data: data::orders(report, operation),
         command: command.into(),
     })
 }

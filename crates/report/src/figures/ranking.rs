@@ -5,12 +5,13 @@ use kuva::plot::BarPlot;
 use kuva::render::plots::Plot;
 use sixfold_study::numbers::{counted, duration, figure as shown, shown_ratio};
 use sixfold_study::{
-    FIRST_TIME_SHOWN, NeighboursReport, Operation, PickReport, Pool, Report, ResultRow,
-    SpatialTask, Standing,
+    FIRST_TIME_SHOWN, NeighboursReport, Operation, PickReport, Pool, Pooled, Report, ResultRow,
+    Run, SpatialTask, Standing,
 };
 
 use super::{Row, marked, per_unit};
 use crate::colours::{INTERVAL_COLOUR, column_colour};
+use crate::data::{FigureData, rows as data};
 use crate::figure::{Figure, MIN_BAR_LENGTH, Table, base_layout, picture, ratio_ticks};
 
 pub(super) fn from_study(study: &Report, command: &str) -> Vec<Figure> {
@@ -35,7 +36,8 @@ pub(super) fn from_study(study: &Report, command: &str) -> Vec<Figure> {
             .rows(operation)
             .next()
             .map_or("element", |row| &row.per);
-        operation_figure(operation, rows.collect(), per, command)
+        let figure = operation_figure(operation, rows.collect(), per, command)?;
+        Some(figure.with_data(data::ranking(study, operation)))
     });
     figures.collect()
 }
@@ -47,7 +49,7 @@ fn first_time(row: &ResultRow) -> Option<f64> {
     (ratio.max(ratio.recip()) > FIRST_TIME_SHOWN).then_some(each)
 }
 
-pub(super) fn pooled(pool: &Pool, command: &str) -> Vec<Figure> {
+pub(super) fn pooled(pool: &Pool, runs: &[&Run], command: &str) -> Vec<Figure> {
     let figures = Operation::ALL.into_iter().filter_map(|operation| {
         let rows = pool.all().iter().filter(|row| row.operation == operation);
         let rows = rows.map(|row| Row {
@@ -66,7 +68,9 @@ pub(super) fn pooled(pool: &Pool, command: &str) -> Vec<Figure> {
             ),
         });
         let figure = operation_figure(operation, rows.collect(), operation.unit(), command)?;
+        let shown = |row: &Pooled| row.operation == operation;
         Some(Figure {
+            data: data::pooled(pool, runs.iter().copied(), shown),
             caption: "The scale is logarithmic and begins at 1, the time of the fastest. Each \
                       ratio is the geometric mean over the meshes of the time divided by the time \
                       of the fastest measured backend of the mesh. ≥ marks lower bounds, which are \
@@ -100,7 +104,8 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
     });
     let title = format!("{}: time relative to the fastest", report.workload.name);
     let rows = with_shown_ratios(rows.collect());
-    figure(title, id.into(), rows, "operation", command)
+    let figure = figure(title, id.into(), rows, "operation", command)?;
+    Some(figure.with_data(data::pick(report)))
 }
 
 pub(super) fn from_neighbours(
@@ -127,13 +132,9 @@ pub(super) fn from_neighbours(
         });
         let title = format!("{task}: time relative to the fastest");
         let id = format!("{id}-{}", task.name().replace('_', "-"));
-        figure(
-            title,
-            id,
-            with_shown_ratios(rows.collect()),
-            task.unit(),
-            command,
-        )
+        let rows = with_shown_ratios(rows.collect());
+        let figure = figure(title, id, rows, task.unit(), command)?;
+        Some(figure.with_data(data::neighbours(report, task)))
     })
 }
 
@@ -256,6 +257,7 @@ fn figure(
                   ratios."
             .into(),
         table,
+        data: FigureData::default(),
         command: command.into(),
     })
 }

@@ -9,6 +9,7 @@ use sixfold_study::{BufferSpeed, Timed, Why, WhyRow};
 
 use super::per_unit;
 use crate::colours::{TEXT_COLOUR, column_colour};
+use crate::data::rows as data;
 use crate::figure::{Figure, Table, base_layout, picture};
 
 type TimedRow<'a> = (&'a WhyRow, Timed);
@@ -54,6 +55,7 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
                   The column `bound by` of the table shows the limit."
             .into(),
         table: table(&rows),
+        data: data::roofline(why),
         command: command.into(),
     })
 }
