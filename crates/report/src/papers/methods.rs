@@ -149,8 +149,26 @@ fn externals(results: &Results) -> Option<String> {
 
 /// The facts of the meshes: one by one, or as ranges.
 fn meshes(results: &Results) -> Vec<String> {
+    let sizes = results.growth().map(|growth| {
+        let ends = growth.sizes.first().zip(growth.sizes.last());
+        let ends = ends.map_or_else(String::new, |(first, last)| {
+            let [first, last] = [first.faces, last.faces].map(grouped);
+            format!(" from {first} to {last} faces")
+        });
+        let sizes = counted(growth.sizes.len(), "size", "sizes");
+        let (shape, order) = (&growth.shape, growth.order);
+        format!("The growth with the mesh size was measured on the shape {shape} in {sizes}{ends}, in the order {order}.")
+    });
+    let sizes: Vec<String> = sizes.collect();
+    [described_meshes(results), sizes].concat()
+}
+
+/// The facts of all meshes that were not made for a growth.
+fn described_meshes(results: &Results) -> Vec<String> {
     let mut meshes = Vec::new();
-    for mesh in results.findings.iter().flat_map(Finding::meshes) {
+    let given = results.findings.iter();
+    let given = given.filter(|finding| !matches!(finding, Finding::Growth(_)));
+    for mesh in given.flat_map(Finding::meshes) {
         if !meshes.contains(&mesh) {
             meshes.push(mesh);
         }

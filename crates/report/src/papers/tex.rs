@@ -28,6 +28,7 @@ fn write_table(text: &mut String, table: &RatioTable) {
     let _ = write!(
         text,
         "\n\\begin{{table}}\n\\centering\\footnotesize\\setlength{{\\tabcolsep}}{{3pt}}\n\
+         \\setlength{{\\belowcaptionskip}}{{4pt}}\n\
          \\caption{{{}}}\n\\label{{tab:sixfold-{}}}\n\
          \\begin{{tabular}}{{@{{}}l{}@{{}}}}\n\\toprule\n & {} \\\\\n\\midrule\n",
         escape(&table.caption),
