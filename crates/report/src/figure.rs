@@ -3,6 +3,7 @@
 use sixfold_study::numbers::grouped;
 
 use crate::Picture;
+use crate::data::FigureData;
 
 /// A figure, and a table of the numbers that the figure shows.
 #[derive(Clone, Debug)]
@@ -15,12 +16,21 @@ pub struct Figure {
     pub caption: String,
     /// The picture.
     pub picture: Picture,
-    /// The numbers of the figure.
+    /// The numbers of the figure, formatted.
     pub table: Table,
+    /// The data of the figure for other programs.
+    pub data: FigureData,
     /// How many samples, when, with which seed, on which machine; empty until the page is complete.
     pub source: String,
     /// The command that reproduces the figure.
     pub command: String,
+}
+
+impl Figure {
+    /// Adds the data for other programs.
+    pub(crate) fn with_data(self, data: FigureData) -> Self {
+        Self { data, ..self }
+    }
 }
 
 /// A table of numbers.

@@ -14,6 +14,7 @@ mod roofline;
 use sixfold_study::numbers::{counted, grouped};
 use sixfold_study::{Environment, Finding, MeshReport, Report, Results, Run};
 
+use crate::data::rows;
 use crate::matrix::Matrix;
 use crate::source;
 use crate::summary::{self, Summary};
@@ -152,14 +153,19 @@ fn pool_page(studies: &[&Report], results: &Results, command: &str) -> ReportPag
     );
     let note = "A ratio is the geometric mean over the meshes, relative to the fastest measured backend of \
                 each mesh. Bars in a frame are lower bounds (≥), which are not ranked.";
-    let heat_map = heat_map::figure(title, &matrix, "", command);
-    let rankings = ranking::from_matrix(&matrix, note, command);
+    let runs: Vec<&Run> = studies.iter().map(|study| &study.run).collect();
+    let figures = [
+        heat_map::figure(title, &matrix, "", command),
+        ranking::from_matrix(&matrix, note, command),
+    ];
+    let figures = figures.into_iter().flatten();
+    let figures = figures.map(|figure| figure.with_data(rows::pooled(&pool, runs.iter().copied())));
     ReportPage {
         title: format!("Mesh data structures on {count}"),
         answer: answer.into_iter().flatten().collect(),
         summary: Summary::of_pool(&pool, studies),
         sentences: sentences.collect(),
-        figures: heat_map.into_iter().chain(rankings).collect(),
+        figures: figures.collect(),
         tables: groups::tables(&pool),
         operations: matrix,
         meshes: studies.iter().enumerate().map(section).collect(),
@@ -336,7 +342,8 @@ fn study_figures(study: &Report, matrix: &Matrix, command: &str) -> Vec<Figure> 
     let command = recorded_command(&study.run, command);
     let note = "Bars in a frame are lower bounds (≥), which are not ranked: a run would exceed the budget.";
     let figures = [
-        ranking::from_matrix(matrix, note, command),
+        ranking::from_matrix(matrix, note, command)
+            .map(|figure| figure.with_data(rows::study(study))),
         heat_map_of(study, matrix, "", command),
         memory::from_study(study, "", command),
         break_even::from_study(study, "", command),
@@ -361,7 +368,8 @@ fn heat_map_of(study: &Report, matrix: &Matrix, id_prefix: &str, command: &str) 
         "Every operation on every structure: {}",
         file_name(&study.mesh.name)
     );
-    heat_map::figure(title, matrix, id_prefix, command)
+    let figure = heat_map::figure(title, matrix, id_prefix, command)?;
+    Some(figure.with_data(rows::study(study)))
 }
 
 pub(crate) fn per_unit(unit: &str) -> String {
@@ -380,7 +388,7 @@ fn slug(mesh: &str) -> String {
     mesh.chars().map(safe).collect()
 }
 
-fn facts(mesh: &MeshReport) -> String {
+pub(crate) fn facts(mesh: &MeshReport) -> String {
     let facts = &mesh.facts;
     let vertices = counted(facts.vertices, "vertex", "vertices");
     let faces = counted(facts.faces, "face", "faces");
@@ -431,7 +439,7 @@ fn machines(results: &Results) -> Vec<String> {
     described.collect()
 }
 
-fn machine(environment: &Environment) -> String {
+pub(crate) fn machine(environment: &Environment) -> String {
     let Environment {
         cpu_model,
         cores,

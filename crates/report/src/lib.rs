@@ -8,16 +8,20 @@
 //!
 //! [`ReportPage::html`] returns one file that needs no network. The page supports light and dark
 //! mode, printing and small screens. [`ReportPage::markdown`] returns Markdown for a repository,
-//! which links to separate SVG files.
+//! which links to separate SVG files. [`ReportPage::paper`] returns the files for a paper: each figure
+//! as SVG and PDF with its data and its caption, tables for LaTeX and Markdown, and a description of the
+//! methods.
 
 mod canvas;
 mod colours;
+mod data;
 mod figure;
 mod figures;
 mod html;
 mod markdown;
 mod matrix;
 mod panels;
+mod papers;
 mod picture;
 mod source;
 mod summary;
@@ -26,9 +30,11 @@ use matrix::Matrix;
 use sixfold_study::Results;
 
 pub use colours::structure_colours;
+pub use data::FigureData;
 pub use figure::{Figure, Table, TitledTable};
 pub use panels::{Panel, panels};
-pub use picture::Picture;
+pub use papers::PaperFile;
+pub use picture::{PdfError, Picture};
 pub use summary::{Rank, Summary, SummaryColumn, SummaryFigure, SummaryRow};
 
 /// A report on studies and additional measurements.

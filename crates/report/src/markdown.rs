@@ -112,7 +112,7 @@ fn write_table(text: &mut String, table: &Table) {
 }
 
 /// Escapes the special characters of Markdown. Replaces line breaks by spaces.
-fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

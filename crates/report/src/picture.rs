@@ -3,14 +3,28 @@
 
 use std::sync::Arc;
 
+use kuva::backend::pdf::PdfBackend;
 use kuva::backend::svg::SvgBackend;
 use kuva::render::render::{Primitive, Scene};
 use maud::{Markup, PreEscaped, html};
+use thiserror::Error;
 
 use crate::colours::dark_rules;
 
 /// Space between panels in a file, in pixels.
 const GAP: f64 = 12.0;
+
+/// The font of PDF files. It is part of the library for charts, so a file does not depend on the fonts of
+/// the system.
+const PDF_FONT: &str = "DejaVu Sans";
+
+/// The picture of a figure cannot be written as a PDF file.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("the picture cannot be drawn as PDF ({cause}): use the SVG file")]
+pub struct PdfError {
+    /// The message of the library for PDF files.
+    cause: String,
+}
 
 /// The picture of a figure. A clone shares its panels.
 #[derive(Clone, Debug)]
@@ -47,6 +61,19 @@ impl Picture {
             [panel] => element(panel, &self.label, &style),
             panels => element(&joined(panels, self.columns), &self.label, &style),
         }
+    }
+
+    /// Returns the picture as a PDF file of one page, in the colours of the light mode. One pixel is one
+    /// point. The text is text, in a font that the file contains.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the library for PDF files cannot draw the picture.
+    pub fn pdf(&self) -> Result<Vec<u8>, PdfError> {
+        let mut scene = joined(&self.panels, self.columns);
+        scene.font_family = Some(PDF_FONT.into());
+        let file = PdfBackend::new().render_scene(&scene);
+        file.map_err(|cause| PdfError { cause })
     }
 
     pub(crate) fn panel_count(&self) -> usize {

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use chrono::DateTime;
 use sixfold_study::numbers::{counted, grouped};
 use sixfold_study::{Finding, Status};
+
+use crate::data::date;
 
 /// Describes the measurements of `findings`, which a figure shows.
 pub(crate) fn line(findings: &[&Finding]) -> String {
@@ -77,8 +78,7 @@ fn dates(findings: &[&Finding]) -> Option<String> {
     let days: BTreeSet<String> = times
         // 0 stands for an unknown time.
         .filter(|time| *time > 0)
-        .filter_map(|time| DateTime::from_timestamp(i64::try_from(time).ok()?, 0))
-        .map(|time| time.format("%Y-%m-%d").to_string())
+        .map(date)
         .collect();
     let (first, last) = (days.first()?, days.last()?);
     Some(match first == last {

@@ -75,6 +75,7 @@ pub(crate) const STUDY_EXAMPLES: &str = "Examples:
   sixfold study bunny.obj --external mine='./mine {mesh}'
   sixfold study bunny.obj --report bunny            a page with figures
   sixfold study scans --report results              all meshes in a folder; --resume continues
+  sixfold study bunny.obj --figures paper           figures as SVG and PDF, tables for LaTeX
 
 Measurement: Each round runs every operation once on every backend, in random order. The clock
 measures the processor time of the thread. The table shows the median over the rounds. In each
@@ -120,6 +121,12 @@ const REPORT_EXAMPLES: &str = "Examples:
   sixfold growth --to 4000000 --budget 5m --json growth.json
   sixfold report growth.json --to growth
   sixfold report results pick.json orders.json --to all
+  sixfold report results --figures paper            for a paper: SVG, PDF, CSV, LaTeX
+
+Figures: --figures writes four files for each figure: ID.svg, ID.pdf, ID.csv (the data, one row for
+each mark) and ID.txt (the caption). results.tex (with the package booktabs) and results.md have the
+tables, and methods.md states how the results were measured. The folder must be new, empty, or
+written by --figures; sixfold-files.txt lists the files, and old figures are removed.
 
 Exit codes: 0 success; 2 wrong usage, a file that is incomplete, has no results or has another
 schema version, or studies that cannot be merged.";
@@ -284,6 +291,9 @@ pub(crate) struct Study {
     /// Write a page, its figures, and all results as JSON and CSV to DIR
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
+    /// Write each figure as SVG, PDF and CSV, and tables for a paper, to DIR
+    #[arg(long, value_name = "DIR")]
+    pub(crate) figures: Option<PathBuf>,
     /// More labs in the report: orders,growth,why or none [default: all]
     #[arg(long, value_name = "NAME,…", requires = "report")]
     pub(crate) labs: Option<LabSelection>,
@@ -340,6 +350,9 @@ pub(crate) struct Merge {
     /// Write a page, its figures, and all results as JSON and CSV to DIR
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
+    /// Write each figure as SVG, PDF and CSV, and tables for a paper, to DIR
+    #[arg(long, value_name = "DIR")]
+    pub(crate) figures: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) files: ResultFiles,
 }
@@ -355,8 +368,11 @@ pub(crate) struct Draw {
     #[arg(value_name = "FILE.json|DIR", required = true)]
     pub(crate) results: Vec<PathBuf>,
     /// Write report.html, report.md and figures to DIR
+    #[arg(long, value_name = "DIR", required_unless_present = "figures")]
+    pub(crate) to: Option<PathBuf>,
+    /// Write each figure as SVG, PDF and CSV, and tables for a paper, to DIR
     #[arg(long, value_name = "DIR")]
-    pub(crate) to: PathBuf,
+    pub(crate) figures: Option<PathBuf>,
 }
 
 impl Study {

@@ -75,6 +75,7 @@ mod new;
 mod operations;
 mod orders;
 mod output;
+mod paper;
 mod pick;
 mod programs;
 mod progress;

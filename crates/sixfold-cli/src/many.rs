@@ -23,6 +23,7 @@ use crate::load;
 use crate::measure::{Session, command_line, exit_code, warn_of_debug_build};
 use crate::mesh_files::shown;
 use crate::mesh_picture::with_picture;
+use crate::paper::PaperFolder;
 use crate::progress::Bar;
 use crate::study::finding;
 use crate::text::{TextOutput, hanging_indent, print_notice, sanitize};
@@ -67,6 +68,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         )?),
         None => None,
     };
+    let paper = PaperFolder::open_if(arguments.figures.as_ref())?;
     let selected = unfinished(&meshes, arguments.shard, &results);
     warn_of_debug_build();
     let loaded = match &meshes[..] {
@@ -110,6 +112,12 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         match is_empty && results.failures.iter().all(not_measured) {
             true => folder.remove_if_empty(),
             false => written = written.and(folder.write_report(&results, &command_line())),
+        }
+    }
+    if let Some(paper) = &paper {
+        match is_empty {
+            true => paper.remove_if_empty(),
+            false => written = written.and(paper.write(&results, &command_line())),
         }
     }
     if none_studied {

@@ -1,6 +1,6 @@
 //! `sixfold study`: measures operations on every backend and shows the result.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use sixfold_study::{
@@ -14,7 +14,8 @@ use crate::failure::Failure;
 use crate::left_out::left_out_notes;
 use crate::load;
 use crate::many;
-use crate::measure::{Session, warn_of_debug_build, with_command};
+use crate::measure::{Session, command_line, exit_code, warn_of_debug_build, with_command};
+use crate::paper::{self, PaperFolder};
 use crate::progress::Bar;
 use crate::results_table::results_table;
 use crate::text::{TextOutput, hanging_indent};
@@ -37,6 +38,21 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         return many::run(arguments, &settings);
     }
     let mesh = arguments.meshes.first().map(PathBuf::as_path);
+    let paper = PaperFolder::open_if(arguments.figures.as_ref())?;
+    let studied = run_single(arguments, &settings, mesh, paper.as_ref());
+    if let (Err(_), Some(paper)) = (&studied, &paper) {
+        paper.remove_if_empty();
+    }
+    studied
+}
+
+/// Studies one mesh, or the built-in mesh.
+fn run_single(
+    arguments: &Study,
+    settings: &Settings,
+    mesh: Option<&Path>,
+    paper: Option<&PaperFolder>,
+) -> Result<ExitCode, Failure> {
     let mut session = Session::open(mesh, &arguments.files, settings.heap)?;
     let study_mesh = load::mesh_or_built_in(
         mesh,
@@ -46,20 +62,21 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
     )?;
     let study_mesh = session.drawn(study_mesh);
     warn_of_debug_build();
-    print_before_measuring(&study_mesh, &settings, &mut session.text);
+    print_before_measuring(&study_mesh, settings, &mut session.text);
     let bar = Bar::new();
-    let report = sixfold_study::study(&study_mesh, &settings, &session.stop, &mut |at| {
-        bar.show(at)
-    });
+    let report = sixfold_study::study(&study_mesh, settings, &session.stop, &mut |at| bar.show(at));
     bar.clear();
     match report {
         Ok(report) => {
             print(&report, &mut session.text);
-            session.finish(finding(report, arguments).into())
+            let mut results = finding(report, arguments).into();
+            let written = session.write(&mut results);
+            let written = written.and(paper::write_if(paper, &results, &command_line()));
+            exit_code(written, &results, results.is_interrupted())
         }
         // If every backend refuses the mesh, the list of reasons is the result.
         Err(error @ StudyError::NoneHolds { .. }) => {
-            let refusals = refusals(&study_mesh, &settings)?;
+            let refusals = refusals(&study_mesh, settings)?;
             session.write(&mut finding(refusals, arguments).into())?;
             Err(Failure::unsupported(error))
         }

@@ -18,6 +18,7 @@ mod neighbours;
 mod notices;
 mod obj;
 mod outputs;
+mod paper;
 mod picking;
 mod programs;
 mod remeshing;

@@ -76,6 +76,7 @@ pub use results::compare::{
     BytesChange, Change, Changes, CompareError, CompareSettings, DRIFT, Measurement, NewWinner,
     SettingChange, Verdict, compare,
 };
+pub use results::csv::write_csv_rows;
 pub use results::document::{Failed, FailureKind, Results, SCHEMA};
 pub use results::environment::Environment;
 pub use results::figure::{Counted, Figure, Status};

@@ -1,7 +1,7 @@
 //! The results of all labs, in one document.
 
 pub(crate) mod compare;
-mod csv;
+pub(crate) mod csv;
 pub(crate) mod document;
 pub(crate) mod environment;
 pub(crate) mod figure;

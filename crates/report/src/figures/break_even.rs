@@ -2,12 +2,14 @@
 //! took.
 
 use sixfold_study::numbers::{counted, duration, grouped};
-use sixfold_study::{Operation, PickReport, Report, ResultRow};
+use sixfold_study::{Operation, PickReport, Report, ResultRow, Run};
 
 use super::INPUT_BACKEND;
 use crate::Picture;
 use crate::canvas::{Axes, Canvas, LogScale, Style, spread};
 use crate::colours::column_colour;
+use crate::data::FigureData;
+use crate::data::rows::BreakEvenRow;
 use crate::figure::{Figure, Table, duration_tick};
 
 /// Draws the time to build once and repeat one operation, over the number of repetitions.
@@ -70,6 +72,9 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         caption,
         axis: &format!("runs of {operation}"),
         unit: "one run",
+        subject: &study.mesh.name,
+        repeated: operation.name(),
+        measured: &study.run,
         max_count: {
             let input = lines.iter().find(|line| line.name == INPUT_BACKEND);
             let counts = lines.iter().filter_map(|line| line.crossing(input?));
@@ -120,6 +125,9 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
         caption,
         axis: "operations",
         unit: "one operation",
+        subject: name,
+        repeated: "one operation of the workload",
+        measured: &report.run,
         max_count: (100.0 * report.operations).max(1e4),
     };
     curves.draw(&lines, command)
@@ -160,6 +168,12 @@ struct Curves<'a> {
     axis: &'a str,
     /// Column title of the repeated work.
     unit: &'a str,
+    /// The mesh or the workload.
+    subject: &'a str,
+    /// What one run is.
+    repeated: &'a str,
+    /// How the times were measured.
+    measured: &'a Run,
     /// Maximum number of repetitions.
     max_count: f64,
 }
@@ -178,6 +192,19 @@ impl Curves<'_> {
                 line.pays_after.clone(),
             ]);
         }
+        let input = lines.iter().find(|line| line.name == INPUT_BACKEND);
+        let rows = lines.iter().map(|line| BreakEvenRow {
+            subject: self.subject,
+            run: self.repeated,
+            backend: line.name,
+            build_ns: line.build,
+            run_ns: line.run,
+            pays_after_runs: match line.name {
+                INPUT_BACKEND => Some(0.0),
+                _ => input.and_then(|input| line.crossing(input)),
+            },
+        });
+        let data = FigureData::from_rows([self.measured], [], rows);
         let ends = lines
             .iter()
             .flat_map(|line| [line.at(1.0), line.at(self.max_count)]);
@@ -207,6 +234,7 @@ impl Curves<'_> {
             title: self.title,
             caption: self.caption,
             table,
+            data,
             source: String::new(),
             command: command.into(),
         })

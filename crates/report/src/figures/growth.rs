@@ -9,6 +9,7 @@ use super::{marked, per_unit};
 use crate::Picture;
 use crate::canvas::{Axes, Canvas, LogScale, Style, spread};
 use crate::colours::{BACKGROUND, FAINT_COLOUR, column_colour};
+use crate::data::rows as data;
 use crate::figure::{Figure, Table, count_tick, duration_tick};
 
 /// Size of a panel, and the places of its axes.
@@ -80,6 +81,7 @@ pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Opt
              into the last cache, and for the larger sizes."
         ),
         table: table.unwrap_or_default(),
+        data: data::growth(report),
         source: String::new(),
         command: command.into(),
     })

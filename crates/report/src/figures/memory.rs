@@ -7,6 +7,7 @@ use sixfold_study::{BackendReport, Report};
 use crate::Picture;
 use crate::canvas::{Canvas, Style, text_width};
 use crate::colours::{BACKGROUND, FAINT_COLOUR, table_colour};
+use crate::data::rows as data;
 use crate::figure::{Figure, Table};
 
 /// Name of the table of positions. A structure with points instead of vertices has no such table.
@@ -73,6 +74,7 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
             grouped(vertices)
         ),
         table,
+        data: data::memory(study),
         source: String::new(),
         command: command.into(),
     })

@@ -9,6 +9,7 @@ use super::per_unit;
 use crate::Picture;
 use crate::canvas::{Canvas, LogScale, Style};
 use crate::colours::{FAINT_COLOUR, GRID_COLOUR, table_colour};
+use crate::data::rows as data;
 use crate::figure::{Figure, Table};
 
 /// Size of a panel, and the places of its parts.
@@ -65,6 +66,7 @@ pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Opt
                   has the times per element."
             .into(),
         table,
+        data: data::orders(report),
         source: String::new(),
         command: command.into(),
     })

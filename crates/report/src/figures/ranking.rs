@@ -9,6 +9,7 @@ use super::per_unit;
 use crate::Picture;
 use crate::canvas::{Canvas, LogScale, Style, text_width};
 use crate::colours::{BACKGROUND, FAINT_COLOUR, GRID_COLOUR, INTERVAL_COLOUR, column_colour};
+use crate::data::{FigureData, rows};
 use crate::figure::{Figure, Table};
 use crate::matrix::{Cell, Matrix, Source};
 
@@ -66,13 +67,9 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
         unit: "operation",
         cells: with_shown_ratios(cells.collect()),
     };
-    figure(
-        format!("Ranking for {name}"),
-        id.into(),
-        &[panel],
-        "",
-        command,
-    )
+    let title = format!("Ranking for {name}");
+    let figure = figure(title, id.into(), &[panel], "", command)?;
+    Some(figure.with_data(rows::pick(report)))
 }
 
 pub(super) fn from_neighbours(
@@ -104,13 +101,10 @@ pub(super) fn from_neighbours(
             cells: with_shown_ratios(cells),
         })
     });
-    figure(
-        "Rankings of all tasks".into(),
-        id.into(),
-        &panels.collect::<Vec<_>>(),
-        "",
-        command,
-    )
+    let panels: Vec<Panel<'_>> = panels.collect();
+    let title = "Rankings of all tasks".into();
+    let figure = figure(title, id.into(), &panels, "", command)?;
+    Some(figure.with_data(rows::neighbours(report)))
 }
 
 /// Replaces the ratios by the quotients of the shown times, so that a reader who divides two times
@@ -150,7 +144,7 @@ fn figure(
         "remark",
     ]);
     let mut scenes = Vec::new();
-    let rows = panels.iter().map(|panel| panel.cells.len()).max()?;
+    let most = panels.iter().map(|panel| panel.cells.len()).max()?;
     // One scale for all panels. It reaches at least ratio 2, so that noise does not fill a panel.
     let ratios = panels.iter().flat_map(|panel| &panel.cells);
     let longest = ratios.filter_map(|cell| cell.ratio).fold(2.0, f64::max);
@@ -166,7 +160,7 @@ fn figure(
         for cell in cells.iter().filter(|cell| cell.ratio.is_some()) {
             table.row(row(panel, cell));
         }
-        scenes.push(scene(panel, &cells, scale, rows));
+        scenes.push(scene(panel, &cells, scale, most));
     }
     if table.rows.len() < 2 {
         return None;
@@ -186,6 +180,7 @@ fn figure(
         title,
         caption: caption.trim_end().to_owned(),
         table,
+        data: FigureData::default(),
         source: String::new(),
         command: command.into(),
     })

@@ -10,6 +10,7 @@ use super::{file_name, per_unit};
 use crate::Picture;
 use crate::canvas::{Axes, Canvas, LogScale, Style, spread};
 use crate::colours::{FAINT_COLOUR, TEXT_COLOUR, column_colour};
+use crate::data::rows as data;
 use crate::figure::{Figure, Table, count_tick, duration_tick};
 
 type TimedRow<'a> = (&'a WhyRow, Timed);
@@ -86,6 +87,7 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
             speeds.collect::<Vec<_>>().join(", and ")
         ),
         table: table(&rows),
+        data: data::roofline(why),
         source: String::new(),
         command: command.into(),
     })

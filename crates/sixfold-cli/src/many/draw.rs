@@ -1,4 +1,4 @@
-//! `sixfold report`: draws saved results on one page.
+//! `sixfold report`: draws saved results on one page, or as figures for a paper.
 
 use std::process::ExitCode;
 
@@ -7,9 +7,14 @@ use super::merge::merged;
 use crate::arguments::Draw;
 use crate::failure::Failure;
 use crate::measure::command_line;
+use crate::paper::{self, PaperFolder};
 
 pub(crate) fn run(arguments: &Draw) -> Result<ExitCode, Failure> {
     let results = merged(&arguments.results)?;
-    Folder::create(&arguments.to)?.write_page(&results, &command_line())?;
+    let paper = PaperFolder::open_if(arguments.figures.as_ref())?;
+    if let Some(to) = &arguments.to {
+        Folder::create(to)?.write_page(&results, &command_line())?;
+    }
+    paper::write_if(paper.as_ref(), &results, &command_line())?;
     Ok(ExitCode::SUCCESS)
 }

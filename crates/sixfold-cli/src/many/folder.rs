@@ -10,6 +10,7 @@
 //! DIR/report.md, DIR/figures     the same in Markdown
 //! ```
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -22,6 +23,7 @@ use crate::arguments::Study;
 use crate::failure::Failure;
 use crate::load::file_hash;
 use crate::output::{Output, cannot_write};
+use crate::paper::remove;
 use crate::text::print_notice;
 use sixfold_study::numbers::counted;
 
@@ -171,6 +173,7 @@ impl Folder {
     pub(super) fn write_page(&self, results: &Results, command: &str) -> Result<(), Failure> {
         let output = |name: &str| Output::open(&self.path.join(name));
         let page = ReportPage::new(results, command);
+        let old_figures = self.linked_figures();
         output("report.html")?.finish(|writer| writer.write_all(page.html().as_bytes()))?;
         output("report.md")?.finish(|writer| writer.write_all(page.markdown().as_bytes()))?;
         let figures = self.path.join("figures");
@@ -180,7 +183,21 @@ impl Folder {
             let output = Output::open(&figures.join(format!("{}.svg", figure.id)))?;
             output.finish(|writer| writer.write_all(figure.picture.svg().as_bytes()))?;
         }
+        let drawn = self.linked_figures();
+        for stale in old_figures.difference(&drawn) {
+            remove(&figures.join(format!("{stale}.svg")))?;
+        }
         Ok(())
+    }
+
+    /// Returns the ids of the figures to which report.md links. These files belong to the report, so
+    /// they can be removed; other files in the folder of figures stay.
+    fn linked_figures(&self) -> BTreeSet<String> {
+        let page = fs::read_to_string(self.path.join("report.md")).unwrap_or_default();
+        let links = page.split("](figures/").skip(1);
+        let ids = links.filter_map(|link| link.split_once(".svg)").map(|(id, _)| id));
+        let is_id = |id: &&str| id.chars().all(|c| c.is_ascii_alphanumeric() || c == '-');
+        ids.filter(is_id).map(str::to_owned).collect()
     }
 }
 

@@ -11,13 +11,15 @@ use crate::failure::Failure;
 use crate::load;
 use crate::measure::{Session, command_line, exit_code};
 use crate::output::check_not_overwritten;
+use crate::paper::{self, PaperFolder};
 use sixfold_study::Policy;
 
 pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
     let options = arguments.files.options();
-    if options.iter().all(|(_, path)| path.is_none()) && arguments.report.is_none() {
+    let folders = [&arguments.report, &arguments.figures];
+    if options.iter().all(|(_, path)| path.is_none()) && folders.iter().all(|f| f.is_none()) {
         return Err(Failure::usage(
-            "no output given: use --report DIR, or --json FILE (- for standard output)",
+            "no output given: use --report DIR, --figures DIR, or --json FILE (- for standard output)",
         ));
     }
     for place in &arguments.results {
@@ -25,12 +27,14 @@ pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
         check_not_overwritten("the results", &file, &options)?;
     }
     let mut merged = merged(&arguments.results)?;
+    let paper = PaperFolder::open_if(arguments.figures.as_ref())?;
     let mut session = Session::open(None::<&Path>, &arguments.files, Policy::System)?;
     super::print_all(&merged, &mut session.text);
     let mut written = session.write(&mut merged);
     if let Some(path) = &arguments.report {
         written = written.and(Folder::create(path)?.write_report(&merged, &command_line()));
     }
+    let written = written.and(paper::write_if(paper.as_ref(), &merged, &command_line()));
     exit_code(written, &merged, false)
 }
 

@@ -86,6 +86,7 @@ fn report() -> Report {
             file_sha256: None,
             left_out_faces: 0,
             cut_faces: 0,
+            picture: None,
         },
         backends: vec![backend("polygon-soup", 7200), backend("half-edge", 9600)],
         results: vec![

@@ -92,6 +92,28 @@ impl Results {
     }
 }
 
+/// Writes some rows of a finding as CSV, with the columns of [`Results::write_csv`]. `kind` is the name
+/// of the command that measured the finding, as in [`Finding::kind`](crate::Finding::kind).
+///
+/// # Errors
+///
+/// Returns the errors of `writer`.
+pub fn write_csv_rows<'r>(
+    mut writer: impl io::Write,
+    kind: &str,
+    rows: impl IntoIterator<Item = Figure<'r>>,
+) -> io::Result<()> {
+    writer.write_all(&header::<TimeRow>()?)?;
+    let mut lines = csv::WriterBuilder::new()
+        .has_headers(false)
+        .from_writer(writer);
+    for row in rows {
+        let row = time_row(kind, &row);
+        lines.serialize(row).map_err(into_io_error)?;
+    }
+    lines.flush()
+}
+
 /// Returns the line with the names of the columns.
 fn header<R: Default + Serialize>() -> io::Result<Vec<u8>> {
     let mut lines = Writer::from_writer(Vec::new());

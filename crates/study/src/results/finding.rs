@@ -58,7 +58,15 @@ macro_rules! findings {
             }
         }
 
-        $(impl From<$finding> for Finding {
+        $(impl $finding {
+            /// Returns the rows of the finding with their meshes: one for each mesh, case, operation
+            /// and backend.
+            pub fn figures(&self) -> Vec<Figure<'_>> {
+                LabFinding::figures(self)
+            }
+        }
+
+        impl From<$finding> for Finding {
             fn from(finding: $finding) -> Self {
                 Self::$kind(finding.into())
             }

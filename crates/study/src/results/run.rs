@@ -116,7 +116,7 @@ impl RunSettings {
     }
 
     /// Returns the time budget or the number of rounds as text, such as `20 s` or `5 rounds`.
-    pub(crate) fn effort_text(&self) -> String {
+    pub fn effort_text(&self) -> String {
         match (self.budget_s, self.rounds) {
             (_, Some(rounds)) => counted(rounds.get() as usize, "round", "rounds"),
             (budget_s, None) => format!("{} s", budget_s.unwrap_or(0.0)),

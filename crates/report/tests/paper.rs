@@ -1,0 +1,321 @@
+//! Tests the files for a paper: their data are those of the results, and their texts are true for them.
+
+use std::num::NonZeroU32;
+use std::sync::atomic::AtomicBool;
+
+use sixfold::shapes;
+use sixfold_report::{PaperFile, ReportPage};
+use sixfold_study::{
+    CacheState, Effort, Failed, FailureKind, Finding, Operation, Report, Results, Settings,
+    Standing, StudyMesh, study,
+};
+
+/// Enough rounds for intervals.
+const ROUNDS: NonZeroU32 = NonZeroU32::new(8).expect("above 0");
+
+const SPECIAL_NAME: &str = "a_&%#$b{c}~^\\|.obj";
+
+fn report(mesh: &str) -> Report {
+    let study_mesh = StudyMesh::new(mesh, shapes::icosahedron());
+    let settings = Settings {
+        operations: vec![Operation::Build, Operation::VertexNormal],
+        effort: Effort::Rounds(ROUNDS),
+        ..Settings::default()
+    };
+    let report = study(&study_mesh, &settings, &AtomicBool::new(false), &mut |_| ());
+    report.expect("a study")
+}
+
+fn results(meshes: &[&str]) -> Results {
+    let mut results = Results::default();
+    for mesh in meshes {
+        results.add(report(mesh).into());
+    }
+    results
+}
+
+fn paper(results: &Results) -> Vec<PaperFile> {
+    let page = ReportPage::new(results, "sixfold study");
+    page.paper(results).expect("figures")
+}
+
+fn bytes<'p>(files: &'p [PaperFile], name: &str) -> &'p [u8] {
+    let file = files.iter().find(|file| file.name == name);
+    &file.unwrap_or_else(|| panic!("no file {name}")).bytes
+}
+
+fn text<'p>(files: &'p [PaperFile], name: &str) -> &'p str {
+    std::str::from_utf8(bytes(files, name)).expect("UTF-8")
+}
+
+/// Returns the cells of the columns `names`, for each row. The data of these tests need no quotes.
+fn columns<const N: usize>(csv: &str, names: [&str; N]) -> Vec<[String; N]> {
+    let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = lines.next().expect("a header");
+    let places = names.map(|name| {
+        let place = header.iter().position(|column| *column == name);
+        place.unwrap_or_else(|| panic!("no column {name} in {header:?}"))
+    });
+    lines
+        .map(|line| places.map(|place| line[place].to_owned()))
+        .collect()
+}
+
+#[test]
+fn every_figure_has_four_files() {
+    for meshes in [&["ball.obj"][..], &["a.obj", "b.obj"]] {
+        let all = results(meshes);
+        let page = ReportPage::new(&all, "sixfold study");
+        let files = paper(&all);
+        for figure in page.all_figures() {
+            let id = &figure.id;
+            assert_eq!(text(&files, &format!("{id}.svg")), figure.picture.svg());
+            let pdf = bytes(&files, &format!("{id}.pdf"));
+            assert!(pdf.starts_with(b"%PDF"), "{id}");
+            let font = b"DejaVuSans";
+            assert!(pdf.windows(font.len()).any(|part| part == font), "{id}");
+            let csv = text(&files, &format!("{id}.csv"));
+            assert!(csv.lines().count() > 2, "{id}: {csv}");
+            let caption = text(&files, &format!("{id}.txt"));
+            for part in [
+                &*figure.title,
+                &figure.caption,
+                &format!("Data: {id}.csv"),
+                "Budget or rounds: 8 rounds",
+                "Seed: 1",
+                "Machine: ",
+                "Measured: 20",
+                "Command: sixfold study",
+            ] {
+                assert!(caption.contains(part), "{id}: {part}: {caption}");
+            }
+        }
+        assert_eq!(files.len(), 4 * page.all_figures().count() + 3);
+    }
+}
+
+#[test]
+fn the_data_of_figures_are_those_of_the_results() {
+    let all = results(&["ball.obj"]);
+    let study = all.studies().next().expect("one study");
+    let files = paper(&all);
+    for operation in [Operation::Build, Operation::VertexNormal] {
+        let name = format!("ranking-{}.csv", operation.name().replace('_', "-"));
+        let names = [
+            "backend",
+            "operation",
+            "median_ns",
+            "ratio_to_best",
+            "ratio_ci_high",
+        ];
+        let rows = columns(text(&files, &name), names);
+        let ranked = study
+            .rows(operation)
+            .filter(|row| row.ratio_to_best.is_some());
+        let ranked: Vec<_> = ranked.collect();
+        assert_eq!(rows.len(), ranked.len());
+        for (cells, row) in rows.iter().zip(ranked) {
+            assert_eq!(cells[..2], [row.backend.as_str(), operation.name()]);
+            let numbers = cells[2..].iter().map(|cell| cell.parse().ok());
+            let numbers: Vec<Option<f64>> = numbers.collect();
+            assert_eq!(
+                numbers,
+                [row.median_ns, row.ratio_to_best, row.ratio_ci_high]
+            );
+        }
+    }
+    let bytes = columns(text(&files, "memory.csv"), ["backend", "table", "bytes"]);
+    let expected = study.backends.iter().flat_map(|backend| {
+        let tables = backend.tables.iter();
+        tables.map(|part| {
+            [
+                backend.name.clone(),
+                part.table.to_string(),
+                part.bytes.to_string(),
+            ]
+        })
+    });
+    assert_eq!(bytes, expected.collect::<Vec<_>>());
+    let lines = columns(text(&files, "break-even.csv"), ["backend", "run_ns"]);
+    for [backend, ns] in lines {
+        let mut rows = study.rows(Operation::VertexNormal);
+        let row = rows.find(|row| row.backend == backend).expect("measured");
+        assert_eq!(ns.parse().ok(), row.median_ns);
+    }
+}
+
+/// Sets the results of one operation, so that the table is known.
+fn known_study(mesh: &str) -> Report {
+    let mut study = report(mesh);
+    for row in &mut study.results {
+        row.standing = Some(Standing::Slower);
+        row.ratio_to_best = Some(2.0);
+        row.ratio_ci_low = Some(1.5);
+        row.ratio_ci_high = Some(2.5);
+        row.ns_per_element = Some(20.0);
+        row.median_ns = Some(20.0);
+        match row.backend.as_str() {
+            "half-edge" => {
+                row.standing = Some(Standing::Best);
+                row.ratio_to_best = Some(1.0);
+                row.ratio_ci_low = Some(1.0);
+                row.ratio_ci_high = Some(1.0);
+                row.ns_per_element = Some(10.0);
+                row.median_ns = Some(10.0);
+            }
+            "polygon-soup" => {
+                row.median_ns = None;
+                row.ns_per_element = None;
+                row.ratio_to_best = None;
+                row.standing = None;
+                row.estimated_ns = Some(1239.9);
+            }
+            "face-vertex" => {
+                row.median_ns = None;
+                row.ns_per_element = None;
+                row.ratio_to_best = None;
+                row.standing = None;
+            }
+            _ => {}
+        }
+    }
+    study
+}
+
+#[test]
+fn tables_mark_the_best_and_lower_bounds_and_missing_times() {
+    let mut all = Results::default();
+    all.add(known_study(SPECIAL_NAME).into());
+    let files = paper(&all);
+    let tex = text(&files, "results.tex");
+    // The order of the backends is that of the study.
+    let line = "vertex\\_normal & $\\ge$ 123 & 2.00 & -- & 2.00 & \\textbf{1.00} & 2.00 \\\\\n";
+    assert!(tex.contains(line), "{tex}");
+    assert!(tex.contains("{\\tiny [1.50, 2.50]}"), "{tex}");
+    let name = "a\\_\\&\\%\\#\\$b\\{c\\}\\textasciitilde{}\\textasciicircum{}\\textbackslash{}\\textbar{}.obj";
+    assert!(tex.contains(name), "{tex}");
+    for part in [
+        "\\usepackage{booktabs}",
+        "\\toprule",
+        "\\midrule",
+        "\\bottomrule",
+    ] {
+        assert!(tex.contains(part), "{part}");
+    }
+    let [opened, closed] = ["{", "}"].map(|brace| {
+        let escaped = format!("\\{brace}");
+        tex.matches(brace).count() - tex.matches(&escaped).count()
+    });
+    assert_eq!(opened, closed);
+    let markdown = text(&files, "results.md");
+    let line = "| vertex\\_normal | ≥ 123 | 2.00 [1.50, 2.50] | – | 2.00 [1.50, 2.50] | **1.00** | 2.00 [1.50, 2.50] |";
+    assert!(markdown.contains(line), "{markdown}");
+}
+
+#[test]
+fn several_meshes_have_a_table_of_means() {
+    let files = paper(&results(&["a.obj", "b.obj"]));
+    let tex = text(&files, "results.tex");
+    for label in ["means", "mesh-1", "mesh-2"] {
+        let label = format!("\\label{{tab:sixfold-{label}}}");
+        assert_eq!(tex.matches(&label).count(), 1, "{label}");
+    }
+    let single = paper(&results(&["a.obj"]));
+    assert!(!text(&single, "results.tex").contains("tab:sixfold-means"));
+}
+
+fn methods(results: &Results) -> String {
+    text(&paper(results), "methods.md").to_owned()
+}
+
+/// Changes the run of the first finding.
+fn first_study(results: &mut Results) -> &mut Report {
+    match results.findings.first_mut() {
+        Some(Finding::Study(study)) => study,
+        _ => panic!("a study"),
+    }
+}
+
+#[test]
+fn methods_state_rounds_or_budget() {
+    let mut all = results(&["ball.obj"]);
+    let text = methods(&all);
+    assert!(text.contains("without a time limit: 8 rounds."), "{text}");
+    assert!(!text.contains("time budget"), "{text}");
+    assert!(text.contains("The seed of the random numbers was 1."));
+    first_study(&mut all).run.settings.rounds = None;
+    first_study(&mut all).run.settings.budget_s = Some(2.5);
+    let text = methods(&all);
+    assert!(
+        text.contains("a time budget for each measurement: 2.5 s."),
+        "{text}"
+    );
+    assert!(!text.contains("rounds was given"), "{text}");
+}
+
+#[test]
+fn methods_are_true_for_the_results() {
+    let mut all = results(&["ball.obj"]);
+    let text = methods(&all);
+    for absent in [
+        "interrupted",
+        "cold",
+        "machines",
+        "was not studied",
+        "lower bound",
+        "geometric means",
+    ] {
+        assert!(!text.contains(absent), "{absent}: {text}");
+    }
+    assert!(text.contains("The mesh: ball.obj (12 vertices, 30 edges, 20 faces; closed, genus 0;"));
+    assert!(text.contains("median polish (Tukey 1977)"));
+    assert!(text.contains("6 backends were measured: polygon-soup"));
+
+    all.add(report("b.obj").into());
+    all.add_failure(Failed {
+        mesh: "gone.obj".into(),
+        reason: "no such file".into(),
+        kind: FailureKind::NotMeasured,
+    });
+    let study = first_study(&mut all);
+    study.interrupted = true;
+    study.run.environment.cpu_model = Some("Another processor".into());
+    let caches = study.run.environment.cache_state.as_mut();
+    let caches = caches.expect("times were measured");
+    caches.state = CacheState::Cold;
+    caches.written_bytes = 2_000_000;
+    let row = &mut study.results[0];
+    row.estimated_ns = row.median_ns.take();
+    let text = methods(&all);
+    for part in [
+        "was interrupted",
+        "caches were cold: each sample is one run, and before each run 2.00 MB",
+        "The results come from 2 machines: Another processor",
+        "The mesh gone.obj was not studied: no such file.",
+        "1 time is only estimated as a lower bound",
+        "geometric means",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+}
+
+/// Documents of older versions have no corrected times.
+#[test]
+fn methods_of_uncorrected_times_state_no_correction() {
+    let mut all = results(&["ball.obj"]);
+    for row in &mut first_study(&mut all).results {
+        row.uncorrected_ns = None;
+    }
+    let text = methods(&all);
+    assert!(text.contains("A time is the median of the samples."));
+    assert!(!text.contains("Tukey"), "{text}");
+}
+
+#[test]
+fn results_without_times_have_no_tables() {
+    let empty = Results::default();
+    let files = paper(&empty);
+    assert_eq!(files.len(), 3);
+    assert!(text(&files, "methods.md").contains("no measurements"));
+    assert!(!text(&files, "results.tex").contains("begin{table}"));
+}
