@@ -94,9 +94,7 @@ impl PaperFolder {
             remove(&self.path.join(name))?;
         }
         if cfg!(not(feature = "pdf")) {
-            print_notice(
-                "note: no PDF files: this program was built without the feature `pdf`",
-            );
+            print_notice("note: no PDF files: this program was built without the feature `pdf`");
         }
         self.write_list(&new)
     }
