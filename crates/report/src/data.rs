@@ -108,7 +108,9 @@ pub(crate) fn dates(first: u64, last: u64) -> String {
 
 /// Formats a time in seconds since 1970 as a date of the Gregorian calendar: `2026-11-27`.
 fn date(unix_time: u64) -> String {
-    let is_leap = |year: u64| year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    let is_leap = |year: u64| {
+        year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400))
+    };
     let mut days = unix_time / 86_400;
     // 400 years have 146,097 days, so the loop has at most 400 steps.
     let mut year = 1970 + 400 * (days / 146_097);
