@@ -34,8 +34,8 @@ impl ReportPage {
     ///
     /// Each figure has four files: `ID.svg`, `ID.pdf`, `ID.csv` (the data, see
     /// [`FigureData`](crate::FigureData)) and `ID.txt` (the caption), where ID is the `id` of the
-    /// figure. `results.tex` and `results.md` have the same tables, and `methods.md` describes how the
-    /// results were measured.
+    /// figure. Without the feature `pdf`, the PDF files are left out. `results.tex` and `results.md`
+    /// have the same tables, and `methods.md` describes how the results were measured.
     ///
     /// # Errors
     ///
@@ -45,6 +45,7 @@ impl ReportPage {
         for figure in self.all_figures() {
             let id = &figure.id;
             files.push(PaperFile::new(format!("{id}.svg"), figure.picture.svg()));
+            #[cfg(feature = "pdf")]
             files.push(PaperFile::new(format!("{id}.pdf"), figure.picture.pdf()?));
             files.push(PaperFile::new(format!("{id}.csv"), &*figure.data.csv));
             files.push(PaperFile::new(format!("{id}.txt"), caption(figure)));

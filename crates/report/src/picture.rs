@@ -3,7 +3,6 @@
 
 use std::sync::Arc;
 
-use kuva::backend::pdf::PdfBackend;
 use kuva::backend::svg::SvgBackend;
 use kuva::render::render::{Primitive, Scene};
 use maud::{Markup, PreEscaped, html};
@@ -16,6 +15,7 @@ const GAP: f64 = 12.0;
 
 /// The font of PDF files. It is part of the library for charts, so a file does not depend on the fonts of
 /// the system.
+#[cfg(feature = "pdf")]
 const PDF_FONT: &str = "DejaVu Sans";
 
 /// The picture of a figure cannot be written as a PDF file.
@@ -69,10 +69,11 @@ impl Picture {
     /// # Errors
     ///
     /// Returns an error if the library for PDF files cannot draw the picture.
+    #[cfg(feature = "pdf")]
     pub fn pdf(&self) -> Result<Vec<u8>, PdfError> {
         let mut scene = joined(&self.panels, self.columns);
         scene.font_family = Some(PDF_FONT.into());
-        let file = PdfBackend::new().render_scene(&scene);
+        let file = kuva::backend::pdf::PdfBackend::new().render_scene(&scene);
         file.map_err(|cause| PdfError { cause })
     }
 

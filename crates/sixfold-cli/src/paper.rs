@@ -20,6 +20,7 @@ use sixfold_study::Results;
 
 use crate::failure::Failure;
 use crate::output::{Output, cannot_write};
+use crate::text::print_notice;
 
 /// The file with the names of the files of this program, one in each line.
 const LIST: &str = "sixfold-files.txt";
@@ -91,6 +92,9 @@ impl PaperFolder {
         }
         for name in stale {
             remove(&self.path.join(name))?;
+        }
+        if cfg!(not(feature = "pdf")) {
+            print_notice("note: no PDF files: this program was built without the feature `pdf`");
         }
         self.write_list(&new)
     }
