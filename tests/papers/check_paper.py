@@ -38,15 +38,13 @@ def check_rankings(folder, document):
 
     [study] = [finding for finding in document["findings"] if finding["kind"] == "study"]
     operations = sorted({row["operation"] for row in study["results"]})
+    table = redraw.rows(folder / "rankings.csv")
     drawn = 0
     for operation in operations:
-        path = folder / f"ranking-{operation.replace('_', '-')}.csv"
-        if not path.exists():
-            continue
         ranked = [row for row in study["results"] if row["operation"] == operation and row["ratio_to_best"] is not None]
         ranked.sort(key=lambda row: row["ratio_to_best"])
         figure, axes = plt.subplots()
-        redraw.draw(redraw.ranking(redraw.rows(path)), axes)
+        redraw.draw(redraw.ranking(table, operation), axes)
         names = [label.get_text() for label in axes.get_yticklabels()]
         assert names == [row["backend"] for row in ranked], (operation, names)
         ends = [bar.get_x() + bar.get_width() for bar in axes.patches]

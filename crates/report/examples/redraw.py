@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws a ranking again from its data: redraw.py DIR/ranking-vertex-normal.csv [FIGURE.pdf]
+"""Draws a ranking again from its data: redraw.py DIR/rankings.csv vertex_normal [FIGURE.pdf]
 
 Reads the CSV file of a figure from `sixfold study MESH --figures DIR`. Without the name of a figure, prints the numbers that would
 be drawn. Drawing needs matplotlib; reading needs only Python. `rows` also reads `results.csv` of `sixfold study MESH --report DIR`.
@@ -24,10 +24,10 @@ def value_of(cell):
         return cell
 
 
-def ranking(table):
-    """Returns (backend, ratio, low end, high end) for each measured ratio, the fastest first. The ends of the 95 % interval are
+def ranking(table, operation):
+    """Returns, for an operation, (backend, ratio, low end, high end) for each measured ratio, the fastest first. The ends of the 95 % interval are
     None if there were too few samples."""
-    measured = [row for row in table if row["ratio_to_best"] is not None and not row.get("lower_bound")]
+    measured = [row for row in table if row["operation"] == operation and row["ratio_to_best"] is not None and not row.get("lower_bound")]
     measured.sort(key=lambda row: row["ratio_to_best"])
     return [(row["backend"], row["ratio_to_best"], row["ratio_ci_low"], row["ratio_ci_high"]) for row in measured]
 
@@ -45,10 +45,10 @@ def draw(bars, axes):
 
 
 def main():
-    if len(sys.argv) not in (2, 3):
+    if len(sys.argv) not in (3, 4):
         sys.exit(__doc__)
-    bars = ranking(rows(sys.argv[1]))
-    if len(sys.argv) == 2:
+    bars = ranking(rows(sys.argv[1]), sys.argv[2])
+    if len(sys.argv) == 3:
         for backend, *numbers in bars:
             print(backend, *("-" if number is None else number for number in numbers))
         return
@@ -56,7 +56,7 @@ def main():
 
     figure, axes = plt.subplots(figsize=(7, 1 + 0.4 * len(bars)), layout="constrained")
     draw(bars, axes)
-    figure.savefig(sys.argv[2])
+    figure.savefig(sys.argv[3])
 
 
 if __name__ == "__main__":

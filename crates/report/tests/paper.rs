@@ -100,7 +100,6 @@ fn the_data_of_figures_are_those_of_the_results() {
     let study = all.studies().next().expect("one study");
     let files = paper(&all);
     for operation in [Operation::Build, Operation::VertexNormal] {
-        let name = format!("ranking-{}.csv", operation.name().replace('_', "-"));
         let names = [
             "backend",
             "operation",
@@ -108,11 +107,9 @@ fn the_data_of_figures_are_those_of_the_results() {
             "ratio_to_best",
             "ratio_ci_high",
         ];
-        let rows = columns(text(&files, &name), names);
-        let ranked = study
-            .rows(operation)
-            .filter(|row| row.ratio_to_best.is_some());
-        let ranked: Vec<_> = ranked.collect();
+        let mut rows = columns(text(&files, "rankings.csv"), names);
+        rows.retain(|cells| cells[1] == operation.name());
+        let ranked: Vec<_> = study.rows(operation).collect();
         assert_eq!(rows.len(), ranked.len());
         for (cells, row) in rows.iter().zip(ranked) {
             assert_eq!(cells[..2], [row.backend.as_str(), operation.name()]);

@@ -40,7 +40,7 @@ fn a_study_writes_the_files_for_a_paper() {
             "heat-map.svg",
             "heat-map.pdf",
             "heat-map.csv",
-            "ranking-boundary.txt",
+            "rankings.txt",
             "results.tex",
             "results.md",
             "methods.md",
@@ -50,7 +50,7 @@ fn a_study_writes_the_files_for_a_paper() {
                 "{folder}/{name}"
             );
         }
-        let caption = text(&sixfold, &format!("{folder}/ranking-boundary.txt"));
+        let caption = text(&sixfold, &format!("{folder}/rankings.txt"));
         assert!(
             caption.contains("Command: sixfold study grid.obj"),
             "{caption}"
@@ -74,7 +74,7 @@ fn a_study_writes_the_files_for_a_paper() {
 #[test]
 fn old_figures_are_removed_and_files_of_others_stay() {
     let sixfold = grid();
-    study(&sixfold, "boundary,build", "both.json");
+    study(&sixfold, "boundary,build,vertex_normal", "both.json");
     study(&sixfold, "boundary", "one.json");
     run_ok(&sixfold, &["report", "both.json", "--figures", "paper"]);
     sixfold.file("paper/notes.txt", "mine");
@@ -84,24 +84,21 @@ fn old_figures_are_removed_and_files_of_others_stay() {
     sixfold.file("paper/sixfold-files.txt", &format!("{list}../one.json\n"));
     run_ok(&sixfold, &["report", "one.json", "--figures", "paper"]);
     for ending in ["svg", "pdf", "csv", "txt"] {
-        assert!(!exists(&sixfold, &format!("paper/ranking-build.{ending}")));
-        assert!(exists(
-            &sixfold,
-            &format!("paper/ranking-boundary.{ending}")
-        ));
+        assert!(!exists(&sixfold, &format!("paper/break-even.{ending}")));
+        assert!(exists(&sixfold, &format!("paper/rankings.{ending}")));
     }
     for name in ["paper/notes.txt", "paper/ranking-mine.svg"] {
         assert_eq!(text(&sixfold, name), "mine");
     }
     assert!(exists(&sixfold, "one.json"));
     let list = text(&sixfold, "paper/sixfold-files.txt");
-    assert!(!list.contains("build") && list.contains("ranking-boundary.pdf\n"));
+    assert!(!list.contains("break-even") && list.contains("rankings.pdf\n"));
 }
 
 #[test]
 fn figures_replace_no_file_of_others() {
     let sixfold = grid();
-    study(&sixfold, "boundary,build", "both.json");
+    study(&sixfold, "boundary,build,vertex_normal", "both.json");
     study(&sixfold, "boundary", "one.json");
     fs::create_dir(sixfold.folder().join("foreign")).expect("a folder");
     sixfold.file("foreign/heat-map.svg", "mine");
@@ -116,11 +113,11 @@ fn figures_replace_no_file_of_others() {
     assert_eq!(text(&sixfold, "foreign/heat-map.svg"), "mine");
 
     run_ok(&sixfold, &["report", "one.json", "--figures", "paper"]);
-    sixfold.file("paper/ranking-build.csv", "mine");
-    refused("both.json", "paper", "ranking-build.csv exists already");
-    assert_eq!(text(&sixfold, "paper/ranking-build.csv"), "mine");
+    sixfold.file("paper/break-even.csv", "mine");
+    refused("both.json", "paper", "break-even.csv exists already");
+    assert_eq!(text(&sixfold, "paper/break-even.csv"), "mine");
     assert!(
-        !exists(&sixfold, "paper/ranking-build.svg"),
+        !exists(&sixfold, "paper/break-even.svg"),
         "nothing is written"
     );
 
@@ -132,13 +129,13 @@ fn figures_replace_no_file_of_others() {
 #[test]
 fn a_page_loses_the_figures_that_are_no_longer_drawn() {
     let sixfold = grid();
-    study(&sixfold, "boundary,build", "both.json");
+    study(&sixfold, "boundary,build,vertex_normal", "both.json");
     study(&sixfold, "boundary", "one.json");
     run_ok(&sixfold, &["report", "both.json", "--to", "page"]);
-    assert!(exists(&sixfold, "page/figures/ranking-build.svg"));
+    assert!(exists(&sixfold, "page/figures/break-even.svg"));
     sixfold.file("page/figures/mine.svg", "mine");
     run_ok(&sixfold, &["report", "one.json", "--to", "page"]);
-    assert!(!exists(&sixfold, "page/figures/ranking-build.svg"));
-    assert!(exists(&sixfold, "page/figures/ranking-boundary.svg"));
+    assert!(!exists(&sixfold, "page/figures/break-even.svg"));
+    assert!(exists(&sixfold, "page/figures/rankings.svg"));
     assert_eq!(text(&sixfold, "page/figures/mine.svg"), "mine");
 }

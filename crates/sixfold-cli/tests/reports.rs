@@ -58,15 +58,7 @@ fn the_report_of_one_mesh_has_orders_growth_and_a_roofline() {
     }
     let page = text(&sixfold, "out/report.html");
     let expected = [
-        "heat-map",
-        "memory",
-        "ranking-vertex-vertices",
-        "ranking-boundary",
-        "orders-vertex-vertices",
-        "orders-boundary",
-        "growth-vertex-vertices",
-        "growth-boundary",
-        "roofline",
+        "heat-map", "memory", "rankings", "orders", "growth", "roofline",
     ];
     let drawn = figures(&page);
     for id in expected {
@@ -183,11 +175,11 @@ fn results_of_several_commands_are_drawn_on_one_page() {
     let page = text(&sixfold, "out/report.html");
     let drawn = figures(&page);
     for id in [
-        "ranking-boundary",
-        "orders-boundary",
+        "rankings",
+        "orders",
         "roofline",
-        "growth-boundary",
-        "growth-2-boundary",
+        "growth",
+        "growth-2",
         "pick",
         "pick-break-even",
     ] {
