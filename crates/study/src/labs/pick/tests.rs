@@ -9,7 +9,6 @@ use sixfold_workload::{
 use super::*;
 use crate::engine::simulated_machine::{SimulatedMachine, Work};
 use crate::labs::pick::measurement::Outcome;
-use crate::results::finding::LabFinding;
 
 struct KnownBackend {
     name: &'static str,

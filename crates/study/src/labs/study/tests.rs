@@ -6,7 +6,6 @@ use sixfold::{PolygonMesh, shapes};
 use super::*;
 use crate::engine::simulated_machine::{SimulatedMachine, Work};
 use crate::results::document::Results;
-use crate::results::finding::LabFinding;
 use crate::results::rows::{RefusalKind, Standing};
 use sixfold_workload::{ElementKind, Task};
 
