@@ -41,11 +41,11 @@ fn all_indices_are_measured_and_the_cheapest_is_named() {
     assert!(rows.iter().all(|row| row["agreement"] == "same"));
     // A header and a row for each task and index.
     assert_eq!(text(&sixfold, "n.csv").lines().count(), 1 + 7 * 5);
-    // A report of the finding has a ranking of each task.
+    // A report of the finding has a figure with the rankings of all tasks.
     run_ok(&sixfold, &["report", "n.json", "--to", "page"]);
     let page = text(&sixfold, "page/report.md");
     assert!(page.contains("Neighbours in space: grid.obj"), "{page}");
-    assert!(page.contains("figures/neighbours-first-hit.svg"), "{page}");
+    assert!(page.contains("figures/neighbours.svg"), "{page}");
 }
 
 #[test]

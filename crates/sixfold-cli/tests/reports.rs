@@ -201,7 +201,7 @@ fn results_of_several_commands_are_drawn_on_one_page() {
     run_ok(&sixfold, &["report", "growth.json", "--to", "alone"]);
     let page = text(&sixfold, "alone/report.html");
     assert!(page.contains("<h1>How costs grow: "), "{page:.2000}");
-    assert_eq!(figures(&page), ["growth-boundary"]);
+    assert_eq!(figures(&page), ["growth"]);
 }
 
 #[test]
