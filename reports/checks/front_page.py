@@ -14,7 +14,8 @@ page = Claims(
         library of six mesh data structures
         behind one query trait
         complete the six
-        Rust 1.88
+        Rust 1.92 or newer
+        1.88 is enough for the libraries
         has the six structures
         eight example programs
         seven [subdivision]
