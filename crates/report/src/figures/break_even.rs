@@ -42,11 +42,15 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         .filter_map(|row| Some((row.backend.as_str(), build(row)?, row.median_ns?)))
         .collect();
     let input = lines.iter().find(|(name, ..)| *name == INPUT_BACKEND);
-    let pays_after = |(name, build, run): (&str, f64, f64)| match input {
-        _ if name == INPUT_BACKEND => "given".into(),
-        Some((_, _, slow)) if *slow > run => break_even_text(build / (slow - run), "run", "runs"),
-        Some(_) => "never".into(),
-        None => "–".into(),
+    let pays_at = |(name, build, run): (&str, f64, f64)| match input {
+        Some((_, _, slow)) if name != INPUT_BACKEND && *slow > run => Some(build / (slow - run)),
+        _ => None,
+    };
+    let pays_after = |line: (&str, f64, f64)| match (input, pays_at(line)) {
+        _ if line.0 == INPUT_BACKEND => "given".into(),
+        (_, Some(count)) => break_even_text(count, "run", "runs"),
+        (Some(_), None) => "never".into(),
+        (None, None) => "–".into(),
     };
     let lines: Vec<Line<'_>> = lines
         .iter()
@@ -55,6 +59,7 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
             build,
             run,
             pays_after: pays_after((name, build, run)),
+            pays_at: pays_at((name, build, run)),
         })
         .collect();
     let title = format!(
@@ -76,8 +81,7 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         repeated: operation.name(),
         measured: &study.run,
         max_count: {
-            let input = lines.iter().find(|line| line.name == INPUT_BACKEND);
-            let counts = lines.iter().filter_map(|line| line.crossing(input?));
+            let counts = lines.iter().filter_map(|line| line.pays_at);
             let last = counts.filter(|count| *count < 1e6).fold(10.0, f64::max);
             10_f64.powf((10.0 * last).log10().ceil())
         },
@@ -105,6 +109,12 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
         },
         run: ranked.ns_per_operation,
         pays_after: pays_after(&ranked.backend),
+        pays_at: {
+            let mut rows = report.break_even.iter();
+            let row = rows.find(|row| row.backend == ranked.backend);
+            row.and_then(|row| row.operations)
+                .filter(|_| ranked.backend != INPUT_BACKEND)
+        },
     });
     let lines: Vec<Line<'_>> = lines.collect();
     let name = &report.workload.name;
@@ -139,18 +149,15 @@ struct Line<'a> {
     build: f64,
     run: f64,
     pays_after: String,
+    /// The number of repetitions from which the line is below that of the input mesh; `None` if it
+    /// never is, and for the input mesh.
+    pays_at: Option<f64>,
 }
 
 impl Line<'_> {
     /// Returns the total time for `count` repetitions.
     fn at(&self, count: f64) -> f64 {
         self.build + count * self.run
-    }
-
-    /// Returns the number of repetitions from which the line is below that of the input mesh.
-    fn crossing(&self, input: &Self) -> Option<f64> {
-        let saved = input.run - self.run;
-        (saved > 0.0).then(|| (self.build - input.build) / saved)
     }
 }
 
@@ -192,7 +199,6 @@ impl Curves<'_> {
                 line.pays_after.clone(),
             ]);
         }
-        let input = lines.iter().find(|line| line.name == INPUT_BACKEND);
         let rows = lines.iter().map(|line| BreakEvenRow {
             subject: self.subject,
             run: self.repeated,
@@ -201,7 +207,7 @@ impl Curves<'_> {
             run_ns: line.run,
             pays_after_runs: match line.name {
                 INPUT_BACKEND => Some(0.0),
-                _ => input.and_then(|input| line.crossing(input)),
+                _ => line.pays_at,
             },
         });
         let data = FigureData::from_rows([self.measured], [], rows);
@@ -250,9 +256,8 @@ fn draw_lines(canvas: &mut Canvas, axes: &Axes<'_>, lines: &[Line<'_>], max_coun
         let points: Vec<[f64; 2]> = points.collect();
         canvas.polyline(&points, column_colour(line.name), 2.0);
     }
-    let input = lines.iter().find(|line| line.name == INPUT_BACKEND);
     for line in lines {
-        let Some(count) = input.and_then(|input| line.crossing(input)) else {
+        let Some(count) = line.pays_at else {
             continue;
         };
         let count = count.ceil().max(1.0);
