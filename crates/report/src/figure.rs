@@ -3,7 +3,6 @@
 use sixfold_study::numbers::grouped;
 
 use crate::Picture;
-use crate::data::FigureData;
 
 /// A figure, and a table of the numbers that the figure shows.
 #[derive(Clone, Debug)]
@@ -18,8 +17,10 @@ pub struct Figure {
     pub picture: Picture,
     /// The numbers of the figure, formatted.
     pub table: Table,
-    /// The data of the figure for other programs.
-    pub data: FigureData,
+    /// The data of the figure as CSV, for other programs: a header, and one row for each mark. Numbers
+    /// are plain decimals, and the names of the columns have the units. Figures of times have the columns
+    /// of [`Results::write_csv`](sixfold_study::Results::write_csv).
+    pub csv: String,
     /// How many samples, when, with which seed, on which machine; empty until the page is complete.
     pub source: String,
     /// The command that reproduces the figure.
@@ -27,9 +28,8 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// Adds the data for other programs.
-    pub(crate) fn with_data(self, data: FigureData) -> Self {
-        Self { data, ..self }
+    pub(crate) fn with_csv(self, csv: String) -> Self {
+        Self { csv, ..self }
     }
 }
 

@@ -83,7 +83,7 @@ fn set_sources(page: &mut ReportPage, results: &Results) {
 fn study_page(study: &Report, results: &Results, command: &str) -> ReportPage {
     let matrix = Matrix::of_study(study);
     let answer = [
-        summary::fastest(&study.overall()),
+        summary::fastest_of_study(study),
         study.how_sure(),
         summary::turning_points(study, results),
     ];
@@ -153,13 +153,12 @@ fn pool_page(studies: &[&Report], results: &Results, command: &str) -> ReportPag
     );
     let note = "A ratio is the geometric mean over the meshes, relative to the fastest measured backend of \
                 each mesh. Bars in a frame are lower bounds (≥), which are not ranked.";
-    let runs: Vec<&Run> = studies.iter().map(|study| &study.run).collect();
     let figures = [
         heat_map::figure(title, &matrix, "", command),
         ranking::from_matrix(&matrix, note, command),
     ];
     let figures = figures.into_iter().flatten();
-    let figures = figures.map(|figure| figure.with_data(rows::pooled(&pool, runs.iter().copied())));
+    let figures = figures.map(|figure| figure.with_csv(rows::pooled(&pool)));
     ReportPage {
         title: format!("Mesh data structures on {count}"),
         answer: answer.into_iter().flatten().collect(),
@@ -343,7 +342,7 @@ fn study_figures(study: &Report, matrix: &Matrix, command: &str) -> Vec<Figure> 
     let note = "Bars in a frame are lower bounds (≥), which are not ranked: a run would exceed the budget.";
     let figures = [
         ranking::from_matrix(matrix, note, command)
-            .map(|figure| figure.with_data(rows::study(study))),
+            .map(|figure| figure.with_csv(rows::study(study))),
         heat_map_of(study, matrix, "", command),
         memory::from_study(study, "", command),
         break_even::from_study(study, "", command),
@@ -369,7 +368,7 @@ fn heat_map_of(study: &Report, matrix: &Matrix, id_prefix: &str, command: &str) 
         file_name(&study.mesh.name)
     );
     let figure = heat_map::figure(title, matrix, id_prefix, command)?;
-    Some(figure.with_data(rows::study(study)))
+    Some(figure.with_csv(rows::study(study)))
 }
 
 pub(crate) fn per_unit(unit: &str) -> String {

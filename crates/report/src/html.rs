@@ -147,7 +147,7 @@ impl ReportPage {
 /// Returns a sentence with the words before its first colon in bold.
 fn lead(sentence: &str) -> Markup {
     match sentence.split_once(": ") {
-        Some((lead, rest)) if lead.len() < 30 => html! { strong { (lead) ":" } " " (rest) },
+        Some((lead, rest)) if lead.len() < 50 => html! { strong { (lead) ":" } " " (rest) },
         _ => html! { (sentence) },
     }
 }

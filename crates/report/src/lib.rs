@@ -30,7 +30,6 @@ use matrix::Matrix;
 use sixfold_study::Results;
 
 pub use colours::structure_colours;
-pub use data::FigureData;
 pub use figure::{Figure, Table, TitledTable};
 pub use panels::{Panel, panels};
 pub use papers::PaperFile;
@@ -42,9 +41,9 @@ pub use summary::{Rank, Summary, SummaryColumn, SummaryFigure, SummaryRow};
 pub struct ReportPage {
     /// Title.
     pub title: String,
-    /// The mesh, or the meshes, in one line; empty if there are none.
+    /// The facts of the mesh in one line; empty without a study of one mesh.
     pub facts: String,
-    /// A picture of the mesh, and the text that describes the picture; `None` if there is none.
+    /// The picture of the mesh; `None` if the document has no picture.
     pub picture: Option<MeshPicture>,
     /// The answer in at most three sentences.
     pub answer: Vec<String>,

@@ -33,7 +33,7 @@ impl ReportPage {
     /// Returns the files for a paper. `results` are the results that the page shows.
     ///
     /// Each figure has four files: `ID.svg`, `ID.pdf`, `ID.csv` (the data, see
-    /// [`FigureData`](crate::FigureData)) and `ID.txt` (the caption), where ID is the `id` of the
+    /// [`Figure::csv`]) and `ID.txt` (the caption), where ID is the `id` of the
     /// figure. Without the feature `pdf`, the PDF files are left out. `results.tex` and `results.md`
     /// have the same tables, and `methods.md` describes how the results were measured.
     ///
@@ -47,7 +47,7 @@ impl ReportPage {
             files.push(PaperFile::new(format!("{id}.svg"), figure.picture.svg()));
             #[cfg(feature = "pdf")]
             files.push(PaperFile::new(format!("{id}.pdf"), figure.picture.pdf()?));
-            files.push(PaperFile::new(format!("{id}.csv"), &*figure.data.csv));
+            files.push(PaperFile::new(format!("{id}.csv"), &*figure.csv));
             files.push(PaperFile::new(format!("{id}.txt"), caption(figure)));
         }
         let tables = tables::tables(results);
@@ -64,9 +64,7 @@ fn caption(figure: &Figure) -> String {
         id, title, caption, ..
     } = figure;
     let mut text = format!("{title}.\n\n{caption}\n\nData: {id}.csv\n");
-    for line in &figure.data.measured {
-        let _ = writeln!(text, "{line}");
-    }
+    let _ = writeln!(text, "Measured: {}", figure.source);
     let _ = writeln!(text, "Command: {}", figure.command);
     text
 }

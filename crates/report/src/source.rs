@@ -11,6 +11,13 @@ use crate::data::date;
 pub(crate) fn line(findings: &[&Finding]) -> String {
     let parts = [
         samples(findings),
+        one_or_count(findings, "budgets", |finding| {
+            let settings = &finding.run().settings;
+            Some(match settings.rounds {
+                Some(_) => settings.effort_text(),
+                None => format!("budget {}", settings.effort_text()),
+            })
+        }),
         dates(findings),
         one_or_count(findings, "seeds", |finding| {
             Some(format!("seed {}", finding.run().settings.seed))

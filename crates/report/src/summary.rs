@@ -5,7 +5,8 @@ use crate::figure::Table;
 use crate::figures::INPUT_BACKEND;
 use sixfold_study::numbers::{counted, figure, list, times};
 use sixfold_study::{
-    BackendReport, Operation, OrdersReport, Overall, Pool, Purpose, Report, Results, leaders,
+    BackendReport, Operation, OrdersReport, Overall, Pool, Purpose, Report, Results, Standing,
+    leaders,
 };
 
 /// A table with a row for each backend and a column for each kind of work.
@@ -117,7 +118,8 @@ impl Summary {
             .iter()
             .map(|backend| (backend.name.as_str(), backend.reason.as_deref()))
             .collect();
-        Self::new(&backends, &study.overall(), &memory, orders)
+        let sure = |purpose| is_sure(study, purpose);
+        Self::new(&backends, &study.overall(), &sure, &memory, orders)
     }
 
     pub(crate) fn of_pool(pool: &Pool, studies: &[&Report]) -> Option<Self> {
@@ -147,12 +149,13 @@ impl Summary {
             })
         };
         let memory: Vec<Memory> = pool.compared.iter().filter_map(bytes).collect();
-        Some(Self::new(&backends, &all.overall, &memory, None))
+        Some(Self::new(&backends, &all.overall, &|_| true, &memory, None))
     }
 
     fn new(
         backends: &[(&str, Option<&str>)],
         overall: &[Overall],
+        sure: &dyn Fn(Purpose) -> bool,
         memory: &[Memory],
         orders: Option<&OrdersReport>,
     ) -> Self {
@@ -173,7 +176,9 @@ impl Summary {
                 .filter(|row| row.purpose == purpose)
                 .cloned()
                 .collect();
-            summary.column(name, about, |backend| work_figure(&rows, backend));
+            summary.column(name, about, |backend| {
+                work_figure(&rows, sure(purpose), backend)
+            });
             if purpose == Purpose::Build {
                 let about = "Bytes held for each vertex, with spare capacity";
                 summary.column("memory", about, |backend| memory_figure(memory, backend));
@@ -227,12 +232,23 @@ fn orders_of<'r>(study: &Report, results: &'r Results) -> Option<&'r OrdersRepor
         .find(|orders| orders.mesh.sha256 == study.mesh.sha256)
 }
 
+/// Returns whether an operation of a purpose has enough samples for a standing.
+fn is_sure(study: &Report, purpose: Purpose) -> bool {
+    let rows = study.results.iter();
+    let mut rows = rows.filter(|row| Purpose::of(row.operation) == purpose);
+    rows.any(|row| {
+        row.standing
+            .is_some_and(|standing| standing != Standing::Slower)
+    })
+}
+
 /// `rows` are the means of one purpose, the fastest first.
-fn work_figure(rows: &[Overall], backend: &str) -> Option<SummaryFigure> {
+fn work_figure(rows: &[Overall], sure: bool, backend: &str) -> Option<SummaryFigure> {
     let row = rows.iter().find(|row| row.backend == backend)?;
     let best = leaders(rows);
     let rank = match best.iter().any(|leader| leader.backend == backend) {
         _ if row.bound => Rank::Bound,
+        _ if !sure => Rank::Other,
         true if best.len() == 1 => Rank::Best,
         true => Rank::Tied,
         false => Rank::Other,
@@ -286,6 +302,18 @@ fn order_figure(orders: &OrdersReport, backend: &str) -> Option<SummaryFigure> {
     let (own, _) = order_effect(orders, backend)?;
     // No ranks: a structure that scans all faces hardly depends on the order, but is slow in all.
     Some(SummaryFigure::new(own, 1.0, Rank::Other, times(own)))
+}
+
+/// Returns the fastest backends of each kind of work of a study, and the next one. The sentence says if the
+/// samples are too few for one of them.
+pub(crate) fn fastest_of_study(study: &Report) -> Option<String> {
+    let overall = study.overall();
+    let unsure = overall.iter().any(|row| !is_sure(study, row.purpose));
+    let sentence = fastest(&overall)?;
+    Some(match unsure {
+        true => sentence.replacen("Fastest: ", "Fastest (provisional, too few samples): ", 1),
+        false => sentence,
+    })
 }
 
 /// Returns the fastest backends of each kind of work, and the next one.

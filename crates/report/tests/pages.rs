@@ -229,6 +229,35 @@ fn the_first_screen_answers() {
         );
         assert!(html.contains(&format!("id=\"{section}\"")), "no {section}");
     }
+    // Without standings, nothing is marked as best.
+    if let Finding::Study(study) = &mut all.findings[0] {
+        for row in &mut study.results {
+            row.standing = None;
+        }
+    }
+    let unsure = ReportPage::new(&all, "sixfold study ball.obj");
+    assert!(
+        unsure.answer[0].starts_with("Fastest (provisional"),
+        "{:?}",
+        unsure.answer
+    );
+    let summary = unsure.summary.expect("a study");
+    let ranks = |column: usize| -> Vec<Rank> {
+        let figures = summary
+            .rows
+            .iter()
+            .filter_map(|row| row.figures[column].as_ref());
+        figures.map(|figure| figure.rank).collect()
+    };
+    assert!(
+        ranks(2).iter().all(|rank| *rank == Rank::Other),
+        "{:?}",
+        ranks(2)
+    );
+    assert!(
+        ranks(1).contains(&Rank::Best),
+        "memory is counted, not timed"
+    );
     // A picture that is not Base64 does not go into the page.
     if let Finding::Study(study) = &mut all.findings[0] {
         study.mesh.picture = Some("\" onload=alert(1)".into());

@@ -81,10 +81,10 @@ fn every_figure_has_four_files() {
                 &*figure.title,
                 &figure.caption,
                 &format!("Data: {id}.csv"),
-                "Budget or rounds: 8 rounds",
-                "Seed: 1",
-                "Machine: ",
-                "Measured: 20",
+                "8 samples for each time",
+                "8 rounds",
+                "seed 1",
+                "Measured: ",
                 "Command: sixfold study",
             ] {
                 assert!(caption.contains(part), "{id}: {part}: {caption}");

@@ -58,7 +58,7 @@ pub struct StudyMesh {
     /// The SHA-256 of the file, as 64 hexadecimal digits; `None` if the mesh was not read from a
     /// regular file.
     pub file_sha256: Option<String>,
-    /// A picture of the mesh for reports: a PNG file in Base64; `None` if there is none.
+    /// A picture of the mesh for reports: a PNG file in Base64; `None` if no picture was drawn.
     pub picture: Option<String>,
 }
 

@@ -3,39 +3,38 @@
 
 use serde::Serialize;
 use sixfold_study::{
-    Figure as TimeRow, GrowthReport, NeighboursReport, OrdersReport, PickReport, Pool, Report, Run,
-    Why,
+    Figure as TimeRow, GrowthReport, NeighboursReport, OrdersReport, PickReport, Pool, Report, Why,
 };
 
-use crate::data::FigureData;
+use super::{own_columns, times};
 
 /// Returns the rows of all operations of a study on the backends that hold the mesh.
-pub(crate) fn study(study: &Report) -> FigureData {
+pub(crate) fn study(study: &Report) -> String {
     let holds = |row: &TimeRow<'_>| {
         let mut backends = study.backends.iter();
         backends.any(|backend| backend.holds && backend.name == row.row.backend)
     };
     let rows = study.figures().into_iter().filter(holds);
-    FigureData::from_times("study", &study.run, rows)
+    times("study", rows)
 }
 
 /// Returns the rows of all operations in all orders.
-pub(crate) fn orders(report: &OrdersReport) -> FigureData {
-    FigureData::from_times("orders", &report.run, report.figures())
+pub(crate) fn orders(report: &OrdersReport) -> String {
+    times("orders", report.figures())
 }
 
 /// Returns the rows of all operations on all sizes, with times or lower bounds.
-pub(crate) fn growth(report: &GrowthReport) -> FigureData {
+pub(crate) fn growth(report: &GrowthReport) -> String {
     let shown = |row: &TimeRow<'_>| row.row.median_ns.or(row.row.estimated_ns).is_some();
     let rows = report.figures().into_iter().filter(shown);
-    FigureData::from_times("growth", &report.run, rows)
+    times("growth", rows)
 }
 
 /// Returns the ranked rows of all queries in space.
-pub(crate) fn neighbours(report: &NeighboursReport) -> FigureData {
+pub(crate) fn neighbours(report: &NeighboursReport) -> String {
     let ranked = |row: &TimeRow<'_>| row.row.ratio_to_best.is_some();
     let rows = report.figures().into_iter().filter(ranked);
-    FigureData::from_times("neighbours", &report.run, rows)
+    times("neighbours", rows)
 }
 
 /// One row of the mean over several meshes.
@@ -56,7 +55,7 @@ struct PooledRow<'r> {
 }
 
 /// Returns the means over several meshes.
-pub(crate) fn pooled<'r>(pool: &Pool, runs: impl IntoIterator<Item = &'r Run>) -> FigureData {
+pub(crate) fn pooled(pool: &Pool) -> String {
     let rows = pool.all().iter().map(|row| PooledRow {
         operation: row.operation.name(),
         backend: &row.backend,
@@ -70,7 +69,7 @@ pub(crate) fn pooled<'r>(pool: &Pool, runs: impl IntoIterator<Item = &'r Run>) -
         not_run_on_meshes: row.estimated,
         ns_per_element: row.ns_per_element,
     });
-    FigureData::from_rows(runs, [], rows)
+    own_columns(rows)
 }
 
 /// One row of the ranking of a workload.
@@ -95,7 +94,7 @@ struct PickRow<'r> {
 }
 
 /// Returns the ranking of a workload.
-pub(crate) fn pick(report: &PickReport) -> FigureData {
+pub(crate) fn pick(report: &PickReport) -> String {
     let rows = report.ranking.iter().map(|ranked| PickRow {
         workload: &report.workload.name,
         backend: &ranked.backend,
@@ -113,8 +112,7 @@ pub(crate) fn pick(report: &PickReport) -> FigureData {
         first_build_ns: ranked.first_build_ns,
         backend_bytes: ranked.bytes,
     });
-    let samples = report.ranking.iter().map(|ranked| ranked.samples);
-    FigureData::from_rows([&report.run], samples, rows)
+    own_columns(rows)
 }
 
 /// The size of one table of a backend.
@@ -130,7 +128,7 @@ struct MemoryRow<'r> {
 }
 
 /// Returns the size of each table of each backend.
-pub(crate) fn memory(study: &Report) -> FigureData {
+pub(crate) fn memory(study: &Report) -> String {
     let vertices = study.mesh.facts.vertices;
     let tables = study.backends.iter().flat_map(|backend| {
         backend.tables.iter().map(move |part| MemoryRow {
@@ -143,7 +141,7 @@ pub(crate) fn memory(study: &Report) -> FigureData {
             bytes_per_vertex: part.bytes as f64 / vertices.max(1) as f64,
         })
     });
-    FigureData::from_rows([&study.run], [], tables)
+    own_columns(tables)
 }
 
 /// The reads and the time of one query. All values are means per queried element.
@@ -169,7 +167,7 @@ struct RooflineRow<'r> {
 }
 
 /// Returns the queries with a time that move bytes.
-pub(crate) fn roofline(why: &Why) -> FigureData {
+pub(crate) fn roofline(why: &Why) -> String {
     let buffers = why.memory.as_deref().unwrap_or_default();
     let [smallest, largest] = [buffers.first(), buffers.last()];
     let rows = why.rows.iter().filter_map(|row| {
@@ -191,8 +189,7 @@ pub(crate) fn roofline(why: &Why) -> FigureData {
             largest_buffer_gb_per_s: largest.map(|buffer| buffer.gb_per_s),
         })
     });
-    let samples = why.figures().into_iter().map(|row| row.row.samples);
-    FigureData::from_rows([&why.run], samples.collect::<Vec<_>>(), rows)
+    own_columns(rows)
 }
 
 /// The line of one backend in a figure of the break-even. The total time of n runs is `build_ns` + n ·

@@ -2,13 +2,13 @@
 //! took.
 
 use sixfold_study::numbers::{counted, duration, grouped};
-use sixfold_study::{Operation, PickReport, Report, ResultRow, Run};
+use sixfold_study::{Operation, PickReport, Report, ResultRow};
 
 use super::INPUT_BACKEND;
 use crate::Picture;
 use crate::canvas::{Axes, Canvas, LogScale, Style, spread};
 use crate::colours::column_colour;
-use crate::data::FigureData;
+use crate::data::own_columns;
 use crate::data::rows::BreakEvenRow;
 use crate::figure::{Figure, Table, duration_tick};
 
@@ -67,8 +67,8 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         super::file_name(&study.mesh.name)
     );
     let caption = format!(
-        "The mesh is given as an {INPUT_BACKEND}. Every other structure is built first, on fresh \
-         pages. Points and numbers show after how many runs building pays off: the line of the \
+        "The mesh is given as an {INPUT_BACKEND}. Every other structure is built first; the \
+         time to build is that of the first build on fresh pages, where one was measured. Points and numbers show after how many runs building pays off: the line of the \
          structure is then below that of the {INPUT_BACKEND}. `sixfold pick` measures this for a workload."
     );
     let curves = Curves {
@@ -79,7 +79,6 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         unit: "one run",
         subject: &study.mesh.name,
         repeated: operation.name(),
-        measured: &study.run,
         max_count: {
             let counts = lines.iter().filter_map(|line| line.pays_at);
             let last = counts.filter(|count| *count < 1e6).fold(10.0, f64::max);
@@ -120,8 +119,8 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
     let name = &report.workload.name;
     let title = format!("Time to build once and run {name}");
     let caption = format!(
-        "The mesh is given as an {INPUT_BACKEND}. Every other structure is built first, on fresh \
-         pages. Points and numbers show after how many operations building pays off: the line of the \
+        "The mesh is given as an {INPUT_BACKEND}. Every other structure is built first; the \
+         time to build is that of the first build on fresh pages, where one was measured. Points and numbers show after how many operations building pays off: the line of the \
          structure is then below that of the {INPUT_BACKEND}. One use of the mesh consists of {}.",
         counted(
             report.operations.round() as usize,
@@ -137,7 +136,6 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
         unit: "one operation",
         subject: name,
         repeated: "one operation of the workload",
-        measured: &report.run,
         max_count: (100.0 * report.operations).max(1e4),
     };
     curves.draw(&lines, command)
@@ -179,8 +177,6 @@ struct Curves<'a> {
     subject: &'a str,
     /// What one run is.
     repeated: &'a str,
-    /// How the times were measured.
-    measured: &'a Run,
     /// Maximum number of repetitions.
     max_count: f64,
 }
@@ -210,7 +206,7 @@ impl Curves<'_> {
                 _ => line.pays_at,
             },
         });
-        let data = FigureData::from_rows([self.measured], [], rows);
+        let csv = own_columns(rows);
         let ends = lines
             .iter()
             .flat_map(|line| [line.at(1.0), line.at(self.max_count)]);
@@ -240,7 +236,7 @@ impl Curves<'_> {
             title: self.title,
             caption: self.caption,
             table,
-            data,
+            csv,
             source: String::new(),
             command: command.into(),
         })

@@ -81,7 +81,7 @@ pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Opt
              into the last cache, and for the larger sizes."
         ),
         table: table.unwrap_or_default(),
-        data: data::growth(report),
+        csv: data::growth(report),
         source: String::new(),
         command: command.into(),
     })

@@ -6,7 +6,6 @@ use sixfold_study::numbers::times;
 use crate::Picture;
 use crate::canvas::{Canvas, Style};
 use crate::colours::{FAINT_COLOUR, GRID_COLOUR};
-use crate::data::FigureData;
 use crate::figure::{Figure, Table};
 use crate::matrix::{Cell, Matrix, Source};
 
@@ -64,7 +63,7 @@ pub(super) fn figure(
             times(MAX_RATIO)
         ),
         table,
-        data: FigureData::default(),
+        csv: String::new(),
         source: String::new(),
         command: command.into(),
     })

@@ -74,7 +74,7 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
             grouped(vertices)
         ),
         table,
-        data: data::memory(study),
+        csv: data::memory(study),
         source: String::new(),
         command: command.into(),
     })

@@ -66,7 +66,7 @@ pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Opt
                   has the times per element."
             .into(),
         table,
-        data: data::orders(report),
+        csv: data::orders(report),
         source: String::new(),
         command: command.into(),
     })

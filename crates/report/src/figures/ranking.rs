@@ -9,7 +9,7 @@ use super::per_unit;
 use crate::Picture;
 use crate::canvas::{Canvas, LogScale, Style, text_width};
 use crate::colours::{BACKGROUND, FAINT_COLOUR, GRID_COLOUR, INTERVAL_COLOUR, column_colour};
-use crate::data::{FigureData, rows};
+use crate::data::rows;
 use crate::figure::{Figure, Table};
 use crate::matrix::{Cell, Matrix, Source};
 
@@ -69,7 +69,7 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
     };
     let title = format!("Ranking for {name}");
     let figure = figure(title, id.into(), &[panel], "", command)?;
-    Some(figure.with_data(rows::pick(report)))
+    Some(figure.with_csv(rows::pick(report)))
 }
 
 pub(super) fn from_neighbours(
@@ -104,7 +104,7 @@ pub(super) fn from_neighbours(
     let panels: Vec<Panel<'_>> = panels.collect();
     let title = "Rankings of all tasks".into();
     let figure = figure(title, id.into(), &panels, "", command)?;
-    Some(figure.with_data(rows::neighbours(report)))
+    Some(figure.with_csv(rows::neighbours(report)))
 }
 
 /// Replaces the ratios by the quotients of the shown times, so that a reader who divides two times
@@ -180,7 +180,7 @@ fn figure(
         title,
         caption: caption.trim_end().to_owned(),
         table,
-        data: FigureData::default(),
+        csv: String::new(),
         source: String::new(),
         command: command.into(),
     })

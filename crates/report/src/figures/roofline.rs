@@ -87,7 +87,7 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
             speeds.collect::<Vec<_>>().join(", and ")
         ),
         table: table(&rows),
-        data: data::roofline(why),
+        csv: data::roofline(why),
         source: String::new(),
         command: command.into(),
     })
