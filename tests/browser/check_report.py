@@ -38,6 +38,8 @@ return [...document.querySelectorAll('figure[data-figure]')].map((figure) => ({
     id: figure.dataset.figure,
     mesh: figure.dataset.mesh || null,
     marks: [...figure.querySelectorAll('svg')].flatMap(marks),
+    dots: [...figure.querySelectorAll('svg path[d*="h2.4v2.4"]')].reduce((sum, path) =>
+        sum + path.getAttribute('d').split('M').length - 1, 0),
     lines: figure.querySelectorAll('svg path[fill="none"], svg polyline').length,
     text: [...figure.querySelectorAll('svg text')].map((text) => text.textContent),
     label: figure.querySelector('svg').getAttribute('aria-label'),
@@ -96,7 +98,7 @@ def shown_ratios(rows, time):
     return [rounded(row[time]) / rounded(best) if best and row[time] else row["ratio_to_best"] for row in rows]
 
 
-def check_places(marks, values, what, axis):
+def check_places(marks, values, what, axis, tolerance=0.6):
     """Checks that marks are at the positions of their values on a logarithmic axis."""
     size = "width" if axis == "x" else "height"
     places = [mark[axis] + mark[size] / 2 for mark in marks]
@@ -107,7 +109,74 @@ def check_places(marks, values, what, axis):
     scale = (places[high] - places[low]) / (logs[high] - logs[low])
     assert (scale > 0) == (axis == "x"), f"{what}: the axis has the wrong direction"
     for place, log in zip(places, logs):
-        close_to(place, places[low] + (log - logs[low]) * scale, what, 0.6)
+        close_to(place, places[low] + (log - logs[low]) * scale, what, tolerance)
+
+
+def mark_text(row, ratio):
+    """Returns what a mark of a ranking says."""
+    if is_bound(row):
+        return f"≥ {shown(rounded_down(ratio))}"
+    ends = [row.get(f"ratio_ci_{end}", row.get(f"ci_{end}")) for end in ("low", "high")]
+    has_interval = ends[0] is not None and row.get("samples", 99) >= 3 and shown(ends[0]) != shown(ends[1])
+    if "ratio_ci_low" in row and rounded(ratio) == 1:
+        has_interval = False
+    return f"{shown(ratio)} ({shown(ends[0])} to {shown(ends[1])})" if has_interval else shown(ratio)
+
+
+def check_means(figure, rows, studies):
+    """Compares the means over meshes with rows of the pool: the places of the lines, and the number of dots."""
+    assert len(figure["marks"]) == len(rows) == figure["rows"], figure["id"]
+    by_name = {(row["operation"], row["backend"]): row for row in rows}
+    places, ratios = [], []
+    for mark in figure["marks"]:
+        name, figures = mark["title"].split(": ", 1)
+        row = by_name[mark["panel"], name]
+        expected = mark_text(row, row["ratio_to_best"])
+        assert figures.split(" × the")[0] == expected, (mark, expected)
+        if not is_bound(row):
+            places.append({**mark, "y": 0, "height": 0})
+            ratios.append(min(1000, max(1, row["ratio_to_best"])))
+    check_places(places, ratios, figure["id"], "x")
+    timed = {(row["operation"], row["backend"]) for row in rows if not is_bound(row)}
+    dots = [row for study in studies for row in study["results"]
+            if row["ratio_to_best"] is not None and (row["operation"], row["backend"]) in timed]
+    assert figure["dots"] >= len(dots), (figure["dots"], len(dots))
+
+
+def check_distribution(figure, results, studies):
+    """Compares the dots of the meshes with the data: all places, and the ratios of builds."""
+    pool = results["pool"]
+    overall = pool["groups"][0]["overall"]
+    titles = {"Building": "build", "Queries": "query", "Edits": "edit", "Subdivision": "subdivide"}
+    for title, purpose in titles.items():
+        marks = [mark for mark in figure["marks"] if mark["panel"] == title]
+        rows = [row for row in overall if row["purpose"] == purpose]
+        assert bool(marks) == (len(rows) > 1), (title, rows)
+        if not marks:
+            continue
+        leader = rows[0]
+        for row in rows:
+            ratio = row["ratio_to_best"] / leader["ratio_to_best"]
+            sign, ratio = ("≥ ", ratio) if row["bound"] else ("", ratio)
+            assert any(text.startswith(f"{sign}{times(ratio)}") for text in figure["text"]), (row, ratio)
+        found = {}
+        for mark in marks:
+            name, ratio = mark["title"].rsplit(": ", 1)
+            found[name] = (float(ratio.removeprefix("≥ ").removesuffix(" ×").replace(",", "")), mark)
+        inside = [(ratio, mark) for ratio, mark in found.values() if 0.001 < ratio < 1000]
+        # The marks are rounded to three digits.
+        check_places([mark for _, mark in inside], [ratio for ratio, _ in inside], title, "x", 1.5)
+        if purpose == "build":
+            names = {row["backend"] for row in rows}
+            for study in studies:
+                each = {row["backend"]: rounded(row["ns_per_element"]) for row in study["results"]
+                        if row["operation"] == "build" and row["ns_per_element"] and row["backend"] in names}
+                short = study["mesh"]["name"].rsplit("/", 1)[-1]
+                for backend, ns in each.items():
+                    name = f"{short}, {backend}"
+                    if leader["backend"] in each and name in found:
+                        expected = rounded(ns / each[leader["backend"]])
+                        close_to(found[name][0], expected, name, 0.006 * expected)
 
 
 def check_ranking(figure, rows, ratios):
@@ -122,13 +191,7 @@ def check_ranking(figure, rows, ratios):
     for mark in figure["marks"]:
         name, figures = mark["title"].split(": ", 1)
         row, ratio = by_name[mark["panel"], name]
-        bound = is_bound(row)
-        ends = [row.get(f"ratio_ci_{end}", row.get(f"ci_{end}")) for end in ("low", "high")]
-        has_interval = ends[0] is not None and not bound and row.get("samples", 99) >= 3
-        if "ratio_ci_low" in row and rounded(ratio) == 1:
-            has_interval = False
-        interval = f" ({shown(ends[0])} to {shown(ends[1])})" if has_interval else ""
-        expected = f"≥ {shown(rounded_down(ratio))}" if bound else f"{shown(ratio)}{interval}"
+        expected = mark_text(row, ratio)
         found = figures.split(" × the")[0]
         assert found == expected, f"{mark['panel']} on {name}: {found}, but {expected} in the data"
         width = max(2.0, math.log(max(1.0, min(ratio, longest)), longest) * whole)
@@ -275,7 +338,7 @@ return {
     columns: [...table.tHead.rows[0].cells].map((cell) => cell.textContent),
     sorts: [...table.tHead.rows[0].cells].map((cell) => cell.getAttribute('aria-sort')),
     rows: [...table.tBodies[0].rows].filter((row) => !row.hidden).map((row) => ({
-        name: row.cells[0].textContent,
+        name: row.dataset.operation,
         cells: [...row.cells].slice(1).map((cell) => ({
             backend: cell.dataset.backend, source: cell.dataset.source, ns: cell.dataset.ns && Number(cell.dataset.ns),
             text: [...cell.childNodes].filter((node) => node.nodeName !== 'SMALL').map((node) => node.textContent).join(''),
@@ -296,7 +359,22 @@ control.dispatchEvent(new Event('change', {bubbles: true}));
 CLICK = "document.querySelectorAll('#operations thead button')[arguments[0]].click()"
 
 
-def check_operations(browser, rows, ratios):
+def quotient(studies, operation, backend, other):
+    """Returns the ratio of the times of two backends as the page shows it: of one mesh, or the geometric mean over meshes."""
+    logs = []
+    for study in studies:
+        of_it = {row["backend"]: row for row in study["results"]
+                 if row["operation"] == operation and row["median_ns"]
+                 and row["agreement"] not in ("mismatch", "other_edits")}
+        if backend in of_it and other in of_it:
+            own, base = of_it[backend], of_it[other]
+            if len(studies) == 1:
+                return rounded(own["ns_per_element"]) / rounded(base["ns_per_element"])
+            logs.append(math.log(own["median_ns"] / base["median_ns"]))
+    return math.exp(sum(logs) / len(logs)) if logs else None
+
+
+def check_operations(browser, rows, ratios, studies):
     """Checks the table of operations: its figures, and what its controls do."""
     names = list(dict.fromkeys(row["operation"] for row in rows))
     before = browser.run(TABLE)
@@ -311,7 +389,7 @@ def check_operations(browser, rows, ratios):
             sign = {"bound": "≥ ", "sampled": "~ "}.get(cell["source"], "")
             number = shown(rounded_down(ratio) if cell["source"] == "bound" else ratio)
             assert cell["text"].removesuffix(" tied") == f"{sign}{number} ×", (row["name"], cell, ratio)
-            close_to(cell["bar"], min(1, 1 / ratio), f"the bar of {row['name']} on {cell['backend']}", 1e-3)
+            close_to(cell["bar"], min(1, max(0, math.log10(ratio))), f"the bar of {row['name']} on {cell['backend']}", 1e-3)
     # Times.
     browser.run(CHOOSE, "figures", "times")
     for row in browser.run(TABLE)["rows"]:
@@ -333,7 +411,11 @@ def check_operations(browser, rows, ratios):
             if not base["ns"] or base["source"] == "bound":
                 assert cell["text"] == "–", (row["name"], cell)
             elif cell["source"] != "bound":
-                assert cell["text"] == times(cell["ns"] / base["ns"]), (row["name"], cell)
+                expected = quotient(studies, row["name"], cell["backend"], column)
+                assert cell["text"] == times(expected), (row["name"], cell, expected)
+                if cell["small"]:
+                    low, high = (float(end.replace(",", "")) for end in cell["small"].split(" to "))
+                    assert low <= rounded(expected) <= high, (row["name"], cell)
                 compared += 1
     assert compared, "no ratio to another baseline"
     browser.run(CHOOSE, "baseline", "")
@@ -406,6 +488,19 @@ def check_page(page, results, studies):
             assert any(cell.split(" ", 1)[-1] == expected or cell == expected for cell in text), (text, expected)
 
 
+def check_meshes(browser, studies):
+    """Checks that each mesh has a row, and that the link of the row opens the section of the mesh."""
+    links = browser.run("return [...document.querySelectorAll('#meshes tbody th a')].map((a) => a.getAttribute('href'))")
+    assert len(links) == len(studies), links
+    for link in (links[0], links[-1]):
+        browser.run("for (const details of document.querySelectorAll('#meshes details')) details.open = false")
+        browser.run("document.querySelector(`#meshes a[href='${arguments[0]}']`).click()", link)
+        opened = browser.run(
+            "return [...document.querySelectorAll('#meshes details[open] > div')].map((section) => '#' + section.id)"
+        )
+        assert opened == [link], (link, opened)
+
+
 def check(figure, results):
     """Compares one figure with the data."""
     studies, kind = of_kind(results, "study"), figure["id"]
@@ -429,10 +524,18 @@ def check(figure, results):
         rows = results["pool"]["groups"][0]["pooled"]
         columns = list(dict.fromkeys(row["backend"] for row in rows))
     else:
-        [study] = [s for s in studies if s["mesh"]["name"] == figure["mesh"]] if figure["mesh"] else studies
+        # A section has the name of the mesh without its folders, if no other mesh has the same.
+        here = [s for s in studies if s["mesh"]["name"] == figure["mesh"]]
+        here = here or [s for s in studies if s["mesh"]["name"].rsplit("/", 1)[-1] == figure["mesh"]]
+        [study] = here if figure["mesh"] else studies
         rows = study["results"]
         columns = [column["name"] for column in study["backends"] if column["holds"]]
     ratios = ratios_of(rows, pooled)
+    if kind == "distribution":
+        return check_distribution(figure, results, studies)
+    if kind == "rankings" and pooled:
+        names = results["pool"]["groups"][0]["meshes"]
+        return check_means(figure, rows, [study for study in studies if study["mesh"]["name"] in names])
     if kind.startswith("rankings"):
         of = [ratios[row["operation"], row["backend"]] for row in rows]
         return check_ranking(figure, [(row["operation"], row) for row in rows], of)
@@ -480,7 +583,11 @@ def main():
         if studies:
             pooled = len(results["planned"]) > 1
             rows = results["pool"]["groups"][0]["pooled"] if pooled else studies[0]["results"]
-            check_operations(browser, rows, ratios_of(rows, pooled))
+            names = results["pool"]["groups"][0]["meshes"] if pooled else [studies[0]["mesh"]["name"]]
+            compared = [study for study in studies if study["mesh"]["name"] in names]
+            check_operations(browser, rows, ratios_of(rows, pooled), compared)
+            if pooled:
+                check_meshes(browser, studies)
 
         # On a phone, the page must not be wider than the screen; wide figures scroll in their boxes.
         for width, theme in [(1200, "light"), (1200, "dark"), (390, "light"), (390, "dark")]:

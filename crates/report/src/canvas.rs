@@ -149,6 +149,26 @@ impl Canvas {
         });
     }
 
+    /// Draws a circle without a filling.
+    pub(crate) fn ring(&mut self, [cx, cy]: [f64; 2], r: f64, stroke: &str) {
+        self.0.add(Primitive::Circle {
+            cx,
+            cy,
+            r,
+            fill: "none".into(),
+            fill_opacity: None,
+            stroke: Some(stroke.into()),
+            stroke_width: Some(1.2),
+        });
+    }
+
+    /// Draws squares of `size` about the given points, as one shape.
+    pub(crate) fn dots(&mut self, points: impl Iterator<Item = [f64; 2]>, size: f64, fill: &str) {
+        let half = size / 2.0;
+        let dot = |[x, y]: [f64; 2]| format!("M{:.1} {:.1}h{size}v{size}h-{size}Z", x - half, y - half);
+        self.path(points.map(dot).collect(), fill);
+    }
+
     /// Draws a closed outline.
     pub(crate) fn filled(&mut self, points: &[[f64; 2]], fill: &str) {
         let mut d = String::new();
@@ -156,8 +176,12 @@ impl Canvas {
             let step = if number == 0 { 'M' } else { 'L' };
             d += &format!("{step}{x:.1} {y:.1}");
         }
+        self.path(d + "Z", fill);
+    }
+
+    fn path(&mut self, d: String, fill: &str) {
         self.0.add(Primitive::Path(Box::new(PathData {
-            d: d + "Z",
+            d,
             fill: Some(fill.into()),
             stroke: "none".into(),
             stroke_width: 0.0,

@@ -40,6 +40,8 @@ pub struct Table {
     pub header: Vec<String>,
     /// The rows. Each row is as long as the header.
     pub rows: Vec<Vec<String>>,
+    /// For each row, the part of the page that its first cell links to. Empty if there are no links.
+    pub links: Vec<String>,
 }
 
 /// A table that stands on the page without a figure.
@@ -58,11 +60,19 @@ impl Table {
         Self {
             header: header.into_iter().map(Into::into).collect(),
             rows: Vec::new(),
+            links: Vec::new(),
         }
     }
 
     pub(crate) fn row(&mut self, cells: Vec<String>) {
         self.rows.push(cells);
+    }
+
+    /// Adds a row whose first cell links to the part `target` of the page. All rows of the table must have
+    /// links.
+    pub(crate) fn linked_row(&mut self, cells: Vec<String>, target: String) {
+        self.row(cells);
+        self.links.push(target);
     }
 }
 
@@ -75,6 +85,14 @@ pub(crate) fn duration_tick(ns: f64) -> String {
         each if each >= 0.999 => format!("{} {unit}", grouped(each.round() as usize)),
         each => format!("{each} {unit}"),
     }
+}
+
+/// Formats a power of ten of bytes for an axis: `10 B`, `1 kB`.
+pub(crate) fn byte_tick(bytes: f64) -> String {
+    let units = [(1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
+    let unit = units.into_iter().find(|(size, _)| bytes >= 0.999 * size);
+    let (size, unit) = unit.unwrap_or((1.0, "B"));
+    format!("{} {unit}", grouped((bytes / size).round() as usize))
 }
 
 /// Formats a power of ten for an axis: `1`, `10,000`, `1 M`.

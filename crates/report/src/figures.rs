@@ -1,10 +1,10 @@
 //! Selects the figures for each kind of results.
 
 mod audit;
-mod break_even;
-mod groups;
+pub(crate) mod break_even;
 mod growth;
 mod heat_map;
+mod many;
 mod memory;
 mod orders;
 mod ranking;
@@ -16,6 +16,7 @@ use sixfold_study::{Environment, Finding, MeshReport, Report, Results, Run};
 
 use crate::data::rows;
 use crate::matrix::Matrix;
+use crate::papers::methods;
 use crate::source;
 use crate::summary::{self, Summary};
 use crate::{Figure, MeshPicture, ReportPage, Section};
@@ -39,11 +40,12 @@ pub(crate) fn page(results: &Results, command: &str) -> ReportPage {
     let mut page = match single {
         Some(study) => study_page(study, results, command),
         None if results.planned.is_empty() => labs_page(labs(results, command)),
-        None => pool_page(&studies, results, command),
+        None => many::page(&studies, results, command),
     };
     set_sources(&mut page, results);
     page.command = command.into();
     page.machines = machines(results);
+    page.methods = methods::paragraphs(results);
     if results.is_interrupted() {
         page.warnings.push(INTERRUPTED.to_owned());
     }
@@ -128,52 +130,6 @@ fn mesh_picture(mesh: &MeshReport) -> Option<MeshPicture> {
         .then_some(MeshPicture { png, label })
 }
 
-/// Returns the page of several meshes.
-fn pool_page(studies: &[&Report], results: &Results, command: &str) -> ReportPage {
-    let pool = results.pool();
-    let matrix = Matrix::of_pool(&pool);
-    let count = counted(studies.len(), "mesh", "meshes");
-    let all = pool.groups.first();
-    let mut sentences = pool.sentences.iter().cloned();
-    let answer = [
-        all.and_then(|all| summary::fastest(&all.overall)),
-        // Over which meshes the means are.
-        sentences.next(),
-    ];
-    let section = |(place, study): (usize, &&Report)| Section {
-        title: study.mesh.name.clone(),
-        facts: facts(&study.mesh),
-        sentences: study.sentences.clone(),
-        figures: section_figures(study, place + 1, command),
-        tables: Vec::new(),
-    };
-    let title = format!(
-        "Every operation on every structure: geometric mean over {}",
-        counted(all.map_or(0, |all| all.meshes.len()), "mesh", "meshes")
-    );
-    let note = "A ratio is the geometric mean over the meshes, relative to the fastest measured backend of \
-                each mesh. Bars in a frame are lower bounds (≥), which are not ranked.";
-    let figures = [
-        heat_map::figure(title, &matrix, "", command),
-        ranking::from_matrix(&matrix, note, command),
-    ];
-    let figures = figures.into_iter().flatten();
-    let figures = figures.map(|figure| figure.with_csv(rows::pooled(&pool)));
-    ReportPage {
-        title: format!("Mesh data structures on {count}"),
-        answer: answer.into_iter().flatten().collect(),
-        summary: Summary::of_pool(&pool, studies),
-        sentences: sentences.collect(),
-        figures: figures.collect(),
-        tables: groups::tables(&pool),
-        operations: matrix,
-        meshes: studies.iter().enumerate().map(section).collect(),
-        labs: labs(results, command),
-        warnings: pool.warnings,
-        ..ReportPage::default()
-    }
-}
-
 /// Returns the page of labs without a study. If there is only one, its first sentences are the answer.
 fn labs_page(mut labs: Vec<Section>) -> ReportPage {
     let [lab] = &mut labs[..] else {
@@ -232,7 +188,7 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
             )
             .into_iter()
             .collect(),
-            tables: Vec::new(),
+            ..Section::default()
         });
     }
     for (i, growth) in results.growth().enumerate() {
@@ -253,7 +209,7 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
             )
             .into_iter()
             .collect(),
-            tables: Vec::new(),
+            ..Section::default()
         });
     }
     for (i, why) in results.why().enumerate() {
@@ -272,6 +228,7 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
                 None => vec![reads::table(why)],
             },
             figures: figure.into_iter().collect(),
+            ..Section::default()
         });
     }
     for audit in results.memory() {
@@ -283,8 +240,8 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
                 true => audit.faults(),
                 false => audit.sentences.clone(),
             },
-            figures: Vec::new(),
             tables: audit::tables(audit),
+            ..Section::default()
         });
     }
     for (i, neighbours) in results.neighbours().enumerate() {
@@ -297,7 +254,7 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
             figures: ranking::from_neighbours(neighbours, &id, command)
                 .into_iter()
                 .collect(),
-            tables: Vec::new(),
+            ..Section::default()
         });
     }
     for (i, pick) in results.picks().enumerate() {
@@ -315,7 +272,7 @@ fn labs(results: &Results, command: &str) -> Vec<Section> {
             facts: pick.workload.summary.trim().to_owned(),
             sentences: [&pick.sentences[..], &pick.warnings].concat(),
             figures: ranked.into_iter().chain(curves).collect(),
-            tables: Vec::new(),
+            ..Section::default()
         });
     }
     sections
@@ -338,10 +295,9 @@ fn numbered_id(name: &str, place: usize) -> String {
 }
 
 fn study_figures(study: &Report, matrix: &Matrix, command: &str) -> Vec<Figure> {
-    let command = recorded_command(&study.run, command);
-    let note = "Bars in a frame are lower bounds (≥), which are not ranked: a run would exceed the budget.";
+    let command = study_command(study, command);
     let figures = [
-        ranking::from_matrix(matrix, note, command)
+        ranking::from_matrix(matrix, "", command)
             .map(|figure| figure.with_csv(rows::study(study))),
         heat_map_of(study, matrix, "", command),
         memory::from_study(study, "", command),
@@ -350,16 +306,9 @@ fn study_figures(study: &Report, matrix: &Matrix, command: &str) -> Vec<Figure> 
     figures.into_iter().flatten().collect()
 }
 
-/// Draws the figures of one of several studies. There are fewer figures than for a single study.
-fn section_figures(study: &Report, place: usize, command: &str) -> Vec<Figure> {
-    // Different names can have the same slug, so the place is added.
-    let id_prefix = format!("mesh-{place}-{}-", slug(&study.mesh.name));
-    let command = recorded_command(&study.run, command);
-    let figures = [
-        heat_map_of(study, &Matrix::of_study(study), &id_prefix, command),
-        memory::from_study(study, &id_prefix, command),
-    ];
-    figures.into_iter().flatten().collect()
+/// Returns the recorded command of a study.
+fn study_command<'a>(study: &'a Report, command: &'a str) -> &'a str {
+    recorded_command(&study.run, command)
 }
 
 fn heat_map_of(study: &Report, matrix: &Matrix, id_prefix: &str, command: &str) -> Option<Figure> {

@@ -38,6 +38,7 @@ impl ReportPage {
                     (self.contents())
                     main {
                         (self.first_screen())
+                        @for table in &self.tables { (table_section(table, "h2")) }
                         @if !self.operations.lines.is_empty() {
                             section id="operations" {
                                 (heading("h2", "All operations", "operations"))
@@ -45,11 +46,11 @@ impl ReportPage {
                             }
                         }
                         @for figure in &self.figures { (figure_section(figure, "h2", None)) }
-                        @for table in &self.tables { h2 { (table.title) } (table_section(table)) }
                         @for (place, lab) in self.labs.iter().enumerate() { (lab_section(place, lab)) }
                         @if !self.meshes.is_empty() {
                             section id="meshes" {
-                                (heading("h2", "Mesh by mesh", "meshes"))
+                                (heading("h2", "All meshes", "meshes"))
+                                (plain_table(&self.overview))
                                 @for section in &self.meshes { (mesh_section(section)) }
                             }
                         }
@@ -70,13 +71,16 @@ impl ReportPage {
             .map(|figure| (figure.id.clone(), short(&figure.title)));
         let labs = self.labs.iter().enumerate();
         let labs = labs.map(|(place, lab)| (lab_id(place), short(&lab.title)));
+        let tables = self.tables.iter();
+        let tables = tables.map(|table| (table_id(table), table.title.as_str()));
         html! {
             nav aria-label="Contents" {
                 ul {
                     li { a href="#answer" { "Answer" } }
+                    @for (id, title) in tables { li { a href={ "#" (id) } { (title) } } }
                     @if !self.operations.lines.is_empty() { li { a href="#operations" { "All operations" } } }
                     @for (id, title) in figures.chain(labs) { li { a href={ "#" (id) } { (title) } } }
-                    @if !self.meshes.is_empty() { li { a href="#meshes" { "Mesh by mesh" } } }
+                    @if !self.meshes.is_empty() { li { a href="#meshes" { "All meshes" } } }
                     li { a href="#method" { "How it was measured" } }
                 }
             }
@@ -139,15 +143,24 @@ impl ReportPage {
                 (heading("h2", "How it was measured", "method"))
                 pre { code { (self.command) } }
                 @for machine in &self.machines { p { (machine) } }
+                @for paragraph in &self.methods { p { (paragraph) } }
             }
         }
     }
 }
 
-/// Returns a sentence with the words before its first colon in bold.
+/// Words before a colon that are longer are no heading.
+const LONGEST_LEAD: usize = 110;
+
+/// Returns a sentence with the words before its first colon in bold, without their remark in brackets.
 fn lead(sentence: &str) -> Markup {
+    // A number and its sign stay on one line.
+    let sentence = sentence.replace(" ×", "\u{a0}×");
     match sentence.split_once(": ") {
-        Some((lead, rest)) if lead.len() < 50 => html! { strong { (lead) ":" } " " (rest) },
+        Some((lead, rest)) if lead.chars().count() < LONGEST_LEAD => {
+            let (words, remark) = lead.split_at(lead.find(" (").unwrap_or(lead.len()));
+            html! { strong { (words) } (remark) ": " (rest) }
+        }
         _ => html! { (sentence) },
     }
 }
@@ -192,7 +205,7 @@ fn lab_section(place: usize, lab: &Section) -> Markup {
             (list(first))
             @if !more.is_empty() { details { summary { "More on the results" } (list(more)) } }
             @for figure in &lab.figures { (figure_section(figure, "h3", None)) }
-            @for table in &lab.tables { h3 { (table.title) } (table_section(table)) }
+            @for table in &lab.tables { (table_section(table, "h3")) }
         }
     }
 }
@@ -202,8 +215,13 @@ fn mesh_section(section: &Section) -> Markup {
     html! {
         details {
             summary { (section.title) " – " (section.facts) }
-            (list(&section.sentences))
-            @for figure in &section.figures { (figure_section(figure, "h3", Some(&section.title))) }
+            // Inside of the element, so that a link opens it.
+            div.mesh-section id=(section.id) {
+                @for sentence in &section.sentences { p { (lead(sentence)) } }
+                @if let Some(summary) = &section.summary { (summary_table(summary)) }
+                @for figure in &section.figures { (figure_section(figure, "h3", Some(&section.title))) }
+                @for table in &section.tables { h3 { (table.title) } (plain_table(&table.table)) }
+            }
         }
     }
 }
@@ -236,9 +254,28 @@ fn figure_section(figure: &Figure, level: &str, mesh: Option<&str>) -> Markup {
     }
 }
 
-fn table_section(table: &TitledTable) -> Markup {
+/// Number of rows of a table that are not folded.
+const UNFOLDED: usize = 16;
+
+/// Returns a table under a heading. A long table is folded.
+fn table_section(table: &TitledTable, level: &str) -> Markup {
+    let id = table_id(table);
     html! {
-        p { (table.caption) }
-        (plain_table(&table.table))
+        section id=(id) {
+            (heading(level, &table.title, &id))
+            p.faint { (table.caption) }
+            @if table.table.rows.len() > UNFOLDED {
+                details { summary { "Show the table" } (plain_table(&table.table)) }
+            } @else {
+                (plain_table(&table.table))
+            }
+        }
     }
+}
+
+/// Returns the name of a table in links: `table-outliers`.
+fn table_id(table: &TitledTable) -> String {
+    let safe = |c: char| if c.is_alphanumeric() { c } else { '-' };
+    let title: String = table.title.to_lowercase().chars().map(safe).collect();
+    format!("table-{title}")
 }

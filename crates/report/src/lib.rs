@@ -53,6 +53,8 @@ pub struct ReportPage {
     pub command: String,
     /// Descriptions of the machines, one line each.
     pub machines: Vec<String>,
+    /// How the results were measured, as paragraphs for a paper.
+    pub methods: Vec<String>,
     /// Further sentences on the results.
     pub sentences: Vec<String>,
     /// Possible faults of the measurement, with remedies.
@@ -67,6 +69,9 @@ pub struct ReportPage {
     /// Sections for additional measurements: orders of elements, growth, reads of queries, memory,
     /// workloads.
     pub labs: Vec<Section>,
+    /// The meshes with their sizes and the fastest structures. Each row links to the section of the mesh.
+    /// Empty if there is only one mesh.
+    pub overview: Table,
     /// One section for each mesh; empty if there is only one mesh.
     pub meshes: Vec<Section>,
     /// Meshes that could not be studied: the name of each mesh, and the reason.
@@ -85,12 +90,16 @@ pub struct MeshPicture {
 }
 
 /// The part of a report about one mesh or one additional measurement.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Section {
+    /// Name of the section in links; empty for a lab.
+    pub id: String,
     /// Title.
     pub title: String,
     /// A description of the mesh or of the measurement, in one line.
     pub facts: String,
+    /// The structures by kind of work; `None` for a lab.
+    pub summary: Option<Summary>,
     /// Sentences that state the main results.
     pub sentences: Vec<String>,
     /// The figures of the section.

@@ -2,8 +2,11 @@
 
 use sixfold_study::numbers::{duration, figure, rounded_down};
 use sixfold_study::{
-    FIRST_TIME_SHOWN, Operation, Pool, Pooled, RefusalKind, Report, ResultRow, Standing,
+    FIRST_TIME_SHOWN, Operation, Pool, Pooled, Quotient, RefusalKind, Report, ResultRow, Standing,
+    mean_quotient,
 };
+
+use crate::figure::Table;
 
 /// How a figure was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +43,10 @@ pub(crate) struct Cell {
     pub(crate) samples: usize,
     /// Why there is no figure, or a remark on the figure.
     pub(crate) remark: Option<String>,
+    /// The ratio on each mesh, if `ratio` is a mean over meshes.
+    pub(crate) each: Vec<f64>,
+    /// The quotients of this time and that of each backend of the matrix, in its order.
+    pub(crate) quotients: Vec<Option<Quotient>>,
 }
 
 /// One operation on all backends.
@@ -77,6 +84,8 @@ impl Cell {
             standing: None,
             samples: 0,
             remark: None,
+            each: Vec::new(),
+            quotients: Vec::new(),
         }
     }
 
@@ -95,8 +104,9 @@ impl Cell {
 
     /// Returns the interval as text: `1.28 to 1.34`.
     pub(crate) fn interval_text(&self) -> Option<String> {
-        let [low, high] = self.interval?;
-        Some(format!("{} to {}", figure(low), figure(high)))
+        let [low, high] = self.interval?.map(figure);
+        // The fastest on every mesh has no interval.
+        (low != high).then(|| format!("{low} to {high}"))
     }
 
     /// Returns the time as text: `5.56 ns`, `≥ 12.3 µs` or `–`.
@@ -238,9 +248,13 @@ impl Matrix {
         let backends: Vec<String> = holding.map(|backend| backend.name.clone()).collect();
         let lines = operations().filter_map(|operation| {
             let unit = study.rows(operation).next()?.per.clone();
-            let cells = backends
-                .iter()
-                .map(|name| Cell::of_study(study, operation, name));
+            let cells = backends.iter().map(|name| Cell {
+                quotients: backends
+                    .iter()
+                    .map(|other| study.quotient(operation, name, other))
+                    .collect(),
+                ..Cell::of_study(study, operation, name)
+            });
             Some(Line::new(operation, unit, cells.collect()))
         });
         Self {
@@ -249,8 +263,8 @@ impl Matrix {
         }
     }
 
-    /// Returns the means over the meshes of `pool`.
-    pub(crate) fn of_pool(pool: &Pool) -> Self {
+    /// Returns the means over the meshes of `pool`, which are those of `studies`.
+    pub(crate) fn of_pool(pool: &Pool, studies: &[&Report]) -> Self {
         let mut backends: Vec<String> = Vec::new();
         for row in pool.all() {
             if !backends.contains(&row.backend) {
@@ -262,7 +276,14 @@ impl Matrix {
             let rows: Vec<&Pooled> = rows.collect();
             rows.first()?;
             let cell = |name: &String| match rows.iter().find(|row| row.backend == *name) {
-                Some(row) => Cell::of_pool(row),
+                Some(row) => Cell {
+                    each: ratios(studies, operation, name),
+                    quotients: backends
+                        .iter()
+                        .map(|other| mean_quotient(studies, operation, name, other))
+                        .collect(),
+                    ..Cell::of_pool(row)
+                },
                 None => Cell::new(name, Source::NotRun),
             };
             let cells = backends.iter().map(cell).collect();
@@ -275,6 +296,15 @@ impl Matrix {
     }
 }
 
+/// Returns the measured ratios of one backend to the fastest of each mesh.
+fn ratios(studies: &[&Report], operation: Operation, backend: &str) -> Vec<f64> {
+    let ratio = |study: &&Report| {
+        let mut rows = study.rows(operation);
+        rows.find(|row| row.backend == backend)?.ratio_to_best
+    };
+    studies.iter().filter_map(ratio).collect()
+}
+
 /// Returns the operations, those of a group one after the other.
 fn operations() -> impl Iterator<Item = Operation> {
     const GROUPS: [&str; 5] = ["build", "queries", "traversals", "edits", "subdivision"];
@@ -282,6 +312,24 @@ fn operations() -> impl Iterator<Item = Operation> {
     let mut operations = Operation::ALL;
     operations.sort_by_key(place);
     operations.into_iter()
+}
+
+impl Matrix {
+    /// Returns the ratios as a table of texts. ● marks the fastest, and ◐ those tied with it.
+    pub(crate) fn ratios(&self) -> Table {
+        let names = self.backends.iter().map(String::as_str);
+        let mut table = Table::new(["operation"].into_iter().chain(names));
+        for line in &self.lines {
+            let cell = |cell: &Cell| match cell.ratio_text() {
+                text if cell.is_best() => format!("● {text}"),
+                text if cell.is_tied() => format!("◐ {text}"),
+                text => text,
+            };
+            let cells = line.cells.iter().map(cell);
+            table.row([line.name.clone()].into_iter().chain(cells).collect());
+        }
+        table
+    }
 }
 
 impl Line {

@@ -1,7 +1,7 @@
 //! The files for a paper: each figure as SVG and PDF, with its data and its caption; tables for LaTeX
 //! and Markdown; and a description of the methods.
 
-mod methods;
+pub(crate) mod methods;
 mod tables;
 mod tex;
 

@@ -3,10 +3,11 @@
 
 use crate::figure::Table;
 use crate::figures::INPUT_BACKEND;
-use sixfold_study::numbers::{counted, figure, list, times};
+use crate::figures::break_even::break_even_text;
+use sixfold_study::numbers::{counted, figure, grouped, list, shown_ratio, times};
 use sixfold_study::{
-    BackendReport, Operation, OrdersReport, Overall, Pool, Purpose, Report, Results, Standing,
-    leaders,
+    BackendReport, FEWEST_OF_A_WINNER, Operation, OrdersReport, Overall, Pool, Purpose, Report,
+    Results, Standing, leaders,
 };
 
 /// A table with a row for each backend and a column for each kind of work.
@@ -25,6 +26,8 @@ pub struct SummaryColumn {
     pub name: String,
     /// What the figures of the column are.
     pub about: String,
+    /// What the mean is over, such as `17 operations`, or the unit.
+    pub over: String,
 }
 
 /// A row of a [`Summary`]: one backend.
@@ -43,7 +46,7 @@ pub struct SummaryRow {
 pub struct SummaryFigure {
     /// The figure as text, such as `1.31 ×`.
     pub text: String,
-    /// The best figure of the column divided by this figure: 1 for the best, near 0 for the worst.
+    /// Length of the bar, from 0 for the best to 1 for 10 times the best and more, on a logarithmic scale.
     pub share: f64,
     /// Whether the figure is the best, or tied with it.
     pub rank: Rank,
@@ -67,10 +70,16 @@ impl SummaryFigure {
     fn new(value: f64, best: f64, rank: Rank, text: String) -> Self {
         Self {
             text,
-            share: (best / value).clamp(0.0, 1.0),
+            share: bar_length(value / best),
             rank,
         }
     }
+}
+
+/// Returns the length of the bar of a cost that is `ratio` times the least: from 0 for the least to 1 for 10
+/// times the least and more, on a logarithmic scale.
+pub(crate) fn bar_length(ratio: f64) -> f64 {
+    ratio.log10().clamp(0.0, 1.0)
 }
 
 /// The kinds of work, with the word for each column.
@@ -82,20 +91,25 @@ const WORK: [(Purpose, &str, &str); 4] = [
     ),
     (
         Purpose::Query,
-        "navigate",
+        "queries",
         "Mean time of all queries and read-only passes, divided by the shortest",
     ),
     (
         Purpose::Edit,
-        "edit",
+        "edits",
         "Mean time of all edits, divided by the shortest",
     ),
     (
         Purpose::Subdivide,
-        "subdivide",
+        "subdivision",
         "Time of a subdivision step by the fastest method, divided by the shortest",
     ),
 ];
+
+/// A backend whose queries take longer than this factor is no choice, however small it is.
+const MOST_USABLE: f64 = 10.0;
+/// The smallest factor for which a single operation would change the answer.
+const LEAST_GAIN: f64 = 1.2;
 
 /// What the first screen says about the memory of each backend.
 struct Memory {
@@ -176,17 +190,19 @@ impl Summary {
                 .filter(|row| row.purpose == purpose)
                 .cloned()
                 .collect();
-            summary.column(name, about, |backend| {
+            let over = rows.first().map_or_else(String::new, mean_over);
+            summary.column([name, about, &over], |backend| {
                 work_figure(&rows, sure(purpose), backend)
             });
             if purpose == Purpose::Build {
                 let about = "Bytes held for each vertex, with spare capacity";
-                summary.column("memory", about, |backend| memory_figure(memory, backend));
+                let column = ["memory", about, "bytes per vertex"];
+                summary.column(column, |backend| memory_figure(memory, backend));
             }
         }
         let about = "The longest time of an operation in its worst order of the elements, divided by the time in its \
                      best order";
-        summary.column("worst order", about, |backend| {
+        summary.column(["worst order", about, "longest / shortest"], |backend| {
             order_figure(orders?, backend)
         });
         summary
@@ -210,7 +226,11 @@ impl Summary {
     }
 
     /// Adds a column, unless it is empty.
-    fn column(&mut self, name: &str, about: &str, figure: impl Fn(&str) -> Option<SummaryFigure>) {
+    fn column(
+        &mut self,
+        [name, about, over]: [&str; 3],
+        figure: impl Fn(&str) -> Option<SummaryFigure>,
+    ) {
         let figures: Vec<_> = self.rows.iter().map(|row| figure(&row.backend)).collect();
         if figures.iter().all(Option::is_none) {
             return;
@@ -218,6 +238,7 @@ impl Summary {
         self.columns.push(SummaryColumn {
             name: name.to_owned(),
             about: about.to_owned(),
+            over: over.to_owned(),
         });
         for (row, figure) in self.rows.iter_mut().zip(figures) {
             row.figures.push(figure);
@@ -288,12 +309,27 @@ fn memory_figure(memory: &[Memory], backend: &str) -> Option<SummaryFigure> {
     ))
 }
 
-/// Returns the largest effect of the order on `backend`, with its operation.
+/// Says what a mean is over.
+fn mean_over(row: &Overall) -> String {
+    match (row.meshes, row.purpose, row.cases) {
+        (1, Purpose::Build, _) => "from a face set".into(),
+        (1, Purpose::Subdivide, _) => "fastest method".into(),
+        (1, _, 0) => String::new(),
+        (1, _, cases) => format!("mean of {}", counted(cases, "operation", "operations")),
+        (meshes, ..) => format!("mean over {}", counted(meshes, "mesh", "meshes")),
+    }
+}
+
+/// Returns the largest effect of the order on `backend`, as the quotient of two shown times, with its
+/// operation.
 fn order_effect<'r>(orders: &'r OrdersReport, backend: &str) -> Option<(f64, &'r str)> {
     let effects = orders.comparisons.iter().filter_map(|comparison| {
-        let mut effects = comparison.orders.iter();
-        let effect = effects.find(|effect| effect.backend == backend)?;
-        Some((effect.worst_to_best.ratio, comparison.operation.name()))
+        let rows = orders.rows(comparison.operation);
+        let rows = rows.filter(|row| row.backend == backend && row.ratio_to_best.is_some());
+        let times: Vec<f64> = rows.filter_map(|row| row.ns_per_element).collect();
+        let least = times.iter().copied().reduce(f64::min)?;
+        let most = times.iter().copied().reduce(f64::max)?;
+        Some((shown_ratio(most, least), comparison.operation.name()))
     });
     effects.max_by(|a, b| a.0.total_cmp(&b.0))
 }
@@ -304,20 +340,64 @@ fn order_figure(orders: &OrdersReport, backend: &str) -> Option<SummaryFigure> {
     Some(SummaryFigure::new(own, 1.0, Rank::Other, times(own)))
 }
 
-/// Returns the fastest backends of each kind of work of a study, and the next one. The sentence says if the
-/// samples are too few for one of them.
+/// Returns the fastest backends of each kind of work of a study, and the next one. If the samples are too
+/// few for one of them, the sentence says so, and which budget gives enough.
 pub(crate) fn fastest_of_study(study: &Report) -> Option<String> {
     let overall = study.overall();
+    let parts = fastest(&overall, &|row| row.backend.clone())?;
     let unsure = overall.iter().any(|row| !is_sure(study, row.purpose));
-    let sentence = fastest(&overall)?;
-    Some(match unsure {
-        true => sentence.replacen("Fastest: ", "Fastest (provisional, too few samples): ", 1),
-        false => sentence,
+    Some(match (unsure, enough(study)) {
+        (false, _) => format!("Fastest: {parts}."),
+        (true, None) => format!("Fastest (provisional, too few samples): {parts}."),
+        (true, Some(budget)) => {
+            format!("Fastest (provisional, too few samples; {budget} gives enough): {parts}.")
+        }
     })
 }
 
-/// Returns the fastest backends of each kind of work, and the next one.
-pub(crate) fn fastest(overall: &[Overall]) -> Option<String> {
+/// Returns the option that gives about enough samples for a winner; `None` if this is unknown.
+fn enough(study: &Report) -> Option<String> {
+    let measured = study.results.iter().filter(|row| row.median_ns.is_some());
+    let fewest = measured.map(|row| row.samples).min().filter(|&samples| samples > 0)?;
+    let settings = &study.run.settings;
+    let factor = (FEWEST_OF_A_WINNER as f64 / fewest as f64).max(1.0);
+    Some(match (settings.rounds, settings.budget_s) {
+        (Some(_), _) => format!("--rounds {FEWEST_OF_A_WINNER}"),
+        // A fifth more, because the first samples also find out how long the others take.
+        (None, Some(seconds)) => format!("--budget {}s", (1.2 * factor * seconds).ceil()),
+        (None, None) => return None,
+    })
+}
+
+/// Returns the fastest backends of each kind of work over several meshes, with the number of meshes on which
+/// they are the fastest, and the next one.
+pub(crate) fn fastest_of_many(overall: &[Overall], studies: &[&Report]) -> Option<String> {
+    let parts = fastest(overall, &|row| {
+        let of = grouped(row.meshes);
+        let tied = match row.tied {
+            0 => String::new(),
+            tied => format!(", tied on {}", grouped(tied)),
+        };
+        format!("{} ({} of {of}{tied})", row.backend, grouped(row.best))
+    });
+    let is_unsure = |study: &&&Report| {
+        let overall = study.overall();
+        overall.iter().any(|row| !is_sure(study, row.purpose))
+    };
+    let unsure = studies.iter().filter(is_unsure).count();
+    let unsure = match unsure {
+        0 => String::new(),
+        _ => format!(
+            " (provisional, too few samples on {} of {})",
+            grouped(unsure),
+            counted(studies.len(), "mesh", "meshes")
+        ),
+    };
+    Some(format!("Fastest on average{unsure}: {}.", parts?))
+}
+
+/// Returns the fastest backends of each kind of work, as `name` names them, and the next one.
+fn fastest(overall: &[Overall], name: &dyn Fn(&Overall) -> String) -> Option<String> {
     const ORDER: [Purpose; 4] = [
         Purpose::Query,
         Purpose::Edit,
@@ -334,17 +414,16 @@ pub(crate) fn fastest(overall: &[Overall]) -> Option<String> {
         if rows.len() < 2 || best.is_empty() {
             return None;
         }
-        let names: Vec<&str> = best.iter().map(|row| row.backend.as_str()).collect();
-        let names = match names.len() == rows.len() {
+        let names = match best.len() == rows.len() {
             true => "no clear difference".to_owned(),
-            false => names.join(" or "),
+            false => best.iter().map(name).collect::<Vec<_>>().join(" or "),
         };
         let others = &rows[best.len()..];
         let next = others
             .first()
             .map(|next| match next.bound && others.len() > 1 {
-                true => format!(" (the others: {})", next.times(&rows[0])),
-                false => format!(" (next: {}, {})", next.backend, next.times(&rows[0])),
+                true => format!(", the others {}", next.times(&rows[0])),
+                false => format!(", next {} {}", next.backend, next.times(&rows[0])),
             });
         Some(format!(
             "{} {names}{}",
@@ -353,59 +432,88 @@ pub(crate) fn fastest(overall: &[Overall]) -> Option<String> {
         ))
     });
     let parts: Vec<String> = parts.collect();
-    (!parts.is_empty()).then(|| format!("Fastest: {}.", parts.join("; ")))
+    (!parts.is_empty()).then(|| parts.join("; "))
 }
 
-/// Returns what would change the answer: tight memory, few repetitions, another order.
+/// Returns what would change the answer: tight memory, few repetitions, a single operation, another order.
 pub(crate) fn turning_points(study: &Report, results: &Results) -> Option<String> {
     let overall = study.overall();
     let queries: Vec<Overall> = overall
         .into_iter()
         .filter(|row| row.purpose == Purpose::Query)
         .collect();
-    let leader = leaders(&queries).first()?.backend.clone();
+    let leader = leaders(&queries).first()?;
+    let orders = orders_of(study, results);
+    let order = orders.and_then(|orders| order_effect(orders, &leader.backend));
+    let points = [
+        less_memory(study, &queries, leader),
+        pays_after(study, &leader.backend).map(|runs| {
+            format!("few queries (building {} pays after {runs})", leader.backend)
+        }),
+        one_operation(study, leader),
+        order.map(|(factor, operation)| {
+            format!(
+                "another order of the elements (up to {} on {}, in {operation})",
+                times(factor),
+                leader.backend
+            )
+        }),
+    ];
+    let points: Vec<String> = points.into_iter().flatten().collect();
+    (!points.is_empty()).then(|| format!("What would change it: {}.", list(points)))
+}
+
+/// Names the smallest backend and what it costs, if it is clearly smaller than `leader`.
+fn less_memory(study: &Report, queries: &[Overall], leader: &Overall) -> Option<String> {
     let bytes = |name: &str| {
         let mut backends = study.backends.iter().filter(|backend| backend.name == name);
         backends.next()?.bytes_per_vertex
     };
-    let mut points = Vec::new();
-    let least = study
-        .backends
-        .iter()
-        .filter_map(|backend| Some((backend.name.as_str(), backend.bytes_per_vertex?)));
-    let least = least.min_by(|a, b| a.1.total_cmp(&b.1));
-    if let (Some((smallest, least)), Some(own)) = (least, bytes(&leader))
-        && own > 1.05 * least
-    {
-        points.push(format!(
-            "little memory ({smallest} holds a vertex in {} bytes, {leader} in {})",
-            figure(least),
-            figure(own)
-        ));
-    }
-    if let Some(runs) = pays_after(study, &leader) {
-        points.push(format!(
-            "few queries (building {leader} pays after {runs} of them all)"
-        ));
-    }
-    let orders = orders_of(study, results);
-    if let Some((factor, operation)) = orders.and_then(|orders| order_effect(orders, &leader)) {
-        points.push(format!(
-            "another order of the elements (up to {} on {leader}, in {operation})",
-            times(factor)
-        ));
-    }
-    (!points.is_empty()).then(|| format!("What would change it: {}.", list(points)))
+    let own = bytes(&leader.backend)?;
+    let smaller = queries.iter().filter_map(|row| Some((row, bytes(&row.backend)?)));
+    // A backend that scans all faces is no choice for queries, so it must not be much slower.
+    let usable = smaller.filter(|(row, bytes)| {
+        !row.bound && 1.05 * bytes < own && row.ratio_to_best < MOST_USABLE * leader.ratio_to_best
+    });
+    let (smallest, least) = usable.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(format!(
+        "little memory ({}: {} bytes per vertex instead of {}, {} in queries)",
+        smallest.backend,
+        figure(least),
+        figure(own),
+        smallest.times(leader)
+    ))
 }
 
-/// Returns after how many passes over all queries `backend`, with its first build, has saved time
+/// Names the backend that is much faster than `leader` in one query, for the query with the largest
+/// difference.
+fn one_operation(study: &Report, leader: &Overall) -> Option<String> {
+    let own = study.results.iter().filter(|row| row.backend == leader.backend);
+    let own = own.filter(|row| Purpose::of(row.operation) == Purpose::Query);
+    let slower = own.filter(|row| row.standing == Some(Standing::Slower));
+    let slower = slower.filter_map(|row| Some((row, study.shown_ratio(row)?)));
+    let (row, ratio) = slower.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let best = study.rows(row.operation).find(|row| row.ratio_to_best == Some(1.0))?;
+    (ratio >= LEAST_GAIN).then(|| {
+        format!(
+            "a single operation ({} in {}: {} takes {})",
+            best.backend,
+            row.operation,
+            leader.backend,
+            times(ratio)
+        )
+    })
+}
+
+/// Returns after how many visited elements of all queries `backend`, with its first build, has saved time
 /// against the indexed face set.
 fn pays_after(study: &Report, backend: &str) -> Option<String> {
     let row = |operation, name: &str| study.rows(operation).find(|row| row.backend == name);
-    let run = row(Operation::AllQueries, backend)?.median_ns?;
-    let given = row(Operation::AllQueries, INPUT_BACKEND)?.median_ns?;
+    let run = row(Operation::AllQueries, backend)?;
+    let given = row(Operation::AllQueries, INPUT_BACKEND)?;
+    let (run, given) = (run.median_ns.and(run.ns_per_element)?, given.median_ns.and(given.ns_per_element)?);
     let build = row(Operation::Build, backend)?;
     let build = build.first_ns.or(build.median_ns)?;
-    let count = (build / (given - run)).ceil().max(1.0);
-    (given > run && count < 1e9).then(|| counted(count as usize, "pass", "passes"))
+    let count = build / (given - run);
+    (given > run && count < 1e9).then(|| break_even_text(count, "visited element", "visited elements"))
 }

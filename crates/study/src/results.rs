@@ -9,6 +9,7 @@ pub(crate) mod finding;
 pub(crate) mod json;
 pub(crate) mod merge;
 pub(crate) mod pool;
+pub(crate) mod quotient;
 pub(crate) mod read;
 pub(crate) mod rows;
 pub(crate) mod run;

@@ -10,7 +10,7 @@ use crate::canvas::{Axes, Canvas, LogScale, Style, spread};
 use crate::colours::column_colour;
 use crate::data::own_columns;
 use crate::data::rows::BreakEvenRow;
-use crate::figure::{Figure, Table, duration_tick};
+use crate::figure::{Figure, Table, count_tick, duration_tick};
 
 /// Draws the time to build once and repeat one operation, over the number of repetitions.
 pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Option<Figure> {
@@ -37,9 +37,15 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         let build = builds.find(|build| build.backend == row.backend)?;
         build.first_ns.or(build.median_ns)
     };
+    // Building pays long before a pass over all queries, and each visit of one is as good as any other.
+    let per_visit = operation == Operation::AllQueries;
+    let run = |row: &ResultRow| match per_visit {
+        true => row.median_ns.and(row.ns_per_element),
+        false => row.median_ns,
+    };
     let rows = study.rows(operation);
     let lines: Vec<(&str, f64, f64)> = rows
-        .filter_map(|row| Some((row.backend.as_str(), build(row)?, row.median_ns?)))
+        .filter_map(|row| Some((row.backend.as_str(), build(row)?, run(row)?)))
         .collect();
     let input = lines.iter().find(|(name, ..)| *name == INPUT_BACKEND);
     let pays_at = |(name, build, run): (&str, f64, f64)| match input {
@@ -48,6 +54,7 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
     };
     let pays_after = |line: (&str, f64, f64)| match (input, pays_at(line)) {
         _ if line.0 == INPUT_BACKEND => "given".into(),
+        (_, Some(count)) if per_visit => break_even_text(count, "visit", "visits"),
         (_, Some(count)) => break_even_text(count, "run", "runs"),
         (Some(_), None) => "never".into(),
         (None, None) => "–".into(),
@@ -66,22 +73,25 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         "Time to build once and repeat {operation}: {}",
         super::file_name(&study.mesh.name)
     );
-    let caption = format!(
-        "The mesh is given as an {INPUT_BACKEND}. Every other structure is built first; the \
-         time to build is that of the first build on fresh pages, where one was measured. Points and numbers show after how many runs building pays off: the line of the \
-         structure is then below that of the {INPUT_BACKEND}. `sixfold pick` measures this for a workload."
-    );
     let curves = Curves {
         title,
         id: format!("{id_prefix}break-even"),
-        caption,
-        axis: &format!("runs of {operation}"),
-        unit: "one run",
+        note: "`sixfold pick` measures this for a workload.".into(),
+        axis: &match per_visit {
+            true => "visited elements, up to all relations of the whole mesh".to_owned(),
+            false => format!("runs of {operation}"),
+        },
+        unit: if per_visit { "one visit" } else { "one run" },
+        units: if per_visit { "visits" } else { "runs" },
         subject: &study.mesh.name,
         repeated: operation.name(),
-        max_count: {
+        // To a pass over the whole mesh.
+        max_count: if per_visit {
+            let mut elements = study.rows(operation).filter_map(|row| row.elements);
+            elements.next().map_or(1e6, |elements| elements as f64).max(10.0)
+        } else {
             let counts = lines.iter().filter_map(|line| line.pays_at);
-            let last = counts.filter(|count| *count < 1e6).fold(10.0, f64::max);
+            let last = counts.filter(|count| *count < 1e9).fold(10.0, f64::max);
             10_f64.powf((10.0 * last).log10().ceil())
         },
     };
@@ -118,22 +128,16 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
     let lines: Vec<Line<'_>> = lines.collect();
     let name = &report.workload.name;
     let title = format!("Time to build once and run {name}");
-    let caption = format!(
-        "The mesh is given as an {INPUT_BACKEND}. Every other structure is built first; the \
-         time to build is that of the first build on fresh pages, where one was measured. Points and numbers show after how many operations building pays off: the line of the \
-         structure is then below that of the {INPUT_BACKEND}. One use of the mesh consists of {}.",
-        counted(
-            report.operations.round() as usize,
-            "operation",
-            "operations"
-        )
-    );
     let curves = Curves {
         title,
         id: id.into(),
-        caption,
+        note: format!(
+            "One use of the mesh consists of {}.",
+            counted(report.operations.round() as usize, "operation", "operations")
+        ),
         axis: "operations",
         unit: "one operation",
+        units: "operations",
         subject: name,
         repeated: "one operation of the workload",
         max_count: (100.0 * report.operations).max(1e4),
@@ -157,27 +161,40 @@ impl Line<'_> {
     fn at(&self, count: f64) -> f64 {
         self.build + count * self.run
     }
+
+    /// Returns the number of repetitions from which building pays off, if it is between the ends of the axis.
+    fn point(&self, [first, last]: [f64; 2]) -> Option<f64> {
+        self.pays_at.filter(|&count| first < count && count <= last)
+    }
 }
 
-fn break_even_text(count: f64, singular: &str, plural: &str) -> String {
+/// Returns a number of repetitions as text: `1 run` or `1,200 runs`.
+pub(crate) fn break_even_text(count: f64, singular: &str, plural: &str) -> String {
     match count.ceil().max(1.0) {
         count if count < 1e15 => counted(count as usize, singular, plural),
         _ => "never".into(),
     }
 }
 
+fn count_text(count: f64) -> String {
+    grouped(count.ceil().max(1.0) as usize)
+}
+
 struct Curves<'a> {
     title: String,
     id: String,
-    caption: String,
+    /// The end of the caption.
+    note: String,
     axis: &'a str,
     /// Column title of the repeated work.
     unit: &'a str,
+    /// What is counted, such as `runs`.
+    units: &'a str,
     /// The mesh or the workload.
     subject: &'a str,
     /// What one run is.
     repeated: &'a str,
-    /// Maximum number of repetitions.
+    /// The largest number of repetitions.
     max_count: f64,
 }
 
@@ -224,17 +241,17 @@ impl Curves<'_> {
             },
             x_label: self.axis,
             y_label: "total time, with the time to build",
-            x_format: &|count| grouped(count.round() as usize),
+            x_format: &count_tick,
             y_format: &duration_tick,
         };
         let mut canvas = Canvas::new(860.0, 424.0);
         axes.draw(&mut canvas);
-        draw_lines(&mut canvas, &axes, lines, self.max_count);
+        draw_lines(&mut canvas, &axes, lines);
         Some(Figure {
+            caption: self.caption(lines),
             id: self.id,
             picture: Picture::single(&self.title, canvas.finish()),
             title: self.title,
-            caption: self.caption,
             table,
             csv,
             source: String::new(),
@@ -243,29 +260,86 @@ impl Curves<'_> {
     }
 }
 
+impl Curves<'_> {
+    fn caption(&self, lines: &[Line<'_>]) -> String {
+        let mut parts = vec![format!(
+            "The mesh is given as an {INPUT_BACKEND}. Every other structure is built first; the time to build is that of the \
+             first build on fresh pages, where one was measured."
+        )];
+        let is_drawn = |line: &Line<'_>| line.point([1.0, self.max_count]).is_some();
+        if lines.iter().any(is_drawn) {
+            parts.push(format!(
+                "Points and numbers show after how many {} building pays off: the line of the structure is then below that of \
+                 the {INPUT_BACKEND}.",
+                self.units
+            ));
+        }
+        parts.extend(self.least_total(lines));
+        parts.push(self.note.clone());
+        parts.join(" ")
+    }
+
+    /// Says which structure has the shortest total time for how many repetitions.
+    fn least_total(&self, lines: &[Line<'_>]) -> Option<String> {
+        let least = |count: f64| {
+            let order = |a: &&Line<'_>, b: &&Line<'_>| {
+                let by_total = a.at(count).total_cmp(&b.at(count));
+                by_total.then(a.run.total_cmp(&b.run))
+            };
+            lines.iter().min_by(order)
+        };
+        let mut line = least(1.0)?;
+        let mut count = 1.0;
+        let mut parts = Vec::new();
+        loop {
+            // The first crossing with a line that is less steep.
+            let crossing = |other: &Line<'_>| (other.build - line.build) / (line.run - other.run);
+            let later = lines.iter().filter(|other| other.run < line.run);
+            let next = later.map(crossing).filter(|&at| at > count).reduce(f64::min);
+            let Some(next) = next.filter(|&next| next < self.max_count) else {
+                break;
+            };
+            parts.push(format!("{} up to {}", line.name, count_text(next)));
+            // Beyond the crossing, so that rounding does not choose the same line again.
+            count = next * (1.0 + 1e-9);
+            line = least(count)?;
+        }
+        Some(match parts.is_empty() {
+            true => format!("{} has the shortest total time everywhere.", line.name),
+            false => format!(
+                "The shortest total time: {}, {} beyond.",
+                parts.join(", "),
+                line.name
+            ),
+        })
+    }
+}
+
 /// Draws the lines with their names at the right, and the points from which building pays off.
-fn draw_lines(canvas: &mut Canvas, axes: &Axes<'_>, lines: &[Line<'_>], max_count: f64) {
-    let quarters = (8.0 * max_count.log10()).ceil() as i32;
+fn draw_lines(canvas: &mut Canvas, axes: &Axes<'_>, lines: &[Line<'_>]) {
+    let [min_count, max_count] = axes.x.values;
+    let steps = (8.0 * (max_count / min_count).log10()).ceil() as i32;
     for line in lines {
-        let counts = (0..=quarters).map(|step| 10_f64.powf(f64::from(step) / 8.0).min(max_count));
+        let count = |step: i32| min_count * 10_f64.powf(f64::from(step) / 8.0);
+        let counts = (0..=steps).map(|step| count(step).min(max_count));
         let points = counts.map(|count| axes.place([count, line.at(count)]));
         let points: Vec<[f64; 2]> = points.collect();
         canvas.polyline(&points, column_colour(line.name), 2.0);
     }
-    for line in lines {
-        let Some(count) = line.pays_at else {
-            continue;
-        };
-        let count = count.ceil().max(1.0);
-        // At 1, the label at the right says it.
-        if count > 1.0 && count <= max_count {
-            let [x, y] = axes.place([count, line.at(count)]);
-            let text = grouped(count as usize);
-            let title = format!("{} pays after {}", line.name, line.pays_after);
-            let colour = column_colour(line.name);
-            canvas.mark(title, |canvas| canvas.circle([x, y], 4.5, colour));
-            canvas.text([x - 6.0, y - 7.0], &text, Style::new(11).end().bold(true));
-        }
+    let points = lines.iter().filter_map(|line| {
+        let count = line.point(axes.x.values)?;
+        Some((line, count, axes.place([count, line.at(count)])))
+    });
+    let points: Vec<(&Line<'_>, f64, [f64; 2])> = points.collect();
+    let heights: Vec<f64> = points.iter().map(|(.., [_, y])| y - 9.0).collect();
+    let labels = spread(&heights, 14.0, [30.0, 372.0]);
+    for ((line, count, [x, y]), label) in points.into_iter().zip(labels) {
+        let title = format!("{} pays after {}", line.name, line.pays_after);
+        let colour = column_colour(line.name);
+        canvas.line([x, y], [x - 16.0, label], colour, 0.8);
+        canvas.mark(title, |canvas| canvas.circle([x, y], 4.5, colour));
+        let style = Style::new(12).end().bold(true);
+        canvas.text([x - 19.0, label + 4.0], &count_text(count), style);
     }
     let places: Vec<f64> = lines
         .iter()
@@ -282,6 +356,6 @@ fn draw_lines(canvas: &mut Canvas, axes: &Axes<'_>, lines: &[Line<'_>], max_coun
             "–" => line.name.to_owned(),
             count => format!("{}: pays after {count}", line.name),
         };
-        canvas.text([right + 18.0, label + 4.0], &text, Style::new(11));
+        canvas.text([right + 18.0, label + 4.0], &text, Style::new(12));
     }
 }

@@ -74,11 +74,12 @@ pub(super) fn from_growth(report: &GrowthReport, id: &str, command: &str) -> Opt
         picture: Picture::grid(&title, 2, panels),
         title,
         caption: format!(
-            "Both axes are logarithmic and the same in all panels, so a straight line is a power of the \
+            "The meshes are made by Sixfold (the shape {}), not read from a file. Both axes are logarithmic and the same in all panels, so a straight line is a power of the \
              number of faces. The number at each name is the exponent: at 1, the time per element \
              is constant; at 2, each element takes a scan of all faces.{limit} Lower bounds (≥ in the table) are \
              not drawn. The table has the times per element, and the slopes for all sizes, for the sizes that fit \
-             into the last cache, and for the larger sizes."
+             into the last cache, and for the larger sizes.",
+            report.shape
         ),
         table: table.unwrap_or_default(),
         csv: data::growth(report),
@@ -100,7 +101,7 @@ fn last_cache(report: &GrowthReport) -> Option<&CacheLimit> {
 
 fn panel(report: &GrowthReport, operation: Operation, fits: &[&Fit], axes: &Axes<'_>) -> Scene {
     let mut canvas = Canvas::new(SIZE[0], SIZE[1]);
-    canvas.text([0.0, 14.0], operation.name(), Style::new(13).bold(true));
+    canvas.text([0.0, 14.0], operation.name(), Style::new(14).bold(true));
     axes.draw(&mut canvas);
     let level = last_cache(report).map(|limit| limit.level);
     let mut names = Vec::new();
@@ -127,14 +128,14 @@ fn panel(report: &GrowthReport, operation: Operation, fits: &[&Fit], axes: &Axes
         names.push((fit, axes.place(last), colour));
     }
     let heights: Vec<f64> = names.iter().map(|(_, [_, y], _)| *y).collect();
-    let labels = spread(&heights, 13.0, [UPWARDS[1], UPWARDS[0]]);
+    let labels = spread(&heights, 14.0, [UPWARDS[1], UPWARDS[0]]);
     for ((fit, [x, y], colour), label) in names.into_iter().zip(labels) {
         canvas.line([x + 3.0, y], [ACROSS[1] + 12.0, label], colour, 0.7);
         let text = match fit.all {
             Some(slope) => format!("{}: {:.2}", fit.backend, slope.exponent),
             None => fit.backend.clone(),
         };
-        canvas.text([ACROSS[1] + 15.0, label + 4.0], &text, Style::new(11));
+        canvas.text([ACROSS[1] + 15.0, label + 4.0], &text, Style::new(12));
     }
     if names_nothing(fits, &report.sizes) {
         canvas.text(

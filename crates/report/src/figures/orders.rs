@@ -3,7 +3,7 @@
 
 use kuva::render::render::Scene;
 use sixfold_study::numbers::{duration, figure as shown, shown_ratio, times};
-use sixfold_study::{Comparison, OrdersReport, ResultRow};
+use sixfold_study::{Comparison, FEWEST_OF_A_WINNER, OrdersReport, ResultRow};
 
 use super::per_unit;
 use crate::Picture;
@@ -13,16 +13,28 @@ use crate::data::rows as data;
 use crate::figure::{Figure, Table};
 
 /// Size of a panel, and the places of its parts.
-const WIDTH: f64 = 420.0;
-const HEAD: f64 = 46.0;
-const ROW: f64 = 20.0;
-const POINTS: [f64; 2] = [118.0, 290.0];
+const WIDTH: f64 = 520.0;
+const HEAD: f64 = 62.0;
+const ROW: f64 = 24.0;
+const POINTS: [f64; 2] = [126.0, 290.0];
+/// The points of one structure are on lines of their own, so that they do not hide each other.
+const APART: f64 = 4.0;
 
 /// The times of one backend in all orders, relative to its best order.
 struct Line<'r> {
     backend: &'r str,
-    /// The place of the order in the list, its ratio and its time per element.
-    points: Vec<(usize, Option<(f64, f64)>)>,
+    /// The orders, in the order of the list.
+    points: Vec<Option<Point>>,
+}
+
+/// The time of a backend in one order.
+#[derive(Clone, Copy)]
+struct Point {
+    /// The time divided by that of the best order.
+    ratio: f64,
+    /// Time per element.
+    ns: f64,
+    samples: usize,
 }
 
 /// Draws a panel for each operation. All panels have one scale.
@@ -39,7 +51,8 @@ pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Opt
         .iter()
         .flat_map(|(_, lines)| lines)
         .flat_map(|line| &line.points);
-    let ratios = points.filter_map(|(_, point)| Some((*point)?.0));
+    let points: Vec<Point> = points.flatten().copied().collect();
+    let ratios = points.iter().map(|point| point.ratio);
     // The scale reaches at least ratio 1.5, so that noise does not fill the figure.
     let scale = LogScale {
         values: [1.0, ratios.fold(1.5, f64::max)],
@@ -61,10 +74,15 @@ pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Opt
         id: id.into(),
         picture: Picture::grid(&title, 2, panels),
         title,
-        caption: "A point is the time of a structure in one order of the elements, divided by that of the best order of this \
-                  structure, on a logarithmic scale that is the same in all panels. The text names the slowest order. The table \
-                  has the times per element."
-            .into(),
+        caption: format!(
+            "A point is the time of a structure in one order of the elements, divided by that of the best order of this structure, \
+             on a logarithmic scale that is the same in all panels: on the right is slower. The text names the slowest order, and \
+             gives the time of the best order.{} The table has all times per element.",
+            match points.iter().any(|point| point.samples < FEWEST_OF_A_WINNER) {
+                true => format!(" Rings are times from fewer than {FEWEST_OF_A_WINNER} samples."),
+                false => String::new(),
+            }
+        ),
         table,
         csv: data::orders(report),
         source: String::new(),
@@ -77,12 +95,15 @@ fn lines<'r>(report: &'r OrdersReport, comparison: &Comparison) -> Vec<Line<'r>>
     let lines = rows.chunk_by(|a, b| a.backend == b.backend).map(|rows| {
         let times = rows.iter().filter_map(|row| row.ns_per_element);
         let best = times.fold(f64::INFINITY, f64::min);
-        let orders = report.orders.iter().enumerate();
-        let points = orders.map(|(place, order)| {
+        let points = report.orders.iter().map(|order| {
             let row = rows.iter().find(|row| row.case == order.name());
-            let row = row.filter(|row| row.ratio_to_best.is_some());
-            let ns = row.and_then(|row| row.ns_per_element);
-            (place, ns.map(|ns| (shown_ratio(ns, best), ns)))
+            let row = row.filter(|row| row.ratio_to_best.is_some())?;
+            let ns = row.ns_per_element?;
+            Some(Point {
+                ratio: shown_ratio(ns, best),
+                ns,
+                samples: row.samples,
+            })
         });
         Line {
             backend: &rows[0].backend,
@@ -98,7 +119,8 @@ fn row(comparison: &Comparison, line: &Line<'_>) -> Vec<String> {
     let worst = line
         .points
         .iter()
-        .filter_map(|(_, point)| Some((*point)?.0))
+        .flatten()
+        .map(|point| point.ratio)
         .fold(1.0, f64::max);
     let interval = factor.and_then(|factor| factor.ci_low.zip(factor.ci_high));
     let operation = comparison.operation;
@@ -107,7 +129,7 @@ fn row(comparison: &Comparison, line: &Line<'_>) -> Vec<String> {
         line.backend.to_owned(),
     ];
     let times = line.points.iter();
-    cells.extend(times.map(|(_, point)| point.map_or_else(|| "–".into(), |(_, ns)| duration(ns))));
+    cells.extend(times.map(|point| point.map_or_else(|| "–".into(), |point| duration(point.ns))));
     cells.push(factor.map_or_else(|| "–".into(), |_| shown(worst)));
     cells.push(interval.map_or_else(
         || "–".into(),
@@ -127,18 +149,20 @@ fn panel(
     canvas.text(
         [0.0, 14.0],
         comparison.operation.name(),
-        Style::new(13).bold(true),
+        Style::new(14).bold(true),
     );
     let mut x = 0.0;
     for (place, name) in names.iter().enumerate() {
         canvas.circle([x + 4.0, 27.0], 4.0, table_colour(place));
-        canvas.text([x + 11.0, 31.0], name, Style::new(11).colour(FAINT_COLOUR));
-        x += 26.0 + crate::canvas::text_width(name, 11);
+        canvas.text([x + 11.0, 31.0], name, Style::new(12).colour(FAINT_COLOUR));
+        x += 26.0 + crate::canvas::text_width(name, 12);
     }
     let bottom = HEAD + ROW * lines.len() as f64 - 6.0;
     for tick in scale.ticks() {
         let x = scale.place(tick);
         canvas.line([x, HEAD - 4.0], [x, bottom], GRID_COLOUR, 1.0);
+        let label = Style::new(11).middle().colour(FAINT_COLOUR);
+        canvas.text([x, HEAD - 8.0], &format!("{tick} ×"), label);
     }
     let per = per_unit(comparison.operation.unit());
     for (number, line) in lines.iter().enumerate() {
@@ -146,16 +170,17 @@ fn panel(
         canvas.text(
             [POINTS[0] - 10.0, y + 4.0],
             line.backend,
-            Style::new(11).end(),
+            Style::new(12).end(),
         );
         let mut worst = (0, 1.0);
-        for &(place, point) in &line.points {
-            let Some((ratio, ns)) = point else {
-                continue;
-            };
+        let mut best = f64::INFINITY;
+        let middle = (line.points.len() as f64 - 1.0) / 2.0;
+        let points = line.points.iter().enumerate();
+        for (place, &Point { ratio, ns, samples }) in points.filter_map(|(i, p)| Some((i, p.as_ref()?))) {
             if ratio > worst.1 {
                 worst = (place, ratio);
             }
+            best = best.min(ns);
             let title = format!(
                 "{}, {}: {} × the time of its best order, {} {per}",
                 line.backend,
@@ -163,14 +188,18 @@ fn panel(
                 shown(ratio),
                 duration(ns)
             );
-            let at = [scale.place(ratio), y];
-            canvas.mark(title, |canvas| canvas.circle(at, 4.5, table_colour(place)));
+            let at = [scale.place(ratio), y + APART * (place as f64 - middle)];
+            canvas.mark(title, |canvas| match samples < FEWEST_OF_A_WINNER {
+                true => canvas.ring(at, 3.5, table_colour(place)),
+                false => canvas.circle(at, 4.0, table_colour(place)),
+            });
         }
         let text = match worst {
-            (_, 1.0) => times(1.0),
-            (place, ratio) => format!("{} {}", names[place], times(ratio)),
+            _ if best.is_infinite() => "–".into(),
+            (_, 1.0) => format!("all {}", duration(best)),
+            (place, ratio) => format!("{} {} of {}", names[place], times(ratio), duration(best)),
         };
-        canvas.text([POINTS[1] + 12.0, y + 4.0], &text, Style::new(11));
+        canvas.text([POINTS[1] + 14.0, y + 4.0], &text, Style::new(12));
     }
     canvas.finish()
 }

@@ -2,25 +2,34 @@
 //! to the fastest. All panels have one scale.
 
 use kuva::render::render::Scene;
-use sixfold_study::numbers::{duration, shown_ratio, times};
+use sixfold_study::numbers::{duration, grouped, shown_ratio, times};
 use sixfold_study::{NeighboursReport, PickReport, SpatialTask, Standing};
 
 use super::per_unit;
 use crate::Picture;
 use crate::canvas::{Canvas, LogScale, Style, text_width};
-use crate::colours::{BACKGROUND, FAINT_COLOUR, GRID_COLOUR, INTERVAL_COLOUR, column_colour};
+use crate::colours::{
+    BACKGROUND, FAINT_COLOUR, GRID_COLOUR, INTERVAL_COLOUR, TEXT_COLOUR, column_colour,
+};
 use crate::data::rows;
 use crate::figure::{Figure, Table};
 use crate::matrix::{Cell, Matrix, Source};
 
-/// Longest ratio that is drawn to scale. Longer bars are cut.
+/// Longest ratio that is drawn to scale: of a bar, and of a mean over meshes with its dots.
 const LONGEST: f64 = 10.0;
+const LONGEST_MEAN: f64 = 1000.0;
+/// Height of a bar.
+const HEIGHT: f64 = 13.0;
 /// Width and height of a panel without its bars, and height of a bar with its gap.
-const WIDTH: f64 = 330.0;
-const HEAD: f64 = 40.0;
-const ROW: f64 = 20.0;
+const WIDTH: f64 = 352.0;
+const HEAD: f64 = 42.0;
+const ROW: f64 = 21.0;
+/// Height of the labels of the scale.
+const FOOT: f64 = 14.0;
 /// Places of the bars.
-const BARS: [f64; 2] = [116.0, 250.0];
+const BARS: [f64; 2] = [124.0, 256.0];
+/// Dots are moved up and down by at most this, so that they do not hide each other.
+const SCATTER: f64 = 9.0;
 
 /// Draws all operations of a study or of a pool. `note` says what the ratios are.
 pub(super) fn from_matrix(matrix: &Matrix, note: &str, command: &str) -> Option<Figure> {
@@ -148,8 +157,9 @@ fn figure(
     // One scale for all panels. It reaches at least ratio 2, so that noise does not fill a panel.
     let ratios = panels.iter().flat_map(|panel| &panel.cells);
     let longest = ratios.filter_map(|cell| cell.ratio).fold(2.0, f64::max);
+    let most_drawn = reach(panels.iter().flat_map(|panel| &panel.cells));
     let scale = LogScale {
-        values: [1.0, longest.min(LONGEST)],
+        values: [1.0, longest.min(most_drawn)],
         pixels: BARS,
     };
     for panel in panels {
@@ -166,24 +176,71 @@ fn figure(
         return None;
     }
     let columns = scenes.len().min(3);
-    let reach = match longest > LONGEST {
-        true => format!("A bar with a gap is longer than {}. ", times(LONGEST)),
-        false => String::new(),
-    };
-    let caption = format!(
-        "A bar is the time divided by that of the fastest, on a logarithmic scale from 1, which is the \
-         same in all panels. {reach}Lines are 95 % intervals. The fastest are bold. {note}"
-    );
+    let cells: Vec<&Cell> = panels.iter().flat_map(|panel| &panel.cells).collect();
+    let caption = caption(&cells, note);
     Some(Figure {
         id,
         picture: Picture::grid(&title, columns, scenes),
         title,
-        caption: caption.trim_end().to_owned(),
+        caption,
         table,
         csv: String::new(),
         source: String::new(),
         command: command.into(),
     })
+}
+
+/// Formats a value of the scale: `1`, `1.5`, `20`.
+fn tick_text(tick: f64) -> String {
+    match tick.fract() == 0.0 {
+        true => grouped(tick as usize),
+        false => tick.to_string(),
+    }
+}
+
+/// Returns the longest ratio that is drawn to scale.
+fn reach<'c>(mut cells: impl Iterator<Item = &'c Cell>) -> f64 {
+    match cells.any(|cell| !cell.each.is_empty()) {
+        true => LONGEST_MEAN,
+        false => LONGEST,
+    }
+}
+
+/// Explains the marks that the figure has.
+fn caption(cells: &[&Cell], note: &str) -> String {
+    let reach = reach(cells.iter().copied());
+    let beyond = cells.iter().any(|cell| cell.ratio > Some(reach));
+    let has = |test: fn(&Cell) -> bool| cells.iter().any(|cell| cell.ratio.is_some() && test(cell));
+    let means = has(|cell| !cell.each.is_empty());
+    let mark = match means {
+        true => "The upright line is the time divided by that of the fastest",
+        false => "A bar is the time divided by that of the fastest",
+    };
+    let parts = [
+        (true, format!("{mark}, on a logarithmic scale from 1, which is the same in all panels: longer is slower.")),
+        (!note.is_empty(), note.to_owned()),
+        (means, "Each dot is one mesh.".into()),
+        (
+            beyond && means,
+            format!("Marks at the end of the scale are beyond {}.", times(reach)),
+        ),
+        (
+            beyond && !means,
+            format!("A bar with a gap is longer than {}.", times(reach)),
+        ),
+        (has(|cell| cell.interval.is_some()), "Thin lines are 95 % intervals.".into()),
+        (has(|cell| cell.is_best() || cell.is_tied()), "The fastest, and those tied with it, are bold.".into()),
+        (
+            has(|cell| cell.source == Source::Sampled),
+            "~: measured on some of the elements.".into(),
+        ),
+        (
+            has(Cell::is_bound),
+            "≥ with an empty bar: a lower bound, which is not ranked, because a run would exceed the budget.".into(),
+        ),
+    ];
+    let parts = parts.into_iter().filter_map(|(has, text)| has.then_some(text));
+    parts.collect::<Vec<_>>().join(" ")
 }
 
 fn row(panel: &Panel<'_>, cell: &Cell) -> Vec<String> {
@@ -205,17 +262,20 @@ fn row(panel: &Panel<'_>, cell: &Cell) -> Vec<String> {
 
 /// Draws the bars of one operation. All panels of a figure are as tall as if they had `rows` bars.
 fn scene(panel: &Panel<'_>, cells: &[&Cell], scale: LogScale, rows: usize) -> Scene {
-    let mut canvas = Canvas::new(WIDTH, HEAD + ROW * rows as f64);
-    canvas.text([0.0, 14.0], panel.title, Style::new(13).bold(true));
+    let mut canvas = Canvas::new(WIDTH, HEAD + ROW * rows as f64 + FOOT);
+    canvas.text([0.0, 14.0], panel.title, Style::new(14).bold(true));
     let best = cells.first().filter(|cell| cell.ratio.is_some());
     let best = best.map_or(String::new(), |best| {
         format!("fastest: {} {}", best.time_text(), per_unit(panel.unit))
     });
-    canvas.text([0.0, 29.0], &best, Style::new(11).colour(FAINT_COLOUR));
+    let faint = Style::new(12).colour(FAINT_COLOUR);
+    canvas.text([0.0, 31.0], &best, faint);
     let bottom = HEAD + ROW * cells.len() as f64 - 4.0;
     for tick in scale.ticks() {
         let x = scale.place(tick);
         canvas.line([x, HEAD - 4.0], [x, bottom], GRID_COLOUR, 1.0);
+        let label = Style::new(11).middle().colour(FAINT_COLOUR);
+        canvas.text([x, bottom + 13.0], &format!("{} ×", tick_text(tick)), label);
     }
     for (number, cell) in cells.iter().enumerate() {
         bar(
@@ -231,10 +291,9 @@ fn scene(panel: &Panel<'_>, cells: &[&Cell], scale: LogScale, rows: usize) -> Sc
 
 /// Draws a bar with its name and its ratio. `y` is the upper end of the bar.
 fn bar(canvas: &mut Canvas, cell: &Cell, scale: LogScale, y: f64, unit: &str) {
-    const HEIGHT: f64 = 13.0;
     let (left, baseline) = (BARS[0], y + 11.0);
     let lead = cell.is_best() || cell.is_tied();
-    let label = Style::new(11).bold(lead);
+    let label = Style::new(12).bold(lead);
     canvas.text([left - 6.0, baseline], &cell.backend, label.end());
     let Some(ratio) = cell.ratio else {
         let why = match cell.source {
@@ -245,18 +304,26 @@ fn bar(canvas: &mut Canvas, cell: &Cell, scale: LogScale, y: f64, unit: &str) {
         canvas.text(
             [left + 4.0, baseline],
             why,
-            Style::new(11).colour(FAINT_COLOUR),
+            Style::new(12).colour(FAINT_COLOUR),
         );
         return;
     };
-    let end = scale.place(ratio).max(left + 2.0);
+    let end = match cell.each.is_empty() {
+        true => scale.place(ratio).max(left + 2.0),
+        false => scale.place(ratio),
+    };
     let cut = ratio > scale.values[1];
     let colour = column_colour(&cell.backend);
-    canvas.mark(mark_title(cell, unit), |canvas| match cell.is_bound() {
-        true => canvas.frame([left, y], [end - left, HEIGHT], colour),
-        false => canvas.rect([left, y], [end - left, HEIGHT], colour),
+    canvas.mark(mark_title(cell, unit), |canvas| {
+        match (cell.is_bound(), cell.each.is_empty()) {
+            (true, _) => canvas.frame([left, y], [end - left, HEIGHT], colour),
+            (false, true) => canvas.rect([left, y], [end - left, HEIGHT], colour),
+            (false, false) => canvas.rect([end - 1.5, y - 1.0], [3.0, HEIGHT + 2.0], TEXT_COLOUR),
+        }
     });
-    if cut {
+    if !cell.each.is_empty() {
+        spread(canvas, cell, scale, y);
+    } else if cut {
         // A slanted gap near the end of the bar.
         let x = end - 14.0;
         let gap = [
@@ -274,12 +341,29 @@ fn bar(canvas: &mut Canvas, cell: &Cell, scale: LogScale, y: f64, unit: &str) {
         canvas.line([low, middle], [high, middle], INTERVAL_COLOUR, 1.0);
         text_from = text_from.max(high);
     }
-    let text = match cell.ratio_text() {
-        text if cell.is_tied() => format!("{text} × tied"),
-        text => format!("{text} ×"),
+    if !cell.each.is_empty() {
+        text_from = BARS[1];
+    }
+    let sampled = match cell.source {
+        Source::Sampled => "~ ",
+        _ => "",
     };
-    debug_assert!(text_from + text_width(&text, 11) < WIDTH + 20.0, "{text}");
-    canvas.text([text_from + 5.0, baseline], &text, label);
+    let text = match cell.ratio_text() {
+        text if cell.is_tied() => format!("{sampled}{text} × tied"),
+        text => format!("{sampled}{text} ×"),
+    };
+    debug_assert!(text_from + text_width(&text, 12) < WIDTH + 20.0, "{text}");
+    canvas.text([text_from + 6.0, baseline], &text, label);
+}
+
+/// Draws a dot for each mesh of a mean.
+fn spread(canvas: &mut Canvas, cell: &Cell, scale: LogScale, y: f64) {
+    let dots = cell.each.iter().enumerate().map(|(number, &ratio)| {
+        // The multiples of the golden ratio spread evenly.
+        let share = (number as f64 * 0.618_034).fract() - 0.5;
+        [scale.place(ratio), y + HEIGHT / 2.0 + SCATTER * share]
+    });
+    canvas.dots(dots, 2.4, column_colour(&cell.backend));
 }
 
 /// Returns the text that a browser shows for a bar.

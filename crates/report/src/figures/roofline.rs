@@ -4,14 +4,14 @@
 
 use kuva::render::render::Scene;
 use sixfold_study::numbers::{bytes, duration};
-use sixfold_study::{BufferSpeed, Timed, Why, WhyRow};
+use sixfold_study::{Bound, BufferSpeed, Timed, Why, WhyRow};
 
 use super::{file_name, per_unit};
 use crate::Picture;
-use crate::canvas::{Axes, Canvas, LogScale, Style, spread};
-use crate::colours::{FAINT_COLOUR, TEXT_COLOUR, column_colour};
+use crate::canvas::{Axes, Canvas, LogScale, Style, spread, text_width};
+use crate::colours::{BACKGROUND, FAINT_COLOUR, TEXT_COLOUR, column_colour};
 use crate::data::rows as data;
-use crate::figure::{Figure, Table, count_tick, duration_tick};
+use crate::figure::{Figure, Table, byte_tick, duration_tick};
 
 type TimedRow<'a> = (&'a WhyRow, Timed);
 
@@ -55,7 +55,7 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
         },
         x_label: "bytes that must move per element",
         y_label: "time per element",
-        x_format: &count_tick,
+        x_format: &byte_tick,
         y_format: &duration_tick,
     };
     let names = why.backends.iter().map(|backend| backend.name.as_str());
@@ -82,8 +82,8 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
         title,
         caption: format!(
             "Each point is one relation on one structure; all panels have the same axes. The dashed lines show the time in which \
-             this machine reads these bytes in order: {}. Bandwidth limits a query near a line. A query above the \
-             lines waits for reads that cannot be predicted, or computes. The column `bound by` of the table shows the limit.",
+             this machine reads these bytes in order: {}. The shape of a point shows what limits the query. Square: bandwidth (near a \
+             line). Ring: waiting for reads that cannot be predicted. Dot: work on data that is near.",
             speeds.collect::<Vec<_>>().join(", and ")
         ),
         table: table(&rows),
@@ -95,10 +95,20 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
 
 fn panel(name: &str, rows: &[&TimedRow<'_>], buffers: &[&BufferSpeed], axes: &Axes<'_>) -> Scene {
     let mut canvas = Canvas::new(SIZE[0], SIZE[1]);
-    canvas.text([0.0, 14.0], name, Style::new(13).bold(true));
+    canvas.text([0.0, 14.0], name, Style::new(14).bold(true));
     axes.draw(&mut canvas);
-    for buffer in buffers {
-        roof(&mut canvas, buffer, axes);
+    let roofs = buffers.iter().filter_map(|buffer| Some((buffer, roof(buffer, axes)?)));
+    let roofs: Vec<(&&BufferSpeed, [[f64; 2]; 2])> = roofs.collect();
+    for (_, [start, end]) in &roofs {
+        canvas.dashed(*start, *end, TEXT_COLOUR, 1.0);
+    }
+    // On fields of their own, so that no line goes through them.
+    for (buffer, [_, [x, y]]) in roofs {
+        let text = format!("{:.0} GB/s", buffer.gb_per_s);
+        let width = text_width(&text, 11) + 4.0;
+        canvas.rect([x - width - 2.0, y - 15.0], [width, 14.0], BACKGROUND);
+        let label = Style::new(11).end().colour(FAINT_COLOUR);
+        canvas.text([x - 4.0, y - 4.0], &text, label);
     }
     let colour = column_colour(name);
     let places = rows
@@ -106,7 +116,7 @@ fn panel(name: &str, rows: &[&TimedRow<'_>], buffers: &[&BufferSpeed], axes: &Ax
         .map(|(row, timed)| axes.place([row.reads.moved_bytes, timed.ns_per_element]));
     let places: Vec<[f64; 2]> = places.collect();
     let heights: Vec<f64> = places.iter().map(|[_, y]| *y).collect();
-    let labels = spread(&heights, 12.0, [UPWARDS[1], UPWARDS[0]]);
+    let labels = spread(&heights, 13.0, [UPWARDS[1], UPWARDS[0]]);
     for (((row, timed), [x, y]), label) in rows.iter().zip(places).zip(labels) {
         let title = format!(
             "{}, {}: {:.1} bytes, {} {}: {}",
@@ -118,29 +128,24 @@ fn panel(name: &str, rows: &[&TimedRow<'_>], buffers: &[&BufferSpeed], axes: &Ax
             timed.bound.name()
         );
         canvas.line([x + 3.0, y], [ACROSS[1] + 12.0, label], colour, 0.6);
-        canvas.mark(title, |canvas| canvas.circle([x, y], 4.0, colour));
+        canvas.mark(title, |canvas| match timed.bound {
+            Bound::Bandwidth => canvas.rect([x - 4.0, y - 4.0], [8.0, 8.0], colour),
+            Bound::Latency => canvas.ring([x, y], 3.5, colour),
+            _ => canvas.circle([x, y], 4.0, colour),
+        });
         let relation = row.reads.relation.to_string();
-        canvas.text([ACROSS[1] + 15.0, label + 4.0], &relation, Style::new(11));
+        canvas.text([ACROSS[1] + 15.0, label + 4.0], &relation, Style::new(12));
     }
     canvas.finish()
 }
 
-/// Draws the time to read bytes at the speed of `buffer`, as far as it is on the axes.
-fn roof(canvas: &mut Canvas, buffer: &BufferSpeed, axes: &Axes<'_>) {
+/// Returns the ends of the line of the time to read bytes at the speed of `buffer`, as far as it is on the axes.
+fn roof(buffer: &BufferSpeed, axes: &Axes<'_>) -> Option<[[f64; 2]; 2]> {
     let (x, y) = (axes.x.values, axes.y.values);
     let from = x[0].max(y[0] * buffer.gb_per_s);
     let to = x[1].min(y[1] * buffer.gb_per_s);
-    if from >= to {
-        return;
-    }
-    let [start, end] = [from, to].map(|bytes| axes.place([bytes, bytes / buffer.gb_per_s]));
-    canvas.dashed(start, end, TEXT_COLOUR, 1.0);
-    let label = Style::new(10).end().colour(FAINT_COLOUR);
-    canvas.text(
-        [end[0] - 4.0, end[1] - 4.0],
-        &format!("{:.0} GB/s", buffer.gb_per_s),
-        label,
-    );
+    let ends = [from, to].map(|bytes| axes.place([bytes, bytes / buffer.gb_per_s]));
+    (from < to).then_some(ends)
 }
 
 fn table(rows: &[TimedRow]) -> Table {

@@ -17,6 +17,8 @@
       return {
         cell, backend: cell.dataset.backend, bound: cell.dataset.source === 'bound',
         ns: number('ns'), low: number('low'), high: number('high'), ratio: number('ratio'),
+        // The ratio to each backend, with its interval.
+        to: (cell.dataset.to ?? '').split(',').map((text) => text.split(' ').filter(Boolean).map(Number)),
         plain: cell.innerHTML, share: cell.style.getPropertyValue('--share'), shown: null,
       };
     }),
@@ -38,11 +40,19 @@
     const [unit, size] = units.find(([, size]) => Number(digits(ns).replaceAll(',', '')) < 1e3 * size) ?? units.at(-1);
     return `${digits(ns / size, round)} ${unit}`;
   };
+  const length = (ratio) => Math.min(1, Math.max(0, Math.log10(ratio)));
+  const reading = table.querySelector('.reading');
+  const plainReading = reading.textContent;
   const cellHtml = (text, small) => `${text}${small ? `<small>${small}</small>` : ''}`;
 
   const draw = () => {
+    reading.textContent = figures.value === 'times'
+      ? 'Time for each element, with its 95 % interval where there are enough samples.'
+      : baseline.value === '' ? plainReading
+        : `Time divided by that of ${baseline.value}, with the 95 % interval of this ratio.`;
     for (const {cells} of rows) {
-      const base = cells.find(({backend}) => backend === baseline.value);
+      const place = cells.findIndex(({backend}) => backend === baseline.value);
+      const base = cells[place];
       const fastest = baseline.value === '';
       const shortest = Math.min(...cells.filter(({ns, bound}) => ns !== null && !bound).map(({ns}) => ns));
       for (const entry of cells) {
@@ -54,7 +64,7 @@
         if (figures.value === 'times') {
           const ends = low === null ? '' : `${duration(low)} to ${duration(high)}`;
           cell.innerHTML = cellHtml(sign + duration(ns, round), ends);
-          cell.style.setProperty('--share', Math.min(1, shortest / ns));
+          cell.style.setProperty('--share', length(ns / shortest));
         } else if (fastest) {
           cell.innerHTML = entry.plain;
           cell.style.setProperty('--share', entry.share);
@@ -64,16 +74,12 @@
           cell.style.setProperty('--share', 0);
           entry.shown = null;
         } else {
-          const ratio = ns / base.ns;
+          // A lower bound has no ratio of its own.
+          const [ratio = ns / base.ns, from, to] = entry.to[place] ?? [];
           entry.shown = ratio;
-          let ends = '';
-          if (entry !== base && low !== null && base.low !== null) {
-            // The errors of the two times are independent.
-            const error = Math.hypot(Math.log(high / low), Math.log(base.high / base.low)) / 2;
-            ends = `${digits(ratio * Math.exp(-error))} to ${digits(ratio * Math.exp(error))}`;
-          }
+          const ends = entry === base || from === undefined ? '' : `${digits(from)} to ${digits(to)}`;
           cell.innerHTML = cellHtml(`${sign}${digits(ratio, round)} ×`, ends);
-          cell.style.setProperty('--share', Math.min(1, shortest / ns));
+          cell.style.setProperty('--share', length(ns / shortest));
         }
       }
     }
@@ -83,7 +89,7 @@
     const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
     let visible = 0;
     for (const {row, name, group: own} of rows) {
-      const text = `${name} ${own} ${row.cells[0].title}`.toLowerCase();
+      const text = `${own} ${row.cells[0].textContent}`.toLowerCase();
       row.hidden = !(group.value === '' || own === group.value) || !words.every((word) => text.includes(word));
       visible += !row.hidden;
     }

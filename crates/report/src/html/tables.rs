@@ -1,11 +1,12 @@
 //! The tables of the page: the structures by kind of work, all operations, and plain tables.
 
 use maud::{Markup, html};
+use sixfold_study::Quotient;
 use sixfold_study::numbers::counted;
 
 use crate::figure::Table;
 use crate::matrix::{Cell, Line, Matrix, Source};
-use crate::summary::{Rank, Summary, SummaryFigure};
+use crate::summary::{Rank, Summary, SummaryFigure, bar_length};
 
 /// Returns the table of the first screen.
 pub(super) fn summary_table(summary: &Summary) -> Markup {
@@ -13,14 +14,14 @@ pub(super) fn summary_table(summary: &Summary) -> Markup {
         div.scroll {
             table.summary {
                 caption {
-                    "A longer bar is better. " b { "● best" } " · " b { "◐ tied" } ": no clear difference from the best · ≥: \
-                     lower bound, not ranked."
+                    "Times divided by the shortest. A longer bar costs more. " b { "● best" } " · " b { "◐ tied" } ": no clear \
+                     difference from the best · ≥: lower bound, not ranked."
                 }
                 thead {
                     tr {
                         th scope="col" { "structure" }
                         @for column in &summary.columns {
-                            th scope="col" title=(column.about) { (column.name) }
+                            th scope="col" title=(column.about) { (column.name) small { (column.over) } }
                         }
                     }
                 }
@@ -91,9 +92,10 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
         div.scroll {
             table.operations {
                 caption {
-                    "Time divided by that of the fastest, with its 95 % interval where there are enough samples. A longer bar is \
-                     faster. ≥ with an empty bar: a lower bound, because a run would exceed the budget. ~ with a dashed bar: \
-                     measured on some of the elements. Compared with one structure, the intervals are those of two independent times."
+                    span.reading { "Time divided by that of the fastest, with its 95 % interval where there are enough samples." }
+                    " A longer bar is slower, on a logarithmic scale that ends at 10 times the shortest. ≥ with an empty bar: a \
+                     lower bound, because a run would exceed the budget. ~ with a dashed bar: measured on some of the elements. \
+                     – : not run, or not possible."
                 }
                 thead {
                     tr {
@@ -105,7 +107,7 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
                     @for (place, line) in matrix.lines.iter().enumerate() {
                         @let starts = place > 0 && matrix.lines[place - 1].group != line.group;
                         tr.first-of-group[starts] data-operation=(line.name) data-group=(line.group) {
-                            th scope="row" title={ (line.about) ", per " (line.unit) } { (line.name) }
+                            th scope="row" { (line.name) small { (line.about) ", per " (line.unit) } }
                             @for cell in &line.cells { (operation_cell(line, cell)) }
                         }
                     }
@@ -133,10 +135,8 @@ fn operation_cell(line: &Line, cell: &Cell) -> Markup {
         cell.note(),
     ];
     let title: Vec<String> = title.into_iter().filter(|part| !part.is_empty()).collect();
-    // The length of the bar is the part of the time that the fastest takes.
-    let share = cell
-        .ratio
-        .map(|ratio| format!("--share:{:.4}", ratio.recip().min(1.0)));
+    let share = cell.ratio.map(|ratio| format!("--share:{:.4}", bar_length(ratio)));
+    let quotients = (!cell.quotients.is_empty()).then(|| quotients(cell));
     let [low, high] = match cell.ns_interval {
         Some([low, high]) => [Some(low), Some(high)],
         None => [None, None],
@@ -144,7 +144,7 @@ fn operation_cell(line: &Line, cell: &Cell) -> Markup {
     html! {
         td class=(class) style=[share] title=(title.join("; "))
             data-backend=(cell.backend) data-source=(word)
-            data-ns=[cell.ns] data-low=[low] data-high=[high] data-ratio=[cell.ratio]
+            data-ns=[cell.ns] data-low=[low] data-high=[high] data-ratio=[cell.ratio] data-to=[quotients]
         {
             @match cell.ratio {
                 Some(_) => {
@@ -165,17 +165,44 @@ fn operation_cell(line: &Line, cell: &Cell) -> Markup {
     }
 }
 
+/// Returns the quotients of the time of a cell and that of each backend: the ratio and the ends of its
+/// interval, as `1.31 1.28 1.34`, separated by commas. Empty where there is none.
+fn quotients(cell: &Cell) -> String {
+    let text = |quotient: &Option<Quotient>| match quotient {
+        Some(Quotient { ratio, interval: Some([low, high]), .. }) => format!("{ratio:.7e} {low:.7e} {high:.7e}"),
+        Some(Quotient { ratio, .. }) => format!("{ratio:.7e}"),
+        None => String::new(),
+    };
+    let texts: Vec<String> = cell.quotients.iter().map(text).collect();
+    texts.join(",")
+}
+
 /// Returns a table without bars.
 pub(super) fn plain_table(table: &Table) -> Markup {
+    // Columns of words are aligned at the left, and their lines may break.
+    let has_word = |cell: &String| {
+        let mut parts = cell.split(|c: char| !c.is_alphabetic());
+        parts.any(|part| part.chars().count() > 3)
+    };
+    let words = |column: usize| {
+        let mut cells = table.rows.iter().filter_map(|row| row.get(column));
+        cells.any(has_word)
+    };
+    let columns = table.header.iter().enumerate();
+    let columns: Vec<(&String, bool)> = columns.map(|(i, name)| (name, words(i))).collect();
     html! {
         div.scroll {
             table {
-                thead { tr { @for name in &table.header { th scope="col" { (name) } } } }
+                thead { tr { @for (name, words) in &columns { th.words[*words] scope="col" { (name) } } } }
                 tbody {
-                    @for row in &table.rows {
+                    @for (place, row) in table.rows.iter().enumerate() {
                         tr {
                             @for (column, cell) in row.iter().enumerate() {
-                                @if column == 0 { th scope="row" { (cell) } } @else { td { (cell) } }
+                                @if column > 0 { td.words[columns[column].1] { (cell.replace(" ×", "\u{a0}×")) } }
+                                @else if let Some(part) = table.links.get(place) {
+                                    th scope="row" { a href={ "#" (part) } { (cell) } }
+                                }
+                                @else { th scope="row" { (cell) } }
                             }
                         }
                     }

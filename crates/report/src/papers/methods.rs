@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 
 use sixfold_study::numbers::{bytes, counted, grouped};
 use sixfold_study::{
-    CacheState, Environment, Figure as TimeRow, Finding, Policy, Report, Results, Run, Status,
+    CacheState, Environment, FEWEST_OF_A_WINNER, Figure as TimeRow, Finding, Policy, Report,
+    Results, Run, Status,
 };
 
 use crate::data::dates;
@@ -22,10 +23,22 @@ const REFERENCES: &str = "References: J. W. Tukey, Exploratory Data Analysis, 19
 
 /// Returns the description of the methods as Markdown.
 pub(super) fn methods(results: &Results) -> String {
-    let mut text = "# Methods\n\n".to_owned();
+    let paragraphs = paragraphs(results);
+    let mut text = "# Methods\n".to_owned();
+    if paragraphs.is_empty() {
+        text.push_str("\nThe results have no measurements.\n");
+    }
+    for paragraph in paragraphs {
+        let _ = writeln!(text, "\n{}", escape(&paragraph));
+    }
+    text
+}
+
+/// Returns the description of the methods: a paragraph, and the references if it has any. Empty without
+/// measurements.
+pub(crate) fn paragraphs(results: &Results) -> Vec<String> {
     if results.findings.is_empty() {
-        text.push_str("The results have no measurements.\n");
-        return text;
+        return Vec::new();
     }
     let rows: Vec<TimeRow<'_>> = results.findings.iter().flat_map(Finding::figures).collect();
     let mut sentences = subject(results, &rows);
@@ -36,12 +49,8 @@ pub(super) fn methods(results: &Results) -> String {
         sentences.extend(statistics(results, &rows));
     }
     sentences.extend(left_out(results, &rows));
-    let sentences: Vec<String> = sentences.iter().map(|sentence| escape(sentence)).collect();
-    let _ = writeln!(text, "{}", sentences.join(" "));
-    if is_corrected(&rows) {
-        let _ = writeln!(text, "\n{REFERENCES}");
-    }
-    text
+    let references = is_corrected(&rows).then(|| REFERENCES.to_owned());
+    [sentences.join(" ")].into_iter().chain(references).collect()
 }
 
 fn is_timed(row: &TimeRow<'_>) -> bool {
@@ -343,7 +352,7 @@ fn sampling(results: &Results, rows: &[TimeRow<'_>]) -> Vec<String> {
     });
     let budget = by_run(results, |run| match run.settings.rounds {
         Some(_) => None,
-        None => Some(format!("{} s", run.settings.budget_s?)),
+        None => run.settings.budget_s.map(|_| run.settings.effort_text()),
     });
     sentences.push(
         "Times were measured in rounds: in each round, the backends run a task one after the other, in a new random \
@@ -405,6 +414,13 @@ fn statistics(results: &Results, rows: &[TimeRow<'_>]) -> Vec<String> {
              Jones 2013)."
                 .into(),
         );
+    }
+    if rows.iter().any(|row| row.row.standing.is_some()) {
+        sentences.push(format!(
+            "A backend is tied with the fastest if its ratio is at most the noise (the difference between the two \
+             measurements of the control, and at least 2 %), or if the 95 % interval of the ratio contains 1. A backend with \
+             fewer than {FEWEST_OF_A_WINNER} samples is neither the fastest nor tied."
+        ));
     }
     let controls = results.studies().filter_map(|study| study.control.as_ref());
     let controls: Vec<_> = controls.collect();

@@ -18,7 +18,7 @@ use sixfold_workload::Operation;
 use crate::engine::statistics::geometric_mean;
 use crate::labs::pick::EQUAL_UP_TO;
 use crate::labs::study::Report;
-use crate::numbers::{counted, grouped, list, rounded_down, times};
+use crate::numbers::{counted, grouped, list, rounded_down, shown_ratio, times};
 use crate::results::rows::{Agreement, ResultRow, Standing};
 
 /// The results over all meshes of a collection.
@@ -103,6 +103,14 @@ pub struct Overall {
     /// and has no interval.
     #[serde(default)]
     pub bound: bool,
+    /// Number of meshes on which this backend alone has the shortest mean time, by a clear difference
+    /// (see [`leaders`]). 0 in documents of older versions.
+    #[serde(default)]
+    pub best: usize,
+    /// Number of meshes on which this backend is one of several without a clear difference from the
+    /// shortest mean time.
+    #[serde(default)]
+    pub tied: usize,
     /// The half-width of the 95 % interval of the logarithm of `ratio_to_best`, from the intervals of
     /// the times of one mesh; 0 if there are several meshes.
     #[serde(skip)]
@@ -330,6 +338,8 @@ fn decade(study: &Report) -> u32 {
 #[derive(Clone, Copy)]
 struct Known {
     ns: f64,
+    /// The time per element.
+    each: f64,
     /// Whether the time is an estimate: a lower bound.
     bound: bool,
     /// The half-width of the 95 % interval of the logarithm of the ratio to the fastest backend.
@@ -349,8 +359,10 @@ impl Known {
             // Without an interval, a difference is clear from a ratio of 2.
             None => 2_f64.ln(),
         };
+        let each = ns / row.elements.unwrap_or(1).max(1) as f64;
         (ns > 0.0 && same_work).then_some(Self {
             ns,
+            each,
             bound,
             log_error,
         })
@@ -396,7 +408,7 @@ fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
         let (compared, mut meshes) = common(&backends, studies.len(), has);
         let least = |mesh: usize| {
             let rows = compared.iter().filter_map(|b| Some(value(mesh, b)?.0));
-            least_measured(rows.filter_map(Known::of))
+            Some(least_measured(rows.filter_map(Known::of))?.ns)
         };
         meshes.retain(|&mesh| least(mesh).is_some());
         for backend in &compared {
@@ -439,10 +451,10 @@ fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
     pooled
 }
 
-/// Returns the smallest measured time, in nanoseconds. A lower bound cannot be the smallest time.
-fn least_measured(times: impl Iterator<Item = Known>) -> Option<f64> {
-    let measured = times.filter(|time| !time.bound).map(|time| time.ns);
-    measured.min_by(f64::total_cmp)
+/// Returns the smallest measured time. A lower bound cannot be the smallest time.
+fn least_measured(times: impl Iterator<Item = Known>) -> Option<Known> {
+    let measured = times.filter(|time| !time.bound);
+    measured.min_by(|a, b| a.ns.total_cmp(&b.ns))
 }
 
 /// The operations that do the same work: all methods of a subdivision scheme, or one operation.
@@ -508,6 +520,28 @@ impl Overall {
 /// Pools all tasks of each purpose. The backends of a purpose are sorted from the fastest to the
 /// slowest; those with a lower bound come last.
 pub(crate) fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
+    let mut rows = means(studies, backends);
+    let each = match studies {
+        [_] => vec![rows.clone()],
+        studies => studies.iter().map(|study| means(&[study], backends)).collect(),
+    };
+    for purpose in each.iter().flat_map(|rows| rows.chunk_by(|a, b| a.purpose == b.purpose)) {
+        let leaders = leaders(purpose);
+        for leader in leaders {
+            let same = |row: &&mut Overall| row.purpose == leader.purpose && row.backend == leader.backend;
+            if let Some(row) = rows.iter_mut().find(same) {
+                match leaders.len() {
+                    1 => row.best += 1,
+                    _ => row.tied += 1,
+                }
+            }
+        }
+    }
+    rows
+}
+
+/// Computes what [`overall`] returns, without the counts of meshes on which a backend is the fastest.
+fn means(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
     let mut overall = Vec::new();
     let all_rows = Rows::new(studies);
     for purpose in Purpose::ALL {
@@ -527,7 +561,14 @@ pub(crate) fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
         let (compared, mut shared) = common(&backends, cases.len(), has);
         let least = |case: usize| least_measured(compared.iter().filter_map(|b| value(case, b)));
         shared.retain(|&case| least(case).is_some());
-        let ratio = |case: usize, backend: &str| Some(value(case, backend)?.ns / least(case)?);
+        let ratio = |case: usize, backend: &str| {
+            let (own, least) = (value(case, backend)?, least(case)?);
+            Some(match studies {
+                // The times of one mesh are shown. A reader who divides two of them gets the ratio.
+                [_] => shown_ratio(own.each, least.each),
+                _ => own.ns / least.ns,
+            })
+        };
         let is_bound = |backend: &str| {
             let mut times = shared.iter().filter_map(|&case| value(case, backend));
             times.any(|time| time.bound)
@@ -565,6 +606,8 @@ pub(crate) fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
                         ci_low: interval.map(|[low, _]| low),
                         ci_high: interval.map(|[_, high]| high),
                         bound,
+                        best: 0,
+                        tied: 0,
                         log_error: log_error(backend),
                     }
                 })

@@ -119,7 +119,8 @@ impl RunSettings {
     pub fn effort_text(&self) -> String {
         match (self.budget_s, self.rounds) {
             (_, Some(rounds)) => counted(rounds.get() as usize, "round", "rounds"),
-            (budget_s, None) => format!("{} s", budget_s.unwrap_or(0.0)),
+            // The budgets of the meshes of a folder are quotients.
+            (budget_s, None) => format!("{} s", (100.0 * budget_s.unwrap_or(0.0)).round() / 100.0),
         }
     }
 

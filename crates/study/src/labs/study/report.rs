@@ -72,9 +72,19 @@ impl Report {
     /// Returns the mean time of each backend over the operations of each purpose. The backends of a
     /// purpose are sorted from the fastest to the slowest; those with a lower bound come last.
     pub fn overall(&self) -> Vec<Overall> {
-        let holding = self.backends.iter().filter(|backend| backend.holds);
-        let names: Vec<&str> = holding.map(|backend| backend.name.as_str()).collect();
-        overall(&[self], &names)
+        let names = self.backends.iter().map(|backend| backend.name.as_str());
+        self.overall_of(&names.collect::<Vec<_>>())
+    }
+
+    /// Returns what [`overall`](Self::overall) returns, for those of the named backends that can hold the
+    /// mesh. The ratios are to the fastest of them.
+    pub fn overall_of(&self, names: &[&str]) -> Vec<Overall> {
+        let holds = |name: &&&str| {
+            let mut backends = self.backends.iter();
+            backends.any(|backend| backend.holds && backend.name == **name)
+        };
+        let holding: Vec<&str> = names.iter().filter(holds).copied().collect();
+        overall(&[self], &holding)
     }
 
     /// Returns a sentence on the noise and on how many operations have a clear answer; `None` if

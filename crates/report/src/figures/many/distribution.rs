@@ -1,0 +1,261 @@
+//! The spread over the meshes: a panel for each kind of work, and in it a dot for each mesh and structure.
+
+use kuva::render::render::Scene;
+use serde::Serialize;
+use sixfold_study::numbers::{counted, grouped, times};
+use sixfold_study::{Group, Overall, Pool, Purpose, leaders};
+
+use super::super::marked;
+use super::{Mesh, leaders_of};
+use crate::Picture;
+use crate::canvas::{Canvas, LogScale, Style};
+use crate::colours::{FAINT_COLOUR, GRID_COLOUR, TEXT_COLOUR, column_colour};
+use crate::data::own_columns;
+use crate::figure::{Figure, Table};
+
+/// Dots with a longer ratio stand at the end of the scale, as triangles.
+const LONGEST: f64 = 1000.0;
+/// Size of a panel, and the places of its parts.
+const WIDTH: f64 = 540.0;
+const HEAD: f64 = 52.0;
+const ROW: f64 = 26.0;
+const DOTS: [f64; 2] = [126.0, 360.0];
+/// The dots of one structure are moved up and down by at most this, so that they do not hide each other.
+const SCATTER: f64 = 8.0;
+
+/// One dot.
+struct Dot<'m> {
+    mesh: &'m str,
+    ratio: f64,
+    bound: bool,
+    pooled: bool,
+}
+
+/// The dots of one structure, with the mean.
+struct Line<'m> {
+    mean: &'m Overall,
+    /// The mean divided by that of the fastest on average.
+    ratio: f64,
+    lead: bool,
+    dots: Vec<Dot<'m>>,
+}
+
+/// One kind of work.
+struct Panel<'m> {
+    purpose: Purpose,
+    /// The fastest on average, with which all others are compared.
+    leader: &'m str,
+    /// Number of meshes in the means.
+    meshes: usize,
+    lines: Vec<Line<'m>>,
+}
+
+/// Row of the data of the figure.
+#[derive(Serialize)]
+struct DotRow<'m> {
+    work: String,
+    backend: &'m str,
+    mesh: &'m str,
+    compared_with: &'m str,
+    ratio: f64,
+    lower_bound: bool,
+    part_of_the_mean: bool,
+}
+
+pub(super) fn figure(pool: &Pool, meshes: &[Mesh<'_>], command: &str) -> Option<Figure> {
+    let all = pool.groups.first()?;
+    let panels = leaders_of(pool).into_iter();
+    let panels = panels.map(|(purpose, leader)| panel(all, meshes, purpose, leader));
+    let panels: Vec<Panel<'_>> = panels.filter(|panel| panel.lines.len() > 1).collect();
+    let lines = || panels.iter().flat_map(|panel| &panel.lines);
+    let ratios = || lines().flat_map(|line| line.dots.iter().map(|dot| dot.ratio).chain([line.ratio]));
+    let longest = ratios().fold(2.0, f64::max);
+    let shortest = ratios().fold(1.0, f64::min);
+    let scale = LogScale {
+        values: [shortest.max(LONGEST.recip()), longest.min(LONGEST)],
+        pixels: DOTS,
+    };
+    let most = panels.iter().map(|panel| panel.lines.len()).max()?;
+    let scenes: Vec<Scene> = panels.iter().map(|panel| scene(panel, scale, most)).collect();
+    let title = format!("Mesh by mesh: a dot for each of {}", counted(meshes.len(), "mesh", "meshes"));
+    let mut notes = vec![
+        "A dot is the mean time of a structure on one mesh, divided by that of the structure that is the fastest on average, on a \
+         logarithmic scale that is the same in all panels: on the left of 1 × is faster, on the right slower. The upright line and \
+         the number are the mean over the meshes, and after it is the number of meshes on which the structure alone is the fastest. \
+         Bold: the fastest on average, without a clear difference."
+            .to_owned(),
+    ];
+    let dots = || lines().flat_map(|line| &line.dots);
+    if dots().any(|dot| !dot.pooled) {
+        notes.push("Rings are meshes that not all structures can hold, which are not part of the mean.".into());
+    }
+    if dots().any(|dot| dot.bound) {
+        notes.push("Squares are lower bounds.".into());
+    }
+    if longest > LONGEST {
+        notes.push(format!("Triangles at the end are beyond {}.", times(LONGEST)));
+    }
+    Some(Figure {
+        id: "distribution".into(),
+        picture: Picture::grid(&title, 2, scenes),
+        title,
+        caption: notes.join(" "),
+        table: table(&panels),
+        csv: csv(&panels),
+        source: String::new(),
+        command: command.into(),
+    })
+}
+
+fn panel<'m>(
+    all: &'m Group,
+    meshes: &'m [Mesh<'_>],
+    purpose: Purpose,
+    leader: &'m str,
+) -> Panel<'m> {
+    let means: Vec<&Overall> = all.overall.iter().filter(|row| row.purpose == purpose).collect();
+    let own: Vec<Overall> = means.iter().map(|row| (*row).clone()).collect();
+    let leading = leaders(&own).len();
+    let dots = |backend: &str| {
+        let dots = meshes.iter().filter_map(|mesh| {
+            let mut rows = mesh.relative_to(leader, purpose).into_iter();
+            let row = rows.find(|row| row.backend == backend)?;
+            Some(Dot {
+                mesh: &mesh.name,
+                ratio: row.ratio,
+                bound: row.bound,
+                pooled: mesh.pooled,
+            })
+        });
+        dots.collect()
+    };
+    let line = |(place, mean): (usize, &&'m Overall)| Line {
+        mean,
+        ratio: mean.ratio_to_best / means[0].ratio_to_best,
+        lead: place < leading,
+        dots: dots(&mean.backend),
+    };
+    Panel {
+        purpose,
+        leader,
+        meshes: means.first().map_or(0, |mean| mean.meshes),
+        lines: means.iter().enumerate().map(line).collect(),
+    }
+}
+
+fn scene(panel: &Panel<'_>, scale: LogScale, rows: usize) -> Scene {
+    let mut canvas = Canvas::new(WIDTH, HEAD + ROW * rows as f64 + 4.0);
+    canvas.text([0.0, 14.0], panel.purpose.name(), Style::new(14).bold(true));
+    let meshes = counted(panel.meshes, "mesh", "meshes");
+    let meshes = format!("time divided by that of {}; means over {meshes}", panel.leader);
+    canvas.text([0.0, 31.0], &meshes, Style::new(12).colour(FAINT_COLOUR));
+    let bottom = HEAD + ROW * panel.lines.len() as f64;
+    for tick in scale.ticks() {
+        let x = scale.place(tick);
+        canvas.line([x, HEAD - 4.0], [x, bottom], GRID_COLOUR, 1.0);
+        let label = format!("{tick} ×");
+        canvas.text([x, HEAD - 8.0], &label, Style::new(11).middle().colour(FAINT_COLOUR));
+    }
+    for (number, line) in panel.lines.iter().enumerate() {
+        draw_line(&mut canvas, line, scale, HEAD + ROW * (number as f64 + 0.5));
+    }
+    canvas.finish()
+}
+
+/// Draws the dots of one structure about the height `y`.
+fn draw_line(canvas: &mut Canvas, line: &Line<'_>, scale: LogScale, y: f64) {
+    let (mean, colour) = (line.mean, column_colour(&line.mean.backend));
+    let label = Style::new(12).bold(line.lead);
+    canvas.text([DOTS[0] - 8.0, y + 4.0], &mean.backend, label.end());
+    for (number, dot) in line.dots.iter().enumerate() {
+        // The multiples of the golden ratio spread evenly.
+        let share = (number as f64 * 0.618_034).fract() - 0.5;
+        draw_dot(canvas, dot, &mean.backend, [scale.place(dot.ratio), y + SCATTER * share], scale, colour);
+    }
+    let x = scale.place(line.ratio);
+    canvas.line([x, y - 9.0], [x, y + 9.0], TEXT_COLOUR, 2.0);
+    let ratio = marked(times(line.ratio), mean.bound);
+    let text = match mean.best {
+        0 => ratio,
+        best => format!("{ratio} · fastest on {}", grouped(best)),
+    };
+    canvas.text([DOTS[1] + 12.0, y + 4.0], &text, label);
+}
+
+fn draw_dot(
+    canvas: &mut Canvas,
+    dot: &Dot<'_>,
+    backend: &str,
+    [x, y]: [f64; 2],
+    scale: LogScale,
+    colour: &str,
+) {
+    let ratio = marked(times(dot.ratio), dot.bound);
+    canvas.mark(format!("{}, {backend}: {ratio}", dot.mesh), |canvas| {
+        if dot.ratio > 1.001 * scale.values[1] {
+            canvas.filled(&[[x - 3.0, y - 3.5], [x + 4.0, y], [x - 3.0, y + 3.5]], colour);
+        } else if dot.bound {
+            canvas.frame([x - 2.5, y - 2.5], [5.0, 5.0], colour);
+        } else if dot.pooled {
+            canvas.circle([x, y], 2.5, colour);
+        } else {
+            canvas.ring([x, y], 2.5, colour);
+        }
+    });
+}
+
+fn table(panels: &[Panel<'_>]) -> Table {
+    let mut table = Table::new([
+        "",
+        "structure",
+        "mean",
+        "compared with",
+        "fastest on",
+        "tied on",
+        "of",
+        "least",
+        "most",
+        "meshes",
+    ]);
+    for panel in panels {
+        for line in &panel.lines {
+            let mean = line.mean;
+            let end = |pick: fn(f64, f64) -> f64| {
+                let ratios = line.dots.iter().map(|dot| dot.ratio);
+                ratios.reduce(pick).map_or_else(|| "–".into(), times)
+            };
+            table.row(vec![
+                panel.purpose.name().to_lowercase(),
+                mean.backend.clone(),
+                marked(times(line.ratio), mean.bound),
+                panel.leader.to_owned(),
+                grouped(mean.best),
+                grouped(mean.tied),
+                grouped(mean.meshes),
+                end(f64::min),
+                end(f64::max),
+                grouped(line.dots.len()),
+            ]);
+        }
+    }
+    table
+}
+
+fn csv(panels: &[Panel<'_>]) -> String {
+    let rows = panels.iter().flat_map(|panel| {
+        let work = panel.purpose.name().to_lowercase();
+        panel.lines.iter().flat_map(move |line| {
+            let work = work.clone();
+            line.dots.iter().map(move |dot| DotRow {
+                work: work.clone(),
+                backend: &line.mean.backend,
+                mesh: dot.mesh,
+                compared_with: panel.leader,
+                ratio: dot.ratio,
+                lower_bound: dot.bound,
+                part_of_the_mean: dot.pooled,
+            })
+        })
+    });
+    own_columns(rows)
+}
