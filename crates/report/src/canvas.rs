@@ -165,7 +165,8 @@ impl Canvas {
     /// Draws squares of `size` about the given points, as one shape.
     pub(crate) fn dots(&mut self, points: impl Iterator<Item = [f64; 2]>, size: f64, fill: &str) {
         let half = size / 2.0;
-        let dot = |[x, y]: [f64; 2]| format!("M{:.1} {:.1}h{size}v{size}h-{size}Z", x - half, y - half);
+        let dot =
+            |[x, y]: [f64; 2]| format!("M{:.1} {:.1}h{size}v{size}h-{size}Z", x - half, y - half);
         self.path(points.map(dot).collect(), fill);
     }
 

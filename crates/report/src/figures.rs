@@ -297,8 +297,7 @@ fn numbered_id(name: &str, place: usize) -> String {
 fn study_figures(study: &Report, matrix: &Matrix, command: &str) -> Vec<Figure> {
     let command = study_command(study, command);
     let figures = [
-        ranking::from_matrix(matrix, "", command)
-            .map(|figure| figure.with_csv(rows::study(study))),
+        ranking::from_matrix(matrix, "", command).map(|figure| figure.with_csv(rows::study(study))),
         heat_map_of(study, matrix, "", command),
         memory::from_study(study, "", command),
         break_even::from_study(study, "", command),

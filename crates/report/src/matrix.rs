@@ -3,7 +3,7 @@
 use sixfold_study::numbers::{duration, figure, rounded_down};
 use sixfold_study::{
     FIRST_TIME_SHOWN, Operation, Pool, Pooled, Quotient, RefusalKind, Report, ResultRow, Standing,
-    mean_quotient,
+    mean_quotients,
 };
 
 use crate::figure::Table;
@@ -275,18 +275,19 @@ impl Matrix {
             let rows = pool.all().iter().filter(|row| row.operation == operation);
             let rows: Vec<&Pooled> = rows.collect();
             rows.first()?;
-            let cell = |name: &String| match rows.iter().find(|row| row.backend == *name) {
+            let quotients = mean_quotients(studies, operation, &backends);
+            let cell = |(name, quotients): (&String, _)| match rows
+                .iter()
+                .find(|row| row.backend == *name)
+            {
                 Some(row) => Cell {
                     each: ratios(studies, operation, name),
-                    quotients: backends
-                        .iter()
-                        .map(|other| mean_quotient(studies, operation, name, other))
-                        .collect(),
+                    quotients,
                     ..Cell::of_pool(row)
                 },
                 None => Cell::new(name, Source::NotRun),
             };
-            let cells = backends.iter().map(cell).collect();
+            let cells = backends.iter().zip(quotients).map(cell).collect();
             Some(Line::new(operation, operation.unit().to_owned(), cells))
         });
         Self {

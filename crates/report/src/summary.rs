@@ -358,7 +358,10 @@ pub(crate) fn fastest_of_study(study: &Report) -> Option<String> {
 /// Returns the option that gives about enough samples for a winner; `None` if this is unknown.
 fn enough(study: &Report) -> Option<String> {
     let measured = study.results.iter().filter(|row| row.median_ns.is_some());
-    let fewest = measured.map(|row| row.samples).min().filter(|&samples| samples > 0)?;
+    let fewest = measured
+        .map(|row| row.samples)
+        .min()
+        .filter(|&samples| samples > 0)?;
     let settings = &study.run.settings;
     let factor = (FEWEST_OF_A_WINNER as f64 / fewest as f64).max(1.0);
     Some(match (settings.rounds, settings.budget_s) {
@@ -448,7 +451,10 @@ pub(crate) fn turning_points(study: &Report, results: &Results) -> Option<String
     let points = [
         less_memory(study, &queries, leader),
         pays_after(study, &leader.backend).map(|runs| {
-            format!("few queries (building {} pays after {runs})", leader.backend)
+            format!(
+                "few queries (building {} pays after {runs})",
+                leader.backend
+            )
         }),
         one_operation(study, leader),
         order.map(|(factor, operation)| {
@@ -470,7 +476,9 @@ fn less_memory(study: &Report, queries: &[Overall], leader: &Overall) -> Option<
         backends.next()?.bytes_per_vertex
     };
     let own = bytes(&leader.backend)?;
-    let smaller = queries.iter().filter_map(|row| Some((row, bytes(&row.backend)?)));
+    let smaller = queries
+        .iter()
+        .filter_map(|row| Some((row, bytes(&row.backend)?)));
     // A backend that scans all faces is no choice for queries, so it must not be much slower.
     let usable = smaller.filter(|(row, bytes)| {
         !row.bound && 1.05 * bytes < own && row.ratio_to_best < MOST_USABLE * leader.ratio_to_best
@@ -488,12 +496,17 @@ fn less_memory(study: &Report, queries: &[Overall], leader: &Overall) -> Option<
 /// Names the backend that is much faster than `leader` in one query, for the query with the largest
 /// difference.
 fn one_operation(study: &Report, leader: &Overall) -> Option<String> {
-    let own = study.results.iter().filter(|row| row.backend == leader.backend);
+    let own = study
+        .results
+        .iter()
+        .filter(|row| row.backend == leader.backend);
     let own = own.filter(|row| Purpose::of(row.operation) == Purpose::Query);
     let slower = own.filter(|row| row.standing == Some(Standing::Slower));
     let slower = slower.filter_map(|row| Some((row, study.shown_ratio(row)?)));
     let (row, ratio) = slower.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let best = study.rows(row.operation).find(|row| row.ratio_to_best == Some(1.0))?;
+    let best = study
+        .rows(row.operation)
+        .find(|row| row.ratio_to_best == Some(1.0))?;
     (ratio >= LEAST_GAIN).then(|| {
         format!(
             "a single operation ({} in {}: {} takes {})",
@@ -511,9 +524,13 @@ fn pays_after(study: &Report, backend: &str) -> Option<String> {
     let row = |operation, name: &str| study.rows(operation).find(|row| row.backend == name);
     let run = row(Operation::AllQueries, backend)?;
     let given = row(Operation::AllQueries, INPUT_BACKEND)?;
-    let (run, given) = (run.median_ns.and(run.ns_per_element)?, given.median_ns.and(given.ns_per_element)?);
+    let (run, given) = (
+        run.median_ns.and(run.ns_per_element)?,
+        given.median_ns.and(given.ns_per_element)?,
+    );
     let build = row(Operation::Build, backend)?;
     let build = build.first_ns.or(build.median_ns)?;
     let count = build / (given - run);
-    (given > run && count < 1e9).then(|| break_even_text(count, "visited element", "visited elements"))
+    (given > run && count < 1e9)
+        .then(|| break_even_text(count, "visited element", "visited elements"))
 }

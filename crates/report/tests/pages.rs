@@ -5,9 +5,10 @@ use std::num::NonZeroU32;
 use std::sync::atomic::AtomicBool;
 
 use sixfold::shapes;
-use sixfold_report::{Figure, Rank, ReportPage, SummaryFigure};
+use sixfold_report::{Figure, Rank, ReportPage, SummaryFigure, Table};
 use sixfold_study::{
-    Effort, Failed, FailureKind, Finding, Operation, Report, Results, Settings, StudyMesh, study,
+    Effort, Failed, FailureKind, Finding, Operation, Report, Results, Settings, Standing,
+    StudyMesh, study,
 };
 
 /// Enough rounds for intervals.
@@ -187,7 +188,20 @@ fn the_first_screen_answers() {
         .iter()
         .map(|column| column.name.as_str())
         .collect();
-    assert_eq!(columns, ["build", "memory", "navigate"]);
+    assert_eq!(columns, ["build", "memory", "queries"]);
+    let over: Vec<&str> = summary
+        .columns
+        .iter()
+        .map(|column| column.over.as_str())
+        .collect();
+    assert_eq!(
+        over,
+        [
+            "from a face set",
+            "bytes per vertex",
+            "mean of 2 operations"
+        ]
+    );
     assert_eq!(summary.rows.len(), 6);
     for column in 0..columns.len() {
         let figures = summary
@@ -199,7 +213,7 @@ fn the_first_screen_answers() {
         assert!(
             figures
                 .iter()
-                .any(|figure| best(&figure) && figure.share == 1.0),
+                .any(|figure| best(&figure) && figure.share == 0.0),
             "{figures:?}"
         );
         assert!(
@@ -215,6 +229,10 @@ fn the_first_screen_answers() {
     let html = page.html();
     assert!(html.contains("src=\"data:image/png;base64,aGVsbG8=\" alt=\"The mesh ball.obj\""));
     assert!(html.contains("2 warnings"), "warnings are not folded");
+    assert!(
+        html.contains("in each round, the backends run a task"),
+        "no methods"
+    );
     for section in [
         "answer",
         "operations",
@@ -333,36 +351,194 @@ impl sixfold_study::Heap for NoHeap {
     }
 }
 
-/// The page of several meshes has the means of each group.
-#[test]
-fn groups_of_meshes_have_a_table() {
-    let mut all = results(&["a.obj"]);
+/// A study in which each operation takes the given time per element on each structure.
+fn timed(mesh: StudyMesh, times: &[(&str, f64)]) -> Report {
     let settings = Settings {
         operations: operations(),
         effort: Effort::Rounds(ROUNDS),
         ..Settings::default()
     };
-    let grid = StudyMesh::new("b.obj", shapes::triangle_grid(12, 12).expect("small"));
-    let grid = study(&grid, &settings, &AtomicBool::new(false), &mut |_| ());
-    all.add(grid.expect("a study").into());
+    let report = study(&mesh, &settings, &AtomicBool::new(false), &mut |_| ());
+    let mut report = report.expect("a study");
+    let least = times
+        .iter()
+        .map(|(_, ns)| *ns)
+        .fold(f64::INFINITY, f64::min);
+    report
+        .backends
+        .retain(|backend| times.iter().any(|(name, _)| backend.name == *name));
+    report
+        .results
+        .retain(|row| times.iter().any(|(name, _)| row.backend == *name));
+    for row in &mut report.results {
+        let (_, ns) = times
+            .iter()
+            .find(|(name, _)| row.backend == *name)
+            .expect("kept");
+        let elements = row.elements.expect("measured") as f64;
+        row.ns_per_element = Some(*ns);
+        row.median_ns = Some(ns * elements);
+        row.ratio_to_best = Some(ns / least);
+        row.standing = Some(if *ns == least {
+            Standing::Best
+        } else {
+            Standing::Slower
+        });
+    }
+    report
+}
+
+fn ball(name: &str, half_edge: f64, corner_table: f64) -> Report {
+    let times = [("half-edge", half_edge), ("corner-table", corner_table)];
+    timed(StudyMesh::new(name, shapes::icosahedron()), &times)
+}
+
+/// The table with this title.
+fn table<'p>(page: &'p ReportPage, title: &str) -> &'p Table {
+    let mut tables = page.tables.iter();
+    let found = tables.find(|table| table.title == title);
+    &found.unwrap_or_else(|| panic!("no table {title}")).table
+}
+
+/// The page of several meshes says which structure is the fastest on how many meshes, by size and kind.
+#[test]
+fn the_answer_over_many_meshes_counts_them_by_size_and_kind() {
+    let mut all = Results::default();
+    for name in ["a.obj", "b.obj", "c.obj"] {
+        all.add(ball(name, 1.0, 3.0).into());
+    }
+    // On the only mesh with a boundary, the other structure is the fastest.
+    let grid = StudyMesh::new("d.obj", shapes::triangle_grid(12, 12).expect("small"));
+    all.add(timed(grid, &[("half-edge", 2.0), ("corner-table", 1.0)]).into());
     let page = ReportPage::new(&all, "sixfold study");
-    let [groups] = &page.tables[..] else {
-        panic!("one table: {:?}", page.tables);
+    let [fastest, groups, meshes] = &page.answer[..] else {
+        panic!("three sentences: {:?}", page.answer);
     };
-    let names: Vec<&str> = groups
-        .table
+    assert!(
+        fastest.starts_with("Fastest on average: for queries half-edge (3 of 4)"),
+        "{fastest}"
+    );
+    for part in [
+        "for queries on 100 to 999 faces (corner-table, 1 mesh)",
+        "meshes with boundary",
+    ] {
+        assert!(groups.contains(part), "{groups}");
+    }
+    assert!(meshes.contains("over all 4"), "{meshes}");
+    let winners = table(&page, "Fastest by size and kind of mesh");
+    let cell = |group: &str| {
+        let row = winners.rows.iter().find(|row| row[0] == group);
+        row.unwrap_or_else(|| panic!("no group {group}: {winners:?}"))[3].clone()
+    };
+    assert_eq!(winners.header[3], "for queries");
+    assert_eq!(cell("closed meshes"), "half-edge (3 of 3); next 3.00 ×");
+    assert_eq!(
+        cell("meshes with boundary"),
+        "corner-table (1 of 1); next 2.00 ×"
+    );
+    let means = table(&page, "Means by size and kind of mesh");
+    assert!(
+        means.rows.iter().any(|row| row[0] == "10 to 99 faces"),
+        "{means:?}"
+    );
+    assert!(
+        page.html()
+            .contains("id=\"table-fastest-by-size-and-kind-of-mesh\"")
+    );
+    assert!(
+        page.markdown()
+            .contains("## Fastest by size and kind of mesh")
+    );
+    let single = ReportPage::new(&results(&["a.obj"]), "sixfold study");
+    assert!(single.tables.is_empty());
+    assert!(single.overview.rows.is_empty());
+    // A mean over meshes is not a ratio of times of the same rounds.
+    let ranking = figure_by_id(&page, "rankings");
+    assert!(ranking.caption.contains("geometric mean over the meshes"));
+}
+
+/// Each mesh has a dot in each line, a row that links to its section, and the sections have no figures if
+/// there are many.
+#[test]
+fn each_of_many_meshes_has_a_dot_and_a_section() {
+    let mut all = Results::default();
+    for place in 0..9 {
+        all.add(ball(&format!("folder/{place}.obj"), 1.0, 2.0).into());
+    }
+    // The corner table is unusually slow on one mesh, and there is only one of this name.
+    all.add(ball("other/odd.obj", 1.0, 16.0).into());
+    all.add(ball("other/0.obj", 1.0, 2.0).into());
+    let page = ReportPage::new(&all, "sixfold study");
+    let spread = figure_by_id(&page, "distribution");
+    // Building and queries, two structures.
+    assert_eq!(mark_count(spread), 2 * 2 * 11);
+    let dot = "<title>odd.obj, corner-table: 16.0 ×</title>";
+    assert_eq!(spread.picture.svg().matches(dot).count(), 2);
+    let row = &spread.table.rows[1];
+    assert_eq!(row[..2], ["building", "corner-table"]);
+    // The mean of ten times 2 and once 16.
+    assert_eq!((row[2].as_str(), row[3].as_str()), ("2.42 ×", "half-edge"));
+    assert_eq!(row[7..], ["2.00 ×", "16.0 ×", "11"]);
+    let outliers = table(&page, "Outliers");
+    assert_eq!(outliers.rows.len(), 2, "{outliers:?}");
+    for (row, link) in outliers.rows.iter().zip(&outliers.links) {
+        assert_eq!((row[0].as_str(), link.as_str()), ("odd.obj", "mesh-10"));
+        assert_eq!(row[3], "corner-table 16.0 × (2.00 ×)");
+    }
+    let names: Vec<&str> = page
+        .overview
         .rows
         .iter()
         .map(|row| row[0].as_str())
         .collect();
-    for name in ["all meshes", "100 to 999 faces", "closed meshes"] {
-        assert!(names.contains(&name), "{names:?}");
+    // Two files have the same name, so their folders are shown.
+    assert_eq!(
+        (names[0], names[1], names[10]),
+        ("folder/0.obj", "1.obj", "other/0.obj")
+    );
+    assert_eq!(page.overview.links.len(), 11);
+    let html = page.html();
+    for (place, section) in page.meshes.iter().enumerate() {
+        assert!(section.figures.is_empty(), "{}", section.title);
+        assert!(
+            section.summary.is_some() && !section.tables.is_empty(),
+            "{}",
+            section.title
+        );
+        assert!(html.contains(&format!("id=\"mesh-{}\"", place + 1)));
+        assert!(html.contains(&format!("href=\"#mesh-{}\"", place + 1)));
     }
-    assert!(page.html().contains("Groups of meshes"));
-    assert!(page.markdown().contains("## Groups of meshes"));
-    let single = ReportPage::new(&results(&["a.obj"]), "sixfold study");
-    assert!(single.tables.is_empty());
-    // A mean over meshes is not a ratio of times of the same rounds.
-    let ranking = figure_by_id(&page, "rankings");
-    assert!(ranking.caption.contains("geometric mean over the meshes"));
+    let few = ReportPage::new(&results(&["a.obj", "b.obj"]), "sixfold study");
+    assert!(few.meshes.iter().all(|section| section.figures.len() == 2));
+}
+
+/// The means are over the meshes that all structures hold; the page names the others.
+#[test]
+fn meshes_that_not_all_can_hold_are_named() {
+    let mut all = Results::default();
+    for name in ["a.obj", "b.obj"] {
+        all.add(ball(name, 1.0, 2.0).into());
+    }
+    let mut open = ball("open.obj", 1.0, 2.0);
+    let corner = open
+        .backends
+        .iter_mut()
+        .find(|backend| backend.name == "corner-table");
+    corner.expect("kept").holds = false;
+    open.results.retain(|row| row.backend != "corner-table");
+    all.add(open.into());
+    let page = ReportPage::new(&all, "sixfold study");
+    let meshes = page.answer.last().expect("an answer");
+    assert!(meshes.contains("over the 2 of 3"), "{meshes}");
+    let holding = table(&page, "Who can hold the meshes");
+    assert_eq!(holding.rows[0], ["half-edge", "3 of 3", ""]);
+    assert_eq!(holding.rows[1], ["corner-table", "2 of 3", "open.obj"]);
+    let spread = figure_by_id(&page, "distribution");
+    assert!(
+        spread.caption.contains("Rings are meshes"),
+        "{}",
+        spread.caption
+    );
+    // Three dots of half-edge, two of the corner table.
+    assert_eq!(mark_count(spread), 2 * 5);
 }

@@ -83,7 +83,7 @@ pub use results::figure::{Counted, Figure, Status};
 pub use results::finding::Finding;
 pub use results::merge::MergeError;
 pub use results::pool::{Group, Holding, Overall, Pool, Pooled, Purpose, leaders};
-pub use results::quotient::{Quotient, mean_quotient};
+pub use results::quotient::{Quotient, mean_quotients};
 pub use results::read::ReadError;
 pub use results::rows::{
     Agreement, BackendRefusal, BackendReport, Control, ControlRow, FIRST_TIME_SHOWN, MeasuredTask,

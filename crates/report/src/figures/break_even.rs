@@ -88,7 +88,10 @@ pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Opti
         // To a pass over the whole mesh.
         max_count: if per_visit {
             let mut elements = study.rows(operation).filter_map(|row| row.elements);
-            elements.next().map_or(1e6, |elements| elements as f64).max(10.0)
+            elements
+                .next()
+                .map_or(1e6, |elements| elements as f64)
+                .max(10.0)
         } else {
             let counts = lines.iter().filter_map(|line| line.pays_at);
             let last = counts.filter(|count| *count < 1e9).fold(10.0, f64::max);
@@ -133,7 +136,11 @@ pub(super) fn from_workload(report: &PickReport, id: &str, command: &str) -> Opt
         id: id.into(),
         note: format!(
             "One use of the mesh consists of {}.",
-            counted(report.operations.round() as usize, "operation", "operations")
+            counted(
+                report.operations.round() as usize,
+                "operation",
+                "operations"
+            )
         ),
         axis: "operations",
         unit: "one operation",
@@ -295,7 +302,10 @@ impl Curves<'_> {
             // The first crossing with a line that is less steep.
             let crossing = |other: &Line<'_>| (other.build - line.build) / (line.run - other.run);
             let later = lines.iter().filter(|other| other.run < line.run);
-            let next = later.map(crossing).filter(|&at| at > count).reduce(f64::min);
+            let next = later
+                .map(crossing)
+                .filter(|&at| at > count)
+                .reduce(f64::min);
             let Some(next) = next.filter(|&next| next < self.max_count) else {
                 break;
             };

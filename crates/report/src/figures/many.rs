@@ -44,10 +44,12 @@ struct Relative<'m> {
 /// Returns the backend that is the fastest over all pooled meshes in each kind of work.
 fn leaders_of(pool: &Pool) -> Vec<(Purpose, &str)> {
     let rows = pool.groups.first().map_or(&[][..], |all| &all.overall);
-    let leaders = rows.chunk_by(|a, b| a.purpose == b.purpose).filter_map(|rows| {
-        let first = leaders(rows).first()?;
-        Some((first.purpose, first.backend.as_str()))
-    });
+    let leaders = rows
+        .chunk_by(|a, b| a.purpose == b.purpose)
+        .filter_map(|rows| {
+            let first = leaders(rows).first()?;
+            Some((first.purpose, first.backend.as_str()))
+        });
     leaders.collect()
 }
 
@@ -116,7 +118,9 @@ pub(super) fn page(studies: &[&Report], results: &Results, command: &str) -> Rep
 /// Says over which meshes the means are.
 fn which_meshes(pooled: usize, studied: usize) -> String {
     match pooled == studied {
-        true => format!("Which meshes: the means are over all {studied}, which all structures can hold."),
+        true => format!(
+            "Which meshes: the means are over all {studied}, which all structures can hold."
+        ),
         false => format!(
             "Which meshes: the means are over the {} of {} that all compared structures can hold.",
             grouped(pooled),
@@ -128,14 +132,21 @@ fn which_meshes(pooled: usize, studied: usize) -> String {
 fn meshes<'r>(studies: &[&'r Report], pool: &Pool) -> Vec<Mesh<'r>> {
     let compared: Vec<&str> = pool.compared.iter().map(String::as_str).collect();
     let all = pool.groups.first();
-    let names: Vec<&str> = studies.iter().map(|study| file_name(&study.mesh.name)).collect();
+    let names: Vec<&str> = studies
+        .iter()
+        .map(|study| file_name(&study.mesh.name))
+        .collect();
     let mesh = |(place, study): (usize, &&'r Report)| {
         let name = &study.mesh.name;
         let short = names[place];
         let unique = names.iter().filter(|other| **other == short).count() == 1;
         Mesh {
             study,
-            name: if unique { short.to_owned() } else { name.clone() },
+            name: if unique {
+                short.to_owned()
+            } else {
+                name.clone()
+            },
             id: format!("mesh-{}", place + 1),
             overall: study.overall_of(&compared),
             pooled: all.is_some_and(|all| all.meshes.contains(name)),
@@ -199,7 +210,9 @@ fn overview(meshes: &[Mesh<'_>]) -> Table {
         rows.any(|row| row.purpose == purpose)
     });
     let purposes: Vec<Purpose> = purposes.collect();
-    let columns = purposes.iter().map(|purpose| format!("fastest {}", purpose.of_choice()));
+    let columns = purposes
+        .iter()
+        .map(|purpose| format!("fastest {}", purpose.of_choice()));
     let header = ["mesh", "faces", "kind"].map(str::to_owned);
     let mut table = Table::new(header.into_iter().chain(columns));
     for mesh in meshes {
@@ -250,7 +263,8 @@ fn section(mesh: &Mesh<'_>, results: &Results, count: usize, command: &str) -> S
         true => Vec::new(),
         false => vec![TitledTable {
             title: "All operations".into(),
-            caption: "Time divided by that of the fastest structure of the row. ≥: lower bound.".into(),
+            caption: "Time divided by that of the fastest structure of the row. ≥: lower bound."
+                .into(),
             table: matrix.ratios(),
         }],
     };

@@ -78,7 +78,10 @@ pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Opt
             "A point is the time of a structure in one order of the elements, divided by that of the best order of this structure, \
              on a logarithmic scale that is the same in all panels: on the right is slower. The text names the slowest order, and \
              gives the time of the best order.{} The table has all times per element.",
-            match points.iter().any(|point| point.samples < FEWEST_OF_A_WINNER) {
+            match points
+                .iter()
+                .any(|point| point.samples < FEWEST_OF_A_WINNER)
+            {
                 true => format!(" Rings are times from fewer than {FEWEST_OF_A_WINNER} samples."),
                 false => String::new(),
             }
@@ -176,7 +179,9 @@ fn panel(
         let mut best = f64::INFINITY;
         let middle = (line.points.len() as f64 - 1.0) / 2.0;
         let points = line.points.iter().enumerate();
-        for (place, &Point { ratio, ns, samples }) in points.filter_map(|(i, p)| Some((i, p.as_ref()?))) {
+        for (place, &Point { ratio, ns, samples }) in
+            points.filter_map(|(i, p)| Some((i, p.as_ref()?)))
+        {
             if ratio > worst.1 {
                 worst = (place, ratio);
             }

@@ -239,7 +239,9 @@ fn caption(cells: &[&Cell], note: &str) -> String {
             "≥ with an empty bar: a lower bound, which is not ranked, because a run would exceed the budget.".into(),
         ),
     ];
-    let parts = parts.into_iter().filter_map(|(has, text)| has.then_some(text));
+    let parts = parts
+        .into_iter()
+        .filter_map(|(has, text)| has.then_some(text));
     parts.collect::<Vec<_>>().join(" ")
 }
 

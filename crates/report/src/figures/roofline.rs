@@ -97,7 +97,9 @@ fn panel(name: &str, rows: &[&TimedRow<'_>], buffers: &[&BufferSpeed], axes: &Ax
     let mut canvas = Canvas::new(SIZE[0], SIZE[1]);
     canvas.text([0.0, 14.0], name, Style::new(14).bold(true));
     axes.draw(&mut canvas);
-    let roofs = buffers.iter().filter_map(|buffer| Some((buffer, roof(buffer, axes)?)));
+    let roofs = buffers
+        .iter()
+        .filter_map(|buffer| Some((buffer, roof(buffer, axes)?)));
     let roofs: Vec<(&&BufferSpeed, [[f64; 2]; 2])> = roofs.collect();
     for (_, [start, end]) in &roofs {
         canvas.dashed(*start, *end, TEXT_COLOUR, 1.0);

@@ -135,7 +135,9 @@ fn operation_cell(line: &Line, cell: &Cell) -> Markup {
         cell.note(),
     ];
     let title: Vec<String> = title.into_iter().filter(|part| !part.is_empty()).collect();
-    let share = cell.ratio.map(|ratio| format!("--share:{:.4}", bar_length(ratio)));
+    let share = cell
+        .ratio
+        .map(|ratio| format!("--share:{:.4}", bar_length(ratio)));
     let quotients = (!cell.quotients.is_empty()).then(|| quotients(cell));
     let [low, high] = match cell.ns_interval {
         Some([low, high]) => [Some(low), Some(high)],
@@ -169,7 +171,11 @@ fn operation_cell(line: &Line, cell: &Cell) -> Markup {
 /// interval, as `1.31 1.28 1.34`, separated by commas. Empty where there is none.
 fn quotients(cell: &Cell) -> String {
     let text = |quotient: &Option<Quotient>| match quotient {
-        Some(Quotient { ratio, interval: Some([low, high]), .. }) => format!("{ratio:.7e} {low:.7e} {high:.7e}"),
+        Some(Quotient {
+            ratio,
+            interval: Some([low, high]),
+            ..
+        }) => format!("{ratio:.7e} {low:.7e} {high:.7e}"),
         Some(Quotient { ratio, .. }) => format!("{ratio:.7e}"),
         None => String::new(),
     };

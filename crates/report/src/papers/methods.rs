@@ -50,7 +50,10 @@ pub(crate) fn paragraphs(results: &Results) -> Vec<String> {
     }
     sentences.extend(left_out(results, &rows));
     let references = is_corrected(&rows).then(|| REFERENCES.to_owned());
-    [sentences.join(" ")].into_iter().chain(references).collect()
+    [sentences.join(" ")]
+        .into_iter()
+        .chain(references)
+        .collect()
 }
 
 fn is_timed(row: &TimeRow<'_>) -> bool {

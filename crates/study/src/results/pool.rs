@@ -523,12 +523,19 @@ pub(crate) fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
     let mut rows = means(studies, backends);
     let each = match studies {
         [_] => vec![rows.clone()],
-        studies => studies.iter().map(|study| means(&[study], backends)).collect(),
+        studies => studies
+            .iter()
+            .map(|study| means(&[study], backends))
+            .collect(),
     };
-    for purpose in each.iter().flat_map(|rows| rows.chunk_by(|a, b| a.purpose == b.purpose)) {
+    for purpose in each
+        .iter()
+        .flat_map(|rows| rows.chunk_by(|a, b| a.purpose == b.purpose))
+    {
         let leaders = leaders(purpose);
         for leader in leaders {
-            let same = |row: &&mut Overall| row.purpose == leader.purpose && row.backend == leader.backend;
+            let same =
+                |row: &&mut Overall| row.purpose == leader.purpose && row.backend == leader.backend;
             if let Some(row) = rows.iter_mut().find(same) {
                 match leaders.len() {
                     1 => row.best += 1,

@@ -45,25 +45,31 @@ impl Report {
     }
 }
 
-/// Returns the geometric mean of the quotient of the times of two backends over the meshes on which both
-/// times were measured; `None` if there is no such mesh.
-pub fn mean_quotient(
+/// Returns, for each backend and each other backend, the geometric mean of the quotient of their times over
+/// the meshes on which both were measured; `None` if there is no such mesh.
+pub fn mean_quotients(
     studies: &[&Report],
     operation: Operation,
-    backend: &str,
-    other: &str,
-) -> Option<Quotient> {
-    let time = |study: &Report, name| measured(study, operation, name)?.median_ns;
-    let quotients = studies
-        .iter()
-        .filter_map(|study| Some(time(study, backend)? / time(study, other)?));
-    let quotients: Vec<f64> = quotients.filter(|ratio| ratio.is_finite()).collect();
-    let (ratio, interval) = geometric_mean(&quotients)?;
-    Some(Quotient {
-        ratio,
-        interval,
-        meshes: quotients.len(),
-    })
+    backends: &[String],
+) -> Vec<Vec<Option<Quotient>>> {
+    let times = |backend: &String| -> Vec<Option<f64>> {
+        let time = |study: &&Report| measured(study, operation, backend)?.median_ns;
+        studies.iter().map(time).collect()
+    };
+    let times: Vec<Vec<Option<f64>>> = backends.iter().map(times).collect();
+    let quotient = |own: &Vec<Option<f64>>, other: &Vec<Option<f64>>| {
+        let both = own.iter().zip(other);
+        let quotients = both.filter_map(|(own, other)| Some((*own)? / (*other)?));
+        let quotients: Vec<f64> = quotients.filter(|ratio| ratio.is_finite()).collect();
+        let (ratio, interval) = geometric_mean(&quotients)?;
+        Some(Quotient {
+            ratio,
+            interval,
+            meshes: quotients.len(),
+        })
+    };
+    let row = |own| times.iter().map(|other| quotient(own, other)).collect();
+    times.iter().map(row).collect()
 }
 
 /// Returns the row of a measured time that can be compared with others.
@@ -141,7 +147,10 @@ mod tests {
         } in [there, back]
         {
             let [low, high] = interval.expect("seven rounds");
-            assert!(low < ratio && ratio < high && high / low < 1.1, "{low} to {high}");
+            assert!(
+                low < ratio && ratio < high && high / low < 1.1,
+                "{low} to {high}"
+            );
         }
         assert_eq!(report.quotient(BOUNDARY, "half-edge", "gone"), None);
     }
@@ -163,7 +172,8 @@ mod tests {
         let mut reports = [2.0, 8.0, 4.0].map(report);
         let mean = |reports: &[Report; 3]| {
             let studies: Vec<&Report> = reports.iter().collect();
-            mean_quotient(&studies, BOUNDARY, "corner-table", "half-edge")
+            let names = ["corner-table", "half-edge"].map(str::to_owned);
+            mean_quotients(&studies, BOUNDARY, &names)[0][1]
         };
         let all = mean(&reports).expect("measured");
         assert!((all.ratio - 4.0).abs() < 1e-9 && all.meshes == 3, "{all:?}");

@@ -68,7 +68,8 @@ pub(super) fn figure(pool: &Pool, meshes: &[Mesh<'_>], command: &str) -> Option<
     let panels = panels.map(|(purpose, leader)| panel(all, meshes, purpose, leader));
     let panels: Vec<Panel<'_>> = panels.filter(|panel| panel.lines.len() > 1).collect();
     let lines = || panels.iter().flat_map(|panel| &panel.lines);
-    let ratios = || lines().flat_map(|line| line.dots.iter().map(|dot| dot.ratio).chain([line.ratio]));
+    let ratios =
+        || lines().flat_map(|line| line.dots.iter().map(|dot| dot.ratio).chain([line.ratio]));
     let longest = ratios().fold(2.0, f64::max);
     let shortest = ratios().fold(1.0, f64::min);
     let scale = LogScale {
@@ -76,8 +77,14 @@ pub(super) fn figure(pool: &Pool, meshes: &[Mesh<'_>], command: &str) -> Option<
         pixels: DOTS,
     };
     let most = panels.iter().map(|panel| panel.lines.len()).max()?;
-    let scenes: Vec<Scene> = panels.iter().map(|panel| scene(panel, scale, most)).collect();
-    let title = format!("Mesh by mesh: a dot for each of {}", counted(meshes.len(), "mesh", "meshes"));
+    let scenes: Vec<Scene> = panels
+        .iter()
+        .map(|panel| scene(panel, scale, most))
+        .collect();
+    let title = format!(
+        "Mesh by mesh: a dot for each of {}",
+        counted(meshes.len(), "mesh", "meshes")
+    );
     let mut notes = vec![
         "A dot is the mean time of a structure on one mesh, divided by that of the structure that is the fastest on average, on a \
          logarithmic scale that is the same in all panels: on the left of 1 × is faster, on the right slower. The upright line and \
@@ -87,13 +94,19 @@ pub(super) fn figure(pool: &Pool, meshes: &[Mesh<'_>], command: &str) -> Option<
     ];
     let dots = || lines().flat_map(|line| &line.dots);
     if dots().any(|dot| !dot.pooled) {
-        notes.push("Rings are meshes that not all structures can hold, which are not part of the mean.".into());
+        notes.push(
+            "Rings are meshes that not all structures can hold, which are not part of the mean."
+                .into(),
+        );
     }
     if dots().any(|dot| dot.bound) {
         notes.push("Squares are lower bounds.".into());
     }
     if longest > LONGEST {
-        notes.push(format!("Triangles at the end are beyond {}.", times(LONGEST)));
+        notes.push(format!(
+            "Triangles at the end are beyond {}.",
+            times(LONGEST)
+        ));
     }
     Some(Figure {
         id: "distribution".into(),
@@ -113,7 +126,11 @@ fn panel<'m>(
     purpose: Purpose,
     leader: &'m str,
 ) -> Panel<'m> {
-    let means: Vec<&Overall> = all.overall.iter().filter(|row| row.purpose == purpose).collect();
+    let means: Vec<&Overall> = all
+        .overall
+        .iter()
+        .filter(|row| row.purpose == purpose)
+        .collect();
     let own: Vec<Overall> = means.iter().map(|row| (*row).clone()).collect();
     let leading = leaders(&own).len();
     let dots = |backend: &str| {
@@ -147,14 +164,21 @@ fn scene(panel: &Panel<'_>, scale: LogScale, rows: usize) -> Scene {
     let mut canvas = Canvas::new(WIDTH, HEAD + ROW * rows as f64 + 4.0);
     canvas.text([0.0, 14.0], panel.purpose.name(), Style::new(14).bold(true));
     let meshes = counted(panel.meshes, "mesh", "meshes");
-    let meshes = format!("time divided by that of {}; means over {meshes}", panel.leader);
+    let meshes = format!(
+        "time divided by that of {}; means over {meshes}",
+        panel.leader
+    );
     canvas.text([0.0, 31.0], &meshes, Style::new(12).colour(FAINT_COLOUR));
     let bottom = HEAD + ROW * panel.lines.len() as f64;
     for tick in scale.ticks() {
         let x = scale.place(tick);
         canvas.line([x, HEAD - 4.0], [x, bottom], GRID_COLOUR, 1.0);
         let label = format!("{tick} ×");
-        canvas.text([x, HEAD - 8.0], &label, Style::new(11).middle().colour(FAINT_COLOUR));
+        canvas.text(
+            [x, HEAD - 8.0],
+            &label,
+            Style::new(11).middle().colour(FAINT_COLOUR),
+        );
     }
     for (number, line) in panel.lines.iter().enumerate() {
         draw_line(&mut canvas, line, scale, HEAD + ROW * (number as f64 + 0.5));
@@ -170,7 +194,14 @@ fn draw_line(canvas: &mut Canvas, line: &Line<'_>, scale: LogScale, y: f64) {
     for (number, dot) in line.dots.iter().enumerate() {
         // The multiples of the golden ratio spread evenly.
         let share = (number as f64 * 0.618_034).fract() - 0.5;
-        draw_dot(canvas, dot, &mean.backend, [scale.place(dot.ratio), y + SCATTER * share], scale, colour);
+        draw_dot(
+            canvas,
+            dot,
+            &mean.backend,
+            [scale.place(dot.ratio), y + SCATTER * share],
+            scale,
+            colour,
+        );
     }
     let x = scale.place(line.ratio);
     canvas.line([x, y - 9.0], [x, y + 9.0], TEXT_COLOUR, 2.0);
@@ -193,7 +224,10 @@ fn draw_dot(
     let ratio = marked(times(dot.ratio), dot.bound);
     canvas.mark(format!("{}, {backend}: {ratio}", dot.mesh), |canvas| {
         if dot.ratio > 1.001 * scale.values[1] {
-            canvas.filled(&[[x - 3.0, y - 3.5], [x + 4.0, y], [x - 3.0, y + 3.5]], colour);
+            canvas.filled(
+                &[[x - 3.0, y - 3.5], [x + 4.0, y], [x - 3.0, y + 3.5]],
+                colour,
+            );
         } else if dot.bound {
             canvas.frame([x - 2.5, y - 2.5], [5.0, 5.0], colour);
         } else if dot.pooled {

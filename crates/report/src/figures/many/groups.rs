@@ -32,7 +32,9 @@ pub(super) fn differences(pool: &Pool) -> Option<String> {
             let own = rows(part, purpose);
             let best = leaders(&own);
             // A different answer has no structure in common with the usual one.
-            let differs = best.iter().all(|row| !usual.contains(&row.backend.as_str()));
+            let differs = best
+                .iter()
+                .all(|row| !usual.contains(&row.backend.as_str()));
             if !best.is_empty() && !usual.is_empty() && differs {
                 let meshes = counted(own[0].meshes, "mesh", "meshes");
                 differences.push(format!(
@@ -61,14 +63,23 @@ pub(super) fn differences(pool: &Pool) -> Option<String> {
 /// the fastest.
 pub(super) fn winners(pool: &Pool) -> Option<TitledTable> {
     let all = pool.groups.first()?;
-    let purposes = Purpose::ALL.into_iter().filter(|&p| !rows(all, p).is_empty());
+    let purposes = Purpose::ALL
+        .into_iter()
+        .filter(|&p| !rows(all, p).is_empty());
     let purposes: Vec<Purpose> = purposes.collect();
     let columns = purposes.iter().map(|purpose| purpose.of_choice());
     let mut table = Table::new(["meshes", "number"].into_iter().chain(columns));
     for group in &pool.groups {
-        let cells = purposes.iter().map(|&p| winner(&rows(group, p), group.meshes.len()));
+        let cells = purposes
+            .iter()
+            .map(|&p| winner(&rows(group, p), group.meshes.len()));
         let number = grouped(group.meshes.len());
-        table.row([group.name.clone(), number].into_iter().chain(cells).collect());
+        table.row(
+            [group.name.clone(), number]
+                .into_iter()
+                .chain(cells)
+                .collect(),
+        );
     }
     Some(TitledTable {
         title: "Fastest by size and kind of mesh".into(),
@@ -99,10 +110,17 @@ fn winner(rows: &[Overall], meshes: usize) -> String {
         )
     });
     let each: Vec<String> = each.collect();
-    let next = rows.get(best.len()).map(|next| format!("; next {}", next.times(first)));
+    let next = rows
+        .get(best.len())
+        .map(|next| format!("; next {}", next.times(first)));
     let fewer = (first.meshes < meshes)
         .then(|| format!("; only {}", counted(first.meshes, "mesh", "meshes")));
-    [each.join(" or "), next.unwrap_or_default(), fewer.unwrap_or_default()].concat()
+    [
+        each.join(" or "),
+        next.unwrap_or_default(),
+        fewer.unwrap_or_default(),
+    ]
+    .concat()
 }
 
 /// Returns the means of each group, or `None` if there are no groups besides the pooled meshes together.

@@ -41,7 +41,13 @@ pub(super) fn table(pool: &Pool, meshes: &[Mesh<'_>]) -> Option<TitledTable> {
     let mut outliers: Vec<Outlier<'_, '_>> = outliers.collect();
     outliers.sort_by(|a, b| factor(&b.rows[0]).total_cmp(&factor(&a.rows[0])));
     let count = outliers.len();
-    let header = ["mesh", "work", "compared with", "structures, here and in the median", "kind of mesh"];
+    let header = [
+        "mesh",
+        "work",
+        "compared with",
+        "structures, here and in the median",
+        "kind of mesh",
+    ];
     let mut table = Table::new(header);
     for outlier in outliers.iter().take(MOST) {
         let mesh = outlier.mesh;
@@ -117,7 +123,8 @@ fn outliers<'m, 'r>(
 /// Returns the structures of an outlier: `corner-table 0.353 × (2.21 ×), winged-edge 0.483 × (1.70 ×)`.
 fn shown(outlier: &Outlier<'_, '_>) -> String {
     let rows = outlier.rows.iter();
-    let rows = rows.map(|(row, median)| format!("{} {} ({})", row.backend, times(row.ratio), times(*median)));
+    let rows = rows
+        .map(|(row, median)| format!("{} {} ({})", row.backend, times(row.ratio), times(*median)));
     rows.collect::<Vec<_>>().join(", ")
 }
 

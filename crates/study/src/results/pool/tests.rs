@@ -32,7 +32,7 @@ fn study_of(name: &str, mesh: PolygonMesh, times: &[(&str, f64)]) -> Report {
     report.results = times
         .iter()
         .map(|&(backend, ns)| ResultRow {
-            elements: Some(30),
+            elements: Some(10),
             median_ns: (ns > 0.0).then_some(ns),
             estimated_ns: (ns < 0.0).then_some(-ns),
             ratio_to_best: (ns > 0.0).then_some(ns / least),
@@ -90,7 +90,7 @@ fn ratios_are_geometric_means_over_meshes() {
     assert!((22.3..22.5).contains(&high), "{half_edge:?}");
     assert_eq!((pool.all()[1].best, half_edge.best), (3, 0));
     let each = half_edge.ns_per_element.expect("measured");
-    assert!((each - 4000.0 / 30.0).abs() < 1e-6, "{each}");
+    assert!((each - 4000.0 / 10.0).abs() < 1e-6, "{each}");
 }
 
 #[test]
@@ -343,4 +343,63 @@ fn warnings_that_differ_in_numbers_are_merged() {
             "b: Other."
         ]
     );
+}
+
+/// A mean has the number of meshes on which the backend alone is the fastest, or one of several.
+#[test]
+fn means_count_the_meshes_on_which_each_backend_is_the_fastest() {
+    let mesh = |name, half_edge, corner_table, soup| {
+        let times = [
+            ("half-edge", half_edge),
+            ("corner-table", corner_table),
+            ("polygon-soup", soup),
+        ];
+        ball(name, &times)
+    };
+    let mut studies = [
+        mesh("clear", 1000.0, 2000.0, 9000.0),
+        mesh("also clear", 1000.0, 1500.0, 9000.0),
+        // Two do not differ by more than 5 %.
+        mesh("tied", 1030.0, 1000.0, 9000.0),
+        mesh("other", 2000.0, 1000.0, 9000.0),
+    ];
+    for study in &mut studies {
+        for row in &mut study.results {
+            // Narrow intervals.
+            let ratio = row.ratio_to_best.expect("measured");
+            (row.ratio_ci_low, row.ratio_ci_high) = (Some(0.999 * ratio), Some(1.001 * ratio));
+        }
+    }
+    let counts = |studies: &[Report]| {
+        let pool = pool_of(studies);
+        let mut counts: Vec<(String, usize, usize)> = pool.groups[0]
+            .overall
+            .iter()
+            .map(|row| (row.backend.clone(), row.best, row.tied))
+            .collect();
+        counts.sort();
+        counts
+    };
+    let expected = |counts: [(&str, usize, usize); 3]| {
+        counts.map(|(name, best, tied)| (name.to_owned(), best, tied))
+    };
+    let all = [
+        ("corner-table", 1, 1),
+        ("half-edge", 2, 1),
+        ("polygon-soup", 0, 0),
+    ];
+    assert_eq!(counts(&studies), expected(all));
+    let one = [
+        ("corner-table", 0, 0),
+        ("half-edge", 1, 0),
+        ("polygon-soup", 0, 0),
+    ];
+    assert_eq!(counts(&studies[..1]), expected(one));
+    // The means of some backends are relative to the fastest of these.
+    let some = studies[0].overall_of(&["polygon-soup", "corner-table"]);
+    let ratios: Vec<(&str, f64)> = some
+        .iter()
+        .map(|row| (row.backend.as_str(), row.ratio_to_best))
+        .collect();
+    assert_eq!(ratios, [("corner-table", 1.0), ("polygon-soup", 4.5)]);
 }
