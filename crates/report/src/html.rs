@@ -38,6 +38,7 @@ impl ReportPage {
                     (self.contents())
                     main {
                         (self.first_screen())
+                        @if let Some(table) = &self.differences { h2 { (table.title) } (table_section(table)) }
                         @if !self.operations.lines.is_empty() {
                             section id="operations" {
                                 (heading("h2", "All operations", "operations"))

@@ -41,6 +41,9 @@ impl ReportPage {
             text.push_str("## Meshes not studied yet\n\n");
             write_list(&mut text, &self.missing);
         }
+        if let Some(table) = &self.differences {
+            write_titled_table(&mut text, table, "##");
+        }
         for figure in &self.figures {
             write_figure(&mut text, figure, "##");
         }

@@ -92,23 +92,9 @@ fn name(measurement: &Measurement) -> String {
     format!("{} on {}", measurement.operation, measurement.backend)
 }
 
-/// A title, and the part of a measurement that a column shows.
-type PlaceColumn = (&'static str, fn(&Measurement) -> &str);
-
 fn changes_table(rows: &[&Change]) -> String {
     let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
-    // A column with one value for all rows says nothing.
-    let differs = |of: fn(&Measurement) -> &str| {
-        let mut values = rows.iter().map(|row| of(&row.measurement));
-        let first = values.next();
-        values.any(|value| Some(value) != first)
-    };
-    let columns: [PlaceColumn; 3] = [
-        ("mesh", |m| &m.mesh),
-        ("command", |m| m.kind),
-        ("case", |m| &m.case),
-    ];
-    let columns: Vec<_> = columns.into_iter().filter(|(_, of)| differs(*of)).collect();
+    let columns = Measurement::differing_parts(rows.iter().map(|row| &row.measurement));
     let names = columns.iter().map(|(name, _)| *name);
     let header = names.chain(["operation", "backend"]).map(Cell::new);
     let figures = ["before", "after", "ratio", "95 %"].map(|name| right(name.into()));
