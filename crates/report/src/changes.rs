@@ -10,7 +10,7 @@ use crate::figures::{changes as changes_figure, file_name, machine, machines, ra
 use crate::{ReportPage, source};
 
 /// Maximum number of rows of a table. The JSON of the comparison has all.
-const TABLE_ROWS: usize = 1000;
+pub(crate) const TABLE_ROWS: usize = 1000;
 /// Maximum number of names in a warning.
 const NAMES: usize = 8;
 
@@ -41,7 +41,11 @@ impl ReportPage {
         let mut figures: Vec<_> = figures.into_iter().flatten().collect();
         let source = both.map(|one| {
             let findings: Vec<&Finding> = one.results.findings.iter().collect();
-            format!("{}: {}", one.name, source::line(&findings))
+            let name = match &states(one)[..] {
+                [] => one.name.to_owned(),
+                states => format!("{} ({})", one.name, states.join(", ")),
+            };
+            format!("{name}: {}", source::line(&findings))
         });
         for figure in &mut figures {
             figure.source = source.join(" — ");
@@ -252,7 +256,7 @@ fn answer(ranked: &Ranked<'_>) -> Vec<String> {
     let all = counted(ranked.rows.len(), "time", "times");
     let different = match different {
         0 => String::new(),
-        n => format!(", {} of different work", grouped(n)),
+        n => format!("; {} of different work", are(n)),
     };
     let counts = match slower + faster {
         0 => format!(
@@ -294,10 +298,34 @@ fn are(count: usize) -> String {
     counted(count, "is", "are")
 }
 
+/// Returns what is unusual about the results as a whole: interrupted, partial or mixed.
+fn states(one: Compared<'_>) -> Vec<&'static str> {
+    let results = one.results;
+    let partial = !results.failures.is_empty() || results.missing().next().is_some();
+    let states = [
+        (results.is_interrupted(), "interrupted"),
+        (partial, "partial"),
+        (machine_count(results) > 1, "mixed"),
+    ];
+    let states = states.into_iter().filter(|(is, _)| *is);
+    states.map(|(_, state)| state).collect()
+}
+
+/// Counts the machines and programs that measured the results.
+fn machine_count(results: &Results) -> usize {
+    let runs = results.findings.iter().map(Finding::run);
+    let machines: BTreeSet<String> = runs.map(|run| machine(&run.environment)).collect();
+    machines.len()
+}
+
 /// Returns what the results lack, and what makes their comparison doubtful.
 fn warnings(ranked: &Ranked<'_>, both: [Compared<'_>; 2]) -> Vec<String> {
-    let mut warnings = Vec::new();
+    let mut warnings: Vec<String> = both.into_iter().flat_map(incomplete).collect();
     let changes = ranked.changes;
+    let only = [&changes.only_before, &changes.only_after];
+    for (one, only) in both.into_iter().zip(only) {
+        warnings.extend(only_in(one, only));
+    }
     let different = ranked.rows.iter().filter(|row| row.other_checksum);
     let different: Vec<String> = different.map(|row| ranked.name(&row.measurement)).collect();
     if !different.is_empty() {
@@ -305,51 +333,6 @@ fn warnings(ranked: &Ranked<'_>, both: [Compared<'_>; 2]) -> Vec<String> {
             "Different checksums: the two measurements did different work, so their times are not counted as changes: {}.",
             some_of(&different)
         ));
-    }
-    let only = [&changes.only_before, &changes.only_after];
-    for (one, only) in both.into_iter().zip(only) {
-        let name = one.name;
-        if one.results.is_interrupted() {
-            warnings.push(format!(
-                "{name} was interrupted: some of its results are missing or have fewer samples."
-            ));
-        }
-        let failures = one.results.failures.iter();
-        let failures: Vec<String> = failures.map(|f| f.mesh.clone()).collect();
-        if !failures.is_empty() {
-            warnings.push(format!("{name} has no results of {}.", some_of(&failures)));
-        }
-        let missing: Vec<String> = one.results.missing().map(str::to_owned).collect();
-        if !missing.is_empty() {
-            warnings.push(format!(
-                "{name} is partial: {} of {} not studied yet: {}.",
-                grouped(missing.len()),
-                counted(one.results.planned.len(), "mesh", "meshes"),
-                some_of(&missing)
-            ));
-        }
-        let runs = one.results.findings.iter().map(Finding::run);
-        let machines: BTreeSet<String> = runs.map(|run| machine(&run.environment)).collect();
-        if machines.len() > 1 {
-            warnings.push(format!(
-                "{name} is mixed: its results are from {} machines or programs.",
-                machines.len()
-            ));
-        }
-        if !only.is_empty() {
-            let meshes: BTreeSet<&str> = only.iter().map(|m| file_name(&m.mesh)).collect();
-            let meshes: Vec<&str> = meshes.into_iter().filter(|mesh| !mesh.is_empty()).collect();
-            let of = match &meshes[..] {
-                [] => String::new(),
-                meshes => format!(" of {}", some_of(meshes)),
-            };
-            warnings.push(format!(
-                "Only {name} has {}{of}, which the last tables list.",
-                counted(only.len(), "measurement", "measurements")
-            ));
-        }
-        let own = one.results.findings.iter().flat_map(Finding::warnings);
-        warnings.extend(own.map(|warning| format!("{name}: {warning}")));
     }
     let few = ranked
         .rows
@@ -364,7 +347,59 @@ fn warnings(ranked: &Ranked<'_>, both: [Compared<'_>; 2]) -> Vec<String> {
             counted(ranked.rows.len(), "time", "times")
         ));
     }
+    for one in both {
+        let own = one.results.findings.iter().flat_map(Finding::warnings);
+        warnings.extend(own.map(|warning| format!("{}: {warning}", one.name)));
+    }
     warnings
+}
+
+/// Says what one of the results lacks as a whole.
+fn incomplete(one: Compared<'_>) -> Vec<String> {
+    let Compared { name, results } = one;
+    let mut warnings = Vec::new();
+    if results.is_interrupted() {
+        warnings.push(format!(
+            "{name} was interrupted: some of its results are missing or have fewer samples."
+        ));
+    }
+    let failures: Vec<&str> = results.failures.iter().map(|f| &*f.mesh).collect();
+    if !failures.is_empty() {
+        warnings.push(format!(
+            "{name} is partial: it has no results of {}.",
+            some_of(&failures)
+        ));
+    }
+    let missing: Vec<&str> = results.missing().collect();
+    if !missing.is_empty() {
+        let meshes = counted(results.planned.len(), "mesh", "meshes");
+        warnings.push(format!(
+            "{name} is partial: {} of {meshes} not studied yet: {}.",
+            grouped(missing.len()),
+            some_of(&missing)
+        ));
+    }
+    let machines = machine_count(results);
+    if machines > 1 {
+        warnings.push(format!(
+            "{name} is mixed: its results are from {machines} machines or programs."
+        ));
+    }
+    warnings
+}
+
+/// Says which measurements only one of the results has.
+fn only_in(one: Compared<'_>, only: &[Measurement]) -> Option<String> {
+    let meshes: BTreeSet<&str> = only.iter().map(|m| file_name(&m.mesh)).collect();
+    let meshes: Vec<&str> = meshes.into_iter().filter(|mesh| !mesh.is_empty()).collect();
+    let of = match &meshes[..] {
+        [] => String::new(),
+        meshes => format!(" of {}", some_of(meshes)),
+    };
+    (!only.is_empty()).then(|| {
+        let count = counted(only.len(), "measurement", "measurements");
+        format!("Only {} has {count}{of}, which a table lists.", one.name)
+    })
 }
 
 /// Joins names, and says how many are left out.

@@ -7,7 +7,7 @@ use sixfold_study::numbers::{counted, grouped, times};
 use super::ratio_axis::{self, FARTHEST};
 use crate::Picture;
 use crate::canvas::{Canvas, LogScale, Style, text_width};
-use crate::changes::{Compared, Ranked, both_times};
+use crate::changes::{Compared, Ranked, TABLE_ROWS, both_times};
 use crate::colours::{BACKGROUND, FAINT_COLOUR, GRID_COLOUR, INTERVAL_COLOUR, column_colour};
 use crate::data::rows;
 use crate::figure::Figure;
@@ -24,6 +24,9 @@ const GAP: f64 = 10.0;
 /// Maximum number of letters of the name of an operation with its place, and of a backend.
 const LETTERS: [usize; 2] = [44, 22];
 
+/// Heading of the texts at the right.
+const TEXTS: &str = "ratio, before → after";
+
 /// A row of the picture.
 struct Row<'c> {
     change: &'c Change,
@@ -33,7 +36,8 @@ struct Row<'c> {
     text: String,
 }
 
-/// Draws the changes of `ranked`. Returns `None` if there are none.
+/// Draws the changes of `ranked`, and after them the times of different work. Returns `None` if nothing
+/// changed.
 pub(crate) fn figure(
     ranked: &Ranked<'_>,
     both: [Compared<'_>; 2],
@@ -42,10 +46,11 @@ pub(crate) fn figure(
     let all: Vec<&Change> = ranked.changed().collect();
     let shown = &all[..all.len().min(SHOWN)];
     let rows: Vec<Row<'_>> = shown.iter().map(|change| row(ranked, change)).collect();
-    let first = shown.first()?;
+    let first = shown.first().filter(|row| !row.other_checksum)?;
+    let changed = all.iter().filter(|row| !row.other_checksum).count();
     let picture_label = format!(
         "{} beyond the noise, the largest first: {}, {}",
-        counted(all.len(), "change", "changes"),
+        counted(changed, "change", "changes"),
         ranked.name(&first.measurement),
         times(ranked.value(first))
     );
@@ -54,7 +59,7 @@ pub(crate) fn figure(
         title: "Changes beyond the noise, largest first".into(),
         caption: caption(ranked, &all, both),
         picture: Picture::single(&picture_label, scene(ranked, &rows)),
-        table: ranked.times_table(all.iter().copied()),
+        table: ranked.times_table(all.iter().copied().take(TABLE_ROWS)),
         csv: rows::changes(shown.iter().copied()),
         source: String::new(),
         command: command.into(),
@@ -95,12 +100,18 @@ fn caption(ranked: &Ranked<'_>, all: &[&Change], [before, after]: [Compared<'_>;
             times(FARTHEST)
         ));
     }
-    let more = all.len() - shown.len();
+    let more = all.len().min(TABLE_ROWS) - shown.len();
     if more > 0 {
         parts.push(format!(
-            "The picture has the {} largest changes; {} more are in the table.",
+            "The picture has the first {} rows; {} more are in the table.",
             grouped(shown.len()),
             grouped(more)
+        ));
+    }
+    if all.len() > TABLE_ROWS {
+        parts.push(format!(
+            "The JSON of the comparison has all {}.",
+            grouped(all.len())
         ));
     }
     parts.join(" ")
@@ -138,7 +149,8 @@ fn scene(ranked: &Ranked<'_>, rows: &[Row<'_>]) -> Scene {
     let backends = widest(rows.iter().map(|row| &*row.backend));
     let left = names + GAP + backends + GAP;
     let text_from = left + PLOT + GAP;
-    let width = text_from + widest(rows.iter().map(|row| &*row.text));
+    let texts = rows.iter().map(|row| &*row.text);
+    let width = text_from + widest(texts.chain([TEXTS]));
     let bottom = HEAD + ROW * rows.len() as f64;
     let mut canvas = Canvas::new(width, bottom + FOOT);
     let ends = rows.iter().flat_map(|row| {
@@ -153,6 +165,8 @@ fn scene(ranked: &Ranked<'_>, rows: &[Row<'_>]) -> Scene {
         canvas.rect([from, y], [to - from, ROW], GRID_COLOUR);
     }
     ratio_axis::draw(&mut canvas, scale, [HEAD, bottom]);
+    let heading = Style::new(11).colour(FAINT_COLOUR);
+    canvas.text([text_from, HEAD - 6.0], TEXTS, heading);
     for (number, row) in rows.iter().enumerate() {
         let y = HEAD + ROW * number as f64 + ROW / 2.0;
         let label = Style::new(11);

@@ -7,7 +7,7 @@ use crate::colours::{FAINT_COLOUR, GRID_COLOUR, TEXT_COLOUR};
 pub(super) const FARTHEST: f64 = 1000.0;
 
 /// Labels of an axis. Their inverses are also short.
-const TICKS: [f64; 7] = [1.25, 2.0, 4.0, 10.0, 100.0, 1000.0, 10_000.0];
+const TICKS: [f64; 6] = [1.25, 2.0, 4.0, 10.0, 100.0, 1000.0];
 
 /// Returns a scale of which 1 is the middle, and which has all `ratios`. It reaches at least from 2/3 to
 /// 1.5, so that noise does not fill a figure.
@@ -27,28 +27,35 @@ pub(super) fn draw(canvas: &mut Canvas, scale: LogScale, [top, bottom]: [f64; 2]
     canvas.text([one - 12.0, top - 22.0], "← faster", words.end());
     canvas.text([one + 12.0, top - 22.0], "slower →", words);
     let faint = Style::new(11).colour(FAINT_COLOUR).middle();
-    let inverse = TICKS.iter().rev().map(|tick| tick.recip());
-    let ticks = inverse.chain([1.0]).chain(TICKS);
-    let inside = ticks.filter(|tick| (scale.values[0]..=scale.values[1]).contains(tick));
-    // The label of 1 is always drawn.
     let mut taken: Vec<[f64; 2]> = Vec::new();
-    let mut ticks: Vec<f64> = inside.collect();
-    ticks.sort_by(|a, b| a.ln().abs().total_cmp(&b.ln().abs()));
-    for tick in ticks {
-        let x = scale.place(tick);
-        let colour = if tick == 1.0 {
-            TEXT_COLOUR
-        } else {
-            GRID_COLOUR
-        };
-        canvas.line([x, top], [x, bottom], colour, 1.0);
-        let label = tick.to_string();
-        let half = text_width(&label, 11) / 2.0 + 4.0;
-        let is_free = |[from, to]: &[f64; 2]| x + half <= *from || x - half >= *to;
-        if taken.iter().all(is_free) {
-            taken.push([x - half, x + half]);
-            for y in [top - 6.0, bottom + 14.0] {
-                canvas.text([x, y], &label, faint);
+    for tick in [1.0].into_iter().chain(TICKS) {
+        if tick > scale.values[1] {
+            break;
+        }
+        let mut ratios = vec![tick.recip(), tick];
+        ratios.dedup();
+        let sides = ratios.into_iter().map(|ratio| {
+            let (x, label) = (scale.place(ratio), ratio.to_string());
+            let half = text_width(&label, 11) / 2.0 + 4.0;
+            (x, label, [x - half, x + half])
+        });
+        let sides: Vec<_> = sides.collect();
+        let is_free =
+            |[from, to]: [f64; 2]| taken.iter().all(|other| to <= other[0] || from >= other[1]);
+        // Both sides have labels, or none.
+        let are_free = sides.iter().all(|(.., place)| is_free(*place));
+        for (x, label, place) in sides {
+            let colour = if tick == 1.0 {
+                TEXT_COLOUR
+            } else {
+                GRID_COLOUR
+            };
+            canvas.line([x, top], [x, bottom], colour, 1.0);
+            if are_free {
+                taken.push(place);
+                for y in [top - 6.0, bottom + 14.0] {
+                    canvas.text([x, y], &label, faint);
+                }
             }
         }
     }

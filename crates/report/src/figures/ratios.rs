@@ -48,10 +48,12 @@ pub(crate) fn figure(
     both: [Compared<'_>; 2],
     command: &str,
 ) -> Option<Figure> {
-    if ranked.rows.len() < 2 {
+    let lines = lines(ranked);
+    let count = lines.iter().map(|line| line.rows.len()).sum();
+    if count < 2 {
         return None;
     }
-    let lines = lines(ranked);
+    let has_dots = count <= DOTS;
     let mut table = Table::new([
         "backend",
         "times",
@@ -82,15 +84,16 @@ pub(crate) fn figure(
         id: "ratios".into(),
         title: title.into(),
         caption: format!(
-            "{dots} in {} divided by the time in {}{relative}, on a logarithmic axis. Short upright lines are medians. \
-             The grey band is the noise up to {}, which counts for all times; some have more.",
+            "{dots}: the time in {} divided by the time in {}{relative}, on a logarithmic axis. Upright lines are medians. \
+             The grey band is the noise of all times, up to {}; single times can have more. Times of different work are \
+             left out.",
             after.name,
             before.name,
             times(ranked.changes.drift)
         ),
         picture: Picture::single(
-            &format!("{title}: {}", counted(ranked.rows.len(), "ratio", "ratios")),
-            scene(ranked, &lines),
+            &format!("{title}: {}", counted(count, "ratio", "ratios")),
+            scene(ranked, &lines, has_dots),
         ),
         table,
         csv: rows::changes(lines.iter().flat_map(|line| line.rows.iter().copied())),
@@ -99,10 +102,11 @@ pub(crate) fn figure(
     })
 }
 
-/// Returns the ratios of each backend, in the order of the comparison.
+/// Returns the ratios of the same work for each backend, in the order of the comparison.
 fn lines<'c>(ranked: &Ranked<'c>) -> Vec<Line<'c>> {
     let mut lines: Vec<Line<'c>> = Vec::new();
-    for row in &ranked.changes.rows {
+    let same_work = ranked.changes.rows.iter().filter(|row| !row.other_checksum);
+    for row in same_work {
         let backend = &*row.measurement.backend;
         match lines.iter_mut().find(|line| line.backend == backend) {
             Some(line) => line.rows.push(row),
@@ -120,7 +124,7 @@ fn lines<'c>(ranked: &Ranked<'c>) -> Vec<Line<'c>> {
     lines
 }
 
-fn scene(ranked: &Ranked<'_>, lines: &[Line<'_>]) -> Scene {
+fn scene(ranked: &Ranked<'_>, lines: &[Line<'_>], has_dots: bool) -> Scene {
     let backends: Vec<String> = lines
         .iter()
         .map(|line| cut(line.backend, LETTERS))
@@ -146,10 +150,7 @@ fn scene(ranked: &Ranked<'_>, lines: &[Line<'_>]) -> Scene {
         let label = Style::new(11);
         canvas.text([left - GAP, y + 4.0], &backends[number], label.end());
         canvas.text([text_from, y + 4.0], &texts[number], label);
-        match ranked.rows.len() <= DOTS {
-            true => draw_dots(&mut canvas, ranked, line, scale, y),
-            false => draw_quartiles(&mut canvas, line, scale, y),
-        }
+        // The dots cover the line of the median.
         let x = scale.place(line.quantile(0.5));
         canvas.line(
             [x, y - LINE * 0.42],
@@ -157,6 +158,10 @@ fn scene(ranked: &Ranked<'_>, lines: &[Line<'_>]) -> Scene {
             INTERVAL_COLOUR,
             2.0,
         );
+        match has_dots {
+            true => draw_dots(&mut canvas, ranked, line, scale, y),
+            false => draw_quartiles(&mut canvas, line, scale, y),
+        }
     }
     canvas.finish()
 }
