@@ -260,7 +260,7 @@ fn a_report_of_changes_replaces_no_file_of_others() {
     );
     refused(
         &["--report", "./after/"],
-        "--report would overwrite the results after",
+        "--report would overwrite the results ./after/",
     );
     refused(
         &["--figures", "after"],
