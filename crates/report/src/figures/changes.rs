@@ -158,11 +158,14 @@ fn scene(ranked: &Ranked<'_>, rows: &[Row<'_>]) -> Scene {
         ends.chain([ranked.value(row.change), row.change.noise])
     });
     let scale = ratio_axis::scale(ends, [left, left + PLOT]);
-    for (number, row) in rows.iter().enumerate() {
-        let y = HEAD + ROW * number as f64;
-        let noise = row.change.noise;
+    let mut top = HEAD;
+    // Rows with the same noise have one band.
+    for band in rows.chunk_by(|a, b| a.change.noise == b.change.noise) {
+        let noise = band[0].change.noise;
         let [from, to] = [noise.recip(), noise].map(|end| scale.place(end));
-        canvas.rect([from, y], [to - from, ROW], GRID_COLOUR);
+        let height = ROW * band.len() as f64;
+        canvas.rect([from, top], [to - from, height], GRID_COLOUR);
+        top += height;
     }
     ratio_axis::draw(&mut canvas, scale, [HEAD, bottom]);
     let heading = Style::new(11).colour(FAINT_COLOUR);
