@@ -2,7 +2,7 @@
 
     python3 tests/browser/check_report.py DIR [FOLDER FOR SCREENSHOTS]
 
-DIR is the output folder of `sixfold study --report DIR`. The script uses WebDriver over HTTP and
+DIR is the output folder of `sixfold study --report DIR` or `sixfold compare --report DIR`. The script uses WebDriver over HTTP and
 needs only chromium and chromedriver (Debian: chromium, chromium-driver).
 
 The script prints how long the page takes to open, but does not check this time, because it depends
@@ -549,10 +549,63 @@ def check(figure, results):
     raise AssertionError(f"unknown figure {kind}")
 
 
+def check_changes(figures, changes):
+    """Compares the figures of a comparison with its rows."""
+    divisor = changes["overall"] if changes["relative"] else 1
+    rows = changes["rows"]
+    changed = [row for row in rows if row["other_checksum"] or row["verdict"] != "same"]
+    changed.sort(key=lambda row: (row["other_checksum"], -abs(math.log(row["ratio"] / divisor))))
+    same_work = [row for row in rows if not row["other_checksum"]]
+    backends = list(dict.fromkeys(row["backend"] for row in same_work))
+    same_work.sort(key=lambda row: (backends.index(row["backend"]), row["ratio"]))
+    expected = {"changes": changed[:40], "ratios": same_work}
+    if all(row["other_checksum"] for row in changed):
+        del expected["changes"]
+    assert [figure["id"] for figure in figures] == list(expected), figures
+    for figure in figures:
+        rows = expected[figure["id"]]
+        assert len(figure["marks"]) == len(rows), figure["id"]
+        places = []
+        for mark, row in zip(figure["marks"], rows):
+            assert mark["title"].startswith(f"{row['operation']} on {row['backend']}"), (mark, row)
+            assert f": {shown(row['ratio'] / divisor)} ×" in mark["title"], (mark, row)
+            # The first shape of a change is its interval.
+            is_interval = figure["id"] == "changes" and row["ci_low"] is not None
+            ends = [row["ci_low"], row["ci_high"]] if is_interval else [row["ratio"]]
+            middle = sum(math.log(end / divisor) for end in ends) / len(ends)
+            places.append((middle, mark["x"] + mark["width"] / 2))
+        # The axis is logarithmic, and faster is left.
+        (low, left), (high, right) = min(places), max(places)
+        for middle, x in places if high > low else []:
+            close_to(x, left + (middle - low) / (high - low) * (right - left), figure["id"], 0.5)
+        assert right > left or high == low, figure["id"]
+
+
+def check_kinds(browser, figures, results):
+    """Checks that the page of a study has all figures and tables."""
+    kinds = {re.sub(r"-.*", "", figure["id"]) for figure in figures}
+    expected = {name for name in ("orders", "growth") if of_kind(results, name)}
+    expected |= {"roofline"} if of_kind(results, "why") else set()
+    studies = of_kind(results, "study")
+    expected |= {"rankings", "heat"} if studies else set()
+    assert expected <= kinds, f"{expected - kinds} is missing"
+    check_page(browser.run(PAGE), results, studies)
+    if studies:
+        pooled = len(results["planned"]) > 1
+        rows = results["pool"]["groups"][0]["pooled"] if pooled else studies[0]["results"]
+        names = results["pool"]["groups"][0]["meshes"] if pooled else [studies[0]["mesh"]["name"]]
+        compared = [study for study in studies if study["mesh"]["name"] in names]
+        check_operations(browser, rows, ratios_of(rows, pooled), compared)
+        if pooled:
+            check_meshes(browser, studies)
+
+
 def main():
     folder = pathlib.Path(sys.argv[1])
     shots = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else None
-    results = json.loads((folder / "results.json").read_text())
+    changes = folder / "changes.json"
+    is_comparison = changes.exists()
+    results = json.loads((changes if is_comparison else folder / "results.json").read_text())
     browser = Browser()
     try:
         start = time.monotonic()
@@ -566,28 +619,18 @@ def main():
         figures = browser.run(FIGURES)
         ids = [figure["id"] for figure in figures]
         assert len(set(ids)) == len(ids), "two figures have the same name"
+        if is_comparison:
+            check_changes(figures, results)
         for figure in figures:
-            check(figure, results)
+            if not is_comparison:
+                check(figure, results)
             assert figure["link"] == f"#{figure['id']}" and figure["label"], figure["id"]
             assert re.search(r"\d{4}-\d\d-\d\d.*seed \d+", figure["source"]), figure["source"]
             assert not figure["clipped"], f"{figure['id']}: texts beyond the picture: {figure['clipped']}"
             # The file of the figure must be valid XML, which is stricter than HTML.
             xml.etree.ElementTree.parse(folder / "figures" / f"{figure['id']}.svg")
-        kinds = {re.sub(r"-.*", "", figure["id"]) for figure in figures}
-        expected = {name for name in ("orders", "growth") if of_kind(results, name)}
-        expected |= {"roofline"} if of_kind(results, "why") else set()
-        studies = of_kind(results, "study")
-        expected |= {"rankings", "heat"} if studies else set()
-        assert expected <= kinds, f"{expected - kinds} is missing"
-        check_page(browser.run(PAGE), results, studies)
-        if studies:
-            pooled = len(results["planned"]) > 1
-            rows = results["pool"]["groups"][0]["pooled"] if pooled else studies[0]["results"]
-            names = results["pool"]["groups"][0]["meshes"] if pooled else [studies[0]["mesh"]["name"]]
-            compared = [study for study in studies if study["mesh"]["name"] in names]
-            check_operations(browser, rows, ratios_of(rows, pooled), compared)
-            if pooled:
-                check_meshes(browser, studies)
+        if not is_comparison:
+            check_kinds(browser, figures, results)
 
         # On a phone, the page must not be wider than the screen; wide figures scroll in their boxes.
         for width, theme in [(1200, "light"), (1200, "dark"), (390, "light"), (390, "dark")]:

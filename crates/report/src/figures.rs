@@ -2,12 +2,15 @@
 
 mod audit;
 pub(crate) mod break_even;
+pub(crate) mod changes;
 mod growth;
 mod heat_map;
 mod many;
 mod memory;
 mod orders;
 mod ranking;
+mod ratio_axis;
+pub(crate) mod ratios;
 mod reads;
 mod roofline;
 
@@ -150,7 +153,7 @@ fn labs_page(mut labs: Vec<Section>) -> ReportPage {
 }
 
 /// Returns the name of a file without its folders.
-fn file_name(path: &str) -> &str {
+pub(crate) fn file_name(path: &str) -> &str {
     path.rsplit(['/', '\\'])
         .find(|part| !part.is_empty())
         .unwrap_or(path)
@@ -360,7 +363,7 @@ pub(crate) fn facts(mesh: &MeshReport) -> String {
 
 /// Describes the machines of the findings. If there are several, each one is preceded by the names
 /// of its findings, such as `study of ball.obj, orders`.
-fn machines(results: &Results) -> Vec<String> {
+pub(crate) fn machines(results: &Results) -> Vec<String> {
     let mut machines: Vec<(String, Vec<String>)> = Vec::new();
     for finding in &results.findings {
         let machine = machine(&finding.run().environment);

@@ -46,6 +46,7 @@ impl ReportPage {
                             }
                         }
                         @for figure in &self.figures { (figure_section(figure, "h2", None)) }
+                        @for table in &self.appendix { (table_section(table, "h2")) }
                         @for (place, lab) in self.labs.iter().enumerate() { (lab_section(place, lab)) }
                         @if !self.meshes.is_empty() {
                             section id="meshes" {
@@ -71,15 +72,16 @@ impl ReportPage {
             .map(|figure| (figure.id.clone(), short(&figure.title)));
         let labs = self.labs.iter().enumerate();
         let labs = labs.map(|(place, lab)| (lab_id(place), short(&lab.title)));
-        let tables = self.tables.iter();
-        let tables = tables.map(|table| (table_id(table), table.title.as_str()));
+        let link = |table: &TitledTable| (table_id(table), table.title.clone());
+        let tables = self.tables.iter().map(link);
+        let appendix = self.appendix.iter().map(link);
         html! {
             nav aria-label="Contents" {
                 ul {
                     li { a href="#answer" { "Answer" } }
                     @for (id, title) in tables { li { a href={ "#" (id) } { (title) } } }
                     @if !self.operations.lines.is_empty() { li { a href="#operations" { "All operations" } } }
-                    @for (id, title) in figures.chain(labs) { li { a href={ "#" (id) } { (title) } } }
+                    @for (id, title) in figures.chain(appendix).chain(labs) { li { a href={ "#" (id) } { (title) } } }
                     @if !self.meshes.is_empty() { li { a href="#meshes" { "All meshes" } } }
                     li { a href="#method" { "How it was measured" } }
                 }

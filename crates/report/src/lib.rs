@@ -11,8 +11,11 @@
 //! which links to separate SVG files. [`ReportPage::paper`] returns the files for a paper: each figure
 //! as SVG and PDF with its data and its caption, tables for LaTeX and Markdown, and a description of the
 //! methods.
+//!
+//! [`ReportPage::from_changes`] draws what changed between two results.
 
 mod canvas;
+mod changes;
 mod colours;
 mod data;
 mod figure;
@@ -29,6 +32,7 @@ mod summary;
 use matrix::Matrix;
 use sixfold_study::Results;
 
+pub use changes::Compared;
 pub use colours::structure_colours;
 pub use figure::{Figure, Table, TitledTable};
 pub use panels::{Panel, panels};
@@ -59,11 +63,14 @@ pub struct ReportPage {
     pub sentences: Vec<String>,
     /// Possible faults of the measurement, with remedies.
     pub warnings: Vec<String>,
+    /// Tables that belong to the answer: the answer by size and kind of mesh, or the differences of the
+    /// machines and settings of two compared results.
+    pub tables: Vec<TitledTable>,
     /// Figures about all meshes together. If there is only one mesh, the figures are about this
     /// mesh.
     pub figures: Vec<Figure>,
-    /// Tables about groups of meshes; empty if there is only one mesh.
-    pub tables: Vec<TitledTable>,
+    /// Tables that follow the figures, with all numbers.
+    pub appendix: Vec<TitledTable>,
     /// All operations on all backends.
     pub(crate) operations: Matrix,
     /// Sections for additional measurements: orders of elements, growth, reads of queries, memory,

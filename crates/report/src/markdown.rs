@@ -41,11 +41,18 @@ impl ReportPage {
             text.push_str("## Meshes not studied yet\n\n");
             write_list(&mut text, &self.missing);
         }
+        for table in &self.tables {
+            write_titled_table(&mut text, table, "##");
+        }
         for figure in &self.figures {
             write_figure(&mut text, figure, "##");
         }
-        for table in &self.tables {
+        for table in &self.appendix {
             write_titled_table(&mut text, table, "##");
+        }
+        if !self.overview.rows.is_empty() {
+            text.push_str("## All meshes\n\n");
+            write_table(&mut text, &self.overview);
         }
         for section in self.labs.iter().chain(&self.meshes) {
             let _ = writeln!(
@@ -55,6 +62,9 @@ impl ReportPage {
                 escape(&section.facts)
             );
             write_list(&mut text, &section.sentences);
+            if let Some(summary) = &section.summary {
+                write_table(&mut text, &summary.table());
+            }
             for figure in &section.figures {
                 write_figure(&mut text, figure, "###");
             }

@@ -1,15 +1,27 @@
-//! `sixfold compare`: shows what changed between two studies.
+//! `sixfold compare`: shows what changed between two studies. `--report` writes these files:
+//!
+//! ```text
+//! DIR/report.html                the page, which needs no other file
+//! DIR/report.md, DIR/figures     the same in Markdown
+//! DIR/changes.json               the changes, as --json writes them
+//! DIR/sixfold-files.txt          the names of these files
+//! ```
 
-use std::path::Path;
+use std::path::{self, Path, PathBuf};
 use std::process::ExitCode;
 
 use comfy_table::{Cell, CellAlignment};
+use sixfold_report::{Compared, PaperFile, ReportPage};
 use sixfold_study::{Change, Changes, CompareSettings, Measurement, Verdict, compare};
 
 use crate::arguments::Compare;
 use crate::failure::Failure;
+use crate::listed_folder::ListedFolder;
 use crate::load;
-use crate::output::{Output, check_not_overwritten, is_stdout};
+use crate::measure::command_line;
+use crate::mesh_files::shown;
+use crate::output::{Output, cannot_write, check_not_overwritten, check_outputs, is_stdout};
+use crate::paper;
 use crate::tables::table;
 use crate::text::{TextOutput, hanging_indent};
 use sixfold_study::numbers::{duration, grouped};
@@ -21,21 +33,47 @@ const SHOWN: usize = 8;
 const SLOWER: u8 = 1;
 
 pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
-    let Compare { before, after, .. } = arguments;
-    for study in [before, after] {
-        check_not_overwritten("the results", study, &[("--json", arguments.json.as_ref())])?;
+    let places = [&arguments.before, &arguments.after];
+    let outputs = [
+        ("--json", arguments.json.as_ref()),
+        ("--report", arguments.report.as_ref()),
+        ("--figures", arguments.figures.as_ref()),
+    ];
+    for place in places {
+        check_not_overwritten("the results", place, &outputs)?;
+        check_not_overwritten("the results", &load::results_path(place), &outputs)?;
     }
+    check_outputs(None, &outputs)?;
     let read = |path: &Path| load::read_results(path);
-    let [before, after] = [read(before)?, read(after)?];
+    let [before, after] = [read(places[0])?, read(places[1])?];
     let json = Output::open_if(arguments.json.as_ref())?;
     let settings = CompareSettings {
         relative: arguments.relative,
         drift: arguments.noise,
     };
     let changes = compare(&before, &after, settings).map_err(Failure::usage)?;
+    let report = ListedFolder::open_if(arguments.report.as_ref())?;
+    let figures = ListedFolder::open_if(arguments.figures.as_ref())?;
     let mut text = TextOutput::new(!arguments.json.as_deref().is_some_and(is_stdout));
     print(&changes, arguments.all, &mut text);
-    let mut done = text.finish();
+    let mut drawn = Ok(());
+    if report.is_some() || figures.is_some() {
+        let names = names(places.map(|place| place.as_path()));
+        let [before, after] = [(&names[0], &before), (&names[1], &after)]
+            .map(|(name, results)| Compared { name, results });
+        let page = ReportPage::from_changes(&changes, before, after, &command_line());
+        if let Some(folder) = &report {
+            drawn = write_report(folder, &page, &changes);
+        }
+        if let Some(folder) = &figures {
+            drawn = drawn.and(paper::write(folder, page.figure_files()));
+        }
+    }
+    if let (Ok(()), Some(folder)) = (&drawn, &arguments.report) {
+        let page = folder.join("report.html");
+        text.print_line(&hanging_indent("- ", &format!("Report: {}", shown(&page))));
+    }
+    let mut done = text.finish().and(drawn);
     if let Some(output) = json {
         done = done.and(output.finish(|writer| changes.write_json(writer)));
     }
@@ -45,6 +83,37 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
         true => ExitCode::from(SLOWER),
         false => ExitCode::SUCCESS,
     })
+}
+
+/// Writes the page with its figures, and `changes.json`.
+fn write_report(
+    folder: &ListedFolder,
+    page: &ReportPage,
+    changes: &Changes,
+) -> Result<(), Failure> {
+    let mut json = Vec::new();
+    let written = changes.write_json(&mut json);
+    written.map_err(|cause| cannot_write("changes.json", &cause))?;
+    let mut files = page.files();
+    files.push(PaperFile::new("changes.json", json));
+    folder.write(files)
+}
+
+/// Returns the names of two files or folders, with as many folders above them as make the names
+/// different.
+fn names(places: [&Path; 2]) -> [String; 2] {
+    let places = places.map(|place| path::absolute(place).unwrap_or_else(|_| place.to_owned()));
+    let most = places.iter().map(|place| place.components().count()).max();
+    let last = |count: usize| {
+        places.each_ref().map(|place| {
+            let parts = place.components().rev().take(count);
+            let mut parts: Vec<_> = parts.map(|part| part.as_os_str()).collect();
+            parts.reverse();
+            shown(&parts.iter().collect::<PathBuf>())
+        })
+    };
+    let different = (1..=most.unwrap_or(1)).map(last).find(|[a, b]| a != b);
+    different.unwrap_or_else(|| last(1))
 }
 
 fn print(changes: &Changes, all: bool, text: &mut TextOutput) {
@@ -92,23 +161,9 @@ fn name(measurement: &Measurement) -> String {
     format!("{} on {}", measurement.operation, measurement.backend)
 }
 
-/// A title, and the part of a measurement that a column shows.
-type PlaceColumn = (&'static str, fn(&Measurement) -> &str);
-
 fn changes_table(rows: &[&Change]) -> String {
     let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
-    // A column with one value for all rows says nothing.
-    let differs = |of: fn(&Measurement) -> &str| {
-        let mut values = rows.iter().map(|row| of(&row.measurement));
-        let first = values.next();
-        values.any(|value| Some(value) != first)
-    };
-    let columns: [PlaceColumn; 3] = [
-        ("mesh", |m| &m.mesh),
-        ("command", |m| m.kind),
-        ("case", |m| &m.case),
-    ];
-    let columns: Vec<_> = columns.into_iter().filter(|(_, of)| differs(*of)).collect();
+    let columns = Measurement::differing_parts(rows.iter().map(|row| &row.measurement));
     let names = columns.iter().map(|(name, _)| *name);
     let header = names.chain(["operation", "backend"]).map(Cell::new);
     let figures = ["before", "after", "ratio", "95 %"].map(|name| right(name.into()));

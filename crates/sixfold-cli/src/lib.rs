@@ -64,6 +64,7 @@ mod growth;
 mod help;
 mod inspect;
 mod left_out;
+mod listed_folder;
 mod load;
 mod many;
 mod measure;

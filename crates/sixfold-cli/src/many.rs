@@ -19,11 +19,12 @@ use sixfold_study::{
 use crate::arguments::Study;
 use crate::facts_text::print_before_measuring;
 use crate::failure::Failure;
+use crate::listed_folder::ListedFolder;
 use crate::load;
 use crate::measure::{Session, command_line, exit_code, warn_of_debug_build};
 use crate::mesh_files::shown;
 use crate::mesh_picture::with_picture;
-use crate::paper::PaperFolder;
+use crate::paper;
 use crate::progress::Bar;
 use crate::study::finding;
 use crate::text::{TextOutput, hanging_indent, print_notice, sanitize};
@@ -68,7 +69,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
         )?),
         None => None,
     };
-    let paper = PaperFolder::open_if(arguments.figures.as_ref())?;
+    let paper = ListedFolder::open_if(arguments.figures.as_ref())?;
     let selected = unfinished(&meshes, arguments.shard, &results);
     warn_of_debug_build();
     let loaded = match &meshes[..] {
@@ -117,7 +118,7 @@ pub(crate) fn run(arguments: &Study, settings: &Settings) -> Result<ExitCode, Fa
     if let Some(paper) = &paper {
         match is_empty {
             true => paper.remove_if_empty(),
-            false => written = written.and(paper.write(&results, &command_line())),
+            false => written = written.and(paper::write_if(Some(paper), &results, &command_line())),
         }
     }
     if none_studied {

@@ -7,125 +7,35 @@
 //! DIR/methods.md                 how the results were measured
 //! DIR/sixfold-files.txt          the names of these files
 //! ```
-//!
-//! The list of the names shows which files belong to this program. Only these files are replaced, and
-//! those that are no longer drawn are removed.
 
-use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
-
-use sixfold_report::ReportPage;
+use sixfold_report::{PaperFile, PdfError, ReportPage};
 use sixfold_study::Results;
 
 use crate::failure::Failure;
-use crate::output::{Output, cannot_write};
+use crate::listed_folder::ListedFolder;
 use crate::text::print_notice;
 
-/// The file with the names of the files of this program, one in each line.
-const LIST: &str = "sixfold-files.txt";
-
-pub(crate) struct PaperFolder {
-    path: PathBuf,
-    /// The names of the files of an earlier run.
-    old: Vec<String>,
-}
-
-impl PaperFolder {
-    /// Opens or creates the folder. Returns an error if the folder has files, but no list of files of
-    /// this program.
-    pub(crate) fn open(path: &Path) -> Result<Self, Failure> {
-        let shown = path.display().to_string();
-        let failed = |cause: io::Error| cannot_write(&shown, &cause);
-        fs::create_dir_all(path).map_err(failed)?;
-        let old = match fs::read_to_string(path.join(LIST)) {
-            Ok(list) => list.lines().map(str::to_owned).collect(),
-            Err(cause) if cause.kind() == io::ErrorKind::NotFound => {
-                if fs::read_dir(path).map_err(failed)?.next().is_some() {
-                    return Err(Failure::usage(format!(
-                        "{shown} has files of others (there is no {LIST}): name a new or an empty folder"
-                    )));
-                }
-                Vec::new()
-            }
-            Err(cause) => return Err(failed(cause)),
-        };
-        Ok(Self {
-            path: path.into(),
-            old,
-        })
-    }
-
-    pub(crate) fn open_if(path: Option<&PathBuf>) -> Result<Option<Self>, Failure> {
-        path.map(|path| Self::open(path)).transpose()
-    }
-
-    /// Removes the folder if it is empty.
-    pub(crate) fn remove_if_empty(&self) {
-        fs::remove_dir(&self.path).ok();
-    }
-
-    /// Writes the files for a paper on `results`, and removes the files of the earlier run that are no
-    /// longer drawn. A figure without a recorded command shows `command`. Writes nothing if a file of
-    /// another program would be replaced.
-    pub(crate) fn write(&self, results: &Results, command: &str) -> Result<(), Failure> {
-        let files = ReportPage::new(results, command).paper(results);
-        let files = files.map_err(Failure::usage)?;
-        let new: Vec<String> = files.iter().map(|file| file.name.clone()).collect();
-        let foreign = new.iter().filter(|name| !self.old.contains(name));
-        for name in foreign {
-            let path = self.path.join(name);
-            if path.exists() {
-                return Err(Failure::usage(format!(
-                    "{} exists already, but {LIST} does not name it: move the file, or name another folder",
-                    path.display()
-                )));
-            }
-        }
-        // If writing stops early, the list has the names of all files that may exist.
-        let stale = self.old.iter().filter(|name| !new.contains(name));
-        let stale: Vec<String> = stale.filter(|name| is_file_name(name)).cloned().collect();
-        self.write_list(&[&new[..], &stale].concat())?;
-        for file in files {
-            let output = Output::open(&self.path.join(&file.name))?;
-            output.finish(|writer| writer.write_all(&file.bytes))?;
-        }
-        for name in stale {
-            remove(&self.path.join(name))?;
-        }
-        if cfg!(not(feature = "pdf")) {
-            print_notice("note: no PDF files: this program was built without the feature `pdf`");
-        }
-        self.write_list(&new)
-    }
-
-    fn write_list(&self, names: &[String]) -> Result<(), Failure> {
-        let output = Output::open(&self.path.join(LIST))?;
-        output.finish(|writer| names.iter().try_for_each(|name| writeln!(writer, "{name}")))
-    }
-}
-
-/// Writes the files for a paper if `--figures` is given.
+/// Writes the files for a paper on `results` if `--figures` is given. A figure without a recorded
+/// command shows `command`.
 pub(crate) fn write_if(
-    folder: Option<&PaperFolder>,
+    folder: Option<&ListedFolder>,
     results: &Results,
     command: &str,
 ) -> Result<(), Failure> {
-    folder.map_or(Ok(()), |folder| folder.write(results, command))
+    let Some(folder) = folder else {
+        return Ok(());
+    };
+    write(folder, ReportPage::new(results, command).paper(results))
 }
 
-/// Removes a file of this program. It is not an error if the file does not exist.
-pub(crate) fn remove(path: &Path) -> Result<(), Failure> {
-    match fs::remove_file(path) {
-        Err(cause) if cause.kind() != io::ErrorKind::NotFound => Err(Failure::usage(format!(
-            "{}: cannot be removed ({cause}): check the permissions",
-            path.display()
-        ))),
-        _ => Ok(()),
+/// Writes drawn figures, and says if this program cannot write PDF files.
+pub(crate) fn write(
+    folder: &ListedFolder,
+    files: Result<Vec<PaperFile>, PdfError>,
+) -> Result<(), Failure> {
+    folder.write(files.map_err(Failure::usage)?)?;
+    if cfg!(not(feature = "pdf")) {
+        print_notice("note: no PDF files: this program was built without the feature `pdf`");
     }
-}
-
-/// Returns whether `name` is the name of a file in this folder, and not a path to another folder.
-fn is_file_name(name: &str) -> bool {
-    Path::new(name).file_name().is_some_and(|file| file == name)
+    Ok(())
 }

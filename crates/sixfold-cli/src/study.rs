@@ -12,10 +12,11 @@ use crate::arguments::{STUDY_EXAMPLES, Study};
 use crate::facts_text::{print_before_measuring, verdicts_text};
 use crate::failure::Failure;
 use crate::left_out::left_out_notes;
+use crate::listed_folder::ListedFolder;
 use crate::load;
 use crate::many;
 use crate::measure::{Session, command_line, exit_code, warn_of_debug_build, with_command};
-use crate::paper::{self, PaperFolder};
+use crate::paper;
 use crate::progress::Bar;
 use crate::results_table::results_table;
 use crate::text::{TextOutput, hanging_indent};
@@ -38,7 +39,7 @@ pub(crate) fn run(arguments: &Study) -> Result<ExitCode, Failure> {
         return many::run(arguments, &settings);
     }
     let mesh = arguments.meshes.first().map(PathBuf::as_path);
-    let paper = PaperFolder::open_if(arguments.figures.as_ref())?;
+    let paper = ListedFolder::open_if(arguments.figures.as_ref())?;
     let studied = run_single(arguments, &settings, mesh, paper.as_ref());
     if let (Err(_), Some(paper)) = (&studied, &paper) {
         paper.remove_if_empty();
@@ -51,7 +52,7 @@ fn run_single(
     arguments: &Study,
     settings: &Settings,
     mesh: Option<&Path>,
-    paper: Option<&PaperFolder>,
+    paper: Option<&ListedFolder>,
 ) -> Result<ExitCode, Failure> {
     let mut session = Session::open(mesh, &arguments.files, settings.heap)?;
     let study_mesh = load::mesh_or_built_in(

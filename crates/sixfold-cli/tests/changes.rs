@@ -173,3 +173,166 @@ fn results_of_any_command_are_merged_and_compared() {
     );
     assert!(left_out.contains("more."), "{left_out}");
 }
+
+/// Returns the names of the files that the list of a folder names, sorted.
+fn listed(sixfold: &Sixfold, folder: &str) -> Vec<String> {
+    let list = text(sixfold, &format!("{folder}/sixfold-files.txt"));
+    let mut names: Vec<String> = list.lines().map(str::to_owned).collect();
+    names.sort_unstable();
+    names
+}
+
+#[test]
+fn a_report_shows_the_changes_and_keeps_the_exit_code() {
+    let sixfold = two_studies();
+    let plain = run_ok(&sixfold, &["compare", "a.json", "b.json"]).stdout;
+    let arguments = ["compare", "a.json", "b.json", "--report", "changes"];
+    let drawn = run_ok(&sixfold, &arguments).stdout;
+    assert_eq!(drawn, format!("{plain}- Report: changes/report.html\n"));
+    let failing = [&arguments[..], &["--fail-if-slower", "--json", "c.json"]].concat();
+    assert_eq!(sixfold.run(&failing).code, Some(1));
+    let files = [
+        "changes.json",
+        "figures/changes.svg",
+        "figures/ratios.svg",
+        "report.html",
+        "report.md",
+    ];
+    assert_eq!(listed(&sixfold, "changes"), files);
+    assert_eq!(
+        text(&sixfold, "changes/changes.json"),
+        text(&sixfold, "c.json")
+    );
+    let page = text(&sixfold, "changes/report.md");
+    for part in [
+        "# What changed: a.json → b.json",
+        "of 12 times, 2 are slower and 0 are faster; 10 are equal within the noise",
+        "on half-edge, 2.00 × the time before (1.00 µs → 2.00 µs)",
+        "0123456",
+        "](figures/changes.svg)",
+        "# a.json: sixfold study t.obj",
+    ] {
+        assert!(page.contains(part), "{part}: {page}");
+    }
+    // Figures that are no longer drawn are removed; files of others stay.
+    sixfold.file("changes/figures/mine.svg", "mine");
+    run_ok(
+        &sixfold,
+        &["compare", "a.json", "a.json", "--report", "changes"],
+    );
+    let files: Vec<&str> = files
+        .into_iter()
+        .filter(|name| !name.ends_with("changes.svg"))
+        .collect();
+    assert_eq!(listed(&sixfold, "changes"), files);
+    assert!(
+        !sixfold
+            .folder()
+            .join("changes/figures/changes.svg")
+            .exists()
+    );
+    assert_eq!(text(&sixfold, "changes/figures/mine.svg"), "mine");
+    assert!(text(&sixfold, "changes/report.md").contains("Nothing changed beyond the noise"));
+
+    let figures = ["compare", "a.json", "b.json", "--figures", "paper"];
+    assert_eq!(run_ok(&sixfold, &figures).stdout, plain);
+    let csv = text(&sixfold, "paper/changes.csv");
+    assert_eq!(csv.lines().count(), 1 + 2, "{csv}");
+    assert!(text(&sixfold, "paper/changes.txt").contains("Measured: a.json: "));
+}
+
+#[test]
+fn a_report_of_changes_replaces_no_file_of_others() {
+    let sixfold = two_studies();
+    for folder in ["before", "after", "foreign"] {
+        std::fs::create_dir(sixfold.folder().join(folder)).expect("a folder");
+    }
+    sixfold.file("before/results.json", &text(&sixfold, "a.json"));
+    sixfold.file("after/results.json", &text(&sixfold, "b.json"));
+    sixfold.file("foreign/report.html", "mine");
+    let refused = |options: &[&str], message: &str| {
+        let arguments = [&["compare", "before", "after"], options].concat();
+        assert_refused(&sixfold, &arguments, 2, message);
+    };
+    refused(
+        &["--report", "before"],
+        "--report would overwrite the results before",
+    );
+    refused(
+        &["--report", "./after/"],
+        "--report would overwrite the results ./after/",
+    );
+    refused(
+        &["--figures", "after"],
+        "--figures would overwrite the results after",
+    );
+    refused(&["--report", "foreign"], "has files of others");
+    refused(&["--report", "."], "has files of others");
+    refused(&["--report", "a.json"], "cannot be written");
+    refused(
+        &["--report", "new", "--figures", "new"],
+        "both write to new",
+    );
+    assert_eq!(text(&sixfold, "foreign/report.html"), "mine");
+    assert_eq!(
+        text(&sixfold, "before/results.json"),
+        text(&sixfold, "a.json")
+    );
+    // The folder of a refused comparison is not created.
+    sixfold.file("none.json", "{}");
+    let arguments = ["compare", "a.json", "none.json", "--report", "new"];
+    assert_refused(&sixfold, &arguments, 2, "no `schema`");
+    assert!(!sixfold.folder().join("new").exists());
+
+    // A new file of another program is not replaced, and nothing else is written.
+    let arguments = ["compare", "before", "after", "--report", "new"];
+    run_ok(
+        &sixfold,
+        &["compare", "before", "before", "--report", "new"],
+    );
+    sixfold.file("new/figures/changes.svg", "mine");
+    let old = text(&sixfold, "new/report.html");
+    let refused = sixfold.run(&arguments);
+    assert_eq!(refused.code, Some(2), "{refused:?}");
+    assert!(
+        refused.stderr.contains("changes.svg exists already"),
+        "{refused:?}"
+    );
+    assert_eq!(text(&sixfold, "new/figures/changes.svg"), "mine");
+    assert_eq!(text(&sixfold, "new/report.html"), old);
+    // Files with one name are named with their folders.
+    let other = [
+        "compare",
+        "before/results.json",
+        "after/results.json",
+        "--report",
+        "other",
+    ];
+    run_ok(&sixfold, &other);
+    let page = text(&sixfold, "other/report.md");
+    assert!(
+        page.starts_with("# What changed: before/results.json → after/results.json\n"),
+        "{page}"
+    );
+}
+
+#[test]
+fn interrupted_and_partial_results_are_drawn_and_labelled() {
+    let sixfold = two_studies();
+    let mut study: Value = serde_json::from_str(&text(&sixfold, "b.json")).expect("JSON");
+    study["findings"][0]["interrupted"] = true.into();
+    study["planned"] = vec!["t.obj", "next.obj"].into();
+    sixfold.file("part.json", &study.to_string());
+    run_ok(
+        &sixfold,
+        &["compare", "a.json", "part.json", "--report", "changes"],
+    );
+    let page = text(&sixfold, "changes/report.md");
+    for part in [
+        "part.json was interrupted",
+        "part.json is partial: 1 of 2 meshes not studied yet: next.obj.",
+        "part.json (interrupted, partial): ",
+    ] {
+        assert!(page.contains(part), "{part}: {page}");
+    }
+}

@@ -73,8 +73,8 @@ pub use labs::pick::{
 pub use labs::study::{Report, Settings, StudyError, study};
 pub use labs::why::{Bound, Model, Timed, Timing, Why, WhyRow, WhySettings, why};
 pub use results::compare::{
-    BytesChange, Change, Changes, CompareError, CompareSettings, DRIFT, Measurement, NewWinner,
-    SettingChange, Verdict, compare,
+    BytesChange, Change, Changes, CompareError, CompareSettings, DRIFT, Measurement,
+    MeasurementPart, NewWinner, SettingChange, Verdict, compare,
 };
 pub use results::csv::write_csv_rows;
 pub use results::document::{Failed, FailureKind, Results, SCHEMA};

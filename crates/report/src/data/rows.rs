@@ -3,7 +3,8 @@
 
 use serde::Serialize;
 use sixfold_study::{
-    Figure as TimeRow, GrowthReport, NeighboursReport, OrdersReport, PickReport, Pool, Report, Why,
+    Change, Figure as TimeRow, GrowthReport, NeighboursReport, OrdersReport, PickReport, Pool,
+    Report, Verdict, Why,
 };
 
 use super::{own_columns, times};
@@ -206,4 +207,46 @@ pub(crate) struct BreakEvenRow<'r> {
     /// The number of runs after which the time to build is saved. Missing if it is never saved, or if
     /// the structure of the input was not measured.
     pub(crate) pays_after_runs: Option<f64>,
+}
+
+/// One time of a comparison.
+#[derive(Serialize)]
+struct ChangeRow<'r> {
+    mesh: &'r str,
+    kind: &'r str,
+    case: &'r str,
+    operation: &'r str,
+    backend: &'r str,
+    before_ns: f64,
+    after_ns: f64,
+    before_samples: usize,
+    after_samples: usize,
+    ratio: f64,
+    ci_low: Option<f64>,
+    ci_high: Option<f64>,
+    noise: f64,
+    verdict: Verdict,
+    other_checksum: bool,
+}
+
+/// Returns the times of a comparison, in the order of `changes`.
+pub(crate) fn changes<'c>(changes: impl Iterator<Item = &'c Change>) -> String {
+    let rows = changes.map(|change| ChangeRow {
+        mesh: &change.measurement.mesh,
+        kind: change.measurement.kind,
+        case: &change.measurement.case,
+        operation: &change.measurement.operation,
+        backend: &change.measurement.backend,
+        before_ns: change.before_ns,
+        after_ns: change.after_ns,
+        before_samples: change.before_samples,
+        after_samples: change.after_samples,
+        ratio: change.ratio,
+        ci_low: change.ci_low,
+        ci_high: change.ci_high,
+        noise: change.noise,
+        verdict: change.verdict,
+        other_checksum: change.other_checksum,
+    });
+    own_columns(rows)
 }

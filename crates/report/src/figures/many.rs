@@ -92,7 +92,6 @@ pub(super) fn page(studies: &[&Report], results: &Results, command: &str) -> Rep
         groups::winners(&pool),
         holding(&pool, &meshes),
         outliers::table(&pool, &meshes),
-        groups::means(&pool),
     ];
     ReportPage {
         title: format!(
@@ -103,6 +102,7 @@ pub(super) fn page(studies: &[&Report], results: &Results, command: &str) -> Rep
         summary: Summary::of_pool(&pool, studies),
         figures: figures(&pool, &meshes, &matrix, command),
         tables: tables.into_iter().flatten().collect(),
+        appendix: groups::means(&pool).into_iter().collect(),
         operations: matrix,
         overview: overview(&meshes),
         meshes: meshes

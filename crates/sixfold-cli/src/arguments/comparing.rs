@@ -63,6 +63,7 @@ const COMPARE_EXAMPLES: &str = "Examples:
   sixfold compare before.json after.json
   sixfold compare before.json after.json --fail-if-slower      for CI: exit code 1
   sixfold compare laptop.json server.json --relative
+  sixfold compare before.json after.json --report changes      a page with figures
 
 Each file has results of any commands that measure. A measurement is the time of one operation on
 one backend, by the same command, on the same mesh and in the same case (order, size or workload).
@@ -79,6 +80,10 @@ has fewer than three samples of a measurement, the first condition is that the r
 The default of --noise is chosen for shared virtual machines, whose speed changes over time. A
 dedicated machine allows a lower value. To find a suitable value, measure twice with the same
 program, and compare the two files.
+
+Report: report.html needs no network, report.md and figures have the same content, and changes.json
+has all data. The folder must be new, empty, or written by --report of this command. Its file
+sixfold-files.txt lists the files. Old figures are removed, and files of others stay.
 
 Exit codes: 0 success; 1 a measurement is slower and --fail-if-slower is given; 2 wrong usage, a
 file that is incomplete, has no results or has another schema version, files without a common
@@ -110,6 +115,12 @@ pub(crate) struct Compare {
     /// End with exit code 1 if a measurement is slower
     #[arg(long)]
     pub(crate) fail_if_slower: bool,
+    /// Write a page of the changes, largest first, and its figures to DIR
+    #[arg(long, value_name = "DIR")]
+    pub(crate) report: Option<PathBuf>,
+    /// Write each figure as SVG, PDF and CSV to DIR
+    #[arg(long, value_name = "DIR")]
+    pub(crate) figures: Option<PathBuf>,
     /// Write all results as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,

@@ -6,12 +6,13 @@ use super::folder::Folder;
 use super::merge::merged;
 use crate::arguments::Draw;
 use crate::failure::Failure;
+use crate::listed_folder::ListedFolder;
 use crate::measure::command_line;
-use crate::paper::{self, PaperFolder};
+use crate::paper;
 
 pub(crate) fn run(arguments: &Draw) -> Result<ExitCode, Failure> {
     let results = merged(&arguments.results)?;
-    let paper = PaperFolder::open_if(arguments.figures.as_ref())?;
+    let paper = ListedFolder::open_if(arguments.figures.as_ref())?;
     if let Some(to) = &arguments.to {
         Folder::create(to)?.write_page(&results, &command_line())?;
     }

@@ -21,9 +21,9 @@ use sixfold_study::{Finding, Results, RunSettings, Settings, sha256_of};
 use super::meshes::Mesh;
 use crate::arguments::Study;
 use crate::failure::Failure;
+use crate::listed_folder::remove;
 use crate::load::file_hash;
 use crate::output::{Output, cannot_write};
-use crate::paper::remove;
 use crate::text::print_notice;
 use sixfold_study::numbers::counted;
 
@@ -174,14 +174,11 @@ impl Folder {
         let output = |name: &str| Output::open(&self.path.join(name));
         let page = ReportPage::new(results, command);
         let old_figures = self.linked_figures();
-        output("report.html")?.finish(|writer| writer.write_all(page.html().as_bytes()))?;
-        output("report.md")?.finish(|writer| writer.write_all(page.markdown().as_bytes()))?;
         let figures = self.path.join("figures");
         fs::create_dir_all(&figures)
             .map_err(|cause| cannot_write(&figures.display().to_string(), &cause))?;
-        for figure in page.all_figures() {
-            let output = Output::open(&figures.join(format!("{}.svg", figure.id)))?;
-            output.finish(|writer| writer.write_all(figure.picture.svg().as_bytes()))?;
+        for file in page.files() {
+            output(&file.name)?.finish(|writer| writer.write_all(&file.bytes))?;
         }
         let drawn = self.linked_figures();
         for stale in old_figures.difference(&drawn) {

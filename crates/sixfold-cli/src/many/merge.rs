@@ -8,10 +8,11 @@ use sixfold_study::Results;
 use super::folder::Folder;
 use crate::arguments::Merge;
 use crate::failure::Failure;
+use crate::listed_folder::ListedFolder;
 use crate::load;
 use crate::measure::{Session, command_line, exit_code};
 use crate::output::check_not_overwritten;
-use crate::paper::{self, PaperFolder};
+use crate::paper;
 use sixfold_study::Policy;
 
 pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
@@ -27,7 +28,7 @@ pub(crate) fn run(arguments: &Merge) -> Result<ExitCode, Failure> {
         check_not_overwritten("the results", &file, &options)?;
     }
     let mut merged = merged(&arguments.results)?;
-    let paper = PaperFolder::open_if(arguments.figures.as_ref())?;
+    let paper = ListedFolder::open_if(arguments.figures.as_ref())?;
     let mut session = Session::open(None::<&Path>, &arguments.files, Policy::System)?;
     super::print_all(&merged, &mut session.text);
     let mut written = session.write(&mut merged);

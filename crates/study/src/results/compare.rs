@@ -102,6 +102,30 @@ pub struct Measurement {
     pub backend: String,
 }
 
+/// The title of a part of measurements, and the function that returns this part.
+pub type MeasurementPart = (&'static str, fn(&Measurement) -> &str);
+
+impl Measurement {
+    /// Returns which of mesh, command and case differ between `measurements`. A part that is the same
+    /// for all is left out of tables and names.
+    pub fn differing_parts<'m>(
+        measurements: impl Iterator<Item = &'m Self> + Clone,
+    ) -> Vec<MeasurementPart> {
+        let parts: [MeasurementPart; 3] = [
+            ("mesh", |m| &m.mesh),
+            ("command", |m| m.kind),
+            ("case", |m| &m.case),
+        ];
+        let differs = |of: fn(&Self) -> &str| {
+            let mut values = measurements.clone().map(of);
+            let first = values.next();
+            values.any(|value| Some(value) != first)
+        };
+        let parts = parts.into_iter().filter(|(_, of)| differs(*of));
+        parts.collect()
+    }
+}
+
 /// The time of one operation on one backend in two documents.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Change {
@@ -112,6 +136,10 @@ pub struct Change {
     pub before_ns: f64,
     /// Median time in the second document, in nanoseconds.
     pub after_ns: f64,
+    /// Number of samples in the first document.
+    pub before_samples: usize,
+    /// Number of samples in the second document.
+    pub after_samples: usize,
     /// The median time in the second document divided by the median time in the first.
     pub ratio: f64,
     /// Lower end of the 95 % confidence interval of `ratio`; `None` if a document has fewer than
@@ -225,12 +253,8 @@ pub fn compare(
     in_both().try_for_each(|(a, b)| check_memory(a.finding, b.finding))?;
 
     let CompareSettings { relative, drift } = settings;
-    let mut rows: Vec<Change> = in_both().filter_map(|(a, b)| change(a, b, drift)).collect();
+    let rows: Vec<Change> = in_both().filter_map(|(a, b)| change(a, b, drift)).collect();
     let overall = Median::from_samples(rows.iter().map(|row| row.ratio)).map(|median| median.value);
-    let divisor = overall.filter(|_| relative).unwrap_or(1.0);
-    for row in &mut rows {
-        row.verdict = verdict(row, divisor);
-    }
     let mut environment: Vec<SettingChange> = Vec::new();
     for (a, b) in in_both() {
         for change in differences(a.finding.run(), b.finding.run()) {
@@ -252,6 +276,10 @@ pub fn compare(
         only_after: second.without(&first),
         sentences: Vec::new(),
     };
+    let divisor = changes.divisor();
+    for row in &mut changes.rows {
+        row.verdict = verdict(row, divisor);
+    }
     changes.sentences = changes.describe();
     Ok(changes)
 }
@@ -288,6 +316,8 @@ fn change(before: &Measured<'_>, after: &Measured<'_>, drift: f64) -> Option<Cha
         measurement: before.key.clone(),
         before_ns,
         after_ns,
+        before_samples: a.row.samples,
+        after_samples: b.row.samples,
         ratio,
         ci_low: interval.map(|[low, _]| low),
         ci_high: interval.map(|[_, high]| high),
@@ -431,6 +461,12 @@ impl Changes {
     pub fn changed(&self) -> impl Iterator<Item = &Change> {
         let changed = |row: &&Change| row.verdict != Verdict::Same || row.other_checksum;
         self.rows.iter().filter(changed)
+    }
+
+    /// Returns the number by which each ratio is divided before it is compared with the noise:
+    /// `overall` if the comparison is relative, 1 otherwise.
+    pub fn divisor(&self) -> f64 {
+        self.overall.filter(|_| self.relative).unwrap_or(1.0)
     }
 
     /// Counts the entries of `rows` with the given verdict.
