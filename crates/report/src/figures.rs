@@ -14,8 +14,8 @@ pub(crate) mod ratios;
 mod reads;
 mod roofline;
 
-use sixfold_study::numbers::{counted, grouped};
-use sixfold_study::{Environment, Finding, MeshReport, Report, Results, Run};
+use sixfold_study::numbers::{counted, grouped, times};
+use sixfold_study::{Environment, Finding, MeshReport, Operation, Report, Results, Run};
 
 use crate::data::rows;
 use crate::matrix::Matrix;
@@ -51,6 +51,9 @@ pub(crate) fn page(results: &Results, command: &str) -> ReportPage {
     page.methods = methods::paragraphs(results);
     if results.is_interrupted() {
         page.warnings.push(INTERRUPTED.to_owned());
+    }
+    if runs(results).any(|run| run.environment.profile == "debug") {
+        page.warnings.insert(0, DEBUG.to_owned());
     }
     page.failures = results
         .failures
@@ -99,12 +102,61 @@ fn study_page(study: &Report, results: &Results, command: &str) -> ReportPage {
         answer: answer.into_iter().flatten().collect(),
         summary: Some(Summary::of_study(study, results)),
         sentences: study.notes.clone(),
-        warnings: study.warnings.clone(),
+        warnings: unsteady(study, results)
+            .into_iter()
+            .chain(study.warnings.iter().cloned())
+            .collect(),
         figures: study_figures(study, &matrix, command),
         operations: matrix,
         labs: labs(results, command),
         ..ReportPage::default()
     }
+}
+
+/// Two measurements of one time that differ by more than this factor are named.
+const UNSTEADY: f64 = 1.3;
+
+/// Compares the times of the study with those of the same operations in the other measurements of the page.
+/// Returns a warning if some differ much.
+fn unsteady(study: &Report, results: &Results) -> Option<String> {
+    let is_same = |mesh: &MeshReport| mesh.sha256 == study.mesh.sha256;
+    let orders = results.orders().filter(|orders| is_same(&orders.mesh));
+    let given = orders.flat_map(|orders| &orders.results);
+    let given = given.filter(|row| row.case == "given").filter_map(|row| {
+        Some((
+            row.operation,
+            &row.backend,
+            row.median_ns.and(row.ns_per_element)?,
+        ))
+    });
+    let why = results.why().filter(|why| is_same(&why.mesh));
+    let timed = why.flat_map(|why| &why.rows);
+    let timed = timed.filter_map(|row| {
+        let operation = Operation::Relation(row.reads.relation);
+        Some((operation, &row.backend, row.timed?.ns_per_element))
+    });
+    let factors = given.chain(timed).filter_map(|(operation, backend, ns)| {
+        let mut rows = study.rows(operation);
+        let row = rows.find(|row| row.backend == *backend && row.median_ns.is_some())?;
+        let factor = ns / row.ns_per_element?;
+        Some((factor.max(factor.recip()), operation, backend))
+    });
+    let factors: Vec<(f64, Operation, &String)> = factors.collect();
+    let count = factors
+        .iter()
+        .filter(|(factor, ..)| *factor > UNSTEADY)
+        .count();
+    let (worst, operation, backend) = factors.iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (count > 0).then(|| {
+        format!(
+            "The machine was not steady: {} of {} times differ by more than {:.0} % between the study and the other measurements \
+             on this page (at most {}, {operation} on {backend}), which intervals do not show. Measure again on a quiet machine.",
+            grouped(count),
+            grouped(factors.len()),
+            100.0 * (UNSTEADY - 1.0),
+            times(*worst)
+        )
+    })
 }
 
 /// Returns the picture of a mesh, with the colours of its faults in the label.
@@ -158,6 +210,9 @@ pub(crate) fn file_name(path: &str) -> &str {
         .find(|part| !part.is_empty())
         .unwrap_or(path)
 }
+
+const DEBUG: &str =
+    "Measured by a debug build, whose times are not meaningful: build Sixfold with --release.";
 
 const INTERRUPTED: &str = "Interrupted: some results are incomplete. To complete the report, use \
                            `sixfold study --resume`.";
@@ -351,12 +406,28 @@ pub(crate) fn facts(mesh: &MeshReport) -> String {
         Some(genus) if facts.closed => format!(", genus {genus}"),
         _ => String::new(),
     };
+    let faults = [
+        (
+            facts.non_manifold_edges,
+            "non-manifold edge",
+            "non-manifold edges",
+        ),
+        (
+            facts.non_manifold_vertices,
+            "non-manifold vertex",
+            "non-manifold vertices",
+        ),
+    ];
+    let faults = faults.into_iter().filter(|(count, ..)| *count > 0);
+    let faults: String = faults
+        .map(|(count, one, many)| format!(", {}", counted(count, one, many)))
+        .collect();
     let changes = match mesh.changes.is_empty() {
         true => String::new(),
         false => format!("; {}", mesh.changes.join(", ")),
     };
     format!(
-        "{vertices}, {} edges, {faces}; {closed}{genus}{changes}.",
+        "{vertices}, {} edges, {faces}; {closed}{genus}{faults}{changes}.",
         grouped(facts.edges)
     )
 }

@@ -128,7 +128,7 @@ impl ReportPage {
         html! {
             @match &self.warnings[..] {
                 [] => {}
-                [warning] => p.warning { b { "⚠ " } (warning) },
+                [warning] => p.warning { b { "⚠ " } (prose(warning)) },
                 warnings => {
                     details.warning {
                         summary { b { "⚠ " (warnings.len()) " warnings" } ": " (warnings[0]) }
@@ -161,9 +161,18 @@ fn lead(sentence: &str) -> Markup {
     match sentence.split_once(": ") {
         Some((lead, rest)) if lead.chars().count() < LONGEST_LEAD => {
             let (words, remark) = lead.split_at(lead.find(" (").unwrap_or(lead.len()));
-            html! { strong { (words) } (remark) ": " (rest) }
+            html! { strong { (words) } (remark) ": " (prose(rest)) }
         }
-        _ => html! { (sentence) },
+        _ => prose(&sentence),
+    }
+}
+
+/// Returns a sentence in which the commands between backticks are code.
+fn prose(sentence: &str) -> Markup {
+    html! {
+        @for (place, part) in sentence.split('`').enumerate() {
+            @if place % 2 == 1 { code { (part) } } @else { (part) }
+        }
     }
 }
 
@@ -192,7 +201,7 @@ fn heading(level: &str, title: &str, id: &str) -> Markup {
 fn list(sentences: &[String]) -> Markup {
     html! {
         @if !sentences.is_empty() {
-            ul { @for sentence in sentences { li { (sentence) } } }
+            ul { @for sentence in sentences { li { (prose(sentence)) } } }
         }
     }
 }
@@ -219,10 +228,15 @@ fn mesh_section(section: &Section) -> Markup {
             summary { (section.title) " – " (section.facts) }
             // Inside of the element, so that a link opens it.
             div.mesh-section id=(section.id) {
+                (heading("h3", &section.title, &section.id))
                 @for sentence in &section.sentences { p { (lead(sentence)) } }
                 @if let Some(summary) = &section.summary { (summary_table(summary)) }
                 @for figure in &section.figures { (figure_section(figure, "h3", Some(&section.title))) }
-                @for table in &section.tables { h3 { (table.title) } (plain_table(&table.table)) }
+                @for table in &section.tables {
+                    h4 { (table.title) }
+                    p.faint { (table.caption) }
+                    (plain_table(&table.table))
+                }
             }
         }
     }
@@ -243,7 +257,7 @@ fn figure_section(figure: &Figure, level: &str, mesh: Option<&str>) -> Markup {
                     (figure.picture.markup())
                 }
                 figcaption {
-                    (figure.caption)
+                    (prose(&figure.caption))
                     div.source { (figure.source) }
                 }
             }
@@ -265,7 +279,7 @@ fn table_section(table: &TitledTable, level: &str) -> Markup {
     html! {
         section id=(id) {
             (heading(level, &table.title, &id))
-            p.faint { (table.caption) }
+            p.faint { (prose(&table.caption)) }
             @if table.table.rows.len() > UNFOLDED {
                 details { summary { "Show the table" } (plain_table(&table.table)) }
             } @else {

@@ -15,6 +15,7 @@ pub(crate) fn line(findings: &[&Finding]) -> String {
             let settings = &finding.run().settings;
             Some(match settings.rounds {
                 Some(_) => settings.effort_text(),
+                None if findings.len() > 1 => format!("budget {} each", settings.effort_text()),
                 None => format!("budget {}", settings.effort_text()),
             })
         }),

@@ -2,12 +2,11 @@
 //! work.
 
 use crate::figure::Table;
-use crate::figures::INPUT_BACKEND;
-use crate::figures::break_even::break_even_text;
+use crate::figures::break_even;
 use sixfold_study::numbers::{counted, figure, grouped, list, shown_ratio, times};
 use sixfold_study::{
-    BackendReport, FEWEST_OF_A_WINNER, Operation, OrdersReport, Overall, Pool, Purpose, Report,
-    Results, Standing, leaders,
+    BackendReport, FEWEST_OF_A_WINNER, OrdersReport, Overall, Pool, Purpose, Report, Results,
+    Standing, leaders,
 };
 
 /// A table with a row for each backend and a column for each kind of work.
@@ -111,6 +110,15 @@ const MOST_USABLE: f64 = 10.0;
 /// The smallest factor for which a single operation would change the answer.
 const LEAST_GAIN: f64 = 1.2;
 
+/// What the first screen says about the times.
+struct Work<'s> {
+    overall: Vec<Overall>,
+    /// Whether there are enough samples to name the fastest.
+    is_decided: &'s dyn Fn(Purpose) -> bool,
+    /// What the means of a purpose are over.
+    over: &'s dyn Fn(&[Overall]) -> String,
+}
+
 /// What the first screen says about the memory of each backend.
 struct Memory {
     backend: String,
@@ -132,8 +140,16 @@ impl Summary {
             .iter()
             .map(|backend| (backend.name.as_str(), backend.reason.as_deref()))
             .collect();
-        let sure = |purpose| is_sure(study, purpose);
-        Self::new(&backends, &study.overall(), &sure, &memory, orders)
+        let work = Work {
+            overall: study.overall(),
+            is_decided: &|purpose| study.is_decided(purpose),
+            over: &|rows| match rows[0].purpose {
+                // The first build, on fresh pages, takes longer.
+                Purpose::Build => "repeated builds".into(),
+                _ => study.mean_over(rows).replace("geometric mean", "mean"),
+            },
+        };
+        Self::new(&backends, &work, &memory, orders)
     }
 
     pub(crate) fn of_pool(pool: &Pool, studies: &[&Report]) -> Option<Self> {
@@ -163,13 +179,18 @@ impl Summary {
             })
         };
         let memory: Vec<Memory> = pool.compared.iter().filter_map(bytes).collect();
-        Some(Self::new(&backends, &all.overall, &|_| true, &memory, None))
+        let rows = |purpose| all.overall.iter().filter(move |row| row.purpose == purpose);
+        let work = Work {
+            overall: all.overall.clone(),
+            is_decided: &|purpose| rows(purpose).any(|row| row.undecided < row.meshes),
+            over: &|rows| format!("mean over {}", counted(rows[0].meshes, "mesh", "meshes")),
+        };
+        Some(Self::new(&backends, &work, &memory, None))
     }
 
     fn new(
         backends: &[(&str, Option<&str>)],
-        overall: &[Overall],
-        sure: &dyn Fn(Purpose) -> bool,
+        work: &Work<'_>,
         memory: &[Memory],
         orders: Option<&OrdersReport>,
     ) -> Self {
@@ -185,14 +206,15 @@ impl Summary {
                 .collect(),
         };
         for (purpose, name, about) in WORK {
-            let rows: Vec<Overall> = overall
-                .iter()
-                .filter(|row| row.purpose == purpose)
-                .cloned()
-                .collect();
-            let over = rows.first().map_or_else(String::new, mean_over);
+            let rows = work.overall.iter().filter(|row| row.purpose == purpose);
+            let rows: Vec<Overall> = rows.cloned().collect();
+            let over = match rows.is_empty() {
+                true => String::new(),
+                false => (work.over)(&rows),
+            };
+            let decided = (work.is_decided)(purpose);
             summary.column([name, about, &over], |backend| {
-                work_figure(&rows, sure(purpose), backend)
+                work_figure(&rows, decided, backend)
             });
             if purpose == Purpose::Build {
                 let about = "Bytes held for each vertex, with spare capacity";
@@ -253,23 +275,13 @@ fn orders_of<'r>(study: &Report, results: &'r Results) -> Option<&'r OrdersRepor
         .find(|orders| orders.mesh.sha256 == study.mesh.sha256)
 }
 
-/// Returns whether an operation of a purpose has enough samples for a standing.
-fn is_sure(study: &Report, purpose: Purpose) -> bool {
-    let rows = study.results.iter();
-    let mut rows = rows.filter(|row| Purpose::of(row.operation) == purpose);
-    rows.any(|row| {
-        row.standing
-            .is_some_and(|standing| standing != Standing::Slower)
-    })
-}
-
 /// `rows` are the means of one purpose, the fastest first.
-fn work_figure(rows: &[Overall], sure: bool, backend: &str) -> Option<SummaryFigure> {
+fn work_figure(rows: &[Overall], decided: bool, backend: &str) -> Option<SummaryFigure> {
     let row = rows.iter().find(|row| row.backend == backend)?;
     let best = leaders(rows);
     let rank = match best.iter().any(|leader| leader.backend == backend) {
         _ if row.bound => Rank::Bound,
-        _ if !sure => Rank::Other,
+        _ if !decided => Rank::Other,
         true if best.len() == 1 => Rank::Best,
         true => Rank::Tied,
         false => Rank::Other,
@@ -309,17 +321,6 @@ fn memory_figure(memory: &[Memory], backend: &str) -> Option<SummaryFigure> {
     ))
 }
 
-/// Says what a mean is over.
-fn mean_over(row: &Overall) -> String {
-    match (row.meshes, row.purpose, row.cases) {
-        (1, Purpose::Build, _) => "from a face set".into(),
-        (1, Purpose::Subdivide, _) => "fastest method".into(),
-        (1, _, 0) => String::new(),
-        (1, _, cases) => format!("mean of {}", counted(cases, "operation", "operations")),
-        (meshes, ..) => format!("mean over {}", counted(meshes, "mesh", "meshes")),
-    }
-}
-
 /// Returns the largest effect of the order on `backend`, as the quotient of two shown times, with its
 /// operation.
 fn order_effect<'r>(orders: &'r OrdersReport, backend: &str) -> Option<(f64, &'r str)> {
@@ -345,7 +346,7 @@ fn order_figure(orders: &OrdersReport, backend: &str) -> Option<SummaryFigure> {
 pub(crate) fn fastest_of_study(study: &Report) -> Option<String> {
     let overall = study.overall();
     let parts = fastest(&overall, &|row| row.backend.clone())?;
-    let unsure = overall.iter().any(|row| !is_sure(study, row.purpose));
+    let unsure = overall.iter().any(|row| !study.is_decided(row.purpose));
     Some(match (unsure, enough(study)) {
         (false, _) => format!("Fastest: {parts}."),
         (true, None) => format!("Fastest (provisional, too few samples): {parts}."),
@@ -374,26 +375,24 @@ fn enough(study: &Report) -> Option<String> {
 
 /// Returns the fastest backends of each kind of work over several meshes, with the number of meshes on which
 /// they are the fastest, and the next one.
-pub(crate) fn fastest_of_many(overall: &[Overall], studies: &[&Report]) -> Option<String> {
+pub(crate) fn fastest_of_many(overall: &[Overall]) -> Option<String> {
     let parts = fastest(overall, &|row| {
-        let of = grouped(row.meshes);
+        let of = grouped(row.meshes - row.undecided);
         let tied = match row.tied {
             0 => String::new(),
             tied => format!(", tied on {}", grouped(tied)),
         };
-        format!("{} ({} of {of}{tied})", row.backend, grouped(row.best))
+        match row.undecided < row.meshes {
+            true => format!("{} ({} of {of}{tied})", row.backend, grouped(row.best)),
+            false => row.backend.clone(),
+        }
     });
-    let is_unsure = |study: &&&Report| {
-        let overall = study.overall();
-        overall.iter().any(|row| !is_sure(study, row.purpose))
-    };
-    let unsure = studies.iter().filter(is_unsure).count();
+    let unsure = overall.iter().map(|row| row.undecided).max().unwrap_or(0);
     let unsure = match unsure {
         0 => String::new(),
         _ => format!(
-            " (provisional, too few samples on {} of {})",
-            grouped(unsure),
-            counted(studies.len(), "mesh", "meshes")
+            " (provisional, {} without enough samples)",
+            counted(unsure, "mesh", "meshes")
         ),
     };
     Some(format!("Fastest on average{unsure}: {}.", parts?))
@@ -450,18 +449,13 @@ pub(crate) fn turning_points(study: &Report, results: &Results) -> Option<String
     let order = orders.and_then(|orders| order_effect(orders, &leader.backend));
     let points = [
         less_memory(study, &queries, leader),
-        pays_after(study, &leader.backend).map(|runs| {
-            format!(
-                "few queries (building {} pays after {runs})",
-                leader.backend
-            )
-        }),
+        few_queries(study),
         one_operation(study, leader),
         order.map(|(factor, operation)| {
             format!(
-                "another order of the elements (up to {} on {}, in {operation})",
-                times(factor),
-                leader.backend
+                "another order of the elements ({} takes up to {} in its worst order, in {operation})",
+                leader.backend,
+                times(factor)
             )
         }),
     ];
@@ -518,19 +512,23 @@ fn one_operation(study: &Report, leader: &Overall) -> Option<String> {
     })
 }
 
-/// Returns after how many visited elements of all queries `backend`, with its first build, has saved time
-/// against the indexed face set.
-fn pays_after(study: &Report, backend: &str) -> Option<String> {
-    let row = |operation, name: &str| study.rows(operation).find(|row| row.backend == name);
-    let run = row(Operation::AllQueries, backend)?;
-    let given = row(Operation::AllQueries, INPUT_BACKEND)?;
-    let (run, given) = (
-        run.median_ns.and(run.ns_per_element)?,
-        given.median_ns.and(given.ns_per_element)?,
-    );
-    let build = row(Operation::Build, backend)?;
-    let build = build.first_ns.or(build.median_ns)?;
-    let count = build / (given - run);
-    (given > run && count < 1e9)
-        .then(|| break_even_text(count, "visited element", "visited elements"))
+/// Says up to how many visited elements other backends than the last one have the shortest total time, with
+/// the first build.
+fn few_queries(study: &Report) -> Option<String> {
+    let (name, steps) = break_even::sequence(study)?;
+    let steps: Vec<String> = steps
+        .iter()
+        .map(|(name, most)| {
+            format!(
+                "{name} up to {}",
+                counted(*most, "visited element", "visited elements")
+            )
+        })
+        .collect();
+    (!steps.is_empty()).then(|| {
+        format!(
+            "few queries (with the time to build, the shortest total has {}, then {name})",
+            list(steps)
+        )
+    })
 }

@@ -82,7 +82,7 @@ pub use results::environment::Environment;
 pub use results::figure::{Counted, Figure, Status};
 pub use results::finding::Finding;
 pub use results::merge::MergeError;
-pub use results::pool::{Group, Holding, Overall, Pool, Pooled, Purpose, leaders};
+pub use results::pool::{Group, Holding, Overall, Pool, Pooled, Purpose, leaders, overall};
 pub use results::quotient::{Quotient, mean_quotients};
 pub use results::read::ReadError;
 pub use results::rows::{

@@ -12,93 +12,178 @@ use crate::data::own_columns;
 use crate::data::rows::BreakEvenRow;
 use crate::figure::{Figure, Table, count_tick, duration_tick};
 
+/// The operation that is repeated in a study, with a line for each structure.
+struct Repeated<'s> {
+    operation: Operation,
+    lines: Vec<Line<'s>>,
+    /// The largest number of repetitions.
+    max_count: f64,
+}
+
+impl<'s> Repeated<'s> {
+    /// Chooses the operation with the most queries.
+    fn new(study: &'s Report) -> Option<Self> {
+        let candidates = [
+            Operation::AllQueries,
+            Operation::VertexNormal,
+            Operation::VvSmooth,
+            Operation::Circulate,
+        ];
+        let is_comparable = |operation: &Operation| {
+            let rows = study.rows(*operation);
+            rows.filter(|row| row.median_ns.is_some()).count() > 1
+        };
+        let operation = candidates.into_iter().find(is_comparable)?;
+        let rows = study.rows(operation);
+        let times = rows.filter_map(|row| Some((row, build(study, row)?, run(row)?)));
+        let times: Vec<(&ResultRow, f64, f64)> = times.collect();
+        let given = times.iter().find(|(row, ..)| row.backend == INPUT_BACKEND);
+        let given = given.map(|(.., run)| *run);
+        let line = |&(row, build, run): &(&'s ResultRow, f64, f64)| {
+            let name = row.backend.as_str();
+            let saved = given
+                .map(|given| given - run)
+                .filter(|_| name != INPUT_BACKEND);
+            let pays_at = saved
+                .filter(|saved| *saved > 0.0)
+                .map(|saved| build / saved);
+            Line {
+                name,
+                build,
+                run,
+                pays_after: match (given, pays_at) {
+                    _ if name == INPUT_BACKEND => "given".into(),
+                    (_, Some(count)) => {
+                        let [one, many] = units(operation);
+                        break_even_text(count, one, many)
+                    }
+                    (Some(_), None) => "never".into(),
+                    (None, None) => "–".into(),
+                },
+                pays_at,
+            }
+        };
+        let lines: Vec<Line<'s>> = times.iter().map(line).collect();
+        let max_count = match operation {
+            // A pass over the whole mesh.
+            Operation::AllQueries => {
+                let elements = times.iter().find_map(|(row, ..)| row.elements);
+                elements.map_or(1e6, |elements| elements as f64).max(10.0)
+            }
+            _ => {
+                let counts = lines.iter().filter_map(|line| line.pays_at);
+                let last = counts.filter(|count| *count < 1e9).fold(10.0, f64::max);
+                10_f64.powf((10.0 * last).log10().ceil())
+            }
+        };
+        Some(Self {
+            operation,
+            lines,
+            max_count,
+        })
+    }
+}
+
+/// Returns the time of a first build; 0 for the structure of the input.
+fn build(study: &Report, row: &ResultRow) -> Option<f64> {
+    if row.backend == INPUT_BACKEND {
+        return Some(0.0);
+    }
+    let mut builds = study.rows(Operation::Build);
+    let build = builds.find(|build| build.backend == row.backend)?;
+    build.first_ns.or(build.median_ns)
+}
+
+/// Returns the time of one repetition. Building pays long before a pass over all queries, and each visit of
+/// one is as good as any other, so one visit is a repetition of these.
+fn run(row: &ResultRow) -> Option<f64> {
+    match row.operation {
+        Operation::AllQueries => row.median_ns.and(row.ns_per_element),
+        _ => row.median_ns,
+    }
+}
+
+/// Returns what is counted: one and several of it.
+fn units(operation: Operation) -> [&'static str; 2] {
+    match operation {
+        Operation::AllQueries => ["visit", "visits"],
+        _ => ["run", "runs"],
+    }
+}
+
 /// Draws the time to build once and repeat one operation, over the number of repetitions.
 pub(super) fn from_study(study: &Report, id_prefix: &str, command: &str) -> Option<Figure> {
-    // Prefer the operation with the most queries.
-    let candidates = [
-        Operation::AllQueries,
-        Operation::VertexNormal,
-        Operation::VvSmooth,
-        Operation::Circulate,
-    ];
-    let is_comparable = |operation: &Operation| {
-        study
-            .rows(*operation)
-            .filter(|row| row.median_ns.is_some())
-            .count()
-            > 1
-    };
-    let operation = candidates.into_iter().find(is_comparable)?;
-    let build = |row: &ResultRow| -> Option<f64> {
-        if row.backend == INPUT_BACKEND {
-            return Some(0.0);
-        }
-        let mut builds = study.rows(Operation::Build);
-        let build = builds.find(|build| build.backend == row.backend)?;
-        build.first_ns.or(build.median_ns)
-    };
-    // Building pays long before a pass over all queries, and each visit of one is as good as any other.
-    let per_visit = operation == Operation::AllQueries;
-    let run = |row: &ResultRow| match per_visit {
-        true => row.median_ns.and(row.ns_per_element),
-        false => row.median_ns,
-    };
-    let rows = study.rows(operation);
-    let lines: Vec<(&str, f64, f64)> = rows
-        .filter_map(|row| Some((row.backend.as_str(), build(row)?, run(row)?)))
-        .collect();
-    let input = lines.iter().find(|(name, ..)| *name == INPUT_BACKEND);
-    let pays_at = |(name, build, run): (&str, f64, f64)| match input {
-        Some((_, _, slow)) if name != INPUT_BACKEND && *slow > run => Some(build / (slow - run)),
-        _ => None,
-    };
-    let pays_after = |line: (&str, f64, f64)| match (input, pays_at(line)) {
-        _ if line.0 == INPUT_BACKEND => "given".into(),
-        (_, Some(count)) if per_visit => break_even_text(count, "visit", "visits"),
-        (_, Some(count)) => break_even_text(count, "run", "runs"),
-        (Some(_), None) => "never".into(),
-        (None, None) => "–".into(),
-    };
-    let lines: Vec<Line<'_>> = lines
-        .iter()
-        .map(|&(name, build, run)| Line {
-            name,
-            build,
-            run,
-            pays_after: pays_after((name, build, run)),
-            pays_at: pays_at((name, build, run)),
-        })
-        .collect();
+    let Repeated {
+        operation,
+        lines,
+        max_count,
+    } = Repeated::new(study)?;
     let title = format!(
         "Time to build once and repeat {operation}: {}",
         super::file_name(&study.mesh.name)
     );
+    let [one, many] = units(operation);
     let curves = Curves {
         title,
         id: format!("{id_prefix}break-even"),
         note: "`sixfold pick` measures this for a workload.".into(),
-        axis: &match per_visit {
-            true => "visited elements, up to all relations of the whole mesh".to_owned(),
-            false => format!("runs of {operation}"),
+        axis: &match operation {
+            Operation::AllQueries => "elements visited by queries of all nine relations".to_owned(),
+            _ => format!("runs of {operation}"),
         },
-        unit: if per_visit { "one visit" } else { "one run" },
-        units: if per_visit { "visits" } else { "runs" },
+        unit: &format!("one {one}"),
+        units: many,
         subject: &study.mesh.name,
         repeated: operation.name(),
-        // To a pass over the whole mesh.
-        max_count: if per_visit {
-            let mut elements = study.rows(operation).filter_map(|row| row.elements);
-            elements
-                .next()
-                .map_or(1e6, |elements| elements as f64)
-                .max(10.0)
-        } else {
-            let counts = lines.iter().filter_map(|line| line.pays_at);
-            let last = counts.filter(|count| *count < 1e9).fold(10.0, f64::max);
-            10_f64.powf((10.0 * last).log10().ceil())
-        },
+        max_count,
     };
     curves.draw(&lines, command)
+}
+
+/// Returns the structures with the shortest total time of a study for fewer visited elements than a pass over
+/// the mesh, with the largest number of visits for each, and the structure for more. `None` if the study has no
+/// queries of all relations.
+pub(crate) fn sequence(study: &Report) -> Option<(String, Vec<(String, usize)>)> {
+    let repeated = Repeated::new(study).filter(|one| one.operation == Operation::AllQueries)?;
+    let (last, steps) = envelope(&repeated.lines, repeated.max_count)?;
+    let steps = steps
+        .into_iter()
+        .map(|(line, most)| (line.name.to_owned(), most.ceil() as usize));
+    Some((last.name.to_owned(), steps.collect()))
+}
+
+/// Returns the lines with the shortest total time, with the number of repetitions up to which each is the
+/// shortest, and the line that is the shortest beyond.
+fn envelope<'l, 's>(
+    lines: &'l [Line<'s>],
+    max_count: f64,
+) -> Option<(&'l Line<'s>, Vec<(&'l Line<'s>, f64)>)> {
+    let least = |count: f64| {
+        let order = |a: &&Line<'_>, b: &&Line<'_>| {
+            let by_total = a.at(count).total_cmp(&b.at(count));
+            by_total.then(a.run.total_cmp(&b.run))
+        };
+        lines.iter().min_by(order)
+    };
+    let mut line = least(1.0)?;
+    let mut count = 1.0;
+    let mut steps = Vec::new();
+    loop {
+        // The first crossing with a line that is less steep.
+        let crossing = |other: &Line<'_>| (other.build - line.build) / (line.run - other.run);
+        let later = lines.iter().filter(|other| other.run < line.run);
+        let next = later
+            .map(crossing)
+            .filter(|&at| at > count)
+            .reduce(f64::min);
+        let Some(next) = next.filter(|&next| next < max_count) else {
+            return Some((line, steps));
+        };
+        steps.push((line, next));
+        // Beyond the crossing, so that rounding does not choose the same line again.
+        count = next * (1.0 + 1e-9);
+        line = least(count)?;
+    }
 }
 
 /// Draws the time to build once and run the mix of a workload, over the number of operations.
@@ -288,38 +373,16 @@ impl Curves<'_> {
 
     /// Says which structure has the shortest total time for how many repetitions.
     fn least_total(&self, lines: &[Line<'_>]) -> Option<String> {
-        let least = |count: f64| {
-            let order = |a: &&Line<'_>, b: &&Line<'_>| {
-                let by_total = a.at(count).total_cmp(&b.at(count));
-                by_total.then(a.run.total_cmp(&b.run))
-            };
-            lines.iter().min_by(order)
-        };
-        let mut line = least(1.0)?;
-        let mut count = 1.0;
-        let mut parts = Vec::new();
-        loop {
-            // The first crossing with a line that is less steep.
-            let crossing = |other: &Line<'_>| (other.build - line.build) / (line.run - other.run);
-            let later = lines.iter().filter(|other| other.run < line.run);
-            let next = later
-                .map(crossing)
-                .filter(|&at| at > count)
-                .reduce(f64::min);
-            let Some(next) = next.filter(|&next| next < self.max_count) else {
-                break;
-            };
-            parts.push(format!("{} up to {}", line.name, count_text(next)));
-            // Beyond the crossing, so that rounding does not choose the same line again.
-            count = next * (1.0 + 1e-9);
-            line = least(count)?;
-        }
+        let (last, steps) = envelope(lines, self.max_count)?;
+        let parts = steps.iter();
+        let parts = parts.map(|(line, most)| format!("{} up to {}", line.name, count_text(*most)));
+        let parts: Vec<String> = parts.collect();
         Some(match parts.is_empty() {
-            true => format!("{} has the shortest total time everywhere.", line.name),
+            true => format!("{} has the shortest total time everywhere.", last.name),
             false => format!(
                 "The shortest total time: {}, {} beyond.",
                 parts.join(", "),
-                line.name
+                last.name
             ),
         })
     }
@@ -341,15 +404,20 @@ fn draw_lines(canvas: &mut Canvas, axes: &Axes<'_>, lines: &[Line<'_>]) {
         Some((line, count, axes.place([count, line.at(count)])))
     });
     let points: Vec<(&Line<'_>, f64, [f64; 2])> = points.collect();
-    let heights: Vec<f64> = points.iter().map(|(.., [_, y])| y - 9.0).collect();
-    let labels = spread(&heights, 14.0, [30.0, 372.0]);
-    for ((line, count, [x, y]), label) in points.into_iter().zip(labels) {
+    let mut labelled: Vec<[f64; 2]> = Vec::new();
+    for (line, count, [x, y]) in points {
         let title = format!("{} pays after {}", line.name, line.pays_after);
         let colour = column_colour(line.name);
-        canvas.line([x, y], [x - 16.0, label], colour, 0.8);
         canvas.mark(title, |canvas| canvas.circle([x, y], 4.5, colour));
-        let style = Style::new(12).end().bold(true);
-        canvas.text([x - 19.0, label + 4.0], &count_text(count), style);
+        // Where points are close to each other, the labels at the right say the numbers.
+        let is_near = |[other_x, other_y]: &[f64; 2]| {
+            (other_x - x).abs() < 60.0 && (other_y - y).abs() < 16.0
+        };
+        if !labelled.iter().any(is_near) {
+            let style = Style::new(12).end().bold(true);
+            canvas.text([x - 7.0, y - 7.0], &count_text(count), style);
+            labelled.push([x, y]);
+        }
     }
     let places: Vec<f64> = lines
         .iter()

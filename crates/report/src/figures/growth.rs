@@ -130,7 +130,12 @@ fn panel(report: &GrowthReport, operation: Operation, fits: &[&Fit], axes: &Axes
     let heights: Vec<f64> = names.iter().map(|(_, [_, y], _)| *y).collect();
     let labels = spread(&heights, 14.0, [UPWARDS[1], UPWARDS[0]]);
     for ((fit, [x, y], colour), label) in names.into_iter().zip(labels) {
-        canvas.line([x + 3.0, y], [ACROSS[1] + 12.0, label], colour, 0.7);
+        let (from, to) = ([x + 3.0, y], [ACROSS[1] + 12.0, label]);
+        // Dashed, because a line across the chart is no curve.
+        match ACROSS[1] - x > 12.0 {
+            true => canvas.dashed(from, to, colour, 0.7),
+            false => canvas.line(from, to, colour, 0.7),
+        }
         let text = match fit.all {
             Some(slope) => format!("{}: {:.2}", fit.backend, slope.exponent),
             None => fit.backend.clone(),

@@ -55,13 +55,7 @@ pub(super) fn figure(
         id: format!("{id_prefix}heat-map"),
         picture: Picture::single(&title, canvas.finish()),
         title,
-        caption: format!(
-            "Time divided by that of the fastest structure of the row. Dark cells are fast; the fastest \
-             are bold. All ratios of {} or more have one colour. Cells in a frame have no measured time: ≥ is a \
-             lower bound, because a run would exceed the budget, and – is an operation that was not \
-             run or is not possible.",
-            times(MAX_RATIO)
-        ),
+        caption: caption(matrix),
         table,
         csv: String::new(),
         source: String::new(),
@@ -69,8 +63,48 @@ pub(super) fn figure(
     })
 }
 
+/// Explains the cells that the figure has.
+fn caption(matrix: &Matrix) -> String {
+    let has = |test: &dyn Fn(&Cell) -> bool| {
+        let mut cells = matrix.lines.iter().flat_map(|line| &line.cells);
+        cells.any(test)
+    };
+    let means = has(&|cell| !cell.each.is_empty());
+    let parts = [
+        (true, match means {
+            true => "The geometric mean over the meshes of the time divided by that of the fastest structure of each mesh. Dark is fast.",
+            false => "Time divided by that of the fastest structure of the row. Dark is fast.",
+        }.to_owned()),
+        (
+            has(&|cell| cell.is_best() || cell.is_tied()),
+            "The fastest, and those tied with it, are bold.".into(),
+        ),
+        (
+            has(&|cell| cell.ratio > Some(MAX_RATIO) && !cell.is_bound()),
+            format!("All ratios of {} or more have one colour.", times(MAX_RATIO)),
+        ),
+        (
+            has(&|cell| cell.source == Source::Sampled),
+            "~: measured on some of the elements.".into(),
+        ),
+        (
+            has(&|cell| cell.is_bound()),
+            "≥ in a frame: a lower bound, because a run would exceed the budget.".into(),
+        ),
+        (
+            has(&|cell| cell.ratio.is_none()),
+            "– in a frame: not run, or not possible.".into(),
+        ),
+    ];
+    let parts = parts
+        .into_iter()
+        .filter_map(|(has, text)| has.then_some(text));
+    parts.collect::<Vec<_>>().join(" ")
+}
+
 fn shown(cell: &Cell) -> String {
     match cell.ratio {
+        Some(_) if cell.source == Source::Sampled => format!("~ {} ×", cell.ratio_text()),
         Some(_) => format!("{} ×", cell.ratio_text()),
         None => "–".into(),
     }

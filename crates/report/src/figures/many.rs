@@ -4,7 +4,7 @@ mod distribution;
 mod groups;
 mod outliers;
 
-use sixfold_study::numbers::{counted, grouped, list, times};
+use sixfold_study::numbers::{counted, grouped, list, rounded_down, times};
 use sixfold_study::{Overall, Pool, Purpose, Report, Results, leaders};
 
 use super::{facts, file_name, heat_map, labs, memory, ranking, slug, study_command};
@@ -83,13 +83,14 @@ pub(super) fn page(studies: &[&Report], results: &Results, command: &str) -> Rep
     let pooled: Vec<&Report> = pooled.map(|mesh| mesh.study).collect();
     let matrix = Matrix::of_pool(&pool, &pooled);
     let all = pool.groups.first();
+    let groups = groups::all(&pool, &meshes);
     let answer = [
-        all.and_then(|all| summary::fastest_of_many(&all.overall, studies)),
-        groups::differences(&pool),
+        all.and_then(|all| summary::fastest_of_many(&all.overall)),
+        groups::differences(&pool, &groups),
         all.map(|all| which_meshes(all.meshes.len(), studies.len())),
     ];
     let tables = [
-        groups::winners(&pool),
+        groups::winners(&groups),
         holding(&pool, &meshes),
         outliers::table(&pool, &meshes),
     ];
@@ -102,7 +103,7 @@ pub(super) fn page(studies: &[&Report], results: &Results, command: &str) -> Rep
         summary: Summary::of_pool(&pool, studies),
         figures: figures(&pool, &meshes, &matrix, command),
         tables: tables.into_iter().flatten().collect(),
-        appendix: groups::means(&pool).into_iter().collect(),
+        appendix: groups::means(&pool, &groups).into_iter().collect(),
         operations: matrix,
         overview: overview(&meshes),
         meshes: meshes
@@ -122,7 +123,8 @@ fn which_meshes(pooled: usize, studied: usize) -> String {
             "Which meshes: the means are over all {studied}, which all structures can hold."
         ),
         false => format!(
-            "Which meshes: the means are over the {} of {} that all compared structures can hold.",
+            "Which meshes: the means are over the {} of {} that all compared structures can hold; the others have rows of their own \
+             in the next table.",
             grouped(pooled),
             grouped(studied)
         ),
@@ -197,7 +199,7 @@ fn holding(pool: &Pool, meshes: &[Mesh<'_>]) -> Option<TitledTable> {
     Some(TitledTable {
         title: "Who can hold the meshes".into(),
         caption: "The means are over the meshes that all compared structures can hold. The section of a mesh says why a \
-                  structure cannot hold it."
+                  structure cannot hold it, and `sixfold repair --for NAME` makes a mesh that the structure NAME can hold."
             .into(),
         table,
     })
@@ -221,6 +223,10 @@ fn overview(meshes: &[Mesh<'_>]) -> Table {
         for purpose in &purposes {
             let rows = mesh.rows(*purpose);
             let best = leaders(&rows);
+            if !rows.is_empty() && !mesh.study.is_decided(*purpose) {
+                cells.push("too few samples".into());
+                continue;
+            }
             let next = rows.get(best.len()).map(|next| next.times(&rows[0]));
             cells.push(match (best.len(), next) {
                 (0, _) => "–".into(),
@@ -239,7 +245,10 @@ fn kind(study: &Report) -> String {
     let most = facts.face_degree.as_ref().map_or(0, |degree| degree.max);
     let faces = if most <= 3 { "triangles" } else { "polygons" };
     let ends = if facts.closed { "closed" } else { "boundary" };
-    format!("{faces}, {ends}")
+    match facts.non_manifold_edges + facts.non_manifold_vertices {
+        0 => format!("{faces}, {ends}"),
+        _ => format!("{faces}, {ends}, not manifold"),
+    }
 }
 
 fn names(rows: &[Overall]) -> String {
@@ -284,7 +293,10 @@ fn section(mesh: &Mesh<'_>, results: &Results, count: usize, command: &str) -> S
     }
 }
 
-/// Returns the ratio of a mean as text: `1.31 ×`, or `≥ 900 ×`.
-fn ratio_text(row: &Overall) -> String {
-    super::marked(times(row.ratio_to_best), row.bound)
+/// Returns a ratio as text: `1.31 ×`, or `≥ 900 ×` for a lower bound.
+fn ratio_text(ratio: f64, bound: bool) -> String {
+    match bound {
+        true => format!("≥ {}", times(rounded_down(ratio))),
+        false => times(ratio),
+    }
 }

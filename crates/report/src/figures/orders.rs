@@ -67,7 +67,7 @@ pub(super) fn from_orders(report: &OrdersReport, id: &str, command: &str) -> Opt
         }
     }
     let title = format!(
-        "Effect of the order in memory: {}",
+        "Times in each order: {}",
         super::file_name(&report.mesh.name)
     );
     Some(Figure {

@@ -3,7 +3,7 @@
 //! only by moving fewer bytes.
 
 use kuva::render::render::Scene;
-use sixfold_study::numbers::{bytes, duration};
+use sixfold_study::numbers::{bytes, duration, figure as shown};
 use sixfold_study::{Bound, BufferSpeed, Timed, Why, WhyRow};
 
 use super::{file_name, per_unit};
@@ -38,8 +38,8 @@ pub(super) fn from_why(why: &Why, id: &str, command: &str) -> Option<Figure> {
         let [least, most] = values.fold([f64::INFINITY, 0.0], |[least, most], value| {
             [f64::min(least, value), f64::max(most, value)]
         });
-        // At least a decade, so that a scale exists.
-        [least, most.max(10.0 * least)]
+        // At least a decade, so that a scale exists, and some space for the marks at the ends.
+        [least / 1.5, most.max(10.0 * least) * 1.5]
     };
     if rows.is_empty() {
         return None;
@@ -165,7 +165,7 @@ fn table(rows: &[TimedRow]) -> Table {
         table.row(vec![
             row.reads.relation.to_string(),
             row.backend.clone(),
-            format!("{:.1}", row.reads.moved_bytes),
+            shown(row.reads.moved_bytes),
             format!("{:.2}", row.reads.jumps),
             duration(timed.ns_per_element),
             duration(timed.floor_ns),

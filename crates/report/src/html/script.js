@@ -1,5 +1,12 @@
 // The table of operations: baseline, figures, filters and order. Without this script, the table shows
 // ratios to the fastest.
+// Warnings and long tables are printed whole.
+addEventListener('beforeprint', () => {
+  for (const details of document.querySelectorAll('main > :not(#meshes) details, .warning')) {
+    if (!details.previousElementSibling?.matches('figure')) details.open = true;
+  }
+});
+
 (() => {
   const table = document.querySelector('#operations table');
   if (!table) return;
@@ -19,7 +26,7 @@
         ns: number('ns'), low: number('low'), high: number('high'), ratio: number('ratio'),
         // The ratio to each backend, with its interval.
         to: (cell.dataset.to ?? '').split(',').map((text) => text.split(' ').filter(Boolean).map(Number)),
-        plain: cell.innerHTML, share: cell.style.getPropertyValue('--share'), shown: null,
+        plain: cell.innerHTML, shown: null,
       };
     }),
   }));
@@ -39,6 +46,11 @@
   const duration = (ns, round) => {
     const [unit, size] = units.find(([, size]) => Number(digits(ns).replaceAll(',', '')) < 1e3 * size) ?? units.at(-1);
     return `${digits(ns / size, round)} ${unit}`;
+  };
+  // A bar that is too long has a gap; empty and dashed bars have none.
+  const setBar = (cell, ratio) => {
+    cell.style.setProperty('--share', length(ratio));
+    cell.classList.toggle('over', ratio > 10 && cell.dataset.source === 'measured');
   };
   const length = (ratio) => Math.min(1, Math.max(0, Math.log10(ratio)));
   const reading = table.querySelector('.reading');
@@ -64,14 +76,14 @@
         if (figures.value === 'times') {
           const ends = low === null ? '' : `${duration(low)} to ${duration(high)}`;
           cell.innerHTML = cellHtml(sign + duration(ns, round), ends);
-          cell.style.setProperty('--share', length(ns / shortest));
+          setBar(cell, ns / shortest);
         } else if (fastest) {
           cell.innerHTML = entry.plain;
-          cell.style.setProperty('--share', entry.share);
+          if (entry.ratio !== null) setBar(cell, entry.ratio);
           entry.shown = entry.ratio ?? ns;
         } else if (!base || base.ns === null || base.bound) {
           cell.textContent = '–';
-          cell.style.setProperty('--share', 0);
+          setBar(cell, 1);
           entry.shown = null;
         } else {
           // A lower bound has no ratio of its own.
@@ -79,7 +91,7 @@
           entry.shown = ratio;
           const ends = entry === base || from === undefined ? '' : `${digits(from)} to ${digits(to)}`;
           cell.innerHTML = cellHtml(`${sign}${digits(ratio, round)} ×`, ends);
-          cell.style.setProperty('--share', length(ns / shortest));
+          setBar(cell, ns / shortest);
         }
       }
     }

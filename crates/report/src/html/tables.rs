@@ -14,8 +14,11 @@ pub(super) fn summary_table(summary: &Summary) -> Markup {
         div.scroll {
             table.summary {
                 caption {
-                    "Times divided by the shortest. A longer bar costs more. " b { "● best" } " · " b { "◐ tied" } ": no clear \
-                     difference from the best · ≥: lower bound, not ranked."
+                    span {
+                        "Times are divided by the shortest of the column. A longer bar costs more, on a logarithmic scale that ends at \
+                         10 times the least; bars with a gap are longer. " b { "● best" } " · " b { "◐ tied" } ": no clear difference \
+                         from the best · ≥: lower bound, not ranked."
+                    }
                 }
                 thead {
                     tr {
@@ -30,7 +33,7 @@ pub(super) fn summary_table(summary: &Summary) -> Markup {
                         tr {
                             th scope="row" { (row.backend) }
                             @if let Some(reason) = &row.refusal {
-                                td.none colspan=(summary.columns.len()) title=(reason) { "cannot hold this mesh" }
+                                td.none.words colspan=(summary.columns.len()) { "cannot hold this mesh: " (reason) }
                             } @else {
                                 @for figure in &row.figures { (summary_cell(figure.as_ref())) }
                             }
@@ -48,6 +51,7 @@ fn summary_cell(figure: Option<&SummaryFigure>) -> Markup {
     };
     let class = match figure.rank {
         Rank::Bound => "figure bound",
+        _ if figure.share >= 1.0 => "figure over",
         _ => "figure",
     };
     let style = format!("--share:{:.3}", figure.share);
@@ -66,6 +70,10 @@ fn summary_cell(figure: Option<&SummaryFigure>) -> Markup {
 pub(super) fn operations_table(matrix: &Matrix) -> Markup {
     let mut groups: Vec<&str> = matrix.lines.iter().map(|line| line.group).collect();
     groups.dedup();
+    let has = |source| {
+        let mut cells = matrix.lines.iter().flat_map(|line| &line.cells);
+        cells.any(|cell| cell.source == source && cell.ratio.is_some())
+    };
     html! {
         div.controls hidden {
             label { "compared with"
@@ -92,10 +100,14 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
         div.scroll {
             table.operations {
                 caption {
-                    span.reading { "Time divided by that of the fastest, with its 95 % interval where there are enough samples." }
-                    " A longer bar is slower, on a logarithmic scale that ends at 10 times the shortest. ≥ with an empty bar: a \
-                     lower bound, because a run would exceed the budget. ~ with a dashed bar: measured on some of the elements. \
-                     – : not run, or not possible."
+                    span {
+                        span.reading { "Time divided by that of the fastest, with its 95 % interval where there are enough samples." }
+                        " A longer bar is slower, on a logarithmic scale that ends at 10 times the shortest; bars with a gap are longer."
+                        @if has(Source::Bound) {
+                            " ≥ with an empty bar: a lower bound, because a run would exceed the budget."
+                        }
+                        @if has(Source::Sampled) { " ~ with a dashed bar: measured on some of the elements." }
+                    }
                 }
                 thead {
                     tr {
@@ -119,6 +131,7 @@ pub(super) fn operations_table(matrix: &Matrix) -> Markup {
 
 fn operation_cell(line: &Line, cell: &Cell) -> Markup {
     let (class, word) = match cell.source {
+        Source::Measured if cell.ratio > Some(10.0) => ("figure over", "measured"),
         Source::Measured => ("figure", "measured"),
         Source::Sampled => ("figure sampled", "sampled"),
         Source::Bound => ("figure bound", "bound"),

@@ -111,6 +111,10 @@ pub struct Overall {
     /// shortest mean time.
     #[serde(default)]
     pub tied: usize,
+    /// Number of meshes on which the fastest is not known: there are too few samples, or a lower bound
+    /// is below the shortest measured time.
+    #[serde(default)]
+    pub undecided: usize,
     /// The half-width of the 95 % interval of the logarithm of `ratio_to_best`, from the intervals of
     /// the times of one mesh; 0 if there are several meshes.
     #[serde(skip)]
@@ -134,7 +138,7 @@ pub struct Pooled {
     /// budget. If there are any, `ratio_to_best` and `ns_per_element` are lower bounds.
     pub estimated: usize,
     /// The time of this backend divided by the time of the fastest measured backend, as the geometric
-    /// mean over the meshes.
+    /// mean over the meshes. Each range of mesh sizes has the same weight, as in [`Overall`].
     pub ratio_to_best: f64,
     /// Lower end of the 95 % confidence interval of `ratio_to_best`, at least 1; `None` with fewer
     /// than three meshes, or if the mean is a lower bound.
@@ -330,7 +334,7 @@ fn groups<'s>(studies: &[&'s Report], all: &str) -> Vec<(String, Vec<&'s Report>
 }
 
 /// Returns the power of ten of the number of faces.
-fn decade(study: &Report) -> u32 {
+pub(crate) fn decade(study: &Report) -> u32 {
     study.mesh.facts.faces.checked_ilog10().unwrap_or(0)
 }
 
@@ -411,29 +415,37 @@ fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
             Some(least_measured(rows.filter_map(Known::of))?.ns)
         };
         meshes.retain(|&mesh| least(mesh).is_some());
+        keep_decided(&mut meshes, |mesh| {
+            let rows = compared.iter().filter_map(move |b| Some(value(mesh, b)?.0));
+            rows.filter_map(Known::of)
+        });
         for backend in &compared {
-            let ratios: Vec<f64> = meshes
+            let ratios: Vec<(u32, f64)> = meshes
                 .iter()
                 .filter_map(|&mesh| {
                     let (row, time) = value(mesh, backend)?;
-                    Some(row.ratio_to_best.unwrap_or(time / least(mesh)?))
+                    let ratio = row.ratio_to_best.unwrap_or(time / least(mesh)?);
+                    Some((decade(studies[mesh]), ratio))
                 })
                 .collect();
             let rows = || meshes.iter().filter_map(|&mesh| value(mesh, backend));
-            let each = rows().filter_map(|(row, time)| Some(time / row.elements? as f64));
-            let each: Vec<f64> = each.collect();
+            let each = meshes.iter().filter_map(|&mesh| {
+                let (row, time) = value(mesh, backend)?;
+                Some((decade(studies[mesh]), time / row.elements? as f64))
+            });
+            let each: Vec<(u32, f64)> = each.collect();
             let standing = |wanted: &[Standing]| {
                 let standings = rows().filter_map(|(row, _)| row.standing);
                 standings
                     .filter(|standing| wanted.contains(standing))
                     .count()
             };
-            let Some((ratio_to_best, interval)) = geometric_mean(&ratios) else {
+            let Some((ratio_to_best, interval)) = mean_over_sizes(&ratios) else {
                 continue;
             };
+            let interval = interval.map(|ends| above_best(ends, ratio_to_best));
             let estimated = rows().filter(|(row, _)| row.median_ns.is_none()).count();
             let interval = interval.filter(|_| estimated == 0);
-            let interval = interval.map(|ends| above_best(ends, ratio_to_best));
             pooled.push(Pooled {
                 backend: (*backend).to_owned(),
                 operation,
@@ -444,7 +456,7 @@ fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
                 ratio_to_best,
                 ci_low: interval.map(|[low, _]| low),
                 ci_high: interval.map(|[_, high]| high),
-                ns_per_element: geometric_mean(&each).map(|(mean, _)| mean),
+                ns_per_element: mean_over_sizes(&each).map(|(mean, _)| mean),
             });
         }
     }
@@ -455,6 +467,19 @@ fn pooled(studies: &[&Report], backends: &[&str]) -> Vec<Pooled> {
 fn least_measured(times: impl Iterator<Item = Known>) -> Option<Known> {
     let measured = times.filter(|time| !time.bound);
     measured.min_by(|a, b| a.ns.total_cmp(&b.ns))
+}
+
+/// Removes the cases in which the shortest time is not known, because a lower bound is below the shortest
+/// measured time: a mean with such a case would favour the structures that were measured. If this is so in all
+/// cases, they stay, and the answer names what is not ranked.
+fn keep_decided<I: Iterator<Item = Known>>(cases: &mut Vec<usize>, times: impl Fn(usize) -> I) {
+    let is_decided = |case: &usize| {
+        let least = least_measured(times(*case));
+        least.is_some_and(|least| times(*case).all(|time| !time.bound || time.ns >= least.ns))
+    };
+    if cases.iter().any(is_decided) {
+        cases.retain(is_decided);
+    }
 }
 
 /// The operations that do the same work: all methods of a subdivision scheme, or one operation.
@@ -517,34 +542,38 @@ impl Overall {
     }
 }
 
-/// Pools all tasks of each purpose. The backends of a purpose are sorted from the fastest to the
-/// slowest; those with a lower bound come last.
-pub(crate) fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
+/// Returns the mean time of each of `backends` over `studies` and the operations of each purpose. The
+/// backends of a purpose are sorted from the fastest to the slowest; those with a lower bound come last.
+pub fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
     let mut rows = means(studies, backends);
-    let each = match studies {
-        [_] => vec![rows.clone()],
-        studies => studies
-            .iter()
-            .map(|study| means(&[study], backends))
-            .collect(),
-    };
-    for purpose in each
-        .iter()
-        .flat_map(|rows| rows.chunk_by(|a, b| a.purpose == b.purpose))
-    {
-        let leaders = leaders(purpose);
-        for leader in leaders {
-            let same =
-                |row: &&mut Overall| row.purpose == leader.purpose && row.backend == leader.backend;
-            if let Some(row) = rows.iter_mut().find(same) {
-                match leaders.len() {
-                    1 => row.best += 1,
-                    _ => row.tied += 1,
-                }
-            }
+    for study in studies {
+        let own = match studies {
+            [_] => rows.clone(),
+            _ => means(&[study], backends),
+        };
+        for own in own.chunk_by(|a, b| a.purpose == b.purpose) {
+            count_mesh(&mut rows, own, study.is_decided(own[0].purpose));
         }
     }
     rows
+}
+
+/// Adds a mesh with the means `own` of one purpose to the counts of `rows`. `decided` tells whether the study
+/// has enough samples.
+fn count_mesh(rows: &mut [Overall], own: &[Overall], decided: bool) {
+    let leaders = leaders(own);
+    let decided = decided && !leaders.is_empty() && not_ranked(own).is_none();
+    let alone = leaders.len() == 1;
+    let same = |row: &&mut Overall| row.purpose == own[0].purpose;
+    for row in rows.iter_mut().filter(same) {
+        let leads = leaders.iter().any(|leader| leader.backend == row.backend);
+        match (decided, leads) {
+            (false, _) => row.undecided += 1,
+            (true, true) if alone => row.best += 1,
+            (true, true) => row.tied += 1,
+            (true, false) => {}
+        }
+    }
 }
 
 /// Computes what [`overall`] returns, without the counts of meshes on which a backend is the fastest.
@@ -560,7 +589,12 @@ fn means(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
         let value = |case: usize, backend: &str| {
             let (mesh, task) = cases[case];
             let rows = task.iter().filter_map(|&o| all_rows.get(mesh, o, backend));
-            rows.filter_map(Known::of).min_by(Known::measured_first)
+            let rows: Vec<Known> = rows.filter_map(Known::of).collect();
+            let fastest = rows.iter().min_by(|a, b| a.measured_first(b))?;
+            // Another method, of which only a lower bound is known, may be faster.
+            let faster = rows.iter().filter(|row| row.bound && row.ns < fastest.ns);
+            let least = faster.min_by(|a, b| a.ns.total_cmp(&b.ns));
+            least.or(Some(fastest)).copied()
         };
         let has = |case: usize, backend: &str| value(case, backend).is_some();
         let some = |backend: &&&str| (0..cases.len()).any(|case| has(case, backend));
@@ -568,6 +602,9 @@ fn means(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
         let (compared, mut shared) = common(&backends, cases.len(), has);
         let least = |case: usize| least_measured(compared.iter().filter_map(|b| value(case, b)));
         shared.retain(|&case| least(case).is_some());
+        keep_decided(&mut shared, |case| {
+            compared.iter().filter_map(move |b| value(case, b))
+        });
         let ratio = |case: usize, backend: &str| {
             let (own, least) = (value(case, backend)?, least(case)?);
             Some(match studies {
@@ -604,6 +641,7 @@ fn means(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
                 let bound = is_bound(backend);
                 mean_over_sizes(&by_mesh).map(|(mean, interval)| {
                     let interval = interval.filter(|_| !bound);
+                    let interval = interval.map(|ends| above_best(ends, mean));
                     Overall {
                         purpose,
                         backend: (*backend).to_owned(),
@@ -615,6 +653,7 @@ fn means(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
                         bound,
                         best: 0,
                         tied: 0,
+                        undecided: 0,
                         log_error: log_error(backend),
                     }
                 })
@@ -631,7 +670,7 @@ fn means(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
 
 /// Returns the geometric mean in which each power of ten has equal weight, and the interval of the
 /// mean over all values, moved to this mean.
-fn mean_over_sizes(values: &[(u32, f64)]) -> Option<(f64, Option<[f64; 2]>)> {
+pub(crate) fn mean_over_sizes(values: &[(u32, f64)]) -> Option<(f64, Option<[f64; 2]>)> {
     let mut by_size: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
     for &(size, value) in values {
         by_size.entry(size).or_default().push(value);
@@ -644,7 +683,7 @@ fn mean_over_sizes(values: &[(u32, f64)]) -> Option<(f64, Option<[f64; 2]>)> {
     let all: Vec<f64> = values.iter().map(|(_, value)| *value).collect();
     let (centre, interval) = geometric_mean(&all)?;
     let interval = interval.map(|ends| ends.map(|end| end * mean / centre));
-    Some((mean, interval.map(|ends| above_best(ends, mean))))
+    Some((mean, interval))
 }
 
 /// Moves the lower end of the interval of a mean ratio to 1 if it is below 1, because no backend is

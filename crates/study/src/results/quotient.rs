@@ -4,9 +4,9 @@ use sixfold_workload::{Operation, Time};
 
 use crate::engine::disturbance::undisturbed;
 use crate::engine::ranking::ratio;
-use crate::engine::statistics::geometric_mean;
 use crate::labs::study::Report;
 use crate::numbers::shown_ratio;
+use crate::results::pool::{decade, mean_over_sizes};
 use crate::results::rows::{Agreement, ResultRow, Samples};
 
 /// The time of one backend divided by the time of another.
@@ -46,7 +46,8 @@ impl Report {
 }
 
 /// Returns, for each backend and each other backend, the geometric mean of the quotient of their times over
-/// the meshes on which both were measured; `None` if there is no such mesh.
+/// the meshes on which both were measured; `None` if there is no such mesh. Each power of ten of the number of
+/// faces has the same weight.
 pub fn mean_quotients(
     studies: &[&Report],
     operation: Operation,
@@ -58,10 +59,11 @@ pub fn mean_quotients(
     };
     let times: Vec<Vec<Option<f64>>> = backends.iter().map(times).collect();
     let quotient = |own: &Vec<Option<f64>>, other: &Vec<Option<f64>>| {
-        let both = own.iter().zip(other);
-        let quotients = both.filter_map(|(own, other)| Some((*own)? / (*other)?));
-        let quotients: Vec<f64> = quotients.filter(|ratio| ratio.is_finite()).collect();
-        let (ratio, interval) = geometric_mean(&quotients)?;
+        let both = studies.iter().zip(own.iter().zip(other));
+        let quotients =
+            both.filter_map(|(study, (own, other))| Some((decade(study), (*own)? / (*other)?)));
+        let quotients: Vec<(u32, f64)> = quotients.filter(|(_, ratio)| ratio.is_finite()).collect();
+        let (ratio, interval) = mean_over_sizes(&quotients)?;
         Some(Quotient {
             ratio,
             interval,

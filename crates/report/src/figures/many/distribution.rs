@@ -5,8 +5,7 @@ use serde::Serialize;
 use sixfold_study::numbers::{counted, grouped, times};
 use sixfold_study::{Group, Overall, Pool, Purpose, leaders};
 
-use super::super::marked;
-use super::{Mesh, leaders_of};
+use super::{Mesh, leaders_of, ratio_text};
 use crate::Picture;
 use crate::canvas::{Canvas, LogScale, Style};
 use crate::colours::{FAINT_COLOUR, GRID_COLOUR, TEXT_COLOUR, column_colour};
@@ -205,7 +204,7 @@ fn draw_line(canvas: &mut Canvas, line: &Line<'_>, scale: LogScale, y: f64) {
     }
     let x = scale.place(line.ratio);
     canvas.line([x, y - 9.0], [x, y + 9.0], TEXT_COLOUR, 2.0);
-    let ratio = marked(times(line.ratio), mean.bound);
+    let ratio = ratio_text(line.ratio, mean.bound);
     let text = match mean.best {
         0 => ratio,
         best => format!("{ratio} · fastest on {}", grouped(best)),
@@ -221,7 +220,7 @@ fn draw_dot(
     scale: LogScale,
     colour: &str,
 ) {
-    let ratio = marked(times(dot.ratio), dot.bound);
+    let ratio = ratio_text(dot.ratio, dot.bound);
     canvas.mark(format!("{}, {backend}: {ratio}", dot.mesh), |canvas| {
         if dot.ratio > 1.001 * scale.values[1] {
             canvas.filled(
@@ -246,7 +245,7 @@ fn table(panels: &[Panel<'_>]) -> Table {
         "compared with",
         "fastest on",
         "tied on",
-        "of",
+        "of decided",
         "least",
         "most",
         "meshes",
@@ -261,11 +260,11 @@ fn table(panels: &[Panel<'_>]) -> Table {
             table.row(vec![
                 panel.purpose.name().to_lowercase(),
                 mean.backend.clone(),
-                marked(times(line.ratio), mean.bound),
+                ratio_text(line.ratio, mean.bound),
                 panel.leader.to_owned(),
                 grouped(mean.best),
                 grouped(mean.tied),
-                grouped(mean.meshes),
+                grouped(mean.meshes - mean.undecided),
                 end(f64::min),
                 end(f64::max),
                 grouped(line.dots.len()),

@@ -1,46 +1,94 @@
 //! The answer by size and kind of mesh.
 
 use sixfold_study::numbers::{counted, grouped, list};
-use sixfold_study::{Group, Overall, Pool, Purpose, leaders};
+use sixfold_study::{Overall, Pool, Purpose, Report, leaders, overall};
 
-use super::{names, ratio_text};
+use super::{Mesh, names, ratio_text};
 use crate::figure::{Table, TitledTable};
 
 /// The largest number of groups that the sentence names.
 const NAMED: usize = 4;
 
-/// Returns the rows of one purpose, the fastest first.
-fn rows(group: &Group, purpose: Purpose) -> Vec<Overall> {
-    let rows = group.overall.iter().filter(|row| row.purpose == purpose);
-    rows.cloned().collect()
+/// The largest number of structures that the name of a group lists.
+const LISTED: usize = 3;
+
+/// Meshes with something in common, with the mean times on them.
+pub(super) struct Means {
+    name: String,
+    meshes: usize,
+    overall: Vec<Overall>,
+}
+
+impl Means {
+    /// Returns the rows of one purpose, the fastest first.
+    fn rows(&self, purpose: Purpose) -> Vec<Overall> {
+        let rows = self.overall.iter().filter(|row| row.purpose == purpose);
+        rows.cloned().collect()
+    }
+}
+
+/// Returns the groups of the pool, and then those of the other meshes by the structures that can hold them.
+pub(super) fn all(pool: &Pool, meshes: &[Mesh<'_>]) -> Vec<Means> {
+    let pooled = pool.groups.iter().map(|group| Means {
+        name: group.name.clone(),
+        meshes: group.meshes.len(),
+        overall: group.overall.clone(),
+    });
+    let mut others: Vec<(Vec<&str>, Vec<&Report>)> = Vec::new();
+    for mesh in meshes.iter().filter(|mesh| !mesh.pooled) {
+        let holding = mesh.study.backends.iter().filter(|backend| backend.holds);
+        let holding: Vec<&str> = holding.map(|backend| backend.name.as_str()).collect();
+        match others.iter_mut().find(|(known, _)| *known == holding) {
+            Some((_, studies)) => studies.push(mesh.study),
+            None => others.push((holding, vec![mesh.study])),
+        }
+    }
+    let others = others.into_iter().map(|(holding, studies)| {
+        let refusing = pool.compared.iter().map(String::as_str);
+        let refusing: Vec<&str> = refusing.filter(|name| !holding.contains(name)).collect();
+        Means {
+            name: match refusing.len() <= LISTED {
+                true => format!("not held by {}", list(refusing)),
+                false => format!("held only by {}", list(holding.iter().copied())),
+            },
+            meshes: studies.len(),
+            overall: overall(&studies, &holding),
+        }
+    });
+    pooled.chain(others).collect()
 }
 
 /// Says for which sizes and kinds of meshes the answer is another one. `None` without groups.
-pub(super) fn differences(pool: &Pool) -> Option<String> {
-    let (all, parts) = pool.groups.split_first()?;
+pub(super) fn differences(pool: &Pool, groups: &[Means]) -> Option<String> {
+    let (all, parts) = groups.split_first()?;
+    let pooled = pool.groups.len() - 1;
     if parts.is_empty() {
         return None;
     }
     let mut differences = Vec::new();
     for purpose in Purpose::ALL {
-        let over_all = rows(all, purpose);
+        let over_all = all.rows(purpose);
         let usual: Vec<&str> = leaders(&over_all)
             .iter()
             .map(|row| row.backend.as_str())
             .collect();
-        for part in parts {
-            let own = rows(part, purpose);
+        for (place, part) in parts.iter().enumerate() {
+            let own = part.rows(purpose);
             let best = leaders(&own);
             // A different answer has no structure in common with the usual one.
             let differs = best
                 .iter()
                 .all(|row| !usual.contains(&row.backend.as_str()));
-            if !best.is_empty() && !usual.is_empty() && differs {
+            let decided = best.iter().any(|row| row.best + row.tied > 0);
+            if decided && !usual.is_empty() && differs {
                 let meshes = counted(own[0].meshes, "mesh", "meshes");
+                let group = match place < pooled {
+                    true => part.name.clone(),
+                    false => format!("meshes {}", part.name),
+                };
                 differences.push(format!(
-                    "{} on {} ({}, {meshes})",
+                    "{} on {group} ({}, {meshes})",
                     purpose.of_choice(),
-                    part.name,
                     names(best)
                 ));
             }
@@ -54,26 +102,26 @@ pub(super) fn differences(pool: &Pool) -> Option<String> {
     let more = differences.split_off(differences.len().min(NAMED)).len();
     differences.extend((more > 0).then(|| format!("{} more in the table", grouped(more))));
     Some(format!(
-        "By size and kind: the answer is another {}.",
+        "By size and kind: the answer differs {}.",
         list(differences)
     ))
 }
 
 /// Returns the table of the fastest structures of each group, with the number of meshes on which they are
 /// the fastest.
-pub(super) fn winners(pool: &Pool) -> Option<TitledTable> {
-    let all = pool.groups.first()?;
+pub(super) fn winners(groups: &[Means]) -> Option<TitledTable> {
+    let all = groups.first()?;
     let purposes = Purpose::ALL
         .into_iter()
-        .filter(|&p| !rows(all, p).is_empty());
+        .filter(|&p| !all.rows(p).is_empty());
     let purposes: Vec<Purpose> = purposes.collect();
     let columns = purposes.iter().map(|purpose| purpose.of_choice());
     let mut table = Table::new(["meshes", "number"].into_iter().chain(columns));
-    for group in &pool.groups {
+    for group in groups {
         let cells = purposes
             .iter()
-            .map(|&p| winner(&rows(group, p), group.meshes.len()));
-        let number = grouped(group.meshes.len());
+            .map(|&p| winner(&group.rows(p), group.meshes));
+        let number = grouped(group.meshes);
         table.row(
             [group.name.clone(), number]
                 .into_iter()
@@ -83,9 +131,9 @@ pub(super) fn winners(pool: &Pool) -> Option<TitledTable> {
     }
     Some(TitledTable {
         title: "Fastest by size and kind of mesh".into(),
-        caption: "The structures with the shortest mean time, the number of meshes on which each alone is the fastest or is tied \
-                  with it, and the time of the next one. A mean in which fewer meshes take part says so. In the first row, each \
-                  power of ten of the number of faces has equal weight."
+        caption: "The structures with the shortest mean time; in brackets, on how many meshes each alone is the fastest, of those with \
+                  enough samples; then the time of the next one. A mean in which fewer meshes take part says so. In the first row, \
+                  each power of ten of the number of faces has equal weight."
             .into(),
         table,
     })
@@ -106,7 +154,7 @@ fn winner(rows: &[Overall], meshes: usize) -> String {
             "{} ({} of {}{tied})",
             row.backend,
             grouped(row.best),
-            grouped(row.meshes)
+            grouped(row.meshes - row.undecided)
         )
     });
     let each: Vec<String> = each.collect();
@@ -124,36 +172,36 @@ fn winner(rows: &[Overall], meshes: usize) -> String {
 }
 
 /// Returns the means of each group, or `None` if there are no groups besides the pooled meshes together.
-pub(super) fn means(pool: &Pool) -> Option<TitledTable> {
-    if pool.groups.len() < 2 {
+pub(super) fn means(pool: &Pool, groups: &[Means]) -> Option<TitledTable> {
+    if groups.len() < 2 {
         return None;
     }
     let header = ["", "meshes", "work"].into_iter();
     let mut table = Table::new(header.chain(pool.compared.iter().map(String::as_str)));
-    for group in &pool.groups {
+    for group in groups {
         for purpose in Purpose::ALL {
-            let rows = rows(group, purpose);
-            if rows.is_empty() {
+            let rows = group.rows(purpose);
+            let Some(first) = rows.first() else {
                 continue;
-            }
-            let meshes = rows.iter().map(|row| row.meshes).max().unwrap_or(0);
+            };
             let mut line = vec![
                 group.name.clone(),
-                meshes.to_string(),
+                grouped(first.meshes),
                 purpose.name().to_lowercase(),
             ];
             line.extend(pool.compared.iter().map(|backend| {
                 let row = rows.iter().find(|row| row.backend == *backend);
-                row.map_or_else(|| "–".into(), ratio_text)
+                let ratio = |row: &Overall| row.ratio_to_best / first.ratio_to_best;
+                row.map_or_else(|| "–".into(), |row| ratio_text(ratio(row), row.bound))
             }));
             table.row(line);
         }
     }
     Some(TitledTable {
         title: "Means by size and kind of mesh".into(),
-        caption: "The mean time divided by the time of the fastest measured backend of each mesh and operation, for meshes of one \
-                  size or one kind. ≥ marks lower bounds, which are not ranked. In the first group, each power of ten of the \
-                  number of faces has equal weight."
+        caption: "The mean time of each structure, divided by that of the fastest on average, for meshes of one size or one kind. ≥ \
+                  marks lower bounds, which are not ranked. In the first group, each power of ten of the number of faces has equal \
+                  weight."
             .into(),
         table,
     })

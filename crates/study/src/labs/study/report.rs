@@ -5,14 +5,14 @@ use sixfold_workload::Operation;
 
 use crate::engine::control::noise;
 use crate::engine::timer::Timer;
-use crate::labs::study::sentences::how_sure;
+use crate::labs::study::sentences::{how_sure, mean_over};
 use crate::numbers::shown_ratio;
 use crate::results::figure::{Figure, Rows};
 use crate::results::finding::LabFinding;
-use crate::results::pool::{Overall, overall};
+use crate::results::pool::{Overall, Purpose, overall};
 use crate::results::read::ReadError;
 use crate::results::rows::{
-    Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, Samples,
+    Agreement, BackendReport, Control, MeshReport, Refusal, ResultRow, Samples, Standing,
 };
 use crate::results::run::Run;
 
@@ -85,6 +85,23 @@ impl Report {
         };
         let holding: Vec<&str> = names.iter().filter(holds).copied().collect();
         overall(&[self], &holding)
+    }
+
+    /// Returns whether at least one operation of a purpose has enough samples to be ranked.
+    pub fn is_decided(&self, purpose: Purpose) -> bool {
+        let mut rows = self.results.iter();
+        rows.any(|row| {
+            let ranked = row
+                .standing
+                .is_some_and(|standing| standing != Standing::Slower);
+            ranked && Purpose::of(row.operation) == purpose
+        })
+    }
+
+    /// Says over what the means of one purpose are, such as `geometric mean of 17 operations` or `fastest
+    /// method of Loop`. Empty for one operation. `rows` are those of [`overall`](Self::overall).
+    pub fn mean_over(&self, rows: &[Overall]) -> String {
+        mean_over(self, rows)
     }
 
     /// Returns a sentence on the noise and on how many operations have a clear answer; `None` if

@@ -61,7 +61,10 @@ fn choice(report: &Report, purposes: &[&[Overall]]) -> Option<String> {
             Some(open) => format!("{names} ({open})"),
             None => names,
         };
-        let purpose = format!("{}{}", rows[0].purpose.of_choice(), mean_over(report, rows));
+        let purpose = match mean_over(report, rows) {
+            over if over.is_empty() => rows[0].purpose.of_choice().to_owned(),
+            over => format!("{} ({over})", rows[0].purpose.of_choice()),
+        };
         match choices.iter_mut().find(|(known, _)| *known == names) {
             Some((_, purposes)) => purposes.push(purpose),
             None => choices.push((names, vec![purpose])),
@@ -74,15 +77,15 @@ fn choice(report: &Report, purposes: &[&[Overall]]) -> Option<String> {
     (!choices.is_empty()).then(|| format!("Fastest: {}.", choices.join("; ")))
 }
 
-/// Says over what a mean is, such as ` (geometric mean of 17 operations)` or ` (fastest method of
-/// Loop)`.
-fn mean_over(report: &Report, rows: &[Overall]) -> String {
+/// Says over what a mean is, such as `geometric mean of 17 operations` or `fastest method of Loop`. Empty
+/// for one operation.
+pub(super) fn mean_over(report: &Report, rows: &[Overall]) -> String {
     match (rows[0].purpose, rows[0].cases) {
         (Purpose::Subdivide, _) => {
-            format!(" (fastest method of {})", list(schemes(report, rows)))
+            format!("fastest method of {}", list(schemes(report, rows)))
         }
         (_, 1) => String::new(),
-        (_, cases) => format!(" (geometric mean of {cases} operations)"),
+        (_, cases) => format!("geometric mean of {cases} operations"),
     }
 }
 

@@ -1,5 +1,6 @@
 use std::sync::atomic::AtomicBool;
 
+use sixfold::subdivision::Method;
 use sixfold::{PolygonMesh, shapes};
 
 use super::*;
@@ -153,6 +154,69 @@ fn a_lower_bound_below_a_measured_time_is_not_ranked_before_it() {
                     face-vertex takes 2.00 × the time; not ranked, because a run would exceed the \
                     budget: polygon-soup (≥ 0.100 ×).";
     assert_eq!(said, expected);
+}
+
+/// Where a structure was not run that may be the fastest, the mesh decides nothing. The other meshes do.
+#[test]
+fn a_mesh_with_a_lower_bound_below_the_shortest_time_takes_no_part() {
+    let decided = [("half-edge", 1000.0), ("corner-table", 3000.0)];
+    let open = [("half-edge", -500.0), ("corner-table", 1000.0)];
+    let pool = pool_of(&[
+        ball("a", &decided),
+        ball("b", &decided),
+        ball("open", &open),
+    ]);
+    let found = ratios(pool.all());
+    let expected = [("half-edge", 2, 0, 1.0), ("corner-table", 2, 0, 3.0)];
+    assert_eq!(found, expected);
+    let overall: Vec<(&str, usize, f64)> = pool.groups[0]
+        .overall
+        .iter()
+        .map(|row| (row.backend.as_str(), row.meshes, row.ratio_to_best))
+        .collect();
+    let [first, second] = overall[..] else {
+        panic!("two backends: {overall:?}");
+    };
+    assert_eq!(
+        (first.0, first.1, second.0),
+        ("half-edge", 2, "corner-table")
+    );
+    assert!((second.2 / first.2 - 3.0).abs() < 1e-9, "{overall:?}");
+    // A bound above the shortest time shows that the structure is slower.
+    let slow = [("half-edge", 1000.0), ("corner-table", -4000.0)];
+    let pool = pool_of(&[ball("a", &decided), ball("slow", &slow)]);
+    assert_eq!(pool.groups[0].overall[0].meshes, 2);
+    assert_eq!(pool.groups[0].overall[0].undecided, 0);
+}
+
+/// If another method of a structure may be faster than its fastest measured one, its time is a lower bound.
+#[test]
+fn the_fastest_method_is_unknown_if_a_faster_one_may_exist() {
+    let time = |method, ns: f64, backend: &str| ResultRow {
+        elements: Some(10),
+        median_ns: (ns > 0.0).then_some(ns),
+        estimated_ns: (ns < 0.0).then_some(-ns),
+        ..ResultRow::new(backend, Operation::Loop(method))
+    };
+    let mut study = ball("a", &[("half-edge", 1000.0), ("corner-table", 1000.0)]);
+    study.results = vec![
+        time(Method::Native, -300.0, "half-edge"),
+        time(Method::Gather, 900.0, "half-edge"),
+        time(Method::Native, 500.0, "corner-table"),
+        time(Method::Gather, 800.0, "corner-table"),
+    ];
+    let rows = study.overall();
+    let found: Vec<(&str, bool, f64)> = rows
+        .iter()
+        .map(|row| (row.backend.as_str(), row.bound, row.ratio_to_best))
+        .collect();
+    assert_eq!(
+        found,
+        [("corner-table", false, 1.0), ("half-edge", true, 0.6)]
+    );
+    // A bound above the measured time says nothing new.
+    study.results[0].estimated_ns = Some(2000.0);
+    assert!(study.overall().iter().all(|row| !row.bound));
 }
 
 #[test]
