@@ -545,14 +545,17 @@ impl Overall {
 /// Returns the mean time of each of `backends` over `studies` and the operations of each purpose. The
 /// backends of a purpose are sorted from the fastest to the slowest; those with a lower bound come last.
 pub fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
-    let mut rows = means(studies, backends);
-    for study in studies {
+    let (mut rows, parts) = means(studies, backends);
+    for (mesh, study) in studies.iter().enumerate() {
         let own = match studies {
             [_] => rows.clone(),
-            _ => means(&[study], backends),
+            _ => means(&[study], backends).0,
         };
         for own in own.chunk_by(|a, b| a.purpose == b.purpose) {
-            count_mesh(&mut rows, own, study.is_decided(own[0].purpose));
+            let purpose = own[0].purpose;
+            if parts.contains(&(purpose, mesh)) {
+                count_mesh(&mut rows, own, study.is_decided(purpose));
+            }
         }
     }
     rows
@@ -576,9 +579,11 @@ fn count_mesh(rows: &mut [Overall], own: &[Overall], decided: bool) {
     }
 }
 
-/// Computes what [`overall`] returns, without the counts of meshes on which a backend is the fastest.
-fn means(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
+/// Computes what [`overall`] returns, without the counts of meshes on which a backend is the fastest. Also
+/// returns which meshes take part in the means of which purpose.
+fn means(studies: &[&Report], backends: &[&str]) -> (Vec<Overall>, Vec<(Purpose, usize)>) {
     let mut overall = Vec::new();
+    let mut parts = Vec::new();
     let all_rows = Rows::new(studies);
     for purpose in Purpose::ALL {
         let tasks = tasks(purpose);
@@ -664,8 +669,11 @@ fn means(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
             a.bound.cmp(&b.bound).then(by_ratio)
         });
         overall.extend(rows);
+        let mut meshes: Vec<usize> = shared.iter().map(|&case| cases[case].0).collect();
+        meshes.dedup();
+        parts.extend(meshes.into_iter().map(|mesh| (purpose, mesh)));
     }
-    overall
+    (overall, parts)
 }
 
 /// Returns the geometric mean in which each power of ten has equal weight, and the interval of the

@@ -66,32 +66,18 @@ pub(super) fn differences(pool: &Pool, groups: &[Means]) -> Option<String> {
         return None;
     }
     let mut differences = Vec::new();
-    for purpose in Purpose::ALL {
-        let over_all = all.rows(purpose);
-        let usual: Vec<&str> = leaders(&over_all)
-            .iter()
-            .map(|row| row.backend.as_str())
+    for (place, part) in parts.iter().enumerate() {
+        let purposes = Purpose::ALL.into_iter();
+        let others: Vec<String> = purposes
+            .filter_map(|purpose| other_answer(all, part, purpose))
             .collect();
-        for (place, part) in parts.iter().enumerate() {
-            let own = part.rows(purpose);
-            let best = leaders(&own);
-            // A different answer has no structure in common with the usual one.
-            let differs = best
-                .iter()
-                .all(|row| !usual.contains(&row.backend.as_str()));
-            let decided = best.iter().any(|row| row.best + row.tied > 0);
-            if decided && !usual.is_empty() && differs {
-                let meshes = counted(own[0].meshes, "mesh", "meshes");
-                let group = match place < pooled {
-                    true => part.name.clone(),
-                    false => format!("meshes {}", part.name),
-                };
-                differences.push(format!(
-                    "{} on {group} ({}, {meshes})",
-                    purpose.of_choice(),
-                    names(best)
-                ));
-            }
+        if !others.is_empty() {
+            let group = match place < pooled {
+                true => part.name.clone(),
+                false => format!("meshes {}", part.name),
+            };
+            let meshes = counted(part.meshes, "mesh", "meshes");
+            differences.push(format!("on {group} ({meshes}) {}", list(others)));
         }
     }
     if differences.is_empty() {
@@ -103,8 +89,19 @@ pub(super) fn differences(pool: &Pool, groups: &[Means]) -> Option<String> {
     differences.extend((more > 0).then(|| format!("{} more in the table", grouped(more))));
     Some(format!(
         "By size and kind: the answer differs {}.",
-        list(differences)
+        differences.join("; ")
     ))
+}
+
+/// Returns the answer on the meshes `part` if it has no structure in common with the answer on `all`, such as
+/// `for queries (face-vertex)`. `None` if no mesh has a single fastest structure.
+fn other_answer(all: &Means, part: &Means, purpose: Purpose) -> Option<String> {
+    let (usual, own) = (all.rows(purpose), part.rows(purpose));
+    let (usual, best) = (leaders(&usual), leaders(&own));
+    let is_usual = |row: &Overall| usual.iter().any(|other| other.backend == row.backend);
+    let decided = best.iter().any(|row| row.best > 0);
+    let differs = decided && !usual.is_empty() && !best.iter().any(is_usual);
+    differs.then(|| format!("{} ({})", purpose.of_choice(), names(best)))
 }
 
 /// Returns the table of the fastest structures of each group, with the number of meshes on which they are
@@ -146,6 +143,9 @@ fn winner(rows: &[Overall], meshes: usize) -> String {
         return "–".into();
     };
     let each = best.iter().map(|row| {
+        if row.undecided == row.meshes {
+            return format!("{} (too few samples)", row.backend);
+        }
         let tied = match row.tied {
             0 => String::new(),
             tied => format!(", tied on {}", grouped(tied)),

@@ -459,6 +459,18 @@ fn means_count_the_meshes_on_which_each_backend_is_the_fastest() {
         ("polygon-soup", 0, 0),
     ];
     assert_eq!(counts(&studies[..1]), expected(one));
+    // Too few samples decide nothing, and a mesh that takes no part is not counted.
+    let mut few = studies.clone();
+    few[0]
+        .results
+        .iter_mut()
+        .for_each(|row| row.standing = None);
+    few[1].results.clear();
+    let pool = pool_of(&few);
+    for row in &pool.groups[0].overall {
+        assert_eq!((row.meshes, row.undecided), (3, 1), "{row:?}");
+        assert!(row.best + row.tied <= 2, "{row:?}");
+    }
     // The means of some backends are relative to the fastest of these.
     let some = studies[0].overall_of(&["polygon-soup", "corner-table"]);
     let ratios: Vec<(&str, f64)> = some
