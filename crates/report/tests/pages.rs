@@ -560,3 +560,101 @@ fn meshes_that_not_all_can_hold_are_named() {
     // Three dots of half-edge, two of the corner table.
     assert_eq!(mark_count(spread), 2 * 5);
 }
+
+/// If another measurement on the page has a different time for the same operation, a warning says so.
+#[test]
+fn an_unsteady_machine_is_warned_of() {
+    let settings = Settings {
+        operations: vec![Operation::VertexNormal],
+        effort: Effort::Rounds(ROUNDS),
+        ..Settings::default()
+    };
+    let mesh = StudyMesh::new("ball.obj", shapes::icosahedron());
+    let orders = sixfold_study::orders(&mesh, &settings, &AtomicBool::new(false), &mut |_| ());
+    let mut orders = orders.expect("orders");
+    let warning = |orders: &sixfold_study::OrdersReport, factor: f64| {
+        let mut study = report("ball.obj");
+        let mut orders = orders.clone();
+        for row in &mut study.results {
+            row.ns_per_element = row.median_ns.map(|_| 10.0);
+        }
+        let given = orders.results.iter_mut().filter(|row| row.case == "given");
+        for (place, row) in given.enumerate() {
+            let factor = if place == 0 { factor } else { 1.2 };
+            row.ns_per_element = Some(10.0 * factor);
+        }
+        let mut all = Results::from(study);
+        all.add(orders.into());
+        let warnings = ReportPage::new(&all, "sixfold study").warnings;
+        warnings
+            .into_iter()
+            .find(|warning| warning.contains("not steady"))
+    };
+    assert_eq!(warning(&orders, 1.25), None);
+    for factor in [1.9, 1.9_f64.recip()] {
+        let said = warning(&orders, factor).expect("a warning");
+        let expected = "1 of 6 times differ by more than 30 %";
+        assert!(
+            said.contains(expected) && said.contains("1.90 ×, vertex_normal on polygon-soup"),
+            "{said}"
+        );
+    }
+    // The times of another mesh are not compared.
+    orders.mesh.sha256 = "0".repeat(64);
+    assert_eq!(warning(&orders, 1.9), None);
+}
+
+/// The figure and the answer name the structures with the shortest total time for few and many queries.
+#[test]
+fn the_structure_with_the_shortest_total_time_depends_on_the_number_of_queries() {
+    let mut study = timed(
+        StudyMesh::new("ball.obj", shapes::icosahedron()),
+        &[
+            ("indexed-face-set", 100.0),
+            ("face-vertex", 10.0),
+            ("half-edge", 5.0),
+        ],
+    );
+    study
+        .results
+        .retain(|row| row.operation != Operation::Boundary);
+    for row in &mut study.results {
+        match row.operation {
+            Operation::Build => {
+                row.first_ns = None;
+                row.median_ns = Some(match row.backend.as_str() {
+                    "face-vertex" => 900.0,
+                    "half-edge" => 1400.0,
+                    _ => 100.0,
+                });
+            }
+            _ => row.operation = Operation::AllQueries,
+        }
+        row.elements = Some(1_000_000);
+    }
+    // 100 n = 900 + 10 n at 10 visits, and 900 + 10 n = 1400 + 5 n at 100 visits.
+    let page = ReportPage::new(&study.clone().into(), "sixfold study");
+    let caption = &figure_by_id(&page, "break-even").caption;
+    let expected = "indexed-face-set up to 10, face-vertex up to 100, half-edge beyond";
+    assert!(caption.contains(expected), "{caption}");
+    assert!(caption.contains("Points and numbers show"), "{caption}");
+    let few = "indexed-face-set up to 10 visited elements and face-vertex up to 100 visited elements, then half-edge";
+    assert!(
+        page.answer.iter().any(|sentence| sentence.contains(few)),
+        "{:?}",
+        page.answer
+    );
+    // A structure that is the fastest from the start has no steps.
+    for row in &mut study.results {
+        if row.operation == Operation::Build {
+            row.median_ns = Some(0.001);
+        }
+    }
+    let page = ReportPage::new(&study.into(), "sixfold study");
+    let caption = &figure_by_id(&page, "break-even").caption;
+    assert!(
+        caption.contains("half-edge has the shortest total time everywhere"),
+        "{caption}"
+    );
+    assert!(!caption.contains("Points and numbers show"), "{caption}");
+}
