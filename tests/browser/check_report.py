@@ -361,7 +361,7 @@ control.dispatchEvent(new Event('change', {bubbles: true}));
 CLICK = "document.querySelectorAll('#operations thead button')[arguments[0]].click()"
 
 
-def quotient(studies, operation, backend, other):
+def quotient(studies, operation, backend, other, pooled):
     """Returns the ratio of the times of two backends as the page shows it: of one mesh, or the mean over meshes."""
     # The geometric mean, in which each power of ten of the number of faces has the same weight.
     logs = {}
@@ -371,7 +371,7 @@ def quotient(studies, operation, backend, other):
                  and row["agreement"] not in ("mismatch", "other_edits")}
         if backend in of_it and other in of_it:
             own, base = of_it[backend], of_it[other]
-            if len(studies) == 1:
+            if not pooled:
                 return rounded(own["ns_per_element"]) / rounded(base["ns_per_element"])
             decade = len(str(study["mesh"]["faces"]))
             logs.setdefault(decade, []).append(math.log(own["median_ns"] / base["median_ns"]))
@@ -379,7 +379,7 @@ def quotient(studies, operation, backend, other):
     return math.exp(sum(means) / len(means)) if means else None
 
 
-def check_operations(browser, rows, ratios, studies):
+def check_operations(browser, rows, ratios, studies, pooled):
     """Checks the table of operations: its figures, and what its controls do."""
     names = list(dict.fromkeys(row["operation"] for row in rows))
     before = browser.run(TABLE)
@@ -416,7 +416,7 @@ def check_operations(browser, rows, ratios, studies):
             if not base["ns"] or base["source"] == "bound":
                 assert cell["text"] == "–", (row["name"], cell)
             elif cell["source"] != "bound":
-                expected = quotient(studies, row["name"], cell["backend"], column)
+                expected = quotient(studies, row["name"], cell["backend"], column, pooled)
                 assert cell["text"] == times(expected), (row["name"], cell, expected)
                 if cell["small"]:
                     low, high = (float(end.replace(",", "")) for end in cell["small"].split(" to "))
@@ -601,7 +601,7 @@ def check_kinds(browser, figures, results):
         rows = results["pool"]["groups"][0]["pooled"] if pooled else studies[0]["results"]
         names = results["pool"]["groups"][0]["meshes"] if pooled else [studies[0]["mesh"]["name"]]
         compared = [study for study in studies if study["mesh"]["name"] in names]
-        check_operations(browser, rows, ratios_of(rows, pooled), compared)
+        check_operations(browser, rows, ratios_of(rows, pooled), compared, pooled)
         if pooled:
             check_meshes(browser, studies)
 

@@ -288,6 +288,12 @@ impl Axes<'_> {
     }
 }
 
+/// Returns how far the dot with this number is moved up or down, as a part of the height of its row: from -0.5
+/// to 0.5. The multiples of the golden ratio spread evenly.
+pub(crate) fn scatter(number: usize) -> f64 {
+    (number as f64 * 0.618_034).fract() - 0.5
+}
+
 /// Moves `places` apart so that two are at least `apart` pixels from each other and all are between
 /// the ends, in the same order. Returns the new places.
 pub(crate) fn spread(places: &[f64], apart: f64, [low, high]: [f64; 2]) -> Vec<f64> {

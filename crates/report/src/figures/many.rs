@@ -120,7 +120,7 @@ pub(super) fn page(studies: &[&Report], results: &Results, command: &str) -> Rep
 fn which_meshes(pooled: usize, studied: usize) -> String {
     match pooled == studied {
         true => format!(
-            "Which meshes: the means are over all {studied}, which all structures can hold."
+            "Which meshes: the means are over all {studied}, which all compared structures can hold."
         ),
         false => format!(
             "Which meshes: the means are over the {} of {} that all compared structures can hold; the others have rows of their own \

@@ -7,7 +7,7 @@ use sixfold_study::{NeighboursReport, PickReport, SpatialTask, Standing};
 
 use super::per_unit;
 use crate::Picture;
-use crate::canvas::{Canvas, LogScale, Style, text_width};
+use crate::canvas::{Canvas, LogScale, Style, scatter, text_width};
 use crate::colours::{
     BACKGROUND, FAINT_COLOUR, GRID_COLOUR, INTERVAL_COLOUR, TEXT_COLOUR, column_colour,
 };
@@ -361,9 +361,8 @@ fn bar(canvas: &mut Canvas, cell: &Cell, scale: LogScale, y: f64, unit: &str) {
 /// Draws a dot for each mesh of a mean.
 fn spread(canvas: &mut Canvas, cell: &Cell, scale: LogScale, y: f64) {
     let dots = cell.each.iter().enumerate().map(|(number, &ratio)| {
-        // The multiples of the golden ratio spread evenly.
-        let share = (number as f64 * 0.618_034).fract() - 0.5;
-        [scale.place(ratio), y + HEIGHT / 2.0 + SCATTER * share]
+        let y = y + HEIGHT / 2.0 + SCATTER * scatter(number);
+        [scale.place(ratio), y]
     });
     canvas.dots(dots, 2.4, column_colour(&cell.backend));
 }

@@ -7,7 +7,7 @@ use sixfold_study::{Group, Overall, Pool, Purpose, leaders};
 
 use super::{Mesh, leaders_of, ratio_text};
 use crate::Picture;
-use crate::canvas::{Canvas, LogScale, Style};
+use crate::canvas::{Canvas, LogScale, Style, scatter};
 use crate::colours::{FAINT_COLOUR, GRID_COLOUR, TEXT_COLOUR, column_colour};
 use crate::data::own_columns;
 use crate::figure::{Figure, Table};
@@ -191,13 +191,11 @@ fn draw_line(canvas: &mut Canvas, line: &Line<'_>, scale: LogScale, y: f64) {
     let label = Style::new(12).bold(line.lead);
     canvas.text([DOTS[0] - 8.0, y + 4.0], &mean.backend, label.end());
     for (number, dot) in line.dots.iter().enumerate() {
-        // The multiples of the golden ratio spread evenly.
-        let share = (number as f64 * 0.618_034).fract() - 0.5;
         draw_dot(
             canvas,
             dot,
             &mean.backend,
-            [scale.place(dot.ratio), y + SCATTER * share],
+            [scale.place(dot.ratio), y + SCATTER * scatter(number)],
             scale,
             colour,
         );
