@@ -547,10 +547,7 @@ impl Overall {
 pub fn overall(studies: &[&Report], backends: &[&str]) -> Vec<Overall> {
     let (mut rows, parts) = means(studies, backends);
     for (mesh, study) in studies.iter().enumerate() {
-        let own = match studies {
-            [_] => rows.clone(),
-            _ => means(&[study], backends).0,
-        };
+        let (own, _) = means(&[study], backends);
         for own in own.chunk_by(|a, b| a.purpose == b.purpose) {
             let purpose = own[0].purpose;
             if parts.contains(&(purpose, mesh)) {

@@ -479,3 +479,18 @@ fn means_count_the_meshes_on_which_each_backend_is_the_fastest() {
         .collect();
     assert_eq!(ratios, [("corner-table", 1.0), ("polygon-soup", 4.5)]);
 }
+
+/// A reader who divides two shown times of one mesh gets the ratio of the means. Means over several meshes have
+/// no times.
+#[test]
+fn ratios_of_one_mesh_are_quotients_of_shown_times_per_element() {
+    let mut study = ball("a", &[("half-edge", 1000.0), ("corner-table", 4000.0)]);
+    for row in &mut study.results {
+        row.elements = Some(30);
+    }
+    let ratio = |rows: &[Overall]| rows[1].ratio_to_best;
+    // 133 ns and 33.3 ns.
+    assert!((ratio(&study.overall()) - 133.0 / 33.3).abs() < 1e-12);
+    let pool = pool_of(&[study.clone(), study]);
+    assert!((ratio(&pool.groups[0].overall) - 4.0).abs() < 1e-12);
+}
