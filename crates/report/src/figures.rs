@@ -353,7 +353,7 @@ fn numbered_id(name: &str, place: usize) -> String {
 }
 
 fn study_figures(study: &Report, matrix: &Matrix, command: &str) -> Vec<Figure> {
-    let command = study_command(study, command);
+    let command = recorded_command(&study.run, command);
     let figures = [
         ranking::from_matrix(matrix, "", command).map(|figure| figure.with_csv(rows::study(study))),
         heat_map_of(study, matrix, "", command),
@@ -361,11 +361,6 @@ fn study_figures(study: &Report, matrix: &Matrix, command: &str) -> Vec<Figure> 
         break_even::from_study(study, "", command),
     ];
     figures.into_iter().flatten().collect()
-}
-
-/// Returns the recorded command of a study.
-fn study_command<'a>(study: &'a Report, command: &'a str) -> &'a str {
-    recorded_command(&study.run, command)
 }
 
 fn heat_map_of(study: &Report, matrix: &Matrix, id_prefix: &str, command: &str) -> Option<Figure> {

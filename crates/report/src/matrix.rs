@@ -102,6 +102,15 @@ impl Cell {
         }
     }
 
+    /// Returns the ratio with its signs: `1.31 ×`, `~ 1.31 ×` from a sample, `≥ 341 ×` or `–`.
+    pub(crate) fn times_text(&self) -> String {
+        match (self.ratio, self.source) {
+            (None, _) => "–".into(),
+            (Some(_), Source::Sampled) => format!("~ {} ×", self.ratio_text()),
+            (Some(_), _) => format!("{} ×", self.ratio_text()),
+        }
+    }
+
     /// Returns the interval as text: `1.28 to 1.34`.
     pub(crate) fn interval_text(&self) -> Option<String> {
         let [low, high] = self.interval?.map(figure);
@@ -321,7 +330,7 @@ impl Matrix {
         let names = self.backends.iter().map(String::as_str);
         let mut table = Table::new(["operation"].into_iter().chain(names));
         for line in &self.lines {
-            let cell = |cell: &Cell| match cell.ratio_text() {
+            let cell = |cell: &Cell| match cell.times_text() {
                 text if cell.is_best() => format!("● {text}"),
                 text if cell.is_tied() => format!("◐ {text}"),
                 text => text,

@@ -179,10 +179,14 @@ impl Summary {
             })
         };
         let memory: Vec<Memory> = pool.compared.iter().filter_map(bytes).collect();
-        let rows = |purpose| all.overall.iter().filter(move |row| row.purpose == purpose);
         let work = Work {
             overall: all.overall.clone(),
-            is_decided: &|purpose| rows(purpose).any(|row| row.undecided < row.meshes),
+            is_decided: &|purpose| {
+                purpose
+                    .rows(&all.overall)
+                    .iter()
+                    .any(|row| row.undecided < row.meshes)
+            },
             over: &|rows| format!("mean over {}", counted(rows[0].meshes, "mesh", "meshes")),
         };
         Some(Self::new(&backends, &work, &memory, None))
@@ -206,15 +210,14 @@ impl Summary {
                 .collect(),
         };
         for (purpose, name, about) in WORK {
-            let rows = work.overall.iter().filter(|row| row.purpose == purpose);
-            let rows: Vec<Overall> = rows.cloned().collect();
+            let rows = purpose.rows(&work.overall);
             let over = match rows.is_empty() {
                 true => String::new(),
-                false => (work.over)(&rows),
+                false => (work.over)(rows),
             };
             let decided = (work.is_decided)(purpose);
             summary.column([name, about, &over], |backend| {
-                work_figure(&rows, decided, backend)
+                work_figure(rows, decided, backend)
             });
             if purpose == Purpose::Build {
                 let about = "Bytes held for each vertex, with spare capacity";
@@ -376,17 +379,7 @@ fn enough(study: &Report) -> Option<String> {
 /// Returns the fastest backends of each kind of work over several meshes, with the number of meshes on which
 /// they are the fastest, and the next one.
 pub(crate) fn fastest_of_many(overall: &[Overall]) -> Option<String> {
-    let parts = fastest(overall, &|row| {
-        let of = grouped(row.meshes - row.undecided);
-        let tied = match row.tied {
-            0 => String::new(),
-            tied => format!(", tied on {}", grouped(tied)),
-        };
-        match row.undecided < row.meshes {
-            true => format!("{} ({} of {of}{tied})", row.backend, grouped(row.best)),
-            false => row.backend.clone(),
-        }
-    });
+    let parts = fastest(overall, &wins);
     let unsure = overall.iter().map(|row| row.undecided).max().unwrap_or(0);
     let unsure = match unsure {
         0 => String::new(),
@@ -398,6 +391,23 @@ pub(crate) fn fastest_of_many(overall: &[Overall]) -> Option<String> {
     Some(format!("Fastest on average{unsure}: {}.", parts?))
 }
 
+/// Returns a backend with the number of decided meshes on which it is the fastest: `half-edge (7 of 9, tied on 1)`.
+pub(crate) fn wins(row: &Overall) -> String {
+    if row.undecided == row.meshes {
+        return format!("{} (too few samples)", row.backend);
+    }
+    let tied = match row.tied {
+        0 => String::new(),
+        tied => format!(", tied on {}", grouped(tied)),
+    };
+    format!(
+        "{} ({} of {}{tied})",
+        row.backend,
+        grouped(row.best),
+        grouped(row.meshes - row.undecided)
+    )
+}
+
 /// Returns the fastest backends of each kind of work, as `name` names them, and the next one.
 fn fastest(overall: &[Overall], name: &dyn Fn(&Overall) -> String) -> Option<String> {
     const ORDER: [Purpose; 4] = [
@@ -407,12 +417,8 @@ fn fastest(overall: &[Overall], name: &dyn Fn(&Overall) -> String) -> Option<Str
         Purpose::Build,
     ];
     let parts = ORDER.iter().filter_map(|purpose| {
-        let rows: Vec<Overall> = overall
-            .iter()
-            .filter(|row| row.purpose == *purpose)
-            .cloned()
-            .collect();
-        let best = leaders(&rows);
+        let rows = purpose.rows(overall);
+        let best = leaders(rows);
         if rows.len() < 2 || best.is_empty() {
             return None;
         }
@@ -440,15 +446,12 @@ fn fastest(overall: &[Overall], name: &dyn Fn(&Overall) -> String) -> Option<Str
 /// Returns what would change the answer: tight memory, few repetitions, a single operation, another order.
 pub(crate) fn turning_points(study: &Report, results: &Results) -> Option<String> {
     let overall = study.overall();
-    let queries: Vec<Overall> = overall
-        .into_iter()
-        .filter(|row| row.purpose == Purpose::Query)
-        .collect();
-    let leader = leaders(&queries).first()?;
+    let queries = Purpose::Query.rows(&overall);
+    let leader = leaders(queries).first()?;
     let orders = orders_of(study, results);
     let order = orders.and_then(|orders| order_effect(orders, &leader.backend));
     let points = [
-        less_memory(study, &queries, leader),
+        less_memory(study, queries, leader),
         few_queries(study),
         one_operation(study, leader),
         order.map(|(factor, operation)| {

@@ -46,7 +46,7 @@ pub use engine::effort::Effort;
 pub use engine::heap::{CacheState, CachesReport, free_memory};
 pub use engine::measure::Progress;
 pub use engine::ranking::FEWEST_OF_A_WINNER;
-pub use engine::statistics::UNSEEN_DRIFT;
+pub use engine::statistics::{UNSEEN_DRIFT, median_and_deviation};
 pub use engine::timer::Timer;
 pub use external::isolated::{ChildTask, Isolation, serve_program};
 pub use external::{EXTERNAL_TIMEOUT, External, ExternalError, ExternalReport};

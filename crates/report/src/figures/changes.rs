@@ -8,7 +8,7 @@ use super::ratio_axis::{self, FARTHEST};
 use crate::Picture;
 use crate::canvas::{Canvas, LogScale, Style, text_width};
 use crate::changes::{Compared, Ranked, TABLE_ROWS, both_times};
-use crate::colours::{BACKGROUND, FAINT_COLOUR, GRID_COLOUR, INTERVAL_COLOUR, column_colour};
+use crate::colours::{FAINT_COLOUR, GRID_COLOUR, INTERVAL_COLOUR, column_colour};
 use crate::data::rows;
 use crate::figure::Figure;
 
@@ -201,9 +201,9 @@ fn mark(canvas: &mut Canvas, ranked: &Ranked<'_>, change: &Change, scale: LogSca
             canvas.filled(&corners, FAINT_COLOUR);
             return;
         }
-        canvas.circle([x, y], RADIUS, colour);
-        if interval.is_none() {
-            canvas.circle([x, y], RADIUS - 2.0, BACKGROUND);
+        match interval {
+            Some(_) => canvas.circle([x, y], RADIUS, colour),
+            None => canvas.ring([x, y], RADIUS - 0.6, colour),
         }
     });
 }

@@ -6,7 +6,7 @@ use sixfold_study::numbers::times;
 use crate::Picture;
 use crate::canvas::{Canvas, Style};
 use crate::colours::{FAINT_COLOUR, GRID_COLOUR};
-use crate::figure::{Figure, Table};
+use crate::figure::Figure;
 use crate::matrix::{Cell, Matrix, Source};
 
 /// Maximum ratio with its own colour. Larger ratios have the colour of this ratio.
@@ -30,10 +30,6 @@ pub(super) fn figure(
     if matrix.lines.is_empty() {
         return None;
     }
-    let mut table = Table::new(
-        [""].into_iter()
-            .chain(matrix.backends.iter().map(String::as_str)),
-    );
     let width = NAMES + COLUMN * matrix.backends.len() as f64;
     let mut canvas = Canvas::new(width, HEAD + ROW * matrix.lines.len() as f64 + 4.0);
     for (column, name) in matrix.backends.iter().enumerate() {
@@ -43,20 +39,17 @@ pub(super) fn figure(
     for (number, line) in matrix.lines.iter().enumerate() {
         let y = HEAD + ROW * number as f64;
         canvas.text([NAMES - 8.0, y + 15.0], &line.name, Style::new(12).end());
-        let mut texts = vec![line.name.clone()];
         for (column, cell) in line.cells.iter().enumerate() {
             let x = NAMES + COLUMN * column as f64;
-            texts.push(shown(cell));
             draw_cell(&mut canvas, [x, y], cell, &line.name);
         }
-        table.row(texts);
     }
     Some(Figure {
         id: format!("{id_prefix}heat-map"),
         picture: Picture::single(&title, canvas.finish()),
         title,
         caption: caption(matrix),
-        table,
+        table: matrix.ratios(),
         csv: String::new(),
         source: String::new(),
         command: command.into(),
@@ -102,17 +95,9 @@ fn caption(matrix: &Matrix) -> String {
     parts.collect::<Vec<_>>().join(" ")
 }
 
-fn shown(cell: &Cell) -> String {
-    match cell.ratio {
-        Some(_) if cell.source == Source::Sampled => format!("~ {} ×", cell.ratio_text()),
-        Some(_) => format!("{} ×", cell.ratio_text()),
-        None => "–".into(),
-    }
-}
-
 fn draw_cell(canvas: &mut Canvas, [x, y]: [f64; 2], cell: &Cell, operation: &str) {
     let (corner, size) = ([x + 1.0, y + 1.0], [COLUMN - 2.0, ROW - 2.0]);
-    let text = shown(cell);
+    let text = cell.times_text();
     let measured = cell.ratio.filter(|_| !cell.is_bound());
     let what = match (cell.ratio, cell.source) {
         (Some(_), _) => text.clone(),

@@ -4,10 +4,10 @@ mod distribution;
 mod groups;
 mod outliers;
 
-use sixfold_study::numbers::{counted, grouped, list, rounded_down, times};
+use sixfold_study::numbers::{counted, grouped, list};
 use sixfold_study::{Overall, Pool, Purpose, Report, Results, leaders};
 
-use super::{facts, file_name, heat_map, labs, memory, ranking, slug, study_command};
+use super::{facts, file_name, heat_map, labs, memory, ranking, recorded_command, slug};
 use crate::data::rows;
 use crate::figure::{Table, TitledTable};
 use crate::matrix::Matrix;
@@ -54,19 +54,15 @@ fn leaders_of(pool: &Pool) -> Vec<(Purpose, &str)> {
 }
 
 impl Mesh<'_> {
-    fn rows(&self, purpose: Purpose) -> Vec<Overall> {
-        let rows = self.overall.iter().filter(|row| row.purpose == purpose);
-        rows.cloned().collect()
-    }
-
     /// Returns the mean times of the mesh for one kind of work, divided by the mean time of `leader`. Empty if
     /// `leader` has no measured time.
     fn relative_to(&self, leader: &str, purpose: Purpose) -> Vec<Relative<'_>> {
-        let rows = || self.overall.iter().filter(|row| row.purpose == purpose);
-        let Some(base) = rows().find(|row| row.backend == leader && !row.bound) else {
+        let rows = purpose.rows(&self.overall);
+        let is_base = |row: &&Overall| row.backend == leader && !row.bound;
+        let Some(base) = rows.iter().find(is_base) else {
             return Vec::new();
         };
-        let relative = rows().map(|row| Relative {
+        let relative = rows.iter().map(|row| Relative {
             backend: &row.backend,
             ratio: row.ratio_to_best / base.ratio_to_best,
             bound: row.bound,
@@ -221,8 +217,8 @@ fn overview(meshes: &[Mesh<'_>]) -> Table {
         let facts = &mesh.study.mesh.facts;
         let mut cells = vec![mesh.name.clone(), grouped(facts.faces), kind(mesh.study)];
         for purpose in &purposes {
-            let rows = mesh.rows(*purpose);
-            let best = leaders(&rows);
+            let rows = purpose.rows(&mesh.overall);
+            let best = leaders(rows);
             if !rows.is_empty() && !mesh.study.is_decided(*purpose) {
                 cells.push("too few samples".into());
                 continue;
@@ -259,7 +255,7 @@ fn names(rows: &[Overall]) -> String {
 fn section(mesh: &Mesh<'_>, results: &Results, count: usize, command: &str) -> Section {
     let study = mesh.study;
     let matrix = Matrix::of_study(study);
-    let command = study_command(study, command);
+    let command = recorded_command(&study.run, command);
     let prefix = format!("{}-{}-", mesh.id, slug(&study.mesh.name));
     let figures = match count <= MAX_WITH_FIGURES {
         true => vec![
@@ -290,13 +286,5 @@ fn section(mesh: &Mesh<'_>, results: &Results, count: usize, command: &str) -> S
         sentences: sentences.into_iter().flatten().collect(),
         figures: figures.into_iter().flatten().collect(),
         tables,
-    }
-}
-
-/// Returns a ratio as text: `1.31 ×`, or `≥ 900 ×` for a lower bound.
-fn ratio_text(ratio: f64, bound: bool) -> String {
-    match bound {
-        true => format!("≥ {}", times(rounded_down(ratio))),
-        false => times(ratio),
     }
 }

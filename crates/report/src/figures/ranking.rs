@@ -346,13 +346,9 @@ fn bar(canvas: &mut Canvas, cell: &Cell, scale: LogScale, y: f64, unit: &str) {
     if !cell.each.is_empty() {
         text_from = BARS[1];
     }
-    let sampled = match cell.source {
-        Source::Sampled => "~ ",
-        _ => "",
-    };
-    let text = match cell.ratio_text() {
-        text if cell.is_tied() => format!("{sampled}{text} × tied"),
-        text => format!("{sampled}{text} ×"),
+    let text = match cell.times_text() {
+        text if cell.is_tied() => format!("{text} tied"),
+        text => text,
     };
     debug_assert!(text_from + text_width(&text, 12) < WIDTH + 20.0, "{text}");
     canvas.text([text_from + 6.0, baseline], &text, label);

@@ -69,7 +69,7 @@ pub(crate) fn figure(
         table.row(cells);
     }
     let [before, after] = both;
-    let dots = match ranked.rows.len() <= DOTS {
+    let dots = match has_dots {
         true => "A dot is one time",
         false => {
             "The thin line of a backend has all times, the thick line the middle half of them: a time"

@@ -163,7 +163,7 @@ fn operation_cell(line: &Line, cell: &Cell) -> Markup {
         {
             @match cell.ratio {
                 Some(_) => {
-                    @let text = format!("{}{} ×", if cell.source == Source::Sampled { "~ " } else { "" }, cell.ratio_text());
+                    @let text = cell.times_text();
                     @if cell.is_best() { b { (text) } } @else { (text) }
                     @if cell.is_tied() { " " span.mark { "tied" } }
                     @if let Some(interval) = cell.interval_text() { small { (interval) } }
@@ -180,8 +180,8 @@ fn operation_cell(line: &Line, cell: &Cell) -> Markup {
     }
 }
 
-/// Returns the quotients of the time of a cell and that of each backend: the ratio and the ends of its
-/// interval, as `1.31 1.28 1.34`, separated by commas. Empty where there is none.
+/// Returns the quotients of the time of a cell and that of each backend, with commas between them. A quotient is
+/// the ratio and the ends of its interval, such as `1.31 1.28 1.34`. A backend without a time has no numbers.
 fn quotients(cell: &Cell) -> String {
     let text = |quotient: &Option<Quotient>| match quotient {
         Some(Quotient {

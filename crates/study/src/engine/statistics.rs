@@ -134,20 +134,27 @@ fn half_width(samples: &[f64], drift: f64) -> Option<f64> {
 /// does not affect the median. It would affect the medians of small batches (Tukey and McLaughlin
 /// 1963). Returns `None` without samples or if a sample is not finite.
 fn without_outliers(samples: &[f64]) -> Option<Vec<f64>> {
-    /// The standard deviation of a normal distribution divided by its median deviation.
-    const STANDARD_TO_MEDIAN: f64 = 1.4826;
     if !samples.iter().all(|sample| sample.is_finite()) {
         return None;
     }
-    let middle = median_of_sorted(&sorted(samples.iter().copied())?);
-    let distances = samples.iter().map(|sample| (sample - middle).abs());
-    let typical = median_of_sorted(&sorted(distances)?);
-    let farthest = match typical > 0.0 {
-        true => FARTHEST * STANDARD_TO_MEDIAN * typical,
+    let (middle, deviation) = median_and_deviation(samples)?;
+    let farthest = match deviation > 0.0 {
+        true => FARTHEST * deviation,
         false => f64::INFINITY, // most samples are equal, so the distance has no scale
     };
     let nearer = |sample: &f64| sample.clamp(middle - farthest, middle + farthest);
     Some(samples.iter().map(nearer).collect())
+}
+
+/// Returns the median of `values`, and their standard deviation as estimated from the median of the distances
+/// to the median (Hampel 1974): outliers hardly change both. `None` without values.
+pub fn median_and_deviation(values: &[f64]) -> Option<(f64, f64)> {
+    /// The standard deviation of a normal distribution divided by its median deviation.
+    const STANDARD_TO_MEDIAN: f64 = 1.4826;
+    let middle = median_of_sorted(&sorted(values.iter().copied())?);
+    let distances = values.iter().map(|value| (value - middle).abs());
+    let typical = median_of_sorted(&sorted(distances)?);
+    Some((middle, STANDARD_TO_MEDIAN * typical))
 }
 
 /// Returns the median of `samples`; `None` without samples.

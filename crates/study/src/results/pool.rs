@@ -213,16 +213,11 @@ impl Pool {
         for rows in all.overall.chunk_by(|a, b| a.purpose == b.purpose) {
             sentences.extend(leader(rows, &all.name, self.compared.len()));
             for part in parts {
-                let own: Vec<Overall> = part
-                    .overall
-                    .iter()
-                    .filter(|row| row.purpose == rows[0].purpose)
-                    .cloned()
-                    .collect();
+                let own = rows[0].purpose.rows(&part.overall);
                 // Only where the answer is another one.
                 let differs = own.first().zip(rows.first());
                 if differs.is_some_and(|(own, all)| own.backend != all.backend) {
-                    sentences.extend(leader(&own, &part.name, self.compared.len()));
+                    sentences.extend(leader(own, &part.name, self.compared.len()));
                 }
             }
         }
@@ -507,6 +502,12 @@ impl Purpose {
             Operation::CatmullClark(_) | Operation::Loop(_) => Self::Subdivide,
             _ => Self::Query,
         }
+    }
+
+    /// Returns the rows of this purpose in `overall`, in which the rows of a purpose are side by side.
+    pub fn rows(self, overall: &[Overall]) -> &[Overall] {
+        let mut purposes = overall.chunk_by(|a, b| a.purpose == b.purpose);
+        purposes.find(|rows| rows[0].purpose == self).unwrap_or(&[])
     }
 
     /// Returns the purpose of a choice, such as `for queries`.

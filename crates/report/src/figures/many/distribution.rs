@@ -2,10 +2,10 @@
 
 use kuva::render::render::Scene;
 use serde::Serialize;
-use sixfold_study::numbers::{counted, grouped, times};
+use sixfold_study::numbers::{counted, grouped, rounded_down, times};
 use sixfold_study::{Group, Overall, Pool, Purpose, leaders};
 
-use super::{Mesh, leaders_of, ratio_text};
+use super::{Mesh, leaders_of};
 use crate::Picture;
 use crate::canvas::{Canvas, LogScale, Style, scatter};
 use crate::colours::{FAINT_COLOUR, GRID_COLOUR, TEXT_COLOUR, column_colour};
@@ -33,8 +33,9 @@ struct Dot<'m> {
 /// The dots of one structure, with the mean.
 struct Line<'m> {
     mean: &'m Overall,
-    /// The mean divided by that of the fastest on average.
+    /// The mean divided by that of the fastest on average, and as text.
     ratio: f64,
+    text: String,
     lead: bool,
     dots: Vec<Dot<'m>>,
 }
@@ -125,13 +126,8 @@ fn panel<'m>(
     purpose: Purpose,
     leader: &'m str,
 ) -> Panel<'m> {
-    let means: Vec<&Overall> = all
-        .overall
-        .iter()
-        .filter(|row| row.purpose == purpose)
-        .collect();
-    let own: Vec<Overall> = means.iter().map(|row| (*row).clone()).collect();
-    let leading = leaders(&own).len();
+    let means = purpose.rows(&all.overall);
+    let leading = leaders(means).len();
     let dots = |backend: &str| {
         let dots = meshes.iter().filter_map(|mesh| {
             let mut rows = mesh.relative_to(leader, purpose).into_iter();
@@ -145,7 +141,8 @@ fn panel<'m>(
         });
         dots.collect()
     };
-    let line = |(place, mean): (usize, &&'m Overall)| Line {
+    let line = |(place, mean): (usize, &'m Overall)| Line {
+        text: mean.times(&means[0]),
         mean,
         ratio: mean.ratio_to_best / means[0].ratio_to_best,
         lead: place < leading,
@@ -202,10 +199,9 @@ fn draw_line(canvas: &mut Canvas, line: &Line<'_>, scale: LogScale, y: f64) {
     }
     let x = scale.place(line.ratio);
     canvas.line([x, y - 9.0], [x, y + 9.0], TEXT_COLOUR, 2.0);
-    let ratio = ratio_text(line.ratio, mean.bound);
     let text = match mean.best {
-        0 => ratio,
-        best => format!("{ratio} · fastest on {}", grouped(best)),
+        0 => line.text.clone(),
+        best => format!("{} · fastest on {}", line.text, grouped(best)),
     };
     canvas.text([DOTS[1] + 12.0, y + 4.0], &text, label);
 }
@@ -218,7 +214,10 @@ fn draw_dot(
     scale: LogScale,
     colour: &str,
 ) {
-    let ratio = ratio_text(dot.ratio, dot.bound);
+    let ratio = match dot.bound {
+        true => format!("≥ {}", times(rounded_down(dot.ratio))),
+        false => times(dot.ratio),
+    };
     canvas.mark(format!("{}, {backend}: {ratio}", dot.mesh), |canvas| {
         if dot.ratio > 1.001 * scale.values[1] {
             canvas.filled(
@@ -258,7 +257,7 @@ fn table(panels: &[Panel<'_>]) -> Table {
             table.row(vec![
                 panel.purpose.name().to_lowercase(),
                 mean.backend.clone(),
-                ratio_text(line.ratio, mean.bound),
+                line.text.clone(),
                 panel.leader.to_owned(),
                 grouped(mean.best),
                 grouped(mean.tied),

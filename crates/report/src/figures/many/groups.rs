@@ -3,8 +3,9 @@
 use sixfold_study::numbers::{counted, grouped, list};
 use sixfold_study::{Overall, Pool, Purpose, Report, leaders, overall};
 
-use super::{Mesh, names, ratio_text};
+use super::{Mesh, names};
 use crate::figure::{Table, TitledTable};
+use crate::summary;
 
 /// The largest number of groups that the sentence names.
 const NAMED: usize = 4;
@@ -17,14 +18,6 @@ pub(super) struct Means {
     name: String,
     meshes: usize,
     overall: Vec<Overall>,
-}
-
-impl Means {
-    /// Returns the rows of one purpose, the fastest first.
-    fn rows(&self, purpose: Purpose) -> Vec<Overall> {
-        let rows = self.overall.iter().filter(|row| row.purpose == purpose);
-        rows.cloned().collect()
-    }
 }
 
 /// Returns the groups of the pool, and then those of the other meshes by the structures that can hold them.
@@ -96,8 +89,7 @@ pub(super) fn differences(pool: &Pool, groups: &[Means]) -> Option<String> {
 /// Returns the answer on the meshes `part` if it has no structure in common with the answer on `all`, such as
 /// `for queries (face-vertex)`. `None` if no mesh has a single fastest structure.
 fn other_answer(all: &Means, part: &Means, purpose: Purpose) -> Option<String> {
-    let (usual, own) = (all.rows(purpose), part.rows(purpose));
-    let (usual, best) = (leaders(&usual), leaders(&own));
+    let [usual, best] = [all, part].map(|means| leaders(purpose.rows(&means.overall)));
     let is_usual = |row: &Overall| usual.iter().any(|other| other.backend == row.backend);
     let decided = best.iter().any(|row| row.best > 0);
     let differs = decided && !usual.is_empty() && !best.iter().any(is_usual);
@@ -110,14 +102,14 @@ pub(super) fn winners(groups: &[Means]) -> Option<TitledTable> {
     let all = groups.first()?;
     let purposes = Purpose::ALL
         .into_iter()
-        .filter(|&p| !all.rows(p).is_empty());
+        .filter(|p| !p.rows(&all.overall).is_empty());
     let purposes: Vec<Purpose> = purposes.collect();
     let columns = purposes.iter().map(|purpose| purpose.of_choice());
     let mut table = Table::new(["meshes", "number"].into_iter().chain(columns));
     for group in groups {
         let cells = purposes
             .iter()
-            .map(|&p| winner(&group.rows(p), group.meshes));
+            .map(|p| winner(p.rows(&group.overall), group.meshes));
         let number = grouped(group.meshes);
         table.row(
             [group.name.clone(), number]
@@ -142,22 +134,7 @@ fn winner(rows: &[Overall], meshes: usize) -> String {
     let Some(first) = best.first() else {
         return "–".into();
     };
-    let each = best.iter().map(|row| {
-        if row.undecided == row.meshes {
-            return format!("{} (too few samples)", row.backend);
-        }
-        let tied = match row.tied {
-            0 => String::new(),
-            tied => format!(", tied on {}", grouped(tied)),
-        };
-        format!(
-            "{} ({} of {}{tied})",
-            row.backend,
-            grouped(row.best),
-            grouped(row.meshes - row.undecided)
-        )
-    });
-    let each: Vec<String> = each.collect();
+    let each: Vec<String> = best.iter().map(summary::wins).collect();
     let next = rows
         .get(best.len())
         .map(|next| format!("; next {}", next.times(first)));
@@ -180,7 +157,7 @@ pub(super) fn means(pool: &Pool, groups: &[Means]) -> Option<TitledTable> {
     let mut table = Table::new(header.chain(pool.compared.iter().map(String::as_str)));
     for group in groups {
         for purpose in Purpose::ALL {
-            let rows = group.rows(purpose);
+            let rows = purpose.rows(&group.overall);
             let Some(first) = rows.first() else {
                 continue;
             };
@@ -191,8 +168,7 @@ pub(super) fn means(pool: &Pool, groups: &[Means]) -> Option<TitledTable> {
             ];
             line.extend(pool.compared.iter().map(|backend| {
                 let row = rows.iter().find(|row| row.backend == *backend);
-                let ratio = |row: &Overall| row.ratio_to_best / first.ratio_to_best;
-                row.map_or_else(|| "–".into(), |row| ratio_text(ratio(row), row.bound))
+                row.map_or_else(|| "–".into(), |row| row.times(first))
             }));
             table.row(line);
         }

@@ -1,7 +1,7 @@
 //! Meshes on which a structure behaves unlike on the others.
 
 use sixfold_study::numbers::{counted, times};
-use sixfold_study::{Pool, Purpose};
+use sixfold_study::{Pool, Purpose, median_and_deviation};
 
 use super::{Mesh, Relative, kind, leaders_of};
 use crate::figure::{Table, TitledTable};
@@ -14,8 +14,6 @@ const LEAST_FACTOR: f64 = 1.5;
 const FEWEST: usize = 5;
 /// The largest number of rows.
 const MOST: usize = 15;
-/// The standard deviation of a normal distribution divided by its median deviation.
-const STANDARD_TO_MEDIAN: f64 = 1.4826;
 
 /// A mesh on which ratios are far from the medians of all meshes, in one kind of work.
 struct Outlier<'m, 'r> {
@@ -32,7 +30,7 @@ fn factor((row, median): &(Relative<'_>, f64)) -> f64 {
     factor.max(factor.recip())
 }
 
-/// Returns the table of the outliers, the farthest first; `None` if there are none.
+/// Returns the table of the outliers, or `None` if there are none. The farthest outlier comes first.
 pub(super) fn table(pool: &Pool, meshes: &[Mesh<'_>]) -> Option<TitledTable> {
     let leaders = leaders_of(pool);
     let outliers = leaders
@@ -95,12 +93,12 @@ fn outliers<'m, 'r>(
     for backend in backends {
         let own = || rows.iter().filter(|(_, row)| row.backend == backend);
         let logs: Vec<f64> = own().map(|(_, row)| row.ratio.ln()).collect();
-        let middle = median(&logs);
-        let deviations: Vec<f64> = logs.iter().map(|log| (log - middle).abs()).collect();
-        let far = (FAR * STANDARD_TO_MEDIAN * median(&deviations)).max(LEAST_FACTOR.ln());
-        if logs.len() < FEWEST {
+        let Some((middle, deviation)) =
+            median_and_deviation(&logs).filter(|_| logs.len() >= FEWEST)
+        else {
             continue;
-        }
+        };
+        let far = (FAR * deviation).max(LEAST_FACTOR.ln());
         for (mesh, row) in own().filter(|(_, row)| (row.ratio.ln() - middle).abs() > far) {
             let row = (*row, middle.exp());
             match found.iter_mut().find(|outlier| outlier.mesh.id == mesh.id) {
@@ -126,14 +124,4 @@ fn shown(outlier: &Outlier<'_, '_>) -> String {
     let rows = rows
         .map(|(row, median)| format!("{} {} ({})", row.backend, times(row.ratio), times(*median)));
     rows.collect::<Vec<_>>().join(", ")
-}
-
-/// Returns the median of `values`; NaN without values.
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    match sorted.len() {
-        0 => f64::NAN,
-        count => f64::midpoint(sorted[(count - 1) / 2], sorted[count / 2]),
-    }
 }
