@@ -658,3 +658,81 @@ fn the_structure_with_the_shortest_total_time_depends_on_the_number_of_queries()
     );
     assert!(!caption.contains("Points and numbers show"), "{caption}");
 }
+
+/// With too few samples, the answer names the option that gives enough.
+#[test]
+fn a_provisional_answer_says_which_budget_gives_enough_samples() {
+    let mut study = report("ball.obj");
+    for row in &mut study.results {
+        row.standing = None;
+        row.samples = 2;
+    }
+    let said = |study: &Report| {
+        let page = ReportPage::new(&study.clone().into(), "sixfold study");
+        page.answer[0].clone()
+    };
+    assert!(
+        said(&study).starts_with("Fastest (provisional, too few samples; --rounds 4 gives enough)"),
+        "{}",
+        said(&study)
+    );
+    // Twice the samples need twice the time, and a fifth more.
+    study.run.settings.rounds = None;
+    study.run.settings.budget_s = Some(10.0);
+    assert!(said(&study).contains("--budget 24s gives enough"));
+}
+
+/// The answer names what a smaller structure costs, and the operation in which another one is much faster.
+#[test]
+fn the_answer_says_what_would_change_it() {
+    let times = [
+        ("polygon-soup", 900.0),
+        ("corner-table", 15.0),
+        ("half-edge", 10.0),
+    ];
+    let mut study = timed(StudyMesh::new("ball.obj", shapes::icosahedron()), &times);
+    let said = |study: &Report| {
+        let page = ReportPage::new(&study.clone().into(), "sixfold study");
+        let mut sentences = page.answer.into_iter();
+        sentences
+            .find(|sentence| sentence.starts_with("What would"))
+            .unwrap_or_default()
+    };
+    let memory = |bytes: [f64; 3], study: &mut Report| {
+        for (backend, bytes) in study.backends.iter_mut().zip(bytes) {
+            backend.bytes_per_vertex = Some(bytes);
+        }
+    };
+    // The soup is the smallest, but 90 times slower, so it is no choice for queries.
+    memory([30.0, 100.0, 60.0].map(|b| b + 4.0), &mut study);
+    let names: Vec<&str> = study.backends.iter().map(|b| b.name.as_str()).collect();
+    assert_eq!(names, ["polygon-soup", "half-edge", "corner-table"]);
+    let expected =
+        "little memory (corner-table: 64.0 bytes per vertex instead of 104, 1.50 × in queries)";
+    assert!(said(&study).contains(expected), "{}", said(&study));
+    assert!(
+        !said(&study).contains("a single operation"),
+        "{}",
+        said(&study)
+    );
+    // Equal sizes change nothing.
+    memory([100.0; 3], &mut study);
+    assert!(!said(&study).contains("little memory"), "{}", said(&study));
+    // In one operation, the corner table is much faster.
+    for row in &mut study.results {
+        if row.operation == Operation::Boundary && row.backend != "polygon-soup" {
+            let fast = row.backend == "corner-table";
+            let (ns, ratio) = if fast { (10.0, 1.0) } else { (13.0, 1.3) };
+            row.ns_per_element = Some(ns);
+            row.median_ns = Some(ns * row.elements.expect("measured") as f64);
+            row.ratio_to_best = Some(ratio);
+            row.standing = Some(if fast {
+                Standing::Best
+            } else {
+                Standing::Slower
+            });
+        }
+    }
+    let expected = "a single operation (corner-table in boundary: half-edge takes 1.30 ×)";
+    assert!(said(&study).contains(expected), "{}", said(&study));
+}
