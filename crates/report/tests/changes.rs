@@ -182,7 +182,8 @@ fn marks_are_those_of_the_changes_largest_first() {
         );
         rows.push(attribute(shapes, "circle", "cy").expect("a dot"));
         // A dot without an interval is an open ring.
-        let is_ring = shapes.contains("fill=\"none\"");
+        let (_, circle) = shapes.split_once("<circle").expect("a dot");
+        let is_ring = circle.contains("fill=\"none\"");
         match interval(shapes) {
             Some([low, high]) => {
                 assert!((low - place(ratio * 0.9)).abs() < 0.1, "{title}");
