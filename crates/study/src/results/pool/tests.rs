@@ -7,7 +7,7 @@ use super::*;
 use crate::engine::effort::Effort;
 use crate::engine::simulated_machine::SimulatedMachine;
 use crate::labs::study::study_on;
-use crate::{Agreement, ResultRow, Settings, Standing, StudyMesh};
+use crate::{ResultRow, Settings, Standing, StudyMesh};
 
 const BOUNDARY: Operation = Operation::Boundary;
 
